@@ -1,0 +1,194 @@
+//! The messages between a user and the service.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// `POST /v1/experiments`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewExperiment {
+    /// Text of `experiment.toml`.
+    pub toml: String,
+    /// Texts of the files that it names.
+    #[serde(default)]
+    pub files: BTreeMap<String, String>,
+}
+
+/// `POST /v1/calibrations`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewCalibration {
+    /// The experiment's id; it takes the place of the job file's `experiment`.
+    pub experiment: i64,
+    /// Text of `job.toml`.
+    pub toml: String,
+    /// Texts of the files that it names (effect files: later).
+    #[serde(default)]
+    pub files: BTreeMap<String, String>,
+    /// A name for lists.
+    #[serde(default)]
+    pub name: Option<String>,
+}
+
+/// Answer to a new experiment.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct ExperimentCreated {
+    /// Its id.
+    pub id: i64,
+}
+
+/// Answer to a new calibration.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct CalibrationCreated {
+    /// Its id.
+    pub id: i64,
+    /// The study that it opens.
+    pub study: i64,
+}
+
+/// Where a calibration stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CalibrationState {
+    /// No evaluation has been leased yet.
+    Queued,
+    /// Evaluations are being leased.
+    Running,
+    /// Stopped by a user, or because a machine's faults used up an evaluation's attempts.
+    Paused,
+    /// A decision is asked of the user.
+    Waiting,
+    /// The posterior is there.
+    Finished,
+    /// It cannot go on; the message says why.
+    Failed,
+    /// Stopped for good by a user.
+    Cancelled,
+}
+
+impl CalibrationState {
+    /// Every state.
+    pub const ALL: [CalibrationState; 7] = [
+        CalibrationState::Queued,
+        CalibrationState::Running,
+        CalibrationState::Paused,
+        CalibrationState::Waiting,
+        CalibrationState::Finished,
+        CalibrationState::Failed,
+        CalibrationState::Cancelled,
+    ];
+
+    /// Word in JSON and in the store.
+    pub fn name(self) -> &'static str {
+        match self {
+            CalibrationState::Queued => "queued",
+            CalibrationState::Running => "running",
+            CalibrationState::Paused => "paused",
+            CalibrationState::Waiting => "waiting",
+            CalibrationState::Finished => "finished",
+            CalibrationState::Failed => "failed",
+            CalibrationState::Cancelled => "cancelled",
+        }
+    }
+
+    /// The state of a word.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|s| s.name() == name)
+    }
+
+    /// Whether nothing will happen any more.
+    pub fn is_final(self) -> bool {
+        matches!(self, CalibrationState::Finished | CalibrationState::Failed | CalibrationState::Cancelled)
+    }
+}
+
+/// `GET /v1/calibrations/ID`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct CalibrationStatus {
+    /// Its id.
+    pub id: i64,
+    /// Its name.
+    pub name: String,
+    /// The study it belongs to.
+    pub study: i64,
+    /// The experiment it is about.
+    pub experiment: i64,
+    /// Where it stands.
+    pub state: CalibrationState,
+    /// Why it is paused or failed.
+    pub message: Option<String>,
+    /// `quasi_static` or `scm`.
+    pub model_kind: String,
+    /// Version of the equations, once the first lease has pinned it.
+    pub model_version: Option<String>,
+    /// Live figures of the sampler; `None` before it starts.
+    pub progress: Option<Progress>,
+}
+
+/// How far a calibration has come.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Progress {
+    /// The present stage; 0 draws from the prior.
+    pub stage: u32,
+    /// The present tempering exponent.
+    pub tempering_exponent: f64,
+    /// Metropolis-Hastings step within the stage.
+    pub step: u32,
+    /// Acceptance rate of the present stage.
+    pub acceptance: f64,
+    /// Evaluations done, over all stages.
+    pub evaluations: u64,
+    /// Of these, refused by the model.
+    pub rejected: u64,
+    /// Evaluations of the present step that are done.
+    pub step_done: u64,
+    /// Evaluations of the present step.
+    pub step_size: u64,
+    /// Evaluations per second, lately.
+    pub evaluations_per_s: f64,
+    /// Rough time to go [s]; `None` while nothing is known.
+    pub remaining_s: Option<f64>,
+}
+
+/// Every error answer: `{"error": {"type": …, "message": …}}`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct ErrorBody {
+    /// The error.
+    pub error: ErrorDetail,
+}
+
+/// The error in an answer.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct ErrorDetail {
+    /// One of a closed list.
+    #[serde(rename = "type")]
+    pub kind: ErrorKind,
+    /// Field, value, unit, bound.
+    pub message: String,
+}
+
+/// The closed list of error types.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ErrorKind {
+    /// The body is not the JSON that the route takes.
+    InvalidBody,
+    /// A file in the body is malformed.
+    InvalidFile,
+    /// No such thing.
+    NotFound,
+    /// The request does not fit the state of the thing.
+    Conflict,
+    /// The body is larger than the service takes.
+    TooLarge,
+    /// The worker speaks another version of the protocol.
+    ProtocolMismatch,
+    /// The service has more work in hand than it can store; try again later.
+    Busy,
+    /// Not available in this version.
+    NotAvailable,
+    /// Something failed inside; the log says what.
+    Internal,
+}

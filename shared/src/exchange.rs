@@ -1,0 +1,79 @@
+//! The messages between worker and coordinator: one long-polled exchange, and the fetch of a variant.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::outcome::Outcome;
+
+/// Version of these messages; a coordinator answers another one with 426.
+pub const PROTOCOL_VERSION: u32 = 1;
+
+/// `POST /v1/work/exchange`: results of finished leases, and how many more are wanted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ExchangeRequest {
+    /// Name of the worker process, fresh at every start.
+    pub worker: String,
+    /// [`PROTOCOL_VERSION`] of the worker.
+    pub protocol: u32,
+    /// Version of the equations that the worker computes.
+    pub model_version: String,
+    /// Results, in any order. Acknowledged by the response; resent until then.
+    pub results: Vec<WorkResult>,
+    /// Leases still held, renewed by this message.
+    pub holding: Vec<u64>,
+    /// Leases given back unevaluated.
+    pub returned: Vec<u64>,
+    /// Most leases that the worker takes now.
+    pub want: u32,
+    /// How long the coordinator may wait for work before it answers [ms].
+    pub wait_ms: u64,
+}
+
+/// An outcome with the lease it answers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WorkResult {
+    /// The lease; no lease number is ever given out twice.
+    pub lease: u64,
+    /// The calibration, so that a result outlives the lease it was computed under.
+    pub calibration: i64,
+    /// The evaluation within the calibration.
+    pub evaluation: u64,
+    /// What came out.
+    pub outcome: Outcome,
+}
+
+/// The answer: results are durable, and here is more work.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ExchangeResponse {
+    /// New leases, at most as many as wanted.
+    pub leases: Vec<Lease>,
+    /// How long a lease lasts without renewal [ms].
+    pub lease_ms: u64,
+    /// Evaluations not yet leased in the calibrations at hand; bounds the next `want`.
+    pub remaining: u64,
+    /// Workers heard of lately; bounds the next `want`.
+    pub workers: u32,
+    /// Results that changed nothing: late duplicates, or of a calibration that ended.
+    pub duplicates: u32,
+    /// Why a worker that asked got no lease of a waiting calibration, if so.
+    pub refused: Option<String>,
+}
+
+/// A time-limited claim on one evaluation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Lease {
+    /// Fencing token: grows with every lease, across restarts too.
+    pub lease: u64,
+    /// The calibration.
+    pub calibration: i64,
+    /// The evaluation within the calibration.
+    pub evaluation: u64,
+    /// Hash of the variant to evaluate; `GET /v1/work/variants/HASH`.
+    pub variant: String,
+    /// Parameter vector in the variant's order.
+    pub theta: Vec<f64>,
+}

@@ -1,0 +1,146 @@
+//! An experiment as its files describe it: wheels, rig, noise, protocol, test runs.
+
+mod runs;
+mod settings;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+pub use runs::{RunUse, TestRun};
+pub use settings::{Noise, NoiseSd, Protocol, ProtocolKind, Rig, Soil, Wheel};
+
+use crate::channel::Channel;
+use crate::file::{FileError, FileSet};
+
+/// A measured data set: everything that stands in `experiment.toml` and the files it names.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Experiment {
+    /// Wheels by name.
+    pub wheels: BTreeMap<String, Wheel>,
+    /// Soils by name.
+    pub soils: BTreeMap<String, Soil>,
+    /// What holds the wheel.
+    pub rig: Rig,
+    /// Standard deviation of the measurement noise by channel.
+    pub noise: Noise,
+    /// How histories become averages.
+    pub protocol: Protocol,
+    /// The test runs, in the order of `runs.csv`.
+    pub runs: Vec<TestRun>,
+}
+
+impl Experiment {
+    /// The names of the files that `experiment.toml` refers to.
+    ///
+    /// # Errors
+    /// [`FileError`] where the TOML cannot be parsed.
+    pub fn referenced_files(name: &str, toml: &str) -> Result<Vec<String>, FileError> {
+        Ok(settings::parse(name, toml)?.runs.into_iter().collect())
+    }
+
+    /// Parses and validates an experiment; `name` is how messages call its TOML file.
+    ///
+    /// # Errors
+    /// [`FileError`] names the file, the line, the value, the unit and the bound.
+    /// Checked by `tests::malformed_experiments_say_what_is_wrong`.
+    pub fn parse(name: &str, files: &FileSet) -> Result<Experiment, FileError> {
+        let file = settings::parse(name, &files.toml)?;
+        let Some(runs_name) = &file.runs else {
+            return Err(FileError::whole(name, "the experiment names no test runs: add runs = \"runs.csv\""));
+        };
+        let Some(text) = files.files.get(runs_name) else {
+            return Err(FileError::whole(name, format!("file \"{runs_name}\" is named but was not sent along")));
+        };
+        let runs = runs::parse(runs_name, text, &file.wheel, &file.soil)?;
+        let used: BTreeSet<&str> = runs.iter().map(|r| r.soil.as_str()).collect();
+        if used.len() > 1 {
+            let list = used.into_iter().collect::<Vec<_>>().join(", ");
+            let message = format!("one experiment is about one soil, but the runs name {list}: the soil parameters would be shared");
+            return Err(FileError::whole(runs_name, message));
+        }
+        Ok(Experiment {
+            wheels: file.wheel,
+            soils: file.soil,
+            rig: file.rig,
+            noise: file.noise,
+            protocol: file.protocol,
+            runs,
+        })
+    }
+
+    /// Names of the wheels that the runs use.
+    pub fn wheel_names(&self) -> BTreeSet<&str> {
+        self.runs.iter().map(|r| r.wheel.as_str()).collect()
+    }
+
+    /// Whether any run of this use has a measurement of the channel.
+    pub fn measures(&self, channel: Channel, usage: RunUse) -> bool {
+        self.runs.iter().any(|r| r.usage == usage && r.measured[channel.index()].is_some())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TOML: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.1\nwidth_m = 0.05\n[soil.s]\n[noise]\ndrawbar_pull_n = 1.0\n";
+    const HEADER: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,sinkage_m,use\n";
+
+    fn parse(toml: &str, csv: &str) -> Result<Experiment, String> {
+        let files = FileSet { toml: toml.into(), files: BTreeMap::from([("runs.csv".into(), csv.into())]) };
+        Experiment::parse("experiment.toml", &files).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn a_blank_channel_is_unmeasured() {
+        let csv = format!("{HEADER}a,w,s,0.2,100,0.01,5.5,,fit\nb,w,s,-1,100,0.01,,0.01,holdout\n");
+        let experiment = parse(TOML, &csv).unwrap();
+        assert_eq!(experiment.runs[0].measured, [Some(5.5), None, None, None]);
+        assert_eq!(experiment.runs[1].usage, RunUse::Holdout);
+        assert_eq!(experiment.wheels["w"].rig_radius_m, 0.1);
+        assert!(experiment.measures(Channel::Sinkage, RunUse::Holdout));
+        assert!(!experiment.measures(Channel::Sinkage, RunUse::Fit));
+    }
+
+    /// One wrong value each; the message must name line, quantity, value, unit and bound.
+    #[test]
+    fn malformed_experiments_say_what_is_wrong() {
+        let row = |row: &str| parse(TOML, &format!("{HEADER}{row}\n")).unwrap_err();
+        for (wrong, message) in [
+            ("a,w,s,1.0,100,0.01,1,,fit", "runs.csv line 2: slip 1 must lie in [-1, 1)"),
+            ("a,w,s,0.2,-5,0.01,1,,fit", "runs.csv line 2: wheel_load_n -5 N must be > 0 N"),
+            ("a,w,s,0.2,100,0,1,,fit", "runs.csv line 2: sled_speed_m_s 0 m/s must be > 0 m/s"),
+            (
+                "a,w,s,0.2,100,0.01,1,5.2,fit",
+                "runs.csv line 2: sinkage_m 5.2 m is more than the wheel's diameter 0.2 m: metres are expected, were these millimetres?",
+            ),
+            ("a,v,s,0.2,100,0.01,1,,fit", "runs.csv line 2: unknown wheel \"v\"; the nearest known is \"w\""),
+            ("a,w,s,zero,100,0.01,1,,fit", "runs.csv line 2: slip \"zero\" is not a number"),
+            ("a,w,s,0.2,100,0.01,NaN,,fit", "runs.csv line 2: drawbar_pull_n NaN is not a finite number"),
+            ("a,w,s,0.2,100,0.01,1,,both", "runs.csv line 2: use \"both\" must be fit or holdout"),
+            ("a,w,s,0.2,100,0.01", "runs.csv line 2: 6 fields where the header has 9"),
+        ] {
+            assert_eq!(row(wrong), message);
+        }
+        let two = format!("{HEADER}a,w,s,0.2,100,0.01,1,,fit\na,w,s,0.2,100,0.01,1,,fit\n");
+        assert_eq!(parse(TOML, &two).unwrap_err(), "runs.csv line 3: run \"a\" stands twice (first on line 2)");
+        assert_eq!(parse(TOML, HEADER).unwrap_err(), "runs.csv: no test run stands in the file");
+        let column = "run,wheel,soil,slipp,wheel_load_n,sled_speed_m_s\n";
+        assert_eq!(
+            parse(TOML, column).unwrap_err(),
+            "runs.csv line 1: unknown column \"slipp\"; the nearest known is \"slip\""
+        );
+        let negative = TOML.replace("0.05", "-0.05");
+        assert_eq!(
+            parse(&negative, HEADER).unwrap_err(),
+            "experiment.toml: [wheel.w] width_m -0.05 m must be > 0 m"
+        );
+    }
+
+    #[test]
+    fn what_a_later_version_brings_says_so() {
+        let toml = TOML.replace("width_m", "mesh = \"w.stl\"\nwidth_m");
+        assert!(parse(&toml, HEADER).unwrap_err().contains("not available in this version"));
+        let toml = TOML.replace("[noise]", "[noise]\nrun_scatter = 0.1");
+        assert!(parse(&toml, HEADER).unwrap_err().contains("not available in this version"));
+    }
+}

@@ -1,0 +1,198 @@
+//! The rows of `runs.csv`.
+
+use std::collections::BTreeMap;
+
+use super::settings::{Soil, Wheel};
+use crate::channel::Channel;
+use crate::file::{FileError, unknown_word};
+
+/// One run of the rig: its condition and what was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TestRun {
+    /// Name, unique in the experiment.
+    pub name: String,
+    /// Which wheel.
+    pub wheel: String,
+    /// Which soil.
+    pub soil: String,
+    /// `(omega R_s - v) / max(omega R_s, v)`, in [-1, 1); R_s is the rig's radius.
+    pub slip: f64,
+    /// Vertical load on the wheel [N].
+    pub wheel_load_n: f64,
+    /// Sled speed along travel [m/s].
+    pub sled_speed_m_s: f64,
+    /// From wheel heading to travel [deg].
+    pub slip_angle_deg: f64,
+    /// How often the wheel passes; the last pass is measured.
+    pub pass: u32,
+    /// Measured value by channel [channel's unit]; `None` = unmeasured.
+    pub measured: [Option<f64>; 4],
+    /// Standard deviation that wins over the experiment's, by channel.
+    pub sd: [Option<f64>; 4],
+    /// Fitted, or kept to judge the fit.
+    pub usage: RunUse,
+}
+
+/// What a run is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RunUse {
+    /// Enters the likelihood.
+    Fit,
+    /// Never fitted; scores the prediction.
+    Holdout,
+}
+
+const CONDITION: [&str; 8] =
+    ["run", "wheel", "soil", "slip", "wheel_load_n", "sled_speed_m_s", "slip_angle_deg", "pass"];
+const REQUIRED: usize = 6;
+
+/// Parses `runs.csv` against the wheels and soils of its experiment.
+pub(super) fn parse(
+    file: &str,
+    text: &str,
+    wheels: &BTreeMap<String, Wheel>,
+    soils: &BTreeMap<String, Soil>,
+) -> Result<Vec<TestRun>, FileError> {
+    let mut reader =
+        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|e| FileError::at(file, 1, e.to_string()))?.clone();
+    let columns = columns(&header).map_err(|e| FileError::at(file, header_line(&header), e))?;
+    let mut first_line: BTreeMap<String, usize> = BTreeMap::new();
+    let mut runs = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|e| FileError::whole(file, e.to_string()))?;
+        let line = header_line(&record);
+        if record.len() != header.len() {
+            let message = format!("{} fields where the header has {}", record.len(), header.len());
+            return Err(FileError::at(file, line, message));
+        }
+        let row = Row { columns: &columns, record: &record };
+        let run = row.test_run(wheels, soils).map_err(|e| FileError::at(file, line, e))?;
+        if let Some(first) = first_line.insert(run.name.clone(), line) {
+            return Err(FileError::at(file, line, format!("run \"{}\" stands twice (first on line {first})", run.name)));
+        }
+        runs.push(run);
+    }
+    if runs.is_empty() {
+        return Err(FileError::whole(file, "no test run stands in the file"));
+    }
+    Ok(runs)
+}
+
+fn header_line(record: &csv::StringRecord) -> usize {
+    record.position().map_or(1, |p| usize::try_from(p.line()).unwrap_or(1))
+}
+
+/// Where each known column stands in the file.
+fn columns(header: &csv::StringRecord) -> Result<BTreeMap<String, usize>, String> {
+    let sd_columns: Vec<String> = Channel::ALL.iter().map(|c| format!("{}_sd", c.column())).collect();
+    let mut known: Vec<&str> = CONDITION.to_vec();
+    known.extend(Channel::ALL.iter().map(|c| c.column()));
+    known.extend(sd_columns.iter().map(String::as_str));
+    known.extend(["use", "history"]);
+    let mut columns = BTreeMap::new();
+    for (position, name) in header.iter().enumerate() {
+        if name == "history" {
+            return Err("column \"history\": averaging time histories is not available in this version".into());
+        }
+        if !known.contains(&name) {
+            return Err(unknown_word("column", name, known));
+        }
+        if columns.insert(name.to_owned(), position).is_some() {
+            return Err(format!("column \"{name}\" stands twice"));
+        }
+    }
+    match CONDITION[..REQUIRED].iter().find(|&&c| !columns.contains_key(c)) {
+        Some(missing) => Err(format!("column \"{missing}\" is missing")),
+        None => Ok(columns),
+    }
+}
+
+struct Row<'a> {
+    columns: &'a BTreeMap<String, usize>,
+    record: &'a csv::StringRecord,
+}
+
+impl Row<'_> {
+    /// The field of a column; `None` where it is blank or the column absent.
+    fn text(&self, column: &str) -> Option<&str> {
+        self.columns.get(column).and_then(|&i| self.record.get(i)).filter(|s| !s.is_empty())
+    }
+
+    fn number(&self, column: &str) -> Result<Option<f64>, String> {
+        let Some(text) = self.text(column) else { return Ok(None) };
+        let value: f64 = text.parse().map_err(|_| format!("{column} \"{text}\" is not a number"))?;
+        if value.is_finite() { Ok(Some(value)) } else { Err(format!("{column} {value} is not a finite number")) }
+    }
+
+    fn required(&self, column: &str) -> Result<f64, String> {
+        self.number(column)?.ok_or_else(|| format!("{column} is blank"))
+    }
+
+    fn named<T>(&self, column: &str, known: &BTreeMap<String, T>) -> Result<String, String> {
+        let name = self.text(column).ok_or_else(|| format!("{column} is blank"))?;
+        if known.contains_key(name) {
+            Ok(name.to_owned())
+        } else {
+            Err(unknown_word(column, name, known.keys().map(String::as_str)))
+        }
+    }
+
+    fn test_run(&self, wheels: &BTreeMap<String, Wheel>, soils: &BTreeMap<String, Soil>) -> Result<TestRun, String> {
+        let wheel = self.named("wheel", wheels)?;
+        let slip = self.required("slip")?;
+        if !(-1.0..1.0).contains(&slip) {
+            return Err(format!("slip {slip} must lie in [-1, 1)"));
+        }
+        let wheel_load_n = self.positive("wheel_load_n", "N")?;
+        let sled_speed_m_s = self.positive("sled_speed_m_s", "m/s")?;
+        let slip_angle_deg = self.number("slip_angle_deg")?.unwrap_or(0.0);
+        if slip_angle_deg.abs() > 90.0 {
+            return Err(format!("slip_angle_deg {slip_angle_deg} deg must lie in [-90, 90] deg"));
+        }
+        let pass = match self.text("pass") {
+            None => 1,
+            Some(text) => match text.parse::<u32>() {
+                Ok(pass) if pass >= 1 => pass,
+                _ => return Err(format!("pass \"{text}\" must be a whole number >= 1")),
+            },
+        };
+        let usage = match self.text("use") {
+            None | Some("fit") => RunUse::Fit,
+            Some("holdout") => RunUse::Holdout,
+            Some(word) => return Err(format!("use \"{word}\" must be fit or holdout")),
+        };
+        let (mut measured, mut sd) = ([None; 4], [None; 4]);
+        for channel in Channel::ALL {
+            measured[channel.index()] = self.number(channel.column())?;
+            let sd_column = format!("{}_sd", channel.column());
+            if self.text(&sd_column).is_some() {
+                sd[channel.index()] = Some(self.positive(&sd_column, channel.unit())?);
+            }
+        }
+        let diameter = 2.0 * wheels[&wheel].radius_m;
+        if let Some(z) = measured[Channel::Sinkage.index()].filter(|z| z.abs() > diameter) {
+            return Err(format!(
+                "sinkage_m {z} m is more than the wheel's diameter {diameter} m: metres are expected, were these millimetres?"
+            ));
+        }
+        Ok(TestRun {
+            name: self.text("run").ok_or("run is blank")?.to_owned(),
+            wheel,
+            soil: self.named("soil", soils)?,
+            slip,
+            wheel_load_n,
+            sled_speed_m_s,
+            slip_angle_deg,
+            pass,
+            measured,
+            sd,
+            usage,
+        })
+    }
+
+    fn positive(&self, column: &str, unit: &str) -> Result<f64, String> {
+        let value = self.required(column)?;
+        if value > 0.0 { Ok(value) } else { Err(format!("{column} {value} {unit} must be > 0 {unit}")) }
+    }
+}

@@ -1,0 +1,256 @@
+//! The tables of `experiment.toml`.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::channel::Channel;
+use crate::file::{FileError, parse_toml};
+
+/// A rigid wheel. `quasi_static` models its smooth rim alone: grousers enter through a radius of its own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Wheel {
+    /// Radius of the rim [m].
+    pub radius_m: f64,
+    /// Width of the rim [m].
+    pub width_m: f64,
+    /// Number of straight grousers.
+    pub grouser_count: u32,
+    /// Height of a grouser above the rim [m].
+    pub grouser_height_m: f64,
+    /// Thickness of a grouser along the rim [m].
+    pub grouser_thickness_m: f64,
+    /// Radius with which the rig turns slip into rim speed [m].
+    pub rig_radius_m: f64,
+}
+
+/// What is known of a soil besides the calibrated parameters.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Soil {
+    /// Bulk density [kg/m^3].
+    pub density_kg_m3: Option<f64>,
+    /// Angle of repose [deg].
+    pub repose_angle_deg: Option<f64>,
+}
+
+/// What holds the wheel.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Rig {
+    /// Acceleration of gravity [m/s^2].
+    pub gravity_m_s2: f64,
+    /// Length of the soil bin along travel [m].
+    pub bin_length_m: Option<f64>,
+}
+
+impl Default for Rig {
+    fn default() -> Self {
+        Rig { gravity_m_s2: 9.81, bin_length_m: None }
+    }
+}
+
+/// Where the noise standard deviation of a channel comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NoiseSd {
+    /// Stated [channel's unit].
+    Known(f64),
+    /// Pooled from the repeats of a condition.
+    Replicates,
+    /// A parameter of the calibration: `noise.` and the channel's column.
+    Unknown,
+}
+
+/// Noise by channel, in the order of [`Channel::ALL`]; `None` = nothing stated.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Noise {
+    /// Source of the standard deviation of each channel.
+    pub sd: [Option<NoiseSd>; 4],
+}
+
+/// How a time history becomes the averages of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Protocol {
+    /// When a simulated run ends.
+    pub kind: ProtocolKind,
+    /// Time cut from the start of a measured history [s].
+    pub measured_transient_s: f64,
+    /// Time cut from simulated drawbar pull and torque [s].
+    pub simulated_transient_force_s: f64,
+    /// Time cut from simulated sinkage [s].
+    pub simulated_transient_sinkage_s: f64,
+    /// Cut-off of the zero-phase low-pass filter \[Hz\].
+    pub lowpass_hz: f64,
+}
+
+/// When a simulated run ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ProtocolKind {
+    /// Once the averages have settled.
+    Steady,
+    /// After 50 s, as in the source paper.
+    Paper,
+}
+
+impl Default for Protocol {
+    fn default() -> Self {
+        Protocol {
+            kind: ProtocolKind::Steady,
+            measured_transient_s: 40.0,
+            simulated_transient_force_s: 20.0,
+            simulated_transient_sinkage_s: 1.0,
+            lowpass_hz: 0.5,
+        }
+    }
+}
+
+/// `experiment.toml`, validated, before the files it names are read.
+pub(super) struct ExperimentFile {
+    pub(super) runs: Option<String>,
+    pub(super) wheel: BTreeMap<String, Wheel>,
+    pub(super) soil: BTreeMap<String, Soil>,
+    pub(super) rig: Rig,
+    pub(super) noise: Noise,
+    pub(super) protocol: Protocol,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawExperiment {
+    runs: Option<String>,
+    plates: Option<String>,
+    shear: Option<String>,
+    #[serde(default)]
+    wheel: BTreeMap<String, RawWheel>,
+    #[serde(default)]
+    soil: BTreeMap<String, Soil>,
+    #[serde(default)]
+    rig: Rig,
+    #[serde(default)]
+    noise: RawNoise,
+    #[serde(default)]
+    protocol: Protocol,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawWheel {
+    mesh: Option<String>,
+    radius_m: f64,
+    width_m: f64,
+    #[serde(default)]
+    grouser_count: u32,
+    #[serde(default)]
+    grouser_height_m: f64,
+    #[serde(default)]
+    grouser_thickness_m: f64,
+    rig_radius_m: Option<f64>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawNoise {
+    drawbar_pull_n: Option<RawSd>,
+    torque_n_m: Option<RawSd>,
+    sinkage_m: Option<RawSd>,
+    lateral_force_n: Option<RawSd>,
+    run_scatter: Option<RawSd>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum RawSd {
+    Number(f64),
+    Word(String),
+}
+
+/// Parses and validates `experiment.toml` alone.
+pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError> {
+    let raw: RawExperiment = parse_toml(name, toml)?;
+    let fail = |message: String| FileError::whole(name, message);
+    for (key, value) in [("plates", &raw.plates), ("shear", &raw.shear)] {
+        if value.is_some() {
+            return Err(fail(format!("{key}: bevameter rows in the likelihood are not available in this version")));
+        }
+    }
+    if raw.wheel.is_empty() {
+        return Err(fail("no wheel: add a table [wheel.NAME]".into()));
+    }
+    if raw.soil.is_empty() {
+        return Err(fail("no soil: add a table [soil.NAME]".into()));
+    }
+    let mut wheels = BTreeMap::new();
+    for (wheel_name, raw_wheel) in raw.wheel {
+        let wheel = wheel(raw_wheel).map_err(|e| fail(format!("[wheel.{wheel_name}] {e}")))?;
+        wheels.insert(wheel_name, wheel);
+    }
+    positive("gravity_m_s2", raw.rig.gravity_m_s2, "m/s^2").map_err(|e| fail(format!("[rig] {e}")))?;
+    let noise = noise(raw.noise).map_err(|e| fail(format!("[noise] {e}")))?;
+    Ok(ExperimentFile {
+        runs: raw.runs,
+        wheel: wheels,
+        soil: raw.soil,
+        rig: raw.rig,
+        noise,
+        protocol: raw.protocol,
+    })
+}
+
+fn wheel(raw: RawWheel) -> Result<Wheel, String> {
+    if raw.mesh.is_some() {
+        return Err("mesh: a wheel given as a surface mesh is not available in this version".into());
+    }
+    let rig_radius_m = raw.rig_radius_m.unwrap_or(raw.radius_m);
+    for (key, value) in [("radius_m", raw.radius_m), ("width_m", raw.width_m), ("rig_radius_m", rig_radius_m)] {
+        positive(key, value, "m")?;
+    }
+    for (key, value) in
+        [("grouser_height_m", raw.grouser_height_m), ("grouser_thickness_m", raw.grouser_thickness_m)]
+    {
+        if !(value.is_finite() && value >= 0.0) {
+            return Err(format!("{key} {value} m must be >= 0 m"));
+        }
+    }
+    Ok(Wheel {
+        radius_m: raw.radius_m,
+        width_m: raw.width_m,
+        grouser_count: raw.grouser_count,
+        grouser_height_m: raw.grouser_height_m,
+        grouser_thickness_m: raw.grouser_thickness_m,
+        rig_radius_m,
+    })
+}
+
+fn noise(raw: RawNoise) -> Result<Noise, String> {
+    match raw.run_scatter {
+        None => {}
+        Some(RawSd::Number(x)) if x.abs() == 0.0 => {}
+        Some(_) => return Err("run_scatter: soil scatter from run to run is not available in this version".into()),
+    }
+    let entries = [raw.drawbar_pull_n, raw.torque_n_m, raw.sinkage_m, raw.lateral_force_n];
+    let mut sd = [None; 4];
+    for (channel, entry) in Channel::ALL.into_iter().zip(entries) {
+        sd[channel.index()] = match entry {
+            None => None,
+            Some(RawSd::Number(x)) => {
+                positive(channel.column(), x, channel.unit())?;
+                Some(NoiseSd::Known(x))
+            }
+            Some(RawSd::Word(word)) => match word.as_str() {
+                "replicates" => Some(NoiseSd::Replicates),
+                "unknown" => Some(NoiseSd::Unknown),
+                _ => {
+                    let column = channel.column();
+                    return Err(format!("{column} = \"{word}\" must be a number, \"replicates\" or \"unknown\""));
+                }
+            },
+        };
+    }
+    Ok(Noise { sd })
+}
+
+fn positive(key: &str, value: f64, unit: &str) -> Result<(), String> {
+    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(format!("{key} {value} {unit} must be > 0 {unit}")) }
+}

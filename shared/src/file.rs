@@ -1,0 +1,116 @@
+//! Text files by name, and errors that name file, line and the nearest known word.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// A TOML file and the files it names, as text. The same value comes from disk and over REST.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct FileSet {
+    /// Text of the TOML file itself.
+    pub toml: String,
+    /// Texts of the files it names, by the name used in it.
+    pub files: BTreeMap<String, String>,
+}
+
+/// Why a file cannot be used: which file, which line, what is wrong.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{file}{}: {message}", line.map(|l| format!(" line {l}")).unwrap_or_default())]
+pub struct FileError {
+    /// Name of the file as the user wrote it.
+    pub file: String,
+    /// Line, counted from 1, where one is to blame.
+    pub line: Option<usize>,
+    /// What is wrong: quantity, value, unit, bound.
+    pub message: String,
+}
+
+impl FileError {
+    /// An error of a whole file.
+    pub fn whole(file: &str, message: impl Into<String>) -> Self {
+        FileError { file: file.to_owned(), line: None, message: message.into() }
+    }
+
+    /// An error of one line, counted from 1.
+    pub fn at(file: &str, line: usize, message: impl Into<String>) -> Self {
+        FileError { file: file.to_owned(), line: Some(line), message: message.into() }
+    }
+}
+
+/// Reads a text file whole.
+///
+/// # Errors
+/// Names the path and the operating system's reason.
+pub fn read_text(path: &Path) -> Result<String, FileError> {
+    std::fs::read_to_string(path).map_err(|e| FileError::whole(&path.display().to_string(), e.to_string()))
+}
+
+/// Resolves a name written in the file `beside`, relative to that file's folder.
+pub fn sibling(beside: &Path, name: &str) -> PathBuf {
+    beside.parent().unwrap_or(Path::new("")).join(name)
+}
+
+/// Parses TOML into `T`; an unknown key is an error that names its line and the nearest known key.
+///
+/// # Errors
+/// [`FileError`] with the line where the parser stopped.
+pub fn parse_toml<T: serde::de::DeserializeOwned>(file: &str, text: &str) -> Result<T, FileError> {
+    toml::from_str(text).map_err(|e| {
+        let line = e.span().map(|span| line_of(text, span.start));
+        FileError { file: file.to_owned(), line, message: with_nearest_key(e.message()) }
+    })
+}
+
+/// The line, counted from 1, in which the byte at `offset` stands.
+fn line_of(text: &str, offset: usize) -> usize {
+    text.bytes().take(offset).filter(|&b| b == b'\n').count() + 1
+}
+
+/// Turns serde's list of expected fields into the one that was probably meant.
+fn with_nearest_key(message: &str) -> String {
+    let mut quoted = message.split('`').skip(1).step_by(2);
+    match (message.starts_with("unknown field"), quoted.next()) {
+        (true, Some(unknown)) => unknown_word("key", unknown, quoted),
+        _ => message.trim_end().to_owned(),
+    }
+}
+
+/// `unknown key "radus_m"; the nearest known is "radius_m"`, or the list where nothing is near.
+pub fn unknown_word<'a>(what: &str, unknown: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let known: Vec<&str> = known.into_iter().collect();
+    let nearest = known
+        .iter()
+        .map(|&k| (strsim::damerau_levenshtein(unknown, k), k))
+        .filter(|&(distance, k)| distance <= 2.max(k.len() / 2))
+        .min();
+    match nearest {
+        Some((_, near)) => format!("unknown {what} \"{unknown}\"; the nearest known is \"{near}\""),
+        None if known.is_empty() => format!("unknown {what} \"{unknown}\"; none is expected here"),
+        None => format!("unknown {what} \"{unknown}\"; known are {}", known.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, serde::Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Toy {
+        #[expect(dead_code, reason = "only its name matters here")]
+        radius_m: f64,
+    }
+
+    #[test]
+    fn an_unknown_key_names_its_line_and_the_nearest_known() {
+        let error = parse_toml::<Toy>("toy.toml", "# a comment\nradus_m = 1.0\n").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "toy.toml line 2: unknown key \"radus_m\"; the nearest known is \"radius_m\""
+        );
+    }
+
+    #[test]
+    fn a_word_near_nothing_lists_what_is_known() {
+        assert_eq!(unknown_word("column", "zzzzzz", ["run", "slip"]), "unknown column \"zzzzzz\"; known are run, slip");
+    }
+}

@@ -1,0 +1,23 @@
+//! The vocabulary that coordinator and worker share, and the wire between them.
+//!
+//! # Layout
+//! - [`channel`]: what a test rig measures: drawbar pull, torque, sinkage, lateral force.
+//! - [`parameters`]: the names, units and physical bounds of the base parameters.
+//! - [`experiment`]: an experiment as its files describe it: wheels, rig, noise, protocol, test runs.
+//! - [`model`]: which forward model is meant ([`model::ModelSettings`]) and the self-contained
+//!   [`model::ModelVariant`] that a worker evaluates.
+//! - [`outcome`]: what an evaluation gives: observables, a rejection of the parameters, or a fault.
+//! - [`exchange`]: the messages between worker and coordinator.
+//! - [`api`]: the messages between a user and the service.
+//! - [`file`]: text files by name, and errors that name file, line and the nearest known word.
+//!
+//! No behaviour lives here but parsing and validation; no clock, no network, no database.
+
+pub mod api;
+pub mod channel;
+pub mod exchange;
+pub mod experiment;
+pub mod file;
+pub mod model;
+pub mod outcome;
+pub mod parameters;

@@ -1,0 +1,85 @@
+//! What an evaluation gives: observables, a rejection of the parameters, or a fault of the machine.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::channel::Channel;
+
+/// The result of simulating every condition of a variant at one parameter vector.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Outcome {
+    /// The model gave observables.
+    Evaluated(Observables),
+    /// The model refuses these parameters: a fact about them, recorded and never retried.
+    Rejected(Rejection),
+    /// The machine failed: a fact about it; the evaluation is leased again elsewhere.
+    Fault(Fault),
+}
+
+/// Averages of every run, one vector per channel and per diagnostic, in the order of the conditions.
+///
+/// Not-a-number has no form in JSON: a simulation that yields one is a rejection.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Observables {
+    /// Drawbar pull [N].
+    pub drawbar_pull_n: Vec<f64>,
+    /// Torque \[N m\].
+    pub torque_n_m: Vec<f64>,
+    /// Sinkage [m].
+    pub sinkage_m: Vec<f64>,
+    /// Lateral force [N].
+    pub lateral_force_n: Vec<f64>,
+    /// Mean effective width b_eff = 2A/L of the footprint [m].
+    pub b_eff_m: Vec<f64>,
+    /// Mean contact length [m].
+    pub contact_length_m: Vec<f64>,
+    /// What the vertical balance leaves over [N].
+    pub residual_load_n: Vec<f64>,
+    /// Nodes, or quadrature points, in contact.
+    pub nodes_in_contact: Vec<u32>,
+    /// Travel that was simulated [m].
+    pub simulated_travel_m: Vec<f64>,
+}
+
+impl Observables {
+    /// Values of a channel, by run.
+    pub fn channel(&self, channel: Channel) -> &[f64] {
+        match channel {
+            Channel::DrawbarPull => &self.drawbar_pull_n,
+            Channel::Torque => &self.torque_n_m,
+            Channel::Sinkage => &self.sinkage_m,
+            Channel::LateralForce => &self.lateral_force_n,
+        }
+    }
+
+    /// Whether every vector has an entry for each of `runs` conditions.
+    pub fn covers(&self, runs: usize) -> bool {
+        Channel::ALL.iter().all(|&c| self.channel(c).len() == runs)
+            && [&self.b_eff_m, &self.contact_length_m, &self.residual_load_n, &self.simulated_travel_m]
+                .iter()
+                .all(|v| v.len() == runs)
+            && self.nodes_in_contact.len() == runs
+    }
+}
+
+/// Why the model refuses a parameter vector.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rejection {
+    /// Stable word: `no_support`, `no_convergence`, `not_finite`, `invalid_parameter`.
+    pub kind: String,
+    /// Position of the condition that was refused.
+    pub condition: u32,
+    /// Quantity, value, unit, bound.
+    pub message: String,
+}
+
+/// What went wrong on a machine.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Fault {
+    /// What the machine said.
+    pub message: String,
+}
