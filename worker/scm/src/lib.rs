@@ -1,0 +1,47 @@
+//! Terramechanics: what a soil does to the wheel that rolls, spins or skids over it.
+//!
+//! # Layout
+//! Constitutive laws, each usable for a single point of the contact:
+//! - [`soil`]: the parameters of a soil, their bounds, and the sampled form of Bekker's moduli.
+//! - [`pressure_sinkage`]: normal pressure from sinkage (Bekker).
+//! - [`pressure_distribution`]: gamma, the weight that takes the pressure to zero at the border.
+//! - [`footprint`]: the effective width `2 A / L` of a footprint.
+//! - [`shear`]: the Mohr–Coulomb limit and how much of it a slip velocity mobilises.
+//!
+//! Boundary of the crate:
+//! - [`wheel`], [`condition`]: the rigid wheel and one run of the rig.
+//! - [`averages`]: what a run gives.
+//! - [`rejection`]: why a parameter vector has no answer.
+//!
+//! Models:
+//! - [`quasi_static`]: a smooth wheel in steady motion, integrated along the rim.
+//!
+//! Numerics:
+//! - [`elementary`]: `exp`, `ln` and powers that vectorise and give the same bits on every machine.
+//! - `quadrature`: the Gauss rule of the rim.
+//!
+//! Everything is pure: no clock, no random numbers, no input or output. Units are SI. Results depend on
+//! the arguments alone, bit for bit: only `+ - * /`, square roots, this crate's [`elementary`] functions
+//! and the pure-Rust `libm` are used, and every sum has a fixed order.
+
+pub mod averages;
+pub mod condition;
+pub mod elementary;
+pub mod footprint;
+pub mod pressure_distribution;
+pub mod pressure_sinkage;
+mod quadrature;
+pub mod quasi_static;
+pub mod rejection;
+pub mod shear;
+pub mod soil;
+pub mod wheel;
+
+pub use averages::Averages;
+pub use condition::Condition;
+pub use rejection::Rejection;
+pub use soil::{Soil, bekker_moduli};
+pub use wheel::Wheel;
+
+/// Identifies the equations and numerics; bumped when any number changes.
+pub const MODEL_VERSION: &str = "scm-1";

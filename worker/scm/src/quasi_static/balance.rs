@@ -1,0 +1,181 @@
+//! Solve the vertical balance for the contact length.
+
+use super::crossing::{Scan, rises_up_to, scan};
+use super::rim::{Reaction, Rim};
+use super::start::Coordinate;
+use crate::Rejection;
+
+/// Residual load, relative to the wheel load, at which the balance is met.
+const TOLERANCE: f64 = 1e-9;
+/// What is still accepted where rounding allows no better (k* a difference of nearly equal terms).
+const ROUNDING_TOLERANCE: f64 = 1e-6;
+/// Evaluations after which every other step halves the bracket.
+const PATIENCE: u32 = 8;
+const MOST_EVALUATIONS: u32 = 120;
+/// Evaluations spent on a search from the closed form where the load may have a peak.
+const EVALUATIONS_BEFORE_SCAN: u32 = 20;
+/// The longest step in y while the root is bracketed on one side only.
+const LONGEST_STEP: f64 = 2.0;
+
+/// The soil's reaction at the first balance met by the sinking wheel.
+pub(super) fn first_balance(rim: &Rim, load: f64) -> Result<Reaction, Rejection> {
+    let no_support = |most_carried_n: f64| Rejection::NoSupport {
+        most_carried_n,
+        wheel_load_n: load,
+        wheel_radius_m: rim.radius,
+    };
+    let coordinate = Coordinate::new(rim).ok_or_else(|| no_support(0.0))?;
+    let start = coordinate.start(rim, load);
+    let rises = rises_up_to(rim, rim.radius);
+    let patience = if rises {
+        MOST_EVALUATIONS
+    } else {
+        EVALUATIONS_BEFORE_SCAN
+    };
+    match search(rim, load, &coordinate, Bracket::default(), start, patience) {
+        Ok(Some(reaction)) if rises || rises_up_to(rim, reaction.contact_length) => return Ok(reaction),
+        Ok(None) if rises => return Err(no_support(rim.react(rim.radius).load())),
+        // A deeper balance may have been found, or the secant has wandered about a peak too low for the load.
+        Ok(_) => {}
+        Err(Rejection::NoConvergence { .. }) if !rises => {}
+        Err(rejection) => return Err(rejection),
+    }
+    match scan(rim, load) {
+        Scan::Never(most) => Err(no_support(most)),
+        Scan::Between(shorter, longer) => {
+            let bracket = Bracket {
+                low: coordinate.at(shorter),
+                high: coordinate.at(longer),
+            };
+            let start = if bracket.is_closed() {
+                bracket.middle()
+            } else {
+                bracket.high - LONGEST_STEP
+            };
+            search(rim, load, &coordinate, bracket, start, MOST_EVALUATIONS)?
+                .ok_or_else(|| no_support(rim.react(rim.radius).load()))
+        }
+    }
+}
+
+/// Interval of y with less than the load at its low end and more at its high end, as far as known.
+#[derive(Debug, Clone, Copy)]
+struct Bracket {
+    low: f64,
+    high: f64,
+}
+
+impl Default for Bracket {
+    fn default() -> Self {
+        Self {
+            low: f64::NEG_INFINITY,
+            high: f64::INFINITY,
+        }
+    }
+}
+
+impl Bracket {
+    fn is_closed(&self) -> bool {
+        self.low > f64::NEG_INFINITY && self.high < f64::INFINITY
+    }
+
+    fn middle(&self) -> f64 {
+        0.5 * (self.low + self.high)
+    }
+}
+
+/// A trial: y and ln(carried load / wheel load), −∞ if nothing is carried.
+#[derive(Debug, Clone, Copy)]
+struct Trial {
+    y: f64,
+    log_ratio: f64,
+}
+
+/// Secant in (y, ln load), kept within the bracket; none if the load is not reached going down from `start`.
+fn search(
+    rim: &Rim,
+    load: f64,
+    coordinate: &Coordinate,
+    mut bracket: Bracket,
+    start: f64,
+    most_evaluations: u32,
+) -> Result<Option<Reaction>, Rejection> {
+    let mut y = start;
+    let mut last: Option<Trial> = None;
+    let mut evaluations = 0;
+    loop {
+        let reaction = rim.react(coordinate.contact_length(y));
+        evaluations += 1;
+        let carried = reaction.load();
+        if !carried.is_finite() {
+            return Err(Rejection::NotFinite {
+                quantity: "load carried by the soil",
+                value: carried,
+            });
+        }
+        let residual = carried - load;
+        if residual.abs() <= TOLERANCE * load {
+            return Ok(Some(reaction));
+        }
+        if evaluations >= most_evaluations {
+            return if residual.abs() <= ROUNDING_TOLERANCE * load {
+                Ok(Some(reaction))
+            } else {
+                Err(Rejection::NoConvergence {
+                    residual_load_n: residual,
+                    wheel_load_n: load,
+                    sinkage_m: reaction.sinkage,
+                    evaluations,
+                })
+            };
+        }
+        if residual < 0.0 {
+            bracket.low = y;
+        } else {
+            bracket.high = y;
+        }
+        if bracket.low >= coordinate.greatest {
+            return Ok(None);
+        }
+        let log_ratio = if carried > 0.0 {
+            libm::log(carried / load)
+        } else {
+            f64::NEG_INFINITY
+        };
+        let trial = Trial { y, log_ratio };
+        let slope = slope(rim, coordinate, &reaction, trial, last);
+        last = Some(trial);
+        y = next(bracket, trial, slope, evaluations).min(coordinate.greatest);
+    }
+}
+
+/// The next y to try.
+fn next(bracket: Bracket, trial: Trial, slope: f64, evaluations: u32) -> f64 {
+    let step = (-trial.log_ratio / slope).clamp(-LONGEST_STEP, LONGEST_STEP);
+    let proposal = trial.y + step;
+    if !bracket.is_closed() {
+        return proposal;
+    }
+    let inside = bracket.low < proposal && proposal < bracket.high; // false for NaN
+    if inside && (evaluations < PATIENCE || evaluations % 2 == 1) {
+        proposal
+    } else {
+        bracket.middle()
+    }
+}
+
+/// d ln(load) / dy: of the chord through the last two trials if it rises, else from small angles.
+fn slope(rim: &Rim, coordinate: &Coordinate, reaction: &Reaction, trial: Trial, last: Option<Trial>) -> f64 {
+    if let Some(last) = last {
+        let chord = (trial.log_ratio - last.log_ratio) / (trial.y - last.y);
+        if chord > 0.0 && chord.is_finite() {
+            return chord;
+        }
+    }
+    // Per ln l: z^n gives 2n and length 1, k* −k_c/(l k*), and tan(theta) another 1 to the part carried by shear.
+    let stiffness = -rim.soil.k_c / (reaction.contact_length * reaction.k_star);
+    let shear_part = reaction.load_from_shear / reaction.load();
+    let per_log_length = 2.0 * rim.soil.n + 1.0 + stiffness + shear_part;
+    let small_angle = per_log_length / coordinate.per_log_length(reaction.contact_length);
+    if small_angle > 0.5 { small_angle } else { 1.0 }
+}

@@ -1,0 +1,82 @@
+//! Guess the contact length from Bekker's small-angle closed form.
+
+use super::rim::Rim;
+
+/// Coordinate of the balance: y = ln(l − `l_0`), in which the load is nearly a power law of slope 2n to 2n + 1.
+///
+/// `l_0` is the contact length at which a negative `k_c` lets k* pass through zero; 0 otherwise.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Coordinate {
+    unsupported: f64,
+    radius: f64,
+    /// y of l = R.
+    pub(super) greatest: f64,
+}
+
+impl Coordinate {
+    /// The coordinate for a rim, or none if k* ≤ 0 for every contact with l < R.
+    pub(super) fn new(rim: &Rim) -> Option<Self> {
+        let long = long_contact_modulus(rim);
+        let unsupported = if rim.soil.k_c < 0.0 {
+            -rim.soil.k_c / long
+        } else {
+            0.0
+        };
+        // Written so that NaN and ∞ (k* of the longest contact not positive) are refused too.
+        (long > 0.0 && unsupported < rim.radius).then(|| Self {
+            unsupported,
+            radius: rim.radius,
+            greatest: libm::log(rim.radius - unsupported),
+        })
+    }
+
+    /// Contact length l ≤ R at y.
+    pub(super) fn contact_length(&self, y: f64) -> f64 {
+        if y < self.greatest {
+            (self.unsupported + libm::exp(y)).min(self.radius)
+        } else {
+            self.radius
+        }
+    }
+
+    /// y of a contact length; −∞ for one without support.
+    pub(super) fn at(&self, contact_length: f64) -> f64 {
+        libm::log((contact_length - self.unsupported).max(0.0))
+    }
+
+    /// dy / d ln l at a contact length.
+    pub(super) fn per_log_length(&self, contact_length: f64) -> f64 {
+        contact_length / (contact_length - self.unsupported)
+    }
+
+    /// y at which Bekker's closed form carries the load.
+    ///
+    /// Small angles (z = l² / 2R), gamma = 1 and no shear give `W = b (K l + k_c) l^(2n) I_n / (2R)^n` with
+    /// `K = k_phi + k_c / b` and `I_n = ∫ (1 − u²)^n du` over (0, 1), for which `(1 + 4n/π)^(−1/2)` is
+    /// within 1 %. A start needs no more.
+    pub(super) fn start(&self, rim: &Rim, load: f64) -> f64 {
+        let n = rim.soil.n;
+        let long = long_contact_modulus(rim);
+        let shape = (1.0 + n * (4.0 * core::f64::consts::FRAC_1_PI)).sqrt();
+        let target = libm::log(load * shape / (rim.width * long)) + n * libm::log(2.0 * rim.radius);
+        let mut y = target / (2.0 * n + 1.0);
+        if rim.soil.k_c != 0.0 {
+            // ln(l + k_c/K) + 2n ln l = target by Newton; the sum is a smooth, monotone function of y.
+            let offset = self.unsupported + rim.soil.k_c / long;
+            for _ in 0..4 {
+                let excess = libm::exp(y);
+                let length = self.unsupported + excess;
+                let value = libm::log(excess + offset) + 2.0 * n * libm::log(length);
+                let slope = excess / (excess + offset) + 2.0 * n * excess / length;
+                y += (target - value) / slope;
+            }
+        }
+        let deepest = self.greatest - 0.1;
+        if y < deepest { y } else { deepest }
+    }
+}
+
+/// k* of a contact much longer than wide: K = `k_phi` + `k_c` / b.
+fn long_contact_modulus(rim: &Rim) -> f64 {
+    rim.soil.k_phi + rim.soil.k_c / rim.width
+}

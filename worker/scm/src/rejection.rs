@@ -1,0 +1,90 @@
+//! Say why a parameter vector has no answer.
+
+/// A fact about the parameters: the model has no equilibrium there, or they lie outside its validity.
+///
+/// A rejection is an answer (likelihood zero), not a fault of the machine: the same arguments are
+/// rejected everywhere and always. Messages are fragments that complete "failed to simulate: …".
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum Rejection {
+    /// The soil cannot carry the wheel load at any sinkage below the wheel radius.
+    #[error(
+        "no support: the soil carries at most {most_carried_n:.4} N of the {wheel_load_n} N wheel load \
+         before the sinkage reaches the wheel radius {wheel_radius_m} m"
+    )]
+    NoSupport {
+        /// The largest vertical soil force met `[N]`.
+        most_carried_n: f64,
+        /// The load to be carried `[N]`.
+        wheel_load_n: f64,
+        /// The model's wheel radius `[m]`.
+        wheel_radius_m: f64,
+    },
+    /// The vertical balance was not met to its tolerance: the soil's vertical force jumps past the load.
+    #[error(
+        "no convergence: after {evaluations} evaluations the soil carries {residual_load_n:e} N more than \
+         the {wheel_load_n} N wheel load at a sinkage of {sinkage_m} m"
+    )]
+    NoConvergence {
+        /// Vertical soil force less wheel load at the last trial `[N]`.
+        residual_load_n: f64,
+        /// The load to be carried `[N]`.
+        wheel_load_n: f64,
+        /// Sinkage of the last trial `[m]`.
+        sinkage_m: f64,
+        /// Number of trial sinkages.
+        evaluations: u32,
+    },
+    /// A number overflowed or became undefined on the way.
+    #[error("not finite: {quantity} is {value}")]
+    NotFinite {
+        /// What was not finite.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A parameter lies outside the bounds within which the model is defined.
+    #[error("invalid parameter: {name} = {value} {unit} must be {bound}")]
+    InvalidParameter {
+        /// The field's name, which carries its unit.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// The bound it breaks.
+        bound: &'static str,
+    },
+}
+
+impl Rejection {
+    /// A stable word for counting rejections by kind; part of the wire format.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::NoSupport { .. } => "no_support",
+            Self::NoConvergence { .. } => "no_convergence",
+            Self::NotFinite { .. } => "not_finite",
+            Self::InvalidParameter { .. } => "invalid_parameter",
+        }
+    }
+}
+
+/// Ok if `accepted`; NaN fails every comparison, so a caller that writes the bound positively refuses it.
+pub(crate) fn require(
+    accepted: bool,
+    name: &'static str,
+    value: f64,
+    unit: &'static str,
+    bound: &'static str,
+) -> Result<(), Rejection> {
+    if accepted && value.is_finite() {
+        Ok(())
+    } else {
+        Err(Rejection::InvalidParameter {
+            name,
+            value,
+            unit,
+            bound,
+        })
+    }
+}

@@ -1,0 +1,76 @@
+//! Give the shear stress that a soil sets against a sliding surface.
+
+/// Strength of a soil under a normal pressure (Mohr–Coulomb).
+///
+/// `tau_max = c + p tan(phi)`
+///
+/// # Arguments
+/// - `cohesion`: c `[Pa]`, ≥ 0. `tan_friction_angle`: tan(phi) `[–]`, ≥ 0. `pressure`: p `[Pa]`, ≥ 0.
+///
+/// # Returns
+/// The largest shear stress `[Pa]`.
+#[inline]
+pub fn strength(cohesion: f64, tan_friction_angle: f64, pressure: f64) -> f64 {
+    cohesion + pressure * tan_friction_angle
+}
+
+/// The shear-velocity law: the share of the strength that a slip velocity mobilises.
+///
+/// `tau = tau_max (1 − exp(−|v| / v0))` against the slip velocity v.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShearVelocity {
+    per_velocity: f64,
+}
+
+impl ShearVelocity {
+    /// The law with reference velocity v0 `[m/s]`, ≥ 0; with v0 = 0 any motion mobilises everything.
+    pub fn new(reference_velocity: f64) -> Self {
+        // 1/0 would turn a point at rest into 0 · ∞; the largest number gives 0 there and ∞ elsewhere.
+        Self {
+            per_velocity: (1.0 / reference_velocity).min(f64::MAX),
+        }
+    }
+
+    /// Mobilised share of the strength per unit of slip velocity.
+    ///
+    /// `(1 − exp(−|v| / v0)) / |v|`: multiplied by `tau_max` and by a component of the velocity of the rim
+    /// against the soil it gives that component of the shear stress. At |v| = 0 the components are zero.
+    ///
+    /// # Arguments
+    /// - `speed`: |v| `[m/s]`, ≥ 0.
+    ///
+    /// # Returns
+    /// `[s/m]`, ≥ 0 and finite.
+    ///
+    /// # Source
+    /// Krenn & Hirzinger's soil contact model. Depends on speed, unlike a displacement law.
+    #[inline]
+    pub fn mobilised_per_velocity(&self, speed: f64) -> f64 {
+        let share = 1.0 - crate::elementary::exp(-speed * self.per_velocity);
+        share
+            / if speed > f64::MIN_POSITIVE {
+                speed
+            } else {
+                f64::MIN_POSITIVE
+            }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stress_follows_the_velocity_law() {
+        // 1 − 1/e of the strength at |v| = v0
+        let law = ShearVelocity::new(1e-3);
+        assert!((law.mobilised_per_velocity(1e-3) * 1e-3 - 0.632_120_558_828_557_7).abs() < 1e-15);
+    }
+
+    #[test]
+    fn zero_reference_velocity_mobilises_everything_but_at_rest() {
+        let law = ShearVelocity::new(0.0);
+        assert!((law.mobilised_per_velocity(1e-9) * 1e-9 - 1.0).abs() < 1e-15);
+        assert!((law.mobilised_per_velocity(0.0) * 0.0).abs() < f64::MIN_POSITIVE);
+    }
+}

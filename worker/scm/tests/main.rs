@@ -1,0 +1,11 @@
+//! Checks the physics against closed forms, invariants, a brute-force integrator and another implementation.
+
+mod brute_force;
+mod closed_forms;
+mod crossing;
+mod invariants;
+mod nothing_hidden;
+mod quadrature;
+mod reference_table;
+mod rejections;
+mod support;
