@@ -1,1 +1,28 @@
-//! Placeholder.
+//! The coordinator: runs calibrations on a farm of workers and keeps what comes out.
+//!
+//! # Layout
+//! - [`spec`]: a job and its experiment, validated: priors, data, model variants.
+//! - [`calibration`]: a calibration in progress: the one place where sampler, likelihood and leases meet. Pure.
+//! - [`lease`]: the rules of leasing. Pure.
+//! - [`farm`]: all calibrations and workers at hand; [`farm::dispatch`] gives it a thread.
+//! - [`fact`]: what must survive a restart.
+//! - [`store`]: the SQLite file; the only place that knows SQL.
+//! - [`service`]: store and farm together: submit, recover, control.
+//! - [`http`]: the REST interface; the only place that knows axum.
+//! - [`embedded`]: local workers in this process; the only place that knows the worker.
+//! - [`result`]: tables, summary, flags and report of a calibration, from what the store kept.
+//! - [`command`]: the verbs of the command line.
+//! - [`config`]: command line and environment.
+
+pub mod calibration;
+pub mod command;
+pub mod config;
+pub mod embedded;
+pub mod fact;
+pub mod farm;
+pub mod http;
+pub mod lease;
+pub mod result;
+pub mod service;
+pub mod spec;
+pub mod store;

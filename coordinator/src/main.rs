@@ -1,2 +1,23 @@
-//! Placeholder.
-fn main() {}
+//! The program `coordinator`: parse, carry out, say what went wrong.
+
+use clap::Parser;
+use coordinator::config::Config;
+
+#[tokio::main]
+async fn main() -> std::process::ExitCode {
+    let config = Config::parse();
+    tracing_subscriber::fmt()
+        .with_env_filter(
+            tracing_subscriber::EnvFilter::try_from_default_env()
+                .unwrap_or_else(|_| "info,sqlx::query=warn".into()),
+        )
+        .with_writer(std::io::stderr)
+        .init();
+    match coordinator::command::execute(config.command).await {
+        Ok(()) => std::process::ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            std::process::ExitCode::FAILURE
+        }
+    }
+}

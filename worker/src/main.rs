@@ -1,2 +1,65 @@
-//! Placeholder.
-fn main() {}
+//! The program `worker`: parse, connect, run.
+
+use std::sync::Arc;
+
+use anyhow::Context;
+use clap::Parser;
+use worker::client::HttpCoordinator;
+use worker::config::{Command, Config, Serve};
+use worker::evaluator::SimulationClock;
+use worker::pull::{Settings, run};
+
+fn main() -> std::process::ExitCode {
+    tracing_subscriber::fmt()
+        .with_env_filter(
+            tracing_subscriber::EnvFilter::try_from_default_env().unwrap_or_else(|_| "info".into()),
+        )
+        .with_writer(std::io::stderr)
+        .init();
+    let config = Config::parse();
+    let done = match (config.command, config.serve) {
+        (Some(Command::Simulate(command)), _) => worker::simulate::simulate(&command).map_err(Into::into),
+        (None, Some(serve)) => pull(&serve),
+        (None, None) => Err(anyhow::anyhow!("--coordinator URL is missing")),
+    };
+    match done {
+        Ok(()) => std::process::ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            std::process::ExitCode::FAILURE
+        }
+    }
+}
+
+#[tokio::main]
+async fn pull(serve: &Serve) -> anyhow::Result<()> {
+    let coordinator = HttpCoordinator::new(&serve.coordinator).map_err(anyhow::Error::msg)?;
+    let cores = std::thread::available_parallelism().map_or(1, Into::into);
+    let threads = serve.threads.map_or(cores, Into::into);
+    let name = name();
+    tracing::info!(name, threads, coordinator = serve.coordinator, model = worker::model_version(), "worker");
+    let clock = Arc::new(SimulationClock::default());
+    run(Arc::new(coordinator), Settings { name, threads }, clock, stop_signal()?)
+        .await
+        .context("worker")
+}
+
+/// Host, process and time: fresh for every process, so a dead worker's leases are never taken for a new one's.
+fn name() -> String {
+    let host = std::fs::read_to_string("/etc/hostname").unwrap_or_default();
+    let host = host.trim();
+    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |d| d.as_millis());
+    format!("{}-{}-{since:x}", if host.is_empty() { "worker" } else { host }, std::process::id())
+}
+
+/// Ready at ^C or SIGTERM.
+fn stop_signal() -> anyhow::Result<impl Future<Output = ()>> {
+    use tokio::signal::unix::{SignalKind, signal};
+    let mut terminate = signal(SignalKind::terminate()).context("signals")?;
+    Ok(async move {
+        tokio::select! {
+            _ = terminate.recv() => {}
+            _ = tokio::signal::ctrl_c() => {}
+        }
+    })
+}

@@ -1,0 +1,145 @@
+//! Print the sampler's errors on problems with known answers.
+//!
+//! `cargo bench -p inference --bench sampler_table [-- SEEDS [PARTICLES LEAST MOST [PROBLEM]]]`
+
+#[path = "../tests/problems.rs"]
+mod problems;
+
+use inference::{Algorithm, Settings};
+use problems::Problem;
+
+/// Errors of one problem over seeds.
+fn row(problem: &Problem, label: &str, settings: Settings, seeds: u64) {
+    let (mut evaluations, mut errors, mut se) = (0.0, Vec::new(), Vec::new());
+    let (mut flagged, mut worst_z, mut silent) = (0, 0.0_f64, 0);
+    let (mut ratios, mut shifts) = (vec![0.0; problem.sd.len() + 1], vec![0.0; problem.sd.len() + 1]);
+    let (mut stages, mut steps) = (0, 0);
+    for seed in 1..=seeds {
+        let sampler = problem.run(Settings { seed, ..settings });
+        let Some(posterior) = sampler.posterior() else {
+            println!("{} {label}: {:?}", problem.name, sampler.failure());
+            return;
+        };
+        let error = posterior.log_evidence - problem.log_evidence;
+        evaluations += posterior.evaluations as f64 / seeds as f64;
+        flagged += u32::from(!posterior.equilibrated);
+        silent += u32::from(posterior.equilibrated && error.abs() > 4.0 * posterior.log_evidence_se + 0.3);
+        errors.push(error);
+        se.push(posterior.log_evidence_se);
+        worst_z = sampler
+            .stages()
+            .iter()
+            .fold(worst_z, |worst, stage| worst.max(stage.drift_z.abs()));
+        stages += sampler.stages().len();
+        steps += sampler.stages().iter().map(|stage| stage.steps).sum::<usize>();
+        let mut column = |index: usize, values: Vec<f64>, mean: f64, sd: f64| {
+            let (estimate, spread) = inference::diagnostics::mean_and_sd(&values).unwrap_or((0.0, 0.0));
+            ratios[index] += spread / sd / seeds as f64;
+            shifts[index] += (estimate - mean) / sd / seeds as f64;
+        };
+        for (index, (&mean, &sd)) in problem.mean.iter().zip(&problem.sd).enumerate() {
+            column(
+                index,
+                posterior.particles.iter().map(|p| p.theta[index]).collect(),
+                mean,
+                sd,
+            );
+        }
+        if let Some((derive, mean, sd)) = problem.derived {
+            column(
+                problem.sd.len(),
+                posterior.particles.iter().map(|p| derive(&p.theta)).collect(),
+                mean,
+                sd,
+            );
+        }
+    }
+    if problem.derived.is_none() {
+        ratios.pop();
+        shifts.pop();
+    }
+    let count = seeds as f64;
+    let bias = errors.iter().sum::<f64>() / count;
+    let rmse = (errors.iter().map(|e| e * e).sum::<f64>() / count).sqrt();
+    let se = se.iter().sum::<f64>() / count;
+    let text = |values: &[f64]| {
+        values
+            .iter()
+            .map(|x| format!("{x:.2}"))
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    println!(
+        "{:4} {label:22} {evaluations:8.0} {rmse:7.3} {bias:+7.3} {se:7.3}  {:<28} {:<30} {flagged:3}/{seeds:<3} {silent:3} {worst_z:6.1} {:5.1} {:5.1}",
+        problem.name,
+        text(&ratios),
+        text(&shifts),
+        stages as f64 / count,
+        steps as f64 / stages as f64,
+    );
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|argument| argument != "--bench")
+        .collect();
+    let number = |index: usize| arguments.get(index).and_then(|text| text.parse::<usize>().ok());
+    let seeds = number(0).unwrap_or(12) as u64;
+    println!(
+        "{:4} {:22} {:>8} {:>7} {:>7} {:>7}  {:<28} {:<30} {:>7} {:>3} {:>6} {:>5} {:>5}",
+        "",
+        "settings",
+        "evals",
+        "rmse",
+        "bias",
+        "se",
+        "sd ratios",
+        "mean errors / sd",
+        "flagged",
+        "silent",
+        "max|z|",
+        "stages",
+        "steps"
+    );
+    let all = [
+        problems::correlated_gaussian(),
+        problems::shear_building(),
+        problems::thin_ridge(),
+        problems::bekker_reparametrised(),
+        problems::shells(),
+        problems::skew(),
+        problems::bekker_known_noise(),
+        problems::bekker_unknown_noise(),
+    ];
+    let base = Settings::default();
+    for problem in &all {
+        if arguments.get(4).is_some_and(|name| name != problem.name) {
+            continue;
+        }
+        if let (Some(particles), Some(least), Some(most)) = (number(1), number(2), number(3)) {
+            let settings = Settings {
+                particles,
+                moves: [least, most],
+                ..base
+            };
+            row(
+                problem,
+                &format!("{particles} [{least}, {most}]"),
+                settings,
+                seeds,
+            );
+            continue;
+        }
+        row(problem, "1000 [10, 60]", base, seeds);
+        row(
+            problem,
+            "ching-chen-2007",
+            Settings {
+                algorithm: Algorithm::ChingChen2007,
+                ..base
+            },
+            seeds,
+        );
+    }
+}

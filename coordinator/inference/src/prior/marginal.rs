@@ -1,0 +1,292 @@
+//! Truncate and renormalise a distribution, and give it the coordinate in which the sampler moves.
+
+use super::distribution::{Distribution, ordered};
+use super::normal::{self, LN_SQRT_TAU};
+use super::{PriorError, moments};
+use crate::diagnostics;
+use crate::rng::Stream;
+
+/// Exponent below the peak at which the moments' integrals are cut: exp(-45) = 3e-20.
+const TAIL_NATS: f64 = 45.0;
+
+/// The prior of one parameter: a distribution, truncated to its bounds and renormalised.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Marginal {
+    distribution: Distribution,
+    /// Support of x.
+    lower: f64,
+    upper: f64,
+    coordinate: Coordinate,
+    density: Density,
+    mean: f64,
+    sd: f64,
+}
+
+/// u(x): the coordinate in which the prior is uniform or normal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Coordinate {
+    Identity,
+    Log,
+}
+
+/// The density of u, on the truncated support.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Density {
+    Uniform {
+        lower: f64,
+        width: f64,
+    },
+    /// `low` and `high` are the standardised ends, `mass` the probability between them.
+    Normal {
+        mean: f64,
+        sd: f64,
+        low: f64,
+        high: f64,
+        mass: f64,
+    },
+}
+
+impl Coordinate {
+    fn of(self, x: f64) -> f64 {
+        match self {
+            Self::Identity => x,
+            Self::Log => libm::log(x),
+        }
+    }
+
+    fn value(self, u: f64) -> f64 {
+        match self {
+            Self::Identity => u,
+            Self::Log => libm::exp(u),
+        }
+    }
+}
+
+impl Marginal {
+    /// A distribution, truncated to `bounds` and renormalised.
+    ///
+    /// # Errors
+    /// [`PriorError`] names the number, its value and its bound: ends out of order, sd or scale <= 0, factor <= 1,
+    /// anything that must be finite and is not, bounds outside the support or without probability. Nothing is adjusted.
+    pub fn new(distribution: Distribution, bounds: Option<[f64; 2]>) -> Result<Self, PriorError> {
+        distribution.check()?;
+        let (mut lower, mut upper) = distribution.support();
+        if let Some([low, high]) = bounds {
+            ordered(low, high)?;
+            if low < lower || high > upper {
+                let (support_lower, support_upper) = (lower, upper);
+                return Err(PriorError::OutsideSupport {
+                    lower: low,
+                    upper: high,
+                    support_lower,
+                    support_upper,
+                });
+            }
+            (lower, upper) = (low, high);
+        }
+        let coordinate = match distribution {
+            Distribution::Loguniform { .. } | Distribution::Lognormal { .. } => Coordinate::Log,
+            _ => Coordinate::Identity,
+        };
+        let (low, high) = (coordinate.of(lower), coordinate.of(upper));
+        let gaussian = |mean: f64, sd: f64| {
+            let (low, high) = ((low - mean) / sd, (high - mean) / sd);
+            Density::Normal {
+                mean,
+                sd,
+                low,
+                high,
+                mass: normal::mass(low, high),
+            }
+        };
+        let density = match distribution {
+            Distribution::Uniform { .. } | Distribution::Loguniform { .. } => Density::Uniform {
+                lower: low,
+                width: high - low,
+            },
+            Distribution::Normal { mean, sd } => gaussian(mean, sd),
+            Distribution::Lognormal { median, factor } => gaussian(libm::log(median), libm::log(factor)),
+            Distribution::HalfNormal { scale } => gaussian(0.0, scale),
+        };
+        let has_mass = match density {
+            Density::Uniform { width, .. } => width > 0.0,
+            // Beyond 37 standard deviations the normal's tail is no longer a normal number.
+            Density::Normal { mass, .. } => mass >= f64::MIN_POSITIVE,
+        };
+        if !has_mass {
+            return Err(PriorError::NoMass { lower, upper });
+        }
+        let mut marginal = Self {
+            distribution,
+            lower,
+            upper,
+            coordinate,
+            density,
+            mean: 0.0,
+            sd: 0.0,
+        };
+        (marginal.mean, marginal.sd) = marginal.moments();
+        for (name, value) in [("prior mean", marginal.mean), ("prior sd", marginal.sd)] {
+            if !value.is_finite() {
+                return Err(PriorError::NotFinite { name, value });
+            }
+        }
+        Ok(marginal)
+    }
+
+    /// The distribution before truncation.
+    #[must_use]
+    pub fn distribution(&self) -> Distribution {
+        self.distribution
+    }
+
+    /// The interval outside which the density is zero; ends may be infinite.
+    #[must_use]
+    pub fn support(&self) -> (f64, f64) {
+        (self.lower, self.upper)
+    }
+
+    /// Mean of the truncated distribution.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        self.mean
+    }
+
+    /// Standard deviation of the truncated distribution.
+    #[must_use]
+    pub fn sd(&self) -> f64 {
+        self.sd
+    }
+
+    /// ln p(x); minus infinity outside the support.
+    #[must_use]
+    pub fn log_density(&self, x: f64) -> f64 {
+        if !(self.lower <= x && x <= self.upper) || (self.coordinate == Coordinate::Log && x <= 0.0) {
+            return f64::NEG_INFINITY;
+        }
+        let u = self.coordinate.of(x);
+        let jacobian = if self.coordinate == Coordinate::Log {
+            -u
+        } else {
+            0.0
+        };
+        self.density.log_at(u) + jacobian
+    }
+
+    /// The x below which a share `p` of the probability lies; the ends of the support for `p` <= 0 and >= 1.
+    #[must_use]
+    pub fn quantile(&self, p: f64) -> f64 {
+        if p >= 1.0 {
+            self.upper
+        } else if p > 0.0 {
+            // Rounding of exp(ln x) may step over an end by one unit in the last place.
+            self.coordinate
+                .value(self.density.quantile(p))
+                .max(self.lower)
+                .min(self.upper)
+        } else {
+            self.lower
+        }
+    }
+
+    /// One independent draw, by inversion.
+    pub fn sample(&self, stream: &mut Stream) -> f64 {
+        self.quantile(stream.uniform())
+    }
+
+    /// The sampling coordinate of x: ln x for lognormal and log-uniform marginals, else x.
+    #[must_use]
+    pub fn coordinate(&self, x: f64) -> f64 {
+        self.coordinate.of(x)
+    }
+
+    /// Whether an interval from `q05` to `q95` touches a bound: nearer than 2 % of the range, in the sampling
+    /// coordinate. False where the range is not finite.
+    #[must_use]
+    pub fn at_bound(&self, q05: f64, q95: f64) -> bool {
+        let u = |x| self.coordinate.of(x);
+        diagnostics::at_bound(u(q05), u(q95), (u(self.lower), u(self.upper)))
+    }
+
+    /// x of a sampling coordinate.
+    pub(super) fn value(&self, u: f64) -> f64 {
+        self.coordinate.value(u)
+    }
+
+    /// Log-density of the sampling coordinate; minus infinity where u or its x leaves the support.
+    pub(super) fn log_density_of_coordinate(&self, u: f64) -> f64 {
+        let x = self.coordinate.value(u);
+        if self.lower <= x && x <= self.upper {
+            self.density.log_at(u)
+        } else {
+            f64::NEG_INFINITY
+        }
+    }
+
+    /// Mean and sd of x by quadrature over the part of the support that matters.
+    fn moments(&self) -> (f64, f64) {
+        match self.density {
+            Density::Uniform { lower, width } => {
+                moments::mean_and_sd(lower, lower + width, |_| 0.0, |u| self.coordinate.value(u))
+            }
+            Density::Normal {
+                mean, sd, low, high, ..
+            } => {
+                // x^2 = exp(2u) moves the peak of the integrand up by two standard deviations' worth of sd.
+                let shift = if self.coordinate == Coordinate::Log {
+                    2.0 * sd
+                } else {
+                    0.0
+                };
+                let (from, to) = (window(low, high, 0.0).0, window(low, high, shift).1);
+                let peak = 0.0_f64.max(low).min(high);
+                let log_density = |z: f64| 0.5 * (peak - z) * (peak + z);
+                moments::mean_and_sd(from, to, log_density, |z| self.coordinate.value(mean + sd * z))
+            }
+        }
+    }
+}
+
+impl Density {
+    fn log_at(&self, u: f64) -> f64 {
+        match *self {
+            Self::Uniform { width, .. } => -libm::log(width),
+            Self::Normal { mean, sd, mass, .. } => {
+                let z = (u - mean) / sd;
+                -0.5 * z * z - LN_SQRT_TAU - libm::log(sd) - libm::log(mass)
+            }
+        }
+    }
+
+    /// For 0 < p < 1.
+    fn quantile(&self, p: f64) -> f64 {
+        match *self {
+            Self::Uniform { lower, width } => lower + width * p,
+            Self::Normal {
+                mean,
+                sd,
+                low,
+                high,
+                mass,
+            } => {
+                // Work from the nearer tail, where the probability keeps its digits.
+                let below = normal::cdf(low) + p * mass;
+                let above = normal::cdf(-high) + (1.0 - p) * mass;
+                let z = if below < above {
+                    normal::lower_quantile(below)
+                } else {
+                    -normal::lower_quantile(above)
+                };
+                mean + sd * z
+            }
+        }
+    }
+}
+
+/// The part of [low, high] where a unit normal around `centre` lies within [`TAIL_NATS`] of its highest value there.
+fn window(low: f64, high: f64, centre: f64) -> (f64, f64) {
+    let peak = centre.max(low).min(high);
+    let offset = (peak - centre).abs();
+    let reach = (offset * offset + 2.0 * TAIL_NATS).sqrt() - offset;
+    (low.max(peak - reach), high.min(peak + reach))
+}

@@ -1,0 +1,138 @@
+//! Report what the sampler did.
+
+use super::population::Particle;
+
+/// A finished stage.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StageRecord {
+    /// Index from 1; the prior draws are stage 0 and have no record.
+    pub stage: usize,
+    /// The likelihood's power in this stage's target.
+    pub tempering_exponent: f64,
+    /// Share of the proposals accepted, those outside the prior counted as rejected.
+    pub acceptance: f64,
+    /// z-score of the mean change of the log-likelihood over the moves; large in size: not in equilibrium.
+    pub drift_z: f64,
+    /// The same of exp(step l), step being the growth of the exponent that led here: sees what lags among the best
+    /// particles, where `drift_z` is ruled by the worst.
+    pub weight_drift_z: f64,
+    /// Rank correlation of the log-likelihoods before and after the moves.
+    pub correlation: f64,
+    /// Steps per particle (Ching and Chen: of the longest chain).
+    pub steps: usize,
+    /// ln Z(this exponent) - ln Z(the last); the first also holds the surviving fraction of the prior draws.
+    pub log_evidence_increment: f64,
+    /// Coefficient of variation of the incremental weights that led to this stage.
+    pub weight_cov: f64,
+    /// Particles / (1 + `weight_cov`^2).
+    pub ess: f64,
+    /// Scale of the proposals at the end.
+    pub scale: f64,
+    /// Log-likelihoods asked for in this stage.
+    pub evaluations: u64,
+    /// Whether drift and correlation say that the stage reached its target.
+    pub equilibrated: bool,
+    /// The population after the moves, equally weighted.
+    pub population: Vec<Particle>,
+}
+
+/// The stage in progress.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Current {
+    /// Index of the stage; 0 during the prior draws.
+    pub stage: usize,
+    /// Its tempering exponent.
+    pub tempering_exponent: f64,
+    /// Steps completed in this stage.
+    pub step: usize,
+    /// Steps after which the stage ends at the latest.
+    pub most_steps: usize,
+    /// Acceptance so far; `None` before the first step and during the prior draws.
+    pub acceptance: Option<f64>,
+    /// Proposals of this round that have been told.
+    pub told: usize,
+    /// Proposals of this round.
+    pub proposals: usize,
+}
+
+/// The result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Posterior {
+    /// Equally weighted draws.
+    pub particles: Vec<Particle>,
+    /// ln p(data).
+    pub log_evidence: f64,
+    /// Its standard error within the run.
+    pub log_evidence_se: f64,
+    /// Whether every stage reached its target; if not, neither draws nor evidence can be trusted.
+    pub equilibrated: bool,
+    /// Log-likelihoods asked for.
+    pub evaluations: u64,
+    /// Those that were impossible.
+    pub rejected: u64,
+}
+
+/// What a told log-likelihood led to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Progress {
+    /// The round still waits for others.
+    Waiting,
+    /// New proposals are pending.
+    NextRound,
+    /// A stage ended and new proposals are pending.
+    StageFinished,
+    /// The posterior is there.
+    Finished,
+    /// The sampler cannot go on.
+    Failed(Failure),
+}
+
+/// Why the sampler cannot go on.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum Failure {
+    /// No prior draw was possible.
+    #[error("all {draws} prior draws were rejected by the model")]
+    AllImpossible {
+        /// Number of prior draws.
+        draws: usize,
+    },
+    /// Too few prior draws were possible.
+    #[error("only {possible} of {draws} prior draws were possible, at least {needed} are needed")]
+    TooFewPossible {
+        /// Possible draws.
+        possible: usize,
+        /// Prior draws.
+        draws: usize,
+        /// Draws needed.
+        needed: usize,
+    },
+    /// The next exponent cannot be told from the last.
+    #[error("tempering exponent {exponent} cannot grow by {step}: the log-likelihoods differ too much")]
+    ExponentStuck {
+        /// The last exponent.
+        exponent: f64,
+        /// The step.
+        step: f64,
+    },
+}
+
+/// A log-likelihood that nobody asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum TellError {
+    /// The particle was told before in this round.
+    #[error("particle {particle} was told before in round {round}")]
+    AlreadyTold {
+        /// The round.
+        round: u64,
+        /// The particle.
+        particle: usize,
+    },
+    /// The particle has no proposal in this round.
+    #[error("particle {particle} has no proposal in round {round}")]
+    NotPending {
+        /// The round.
+        round: u64,
+        /// The particle.
+        particle: usize,
+    },
+}

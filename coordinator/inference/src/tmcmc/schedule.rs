@@ -1,0 +1,72 @@
+//! Choose the next tempering exponent.
+
+use super::weights::Weights;
+
+/// Relative tolerance of the step.
+const TOLERANCE: f64 = 1e-10;
+
+/// The step of the exponent at which the weights of `log_likelihoods` have the coefficient of variation `target`,
+/// or `remaining` = 1 - exponent if that comes first.
+///
+/// The coefficient rises with the step, so a bisection finds it; it runs on the logarithm of the step, because
+/// the first one can be 1e-10 or less. The log-likelihoods are finite and not empty.
+pub(super) fn exponent_step(log_likelihoods: &[f64], remaining: f64, target: f64) -> f64 {
+    let cov = |step: f64| Weights::new(log_likelihoods, step).cov;
+    if cov(remaining) <= target {
+        return remaining;
+    }
+    let max = log_likelihoods
+        .iter()
+        .fold(f64::NEG_INFINITY, |max, &l| max.max(l));
+    let min = log_likelihoods.iter().fold(f64::INFINITY, |min, &l| min.min(l));
+    // Weights between exp(-c) and 1 vary by at most sinh(c/2), which is below `target` for c = min(target, 1).
+    let least = target.min(1.0) / (max - min).min(f64::MAX);
+    let (mut low, mut high) = (libm::log(least.min(remaining)), libm::log(remaining));
+    while high - low > TOLERANCE {
+        let middle = 0.5 * (low + high);
+        if cov(libm::exp(middle)) > target {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    libm::exp(low).min(remaining)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// l = -x^2/2 with x uniform on [-a, a]: the weights are Gaussian in x, and for a wide box
+    /// 1 + cov^2 = a sqrt(step / pi), so cov = 1 at step = 4 pi / a^2.
+    #[test]
+    fn first_exponent_of_a_thin_ridge_is_found() {
+        let half_width = 2.5e5;
+        let log_likelihoods: Vec<f64> = (0..200_001)
+            .map(|i| half_width * (f64::from(i) / 1e5 - 1.0))
+            .map(|x| -0.5 * x * x)
+            .collect();
+        let step = exponent_step(&log_likelihoods, 1.0, 1.0);
+        let expected = 4.0 * std::f64::consts::PI / (half_width * half_width);
+        assert!((1.9e-10..2.1e-10).contains(&expected));
+        assert!((step / expected - 1.0).abs() < 5e-3, "{step} {expected}");
+    }
+
+    #[test]
+    fn a_flat_likelihood_is_done_in_one_step() {
+        assert_eq!(exponent_step(&[-5.0; 7], 0.25, 1.0).to_bits(), 0.25_f64.to_bits());
+    }
+
+    /// A sign error turns this asymmetric set into its mirror image, which has another solution.
+    #[test]
+    fn an_asymmetric_set_has_its_own_step() {
+        let few_good: Vec<f64> = (0..100).map(|i| if i < 5 { 0.0 } else { -10.0 }).collect();
+        let few_bad: Vec<f64> = (0..100).map(|i| if i < 5 { -10.0 } else { 0.0 }).collect();
+        // 5 weights of 1 and 95 of w: cov^2 = 100 (5 + 95 w^2) / (5 + 95 w)^2 - 1 = 1 at w = 0.15206.
+        let step = exponent_step(&few_good, 1.0, 1.0);
+        let w = libm::exp(-10.0 * step);
+        let squared = 100.0 * (5.0 + 95.0 * w * w) / ((5.0 + 95.0 * w) * (5.0 + 95.0 * w)) - 1.0;
+        assert!((squared - 1.0).abs() < 1e-6, "{squared}");
+        assert_eq!(exponent_step(&few_bad, 1.0, 1.0).to_bits(), 1.0_f64.to_bits());
+    }
+}

@@ -1,0 +1,98 @@
+//! Hold the sampler's settings and refuse those that cannot work.
+
+/// How the population moves from one exponent to the next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Algorithm {
+    /// Every particle moves by several steps of a mixed, self-scaling proposal; the default.
+    Tmcmc,
+    /// The original sampler: each particle is one step of a chain that is as long as its leader's multiplicity.
+    ///
+    /// Ching & Chen 2007, J. Eng. Mech. 133:816. Kept because published calibrations used it; its steps are too
+    /// few to equilibrate, see the stages' drift.
+    ChingChen2007,
+}
+
+/// Settings of a sampler.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// The algorithm.
+    pub algorithm: Algorithm,
+    /// Size of the population.
+    pub particles: usize,
+    /// Least and most steps per particle and stage ([`Algorithm::Tmcmc`] only).
+    pub moves: [usize; 2],
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Coefficient of variation of the incremental weights that picks the next exponent.
+    pub target_cov: f64,
+}
+
+impl Default for Settings {
+    /// TMCMC, 1000 particles, 10 to 60 moves, seed 1, coefficient of variation 1.
+    fn default() -> Self {
+        Self {
+            algorithm: Algorithm::Tmcmc,
+            particles: 1000,
+            moves: [10, 60],
+            seed: 1,
+            target_cov: 1.0,
+        }
+    }
+}
+
+/// Settings that cannot work.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SettingsError {
+    /// The prior has no parameters.
+    #[error("the prior has no parameters")]
+    NoParameters,
+    /// The population cannot span the parameter space.
+    #[error("{particles} particles are too few for {dimension} parameters, which need at least {least}")]
+    TooFewParticles {
+        /// The setting.
+        particles: usize,
+        /// Number of parameters.
+        dimension: usize,
+        /// The least population.
+        least: usize,
+    },
+    /// The moves are not 1 <= least <= most.
+    #[error("moves [{least}, {most}] are not 1 <= least <= most")]
+    Moves {
+        /// Least moves.
+        least: usize,
+        /// Most moves.
+        most: usize,
+    },
+    /// The target coefficient of variation is not a finite number above 0.
+    #[error("target_cov {value} is not a finite number above 0")]
+    TargetCov {
+        /// The setting.
+        value: f64,
+    },
+}
+
+impl Settings {
+    /// Checks the settings for a prior of `dimension` parameters; at least `2 dimension + 2` particles.
+    pub(super) fn check(&self, dimension: usize) -> Result<(), SettingsError> {
+        let least = 2 * dimension + 2;
+        let [fewest, most] = self.moves;
+        if dimension == 0 {
+            Err(SettingsError::NoParameters)
+        } else if self.particles < least {
+            Err(SettingsError::TooFewParticles {
+                particles: self.particles,
+                dimension,
+                least,
+            })
+        } else if fewest == 0 || fewest > most {
+            Err(SettingsError::Moves { least: fewest, most })
+        } else if !(self.target_cov.is_finite() && self.target_cov > 0.0) {
+            Err(SettingsError::TargetCov {
+                value: self.target_cov,
+            })
+        } else {
+            Ok(())
+        }
+    }
+}

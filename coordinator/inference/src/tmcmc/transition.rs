@@ -1,0 +1,84 @@
+//! Pass from the pool of one stage to the chains of the next.
+
+use super::ching_chen;
+use super::covariance::Factor;
+use super::population::Pool;
+use super::proposal::{Mixture, initial_scale};
+use super::record::Failure;
+use super::resample::systematic;
+use super::schedule::exponent_step;
+use super::settings::{Algorithm, Settings};
+use super::stage::{Chain, Stage};
+use super::weights::Weights;
+use crate::rng::Stream;
+
+/// Stream of a stage's resampling; particles never reach this number.
+const RESAMPLING: u64 = u64::MAX;
+
+/// A stage about to start, with the weights that led to it.
+pub(super) struct Transition {
+    pub(super) stage: Stage,
+    pub(super) weights: Weights,
+    /// Growth of the exponent.
+    pub(super) step: f64,
+}
+
+impl Transition {
+    /// Weighs the pool of the stage before, whose exponent was `exponent`, and resamples it.
+    ///
+    /// `scale` is the scale reached so far, `None` before the first stage.
+    pub(super) fn new(
+        pool: &Pool,
+        index: usize,
+        exponent: f64,
+        scale: Option<f64>,
+        settings: &Settings,
+    ) -> Result<Self, Failure> {
+        let log_likelihoods = pool.log_likelihoods();
+        let remaining = 1.0 - exponent;
+        let step = exponent_step(&log_likelihoods, remaining, settings.target_cov);
+        let next = if step < remaining { exponent + step } else { 1.0 };
+        if next <= exponent {
+            return Err(Failure::ExponentStuck { exponent, step });
+        }
+        let weights = Weights::new(&log_likelihoods, step);
+        let normalised = weights.normalised();
+        let views: Vec<&[f64]> = pool
+            .states
+            .iter()
+            .map(|state| state.coordinates.as_slice())
+            .collect();
+        let factor = Factor::new(&views, &normalised);
+        let tooth = Stream::new(settings.seed, index as u64, RESAMPLING, 0).uniform();
+        let indices = systematic(&normalised, settings.particles, tooth);
+        let chain = |(from, length): (usize, usize)| {
+            let current = pool.states[from].clone();
+            Chain {
+                start: current.log_likelihood,
+                current,
+                ancestor: pool.chains[from],
+                length,
+            }
+        };
+        let stage = match settings.algorithm {
+            Algorithm::Tmcmc => {
+                let frozen: Vec<Vec<f64>> = indices.iter().map(|&from| views[from].to_vec()).collect();
+                let chains = indices
+                    .iter()
+                    .map(|&from| chain((from, settings.moves[1])))
+                    .collect();
+                let scale = scale.unwrap_or_else(|| initial_scale(factor.dimension()));
+                Stage::new(index, next, chains, Mixture { factor, frozen }, scale, true)
+            }
+            Algorithm::ChingChen2007 => {
+                let chains = ching_chen::leaders(&indices).into_iter().map(chain).collect();
+                let mixture = Mixture {
+                    factor,
+                    frozen: Vec::new(),
+                };
+                Stage::new(index, next, chains, mixture, ching_chen::SCALE, false)
+            }
+        };
+        Ok(Self { stage, weights, step })
+    }
+}

@@ -1,0 +1,3 @@
+//! Check priors, likelihood and sampler against known answers.
+
+mod problems;

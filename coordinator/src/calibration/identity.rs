@@ -1,0 +1,54 @@
+//! The number that names an evaluation for ever.
+
+/// Numbers from here on are final draws, simulated on every run; below, they are the sampler's.
+pub const PREDICTIONS_FROM: u64 = 1 << 40;
+
+/// What an evaluation is for. Its number depends on the job alone, so it is the same after a restart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EvaluationKey {
+    /// A proposal of the sampler: number = round x particles + particle.
+    Sampling {
+        /// The sampler's round, counted from 0.
+        round: u64,
+        /// The particle.
+        particle: usize,
+    },
+    /// A final draw.
+    Prediction {
+        /// Position among the draws.
+        draw: usize,
+    },
+}
+
+impl EvaluationKey {
+    /// The number of this evaluation in a calibration of so many particles.
+    pub fn number(self, particles: usize) -> u64 {
+        match self {
+            EvaluationKey::Sampling { round, particle } => round * particles as u64 + particle as u64,
+            EvaluationKey::Prediction { draw } => PREDICTIONS_FROM + draw as u64,
+        }
+    }
+
+    /// The evaluation of a number.
+    pub fn of(number: u64, particles: usize) -> Self {
+        match number.checked_sub(PREDICTIONS_FROM) {
+            Some(draw) => EvaluationKey::Prediction { draw: draw as usize },
+            None => EvaluationKey::Sampling {
+                round: number / particles as u64,
+                particle: (number % particles as u64) as usize,
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn number_and_key_are_inverse() {
+        for number in [0, 999, 1000, 123_456, PREDICTIONS_FROM, PREDICTIONS_FROM + 199] {
+            assert_eq!(EvaluationKey::of(number, 1000).number(1000), number);
+        }
+    }
+}

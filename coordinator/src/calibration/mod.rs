@@ -1,0 +1,344 @@
+//! A calibration in progress: the one place where sampler, likelihood and leases meet.
+//!
+//! Pure: it is told outcomes and answers with facts to store. The same [`Calibration::complete`] serves a
+//! living worker and a replay from the store, so a restart cannot take another path.
+
+mod identity;
+mod replay;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use inference::{LogLikelihood, Posterior, Sampler};
+use shared::api::CalibrationState;
+use shared::model::ModelVariant;
+use shared::outcome::{Observables, Outcome};
+
+use crate::fact::{EvaluationRow, Fact};
+use crate::lease::{Completion, Queue};
+use crate::spec::Spec;
+
+pub use identity::{EvaluationKey, PREDICTIONS_FROM};
+pub use replay::{ReplayError, Stored, StoredEvaluation};
+
+/// What the farm needs to know of a calibration besides its specification.
+#[derive(Debug, Clone)]
+pub struct Identity {
+    /// Id in the store.
+    pub id: i64,
+    /// Name for lists.
+    pub name: String,
+    /// The study it belongs to.
+    pub study: i64,
+    /// The experiment it is about.
+    pub experiment: i64,
+}
+
+/// A calibration in progress.
+#[derive(Debug)]
+pub struct Calibration {
+    /// Who it is.
+    pub identity: Identity,
+    /// What it is about.
+    pub spec: Arc<Spec>,
+    /// Where it stands.
+    pub state: CalibrationState,
+    /// Why it is paused or failed.
+    pub message: Option<String>,
+    /// Version of the equations, pinned by the first lease.
+    pub model_version: Option<String>,
+    /// Evaluations asked for at present, and who holds them.
+    pub queue: Queue,
+    /// Wall time spent [ms].
+    pub busy_ms: u64,
+    /// Evaluations completed, over all stages.
+    pub evaluations: u64,
+    /// Of these, refused by the model.
+    pub rejected: u64,
+    sampler: Sampler,
+    fit_hash: String,
+    all_hash: String,
+    /// The final draws to simulate on every run; `None` while sampling.
+    draws: Option<Vec<Vec<f64>>>,
+    /// Evaluations of the present round that are done.
+    done: BTreeSet<u64>,
+    /// Failed leases by evaluation, kept over a restart.
+    failed: BTreeMap<u64, u32>,
+}
+
+/// A message that is no result: the calibration and the reason.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ResultError {
+    /// The observables do not have one entry per run.
+    #[error("the observables of evaluation {evaluation} do not cover the {runs} conditions of the variant")]
+    WrongShape {
+        /// The evaluation.
+        evaluation: u64,
+        /// How many entries are expected.
+        runs: usize,
+    },
+}
+
+impl Calibration {
+    /// A fresh calibration; its first evaluations are draws from the prior.
+    ///
+    /// # Errors
+    /// The sampler's settings do not fit the prior.
+    pub fn new(identity: Identity, spec: Arc<Spec>) -> Result<Self, inference::SettingsError> {
+        let sampler = Sampler::new(spec.prior(), spec.sampler)?;
+        let mut calibration = Calibration {
+            identity,
+            fit_hash: spec.fit_variant.hash(),
+            all_hash: spec.all_variant.hash(),
+            spec,
+            state: CalibrationState::Queued,
+            message: None,
+            model_version: None,
+            queue: Queue::default(),
+            busy_ms: 0,
+            evaluations: 0,
+            rejected: 0,
+            sampler,
+            draws: None,
+            done: BTreeSet::new(),
+            failed: BTreeMap::new(),
+        };
+        calibration.ask();
+        Ok(calibration)
+    }
+
+    /// The sampler, for progress.
+    pub fn sampler(&self) -> &Sampler {
+        &self.sampler
+    }
+
+    /// Whether evaluations may be leased.
+    pub fn is_open(&self) -> bool {
+        matches!(self.state, CalibrationState::Queued | CalibrationState::Running)
+    }
+
+    /// The hash and parameter vector that an evaluation is leased with.
+    pub fn lease_of(&self, evaluation: u64) -> Option<(&str, &[f64])> {
+        let theta = self.theta(evaluation)?;
+        let hash = if self.draws.is_some() { &self.all_hash } else { &self.fit_hash };
+        Some((hash, self.spec.model_theta(theta)))
+    }
+
+    /// The variant of a hash, if it is one of this calibration's.
+    pub fn variant(&self, hash: &str) -> Option<&ModelVariant> {
+        match hash {
+            h if h == self.fit_hash => Some(&self.spec.fit_variant),
+            h if h == self.all_hash => Some(&self.spec.all_variant),
+            _ => None,
+        }
+    }
+
+    /// The whole parameter vector of an evaluation that is asked for at present.
+    fn theta(&self, evaluation: u64) -> Option<&[f64]> {
+        match (EvaluationKey::of(evaluation, self.spec.sampler.particles), &self.draws) {
+            (EvaluationKey::Prediction { draw }, Some(draws)) => draws.get(draw).map(Vec::as_slice),
+            (EvaluationKey::Sampling { round, particle }, None) if round == self.sampler.round() => self
+                .sampler
+                .pending()
+                .binary_search_by_key(&particle, |p| p.particle)
+                .ok()
+                .map(|i| self.sampler.pending()[i].theta.as_slice()),
+            _ => None,
+        }
+    }
+
+    /// Asks for the evaluations of the present round.
+    fn ask(&mut self) {
+        let particles = self.spec.sampler.particles;
+        self.done.clear();
+        let failed = |evaluation| self.failed.get(&evaluation).copied().unwrap_or(0);
+        match &self.draws {
+            Some(draws) => {
+                let keys = (0..draws.len()).map(|draw| EvaluationKey::Prediction { draw }.number(particles));
+                self.queue.ask(keys, failed);
+            }
+            None => {
+                let round = self.sampler.round();
+                let keys = self
+                    .sampler
+                    .pending()
+                    .iter()
+                    .map(|p| EvaluationKey::Sampling { round, particle: p.particle }.number(particles));
+                self.queue.ask(keys, failed);
+            }
+        }
+    }
+
+    /// Takes the result of an evaluation; late duplicates change nothing.
+    ///
+    /// Returns the facts to store, in order, and whether the result counted.
+    ///
+    /// # Errors
+    /// [`ResultError`] for a result that does not fit its variant: the worker's fault, nothing is recorded.
+    pub fn complete(
+        &mut self,
+        evaluation: u64,
+        outcome: Result<Observables, String>,
+        worker: &str,
+    ) -> Result<(Vec<Fact>, bool), ResultError> {
+        let runs = if self.draws.is_some() { &self.spec.all_variant } else { &self.spec.fit_variant }.conditions.len();
+        if self.theta(evaluation).is_some()
+            && let Ok(observables) = &outcome
+            && !observables.covers(runs)
+        {
+            return Err(ResultError::WrongShape { evaluation, runs });
+        }
+        match self.queue.complete(evaluation) {
+            Completion::First => {}
+            Completion::Duplicate | Completion::Unknown => {
+                let row = self.duplicate_row(evaluation, outcome, worker);
+                return Ok((vec![Fact::Duplicate { calibration: self.identity.id, row }], false));
+            }
+        }
+        let theta = self.theta(evaluation).expect("the queue holds only evaluations asked for").to_vec();
+        let scored = if self.draws.is_some() { Ok(None) } else { self.score(&outcome, &theta).map(Some) };
+        let scored = match scored {
+            Ok(scored) => scored,
+            Err(error) => {
+                let mut facts = Vec::new();
+                self.finish(CalibrationState::Failed, Some(error.to_string()), &mut facts);
+                return Ok((facts, false));
+            }
+        };
+        let log_likelihood = scored.and_then(|s| match s {
+            LogLikelihood::Impossible => None,
+            finite => Some(finite.value()),
+        });
+        let rejected = outcome.is_err();
+        let row = EvaluationRow { evaluation, theta, log_likelihood, result: outcome, worker: worker.to_owned() };
+        let mut facts = vec![Fact::Evaluated { calibration: self.identity.id, row }];
+        self.record(evaluation, rejected, scored, &mut facts);
+        Ok((facts, true))
+    }
+
+    /// The log-likelihood of an outcome.
+    fn score(
+        &self,
+        outcome: &Result<Observables, String>,
+        theta: &[f64],
+    ) -> Result<LogLikelihood, inference::LikelihoodError> {
+        let Ok(observables) = outcome else { return Ok(LogLikelihood::Impossible) };
+        let channels = shared::channel::Channel::ALL.map(|c| observables.channel(c));
+        self.spec.likelihood.log_likelihood(|run, channel| channels[channel][run], theta)
+    }
+
+    /// Lets a completed evaluation take effect on counts, sampler and phase.
+    fn record(&mut self, evaluation: u64, rejected: bool, scored: Option<LogLikelihood>, facts: &mut Vec<Fact>) {
+        self.evaluations += 1;
+        self.rejected += u64::from(rejected);
+        self.done.insert(evaluation);
+        let Some(value) = scored else {
+            if self.done.len() == self.queue.len() {
+                self.finish(CalibrationState::Finished, None, facts);
+            }
+            return;
+        };
+        let EvaluationKey::Sampling { particle, .. } = EvaluationKey::of(evaluation, self.spec.sampler.particles)
+        else {
+            return;
+        };
+        let stages = self.sampler.stages().len();
+        let progress = self.sampler.tell(particle, value);
+        for record in &self.sampler.stages()[stages..] {
+            facts.push(Fact::Stage {
+                calibration: self.identity.id,
+                record: Box::new(record.clone()),
+                busy_ms: self.busy_ms,
+            });
+        }
+        match progress {
+            Ok(inference::Progress::Waiting) => {}
+            Ok(inference::Progress::NextRound | inference::Progress::StageFinished) => self.ask(),
+            Ok(inference::Progress::Finished) => {
+                if let Some(posterior) = self.sampler.posterior() {
+                    facts.push(Fact::Posterior {
+                        calibration: self.identity.id,
+                        posterior: Box::new(posterior.clone()),
+                    });
+                    self.draws = Some(final_draws(posterior));
+                }
+                self.ask();
+            }
+            Ok(inference::Progress::Failed(failure)) => {
+                self.finish(CalibrationState::Failed, Some(failure.to_string()), facts);
+            }
+            Err(error) => self.finish(CalibrationState::Failed, Some(error.to_string()), facts),
+        }
+    }
+
+    fn finish(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
+        self.queue = Queue::default();
+        self.change_state(state, message, facts);
+    }
+
+    /// Changes the state and says so to the store.
+    pub fn change_state(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
+        self.state = state;
+        self.message.clone_from(&message);
+        facts.push(Fact::State { calibration: self.identity.id, state, message, busy_ms: self.busy_ms });
+    }
+
+    /// Records that a lease failed: kept over restarts; when the attempts are used up, the calibration pauses.
+    pub fn lease_failed(&mut self, failure: &crate::lease::Failure, message: &str) -> Vec<Fact> {
+        self.failed.insert(failure.evaluation, failure.attempt);
+        let mut facts = vec![Fact::Fault {
+            calibration: self.identity.id,
+            evaluation: failure.evaluation,
+            attempt: failure.attempt,
+            worker: failure.worker.clone(),
+            message: message.to_owned(),
+        }];
+        if failure.exhausted() {
+            let theta = self.theta(failure.evaluation).map(<[f64]>::to_vec).unwrap_or_default();
+            let message = format!(
+                "evaluation {} at theta = {theta:?} failed on {} attempts, the last on worker {}: {message}",
+                failure.evaluation, failure.attempt, failure.worker
+            );
+            self.change_state(CalibrationState::Paused, Some(message), &mut facts);
+        }
+        facts
+    }
+
+    /// Goes on after a pause; evaluations that had used up their attempts get new ones.
+    pub fn resume(&mut self, facts: &mut Vec<Fact>) {
+        self.failed.clear();
+        let done = std::mem::take(&mut self.done);
+        self.ask();
+        for &evaluation in &done {
+            self.queue.complete(evaluation);
+        }
+        self.done = done;
+        self.change_state(CalibrationState::Running, None, facts);
+    }
+
+    fn duplicate_row(&self, evaluation: u64, result: Result<Observables, String>, worker: &str) -> EvaluationRow {
+        EvaluationRow { evaluation, theta: Vec::new(), log_likelihood: None, result, worker: worker.to_owned() }
+    }
+}
+
+/// The draws that are simulated on every run: the most probable particle, then evenly spaced ones.
+fn final_draws(posterior: &Posterior) -> Vec<Vec<f64>> {
+    let particles = &posterior.particles;
+    let best = (0..particles.len()).reduce(|a, b| {
+        let score = |i: usize| particles[i].log_likelihood.value() + particles[i].log_prior;
+        if score(b) > score(a) { b } else { a }
+    });
+    let spread = crate::spec::PREDICTION_DRAWS - 1;
+    let count = particles.len().min(spread);
+    let even = (0..count).map(|k| k * particles.len() / count);
+    best.into_iter().chain(even).map(|i| particles[i].theta.clone()).collect()
+}
+
+/// Turns what a worker says into what a calibration takes; a fault is no result.
+pub fn result_of(outcome: Outcome) -> Result<Result<Observables, String>, String> {
+    match outcome {
+        Outcome::Evaluated(observables) => Ok(Ok(observables)),
+        Outcome::Rejected(r) => Ok(Err(format!("{}: condition {}: {}", r.kind, r.condition, r.message))),
+        Outcome::Fault(fault) => Err(fault.message),
+    }
+}

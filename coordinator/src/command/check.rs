@@ -1,0 +1,91 @@
+//! `coordinator check`: validate a job and say what it will cost.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use shared::outcome::Outcome as Evaluated;
+
+use super::job;
+use crate::calibration::{Calibration, Identity, result_of};
+use crate::embedded::Evaluate;
+use crate::result::terminal;
+
+/// Particles of the pilot: enough to find the number of stages, which hardly depends on them.
+const PILOT_PARTICLES: usize = 100;
+/// The pilot ends after so long; what it has seen by then is extrapolated [s].
+const PILOT_S: f64 = 30.0;
+
+pub(super) async fn check(path: &Path) -> anyhow::Result<()> {
+    let job = job::read(path)?;
+    print!("{}", terminal::specification(&job.spec));
+    for note in terminal::notes(&job.spec) {
+        println!("note: {note}");
+    }
+    let particles = job.spec.sampler.particles;
+    let pilot = tokio::task::spawn_blocking(move || pilot(job.spec)).await??;
+    let evaluations = pilot.evaluations as f64 * particles as f64 / pilot.particles as f64;
+    let simulations = evaluations * pilot.runs as f64;
+    let core_s = evaluations * pilot.seconds_per_evaluation;
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    println!("\nA pilot of {} particles took {} evaluations.", pilot.particles, pilot.evaluations);
+    if !pilot.complete {
+        println!("It was stopped at tempering exponent {:.2e}: what follows is a lower bound.", pilot.exponent);
+    }
+    println!("expected evaluations   {evaluations:>12.0}   (one = {} runs)", pilot.runs);
+    println!("expected simulations   {simulations:>12.0}");
+    println!("expected core hours    {:>12.3}", core_s / 3600.0);
+    println!("on {cores} cores            {:>12.3} h = {:.0} s", core_s / 3600.0 / cores as f64, core_s / cores as f64);
+    if pilot.rejected_share > 0.0 {
+        println!("the model refused {:.0} % of the pilot's parameter vectors", 100.0 * pilot.rejected_share);
+    }
+    Ok(())
+}
+
+struct Pilot {
+    particles: usize,
+    evaluations: u64,
+    runs: usize,
+    seconds_per_evaluation: f64,
+    rejected_share: f64,
+    exponent: f64,
+    complete: bool,
+}
+
+/// The same calibration in small, in memory.
+fn pilot(mut spec: crate::spec::Spec) -> anyhow::Result<Pilot> {
+    spec.sampler.particles = spec.sampler.particles.min(PILOT_PARTICLES.max(2 * spec.parameters.len() + 2));
+    let particles = spec.sampler.particles;
+    let runs = spec.fit_runs.len();
+    let model = Evaluate::new(&spec.fit_variant).map_err(anyhow::Error::msg)?;
+    let identity = Identity { id: 0, name: "pilot".into(), study: 0, experiment: 0 };
+    let mut calibration = Calibration::new(identity, Arc::new(spec))?;
+    let began = Instant::now();
+    let mut simulated_s = 0.0;
+    while calibration.sampler().posterior().is_none() && !calibration.state.is_final() {
+        if began.elapsed().as_secs_f64() > PILOT_S {
+            break;
+        }
+        for evaluation in calibration.queue.asked() {
+            let Some((_, theta)) = calibration.lease_of(evaluation) else { break };
+            let start = Instant::now();
+            let outcome: Evaluated = model.evaluate(theta);
+            simulated_s += start.elapsed().as_secs_f64();
+            let result = result_of(outcome).map_err(anyhow::Error::msg)?;
+            calibration.complete(evaluation, result, "pilot")?;
+        }
+    }
+    if let Some(message) = calibration.message {
+        anyhow::bail!("the pilot failed: {message}");
+    }
+    let evaluations = calibration.evaluations.max(1);
+    Ok(Pilot {
+        particles,
+        evaluations,
+        runs,
+        seconds_per_evaluation: simulated_s / evaluations as f64,
+        rejected_share: calibration.rejected as f64 / evaluations as f64,
+        exponent: calibration.sampler().current().tempering_exponent,
+        complete: calibration.sampler().posterior().is_some(),
+    })
+}

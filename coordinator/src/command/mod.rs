@@ -1,0 +1,51 @@
+//! The verbs of the command line.
+
+mod check;
+mod job;
+mod progress;
+mod run;
+mod serve;
+mod source;
+mod verbs;
+
+use anyhow::bail;
+
+use crate::config::Command;
+
+/// Carries out a verb.
+///
+/// # Errors
+/// Whatever went wrong, as one chain of sentences.
+pub async fn execute(command: Command) -> anyhow::Result<()> {
+    match command {
+        Command::Run(run) => run::run(run).await,
+        Command::Check(file) => check::check(&file.job).await,
+        Command::Serve(serve) => serve::serve(serve).await,
+        Command::Submit(submit) => verbs::submit(&submit).await,
+        Command::List(source) => verbs::list(&source).await,
+        Command::Status(target) => verbs::status(&target).await,
+        Command::Cancel(target) => verbs::control(&target, "cancel").await,
+        Command::Pause(target) => verbs::control(&target, "pause").await,
+        Command::Resume(target) => verbs::control(&target, "resume").await,
+        Command::Compare(target) => verbs::compare(&target).await,
+        Command::Report(report) => verbs::report(&report).await,
+        Command::Export(export) => verbs::export(&export).await,
+        Command::Diagnose(_) => bail!("diagnose is not available in this version"),
+        Command::Discover(_) => bail!("discover is not available in this version"),
+        Command::Extend(_) => bail!("extend is not available in this version"),
+        Command::AddRuns(_) => bail!("add-runs is not available in this version"),
+        Command::Effects(_) => bail!("effects are not available in this version"),
+    }
+}
+
+/// Ready at ^C or SIGTERM.
+fn stop_signal() -> anyhow::Result<impl Future<Output = ()> + Send + 'static> {
+    use tokio::signal::unix::{SignalKind, signal};
+    let mut terminate = signal(SignalKind::terminate())?;
+    Ok(async move {
+        tokio::select! {
+            _ = terminate.recv() => {}
+            _ = tokio::signal::ctrl_c() => {}
+        }
+    })
+}

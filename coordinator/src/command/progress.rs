@@ -1,0 +1,59 @@
+//! What a person sees while a calibration runs.
+
+use std::io::IsTerminal;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use shared::api::{CalibrationState, CalibrationStatus};
+
+/// A bar on a terminal; a line for each stage elsewhere.
+pub(super) struct Display {
+    bar: Option<ProgressBar>,
+    stage: Option<u32>,
+}
+
+impl Display {
+    pub(super) fn new() -> Self {
+        let bar = std::io::stderr().is_terminal().then(|| {
+            let style = ProgressStyle::with_template("{elapsed_precise} [{bar:30}] {msg}")
+                .unwrap_or_else(|_| ProgressStyle::default_bar());
+            let bar = ProgressBar::new(1).with_style(style.progress_chars("=> "));
+            bar.enable_steady_tick(Duration::from_millis(200));
+            bar
+        });
+        Display { bar, stage: None }
+    }
+
+    /// Shows where a calibration stands.
+    pub(super) fn show(&mut self, status: &CalibrationStatus) {
+        let Some(p) = &status.progress else { return };
+        let time = match p.remaining_s {
+            Some(s) if s >= 90.0 => format!("about {:.0} min to go", s / 60.0),
+            Some(s) => format!("about {s:.0} s to go"),
+            None => "time to go unknown yet".into(),
+        };
+        let message = format!(
+            "stage {} exponent {:.3e} step {} acceptance {:.2} | {} evaluations, {:.0}/s | {time}",
+            p.stage, p.tempering_exponent, p.step, p.acceptance, p.evaluations, p.evaluations_per_s
+        );
+        match &self.bar {
+            Some(bar) => {
+                bar.set_length(p.step_size.max(1));
+                bar.set_position(p.step_done);
+                bar.set_message(message);
+            }
+            None if self.stage != Some(p.stage) => eprintln!("{message}"),
+            None => {}
+        }
+        self.stage = Some(p.stage);
+        if status.state == CalibrationState::Paused && self.bar.is_none() {
+            eprintln!("paused: {}", status.message.clone().unwrap_or_default());
+        }
+    }
+
+    pub(super) fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

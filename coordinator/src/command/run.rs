@@ -1,0 +1,191 @@
+//! `coordinator run`: everything in one process, in a folder that can be taken up again.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, bail};
+use shared::api::{CalibrationState, NewCalibration, NewExperiment};
+use tokio::net::TcpListener;
+use tokio::sync::watch;
+
+use super::job::{self, JobOnDisk};
+use super::progress::Display;
+use crate::config::Run;
+use crate::embedded::LocalWorkers;
+use crate::farm::Control;
+use crate::result::{Outcome, report, terminal};
+use crate::service::{LEASE_MS, Service};
+
+/// How often the display looks.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// How a run ended.
+enum End {
+    Over,
+    Stopped,
+}
+
+pub(super) async fn run(config: Run) -> anyhow::Result<()> {
+    let job = job::read(&config.job)?;
+    for note in crate::result::terminal::notes(&job.spec) {
+        eprintln!("note: {note}");
+    }
+    let out = config.out.clone().unwrap_or_else(|| Path::new("out").join(&job.name));
+    // The address is taken before anything is written, so that a port in use leaves nothing behind.
+    let listener = match config.listen {
+        Some(address) => {
+            Some(TcpListener::bind(address).await.with_context(|| format!("--listen {address}"))?)
+        }
+        None => None,
+    };
+    std::fs::create_dir_all(&out).with_context(|| format!("--out {}", out.display()))?;
+    let service = Service::open(&out.join("grouser.db").display().to_string(), LEASE_MS).await?;
+    let result = in_folder(&config, &job, &out, &service, listener).await;
+    service.close().await;
+    result
+}
+
+async fn in_folder(
+    config: &Run,
+    job: &JobOnDisk,
+    out: &Path,
+    service: &Service,
+    listener: Option<TcpListener>,
+) -> anyhow::Result<()> {
+    let id = take_up(job, out, service).await?;
+    let row = service.calibration_row(id).await?;
+    if !row.state.is_final() {
+        match calibrate(config, id, service, listener).await? {
+            End::Over => {}
+            End::Stopped => {
+                eprintln!("stopped; the same command goes on from here");
+                return Ok(());
+            }
+        }
+    }
+    let row = service.calibration_row(id).await?;
+    match row.state {
+        CalibrationState::Finished => {
+            let outcome = Outcome::load(&service.store().reader(), &row).await?;
+            write_results(&outcome, out)?;
+            print!("{}", terminal::summary(&outcome));
+            println!("\nin {}: summary.json, posterior.csv, report.html, grouser.db", out.display());
+            Ok(())
+        }
+        state => bail!("calibration {}: {}", state.name(), row.message.unwrap_or_default()),
+    }
+}
+
+/// The calibration of this folder: the stored one, if it is of the same job, or a new one.
+async fn take_up(job: &JobOnDisk, out: &Path, service: &Service) -> anyhow::Result<i64> {
+    let rows = service.store().reader().calibrations().await?;
+    let Some(row) = rows.first() else {
+        let experiment = NewExperiment { toml: job.experiment.toml.clone(), files: job.experiment.files.clone() };
+        let experiment = service.add_experiment(experiment).await?;
+        let new = NewCalibration {
+            experiment,
+            toml: job.toml.clone(),
+            files: Default::default(),
+            name: Some(job.name.clone()),
+        };
+        return Ok(service.add_calibration(new).await?.id);
+    };
+    let stored = service.spec_of(row).await?;
+    if !stored.same_as(&job.spec) {
+        bail!(
+            "{} holds the calibration of another job: the job or its experiment has changed since; give another --out, or delete the folder",
+            out.display()
+        );
+    }
+    if row.state == CalibrationState::Paused {
+        service.control(row.id, Control::Resume).await?;
+    }
+    Ok(row.id)
+}
+
+async fn calibrate(
+    config: &Run,
+    id: i64,
+    service: &Service,
+    listener: Option<TcpListener>,
+) -> anyhow::Result<End> {
+    let (stop, stopped) = watch::channel(false);
+    let until_stopped = move || {
+        let mut stopped = stopped.clone();
+        async move { drop(stopped.wait_for(|s| *s).await) }
+    };
+    let server = listener.map(|listener| {
+        if let Ok(address) = listener.local_addr() {
+            eprintln!("workers may join: worker --coordinator http://{address}");
+        }
+        tokio::spawn(crate::http::serve(listener, service.clone(), until_stopped()))
+    });
+    let cores = std::thread::available_parallelism().map_or(1, Into::into);
+    let threads = config.local_workers.unwrap_or(cores);
+    if threads == 0 && server.is_none() {
+        bail!("--local-workers 0 needs --listen: nobody would simulate");
+    }
+    let began = Instant::now();
+    let workers =
+        (threads > 0).then(|| LocalWorkers::start(service.dispatcher().clone(), threads, until_stopped()));
+    let end = watch_until_over(id, service).await;
+    let wall_s = began.elapsed().as_secs_f64();
+    stop.send_replace(true);
+    if let Some(workers) = workers {
+        let share = workers.simulated_s() / (wall_s * workers.threads as f64);
+        eprintln!(
+            "{} local workers simulated {:.1} % of {wall_s:.1} s",
+            workers.threads,
+            100.0 * share
+        );
+        workers.join().await;
+    }
+    if let Some(server) = server {
+        // Workers elsewhere may be waiting in a poll; they are not waited for.
+        server.abort();
+    }
+    end
+}
+
+/// Shows progress until the calibration is over, or until ^C.
+async fn watch_until_over(id: i64, service: &Service) -> anyhow::Result<End> {
+    let stop = super::stop_signal()?;
+    tokio::pin!(stop);
+    let store_fails = service.store().writer().stopped();
+    tokio::pin!(store_fails);
+    let mut display = Display::new();
+    loop {
+        tokio::select! {
+            () = &mut stop => { display.finish(); return Ok(End::Stopped); }
+            () = &mut store_fails => bail!("the store can no longer be written; its log line says why"),
+            () = tokio::time::sleep(LOOK) => {}
+        }
+        let status = service.status(id).await?;
+        if status.state == CalibrationState::Paused {
+            display.finish();
+            bail!("paused: {}; the same command goes on from here", status.message.unwrap_or_default());
+        }
+        if status.state.is_final() {
+            display.finish();
+            return Ok(End::Over);
+        }
+        display.show(&status);
+    }
+}
+
+/// Writes every result beside its final name first, so that a half-written file never takes that name.
+fn write_results(outcome: &Outcome, out: &Path) -> anyhow::Result<()> {
+    let summary = serde_json::to_string_pretty(&outcome.summary())?;
+    let files: [(&str, String); 3] = [
+        ("summary.json", summary + "\n"),
+        ("posterior.csv", outcome.posterior_table().to_csv()),
+        ("report.html", report::page(outcome)),
+    ];
+    for (name, text) in files {
+        let path: PathBuf = out.join(name);
+        let partial = out.join(format!("{name}.part"));
+        std::fs::write(&partial, text).with_context(|| partial.display().to_string())?;
+        std::fs::rename(&partial, &path).with_context(|| path.display().to_string())?;
+    }
+    Ok(())
+}

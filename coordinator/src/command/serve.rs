@@ -1,0 +1,43 @@
+//! `coordinator serve`: the service.
+
+use anyhow::{Context, bail};
+use tokio::net::TcpListener;
+use tokio::sync::watch;
+
+use crate::config::Serve;
+use crate::embedded::LocalWorkers;
+use crate::service::Service;
+
+pub(super) async fn serve(config: Serve) -> anyhow::Result<()> {
+    if config.lease_ms < 100 {
+        bail!("--lease-ms {} ms must be >= 100 ms", config.lease_ms);
+    }
+    let listener =
+        TcpListener::bind(config.listen).await.with_context(|| format!("--listen {}", config.listen))?;
+    let service = Service::open(&config.store, config.lease_ms).await?;
+    let address = listener.local_addr()?;
+    tracing::info!(%address, store = config.store, "serving");
+
+    let (stop, stopped) = watch::channel(false);
+    let until_stopped = move || {
+        let mut stopped = stopped.clone();
+        async move { drop(stopped.wait_for(|s| *s).await) }
+    };
+    let workers = (config.local_workers > 0).then(|| {
+        LocalWorkers::start(service.dispatcher().clone(), config.local_workers, until_stopped())
+    });
+    let server = tokio::spawn(crate::http::serve(listener, service.clone(), until_stopped()));
+    let signal = super::stop_signal()?;
+    tokio::select! {
+        () = signal => tracing::info!("stopping; workers will find us again"),
+        () = service.store().writer().stopped() => bail!("the store can no longer be written; the log says why"),
+    }
+    stop.send_replace(true);
+    if let Some(workers) = workers {
+        workers.join().await;
+    }
+    // Long polls end with the farm, so the server has nobody left to wait for.
+    service.close().await;
+    server.abort();
+    Ok(())
+}

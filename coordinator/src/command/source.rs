@@ -1,0 +1,139 @@
+//! A service or a folder: two places where calibrations are looked up.
+
+use anyhow::{Context, bail};
+use serde::de::DeserializeOwned;
+use shared::api::{CalibrationStatus, ErrorBody};
+
+use crate::config::{Source, Target};
+use crate::result::{self, Comparison, Outcome, PosteriorTable, Summary, report};
+use crate::store::Reader;
+
+/// A service or a folder.
+pub(super) enum Place {
+    Service(Client),
+    Folder(Reader),
+}
+
+impl Place {
+    pub(super) async fn open(source: &Source) -> anyhow::Result<Place> {
+        match &source.out {
+            Some(out) => {
+                let file = out.join("grouser.db");
+                Ok(Place::Folder(Reader::open(&file.display().to_string()).await?))
+            }
+            None => Ok(Place::Service(Client::new(&source.url)?)),
+        }
+    }
+
+    pub(super) async fn list(&self) -> anyhow::Result<Vec<CalibrationStatus>> {
+        match self {
+            Place::Service(client) => client.get("/v1/calibrations").await,
+            Place::Folder(reader) => {
+                let rows = reader.calibrations().await?;
+                Ok(rows.iter().map(result::stored_status).collect::<Result<_, _>>()?)
+            }
+        }
+    }
+
+    /// The calibration that is meant: the one named, or the only one.
+    pub(super) async fn id(&self, target: &Target) -> anyhow::Result<i64> {
+        if let Some(id) = target.id {
+            return Ok(id);
+        }
+        match self.list().await?.as_slice() {
+            [only] => Ok(only.id),
+            [] => bail!("there is no calibration"),
+            several => bail!("there are {} calibrations: name one by its id", several.len()),
+        }
+    }
+
+    pub(super) async fn status(&self, id: i64) -> anyhow::Result<CalibrationStatus> {
+        match self {
+            Place::Service(client) => client.get(&format!("/v1/calibrations/{id}")).await,
+            Place::Folder(reader) => match reader.calibration(id).await? {
+                Some(row) => Ok(result::stored_status(&row)?),
+                None => bail!("there is no calibration {id}"),
+            },
+        }
+    }
+
+    pub(super) async fn comparison(&self, id: i64) -> anyhow::Result<Comparison> {
+        match self {
+            Place::Service(client) => client.get(&format!("/v1/calibrations/{id}/comparison")).await,
+            Place::Folder(reader) => Ok(outcome(reader, id).await?.comparison()),
+        }
+    }
+
+    pub(super) async fn posterior(&self, id: i64) -> anyhow::Result<PosteriorTable> {
+        match self {
+            Place::Service(client) => client.get(&format!("/v1/calibrations/{id}/posterior")).await,
+            Place::Folder(reader) => Ok(outcome(reader, id).await?.posterior_table()),
+        }
+    }
+
+    pub(super) async fn summary(&self, id: i64) -> anyhow::Result<Summary> {
+        match self {
+            Place::Service(client) => client.get(&format!("/v1/calibrations/{id}/summary")).await,
+            Place::Folder(reader) => Ok(outcome(reader, id).await?.summary()),
+        }
+    }
+
+    pub(super) async fn report(&self, id: i64) -> anyhow::Result<String> {
+        match self {
+            Place::Service(client) => client.text(&format!("/v1/calibrations/{id}/report")).await,
+            Place::Folder(reader) => Ok(report::page(&outcome(reader, id).await?)),
+        }
+    }
+}
+
+async fn outcome(reader: &Reader, id: i64) -> anyhow::Result<Outcome> {
+    let row = reader.calibration(id).await?.with_context(|| format!("there is no calibration {id}"))?;
+    Ok(Outcome::load(reader, &row).await?)
+}
+
+/// A service over HTTP.
+pub(super) struct Client {
+    client: reqwest::Client,
+    url: String,
+}
+
+impl Client {
+    pub(super) fn new(url: &str) -> anyhow::Result<Client> {
+        let parsed = reqwest::Url::parse(url).with_context(|| format!("--url {url}"))?;
+        if parsed.scheme() != "http" {
+            bail!("--url {url}: scheme {} is not http", parsed.scheme());
+        }
+        Ok(Client { client: reqwest::Client::new(), url: url.trim_end_matches('/').to_owned() })
+    }
+
+    async fn answer(&self, request: reqwest::RequestBuilder) -> anyhow::Result<String> {
+        let response = request.send().await.with_context(|| format!("no answer from {}", self.url))?;
+        let status = response.status();
+        let text = response.text().await?;
+        if status.is_success() {
+            return Ok(text);
+        }
+        match serde_json::from_str::<ErrorBody>(&text) {
+            Ok(body) => bail!("{}", body.error.message),
+            Err(_) => bail!("{} answered {status}", self.url),
+        }
+    }
+
+    async fn text(&self, path: &str) -> anyhow::Result<String> {
+        self.answer(self.client.get(format!("{}{path}", self.url))).await
+    }
+
+    pub(super) async fn get<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
+        let text = self.text(path).await?;
+        serde_json::from_str(&text).with_context(|| format!("{} is no Grouser coordinator of this version", self.url))
+    }
+
+    pub(super) async fn post<T: DeserializeOwned>(
+        &self,
+        path: &str,
+        body: &impl serde::Serialize,
+    ) -> anyhow::Result<T> {
+        let text = self.answer(self.client.post(format!("{}{path}", self.url)).json(body)).await?;
+        serde_json::from_str(&text).with_context(|| format!("{} is no Grouser coordinator of this version", self.url))
+    }
+}

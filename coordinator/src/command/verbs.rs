@@ -1,0 +1,92 @@
+//! The short verbs: submit, list, status, cancel, pause, resume, compare, report, export.
+
+use std::path::Path;
+
+use anyhow::{Context, bail};
+use serde_json::json;
+use shared::api::{CalibrationCreated, ExperimentCreated, NewCalibration, NewExperiment};
+
+use super::job;
+use super::source::{Client, Place};
+use crate::config::{Export, Format, Report, Source, Submit, Target};
+use crate::result::terminal;
+
+pub(super) async fn submit(config: &Submit) -> anyhow::Result<()> {
+    let job = job::read(&config.job)?;
+    let client = Client::new(&config.url)?;
+    let experiment = NewExperiment { toml: job.experiment.toml, files: job.experiment.files };
+    let experiment: ExperimentCreated = client.post("/v1/experiments", &experiment).await?;
+    let new = NewCalibration {
+        experiment: experiment.id,
+        toml: job.toml,
+        files: Default::default(),
+        name: Some(job.name),
+    };
+    let created: CalibrationCreated = client.post("/v1/calibrations", &new).await?;
+    println!("calibration {} of study {}", created.id, created.study);
+    Ok(())
+}
+
+pub(super) async fn list(source: &Source) -> anyhow::Result<()> {
+    let statuses = Place::open(source).await?.list().await?;
+    print!("{}", terminal::status_table(&statuses));
+    Ok(())
+}
+
+pub(super) async fn status(target: &Target) -> anyhow::Result<()> {
+    let place = Place::open(&target.source).await?;
+    let status = place.status(place.id(target).await?).await?;
+    print!("{}", terminal::status_table(&[status]));
+    Ok(())
+}
+
+pub(super) async fn control(target: &Target, verb: &str) -> anyhow::Result<()> {
+    let place = Place::open(&target.source).await?;
+    let Place::Service(client) = &place else {
+        bail!("{verb} needs a service (--url): the run of a folder is stopped by ^C and goes on by running it again");
+    };
+    let id = place.id(target).await?;
+    let answer: serde_json::Value = client.post(&format!("/v1/calibrations/{id}/{verb}"), &json!({})).await?;
+    println!("calibration {id} is {}", answer["state"].as_str().unwrap_or("in an unknown state"));
+    Ok(())
+}
+
+pub(super) async fn compare(target: &Target) -> anyhow::Result<()> {
+    let place = Place::open(&target.source).await?;
+    let comparison = place.comparison(place.id(target).await?).await?;
+    print!("{}", terminal::comparison(&comparison));
+    Ok(())
+}
+
+pub(super) async fn report(config: &Report) -> anyhow::Result<()> {
+    let place = Place::open(&config.target.source).await?;
+    let page = place.report(place.id(&config.target).await?).await?;
+    write(config.output.as_deref(), &page)
+}
+
+pub(super) async fn export(config: &Export) -> anyhow::Result<()> {
+    let place = Place::open(&config.target.source).await?;
+    let id = place.id(&config.target).await?;
+    let text = match config.format {
+        Format::Csv => place.posterior(id).await?.to_csv(),
+        Format::Json => {
+            let all = json!({
+                "summary": place.summary(id).await?,
+                "posterior": place.posterior(id).await?,
+                "comparison": place.comparison(id).await?,
+            });
+            serde_json::to_string_pretty(&all)? + "\n"
+        }
+    };
+    write(config.output.as_deref(), &text)
+}
+
+fn write(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
+    match path {
+        Some(path) => std::fs::write(path, text).with_context(|| path.display().to_string()),
+        None => {
+            print!("{text}");
+            Ok(())
+        }
+    }
+}

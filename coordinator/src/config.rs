@@ -1,0 +1,167 @@
+//! Command line and environment of the coordinator.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Finds the physics that a wheel-soil model is missing.
+#[derive(Debug, Parser)]
+#[command(version, name = "coordinator")]
+pub struct Config {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The verbs.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Calibrate in one process: coordinator, local workers, results in a folder. Run again to go on.
+    Run(Run),
+    /// Validate a job and say what it will cost.
+    Check(JobFile),
+    /// Run the service: REST interface and workers' endpoint.
+    Serve(Serve),
+    /// Send a job to a service.
+    Submit(Submit),
+    /// List calibrations.
+    List(Source),
+    /// Say where a calibration stands.
+    Status(Target),
+    /// Stop a calibration for good.
+    Cancel(Target),
+    /// Lease no more evaluations of a calibration.
+    Pause(Target),
+    /// Go on with a paused calibration.
+    Resume(Target),
+    /// Compare model and measurement, run by run.
+    Compare(Target),
+    /// Write a calibration's report.
+    Report(Report),
+    /// Write a calibration's draws and comparison.
+    Export(Export),
+    /// Say where the model fails (later).
+    Diagnose(Later),
+    /// Find the missing effect (later).
+    Discover(Later),
+    /// Add an effect (later).
+    Extend(Later),
+    /// Add measurements to a study (later).
+    AddRuns(Later),
+    /// Show the catalogue of effects (later).
+    Effects(Later),
+}
+
+/// A job file.
+#[derive(Debug, Args)]
+pub struct JobFile {
+    /// The job.
+    pub job: PathBuf,
+}
+
+/// Calibrate in one process.
+#[derive(Debug, Args)]
+pub struct Run {
+    /// The job.
+    pub job: PathBuf,
+    /// Where results and store go; by default out/NAME, after the job file or its folder.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Threads that simulate here; by default, one for each core.
+    #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
+    pub local_workers: Option<usize>,
+    /// Lets workers elsewhere join at this address.
+    #[arg(long, value_name = "ADDR")]
+    pub listen: Option<std::net::SocketAddr>,
+}
+
+/// Run the service.
+#[derive(Debug, Args)]
+pub struct Serve {
+    /// Address to listen on.
+    #[arg(long, env = "GROUSER_LISTEN", default_value = "127.0.0.1:7070")]
+    pub listen: std::net::SocketAddr,
+    /// The store.
+    #[arg(long, env = "GROUSER_STORE", default_value = "sqlite://grouser.db", value_name = "sqlite://FILE")]
+    pub store: String,
+    /// Threads that simulate in this process.
+    #[arg(long, env = "GROUSER_LOCAL_WORKERS", default_value_t = 0)]
+    pub local_workers: usize,
+    /// How long a lease lasts without renewal [ms].
+    #[arg(long, env = "GROUSER_LEASE_MS", default_value_t = crate::service::LEASE_MS)]
+    pub lease_ms: u64,
+}
+
+/// Send a job to a service.
+#[derive(Debug, Args)]
+pub struct Submit {
+    /// The job.
+    pub job: PathBuf,
+    /// The service.
+    #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
+    pub url: String,
+}
+
+/// Where calibrations are looked up.
+#[derive(Debug, Args)]
+#[group(multiple = false)]
+pub struct Source {
+    /// A service.
+    #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
+    pub url: String,
+    /// The folder of a run.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+}
+
+/// One calibration.
+#[derive(Debug, Args)]
+pub struct Target {
+    /// The calibration's id; may be left out where there is only one.
+    pub id: Option<i64>,
+    /// Where it is.
+    #[command(flatten)]
+    pub source: Source,
+}
+
+/// Write a calibration's report.
+#[derive(Debug, Args)]
+pub struct Report {
+    /// Which calibration.
+    #[command(flatten)]
+    pub target: Target,
+    /// Where to write it; by default, standard output.
+    #[arg(long)]
+    pub output: Option<PathBuf>,
+}
+
+/// Write a calibration's draws and comparison.
+#[derive(Debug, Args)]
+pub struct Export {
+    /// Which calibration.
+    #[command(flatten)]
+    pub target: Target,
+    /// csv: the posterior; json: summary, posterior and comparison.
+    #[arg(long, value_enum, default_value_t = Format::Csv)]
+    pub format: Format,
+    /// Where to write it; by default, standard output.
+    #[arg(long)]
+    pub output: Option<PathBuf>,
+}
+
+/// Format of an export.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Format {
+    /// Equally weighted draws, one a row.
+    Csv,
+    /// Summary, posterior and comparison.
+    Json,
+}
+
+/// A verb that a later version brings.
+#[derive(Debug, Args)]
+pub struct Later {
+    /// Whatever is said.
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+    pub rest: Vec<String>,
+}

@@ -1,0 +1,84 @@
+//! Local workers in this process; the only place that knows the worker.
+
+use std::future::Future;
+use std::sync::Arc;
+
+use shared::exchange::{ExchangeRequest, ExchangeResponse};
+use shared::model::ModelVariant;
+use worker::evaluator::SimulationClock;
+use worker::pull::{Coordinator, ExchangeError, Settings, run};
+
+use crate::farm::dispatch::Dispatcher;
+
+/// The farm as a worker in the same process sees it.
+///
+/// It does not wait for the store: such a worker dies with the coordinator, so nobody could resend what was
+/// acknowledged too early, and a lost evaluation is computed again to the same bits.
+struct InProcess(Dispatcher);
+
+impl Coordinator for InProcess {
+    async fn exchange(&self, request: ExchangeRequest) -> Result<ExchangeResponse, ExchangeError> {
+        match self.0.exchange(request).await {
+            Ok((response, _)) => Ok(response),
+            Err(stopped) => Err(ExchangeError::Refused(stopped.to_string())),
+        }
+    }
+
+    async fn variant(&self, hash: &str) -> Result<Option<ModelVariant>, ExchangeError> {
+        self.0.variant(hash.to_owned()).await.map_err(|e| ExchangeError::Refused(e.to_string()))
+    }
+}
+
+/// Local workers and what they have done.
+#[derive(Debug)]
+pub struct LocalWorkers {
+    /// How many threads simulate.
+    pub threads: usize,
+    clock: Arc<SimulationClock>,
+    task: tokio::task::JoinHandle<Result<(), ExchangeError>>,
+}
+
+impl LocalWorkers {
+    /// Starts so many threads; they stop when `shutdown` is ready.
+    pub fn start(
+        dispatcher: Dispatcher,
+        threads: usize,
+        shutdown: impl Future<Output = ()> + Send + 'static,
+    ) -> Self {
+        let clock = Arc::new(SimulationClock::default());
+        let settings = Settings { name: format!("local-{}", std::process::id()), threads };
+        let task = tokio::spawn(run(Arc::new(InProcess(dispatcher)), settings, clock.clone(), shutdown));
+        LocalWorkers { threads, clock, task }
+    }
+
+    /// Seconds spent simulating, summed over the threads.
+    pub fn simulated_s(&self) -> f64 {
+        self.clock.simulated_s()
+    }
+
+    /// Waits until the threads have given back what they held.
+    pub async fn join(self) {
+        if let Ok(Err(error)) = self.task.await {
+            tracing::debug!(%error, "local workers ended");
+        }
+    }
+}
+
+/// A variant evaluated in this thread, without a farm: for pilots.
+#[derive(Debug)]
+pub struct Evaluate(worker::model::CompiledVariant);
+
+impl Evaluate {
+    /// Makes a variant ready.
+    ///
+    /// # Errors
+    /// A sentence that names what is not known.
+    pub fn new(variant: &ModelVariant) -> Result<Self, String> {
+        worker::model::CompiledVariant::new(variant).map(Evaluate)
+    }
+
+    /// Simulates every condition at one parameter vector.
+    pub fn evaluate(&self, theta: &[f64]) -> shared::outcome::Outcome {
+        self.0.evaluate(theta)
+    }
+}

@@ -1,0 +1,86 @@
+//! What the store is told: facts, in the order in which they came about.
+
+use inference::{Posterior, StageRecord};
+use shared::api::CalibrationState;
+use shared::outcome::Observables;
+
+/// Something that must survive a restart.
+#[derive(Debug, Clone)]
+pub enum Fact {
+    /// A parameter vector was simulated.
+    Evaluated {
+        /// The calibration.
+        calibration: i64,
+        /// The evaluation.
+        row: EvaluationRow,
+    },
+    /// A late result of an evaluation that is already stored; compared, because it must be equal.
+    Duplicate {
+        /// The calibration.
+        calibration: i64,
+        /// The evaluation.
+        row: EvaluationRow,
+    },
+    /// A stage ended.
+    Stage {
+        /// The calibration.
+        calibration: i64,
+        /// The stage with its population.
+        record: Box<StageRecord>,
+        /// Wall time spent on the calibration so far [ms].
+        busy_ms: u64,
+    },
+    /// The sampler ended.
+    Posterior {
+        /// The calibration.
+        calibration: i64,
+        /// Evidence and counts; the draws are the last stage's population.
+        posterior: Box<Posterior>,
+    },
+    /// A calibration changed its state.
+    State {
+        /// The calibration.
+        calibration: i64,
+        /// The new state.
+        state: CalibrationState,
+        /// Why, where there is something to say.
+        message: Option<String>,
+        /// Wall time spent on the calibration so far [ms].
+        busy_ms: u64,
+    },
+    /// The first lease pinned the version of the equations.
+    ModelVersion {
+        /// The calibration.
+        calibration: i64,
+        /// The version.
+        version: String,
+    },
+    /// A machine failed at an evaluation.
+    Fault {
+        /// The calibration.
+        calibration: i64,
+        /// The evaluation.
+        evaluation: u64,
+        /// How many leases of it have failed by now.
+        attempt: u32,
+        /// The machine's worker.
+        worker: String,
+        /// What happened.
+        message: String,
+    },
+}
+
+/// A simulated parameter vector, as the store keeps it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EvaluationRow {
+    /// Number of the evaluation within its calibration.
+    pub evaluation: u64,
+    /// The whole parameter vector, noise parameters included.
+    pub theta: Vec<f64>,
+    /// Log-likelihood; `None` where the model refused or nothing was scored.
+    pub log_likelihood: Option<f64>,
+    /// What the model gave, or why it refused.
+    pub result: Result<Observables, String>,
+    /// Who computed it.
+    pub worker: String,
+}

@@ -1,0 +1,290 @@
+//! Gives the farm a thread: messages come in one by one, answers and facts go out.
+//!
+//! The thread owns all state, so there is no lock, and a simulation of thousands of proposals never runs on
+//! the async runtime. Requests that wait for work are parked here and served in the order of their arrival.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+use shared::api::{CalibrationState, CalibrationStatus};
+use shared::exchange::{ExchangeRequest, ExchangeResponse};
+use shared::model::ModelVariant;
+use tokio::sync::oneshot;
+
+use super::{Control, ControlError, Counters, Farm, WorkerRecord};
+use crate::calibration::Calibration;
+use crate::fact::Fact;
+use crate::store::FactSink;
+
+/// How often time passes for leases [ms].
+const TICK: Duration = Duration::from_millis(250);
+
+/// An answer together with the number of the fact that must be stored before it may be given.
+pub type Durable<T> = (T, u64);
+
+enum Message {
+    Exchange { request: ExchangeRequest, reply: oneshot::Sender<Durable<ExchangeResponse>> },
+    Add { calibration: Box<Calibration>, facts: Vec<Fact>, reply: oneshot::Sender<()> },
+    Control { id: i64, control: Control, reply: oneshot::Sender<Result<Durable<CalibrationState>, ControlError>> },
+    Look { look: Box<dyn FnOnce(&Farm, u64) + Send> },
+    Stop,
+}
+
+/// A handle on the farm's thread; clones are cheap.
+#[derive(Debug, Clone)]
+pub struct Dispatcher {
+    sender: mpsc::Sender<Message>,
+}
+
+/// The farm's thread has ended: the coordinator is going down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the coordinator is shutting down")]
+pub struct Stopped;
+
+/// Figures for the metrics page.
+#[derive(Debug, Clone)]
+pub struct Figures {
+    /// Counters since the start.
+    pub counters: Counters,
+    /// Leases that are out.
+    pub leased: usize,
+    /// Calibrations in hand.
+    pub calibrations: usize,
+    /// Workers heard of.
+    pub workers: usize,
+}
+
+impl Dispatcher {
+    /// Starts the farm's thread. Facts go to `sink`; when the store fails, the thread ends.
+    ///
+    /// # Errors
+    /// The operating system refuses a thread.
+    pub fn start(farm: Farm, sink: FactSink) -> std::io::Result<Dispatcher> {
+        let (sender, receiver) = mpsc::channel();
+        std::thread::Builder::new()
+            .name("farm".into())
+            .spawn(move || Thread { farm, sink, parked: VecDeque::new(), began: Instant::now() }.run(&receiver))?;
+        Ok(Dispatcher { sender })
+    }
+
+    fn send(&self, message: Message) -> Result<(), Stopped> {
+        self.sender.send(message).map_err(|_| Stopped)
+    }
+
+    /// A worker's exchange; parked until there is work or its patience ends.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn exchange(&self, request: ExchangeRequest) -> Result<Durable<ExchangeResponse>, Stopped> {
+        let (reply, answer) = oneshot::channel();
+        self.send(Message::Exchange { request, reply })?;
+        answer.await.map_err(|_| Stopped)
+    }
+
+    /// Takes a calibration in hand, with facts of its replay that may have been lost.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn add(&self, calibration: Calibration, facts: Vec<Fact>) -> Result<(), Stopped> {
+        let (reply, answer) = oneshot::channel();
+        self.send(Message::Add { calibration: Box::new(calibration), facts, reply })?;
+        answer.await.map_err(|_| Stopped)
+    }
+
+    /// A user's command on a calibration.
+    ///
+    /// # Errors
+    /// [`Stopped`]; inside, [`ControlError`].
+    pub async fn control(
+        &self,
+        id: i64,
+        control: Control,
+    ) -> Result<Result<Durable<CalibrationState>, ControlError>, Stopped> {
+        let (reply, answer) = oneshot::channel();
+        self.send(Message::Control { id, control, reply })?;
+        answer.await.map_err(|_| Stopped)
+    }
+
+    /// Where a calibration in hand stands; `None` where it is over or unknown.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn status(&self, id: i64) -> Result<Option<CalibrationStatus>, Stopped> {
+        self.look(move |farm, now| farm.status(id, now)).await
+    }
+
+    /// The workers heard of.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn workers(&self) -> Result<BTreeMap<String, WorkerRecord>, Stopped> {
+        self.look(|farm, now| farm.workers(now)).await
+    }
+
+    /// The variant of a hash.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn variant(&self, hash: String) -> Result<Option<ModelVariant>, Stopped> {
+        self.look(move |farm, _| farm.variant(&hash)).await
+    }
+
+    /// Figures for the metrics page.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn figures(&self) -> Result<Figures, Stopped> {
+        self.look(|farm, _| Figures {
+            counters: farm.counters().clone(),
+            leased: farm.leased(),
+            calibrations: farm.calibrations.len(),
+            workers: farm.workers.len(),
+        })
+        .await
+    }
+
+    async fn look<T: Send + 'static>(
+        &self,
+        look: impl FnOnce(&Farm, u64) -> T + Send + 'static,
+    ) -> Result<T, Stopped> {
+        let (reply, answer) = oneshot::channel();
+        let look = move |farm: &Farm, now| {
+            // The asker may have gone away meanwhile; nobody misses the answer then.
+            let _ = reply.send(look(farm, now));
+        };
+        self.send(Message::Look { look: Box::new(look) })?;
+        answer.await.map_err(|_| Stopped)
+    }
+
+    /// Ends the farm's thread; parked workers are told nothing and try again.
+    pub fn stop(&self) {
+        let _ = self.sender.send(Message::Stop);
+    }
+}
+
+struct Parked {
+    worker: String,
+    model_version: String,
+    want: u32,
+    until_ms: u64,
+    reply: oneshot::Sender<Durable<ExchangeResponse>>,
+}
+
+struct Thread {
+    farm: Farm,
+    sink: FactSink,
+    parked: VecDeque<Parked>,
+    began: Instant,
+}
+
+impl Thread {
+    fn run(mut self, receiver: &mpsc::Receiver<Message>) {
+        let mut next_tick = self.began + TICK;
+        loop {
+            let message = match receiver.recv_timeout(next_tick.saturating_duration_since(Instant::now())) {
+                Ok(Message::Stop) | Err(mpsc::RecvTimeoutError::Disconnected) => return,
+                Ok(message) => Some(message),
+                Err(mpsc::RecvTimeoutError::Timeout) => None,
+            };
+            let now_ms = u64::try_from(self.began.elapsed().as_millis()).unwrap_or(u64::MAX);
+            if let Some(message) = message {
+                self.handle(message, now_ms);
+            }
+            if Instant::now() >= next_tick {
+                next_tick = Instant::now() + TICK;
+                self.farm.tick(now_ms);
+            }
+            if self.flush().is_none() {
+                tracing::error!("the store no longer takes facts; the coordinator stops");
+                return;
+            }
+            self.serve_parked(now_ms);
+        }
+    }
+
+    /// Hands the new facts to the store; the number of the last fact so far.
+    fn flush(&mut self) -> Option<u64> {
+        self.sink.send(self.farm.take_facts())
+    }
+
+    fn handle(&mut self, message: Message, now_ms: u64) {
+        match message {
+            Message::Exchange { request, reply } => self.exchange(request, reply, now_ms),
+            Message::Add { calibration, facts, reply } => {
+                self.farm.add(*calibration, facts, now_ms);
+                let _ = reply.send(());
+            }
+            Message::Control { id, control, reply } => {
+                let result = self.farm.control(id, control, now_ms);
+                let Some(fact) = self.flush() else { return };
+                let _ = reply.send(result.map(|state| (state, fact)));
+            }
+            Message::Look { look } => look(&self.farm, now_ms),
+            Message::Stop => {}
+        }
+    }
+
+    fn exchange(
+        &mut self,
+        request: ExchangeRequest,
+        reply: oneshot::Sender<Durable<ExchangeResponse>>,
+        now_ms: u64,
+    ) {
+        let (worker, model_version) = (request.worker.clone(), request.model_version.clone());
+        let (want, until_ms) = (request.want, now_ms + request.wait_ms);
+        let response = self.farm.exchange(request, now_ms);
+        let Some(fact) = self.flush() else { return };
+        if response.leases.is_empty() && want > 0 && until_ms > now_ms && response.refused.is_none() {
+            self.parked.push_back(Parked { worker, model_version, want, until_ms, reply });
+        } else {
+            self.answer(reply, (response, fact), now_ms);
+        }
+    }
+
+    /// Gives work, or the news that there is none, to those whose turn it is.
+    fn serve_parked(&mut self, now_ms: u64) {
+        for _ in 0..self.parked.len() {
+            let Some(parked) = self.parked.pop_front() else { return };
+            if parked.reply.is_closed() {
+                continue;
+            }
+            if !self.farm.has_work() && parked.until_ms > now_ms {
+                self.parked.push_back(parked);
+                continue;
+            }
+            let request = ExchangeRequest {
+                worker: parked.worker.clone(),
+                protocol: shared::exchange::PROTOCOL_VERSION,
+                model_version: parked.model_version.clone(),
+                results: Vec::new(),
+                holding: Vec::new(),
+                returned: Vec::new(),
+                want: parked.want,
+                wait_ms: 0,
+            };
+            let response = self.farm.exchange(request, now_ms);
+            if response.leases.is_empty() && parked.until_ms > now_ms && response.refused.is_none() {
+                self.parked.push_back(parked);
+                continue;
+            }
+            let Some(fact) = self.flush() else { return };
+            self.answer(parked.reply, (response, fact), now_ms);
+        }
+    }
+
+    /// Answers; leases for a worker that has gone away meanwhile are taken back at once.
+    fn answer(
+        &mut self,
+        reply: oneshot::Sender<Durable<ExchangeResponse>>,
+        answer: Durable<ExchangeResponse>,
+        now_ms: u64,
+    ) {
+        if let Err((response, _)) = reply.send(answer) {
+            for lease in response.leases {
+                self.farm.give_back(lease.lease);
+            }
+            self.farm.tick(now_ms);
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! How fast a calibration goes and how long it may take.
+
+use std::collections::VecDeque;
+
+use shared::api::{CalibrationStatus, Progress};
+
+use crate::calibration::Calibration;
+
+/// The pace is an average over so much of the past [ms].
+const WINDOW_MS: u64 = 10_000;
+
+/// Evaluations over the last seconds.
+#[derive(Debug)]
+pub(super) struct Pace {
+    /// (time, evaluations by then), a few a second.
+    marks: VecDeque<(u64, u64)>,
+    began: (u64, u64),
+}
+
+impl Pace {
+    pub(super) fn new(evaluations: u64, now_ms: u64) -> Self {
+        Pace { marks: VecDeque::from([(now_ms, evaluations)]), began: (now_ms, evaluations) }
+    }
+
+    /// Notes how many evaluations are done by now.
+    pub(super) fn count(&mut self, evaluations: u64, now_ms: u64) {
+        if self.marks.back().is_none_or(|&(at, _)| now_ms >= at + 250) {
+            self.marks.push_back((now_ms, evaluations));
+        }
+        while self.marks.len() > 2 && self.marks[1].0 + WINDOW_MS < now_ms {
+            self.marks.pop_front();
+        }
+    }
+
+    fn per_second(&self, evaluations: u64, now_ms: u64) -> f64 {
+        let (since, before) = self.marks.front().copied().unwrap_or(self.began);
+        let seconds = now_ms.saturating_sub(since).max(1) as f64 / 1000.0;
+        evaluations.saturating_sub(before) as f64 / seconds
+    }
+}
+
+/// Where a calibration stands.
+pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> CalibrationStatus {
+    let identity = &calibration.identity;
+    let current = calibration.sampler().current();
+    let queue = &calibration.queue;
+    let per_second = pace.per_second(calibration.evaluations, now_ms);
+    CalibrationStatus {
+        id: identity.id,
+        name: identity.name.clone(),
+        study: identity.study,
+        experiment: identity.experiment,
+        state: calibration.state,
+        message: calibration.message.clone(),
+        model_kind: calibration.spec.model.kind.name().to_owned(),
+        model_version: calibration.model_version.clone(),
+        progress: Some(Progress {
+            stage: current.stage as u32,
+            tempering_exponent: current.tempering_exponent,
+            step: current.step as u32,
+            acceptance: current.acceptance.unwrap_or(0.0),
+            evaluations: calibration.evaluations,
+            rejected: calibration.rejected,
+            step_done: (queue.len() - queue.unleased() - queue.leased()) as u64,
+            step_size: queue.len() as u64,
+            evaluations_per_s: per_second,
+            remaining_s: remaining_s(calibration, per_second),
+        }),
+    }
+}
+
+/// Rough time to go: exponents grow by about a constant factor a stage, so the stages to come follow from the
+/// growth so far; each is taken to cost as much as the mean of the stages behind.
+fn remaining_s(calibration: &Calibration, per_second: f64) -> Option<f64> {
+    let exponents: Vec<f64> =
+        calibration.sampler().stages().iter().map(|s| s.tempering_exponent).filter(|&b| b > 0.0).collect();
+    let (&first, &last) = (exponents.first()?, exponents.last()?);
+    if exponents.len() < 2 || per_second <= 0.0 {
+        return None;
+    }
+    let growth = (last / first).ln() / (exponents.len() - 1) as f64;
+    let stages_to_go = (1.0 / last).ln() / growth.max(1e-3);
+    let cost = calibration.evaluations as f64 / exponents.len() as f64;
+    Some(stages_to_go * cost / per_second)
+}

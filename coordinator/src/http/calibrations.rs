@@ -1,0 +1,181 @@
+//! `/v1/calibrations`: jobs, where they stand, what came out.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::response::Html;
+use serde::Deserialize;
+use shared::api::{CalibrationCreated, CalibrationState, CalibrationStatus, ErrorBody, NewCalibration};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::error::{Body, HttpError, Id};
+use crate::farm::Control;
+use crate::result::{Comparison, Flag, Outcome, PosteriorTable, Summary, report};
+use crate::service::Service;
+use crate::store::{Sample, StageRow};
+
+pub(super) fn routes() -> OpenApiRouter<Service> {
+    OpenApiRouter::new()
+        .routes(routes!(create, list))
+        .routes(routes!(status))
+        .routes(routes!(cancel))
+        .routes(routes!(pause))
+        .routes(routes!(resume))
+        .routes(routes!(stages))
+        .routes(routes!(samples))
+        .routes(routes!(posterior))
+        .routes(routes!(comparison))
+        .routes(routes!(flags))
+        .routes(routes!(summary))
+        .routes(routes!(report_page))
+}
+
+/// Validates a job, stores it and takes it in hand.
+#[utoipa::path(post, path = "/calibrations", request_body = NewCalibration, responses(
+    (status = 201, body = CalibrationCreated, headers(("Location" = String))),
+    (status = 404, body = ErrorBody, description = "no such experiment"),
+    (status = 422, body = ErrorBody, description = "a file is malformed"),
+))]
+async fn create(
+    State(service): State<Service>,
+    Body(new): Body<NewCalibration>,
+) -> Result<(StatusCode, HeaderMap, Json<CalibrationCreated>), HttpError> {
+    let created = service.add_calibration(new).await?;
+    let mut headers = HeaderMap::new();
+    if let Ok(location) = HeaderValue::from_str(&format!("/v1/calibrations/{}", created.id)) {
+        headers.insert(header::LOCATION, location);
+    }
+    Ok((StatusCode::CREATED, headers, Json(created)))
+}
+
+/// Every calibration, oldest first.
+#[utoipa::path(get, path = "/calibrations", responses((status = 200, body = Vec<CalibrationStatus>)))]
+async fn list(State(service): State<Service>) -> Result<Json<Vec<CalibrationStatus>>, HttpError> {
+    let mut statuses = Vec::new();
+    for row in service.store().reader().calibrations().await? {
+        statuses.push(service.status(row.id).await?);
+    }
+    Ok(Json(statuses))
+}
+
+/// Where a calibration stands.
+#[utoipa::path(get, path = "/calibrations/{id}", params(("id" = i64, Path)), responses(
+    (status = 200, body = CalibrationStatus), (status = 404, body = ErrorBody)))]
+async fn status(State(service): State<Service>, Id(id): Id) -> Result<Json<CalibrationStatus>, HttpError> {
+    Ok(Json(service.status(id).await?))
+}
+
+/// The state after a command.
+#[derive(Debug, serde::Serialize, utoipa::ToSchema)]
+struct NewState {
+    state: CalibrationState,
+}
+
+async fn control(service: &Service, id: i64, control: Control) -> Result<Json<NewState>, HttpError> {
+    Ok(Json(NewState { state: service.control(id, control).await? }))
+}
+
+/// Stops a calibration for good.
+#[utoipa::path(post, path = "/calibrations/{id}/cancel", params(("id" = i64, Path)), responses(
+    (status = 200, body = NewState), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn cancel(State(service): State<Service>, Id(id): Id) -> Result<Json<NewState>, HttpError> {
+    control(&service, id, Control::Cancel).await
+}
+
+/// Leases nothing more until resumed.
+#[utoipa::path(post, path = "/calibrations/{id}/pause", params(("id" = i64, Path)), responses(
+    (status = 200, body = NewState), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn pause(State(service): State<Service>, Id(id): Id) -> Result<Json<NewState>, HttpError> {
+    control(&service, id, Control::Pause).await
+}
+
+/// Goes on after a pause.
+#[utoipa::path(post, path = "/calibrations/{id}/resume", params(("id" = i64, Path)), responses(
+    (status = 200, body = NewState), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn resume(State(service): State<Service>, Id(id): Id) -> Result<Json<NewState>, HttpError> {
+    control(&service, id, Control::Resume).await
+}
+
+/// The stages so far: tempering exponents, acceptance, drift.
+#[utoipa::path(get, path = "/calibrations/{id}/stages", params(("id" = i64, Path)), responses(
+    (status = 200, body = Vec<StageRow>), (status = 404, body = ErrorBody)))]
+async fn stages(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<StageRow>>, HttpError> {
+    service.calibration_row(id).await?;
+    Ok(Json(service.store().reader().stages(id).await?))
+}
+
+/// Which population.
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[serde(deny_unknown_fields)]
+struct WhichStage {
+    /// Stage, counted from 0; the last one where nothing is said.
+    stage: Option<u32>,
+}
+
+/// Query parameters whose refusal has our form.
+#[derive(axum::extract::FromRequestParts)]
+#[from_request(via(axum::extract::Query), rejection(HttpError))]
+struct Query<T>(T);
+
+/// The population at the end of a stage.
+#[derive(Debug, serde::Serialize, utoipa::ToSchema)]
+struct Population {
+    parameters: Vec<String>,
+    samples: Vec<Sample>,
+}
+
+/// The population at the end of a stage.
+#[utoipa::path(get, path = "/calibrations/{id}/samples", params(("id" = i64, Path), WhichStage), responses(
+    (status = 200, body = Population), (status = 404, body = ErrorBody)))]
+async fn samples(
+    State(service): State<Service>,
+    Id(id): Id,
+    Query(which): Query<WhichStage>,
+) -> Result<Json<Population>, HttpError> {
+    let row = service.calibration_row(id).await?;
+    let spec = service.spec_of(&row).await?;
+    let parameters = spec.parameters.into_iter().map(|p| p.name).collect();
+    let samples = service.store().reader().samples(id, which.stage).await?;
+    Ok(Json(Population { parameters, samples }))
+}
+
+async fn outcome(service: &Service, id: i64) -> Result<Outcome, HttpError> {
+    let row = service.calibration_row(id).await?;
+    Ok(Outcome::load(&service.store().reader(), &row).await?)
+}
+
+/// The equally weighted draws of the posterior.
+#[utoipa::path(get, path = "/calibrations/{id}/posterior", params(("id" = i64, Path)), responses(
+    (status = 200, body = PosteriorTable), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn posterior(State(service): State<Service>, Id(id): Id) -> Result<Json<PosteriorTable>, HttpError> {
+    Ok(Json(outcome(&service, id).await?.posterior_table()))
+}
+
+/// Model against measurement, run by run.
+#[utoipa::path(get, path = "/calibrations/{id}/comparison", params(("id" = i64, Path)), responses(
+    (status = 200, body = Comparison), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn comparison(State(service): State<Service>, Id(id): Id) -> Result<Json<Comparison>, HttpError> {
+    Ok(Json(outcome(&service, id).await?.comparison()))
+}
+
+/// What deserves attention.
+#[utoipa::path(get, path = "/calibrations/{id}/flags", params(("id" = i64, Path)), responses(
+    (status = 200, body = Vec<Flag>), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn flags(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<Flag>>, HttpError> {
+    Ok(Json(outcome(&service, id).await?.flags()))
+}
+
+/// The summary, as `summary.json` has it.
+#[utoipa::path(get, path = "/calibrations/{id}/summary", params(("id" = i64, Path)), responses(
+    (status = 200, body = Summary), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn summary(State(service): State<Service>, Id(id): Id) -> Result<Json<Summary>, HttpError> {
+    Ok(Json(outcome(&service, id).await?.summary()))
+}
+
+/// The report, as `report.html` has it.
+#[utoipa::path(get, path = "/calibrations/{id}/report", params(("id" = i64, Path)), responses(
+    (status = 200, content_type = "text/html", body = String), (status = 404, body = ErrorBody)))]
+async fn report_page(State(service): State<Service>, Id(id): Id) -> Result<Html<String>, HttpError> {
+    Ok(Html(report::page(&outcome(&service, id).await?)))
+}

@@ -1,0 +1,125 @@
+//! Every error answer: one status for each type, one body.
+
+use axum::Json;
+use axum::extract::FromRequest;
+use axum::extract::rejection::{JsonRejection, PathRejection, QueryRejection};
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use shared::api::{ErrorBody, ErrorDetail, ErrorKind};
+
+use crate::service::ServiceError;
+use crate::store::StoreError;
+
+/// An error that goes to a client.
+#[derive(Debug)]
+pub struct HttpError {
+    kind: ErrorKind,
+    message: String,
+}
+
+impl HttpError {
+    /// An error of a type with its message.
+    pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
+        HttpError { kind, message: message.into() }
+    }
+
+    /// What a later version brings.
+    pub fn not_available(what: &str) -> Self {
+        HttpError::new(ErrorKind::NotAvailable, format!("{what} is not available in this version"))
+    }
+
+    fn status(&self) -> StatusCode {
+        match self.kind {
+            ErrorKind::InvalidBody => StatusCode::BAD_REQUEST,
+            ErrorKind::InvalidFile => StatusCode::UNPROCESSABLE_ENTITY,
+            ErrorKind::NotFound => StatusCode::NOT_FOUND,
+            ErrorKind::Conflict => StatusCode::CONFLICT,
+            ErrorKind::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
+            ErrorKind::ProtocolMismatch => StatusCode::UPGRADE_REQUIRED,
+            ErrorKind::Busy => StatusCode::TOO_MANY_REQUESTS,
+            ErrorKind::NotAvailable => StatusCode::NOT_IMPLEMENTED,
+            ErrorKind::Internal => StatusCode::INTERNAL_SERVER_ERROR,
+        }
+    }
+}
+
+impl IntoResponse for HttpError {
+    fn into_response(self) -> Response {
+        let status = self.status();
+        let busy = self.kind == ErrorKind::Busy;
+        let body = ErrorBody { error: ErrorDetail { kind: self.kind, message: self.message } };
+        if busy { (status, [("retry-after", "1")], Json(body)).into_response() } else { (status, Json(body)).into_response() }
+    }
+}
+
+impl From<ServiceError> for HttpError {
+    fn from(error: ServiceError) -> Self {
+        let kind = match &error {
+            ServiceError::File(_) | ServiceError::Settings(_) => ErrorKind::InvalidFile,
+            ServiceError::NotFound { .. } => ErrorKind::NotFound,
+            ServiceError::Control(_) => ErrorKind::Conflict,
+            ServiceError::Busy(_) => ErrorKind::Busy,
+            ServiceError::Store(_) | ServiceError::Stopped(_) | ServiceError::Replay { .. } => ErrorKind::Internal,
+        };
+        if kind == ErrorKind::Internal {
+            // The cause stays in the log; a client cannot mend it.
+            tracing::error!(%error, "internal error");
+            return HttpError::new(kind, "the coordinator failed inside; its log says why");
+        }
+        HttpError::new(kind, error.to_string())
+    }
+}
+
+impl From<StoreError> for HttpError {
+    fn from(error: StoreError) -> Self {
+        ServiceError::from(error).into()
+    }
+}
+
+impl From<crate::farm::dispatch::Stopped> for HttpError {
+    fn from(error: crate::farm::dispatch::Stopped) -> Self {
+        ServiceError::from(error).into()
+    }
+}
+
+/// A JSON body whose refusal has our form.
+#[derive(FromRequest)]
+#[from_request(via(axum::Json), rejection(HttpError))]
+pub(super) struct Body<T>(pub(super) T);
+
+impl From<JsonRejection> for HttpError {
+    fn from(rejection: JsonRejection) -> Self {
+        let kind = match rejection.status() {
+            StatusCode::PAYLOAD_TOO_LARGE => ErrorKind::TooLarge,
+            _ => ErrorKind::InvalidBody,
+        };
+        HttpError::new(kind, rejection.body_text())
+    }
+}
+
+/// The number in a path.
+#[derive(axum::extract::FromRequestParts, serde::Deserialize)]
+#[from_request(via(axum::extract::Path), rejection(HttpError))]
+pub(super) struct Id(pub(super) i64);
+
+impl From<PathRejection> for HttpError {
+    fn from(rejection: PathRejection) -> Self {
+        HttpError::new(ErrorKind::NotFound, rejection.body_text())
+    }
+}
+
+impl From<QueryRejection> for HttpError {
+    fn from(rejection: QueryRejection) -> Self {
+        HttpError::new(ErrorKind::InvalidBody, rejection.body_text())
+    }
+}
+
+/// Answer to a path that is none of ours.
+pub(super) async fn no_route(uri: axum::http::Uri) -> HttpError {
+    HttpError::new(ErrorKind::NotFound, format!("there is no {}; /openapi.json lists what there is", uri.path()))
+}
+
+/// Answer to a method that a path does not take.
+pub(super) async fn no_method(method: axum::http::Method, uri: axum::http::Uri) -> HttpError {
+    HttpError::new(ErrorKind::NotFound, format!("{} does not take {method}; /openapi.json lists what it takes", uri.path()))
+}

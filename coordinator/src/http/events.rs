@@ -1,0 +1,68 @@
+//! `/v1/calibrations/ID/events`: server-sent events of a calibration.
+//!
+//! `event: status` carries the same JSON as `GET /v1/calibrations/ID` whenever it changed, looked at twice a
+//! second; `event: stage` carries each finished stage. The stream ends with the calibration.
+
+use std::convert::Infallible;
+use std::time::Duration;
+
+use axum::extract::State;
+use axum::response::sse::{Event, KeepAlive, Sse};
+use futures::Stream;
+use futures::stream;
+use shared::api::CalibrationStatus;
+
+use super::error::{HttpError, Id};
+use crate::service::Service;
+
+const LOOK: Duration = Duration::from_millis(500);
+
+struct Watch {
+    service: Service,
+    id: i64,
+    seen: Option<CalibrationStatus>,
+    stages: usize,
+    over: bool,
+}
+
+/// Streams what happens to a calibration.
+pub(super) async fn events(
+    State(service): State<Service>,
+    Id(id): Id,
+) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>, HttpError> {
+    service.status(id).await?;
+    let watch = Watch { service, id, seen: None, stages: 0, over: false };
+    let batches = stream::unfold(watch, |mut watch| async move {
+        if watch.over {
+            return None;
+        }
+        let events = watch.look().await;
+        Some((stream::iter(events.into_iter().map(Ok)), watch))
+    });
+    Ok(Sse::new(futures::StreamExt::flatten(batches)).keep_alive(KeepAlive::default()))
+}
+
+impl Watch {
+    /// Waits a little, then tells what is new.
+    async fn look(&mut self) -> Vec<Event> {
+        if self.seen.is_some() {
+            tokio::time::sleep(LOOK).await;
+        }
+        let Ok(status) = self.service.status(self.id).await else {
+            self.over = true;
+            return Vec::new();
+        };
+        let mut events = Vec::new();
+        let stages = self.service.store().reader().stages(self.id).await.unwrap_or_default();
+        for stage in stages.iter().skip(self.stages) {
+            events.extend(Event::default().event("stage").json_data(stage));
+        }
+        self.stages = stages.len();
+        self.over = status.state.is_final();
+        if self.seen.as_ref() != Some(&status) {
+            events.extend(Event::default().event("status").json_data(&status));
+            self.seen = Some(status);
+        }
+        events
+    }
+}

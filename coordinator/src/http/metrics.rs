@@ -1,0 +1,66 @@
+//! `/metrics` for Prometheus and `/health` for whoever restarts us.
+
+use std::sync::atomic::Ordering;
+
+use axum::Json;
+use axum::extract::State;
+use prometheus_client::encoding::text::encode;
+use prometheus_client::metrics::counter::Counter;
+use prometheus_client::metrics::gauge::Gauge;
+use prometheus_client::registry::Registry;
+
+use super::error::HttpError;
+use crate::service::Service;
+
+fn counter(registry: &mut Registry, name: &str, help: &str, value: u64) {
+    let counter: Counter = Counter::default();
+    counter.inc_by(value);
+    registry.register(name, help, counter);
+}
+
+fn gauge(registry: &mut Registry, name: &str, help: &str, value: usize) {
+    let gauge: Gauge = Gauge::default();
+    gauge.set(i64::try_from(value).unwrap_or(i64::MAX));
+    registry.register(name, help, gauge);
+}
+
+/// Figures of farm and store in the text format of Prometheus.
+pub(super) async fn metrics(State(service): State<Service>) -> Result<String, HttpError> {
+    let figures = service.dispatcher().figures().await?;
+    let health = service.store().writer().health();
+    let stored = |value: &std::sync::atomic::AtomicU64| value.load(Ordering::Relaxed);
+    let mut registry = Registry::with_prefix("grouser");
+    let r = &mut registry;
+    counter(r, "evaluations_completed", "Results that counted", figures.counters.completed);
+    counter(r, "evaluations_duplicate", "Results that changed nothing", figures.counters.duplicates);
+    counter(r, "leases_given", "Leases given out", figures.counters.leased);
+    counter(r, "leases_failed", "Leases that expired or ended in a fault", figures.counters.failed_leases);
+    gauge(r, "leases_out", "Leases that are out", figures.leased);
+    gauge(r, "calibrations_in_hand", "Calibrations that are not over", figures.calibrations);
+    gauge(r, "workers_connected", "Workers heard of in the last minute", figures.workers);
+    counter(r, "store_commits", "Commits of the store", stored(&health.commits));
+    counter(r, "store_facts", "Facts committed", stored(&health.facts));
+    counter(r, "store_busy_microseconds", "Time spent writing and committing", stored(&health.busy_us));
+    counter(
+        r,
+        "determinism_faults",
+        "Late duplicates that differed from what is stored",
+        stored(&health.differing_duplicates),
+    );
+    let mut text = String::new();
+    encode(&mut text, &registry).map_err(|_| HttpError::new(shared::api::ErrorKind::Internal, "metrics"))?;
+    Ok(text)
+}
+
+/// What `/health` says.
+#[derive(serde::Serialize)]
+pub(super) struct Health {
+    status: &'static str,
+    version: &'static str,
+}
+
+/// Answers while farm and store work.
+pub(super) async fn health(State(service): State<Service>) -> Result<Json<Health>, HttpError> {
+    service.dispatcher().figures().await?;
+    Ok(Json(Health { status: "ok", version: env!("CARGO_PKG_VERSION") }))
+}

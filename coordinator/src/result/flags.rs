@@ -1,0 +1,86 @@
+//! What deserves attention, each with a sentence a test engineer understands.
+
+use super::Outcome;
+use super::summary::ParameterSummary;
+
+/// Something that deserves attention.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct Flag {
+    /// `bound`, `not_equilibrated`, `no_information`, `rejections`; later versions add others.
+    pub kind: String,
+    /// The channel it is about.
+    pub channel: Option<String>,
+    /// The condition it varies with.
+    pub against: Option<String>,
+    /// Probability of the observation if nothing were wrong.
+    pub p: Option<f64>,
+    /// What it means.
+    pub text: String,
+}
+
+/// A posterior as wide as so much of its prior has learnt nothing worth the name.
+const NO_CONTRACTION: f64 = 0.95;
+/// A share of refused vectors above which the prior deserves another look.
+const MANY_REJECTED: f64 = 0.5;
+
+impl Outcome {
+    /// What deserves attention.
+    pub fn flags(&self) -> Vec<Flag> {
+        let mut flags = Vec::new();
+        let mut flag = |kind: &str, text: String| {
+            flags.push(Flag { kind: kind.into(), channel: None, against: None, p: None, text });
+        };
+        let unbalanced: Vec<String> =
+            self.stages.iter().filter(|s| !s.equilibrated).map(|s| s.stage.to_string()).collect();
+        if self.row.equilibrated == Some(false) {
+            let text = if unbalanced.is_empty() {
+                "the sampler did not reach equilibrium: neither draws nor evidence can be trusted".into()
+            } else {
+                format!(
+                    "stages {} ended before the moves reached equilibrium: neither draws nor evidence can be trusted; allow more moves or particles",
+                    unbalanced.join(", ")
+                )
+            };
+            flag("not_equilibrated", text);
+        }
+        for (name, parameter) in self.parameter_summaries() {
+            if parameter.at_bound {
+                flag("bound", bound_text(&name, &parameter));
+            }
+            if let Some(prior_sd) = parameter.prior_sd
+                && parameter.sd > NO_CONTRACTION * prior_sd
+            {
+                let text = format!(
+                    "the data say nothing about {name}: its standard deviation is {:.3e} after the fit and {prior_sd:.3e} before",
+                    parameter.sd
+                );
+                flag("no_information", text);
+            }
+        }
+        let (evaluations, rejected) = (self.row.evaluations.unwrap_or(0), self.row.rejected.unwrap_or(0));
+        if rejected as f64 > MANY_REJECTED * evaluations as f64 {
+            let kinds: Vec<String> = self.rejections.iter().map(|(kind, n)| format!("{kind} {n}")).collect();
+            let text = format!(
+                "the model refused {rejected} of {evaluations} parameter vectors ({}): much of the prior means nothing to it",
+                kinds.join(", ")
+            );
+            flag("rejections", text);
+        }
+        let refused = self.predictions.iter().filter(|p| p.result.is_err()).count();
+        if refused > 0 {
+            let text = format!(
+                "the model refuses {refused} of {} final draws on the whole experiment: a condition outside the fit is beyond it",
+                self.predictions.len()
+            );
+            flag("rejections", text);
+        }
+        flags
+    }
+}
+
+fn bound_text(name: &str, p: &ParameterSummary) -> String {
+    format!(
+        "{name} lies at a bound of its prior (90 % of the posterior in {:.4} to {:.4}): the data ask for a value that the prior excludes, or an effect is missing",
+        p.q05, p.q95
+    )
+}

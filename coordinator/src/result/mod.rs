@@ -1,0 +1,111 @@
+//! Tables, summary, flags and report of a calibration, from what the store kept.
+//!
+//! Everything here is a pure function of an [`Outcome`]; the decisions it states read no holdout row.
+
+mod baseline;
+mod comparison;
+mod csv;
+mod errors;
+mod flags;
+mod predictive;
+pub mod report;
+mod summary;
+pub mod terminal;
+
+use std::collections::BTreeMap;
+
+use shared::api::{CalibrationState, CalibrationStatus};
+
+use crate::service::ServiceError;
+use crate::spec::Spec;
+use crate::store::{CalibrationRow, Prediction, Reader, Sample, StageRow};
+
+pub use comparison::{Comparison, ComparisonRow};
+pub use csv::PosteriorTable;
+pub use errors::{ChannelError, ErrorTable};
+pub use flags::Flag;
+pub use predictive::Predictive;
+pub use summary::{CalibrationSummary, ParameterSummary, Summary};
+
+/// A finished calibration with everything that the store kept of it.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Its row in the store.
+    pub row: CalibrationRow,
+    /// Its specification.
+    pub spec: Spec,
+    /// Name of its experiment.
+    pub experiment: String,
+    /// Its stages.
+    pub stages: Vec<StageRow>,
+    /// The equally weighted draws of the posterior.
+    pub posterior: Vec<Sample>,
+    /// The final draws, simulated on every run; the first is the most probable particle.
+    pub predictions: Vec<Prediction>,
+    /// How often the model refused, by kind.
+    pub rejections: BTreeMap<String, u64>,
+}
+
+impl Outcome {
+    /// Loads a finished calibration.
+    ///
+    /// # Errors
+    /// [`ServiceError::Control`] where it is not finished; others where the store cannot be read.
+    pub async fn load(reader: &Reader, row: &CalibrationRow) -> Result<Outcome, ServiceError> {
+        if row.state != CalibrationState::Finished {
+            return Err(crate::farm::ControlError::NotFinished { id: row.id, state: row.state }.into());
+        }
+        let stages = reader.stages(row.id).await?;
+        Ok(Outcome {
+            spec: spec_of(reader, row).await?,
+            experiment: row.name.clone(),
+            posterior: reader.samples(row.id, None).await?,
+            predictions: reader.predictions(row.id).await?,
+            rejections: reader.rejections(row.id).await?,
+            stages,
+            row: row.clone(),
+        })
+    }
+
+    /// The most probable particle: highest likelihood times prior; the first of equals.
+    pub fn most_probable(&self) -> Option<&Sample> {
+        let score = |s: &Sample| s.log_likelihood.unwrap_or(f64::NEG_INFINITY) + s.log_prior;
+        self.posterior.iter().reduce(|best, s| if score(s) > score(best) { s } else { best })
+    }
+
+    /// The draws of one parameter.
+    pub fn draws(&self, parameter: usize) -> Vec<f64> {
+        self.posterior.iter().map(|s| s.theta[parameter]).collect()
+    }
+}
+
+/// The specification of a stored calibration.
+///
+/// # Errors
+/// [`ServiceError`].
+pub async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, ServiceError> {
+    let experiment = reader
+        .experiment(row.experiment)
+        .await?
+        .ok_or_else(|| ServiceError::NotFound { what: "experiment", id: row.experiment.to_string() })?;
+    Ok(Spec::new("job.toml", &row.toml, "experiment.toml", &experiment.files)?)
+}
+
+/// Where a calibration stands that nobody has in hand.
+///
+/// # Errors
+/// [`ServiceError`].
+pub fn stored_status(row: &CalibrationRow) -> Result<CalibrationStatus, ServiceError> {
+    let model = crate::spec::Job::parse("job.toml", &row.toml)?.model;
+    Ok(CalibrationStatus {
+        id: row.id,
+        name: row.name.clone(),
+        study: row.study,
+        experiment: row.experiment,
+        state: row.state,
+        message: row.message.clone(),
+        model_kind: model.kind.name().to_owned(),
+        model_version: row.model_version.clone(),
+        progress: None,
+    })
+}

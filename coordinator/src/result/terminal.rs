@@ -1,0 +1,230 @@
+//! Tables for a terminal.
+
+use std::fmt::Write;
+
+use shared::api::CalibrationStatus;
+use shared::channel::Channel;
+
+use super::comparison::{Comparison, ComparisonRow};
+use super::errors::ErrorTable;
+use super::summary::algorithm_name;
+use super::Outcome;
+use crate::spec::Spec;
+
+/// What a reader of the result should know of the model before it runs.
+pub fn notes(spec: &Spec) -> Vec<String> {
+    let mut notes = Vec::new();
+    let lugged: Vec<&str> = spec
+        .experiment
+        .wheels
+        .iter()
+        .filter(|(_, w)| w.grouser_count > 0 || w.grouser_height_m > 0.0)
+        .map(|(name, _)| name.as_str())
+        .collect();
+    if !lugged.is_empty() {
+        notes.push(format!(
+            "quasi_static models the smooth rim: the grousers of {} enter only through a radius of their own (wheel_radius_m.NAME)",
+            lugged.join(", ")
+        ));
+    }
+    if spec.experiment.runs.iter().any(|r| r.pass > 1) {
+        notes.push("quasi_static has no memory between passes: every pass is predicted like the first".into());
+    }
+    notes
+}
+
+/// What a job means, before it runs.
+pub fn specification(spec: &Spec) -> String {
+    let mut text = String::new();
+    let holdout = spec.experiment.runs.len() - spec.fit_runs.len();
+    let _ = writeln!(
+        text,
+        "{} fit runs with {} measurements, {holdout} holdout runs; model {}; {} with {} particles, seed {}\n",
+        spec.fit_runs.len(),
+        spec.likelihood.data().len(),
+        spec.model.kind.name(),
+        algorithm_name(spec.sampler.algorithm),
+        spec.sampler.particles,
+        spec.sampler.seed
+    );
+    let _ = writeln!(text, "{:<28} {:>12} {:>12} {:>12} {:>12}  unit", "parameter", "prior mean", "prior sd", "lower", "upper");
+    for p in &spec.parameters {
+        let (lower, upper) = p.marginal.support();
+        let _ = writeln!(
+            text,
+            "{:<28} {:>12} {:>12} {:>12} {:>12}  {}",
+            p.name,
+            number(p.marginal.mean()),
+            number(p.marginal.sd()),
+            number(lower),
+            number(upper),
+            p.unit
+        );
+    }
+    for (name, value) in &spec.fit_variant.fixed {
+        let _ = writeln!(text, "{name:<28} {:>12} {:>12}", number(*value), "fixed");
+    }
+    text
+}
+
+/// The result of a run: parameters, errors, table of model against measurement, flags.
+pub fn summary(outcome: &Outcome) -> String {
+    let mut text = String::new();
+    let row = &outcome.row;
+    let _ = writeln!(
+        text,
+        "{}: {} stages, {} evaluations ({} refused by the model), {:.1} s",
+        outcome.experiment,
+        outcome.stages.len(),
+        row.evaluations.unwrap_or(0),
+        row.rejected.unwrap_or(0),
+        row.busy_ms as f64 / 1000.0
+    );
+    if let (Some(z), Some(se)) = (row.log_evidence, row.log_evidence_se) {
+        let _ = writeln!(text, "log-evidence {z:.2} +- {se:.2}");
+    }
+    text.push('\n');
+    text.push_str(&comparison(&outcome.comparison()));
+    let _ = writeln!(
+        text,
+        "\n{:<28} {:>10} {:>10} {:>10} {:>10} {:>10}  {:<12} prior",
+        "parameter", "mean", "sd", "5 %", "95 %", "best", "unit"
+    );
+    for ((name, p), free) in outcome.parameter_summaries().iter().zip(&outcome.spec.parameters) {
+        let prior = format!("{} +- {}", number(free.marginal.mean()), number(free.marginal.sd()));
+        let bound = if p.at_bound { "  AT BOUND" } else { "" };
+        let _ = writeln!(
+            text,
+            "{name:<28} {:>10} {:>10} {:>10} {:>10} {:>10}  {:<12} {prior}{bound}",
+            number(p.mean),
+            number(p.sd),
+            number(p.q05),
+            number(p.q95),
+            number(p.map),
+            free.unit
+        );
+    }
+    let flags = outcome.flags();
+    if !flags.is_empty() {
+        text.push('\n');
+    }
+    for flag in flags {
+        let _ = writeln!(text, "flag {}: {}", flag.kind, flag.text);
+    }
+    text
+}
+
+/// Model against measurement, run by run, with errors by channel.
+pub fn comparison(comparison: &Comparison) -> String {
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "{:<22} {:<8} {:>7} {:>8} {:<13} {:>10} {:>10} {:>23} {:>7}",
+        "run", "use", "slip", "load N", "channel", "measured", "model", "90 % interval", "sigma"
+    );
+    for row in &comparison.rows {
+        let (scale, _) = shown(row);
+        let value = |v: Option<f64>| v.map_or("-".into(), |v| format!("{:.2}", v * scale));
+        let interval = format!("{} to {}", value(row.q05), value(row.q95));
+        let _ = writeln!(
+            text,
+            "{:<22} {:<8} {:>7.3} {:>8.1} {:<13} {:>10} {:>10} {:>23} {:>7}",
+            row.run,
+            row.usage,
+            row.slip,
+            row.wheel_load_n,
+            format!("{} {}", short(&row.channel), shown(row).1),
+            value(Some(row.measured)),
+            value(row.predicted),
+            interval,
+            row.residual_sigma.map_or("-".into(), |r| format!("{r:+.1}"))
+        );
+    }
+    let _ = writeln!(text, "\n{:<28} {:>16} {:>16} {:>16} {:>14} {:>8}", "root mean square error", "pull N", "torque N m", "sinkage mm", "lateral N", "sigma");
+    for (name, table) in [
+        ("fit", &comparison.fit),
+        ("holdout", &comparison.holdout),
+        ("holdout, interpolation", &comparison.baseline_holdout),
+    ] {
+        if let Some(table) = table {
+            text.push_str(&error_line(name, table));
+        }
+    }
+    for usage in ["fit", "holdout"] {
+        let covered: Vec<bool> =
+            comparison.rows.iter().filter(|r| r.usage == usage).filter_map(ComparisonRow::covered).collect();
+        if !covered.is_empty() {
+            let inside = covered.iter().filter(|c| **c).count();
+            let _ = writeln!(text, "{inside} of {} {usage} measurements lie in their 90 % interval", covered.len());
+        }
+    }
+    text
+}
+
+fn error_line(name: &str, table: &ErrorTable) -> String {
+    let cell = |c: Channel| {
+        let scale = if c == Channel::Sinkage { 1000.0 } else { 1.0 };
+        table.channel(c).map_or("-".into(), |e| format!("{:.2} ({})", e.rmse * scale, e.runs))
+    };
+    let sigma = table.all.rmse_sigma.map_or("-".into(), |s| format!("{s:.2}"));
+    format!(
+        "{name:<28} {:>16} {:>16} {:>16} {:>14} {sigma:>8}\n",
+        cell(Channel::DrawbarPull),
+        cell(Channel::Torque),
+        cell(Channel::Sinkage),
+        cell(Channel::LateralForce)
+    )
+}
+
+/// Where calibrations stand, a line each.
+pub fn status_table(statuses: &[CalibrationStatus]) -> String {
+    let mut text = format!(
+        "{:>4} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}\n",
+        "id", "name", "state", "stage", "exponent", "evaluations", "per s", "to go s"
+    );
+    for s in statuses {
+        let p = s.progress.as_ref();
+        let cell = |value: Option<String>| value.unwrap_or_else(|| "-".into());
+        let _ = writeln!(
+            text,
+            "{:>4} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}",
+            s.id,
+            s.name,
+            s.state.name(),
+            cell(p.map(|p| p.stage.to_string())),
+            cell(p.map(|p| format!("{:.3e}", p.tempering_exponent))),
+            cell(p.map(|p| p.evaluations.to_string())),
+            cell(p.map(|p| format!("{:.0}", p.evaluations_per_s))),
+            cell(p.and_then(|p| p.remaining_s).map(|s| format!("{s:.0}")))
+        );
+        if let Some(message) = &s.message {
+            let _ = writeln!(text, "     {message}");
+        }
+    }
+    text
+}
+
+/// Factor and unit in which a row's channel is shown: sinkage in millimetres.
+fn shown(row: &ComparisonRow) -> (f64, &str) {
+    if row.channel == "sinkage" { (1000.0, "mm") } else { (1.0, &row.unit) }
+}
+
+fn short(channel: &str) -> &str {
+    match channel {
+        "drawbar_pull" => "pull",
+        "lateral_force" => "lateral",
+        other => other,
+    }
+}
+
+/// Four significant digits.
+pub(super) fn number(x: f64) -> String {
+    if x.abs() < f64::MIN_POSITIVE {
+        "0".into()
+    } else if (1e-3..1e5).contains(&x.abs()) {
+        let digits = (3 - x.abs().log10().floor() as i32).max(0) as usize;
+        format!("{x:.digits$}")
+    } else {
+        format!("{x:.3e}")
+    }
+}

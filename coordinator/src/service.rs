@@ -1,0 +1,247 @@
+//! Store and farm together: submit, recover, control.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use shared::api::{CalibrationCreated, CalibrationState, CalibrationStatus, NewCalibration, NewExperiment};
+use shared::exchange::{ExchangeRequest, ExchangeResponse};
+use shared::file::{FileError, FileSet};
+
+use crate::calibration::{Calibration, Identity, ReplayError};
+use crate::farm::dispatch::{Dispatcher, Stopped};
+use crate::farm::{Control, ControlError, Farm};
+use crate::spec::{Job, Spec};
+use crate::store::{CalibrationRow, NewCalibrationRow, Store, StoreError};
+
+/// A lease lasts so long without renewal [ms].
+pub const LEASE_MS: u64 = 15_000;
+/// So many facts may wait for the store before the service asks for patience.
+const BACKLOG: u64 = 200_000;
+
+/// Why the service cannot do what it is asked.
+#[derive(Debug, thiserror::Error)]
+pub enum ServiceError {
+    /// A file is malformed.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The sampler's settings do not fit the prior.
+    #[error("[sampler] {0}")]
+    Settings(#[from] inference::SettingsError),
+    /// No such thing.
+    #[error("there is no {what} {id}")]
+    NotFound {
+        /// What was asked for.
+        what: &'static str,
+        /// Its id.
+        id: String,
+    },
+    /// The command does not fit.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// The store fails.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The coordinator is going down.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+    /// More facts wait than the store takes.
+    #[error("{0} facts wait to be stored; try again in a second")]
+    Busy(u64),
+    /// A stored calibration cannot go on.
+    #[error("calibration {id} cannot go on: {source}")]
+    Replay {
+        /// The calibration.
+        id: i64,
+        /// Why.
+        source: ReplayError,
+    },
+}
+
+/// Store and farm together; clones are cheap.
+#[derive(Debug, Clone)]
+pub struct Service {
+    store: Store,
+    dispatcher: Dispatcher,
+}
+
+impl Service {
+    /// Opens the store and takes up every calibration that is not over.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn open(path: &str, lease_ms: u64) -> Result<Service, ServiceError> {
+        let store = Store::open(path, now_ms()).await?;
+        let farm = Farm::new(store.epoch(), lease_ms);
+        let dispatcher = Dispatcher::start(farm, store.writer().sink()).map_err(|e| {
+            ServiceError::Store(StoreError::Sqlite { path: "thread".into(), source: sqlx::Error::Io(e) })
+        })?;
+        let service = Service { store, dispatcher };
+        service.recover().await?;
+        Ok(service)
+    }
+
+    /// Ends farm and writer; everything told so far is stored.
+    pub async fn close(&self) {
+        self.dispatcher.stop();
+        self.store.writer().close().await;
+    }
+
+    /// The store.
+    pub fn store(&self) -> &Store {
+        &self.store
+    }
+
+    /// The farm's thread.
+    pub fn dispatcher(&self) -> &Dispatcher {
+        &self.dispatcher
+    }
+
+    async fn recover(&self) -> Result<(), ServiceError> {
+        let reader = self.store.reader();
+        for id in reader.unfinished().await? {
+            let row = self.calibration_row(id).await?;
+            let stored = reader.stored(id).await?;
+            let spec = Arc::new(self.spec_of(&row).await?);
+            let (evaluations, paused) = (stored.evaluations.len(), stored.state == Some(CalibrationState::Paused));
+            let identity =
+                Identity { id, name: row.name.clone(), study: row.study, experiment: row.experiment };
+            // Replaying is seconds of CPU for a long calibration: not on the async runtime.
+            let replayed = tokio::task::spawn_blocking(move || {
+                let mut calibration = Calibration::new(identity, spec)?;
+                let facts = calibration
+                    .replay(stored)
+                    .map_err(|source| ServiceError::Replay { id, source })?;
+                Ok::<_, ServiceError>((calibration, facts))
+            })
+            .await
+            .map_err(|_| Stopped)?;
+            let (calibration, facts) = replayed?;
+            tracing::info!(id, name = row.name, evaluations, paused, "taken up again");
+            self.dispatcher.add(calibration, facts).await?;
+        }
+        Ok(())
+    }
+
+    /// Stores an experiment after validating it; its id.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn add_experiment(&self, new: NewExperiment) -> Result<i64, ServiceError> {
+        let files = FileSet { toml: new.toml, files: new.files };
+        shared::experiment::Experiment::parse("experiment.toml", &files)?;
+        let json = file_json(&files.files);
+        Ok(self.store.writer().add_experiment(files.toml, json, now_ms()).await?)
+    }
+
+    /// Stores a calibration after validating it, and takes it in hand.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn add_calibration(&self, new: NewCalibration) -> Result<CalibrationCreated, ServiceError> {
+        let experiment = self.store.reader().experiment(new.experiment).await?;
+        let experiment = experiment
+            .ok_or_else(|| ServiceError::NotFound { what: "experiment", id: new.experiment.to_string() })?;
+        let spec = Arc::new(Spec::new("job.toml", &new.toml, "experiment.toml", &experiment.files)?);
+        // The sampler is built once before anything is stored: what it refuses leaves nothing half-written.
+        let trial = Identity { id: 0, name: String::new(), study: 0, experiment: new.experiment };
+        let mut calibration = Calibration::new(trial, spec)?;
+        let name = new.name.unwrap_or_else(|| "calibration".into());
+        let row = NewCalibrationRow {
+            experiment: new.experiment,
+            name: name.clone(),
+            toml: new.toml,
+            files: file_json(&new.files),
+            now_ms: now_ms(),
+        };
+        let (id, study) = self.store.writer().add_calibration(row).await?;
+        calibration.identity = Identity { id, name, study, experiment: new.experiment };
+        self.dispatcher.add(calibration, Vec::new()).await?;
+        Ok(CalibrationCreated { id, study })
+    }
+
+    /// A stored calibration.
+    ///
+    /// # Errors
+    /// [`ServiceError::NotFound`] and others.
+    pub async fn calibration_row(&self, id: i64) -> Result<CalibrationRow, ServiceError> {
+        let row = self.store.reader().calibration(id).await?;
+        row.ok_or_else(|| ServiceError::NotFound { what: "calibration", id: id.to_string() })
+    }
+
+    /// The specification of a stored calibration.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn spec_of(&self, row: &CalibrationRow) -> Result<Spec, ServiceError> {
+        crate::result::spec_of(&self.store.reader(), row).await
+    }
+
+    /// Where a calibration stands.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn status(&self, id: i64) -> Result<CalibrationStatus, ServiceError> {
+        if let Some(status) = self.dispatcher.status(id).await? {
+            return Ok(status);
+        }
+        let row = self.calibration_row(id).await?;
+        crate::result::stored_status(&row)
+    }
+
+    /// Carries out a user's command; the answer is durable.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn control(&self, id: i64, control: Control) -> Result<CalibrationState, ServiceError> {
+        match self.dispatcher.control(id, control).await? {
+            Ok((state, fact)) => {
+                self.store.writer().durable(fact).await?;
+                Ok(state)
+            }
+            Err(ControlError::NotInProgress(_)) => {
+                let state = self.calibration_row(id).await?.state;
+                let verb = match control {
+                    Control::Cancel => "cancelled",
+                    Control::Pause => "paused",
+                    Control::Resume => "resumed",
+                };
+                Err(ControlError::WrongState { id, state, verb }.into())
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// A worker's exchange; the answer is given when its results are durable.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn exchange(&self, request: ExchangeRequest) -> Result<ExchangeResponse, ServiceError> {
+        let backlog = self.store.writer().backlog();
+        if backlog > BACKLOG {
+            return Err(ServiceError::Busy(backlog));
+        }
+        let (response, fact) = self.dispatcher.exchange(request).await?;
+        self.store.writer().durable(fact).await?;
+        Ok(response)
+    }
+}
+
+/// Checks that a job names its experiment, for those who read it from disk.
+///
+/// # Errors
+/// [`FileError`].
+pub fn experiment_of(job_name: &str, job_toml: &str) -> Result<String, FileError> {
+    let job = Job::parse(job_name, job_toml)?;
+    job.experiment.ok_or_else(|| FileError::whole(job_name, "experiment = \"experiment.toml\" is missing"))
+}
+
+fn file_json(files: &BTreeMap<String, String>) -> String {
+    serde_json::to_string(files).expect("text has a JSON form")
+}
+
+/// Wall-clock time, for the record alone: nothing is decided by it.
+pub fn now_ms() -> i64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    i64::try_from(since.as_millis()).unwrap_or(i64::MAX)
+}

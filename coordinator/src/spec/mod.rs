@@ -1,0 +1,116 @@
+//! Turns the text of a job and its experiment into everything a calibration needs.
+
+mod job_file;
+mod noise;
+mod priors;
+
+use std::collections::BTreeSet;
+
+use inference::{GaussianLikelihood, Prior, Settings};
+use shared::experiment::{Experiment, RunUse};
+use shared::file::{FileError, FileSet};
+use shared::model::{ModelSettings, ModelVariant};
+use shared::parameters;
+
+pub use job_file::Job;
+pub use priors::FreeParameter;
+
+/// A calibration as its files determine it; equal files give an equal specification.
+#[derive(Debug, Clone)]
+pub struct Spec {
+    /// The measured data set.
+    pub experiment: Experiment,
+    /// Which forward model, with its fixed parameters.
+    pub model: ModelSettings,
+    /// The free parameters with their priors, in the order of every parameter vector.
+    pub parameters: Vec<FreeParameter>,
+    /// Settings of the sampler.
+    pub sampler: Settings,
+    /// The fitted runs, as positions in the experiment.
+    pub fit_runs: Vec<usize>,
+    /// What workers evaluate while sampling: the fitted runs alone.
+    pub fit_variant: ModelVariant,
+    /// What workers evaluate for the final draws: every run.
+    pub all_variant: ModelVariant,
+    /// The likelihood of the measurements that are fitted; runs count within [`Spec::fit_runs`].
+    pub likelihood: GaussianLikelihood,
+}
+
+/// At most so many final draws are simulated on every run, holdout included.
+pub const PREDICTION_DRAWS: usize = 200;
+
+impl Spec {
+    /// Builds and validates a specification.
+    ///
+    /// # Errors
+    /// [`FileError`] names the file, the line or field, the value, the unit and the bound.
+    pub fn new(job_name: &str, job_toml: &str, experiment_name: &str, files: &FileSet) -> Result<Spec, FileError> {
+        let job = Job::parse(job_name, job_toml)?;
+        let experiment = Experiment::parse(experiment_name, files)?;
+        let in_job = |message: String| FileError::whole(job_name, message);
+
+        let wheels = experiment.wheel_names();
+        let mut model = job.model;
+        let mut parameters = Vec::new();
+        for entry in job.priors {
+            match entry.parse(&wheels).map_err(|e| FileError::at(job_name, entry.line, e))? {
+                priors::Parsed::Fixed(value) => {
+                    if model.fixed.insert(entry.name.clone(), value).is_some() {
+                        let message = format!("{} is fixed under [model] and stands again under [priors]", entry.name);
+                        return Err(FileError::at(job_name, entry.line, message));
+                    }
+                }
+                priors::Parsed::Free(parameter) => parameters.push(parameter),
+            }
+        }
+        let fit_runs: Vec<usize> =
+            (0..experiment.runs.len()).filter(|&i| experiment.runs[i].usage == RunUse::Fit).collect();
+        noise::add_unknown_sds(&experiment, &mut parameters);
+        noise::check_names(&experiment, &parameters).map_err(in_job)?;
+        let in_experiment = |message: String| FileError::whole(experiment_name, message);
+        let data = noise::data(&experiment, &fit_runs, &parameters).map_err(in_experiment)?;
+        if data.is_empty() {
+            return Err(in_experiment("no fit run has a measured channel: there is nothing to fit".into()));
+        }
+        let likelihood = GaussianLikelihood::new(data).map_err(|e| in_experiment(e.to_string()))?;
+        if parameters.is_empty() {
+            return Err(in_job("[priors] leaves no parameter free: there is nothing to calibrate".into()));
+        }
+        let model_parameters: Vec<String> = parameters
+            .iter()
+            .filter(|p| !p.name.starts_with(parameters::NOISE_PREFIX))
+            .map(|p| p.name.clone())
+            .collect();
+        let variant = |runs: &mut dyn Iterator<Item = usize>| {
+            let runs: Vec<_> = runs.map(|i| &experiment.runs[i]).collect();
+            ModelVariant::new(&experiment, &model, model_parameters.clone(), runs)
+        };
+        let fit_variant = variant(&mut fit_runs.iter().copied()).map_err(in_job)?;
+        let all_variant = variant(&mut (0..experiment.runs.len())).map_err(in_job)?;
+        Ok(Spec { experiment, model, parameters, sampler: job.sampler, fit_runs, fit_variant, all_variant, likelihood })
+    }
+
+    /// Whether another specification means the same calibration; comments and the order of keys do not count.
+    pub fn same_as(&self, other: &Spec) -> bool {
+        // Debug output shows every number to the last bit.
+        format!("{self:?}") == format!("{other:?}")
+    }
+
+    /// The joint prior, in parameter order.
+    pub fn prior(&self) -> Prior {
+        Prior::new(self.parameters.iter().map(|p| p.marginal.clone()).collect())
+    }
+
+
+    /// The part of a parameter vector that the model takes: everything but the noise sds.
+    ///
+    /// Noise parameters stand behind the model's, so this is a prefix.
+    pub fn model_theta<'a>(&self, theta: &'a [f64]) -> &'a [f64] {
+        &theta[..self.fit_variant.parameters.len()]
+    }
+
+    /// The names of the channels that have a fitted measurement.
+    pub fn fitted_channels(&self) -> BTreeSet<usize> {
+        self.likelihood.data().iter().map(|d| d.channel).collect()
+    }
+}

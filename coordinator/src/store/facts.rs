@@ -1,0 +1,156 @@
+//! One statement for each kind of fact but evaluations, which go in groups.
+
+use std::sync::atomic::Ordering;
+
+use inference::StageRecord;
+use sqlx::{QueryBuilder, Row, Sqlite, SqliteConnection};
+
+use super::writer::StoreHealth;
+use super::{blob, json};
+use crate::fact::{EvaluationRow, Fact};
+
+/// Most samples in one statement.
+const ROWS: usize = 4000;
+
+/// Writes a fact within the present transaction. Stages and states may be told twice, after a restart.
+pub(super) async fn write(
+    connection: &mut SqliteConnection,
+    fact: Fact,
+    health: &StoreHealth,
+) -> Result<(), sqlx::Error> {
+    match fact {
+        Fact::Evaluated { .. } => unreachable!("evaluations go in groups"),
+        Fact::Duplicate { calibration, row } => compare(connection, calibration, &row, health).await,
+        Fact::Stage { calibration, record, busy_ms } => {
+            stage(connection, calibration, &record).await?;
+            busy(connection, calibration, busy_ms).await
+        }
+        Fact::Posterior { calibration, posterior } => sqlx::query(
+            "UPDATE calibrations SET log_evidence = ?, log_evidence_se = ?, equilibrated = ?,
+             evaluations = ?, rejected = ? WHERE id = ?",
+        )
+        .bind(posterior.log_evidence)
+        .bind(posterior.log_evidence_se)
+        .bind(posterior.equilibrated)
+        .bind(posterior.evaluations as i64)
+        .bind(posterior.rejected as i64)
+        .bind(calibration)
+        .execute(connection)
+        .await
+        .map(drop),
+        Fact::State { calibration, state, message, busy_ms } => {
+            sqlx::query("UPDATE calibrations SET state = ?, message = ? WHERE id = ?")
+                .bind(state.name())
+                .bind(message)
+                .bind(calibration)
+                .execute(&mut *connection)
+                .await?;
+            busy(connection, calibration, busy_ms).await
+        }
+        Fact::ModelVersion { calibration, version } => {
+            sqlx::query("UPDATE calibrations SET model_version = ? WHERE id = ?")
+                .bind(version)
+                .bind(calibration)
+                .execute(connection)
+                .await
+                .map(drop)
+        }
+        Fact::Fault { calibration, evaluation, attempt, worker, message } => sqlx::query(
+            "INSERT INTO faults (calibration, evaluation, attempt, worker, message, at_ms)
+             VALUES (?, ?, ?, ?, ?, unixepoch('subsec') * 1000)",
+        )
+        .bind(calibration)
+        .bind(evaluation as i64)
+        .bind(attempt)
+        .bind(worker)
+        .bind(message)
+        .execute(connection)
+        .await
+        .map(drop),
+    }
+}
+
+async fn busy(connection: &mut SqliteConnection, calibration: i64, busy_ms: u64) -> Result<(), sqlx::Error> {
+    sqlx::query("UPDATE calibrations SET busy_ms = ? WHERE id = ?")
+        .bind(busy_ms as i64)
+        .bind(calibration)
+        .execute(connection)
+        .await
+        .map(drop)
+}
+
+async fn stage(connection: &mut SqliteConnection, calibration: i64, s: &StageRecord) -> Result<(), sqlx::Error> {
+    sqlx::query(
+        "INSERT OR REPLACE INTO stages (calibration, stage, tempering_exponent, acceptance, drift_z, correlation,
+         steps, log_evidence_increment, weight_cov, ess, scale, evaluations, equilibrated)
+         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+    )
+    .bind(calibration)
+    .bind(s.stage as i64)
+    .bind(s.tempering_exponent)
+    .bind(s.acceptance)
+    .bind(s.drift_z)
+    .bind(s.correlation)
+    .bind(s.steps as i64)
+    .bind(s.log_evidence_increment)
+    .bind(s.weight_cov)
+    .bind(s.ess)
+    .bind(s.scale)
+    .bind(s.evaluations as i64)
+    .bind(s.equilibrated)
+    .execute(&mut *connection)
+    .await?;
+    for (part, particles) in s.population.chunks(ROWS).enumerate() {
+        let mut query: QueryBuilder<Sqlite> = QueryBuilder::new(
+            "INSERT OR REPLACE INTO samples (calibration, stage, particle, theta, log_likelihood, log_prior) ",
+        );
+        query.push_values(particles.iter().enumerate(), |mut values, (k, particle)| {
+            let log_likelihood = Some(particle.log_likelihood.value()).filter(|l| l.is_finite());
+            values
+                .push_bind(calibration)
+                .push_bind(s.stage as i64)
+                .push_bind((part * ROWS + k) as i64)
+                .push_bind(json(&particle.theta))
+                .push_bind(log_likelihood)
+                .push_bind(particle.log_prior);
+        });
+        query.build().persistent(false).execute(&mut *connection).await?;
+    }
+    Ok(())
+}
+
+/// Compares a late duplicate with what is stored: two machines must give the same bits.
+async fn compare(
+    connection: &mut SqliteConnection,
+    calibration: i64,
+    row: &EvaluationRow,
+    health: &StoreHealth,
+) -> Result<(), sqlx::Error> {
+    let stored = sqlx::query(
+        "SELECT rejection, observables, worker FROM evaluations WHERE calibration = ? AND evaluation = ?",
+    )
+    .bind(calibration)
+    .bind(row.evaluation as i64)
+    .fetch_optional(connection)
+    .await?;
+    let Some(stored) = stored else {
+        tracing::warn!(calibration, evaluation = row.evaluation, worker = row.worker, "result of an unknown evaluation");
+        return Ok(());
+    };
+    let same = match &row.result {
+        Ok(observables) => stored.get::<Option<Vec<u8>>, _>("observables") == Some(blob::encode(observables)),
+        Err(rejection) => stored.get::<Option<String>, _>("rejection").as_ref() == Some(rejection),
+    };
+    if !same {
+        health.differing_duplicates.fetch_add(1, Ordering::Relaxed);
+        let first: String = stored.get("worker");
+        tracing::error!(
+            calibration,
+            evaluation = row.evaluation,
+            first,
+            second = row.worker,
+            "two workers differ on the same evaluation: the farm is not deterministic"
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,170 @@
+//! The SQLite file: the only place that knows SQL.
+//!
+//! One task writes ([`writer`]); everybody else reads through a pool of their own. What the tables mean stands
+//! in `migrations/README.md`.
+
+mod blob;
+mod facts;
+mod read;
+mod recovery;
+mod writer;
+
+use std::path::Path;
+use std::str::FromStr;
+
+use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
+use sqlx::{Connection, SqliteConnection, SqlitePool};
+
+pub use read::{CalibrationRow, ExperimentRow, Prediction, Sample, StageRow};
+pub use writer::{FactSink, NewCalibrationRow, StoreHealth, Writer};
+
+/// Why the store cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// SQLite refuses.
+    #[error("store {path}: {source}")]
+    Sqlite {
+        /// The file.
+        path: String,
+        /// What SQLite says.
+        source: sqlx::Error,
+    },
+    /// The file is of another version of the program.
+    #[error("store {path}: {source}")]
+    Migrate {
+        /// The file.
+        path: String,
+        /// What the migration says.
+        source: sqlx::migrate::MigrateError,
+    },
+    /// Another coordinator has the file open.
+    #[error("store {0}: another coordinator is using this file")]
+    InUse(String),
+    /// A row cannot be read back.
+    #[error("store: {0}")]
+    Corrupt(String),
+    /// The writer has ended.
+    #[error("the store no longer takes writes; the coordinator is going down")]
+    Stopped,
+    /// There is nothing to read.
+    #[error("store {0}: no such file")]
+    Missing(String),
+}
+
+impl From<sqlx::Error> for StoreError {
+    fn from(source: sqlx::Error) -> Self {
+        StoreError::Sqlite { path: "query".into(), source }
+    }
+}
+
+/// The store: a pool of readers and the way to the one writer.
+#[derive(Debug, Clone)]
+pub struct Store {
+    readers: SqlitePool,
+    writer: Writer,
+    epoch: u64,
+}
+
+fn options(path: &str) -> Result<SqliteConnectOptions, StoreError> {
+    let file = path.strip_prefix("sqlite://").unwrap_or(path);
+    let options = SqliteConnectOptions::from_str(&format!("sqlite://{file}"))
+        .map_err(|source| StoreError::Sqlite { path: path.into(), source })?;
+    Ok(options
+        .journal_mode(SqliteJournalMode::Wal)
+        .synchronous(SqliteSynchronous::Full)
+        .foreign_keys(true)
+        .busy_timeout(std::time::Duration::from_secs(2)))
+}
+
+impl Store {
+    /// Opens the file, makes it if need be, brings its tables up to date, starts the writer and a new epoch.
+    ///
+    /// # Errors
+    /// [`StoreError`] with the file and SQLite's reason; [`StoreError::InUse`] where another coordinator holds it.
+    pub async fn open(path: &str, now_ms: i64) -> Result<Store, StoreError> {
+        let wrap = |source| StoreError::Sqlite { path: path.into(), source };
+        // The writer holds its lock file for as long as it lives; a second coordinator is turned away at once.
+        let lock = lock(path)?;
+        let options = options(path)?.create_if_missing(true);
+        let mut connection = SqliteConnection::connect_with(&options).await.map_err(wrap)?;
+        sqlx::migrate!("../migrations")
+            .run(&mut connection)
+            .await
+            .map_err(|source| StoreError::Migrate { path: path.into(), source })?;
+        let epoch: i64 = sqlx::query_scalar("INSERT INTO epochs (started_at_ms) VALUES (?) RETURNING epoch")
+            .bind(now_ms)
+            .fetch_one(&mut connection)
+            .await
+            .map_err(wrap)?;
+        let readers = pool(options).await.map_err(wrap)?;
+        let writer = Writer::start(connection, lock);
+        Ok(Store { readers, writer, epoch: epoch.unsigned_abs() })
+    }
+
+    /// The way to the writer.
+    pub fn writer(&self) -> &Writer {
+        &self.writer
+    }
+
+    /// Number of this start of the coordinator.
+    pub fn epoch(&self) -> u64 {
+        self.epoch
+    }
+
+    /// What can be read.
+    pub fn reader(&self) -> Reader {
+        Reader { pool: self.readers.clone() }
+    }
+}
+
+/// Reads a store, also one that another process is writing.
+#[derive(Debug, Clone)]
+pub struct Reader {
+    pool: SqlitePool,
+}
+
+impl Reader {
+    /// Opens an existing file for reading alone.
+    ///
+    /// # Errors
+    /// [`StoreError`] with the file and the reason.
+    pub async fn open(path: &str) -> Result<Reader, StoreError> {
+        let file = path.strip_prefix("sqlite://").unwrap_or(path);
+        if !Path::new(file).is_file() {
+            return Err(StoreError::Missing(file.into()));
+        }
+        let pool =
+            pool(options(path)?).await.map_err(|source| StoreError::Sqlite { path: path.into(), source })?;
+        Ok(Reader { pool })
+    }
+}
+
+/// Numbers as a JSON array; every finite `f64` comes back to the bit.
+fn json(theta: &[f64]) -> String {
+    serde_json::to_string(theta).expect("numbers have a JSON form")
+}
+
+/// The numbers of a JSON array.
+fn numbers(json: &str) -> Result<Vec<f64>, StoreError> {
+    serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("parameter vector {json}: {e}")))
+}
+
+async fn pool(options: SqliteConnectOptions) -> Result<SqlitePool, sqlx::Error> {
+    SqlitePoolOptions::new().max_connections(4).connect_with(options).await
+}
+
+/// Takes the lock file beside the store; it is released when the returned file is dropped, or at any death.
+fn lock(path: &str) -> Result<Option<std::fs::File>, StoreError> {
+    let file = path.strip_prefix("sqlite://").unwrap_or(path);
+    if file.contains(":memory:") {
+        return Ok(None);
+    }
+    let name = format!("{file}.lock");
+    let io = |e: std::io::Error| StoreError::Sqlite { path: name.clone(), source: sqlx::Error::Io(e) };
+    let lock = std::fs::OpenOptions::new().create(true).truncate(false).write(true).open(&name).map_err(io)?;
+    match lock.try_lock() {
+        Ok(()) => Ok(Some(lock)),
+        Err(std::fs::TryLockError::WouldBlock) => Err(StoreError::InUse(file.into())),
+        Err(std::fs::TryLockError::Error(e)) => Err(io(e)),
+    }
+}

@@ -1,0 +1,278 @@
+//! What was stored, for results and lists.
+
+use std::collections::BTreeMap;
+
+use shared::api::CalibrationState;
+use shared::file::FileSet;
+use shared::outcome::Observables;
+use sqlx::Row;
+use sqlx::sqlite::SqliteRow;
+
+use super::{Reader, StoreError, blob, numbers};
+use crate::calibration::PREDICTIONS_FROM;
+
+/// A stored experiment.
+#[derive(Debug, Clone)]
+pub struct ExperimentRow {
+    /// Its id.
+    pub id: i64,
+    /// Its files.
+    pub files: FileSet,
+}
+
+/// A stored calibration.
+#[derive(Debug, Clone)]
+pub struct CalibrationRow {
+    /// Its id.
+    pub id: i64,
+    /// The study it belongs to.
+    pub study: i64,
+    /// The experiment it is about.
+    pub experiment: i64,
+    /// Name for lists.
+    pub name: String,
+    /// Text of `job.toml`.
+    pub toml: String,
+    /// Where it stands.
+    pub state: CalibrationState,
+    /// Why it is paused or failed.
+    pub message: Option<String>,
+    /// Version of the equations.
+    pub model_version: Option<String>,
+    /// Wall time spent [ms].
+    pub busy_ms: u64,
+    /// Log-evidence.
+    pub log_evidence: Option<f64>,
+    /// Its standard error.
+    pub log_evidence_se: Option<f64>,
+    /// Whether every stage reached equilibrium.
+    pub equilibrated: Option<bool>,
+    /// Evaluations of the sampler.
+    pub evaluations: Option<u64>,
+    /// Of these, refused by the model.
+    pub rejected: Option<u64>,
+}
+
+/// A stored stage, without its population.
+#[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
+pub struct StageRow {
+    /// Position, counted from 0 = the prior.
+    pub stage: u32,
+    /// Tempering exponent.
+    pub tempering_exponent: f64,
+    /// Acceptance rate of the moves.
+    pub acceptance: f64,
+    /// Drift of the mean log-likelihood during the moves, as a z-score.
+    pub drift_z: f64,
+    /// Rank correlation of the log-likelihood between start and end of the moves.
+    pub correlation: f64,
+    /// Moves per particle.
+    pub steps: u32,
+    /// Share of the log-evidence.
+    pub log_evidence_increment: f64,
+    /// Coefficient of variation of the incremental weights.
+    pub weight_cov: f64,
+    /// Effective sample size of the weights.
+    pub ess: f64,
+    /// Scale of the proposals at the end.
+    pub scale: f64,
+    /// Evaluations spent.
+    pub evaluations: u64,
+    /// Whether the moves reached equilibrium.
+    pub equilibrated: bool,
+}
+
+/// A particle of a stored population.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
+pub struct Sample {
+    /// Parameter vector.
+    pub theta: Vec<f64>,
+    /// Log-likelihood; `None` where the model refused.
+    pub log_likelihood: Option<f64>,
+    /// Log-density of the prior.
+    pub log_prior: f64,
+}
+
+/// A final draw, simulated on every run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prediction {
+    /// Parameter vector, noise parameters included.
+    pub theta: Vec<f64>,
+    /// What the model gave, or why it refused.
+    pub result: Result<Observables, String>,
+}
+
+const CALIBRATION: &str = "SELECT c.*, s.experiment FROM calibrations c JOIN studies s ON s.id = c.study";
+
+impl Reader {
+    /// An experiment.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn experiment(&self, id: i64) -> Result<Option<ExperimentRow>, StoreError> {
+        let row = sqlx::query("SELECT toml, files FROM experiments WHERE id = ?")
+            .bind(id)
+            .fetch_optional(&self.pool)
+            .await?;
+        row.map(|row| {
+            let files = file_map(row.get("files"))?;
+            Ok(ExperimentRow { id, files: FileSet { toml: row.get("toml"), files } })
+        })
+        .transpose()
+    }
+
+    /// A calibration.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn calibration(&self, id: i64) -> Result<Option<CalibrationRow>, StoreError> {
+        let query = format!("{CALIBRATION} WHERE c.id = ?");
+        let row = sqlx::query(sqlx::AssertSqlSafe(query)).bind(id).fetch_optional(&self.pool).await?;
+        row.as_ref().map(calibration_row).transpose()
+    }
+
+    /// Every calibration, oldest first.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn calibrations(&self) -> Result<Vec<CalibrationRow>, StoreError> {
+        let query = format!("{CALIBRATION} ORDER BY c.id");
+        let rows = sqlx::query(sqlx::AssertSqlSafe(query)).fetch_all(&self.pool).await?;
+        rows.iter().map(calibration_row).collect()
+    }
+
+    /// Ids of all studies with their experiment and calibrations, oldest first.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn studies(&self) -> Result<Vec<(i64, i64, Vec<i64>)>, StoreError> {
+        let rows = sqlx::query(
+            "SELECT s.id, s.experiment, json_group_array(c.id ORDER BY c.id) AS calibrations
+             FROM studies s JOIN calibrations c ON c.study = s.id GROUP BY s.id ORDER BY s.id",
+        )
+        .fetch_all(&self.pool)
+        .await?;
+        rows.iter()
+            .map(|row| {
+                let list: String = row.get("calibrations");
+                let ids = serde_json::from_str(&list).map_err(|e| StoreError::Corrupt(e.to_string()))?;
+                Ok((row.get("id"), row.get("experiment"), ids))
+            })
+            .collect()
+    }
+
+    /// The stages of a calibration, in order.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn stages(&self, calibration: i64) -> Result<Vec<StageRow>, StoreError> {
+        let rows = sqlx::query("SELECT * FROM stages WHERE calibration = ? ORDER BY stage")
+            .bind(calibration)
+            .fetch_all(&self.pool)
+            .await?;
+        Ok(rows
+            .iter()
+            .map(|row| StageRow {
+                stage: row.get::<u32, _>("stage"),
+                tempering_exponent: row.get("tempering_exponent"),
+                acceptance: row.get("acceptance"),
+                drift_z: row.get("drift_z"),
+                correlation: row.get("correlation"),
+                steps: row.get::<u32, _>("steps"),
+                log_evidence_increment: row.get("log_evidence_increment"),
+                weight_cov: row.get("weight_cov"),
+                ess: row.get("ess"),
+                scale: row.get("scale"),
+                evaluations: row.get::<i64, _>("evaluations").unsigned_abs(),
+                equilibrated: row.get("equilibrated"),
+            })
+            .collect())
+    }
+
+    /// The population at the end of a stage, or of the last one.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn samples(&self, calibration: i64, stage: Option<u32>) -> Result<Vec<Sample>, StoreError> {
+        let rows = sqlx::query(
+            "SELECT theta, log_likelihood, log_prior FROM samples WHERE calibration = ?1
+             AND stage = coalesce(?2, (SELECT max(stage) FROM samples WHERE calibration = ?1)) ORDER BY particle",
+        )
+        .bind(calibration)
+        .bind(stage)
+        .fetch_all(&self.pool)
+        .await?;
+        rows.iter()
+            .map(|row| {
+                Ok(Sample {
+                    theta: numbers(row.get("theta"))?,
+                    log_likelihood: row.get("log_likelihood"),
+                    log_prior: row.get("log_prior"),
+                })
+            })
+            .collect()
+    }
+
+    /// The final draws of a calibration; the first is the most probable particle.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn predictions(&self, calibration: i64) -> Result<Vec<Prediction>, StoreError> {
+        let rows = sqlx::query(
+            "SELECT theta, rejection, observables FROM evaluations
+             WHERE calibration = ? AND evaluation >= ? ORDER BY evaluation",
+        )
+        .bind(calibration)
+        .bind(PREDICTIONS_FROM as i64)
+        .fetch_all(&self.pool)
+        .await?;
+        rows.iter()
+            .map(|row| {
+                let result = match row.get::<Option<String>, _>("rejection") {
+                    Some(rejection) => Err(rejection),
+                    None => Ok(blob::decode(row.get("observables"))?),
+                };
+                Ok(Prediction { theta: numbers(row.get("theta"))?, result })
+            })
+            .collect()
+    }
+
+    /// How often the model refused, by the kind of refusal.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn rejections(&self, calibration: i64) -> Result<BTreeMap<String, u64>, StoreError> {
+        let rows = sqlx::query(
+            "SELECT substr(rejection, 1, instr(rejection, ':') - 1) AS kind, count(*) AS n FROM evaluations
+             WHERE calibration = ? AND rejection IS NOT NULL GROUP BY kind",
+        )
+        .bind(calibration)
+        .fetch_all(&self.pool)
+        .await?;
+        Ok(rows.iter().map(|row| (row.get("kind"), row.get::<i64, _>("n").unsigned_abs())).collect())
+    }
+}
+
+fn file_map(json: &str) -> Result<BTreeMap<String, String>, StoreError> {
+    serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("files: {e}")))
+}
+
+fn calibration_row(row: &SqliteRow) -> Result<CalibrationRow, StoreError> {
+    let state: String = row.get("state");
+    Ok(CalibrationRow {
+        id: row.get("id"),
+        study: row.get("study"),
+        experiment: row.get("experiment"),
+        name: row.get("name"),
+        toml: row.get("toml"),
+        state: CalibrationState::from_name(&state).ok_or(StoreError::Corrupt(format!("state {state}")))?,
+        message: row.get("message"),
+        model_version: row.get("model_version"),
+        busy_ms: row.get::<i64, _>("busy_ms").unsigned_abs(),
+        log_evidence: row.get("log_evidence"),
+        log_evidence_se: row.get("log_evidence_se"),
+        equilibrated: row.get("equilibrated"),
+        evaluations: row.get::<Option<i64>, _>("evaluations").map(i64::unsigned_abs),
+        rejected: row.get::<Option<i64>, _>("rejected").map(i64::unsigned_abs),
+    })
+}

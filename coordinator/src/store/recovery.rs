@@ -1,0 +1,70 @@
+//! What a restart needs of a calibration that was not over.
+
+use std::collections::BTreeMap;
+
+use shared::api::CalibrationState;
+use sqlx::Row;
+
+use super::{Reader, StoreError, numbers};
+use crate::calibration::{Stored, StoredEvaluation};
+
+impl Reader {
+    /// Ids of the calibrations that are not over, oldest first.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn unfinished(&self) -> Result<Vec<i64>, StoreError> {
+        let ids = sqlx::query_scalar(
+            "SELECT id FROM calibrations WHERE state NOT IN ('finished', 'failed', 'cancelled') ORDER BY id",
+        )
+        .fetch_all(&self.pool)
+        .await?;
+        Ok(ids)
+    }
+
+    /// Everything a replay needs.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn stored(&self, calibration: i64) -> Result<Stored, StoreError> {
+        let row = sqlx::query("SELECT state, message, model_version, busy_ms FROM calibrations WHERE id = ?")
+            .bind(calibration)
+            .fetch_one(&self.pool)
+            .await?;
+        let evaluations = sqlx::query(
+            "SELECT evaluation, theta, log_likelihood, rejection IS NOT NULL AS rejected
+             FROM evaluations WHERE calibration = ?",
+        )
+        .bind(calibration)
+        .fetch_all(&self.pool)
+        .await?;
+        let evaluations: Result<BTreeMap<_, _>, StoreError> = evaluations
+            .iter()
+            .map(|row| {
+                let number = row.get::<i64, _>("evaluation").unsigned_abs();
+                let stored = StoredEvaluation {
+                    theta: numbers(row.get("theta"))?,
+                    log_likelihood: row.get("log_likelihood"),
+                    rejected: row.get("rejected"),
+                };
+                Ok((number, stored))
+            })
+            .collect();
+        let faults =
+            sqlx::query("SELECT evaluation, max(attempt) AS n FROM faults WHERE calibration = ? GROUP BY evaluation")
+                .bind(calibration)
+                .fetch_all(&self.pool)
+                .await?;
+        let failed =
+            faults.iter().map(|row| (row.get::<i64, _>("evaluation").unsigned_abs(), row.get::<u32, _>("n"))).collect();
+        let state: String = row.get("state");
+        Ok(Stored {
+            state: CalibrationState::from_name(&state),
+            message: row.get("message"),
+            model_version: row.get("model_version"),
+            busy_ms: row.get::<i64, _>("busy_ms").unsigned_abs(),
+            evaluations: evaluations?,
+            failed,
+        })
+    }
+}

@@ -1,0 +1,290 @@
+//! The one task that writes: it takes everything that waits and commits it as one group.
+//!
+//! Facts are numbered in the order of their arrival. An answer that rests on a fact is held back until the
+//! number of the last committed fact has reached it: acknowledged means durable.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use sqlx::{Connection, QueryBuilder, Sqlite, SqliteConnection};
+use tokio::sync::{mpsc, oneshot, watch};
+
+use super::{StoreError, blob};
+use crate::fact::{EvaluationRow, Fact};
+
+/// Most facts in one commit.
+const GROUP: usize = 4096;
+/// Most rows in one statement; SQLite takes 32,766 parameters.
+const ROWS: usize = 2000;
+
+enum Write {
+    Fact(Fact),
+    Experiment { toml: String, files: String, now_ms: i64, reply: oneshot::Sender<i64> },
+    Calibration { new: NewCalibrationRow, reply: oneshot::Sender<(i64, i64)> },
+    Close,
+}
+
+/// A calibration to store.
+#[derive(Debug, Clone)]
+pub struct NewCalibrationRow {
+    /// The experiment that it is about.
+    pub experiment: i64,
+    /// Name for lists.
+    pub name: String,
+    /// Text of `job.toml`.
+    pub toml: String,
+    /// Texts of the files it names, as a JSON object.
+    pub files: String,
+    /// Now.
+    pub now_ms: i64,
+}
+
+/// Figures of the writer, for the metrics page.
+#[derive(Debug, Default)]
+pub struct StoreHealth {
+    /// Facts sent to the writer.
+    pub sent: AtomicU64,
+    /// Commits.
+    pub commits: AtomicU64,
+    /// Facts committed.
+    pub facts: AtomicU64,
+    /// Time spent writing and committing [us].
+    pub busy_us: AtomicU64,
+    /// Late duplicates that differed from what is stored: faults of determinism.
+    pub differing_duplicates: AtomicU64,
+}
+
+/// The way to the writer; clones are cheap.
+#[derive(Debug, Clone)]
+pub struct Writer {
+    sender: mpsc::UnboundedSender<Write>,
+    committed: watch::Receiver<u64>,
+    health: Arc<StoreHealth>,
+}
+
+/// The farm's end of the way to the writer: it alone numbers facts.
+#[derive(Debug)]
+pub struct FactSink {
+    sender: mpsc::UnboundedSender<Write>,
+    sent: u64,
+    health: Arc<StoreHealth>,
+}
+
+impl FactSink {
+    /// Sends facts in order; the number of the last fact so far, or `None` when the writer has ended.
+    pub fn send(&mut self, facts: Vec<Fact>) -> Option<u64> {
+        for fact in facts {
+            self.sender.send(Write::Fact(fact)).ok()?;
+            self.sent += 1;
+        }
+        self.health.sent.store(self.sent, Ordering::Relaxed);
+        Some(self.sent)
+    }
+}
+
+impl Writer {
+    /// Starts the task. `lock` is held until it ends.
+    pub(super) fn start(connection: SqliteConnection, lock: Option<std::fs::File>) -> Writer {
+        let (sender, receiver) = mpsc::unbounded_channel();
+        let (committed_sender, committed) = watch::channel(0);
+        let health = Arc::new(StoreHealth::default());
+        let shared = health.clone();
+        tokio::spawn(async move {
+            let _lock = lock;
+            if let Err(error) = run(connection, receiver, &committed_sender, &shared).await {
+                tracing::error!(%error, "the store cannot be written");
+            }
+            // Dropping `committed_sender` tells everyone who waits for a commit.
+        });
+        Writer { sender, committed, health }
+    }
+
+    /// The farm's end. Facts are numbered per sink, so a store has one.
+    pub fn sink(&self) -> FactSink {
+        FactSink { sender: self.sender.clone(), sent: 0, health: self.health.clone() }
+    }
+
+    /// Waits until a fact is durable.
+    ///
+    /// # Errors
+    /// [`StoreError::Stopped`] when the writer has ended before.
+    pub async fn durable(&self, fact: u64) -> Result<(), StoreError> {
+        let mut committed = self.committed.clone();
+        committed.wait_for(|&c| c >= fact).await.map(|_| ()).map_err(|_| StoreError::Stopped)
+    }
+
+    /// Waits until the writer has ended: only a failing store ends it before its handles are gone.
+    pub async fn stopped(&self) {
+        let mut committed = self.committed.clone();
+        while committed.changed().await.is_ok() {}
+    }
+
+    /// Stores what was sent before, then ends the task.
+    pub async fn close(&self) {
+        if self.sender.send(Write::Close).is_ok() {
+            self.stopped().await;
+        }
+    }
+
+    /// Facts that wait to be stored.
+    pub fn backlog(&self) -> u64 {
+        self.health.sent.load(Ordering::Relaxed).saturating_sub(*self.committed.borrow())
+    }
+
+    /// Figures of the writer.
+    pub fn health(&self) -> &StoreHealth {
+        &self.health
+    }
+
+    /// Stores an experiment; its id.
+    ///
+    /// # Errors
+    /// [`StoreError::Stopped`].
+    pub async fn add_experiment(&self, toml: String, files: String, now_ms: i64) -> Result<i64, StoreError> {
+        let (reply, answer) = oneshot::channel();
+        let write = Write::Experiment { toml, files, now_ms, reply };
+        self.sender.send(write).map_err(|_| StoreError::Stopped)?;
+        answer.await.map_err(|_| StoreError::Stopped)
+    }
+
+    /// Stores a calibration and the study that it opens; their ids.
+    ///
+    /// # Errors
+    /// [`StoreError::Stopped`].
+    pub async fn add_calibration(&self, new: NewCalibrationRow) -> Result<(i64, i64), StoreError> {
+        let (reply, answer) = oneshot::channel();
+        self.sender.send(Write::Calibration { new, reply }).map_err(|_| StoreError::Stopped)?;
+        answer.await.map_err(|_| StoreError::Stopped)
+    }
+}
+
+async fn run(
+    mut connection: SqliteConnection,
+    mut receiver: mpsc::UnboundedReceiver<Write>,
+    committed: &watch::Sender<u64>,
+    health: &StoreHealth,
+) -> Result<(), sqlx::Error> {
+    let mut group = Vec::with_capacity(GROUP);
+    let mut number = 0;
+    let mut closing = false;
+    while !closing && receiver.recv_many(&mut group, GROUP).await > 0 {
+        closing = group.iter().any(|w| matches!(w, Write::Close));
+        let began = std::time::Instant::now();
+        let mut transaction = connection.begin_with("BEGIN IMMEDIATE").await?;
+        let mut replies = Replies::default();
+        let facts = write_group(&mut transaction, group.drain(..), &mut replies, health).await?;
+        transaction.commit().await?;
+        number += facts;
+        replies.send();
+        health.commits.fetch_add(1, Ordering::Relaxed);
+        health.facts.fetch_add(facts, Ordering::Relaxed);
+        health.busy_us.fetch_add(u64::try_from(began.elapsed().as_micros()).unwrap_or(0), Ordering::Relaxed);
+        committed.send_replace(number);
+    }
+    connection.close().await
+}
+
+/// Answers that may only be given after the commit.
+#[derive(Default)]
+struct Replies {
+    experiments: Vec<(oneshot::Sender<i64>, i64)>,
+    calibrations: Vec<(oneshot::Sender<(i64, i64)>, (i64, i64))>,
+}
+
+impl Replies {
+    fn send(self) {
+        // An asker that has gone away finds what it stored in the list.
+        for (reply, id) in self.experiments {
+            let _ = reply.send(id);
+        }
+        for (reply, ids) in self.calibrations {
+            let _ = reply.send(ids);
+        }
+    }
+}
+
+async fn write_group(
+    connection: &mut SqliteConnection,
+    group: impl Iterator<Item = Write>,
+    replies: &mut Replies,
+    health: &StoreHealth,
+) -> Result<u64, sqlx::Error> {
+    let mut facts = 0;
+    let mut rows: Vec<(i64, EvaluationRow)> = Vec::new();
+    for write in group {
+        match write {
+            Write::Fact(fact) => {
+                facts += 1;
+                match fact {
+                    Fact::Evaluated { calibration, row } => rows.push((calibration, row)),
+                    other => {
+                        insert_evaluations(connection, &mut rows).await?;
+                        super::facts::write(connection, other, health).await?;
+                    }
+                }
+            }
+            Write::Close => {}
+            Write::Experiment { toml, files, now_ms, reply } => {
+                let id = sqlx::query_scalar(
+                    "INSERT INTO experiments (toml, files, created_at_ms) VALUES (?, ?, ?) RETURNING id",
+                )
+                .bind(toml)
+                .bind(files)
+                .bind(now_ms)
+                .fetch_one(&mut *connection)
+                .await?;
+                replies.experiments.push((reply, id));
+            }
+            Write::Calibration { new, reply } => {
+                let study: i64 = sqlx::query_scalar("INSERT INTO studies (experiment) VALUES (?) RETURNING id")
+                    .bind(new.experiment)
+                    .fetch_one(&mut *connection)
+                    .await?;
+                let id: i64 = sqlx::query_scalar(
+                    "INSERT INTO calibrations (study, name, toml, files, state, created_at_ms)
+                     VALUES (?, ?, ?, ?, 'queued', ?) RETURNING id",
+                )
+                .bind(study)
+                .bind(new.name)
+                .bind(new.toml)
+                .bind(new.files)
+                .bind(new.now_ms)
+                .fetch_one(&mut *connection)
+                .await?;
+                replies.calibrations.push((reply, (id, study)));
+            }
+        }
+    }
+    insert_evaluations(connection, &mut rows).await?;
+    Ok(facts)
+}
+
+/// Inserts evaluations, many rows to a statement: SQLite through sqlx costs by the statement.
+async fn insert_evaluations(
+    connection: &mut SqliteConnection,
+    rows: &mut Vec<(i64, EvaluationRow)>,
+) -> Result<(), sqlx::Error> {
+    while !rows.is_empty() {
+        let part = rows.drain(..rows.len().min(ROWS));
+        let mut query: QueryBuilder<Sqlite> = QueryBuilder::new(
+            "INSERT OR IGNORE INTO evaluations
+             (calibration, evaluation, theta, log_likelihood, rejection, observables, worker) ",
+        );
+        query.push_values(part, |mut values, (calibration, row)| {
+            let (observables, rejection) = match row.result {
+                Ok(observables) => (Some(blob::encode(&observables)), None),
+                Err(rejection) => (None, Some(rejection)),
+            };
+            values
+                .push_bind(calibration)
+                .push_bind(row.evaluation as i64)
+                .push_bind(super::json(&row.theta))
+                .push_bind(row.log_likelihood)
+                .push_bind(rejection)
+                .push_bind(observables)
+                .push_bind(row.worker);
+        });
+        query.build().persistent(false).execute(&mut *connection).await?;
+    }
+    Ok(())
+}

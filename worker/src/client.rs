@@ -1,0 +1,82 @@
+//! The coordinator over HTTP; the only place of the worker that knows HTTP.
+
+use std::time::Duration;
+
+use reqwest::{Client, RequestBuilder, StatusCode};
+use shared::api::ErrorBody;
+use shared::exchange::{ExchangeRequest, ExchangeResponse};
+use shared::model::ModelVariant;
+
+use crate::pull::{Coordinator, ExchangeError};
+
+/// A coordinator at a URL.
+#[derive(Debug)]
+pub struct HttpCoordinator {
+    client: Client,
+    url: String,
+}
+
+/// Longer than the longest poll; a connection that is silent for so long is dead.
+const TIMEOUT: Duration = Duration::from_secs(60);
+
+impl HttpCoordinator {
+    /// A client of the coordinator at `url`, as in `http://host:7070`.
+    ///
+    /// # Errors
+    /// A sentence that names the URL and what is wrong with it.
+    pub fn new(url: &str) -> Result<Self, String> {
+        let parsed = reqwest::Url::parse(url).map_err(|e| format!("coordinator URL \"{url}\": {e}"))?;
+        if parsed.scheme() != "http" {
+            return Err(format!("coordinator URL \"{url}\": scheme {} is not http", parsed.scheme()));
+        }
+        let client = Client::builder()
+            .timeout(TIMEOUT)
+            .connect_timeout(Duration::from_secs(5))
+            .build()
+            .map_err(|e| format!("HTTP client: {e}"))?;
+        Ok(HttpCoordinator { client, url: url.trim_end_matches('/').to_owned() })
+    }
+
+    async fn send(&self, request: RequestBuilder) -> Result<reqwest::Response, ExchangeError> {
+        let response = request.send().await.map_err(|e| ExchangeError::Away(root_cause(&e)))?;
+        let status = response.status();
+        if status.is_success() || status == StatusCode::NOT_FOUND {
+            return Ok(response);
+        }
+        let text = response.text().await.unwrap_or_default();
+        let message = match serde_json::from_str::<ErrorBody>(&text) {
+            Ok(body) => body.error.message,
+            Err(_) => format!("status {status}"),
+        };
+        // Only a client's mistake is for ever; a busy or broken coordinator may mend.
+        if status.is_client_error() && status != StatusCode::TOO_MANY_REQUESTS {
+            Err(ExchangeError::Refused(message))
+        } else {
+            Err(ExchangeError::Away(message))
+        }
+    }
+}
+
+fn root_cause(error: &dyn std::error::Error) -> String {
+    error.source().map_or_else(|| error.to_string(), root_cause)
+}
+
+impl Coordinator for HttpCoordinator {
+    async fn exchange(&self, request: ExchangeRequest) -> Result<ExchangeResponse, ExchangeError> {
+        let url = format!("{}/v1/work/exchange", self.url);
+        let response = self.send(self.client.post(url).json(&request)).await?;
+        if response.status() == StatusCode::NOT_FOUND {
+            return Err(ExchangeError::Refused(format!("{} is no Grouser coordinator", self.url)));
+        }
+        response.json().await.map_err(|e| ExchangeError::Away(root_cause(&e)))
+    }
+
+    async fn variant(&self, hash: &str) -> Result<Option<ModelVariant>, ExchangeError> {
+        let url = format!("{}/v1/work/variants/{hash}", self.url);
+        let response = self.send(self.client.get(url)).await?;
+        if response.status() == StatusCode::NOT_FOUND {
+            return Ok(None);
+        }
+        response.json().await.map(Some).map_err(|e| ExchangeError::Away(root_cause(&e)))
+    }
+}

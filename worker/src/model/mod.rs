@@ -1,0 +1,137 @@
+//! A variant made ready to evaluate: shared names become the physics' types.
+
+mod parameters;
+
+use std::collections::BTreeMap;
+
+use scm::{Averages, Condition, Soil, Wheel, quasi_static};
+use shared::model::{ModelKind, ModelVariant};
+use shared::outcome::{Observables, Outcome, Rejection};
+
+use parameters::{Radius, SoilMap};
+
+/// A variant whose names are resolved, so that an evaluation looks up nothing.
+#[derive(Debug)]
+pub struct CompiledVariant {
+    dimension: usize,
+    soil: SoilMap,
+    wheels: Vec<(Wheel, Radius)>,
+    conditions: Vec<(usize, Condition)>,
+}
+
+impl CompiledVariant {
+    /// Resolves the names of a variant.
+    ///
+    /// # Errors
+    /// A sentence that names what this worker does not know or cannot express.
+    pub fn new(variant: &ModelVariant) -> Result<Self, String> {
+        if variant.kind != ModelKind::QuasiStatic {
+            return Err(format!("kind = \"{}\" is not available in this version", variant.kind.name()));
+        }
+        if let Some(effect) = variant.effects.first() {
+            return Err(format!("effect \"{effect}\" is not available in this version"));
+        }
+        let names: Vec<&str> = variant.wheels.keys().map(String::as_str).collect();
+        let soil = SoilMap::new(variant)?;
+        let wheels = variant
+            .wheels
+            .iter()
+            .map(|(name, w)| {
+                let wheel = Wheel { radius_m: w.radius_m, width_m: w.width_m, rig_radius_m: w.rig_radius_m };
+                (wheel, Radius::new(variant, name))
+            })
+            .collect();
+        let conditions = variant
+            .conditions
+            .iter()
+            .map(|c| {
+                let wheel = names.iter().position(|n| *n == c.wheel).ok_or(format!("unknown wheel \"{}\"", c.wheel))?;
+                let condition = Condition {
+                    slip: c.slip,
+                    wheel_load_n: c.wheel_load_n,
+                    sled_speed_m_s: c.sled_speed_m_s,
+                    slip_angle_rad: c.slip_angle_deg.to_radians(),
+                    pass: c.pass,
+                };
+                Ok((wheel, condition))
+            })
+            .collect::<Result<_, String>>()?;
+        Ok(CompiledVariant { dimension: variant.parameters.len(), soil, wheels, conditions })
+    }
+
+    /// Simulates every condition at one parameter vector. The first refusal ends it.
+    pub fn evaluate(&self, theta: &[f64]) -> Outcome {
+        if theta.len() != self.dimension {
+            let message = format!("theta has {} entries, the variant has {}", theta.len(), self.dimension);
+            return rejected("invalid_parameter", 0, message);
+        }
+        let soil: Soil = match self.soil.soil(theta).checked() {
+            Ok(soil) => soil,
+            Err(rejection) => return rejected(rejection.kind(), 0, rejection.to_string()),
+        };
+        let runs = self.conditions.len();
+        let mut observables = Observables {
+            drawbar_pull_n: Vec::with_capacity(runs),
+            torque_n_m: Vec::with_capacity(runs),
+            sinkage_m: Vec::with_capacity(runs),
+            lateral_force_n: Vec::with_capacity(runs),
+            b_eff_m: Vec::with_capacity(runs),
+            contact_length_m: Vec::with_capacity(runs),
+            residual_load_n: Vec::with_capacity(runs),
+            nodes_in_contact: Vec::with_capacity(runs),
+            simulated_travel_m: Vec::with_capacity(runs),
+        };
+        for (position, (wheel, condition)) in self.conditions.iter().enumerate() {
+            let (wheel, radius) = &self.wheels[*wheel];
+            let wheel = Wheel { radius_m: radius.value(theta).unwrap_or(wheel.radius_m), ..*wheel };
+            match quasi_static::simulate(&soil, &wheel, condition) {
+                Ok(averages) => push(&mut observables, &averages),
+                Err(rejection) => return rejected(rejection.kind(), position, rejection.to_string()),
+            }
+        }
+        Outcome::Evaluated(observables)
+    }
+}
+
+fn push(o: &mut Observables, a: &Averages) {
+    o.drawbar_pull_n.push(a.drawbar_pull_n);
+    o.torque_n_m.push(a.torque_n_m);
+    o.sinkage_m.push(a.sinkage_m);
+    o.lateral_force_n.push(a.lateral_force_n);
+    o.b_eff_m.push(a.b_eff_m);
+    o.contact_length_m.push(a.contact_length_m);
+    o.residual_load_n.push(a.residual_load_n);
+    o.nodes_in_contact.push(a.nodes_in_contact);
+    o.simulated_travel_m.push(a.simulated_travel_m);
+}
+
+fn rejected(kind: &str, condition: usize, message: String) -> Outcome {
+    Outcome::Rejected(Rejection { kind: kind.to_owned(), condition: condition as u32, message })
+}
+
+/// Variants by hash, each compiled once.
+#[derive(Debug, Default)]
+pub struct VariantCache {
+    variants: BTreeMap<String, std::sync::Arc<CompiledVariant>>,
+}
+
+impl VariantCache {
+    /// The compiled variant of a hash, if it was added.
+    pub fn get(&self, hash: &str) -> Option<std::sync::Arc<CompiledVariant>> {
+        self.variants.get(hash).cloned()
+    }
+
+    /// Compiles and keeps a variant under the hash it was asked for by.
+    ///
+    /// # Errors
+    /// The variant does not have that hash, or cannot be compiled.
+    pub fn add(&mut self, hash: &str, variant: &ModelVariant) -> Result<(), String> {
+        let own = variant.hash();
+        if own != hash {
+            return Err(format!("variant {hash} came with hash {own}: coordinator and worker read it differently"));
+        }
+        let compiled = CompiledVariant::new(variant)?;
+        self.variants.insert(hash.to_owned(), std::sync::Arc::new(compiled));
+        Ok(())
+    }
+}

@@ -1,0 +1,103 @@
+//! Where each physical quantity comes from: a free parameter, or a fixed value.
+
+use scm::{Soil, bekker_moduli};
+use shared::model::ModelVariant;
+
+/// The source of one quantity.
+#[derive(Debug, Clone, Copy)]
+enum Source {
+    /// Position in the parameter vector.
+    Free(usize),
+    Fixed(f64),
+}
+
+impl Source {
+    fn find(variant: &ModelVariant, name: &str) -> Option<Source> {
+        let free = variant.parameters.iter().position(|p| p == name).map(Source::Free);
+        free.or_else(|| variant.fixed.get(name).copied().map(Source::Fixed))
+    }
+
+    fn required(variant: &ModelVariant, name: &str) -> Result<Source, String> {
+        Source::find(variant, name).ok_or_else(|| format!("parameter {name} has neither a prior nor a fixed value"))
+    }
+
+    fn value(self, theta: &[f64]) -> f64 {
+        match self {
+            Source::Free(position) => theta[position],
+            Source::Fixed(value) => value,
+        }
+    }
+}
+
+/// How the stiffness is stated.
+#[derive(Debug)]
+enum Stiffness {
+    Moduli { k_c: Source, k_phi: Source },
+    Reference { log10_p_ref: Source, kappa: Source },
+}
+
+/// The sources of the soil parameters.
+#[derive(Debug)]
+pub(super) struct SoilMap {
+    stiffness: Stiffness,
+    n: Source,
+    cohesion_pa: Source,
+    friction_angle_deg: Source,
+    shear_velocity_m_s: Source,
+    gamma_exponent: Source,
+}
+
+impl SoilMap {
+    pub(super) fn new(variant: &ModelVariant) -> Result<Self, String> {
+        let stiffness = match (Source::find(variant, "k_c"), Source::find(variant, "k_phi")) {
+            (Some(k_c), Some(k_phi)) => Stiffness::Moduli { k_c, k_phi },
+            _ => Stiffness::Reference {
+                log10_p_ref: Source::required(variant, "log10_p_ref")?,
+                kappa: Source::required(variant, "kappa")?,
+            },
+        };
+        Ok(SoilMap {
+            stiffness,
+            n: Source::required(variant, "n")?,
+            cohesion_pa: Source::required(variant, "cohesion_pa")?,
+            friction_angle_deg: Source::required(variant, "friction_angle_deg")?,
+            shear_velocity_m_s: Source::required(variant, "shear_velocity_m_s")?,
+            gamma_exponent: Source::required(variant, "gamma_exponent")?,
+        })
+    }
+
+    pub(super) fn soil(&self, theta: &[f64]) -> Soil {
+        let n = self.n.value(theta);
+        let (k_c, k_phi) = match &self.stiffness {
+            Stiffness::Moduli { k_c, k_phi } => (k_c.value(theta), k_phi.value(theta)),
+            Stiffness::Reference { log10_p_ref, kappa } => {
+                bekker_moduli(log10_p_ref.value(theta), kappa.value(theta), n)
+            }
+        };
+        Soil {
+            k_c,
+            k_phi,
+            n,
+            cohesion_pa: self.cohesion_pa.value(theta),
+            friction_angle_rad: self.friction_angle_deg.value(theta).to_radians(),
+            shear_velocity_m_s: self.shear_velocity_m_s.value(theta),
+            gamma_exponent: self.gamma_exponent.value(theta),
+        }
+    }
+}
+
+/// The source of a wheel's radius: its own parameter, the parameter of all wheels, or the experiment.
+#[derive(Debug)]
+pub(super) struct Radius(Option<Source>);
+
+impl Radius {
+    pub(super) fn new(variant: &ModelVariant, wheel: &str) -> Self {
+        let own = Source::find(variant, &format!("wheel_radius_m.{wheel}"));
+        Radius(own.or_else(|| Source::find(variant, "wheel_radius_m")))
+    }
+
+    /// The radius [m]; `None` = the experiment's.
+    pub(super) fn value(&self, theta: &[f64]) -> Option<f64> {
+        self.0.map(|source| source.value(theta))
+    }
+}

@@ -1,0 +1,284 @@
+//! The loop of a worker: exchange, evaluate, resend, renew, give back.
+//!
+//! New leases are asked for while the last ones are still being evaluated, so threads wait only where the
+//! sampler itself does: at the end of a step.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::future::Future;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, PROTOCOL_VERSION, WorkResult};
+use shared::model::ModelVariant;
+use shared::outcome::{Fault, Outcome};
+use tokio::sync::mpsc;
+
+use crate::evaluator::{Evaluator, SimulationClock};
+use crate::model::VariantCache;
+
+/// A worker holds about so much work [s].
+const WORK_S: f64 = 1.5;
+/// Longest wait of a long poll [ms].
+const WAIT_MS: u64 = 20_000;
+/// Results are sent at least so often, even while there is work left.
+const FLUSH: Duration = Duration::from_secs(1);
+/// Pauses between attempts to reach a coordinator that is away: doubled from the first to the last.
+const BACK_OFF: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(5)];
+
+/// Why an exchange failed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ExchangeError {
+    /// The coordinator is away or busy: try again later.
+    #[error("the coordinator is away: {0}")]
+    Away(String),
+    /// The coordinator will never take this worker.
+    #[error("the coordinator refuses this worker: {0}")]
+    Refused(String),
+}
+
+/// A coordinator, over HTTP or in the same process.
+pub trait Coordinator: Send + Sync + 'static {
+    /// One exchange of results for leases.
+    fn exchange(
+        &self,
+        request: ExchangeRequest,
+    ) -> impl Future<Output = Result<ExchangeResponse, ExchangeError>> + Send;
+
+    /// The variant of a hash; `None` where no calibration at hand uses it.
+    fn variant(&self, hash: &str) -> impl Future<Output = Result<Option<ModelVariant>, ExchangeError>> + Send;
+}
+
+/// Who the worker is and how it works.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// Name of this worker process, fresh at every start.
+    pub name: String,
+    /// Threads that simulate.
+    pub threads: usize,
+}
+
+/// Runs until `shutdown` is ready; then what has not begun is given back.
+///
+/// # Errors
+/// [`ExchangeError::Refused`], or the threads cannot be started (as `Refused`, too: nothing can mend it).
+pub async fn run<C: Coordinator>(
+    coordinator: Arc<C>,
+    settings: Settings,
+    clock: Arc<SimulationClock>,
+    shutdown: impl Future<Output = ()>,
+) -> Result<(), ExchangeError> {
+    let (evaluator, results) = Evaluator::new(settings.threads, clock.clone())
+        .map_err(|e| ExchangeError::Refused(format!("no threads: {e}")))?;
+    let worker = Worker {
+        coordinator,
+        evaluator,
+        clock,
+        settings,
+        variants: VariantCache::default(),
+        held: BTreeSet::new(),
+        outbox: Vec::new(),
+        cancelled: Arc::new(AtomicBool::new(false)),
+        known: Known { remaining: 0, workers: 1, lease_ms: WAIT_MS, asked: 0 },
+        flushed: Instant::now(),
+        renewed: Instant::now(),
+    };
+    worker.run(results, shutdown).await
+}
+
+/// What the last answer told.
+#[derive(Debug)]
+struct Known {
+    remaining: u64,
+    workers: u32,
+    lease_ms: u64,
+    /// How many leases the last successful request brought.
+    asked: usize,
+}
+
+struct Worker<C> {
+    coordinator: Arc<C>,
+    evaluator: Evaluator,
+    clock: Arc<SimulationClock>,
+    settings: Settings,
+    variants: VariantCache,
+    /// Leases whose result is not there yet.
+    held: BTreeSet<u64>,
+    /// Results that the coordinator has not acknowledged.
+    outbox: Vec<WorkResult>,
+    cancelled: Arc<AtomicBool>,
+    known: Known,
+    flushed: Instant,
+    renewed: Instant,
+}
+
+impl<C: Coordinator> Worker<C> {
+    async fn run(
+        mut self,
+        mut results: mpsc::UnboundedReceiver<WorkResult>,
+        shutdown: impl Future<Output = ()>,
+    ) -> Result<(), ExchangeError> {
+        tokio::pin!(shutdown);
+        let mut back_off = BACK_OFF[0];
+        let mut away = false;
+        loop {
+            while let Ok(result) = results.try_recv() {
+                self.take(result);
+            }
+            if !self.is_time_to_exchange() {
+                tokio::select! {
+                    () = &mut shutdown => return self.stop(results).await,
+                    result = results.recv() => { if let Some(result) = result { self.take(result); } }
+                    () = tokio::time::sleep(FLUSH) => {}
+                }
+                continue;
+            }
+            let request = self.request();
+            let sent = request.results.len();
+            let coordinator = self.coordinator.clone();
+            let answer = tokio::select! {
+                () = &mut shutdown => return self.stop(results).await,
+                answer = coordinator.exchange(request) => answer,
+            };
+            match answer {
+                Ok(response) => {
+                    if std::mem::take(&mut away) {
+                        tracing::info!(worker = self.settings.name, "the coordinator is back");
+                    }
+                    back_off = BACK_OFF[0];
+                    self.outbox.drain(..sent);
+                    self.accept(response).await;
+                }
+                Err(ExchangeError::Away(reason)) => {
+                    if !std::mem::replace(&mut away, true) {
+                        tracing::warn!(worker = self.settings.name, reason, "the coordinator is away; trying again");
+                    }
+                    tokio::select! {
+                        () = &mut shutdown => return self.stop(results).await,
+                        () = tokio::time::sleep(back_off) => {}
+                    }
+                    back_off = (back_off * 2).min(BACK_OFF[1]);
+                }
+                Err(refused) => return Err(refused),
+            }
+        }
+    }
+
+    fn take(&mut self, result: WorkResult) {
+        self.held.remove(&result.lease);
+        self.outbox.push(result);
+    }
+
+    /// An exchange is due when half of the last batch is done, when hands are empty, or when results or
+    /// renewals have waited long enough.
+    fn is_time_to_exchange(&self) -> bool {
+        let more_to_get = self.known.remaining > 0 && self.held.len() * 2 <= self.known.asked;
+        self.held.is_empty()
+            || more_to_get
+            || (!self.outbox.is_empty() && self.flushed.elapsed() >= FLUSH)
+            || self.renewal_due()
+    }
+
+    fn renewal_due(&self) -> bool {
+        !self.held.is_empty() && self.renewed.elapsed() >= Duration::from_millis(self.known.lease_ms / 3)
+    }
+
+    /// `want = min(1.5 s of work, remaining / (2 x workers))`, at least one for every thread.
+    fn want(&self) -> u32 {
+        let threads = self.settings.threads as f64;
+        let work = self.clock.mean_s().map_or(threads, |mean| WORK_S * threads / mean.max(1e-9));
+        let share = self.known.remaining as f64 / (2.0 * f64::from(self.known.workers.max(1)));
+        let want = work.min(share.max(threads)) - self.held.len() as f64;
+        want.clamp(0.0, 100_000.0) as u32
+    }
+
+    fn request(&mut self) -> ExchangeRequest {
+        let renew = self.renewal_due();
+        self.flushed = Instant::now();
+        if renew {
+            self.renewed = Instant::now();
+        }
+        let idle = self.held.is_empty();
+        ExchangeRequest {
+            worker: self.settings.name.clone(),
+            protocol: PROTOCOL_VERSION,
+            model_version: crate::model_version().to_owned(),
+            results: self.outbox.clone(),
+            holding: if renew { self.held.iter().copied().collect() } else { Vec::new() },
+            returned: Vec::new(),
+            want: self.want().max(u32::from(idle)),
+            // Whoever still has work in hand comes back for more by itself.
+            wait_ms: if idle { WAIT_MS } else { 0 },
+        }
+    }
+
+    async fn accept(&mut self, response: ExchangeResponse) {
+        self.known = Known {
+            remaining: response.remaining,
+            workers: response.workers,
+            lease_ms: response.lease_ms,
+            asked: response.leases.len() + self.held.len(),
+        };
+        if let Some(reason) = response.refused {
+            tracing::error!(worker = self.settings.name, reason, "no lease of a waiting calibration");
+            tokio::time::sleep(BACK_OFF[1]).await;
+        }
+        let hashes: BTreeSet<String> = response.leases.iter().map(|l| l.variant.clone()).collect();
+        let mut unknown = BTreeMap::new();
+        for hash in hashes {
+            if let Err(reason) = self.fetch(&hash).await {
+                unknown.insert(hash, reason);
+            }
+        }
+        for lease in response.leases {
+            self.held.insert(lease.lease);
+            match self.variants.get(&lease.variant) {
+                Some(variant) => self.evaluator.start(lease, variant, self.cancelled.clone()),
+                None => self.refuse(lease, &unknown),
+            }
+        }
+    }
+
+    /// A lease whose variant cannot be had is a fault of this machine.
+    fn refuse(&mut self, lease: Lease, reasons: &BTreeMap<String, String>) {
+        let message = reasons.get(&lease.variant).cloned().unwrap_or_default();
+        let Lease { lease, calibration, evaluation, .. } = lease;
+        let outcome = Outcome::Fault(Fault { message });
+        self.take(WorkResult { lease, calibration, evaluation, outcome });
+    }
+
+    /// Sees to it that a variant is in the cache.
+    async fn fetch(&mut self, hash: &str) -> Result<(), String> {
+        if self.variants.get(hash).is_some() {
+            return Ok(());
+        }
+        match self.coordinator.variant(hash).await {
+            Ok(Some(variant)) => self.variants.add(hash, &variant),
+            Ok(None) => Err(format!("the coordinator does not know variant {hash}")),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    /// Gives back what has not begun and sends what is done; leases in hand end with the process otherwise.
+    async fn stop(mut self, mut results: mpsc::UnboundedReceiver<WorkResult>) -> Result<(), ExchangeError> {
+        self.cancelled.store(true, Ordering::Release);
+        self.evaluator.wait();
+        while let Ok(result) = results.try_recv() {
+            self.take(result);
+        }
+        let request = ExchangeRequest {
+            returned: self.held.iter().copied().collect(),
+            want: 0,
+            wait_ms: 0,
+            holding: Vec::new(),
+            ..self.request()
+        };
+        let (sent, returned) = (request.results.len(), request.returned.len());
+        let farewell = tokio::time::timeout(Duration::from_secs(5), self.coordinator.exchange(request)).await;
+        match farewell {
+            Ok(Ok(_)) => tracing::info!(worker = self.settings.name, sent, returned, "stopped"),
+            _ => tracing::warn!(worker = self.settings.name, "stopped; the coordinator could not be told"),
+        }
+        Ok(())
+    }
+}

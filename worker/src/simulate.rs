@@ -1,0 +1,147 @@
+//! Forward runs of an experiment without a coordinator.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use rand::{RngExt, SeedableRng};
+use shared::channel::Channel;
+use shared::experiment::{Experiment, NoiseSd, RunUse};
+use shared::file::{FileError, FileSet, parse_toml, read_text, sibling};
+use shared::model::{ModelSettings, ModelVariant};
+use shared::outcome::{Observables, Outcome};
+
+use crate::config::Simulate;
+use crate::model::CompiledVariant;
+
+/// Why there are no forward runs.
+#[derive(Debug, thiserror::Error)]
+pub enum SimulateError {
+    /// A file cannot be used.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The model refuses the parameters.
+    #[error("run {run}: the model refuses these parameters: {message}")]
+    Rejected {
+        /// The run.
+        run: String,
+        /// Quantity, value, unit, bound.
+        message: String,
+    },
+    /// The result cannot be written.
+    #[error("{path}: {source}")]
+    Write {
+        /// The file.
+        path: String,
+        /// The operating system's reason.
+        source: std::io::Error,
+    },
+}
+
+/// Simulates every run of an experiment and writes the averages as CSV.
+///
+/// # Errors
+/// [`SimulateError`].
+pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
+    if command.histories.is_some() {
+        let message = "--histories: quasi_static has no time histories; a model that has them is not available in this version";
+        return Err(FileError::whole(&command.model.display().to_string(), message).into());
+    }
+    let experiment = read_experiment(&command.experiment)?;
+    let variant = variant(&experiment, &command.model, &command.parameters)?;
+    let compiled = CompiledVariant::new(&variant)
+        .map_err(|e| FileError::whole(&command.model.display().to_string(), e))?;
+    let observables = match compiled.evaluate(&[]) {
+        Outcome::Evaluated(observables) => observables,
+        Outcome::Rejected(r) => {
+            let run = experiment.runs[r.condition as usize].name.clone();
+            return Err(SimulateError::Rejected { run, message: r.message });
+        }
+        Outcome::Fault(f) => return Err(SimulateError::Rejected { run: String::new(), message: f.message }),
+    };
+    let noise = noise(&experiment, command.noise_seed)
+        .map_err(|e| FileError::whole(&command.experiment.display().to_string(), e))?;
+    let text = table(&experiment, &observables, &noise);
+    std::fs::write(&command.out, text)
+        .map_err(|source| SimulateError::Write { path: command.out.display().to_string(), source })
+}
+
+/// Reads an experiment with the files that it names.
+///
+/// # Errors
+/// [`FileError`].
+pub fn read_experiment(path: &Path) -> Result<Experiment, FileError> {
+    let name = path.display().to_string();
+    let toml = read_text(path)?;
+    let mut files = BTreeMap::new();
+    for file in Experiment::referenced_files(&name, &toml)? {
+        let text = read_text(&sibling(path, &file))?;
+        files.insert(file, text);
+    }
+    Experiment::parse(&name, &FileSet { toml, files })
+}
+
+fn variant(experiment: &Experiment, model: &Path, parameters: &Path) -> Result<ModelVariant, FileError> {
+    let (model_name, parameters_name) = (model.display().to_string(), parameters.display().to_string());
+    let mut table: toml::Table = parse_toml(&model_name, &read_text(model)?)?;
+    // A job file serves as well: its [model] counts.
+    if let Some(toml::Value::Table(inner)) = table.remove("model") {
+        table = inner;
+    }
+    let mut settings = ModelSettings::from_table(&table).map_err(|e| FileError::whole(&model_name, e))?;
+    let theta: BTreeMap<String, f64> = parse_toml(&parameters_name, &read_text(parameters)?)?;
+    settings.fixed.extend(theta);
+    ModelVariant::new(experiment, &settings, Vec::new(), &experiment.runs)
+        .map_err(|e| FileError::whole(&parameters_name, e))
+}
+
+/// Noise by run and channel: independent normal draws, one stream for each seed.
+fn noise(experiment: &Experiment, seed: Option<u64>) -> Result<Vec<[f64; 4]>, String> {
+    let mut noise = vec![[0.0; 4]; experiment.runs.len()];
+    let Some(seed) = seed else { return Ok(noise) };
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+    for (row, run) in noise.iter_mut().zip(&experiment.runs) {
+        for channel in Channel::ALL {
+            let c = channel.index();
+            let sd = match (run.sd[c], experiment.noise.sd[c]) {
+                (Some(sd), _) | (None, Some(NoiseSd::Known(sd))) => sd,
+                (None, None) => 0.0,
+                (None, Some(_)) => {
+                    return Err(format!("--noise-seed needs a number for [noise] {}", channel.column()));
+                }
+            };
+            // Box-Muller; 1 - u lies in (0, 1], so the logarithm is finite.
+            let (u, v): (f64, f64) = (rng.random(), rng.random());
+            row[c] = sd * (-2.0 * libm::log(1.0 - u)).sqrt() * libm::cos(std::f64::consts::TAU * v);
+        }
+    }
+    Ok(noise)
+}
+
+fn table(experiment: &Experiment, observables: &Observables, noise: &[[f64; 4]]) -> String {
+    let mut text = String::from("run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,pass");
+    for channel in Channel::ALL {
+        text.push(',');
+        text.push_str(channel.column());
+    }
+    text.push_str(",use\n");
+    for (i, run) in experiment.runs.iter().enumerate() {
+        let usage = if run.usage == RunUse::Fit { "fit" } else { "holdout" };
+        text.push_str(&format!(
+            "{},{},{},{},{},{},{},{}",
+            run.name,
+            run.wheel,
+            run.soil,
+            run.slip,
+            run.wheel_load_n,
+            run.sled_speed_m_s,
+            run.slip_angle_deg,
+            run.pass
+        ));
+        for channel in Channel::ALL {
+            let value = observables.channel(channel)[i] + noise[i][channel.index()];
+            text.push_str(&format!(",{value}"));
+        }
+        text.push_str(&format!(",{usage}\n"));
+    }
+    text
+}
