@@ -5,11 +5,13 @@ CREATE TABLE evaluations (
     evaluation     INTEGER NOT NULL,
     theta          TEXT    NOT NULL,
     log_likelihood REAL,             -- NULL: refused, or not scored (final draws)
-    rejection      TEXT,             -- NULL: the model gave observables
-    observables    BLOB,             -- layout: README.md beside this file
+    rejection      TEXT,             -- why the model refused
+    fitted         BLOB,             -- sampling: the model's values of the fitted measurements
+    observables    BLOB,             -- final draws: everything
+    fingerprint    INTEGER NOT NULL, -- of the whole result; a second computation must agree
     worker         TEXT    NOT NULL,
     PRIMARY KEY (calibration, evaluation),
-    CHECK ((rejection IS NULL) <> (observables IS NULL))
+    CHECK ((rejection IS NOT NULL) + (fitted IS NOT NULL) + (observables IS NOT NULL) = 1)
 ) WITHOUT ROWID;
 
 -- A failed attempt: a machine's fault, never a fact about the parameters.

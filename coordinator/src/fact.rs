@@ -19,7 +19,11 @@ pub enum Fact {
         /// The calibration.
         calibration: i64,
         /// The evaluation.
-        row: EvaluationRow,
+        evaluation: u64,
+        /// What must agree.
+        fingerprint: Fingerprint,
+        /// Who computed it.
+        worker: String,
     },
     /// A stage ended.
     Stage {
@@ -79,8 +83,37 @@ pub struct EvaluationRow {
     pub theta: Vec<f64>,
     /// Log-likelihood; `None` where the model refused or nothing was scored.
     pub log_likelihood: Option<f64>,
-    /// What the model gave, or why it refused.
-    pub result: Result<Observables, String>,
+    /// What is kept of the result.
+    pub kept: Kept,
+    /// What a second computation must agree with.
+    pub fingerprint: Fingerprint,
     /// Who computed it.
     pub worker: String,
+}
+
+/// What is kept of a result.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Kept {
+    /// While sampling: the model's values of the fitted measurements, in the order of the likelihood. Enough to
+    /// score them again under another noise model, and a quarter of the whole.
+    Fitted(Vec<f64>),
+    /// Of the final draws: everything.
+    Whole(Box<Observables>),
+    /// The model refused.
+    Refused(String),
+}
+
+/// Two computations of an evaluation must have the same one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fingerprint(pub i64);
+
+impl Fingerprint {
+    /// The fingerprint of a result.
+    pub fn of(result: &Result<Observables, String>) -> Self {
+        Fingerprint(match result {
+            Ok(observables) => observables.fingerprint().cast_signed(),
+            // A refusal is compared by its text.
+            Err(reason) => reason.bytes().fold(7, |hash: i64, b| hash.wrapping_mul(31).wrapping_add(i64::from(b))),
+        })
+    }
 }

@@ -54,6 +54,23 @@ impl Observables {
         }
     }
 
+    /// A number that two results share only if they agree to the bit, as good as surely (64 bits).
+    pub fn fingerprint(&self) -> u64 {
+        let vectors = [
+            &self.drawbar_pull_n,
+            &self.torque_n_m,
+            &self.sinkage_m,
+            &self.lateral_force_n,
+            &self.b_eff_m,
+            &self.contact_length_m,
+            &self.residual_load_n,
+            &self.simulated_travel_m,
+        ];
+        let bits = vectors.into_iter().flatten().map(|v| v.to_bits());
+        let counts = self.nodes_in_contact.iter().map(|&n| u64::from(n));
+        fnv(bits.chain(counts))
+    }
+
     /// Whether every vector has an entry for each of `runs` conditions.
     pub fn covers(&self, runs: usize) -> bool {
         Channel::ALL.iter().all(|&c| self.channel(c).len() == runs)
@@ -82,4 +99,22 @@ pub struct Rejection {
 pub struct Fault {
     /// What the machine said.
     pub message: String,
+}
+
+/// FNV-1a with a rotation, over 64-bit words: stable over versions, unlike the standard library's hasher.
+fn fnv(words: impl Iterator<Item = u64>) -> u64 {
+    words.fold(0xcbf2_9ce4_8422_2325, |hash, word| (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(29))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_bit_changes_the_fingerprint() {
+        let mut observables = Observables { sinkage_m: vec![0.1, 0.2, 0.3], ..Observables::default() };
+        let before = observables.fingerprint();
+        observables.sinkage_m[1] = f64::from_bits(observables.sinkage_m[1].to_bits() ^ 1);
+        assert_ne!(observables.fingerprint(), before);
+    }
 }

@@ -11,10 +11,11 @@ use std::sync::Arc;
 
 use inference::{LogLikelihood, Posterior, Sampler};
 use shared::api::CalibrationState;
+use shared::channel::Channel;
 use shared::model::ModelVariant;
 use shared::outcome::{Observables, Outcome};
 
-use crate::fact::{EvaluationRow, Fact};
+use crate::fact::{EvaluationRow, Fact, Fingerprint, Kept};
 use crate::lease::{Completion, Queue};
 use crate::spec::Spec;
 
@@ -191,8 +192,9 @@ impl Calibration {
         match self.queue.complete(evaluation) {
             Completion::First => {}
             Completion::Duplicate | Completion::Unknown => {
-                let row = self.duplicate_row(evaluation, outcome, worker);
-                return Ok((vec![Fact::Duplicate { calibration: self.identity.id, row }], false));
+                let fingerprint = Fingerprint::of(&outcome);
+                let (calibration, worker) = (self.identity.id, worker.to_owned());
+                return Ok((vec![Fact::Duplicate { calibration, evaluation, fingerprint, worker }], false));
             }
         }
         let theta = self.theta(evaluation).expect("the queue holds only evaluations asked for").to_vec();
@@ -210,7 +212,9 @@ impl Calibration {
             finite => Some(finite.value()),
         });
         let rejected = outcome.is_err();
-        let row = EvaluationRow { evaluation, theta, log_likelihood, result: outcome, worker: worker.to_owned() };
+        let fingerprint = Fingerprint::of(&outcome);
+        let kept = self.kept(outcome);
+        let row = EvaluationRow { evaluation, theta, log_likelihood, kept, fingerprint, worker: worker.to_owned() };
         let mut facts = vec![Fact::Evaluated { calibration: self.identity.id, row }];
         self.record(evaluation, rejected, scored, &mut facts);
         Ok((facts, true))
@@ -223,7 +227,7 @@ impl Calibration {
         theta: &[f64],
     ) -> Result<LogLikelihood, inference::LikelihoodError> {
         let Ok(observables) = outcome else { return Ok(LogLikelihood::Impossible) };
-        let channels = shared::channel::Channel::ALL.map(|c| observables.channel(c));
+        let channels = Channel::ALL.map(|c| observables.channel(c));
         self.spec.likelihood.log_likelihood(|run, channel| channels[channel][run], theta)
     }
 
@@ -316,8 +320,15 @@ impl Calibration {
         self.change_state(CalibrationState::Running, None, facts);
     }
 
-    fn duplicate_row(&self, evaluation: u64, result: Result<Observables, String>, worker: &str) -> EvaluationRow {
-        EvaluationRow { evaluation, theta: Vec::new(), log_likelihood: None, result, worker: worker.to_owned() }
+    fn kept(&self, outcome: Result<Observables, String>) -> Kept {
+        match outcome {
+            Err(reason) => Kept::Refused(reason),
+            Ok(observables) if self.draws.is_some() => Kept::Whole(Box::new(observables)),
+            Ok(observables) => {
+                let channels = Channel::ALL.map(|c| observables.channel(c));
+                Kept::Fitted(self.spec.likelihood.data().iter().map(|d| channels[d.channel][d.run]).collect())
+            }
+        }
     }
 }
 

@@ -7,8 +7,13 @@ use super::StoreError;
 /// Vectors per run: four channels and five diagnostics.
 const VECTORS: usize = 9;
 
+/// The bytes of numbers.
+pub(super) fn encode(values: &[f64]) -> Vec<u8> {
+    values.iter().flat_map(|v| v.to_le_bytes()).collect()
+}
+
 /// The bytes of observables.
-pub(super) fn encode(o: &Observables) -> Vec<u8> {
+pub(super) fn encode_whole(o: &Observables) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(o.sinkage_m.len() * VECTORS * 8);
     let mut push = |values: &[f64]| bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
     push(&o.drawbar_pull_n);
@@ -63,7 +68,7 @@ mod tests {
             nodes_in_contact: vec![16, 24],
             simulated_travel_m: vec![0.0, 1.0],
         };
-        assert_eq!(decode(&encode(&observables)).unwrap(), observables);
+        assert_eq!(decode(&encode_whole(&observables)).unwrap(), observables);
         assert!(decode(&[0; 10]).is_err());
     }
 }

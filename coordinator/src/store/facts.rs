@@ -3,11 +3,11 @@
 use std::sync::atomic::Ordering;
 
 use inference::StageRecord;
-use sqlx::{QueryBuilder, Row, Sqlite, SqliteConnection};
+use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 
 use super::writer::StoreHealth;
-use super::{blob, json};
-use crate::fact::{EvaluationRow, Fact};
+use super::json;
+use crate::fact::{Fact, Fingerprint};
 
 /// Most samples in one statement.
 const ROWS: usize = 4000;
@@ -20,7 +20,9 @@ pub(super) async fn write(
 ) -> Result<(), sqlx::Error> {
     match fact {
         Fact::Evaluated { .. } => unreachable!("evaluations go in groups"),
-        Fact::Duplicate { calibration, row } => compare(connection, calibration, &row, health).await,
+        Fact::Duplicate { calibration, evaluation, fingerprint, worker } => {
+            compare(connection, calibration, evaluation, fingerprint, &worker, health).await
+        }
         Fact::Stage { calibration, record, busy_ms } => {
             stage(connection, calibration, &record).await?;
             busy(connection, calibration, busy_ms).await
@@ -123,34 +125,30 @@ async fn stage(connection: &mut SqliteConnection, calibration: i64, s: &StageRec
 async fn compare(
     connection: &mut SqliteConnection,
     calibration: i64,
-    row: &EvaluationRow,
+    evaluation: u64,
+    fingerprint: Fingerprint,
+    second: &str,
     health: &StoreHealth,
 ) -> Result<(), sqlx::Error> {
-    let stored = sqlx::query(
-        "SELECT rejection, observables, worker FROM evaluations WHERE calibration = ? AND evaluation = ?",
-    )
-    .bind(calibration)
-    .bind(row.evaluation as i64)
-    .fetch_optional(connection)
-    .await?;
-    let Some(stored) = stored else {
-        tracing::warn!(calibration, evaluation = row.evaluation, worker = row.worker, "result of an unknown evaluation");
-        return Ok(());
-    };
-    let same = match &row.result {
-        Ok(observables) => stored.get::<Option<Vec<u8>>, _>("observables") == Some(blob::encode(observables)),
-        Err(rejection) => stored.get::<Option<String>, _>("rejection").as_ref() == Some(rejection),
-    };
-    if !same {
-        health.differing_duplicates.fetch_add(1, Ordering::Relaxed);
-        let first: String = stored.get("worker");
-        tracing::error!(
-            calibration,
-            evaluation = row.evaluation,
-            first,
-            second = row.worker,
-            "two workers differ on the same evaluation: the farm is not deterministic"
-        );
+    let stored: Option<(i64, String)> =
+        sqlx::query_as("SELECT fingerprint, worker FROM evaluations WHERE calibration = ? AND evaluation = ?")
+            .bind(calibration)
+            .bind(evaluation as i64)
+            .fetch_optional(connection)
+            .await?;
+    match stored {
+        None => tracing::warn!(calibration, evaluation, worker = second, "result of an unknown evaluation"),
+        Some((same, _)) if same == fingerprint.0 => {}
+        Some((_, first)) => {
+            health.differing_duplicates.fetch_add(1, Ordering::Relaxed);
+            tracing::error!(
+                calibration,
+                evaluation,
+                first,
+                second,
+                "two workers differ on the same evaluation: the farm is not deterministic"
+            );
+        }
     }
     Ok(())
 }

@@ -10,7 +10,7 @@ use sqlx::{Connection, QueryBuilder, Sqlite, SqliteConnection};
 use tokio::sync::{mpsc, oneshot, watch};
 
 use super::{StoreError, blob};
-use crate::fact::{EvaluationRow, Fact};
+use crate::fact::{EvaluationRow, Fact, Kept};
 
 /// Most facts in one commit.
 const GROUP: usize = 4096;
@@ -268,12 +268,13 @@ async fn insert_evaluations(
         let part = rows.drain(..rows.len().min(ROWS));
         let mut query: QueryBuilder<Sqlite> = QueryBuilder::new(
             "INSERT OR IGNORE INTO evaluations
-             (calibration, evaluation, theta, log_likelihood, rejection, observables, worker) ",
+             (calibration, evaluation, theta, log_likelihood, rejection, fitted, observables, fingerprint, worker) ",
         );
         query.push_values(part, |mut values, (calibration, row)| {
-            let (observables, rejection) = match row.result {
-                Ok(observables) => (Some(blob::encode(&observables)), None),
-                Err(rejection) => (None, Some(rejection)),
+            let (rejection, fitted, observables) = match row.kept {
+                Kept::Refused(rejection) => (Some(rejection), None, None),
+                Kept::Fitted(values) => (None, Some(blob::encode(&values)), None),
+                Kept::Whole(observables) => (None, None, Some(blob::encode_whole(&observables))),
             };
             values
                 .push_bind(calibration)
@@ -281,7 +282,9 @@ async fn insert_evaluations(
                 .push_bind(super::json(&row.theta))
                 .push_bind(row.log_likelihood)
                 .push_bind(rejection)
+                .push_bind(fitted)
                 .push_bind(observables)
+                .push_bind(row.fingerprint.0)
                 .push_bind(row.worker);
         });
         query.build().persistent(false).execute(&mut *connection).await?;
