@@ -3,7 +3,7 @@
 use std::future::Future;
 use std::sync::Arc;
 
-use shared::exchange::{ExchangeRequest, ExchangeResponse};
+use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
 use shared::model::ModelVariant;
 use worker::evaluator::SimulationClock;
 use worker::pull::{Coordinator, ExchangeError, Settings, run};
@@ -17,10 +17,13 @@ use crate::farm::dispatch::Dispatcher;
 struct InProcess(Dispatcher);
 
 impl Coordinator for InProcess {
-    async fn exchange(&self, request: ExchangeRequest) -> Result<ExchangeResponse, ExchangeError> {
+    async fn exchange(
+        &self,
+        request: ExchangeRequest,
+    ) -> Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)> {
         match self.0.exchange(request).await {
             Ok((response, _)) => Ok(response),
-            Err(stopped) => Err(ExchangeError::Refused(stopped.to_string())),
+            Err(stopped) => Err((ExchangeError::Refused(stopped.to_string()), Vec::new())),
         }
     }
 

@@ -84,7 +84,7 @@ impl Service {
     /// Ends farm and writer; everything told so far is stored.
     pub async fn close(&self) {
         self.dispatcher.stop();
-        self.store.writer().close().await;
+        self.store.close().await;
     }
 
     /// The store.

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use reqwest::{Client, RequestBuilder, StatusCode};
 use shared::api::ErrorBody;
-use shared::exchange::{ExchangeRequest, ExchangeResponse};
+use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
 use shared::model::ModelVariant;
 
 use crate::pull::{Coordinator, ExchangeError};
@@ -37,6 +37,15 @@ impl HttpCoordinator {
         Ok(HttpCoordinator { client, url: url.trim_end_matches('/').to_owned() })
     }
 
+    async fn post(&self, request: &ExchangeRequest) -> Result<ExchangeResponse, ExchangeError> {
+        let url = format!("{}/v1/work/exchange", self.url);
+        let response = self.send(self.client.post(url).json(request)).await?;
+        if response.status() == StatusCode::NOT_FOUND {
+            return Err(ExchangeError::Refused(format!("{} is no Grouser coordinator", self.url)));
+        }
+        response.json().await.map_err(|e| ExchangeError::Away(root_cause(&e)))
+    }
+
     async fn send(&self, request: RequestBuilder) -> Result<reqwest::Response, ExchangeError> {
         let response = request.send().await.map_err(|e| ExchangeError::Away(root_cause(&e)))?;
         let status = response.status();
@@ -62,13 +71,11 @@ fn root_cause(error: &dyn std::error::Error) -> String {
 }
 
 impl Coordinator for HttpCoordinator {
-    async fn exchange(&self, request: ExchangeRequest) -> Result<ExchangeResponse, ExchangeError> {
-        let url = format!("{}/v1/work/exchange", self.url);
-        let response = self.send(self.client.post(url).json(&request)).await?;
-        if response.status() == StatusCode::NOT_FOUND {
-            return Err(ExchangeError::Refused(format!("{} is no Grouser coordinator", self.url)));
-        }
-        response.json().await.map_err(|e| ExchangeError::Away(root_cause(&e)))
+    async fn exchange(
+        &self,
+        request: ExchangeRequest,
+    ) -> Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)> {
+        self.post(&request).await.map_err(|error| (error, request.results))
     }
 
     async fn variant(&self, hash: &str) -> Result<Option<ModelVariant>, ExchangeError> {

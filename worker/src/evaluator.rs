@@ -1,13 +1,13 @@
 //! A pool of threads that evaluates leases and counts the time it simulates.
 
 use std::panic::AssertUnwindSafe;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use shared::exchange::{Lease, WorkResult};
 use shared::outcome::{Fault, Outcome};
-use tokio::sync::mpsc;
+use tokio::sync::Notify;
 
 use crate::model::CompiledVariant;
 
@@ -36,54 +36,87 @@ impl SimulationClock {
     }
 }
 
-/// A pool of threads; results come out of a channel in the order in which they are done.
+/// What the threads share with the loop.
+#[derive(Debug, Default)]
+struct Bench {
+    results: Mutex<Vec<WorkResult>>,
+    /// Evaluations started and not done.
+    outstanding: AtomicUsize,
+    /// The loop is woken when so many are left, and when none is: waking it for every result would cost more
+    /// than a short simulation.
+    wake_at: AtomicUsize,
+    wake: Notify,
+    cancelled: AtomicBool,
+}
+
+/// A pool of threads with its finished results.
 #[derive(Debug)]
 pub struct Evaluator {
     pool: rayon::ThreadPool,
-    results: mpsc::UnboundedSender<WorkResult>,
+    bench: Arc<Bench>,
     clock: Arc<SimulationClock>,
 }
 
 impl Evaluator {
-    /// A pool of `threads` threads and the receiving end of its results.
+    /// A pool of `threads` threads.
     ///
     /// # Errors
     /// The operating system refuses the threads.
-    pub fn new(
-        threads: usize,
-        clock: Arc<SimulationClock>,
-    ) -> Result<(Self, mpsc::UnboundedReceiver<WorkResult>), rayon::ThreadPoolBuildError> {
+    pub fn new(threads: usize, clock: Arc<SimulationClock>) -> Result<Self, rayon::ThreadPoolBuildError> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .thread_name(|i| format!("simulate-{i}"))
             .build()?;
-        let (results, receiver) = mpsc::unbounded_channel();
-        Ok((Evaluator { pool, results, clock }, receiver))
+        Ok(Evaluator { pool, bench: Arc::default(), clock })
     }
 
-    /// Queues an evaluation behind those that wait; a panic of the model is a fault, not a loss.
-    pub fn start(&self, lease: Lease, variant: Arc<CompiledVariant>, cancelled: Arc<AtomicBool>) {
-        let (results, clock) = (self.results.clone(), self.clock.clone());
-        self.pool.spawn_fifo(move || {
-            // Once the worker stops, what has not begun is given back instead.
-            if cancelled.load(Ordering::Acquire) {
-                return;
-            }
-            let began = Instant::now();
-            let outcome = std::panic::catch_unwind(AssertUnwindSafe(|| variant.evaluate(&lease.theta)))
-                .unwrap_or_else(|_| Outcome::Fault(Fault { message: "the model panicked".into() }));
-            let elapsed = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);
-            clock.simulated_ns.fetch_add(elapsed, Ordering::Relaxed);
-            clock.evaluations.fetch_add(1, Ordering::Relaxed);
-            let Lease { lease, calibration, evaluation, .. } = lease;
-            // The receiver is gone only when the worker has ended.
-            let _ = results.send(WorkResult { lease, calibration, evaluation, outcome });
-        });
+    /// Queues evaluations behind those that wait; a panic of the model is a fault, not a loss.
+    pub fn start(&self, batch: Vec<(Lease, Arc<CompiledVariant>)>) {
+        let outstanding = self.bench.outstanding.fetch_add(batch.len(), Ordering::AcqRel) + batch.len();
+        self.bench.wake_at.store(outstanding / 2, Ordering::Release);
+        for (lease, variant) in batch {
+            let (bench, clock) = (self.bench.clone(), self.clock.clone());
+            self.pool.spawn_fifo(move || {
+                // Once the worker stops, what has not begun is given back instead.
+                if !bench.cancelled.load(Ordering::Acquire) {
+                    let result = evaluate(lease, &variant, &clock);
+                    bench.results.lock().unwrap_or_else(PoisonError::into_inner).push(result);
+                }
+                let left = bench.outstanding.fetch_sub(1, Ordering::AcqRel) - 1;
+                if left == 0 || left == bench.wake_at.load(Ordering::Acquire) {
+                    bench.wake.notify_one();
+                }
+            });
+        }
     }
 
-    /// Waits until what was started before has ended.
-    pub fn wait(&self) {
-        // A broadcast runs on every thread once it has worked off what it began.
-        self.pool.broadcast(|_| ());
+    /// Ready when half of the last batch is left, and when nothing is.
+    pub async fn woken(&self) {
+        self.bench.wake.notified().await;
     }
+
+    /// The results since the last call, in the order in which they were done.
+    pub fn take(&self) -> Vec<WorkResult> {
+        std::mem::take(&mut *self.bench.results.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Evaluates nothing more that has not begun, and waits for what has.
+    pub async fn cancel(&self) {
+        self.bench.cancelled.store(true, Ordering::Release);
+        self.bench.wake_at.store(0, Ordering::Release);
+        while self.bench.outstanding.load(Ordering::Acquire) > 0 {
+            self.woken().await;
+        }
+    }
+}
+
+fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) -> WorkResult {
+    let began = Instant::now();
+    let outcome = std::panic::catch_unwind(AssertUnwindSafe(|| variant.evaluate(&lease.theta)))
+        .unwrap_or_else(|_| Outcome::Fault(Fault { message: "the model panicked".into() }));
+    let elapsed = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);
+    clock.simulated_ns.fetch_add(elapsed, Ordering::Relaxed);
+    clock.evaluations.fetch_add(1, Ordering::Relaxed);
+    let Lease { lease, calibration, evaluation, .. } = lease;
+    WorkResult { lease, calibration, evaluation, outcome }
 }

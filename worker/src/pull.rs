@@ -6,13 +6,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::future::Future;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, PROTOCOL_VERSION, WorkResult};
 use shared::model::ModelVariant;
 use shared::outcome::{Fault, Outcome};
-use tokio::sync::mpsc;
 
 use crate::evaluator::{Evaluator, SimulationClock};
 use crate::model::VariantCache;
@@ -39,11 +37,11 @@ pub enum ExchangeError {
 
 /// A coordinator, over HTTP or in the same process.
 pub trait Coordinator: Send + Sync + 'static {
-    /// One exchange of results for leases.
+    /// One exchange of results for leases; a failure gives the results back, to be sent again.
     fn exchange(
         &self,
         request: ExchangeRequest,
-    ) -> impl Future<Output = Result<ExchangeResponse, ExchangeError>> + Send;
+    ) -> impl Future<Output = Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)>> + Send;
 
     /// The variant of a hash; `None` where no calibration at hand uses it.
     fn variant(&self, hash: &str) -> impl Future<Output = Result<Option<ModelVariant>, ExchangeError>> + Send;
@@ -68,7 +66,7 @@ pub async fn run<C: Coordinator>(
     clock: Arc<SimulationClock>,
     shutdown: impl Future<Output = ()>,
 ) -> Result<(), ExchangeError> {
-    let (evaluator, results) = Evaluator::new(settings.threads, clock.clone())
+    let evaluator = Evaluator::new(settings.threads, clock.clone())
         .map_err(|e| ExchangeError::Refused(format!("no threads: {e}")))?;
     let worker = Worker {
         coordinator,
@@ -78,12 +76,11 @@ pub async fn run<C: Coordinator>(
         variants: VariantCache::default(),
         held: BTreeSet::new(),
         outbox: Vec::new(),
-        cancelled: Arc::new(AtomicBool::new(false)),
         known: Known { remaining: 0, workers: 1, lease_ms: WAIT_MS, asked: 0 },
         flushed: Instant::now(),
         renewed: Instant::now(),
     };
-    worker.run(results, shutdown).await
+    worker.run(shutdown).await
 }
 
 /// What the last answer told.
@@ -106,38 +103,30 @@ struct Worker<C> {
     held: BTreeSet<u64>,
     /// Results that the coordinator has not acknowledged.
     outbox: Vec<WorkResult>,
-    cancelled: Arc<AtomicBool>,
     known: Known,
     flushed: Instant,
     renewed: Instant,
 }
 
 impl<C: Coordinator> Worker<C> {
-    async fn run(
-        mut self,
-        mut results: mpsc::UnboundedReceiver<WorkResult>,
-        shutdown: impl Future<Output = ()>,
-    ) -> Result<(), ExchangeError> {
+    async fn run(mut self, shutdown: impl Future<Output = ()>) -> Result<(), ExchangeError> {
         tokio::pin!(shutdown);
         let mut back_off = BACK_OFF[0];
         let mut away = false;
         loop {
-            while let Ok(result) = results.try_recv() {
-                self.take(result);
-            }
+            self.collect();
             if !self.is_time_to_exchange() {
                 tokio::select! {
-                    () = &mut shutdown => return self.stop(results).await,
-                    result = results.recv() => { if let Some(result) = result { self.take(result); } }
+                    () = &mut shutdown => return self.stop().await,
+                    () = self.evaluator.woken() => {}
                     () = tokio::time::sleep(FLUSH) => {}
                 }
                 continue;
             }
             let request = self.request();
-            let sent = request.results.len();
             let coordinator = self.coordinator.clone();
             let answer = tokio::select! {
-                () = &mut shutdown => return self.stop(results).await,
+                () = &mut shutdown => return self.stop().await,
                 answer = coordinator.exchange(request) => answer,
             };
             match answer {
@@ -146,21 +135,28 @@ impl<C: Coordinator> Worker<C> {
                         tracing::info!(worker = self.settings.name, "the coordinator is back");
                     }
                     back_off = BACK_OFF[0];
-                    self.outbox.drain(..sent);
                     self.accept(response).await;
                 }
-                Err(ExchangeError::Away(reason)) => {
+                Err((ExchangeError::Away(reason), results)) => {
                     if !std::mem::replace(&mut away, true) {
                         tracing::warn!(worker = self.settings.name, reason, "the coordinator is away; trying again");
                     }
+                    self.outbox.splice(0..0, results);
                     tokio::select! {
-                        () = &mut shutdown => return self.stop(results).await,
+                        () = &mut shutdown => return self.stop().await,
                         () = tokio::time::sleep(back_off) => {}
                     }
                     back_off = (back_off * 2).min(BACK_OFF[1]);
                 }
-                Err(refused) => return Err(refused),
+                Err((refused, _)) => return Err(refused),
             }
+        }
+    }
+
+    /// Takes what the threads have done.
+    fn collect(&mut self) {
+        for result in self.evaluator.take() {
+            self.take(result);
         }
     }
 
@@ -203,7 +199,7 @@ impl<C: Coordinator> Worker<C> {
             worker: self.settings.name.clone(),
             protocol: PROTOCOL_VERSION,
             model_version: crate::model_version().to_owned(),
-            results: self.outbox.clone(),
+            results: std::mem::take(&mut self.outbox),
             holding: if renew { self.held.iter().copied().collect() } else { Vec::new() },
             returned: Vec::new(),
             want: self.want().max(u32::from(idle)),
@@ -230,13 +226,15 @@ impl<C: Coordinator> Worker<C> {
                 unknown.insert(hash, reason);
             }
         }
+        let mut batch = Vec::with_capacity(response.leases.len());
         for lease in response.leases {
             self.held.insert(lease.lease);
             match self.variants.get(&lease.variant) {
-                Some(variant) => self.evaluator.start(lease, variant, self.cancelled.clone()),
+                Some(variant) => batch.push((lease, variant)),
                 None => self.refuse(lease, &unknown),
             }
         }
+        self.evaluator.start(batch);
     }
 
     /// A lease whose variant cannot be had is a fault of this machine.
@@ -260,12 +258,9 @@ impl<C: Coordinator> Worker<C> {
     }
 
     /// Gives back what has not begun and sends what is done; leases in hand end with the process otherwise.
-    async fn stop(mut self, mut results: mpsc::UnboundedReceiver<WorkResult>) -> Result<(), ExchangeError> {
-        self.cancelled.store(true, Ordering::Release);
-        self.evaluator.wait();
-        while let Ok(result) = results.try_recv() {
-            self.take(result);
-        }
+    async fn stop(mut self) -> Result<(), ExchangeError> {
+        self.evaluator.cancel().await;
+        self.collect();
         let request = ExchangeRequest {
             returned: self.held.iter().copied().collect(),
             want: 0,

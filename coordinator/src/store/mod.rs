@@ -106,6 +106,13 @@ impl Store {
         &self.writer
     }
 
+    /// Stores what was told before and closes the file.
+    pub async fn close(&self) {
+        // Readers first: the last connection folds the write-ahead log into the file.
+        self.readers.close().await;
+        self.writer.close().await;
+    }
+
     /// Number of this start of the coordinator.
     pub fn epoch(&self) -> u64 {
         self.epoch

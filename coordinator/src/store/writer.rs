@@ -4,16 +4,19 @@
 //! number of the last committed fact has reached it: acknowledged means durable.
 
 use std::sync::Arc;
+use std::time::Duration;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use sqlx::{Connection, QueryBuilder, Sqlite, SqliteConnection};
-use tokio::sync::{mpsc, oneshot, watch};
+use tokio::sync::{Notify, mpsc, oneshot, watch};
 
 use super::{StoreError, blob};
 use crate::fact::{EvaluationRow, Fact, Kept};
 
 /// Most facts in one commit.
 const GROUP: usize = 4096;
+/// Facts that nobody waits for gather for so long before they are committed.
+const LINGER: Duration = Duration::from_millis(20);
 /// Most rows in one statement; SQLite takes 32,766 parameters.
 const ROWS: usize = 2000;
 
@@ -60,6 +63,40 @@ pub struct Writer {
     sender: mpsc::UnboundedSender<Write>,
     committed: watch::Receiver<u64>,
     health: Arc<StoreHealth>,
+    waiting: Arc<Waiting>,
+}
+
+/// Whether somebody waits for a commit.
+#[derive(Debug, Default)]
+struct Waiting {
+    count: AtomicU64,
+    arrived: Notify,
+}
+
+impl Waiting {
+    /// Ready as soon as somebody waits, or after [`LINGER`].
+    async fn linger(&self) {
+        if self.count.load(Ordering::Acquire) == 0 {
+            let _ = tokio::time::timeout(LINGER, self.arrived.notified()).await;
+        }
+    }
+
+    /// Waits for something that only a commit brings.
+    async fn while_urgent<T>(&self, wait: impl Future<Output = T>) -> T {
+        self.count.fetch_add(1, Ordering::AcqRel);
+        self.arrived.notify_one();
+        let _leave = Leave(self);
+        wait.await
+    }
+}
+
+/// Counts a waiter out, also when its future is dropped.
+struct Leave<'a>(&'a Waiting);
+
+impl Drop for Leave<'_> {
+    fn drop(&mut self) {
+        self.0.count.fetch_sub(1, Ordering::AcqRel);
+    }
 }
 
 /// The farm's end of the way to the writer: it alone numbers facts.
@@ -88,15 +125,16 @@ impl Writer {
         let (sender, receiver) = mpsc::unbounded_channel();
         let (committed_sender, committed) = watch::channel(0);
         let health = Arc::new(StoreHealth::default());
-        let shared = health.clone();
+        let waiting = Arc::new(Waiting::default());
+        let (shared, waited_for) = (health.clone(), waiting.clone());
         tokio::spawn(async move {
             let _lock = lock;
-            if let Err(error) = run(connection, receiver, &committed_sender, &shared).await {
+            if let Err(error) = run(connection, receiver, &committed_sender, &shared, &waited_for).await {
                 tracing::error!(%error, "the store cannot be written");
             }
             // Dropping `committed_sender` tells everyone who waits for a commit.
         });
-        Writer { sender, committed, health }
+        Writer { sender, committed, health, waiting }
     }
 
     /// The farm's end. Facts are numbered per sink, so a store has one.
@@ -110,7 +148,8 @@ impl Writer {
     /// [`StoreError::Stopped`] when the writer has ended before.
     pub async fn durable(&self, fact: u64) -> Result<(), StoreError> {
         let mut committed = self.committed.clone();
-        committed.wait_for(|&c| c >= fact).await.map(|_| ()).map_err(|_| StoreError::Stopped)
+        let durable = committed.wait_for(|&c| c >= fact);
+        self.waiting.while_urgent(durable).await.map(|_| ()).map_err(|_| StoreError::Stopped)
     }
 
     /// Waits until the writer has ended: only a failing store ends it before its handles are gone.
@@ -144,7 +183,7 @@ impl Writer {
         let (reply, answer) = oneshot::channel();
         let write = Write::Experiment { toml, files, now_ms, reply };
         self.sender.send(write).map_err(|_| StoreError::Stopped)?;
-        answer.await.map_err(|_| StoreError::Stopped)
+        self.waiting.while_urgent(answer).await.map_err(|_| StoreError::Stopped)
     }
 
     /// Stores a calibration and the study that it opens; their ids.
@@ -154,7 +193,7 @@ impl Writer {
     pub async fn add_calibration(&self, new: NewCalibrationRow) -> Result<(i64, i64), StoreError> {
         let (reply, answer) = oneshot::channel();
         self.sender.send(Write::Calibration { new, reply }).map_err(|_| StoreError::Stopped)?;
-        answer.await.map_err(|_| StoreError::Stopped)
+        self.waiting.while_urgent(answer).await.map_err(|_| StoreError::Stopped)
     }
 }
 
@@ -163,11 +202,18 @@ async fn run(
     mut receiver: mpsc::UnboundedReceiver<Write>,
     committed: &watch::Sender<u64>,
     health: &StoreHealth,
+    waiting: &Waiting,
 ) -> Result<(), sqlx::Error> {
     let mut group = Vec::with_capacity(GROUP);
     let mut number = 0;
     let mut closing = false;
     while !closing && receiver.recv_many(&mut group, GROUP).await > 0 {
+        waiting.linger().await;
+        while group.len() < GROUP
+            && let Ok(write) = receiver.try_recv()
+        {
+            group.push(write);
+        }
         closing = group.iter().any(|w| matches!(w, Write::Close));
         let began = std::time::Instant::now();
         let mut transaction = connection.begin_with("BEGIN IMMEDIATE").await?;
