@@ -124,7 +124,7 @@ impl GaussianLikelihood {
     /// - `theta`: holds the inferred standard deviations, each > 0 (give them a positive prior).
     ///
     /// # Returns
-    /// The sum [nats]; [`LogLikelihood::Impossible`] if a residual is so large that the sum overflows.
+    /// The sum, in nats; [`LogLikelihood::Impossible`] if a residual is so large that the sum overflows.
     ///
     /// # Errors
     /// [`LikelihoodError::Prediction`], [`LikelihoodError::Noise`], [`LikelihoodError::MissingParameter`].

@@ -5,7 +5,7 @@
 /// Build it with [`LogLikelihood::new`], which refuses NaN and plus infinity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LogLikelihood {
-    /// A finite value [nats].
+    /// A finite value, in nats.
     Finite(Nats),
     /// The model rejected the parameter vector: the data have probability zero.
     Impossible,

@@ -1,7 +1,7 @@
 //! Give every (seed, stage, particle, step) its own random stream.
 //!
-//! The streams are `ChaCha8` counters: seed, stage and step make the key, the particle is the stream number. So
-//! no draw depends on how many other draws were made, by whom, or in which order.
+//! The streams are `ChaCha8` counters: seed, stage and step make the key, the particle is the stream number.
+//! So no draw depends on how many other draws were made, by whom, or in which order.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

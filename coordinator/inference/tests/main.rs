@@ -1,3 +1,10 @@
 //! Check priors, likelihood and sampler against known answers.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests may panic as tests do")]
+
+mod answers;
+mod ask_tell;
+mod flags;
+mod likelihood;
+mod priors;
 mod problems;

@@ -2,6 +2,9 @@
 
 use inference::{Distribution, LogLikelihood, Marginal, Prior, Progress, Sampler, Settings};
 
+/// A function of the parameters, its posterior mean and sd.
+pub(crate) type Derived = (fn(&[f64]) -> f64, f64, f64);
+
 /// A problem with a known answer.
 pub(crate) struct Problem {
     /// Short name.
@@ -15,7 +18,7 @@ pub(crate) struct Problem {
     /// Posterior standard deviations.
     pub(crate) sd: Vec<f64>,
     /// A derived quantity that is sharper than the parameters, and its mean and sd.
-    pub(crate) derived: Option<(fn(&[f64]) -> f64, f64, f64)>,
+    pub(crate) derived: Option<Derived>,
 }
 
 impl Problem {

@@ -66,8 +66,9 @@ impl Marginal {
     /// A distribution, truncated to `bounds` and renormalised.
     ///
     /// # Errors
-    /// [`PriorError`] names the number, its value and its bound: ends out of order, sd or scale <= 0, factor <= 1,
-    /// anything that must be finite and is not, bounds outside the support or without probability. Nothing is adjusted.
+    /// [`PriorError`] names the number, its value and its bound: ends out of order, sd or scale <= 0, factor
+    /// <= 1, anything that must be finite and is not, bounds outside the support or without probability.
+    /// Nothing is adjusted.
     pub fn new(distribution: Distribution, bounds: Option<[f64; 2]>) -> Result<Self, PriorError> {
         distribution.check()?;
         let (mut lower, mut upper) = distribution.support();
@@ -283,7 +284,8 @@ impl Density {
     }
 }
 
-/// The part of [low, high] where a unit normal around `centre` lies within [`TAIL_NATS`] of its highest value there.
+/// The part of [low, high] where a unit normal around `centre` lies within [`TAIL_NATS`] of its highest value
+/// there.
 fn window(low: f64, high: f64, centre: f64) -> (f64, f64) {
     let peak = centre.max(low).min(high);
     let offset = (peak - centre).abs();

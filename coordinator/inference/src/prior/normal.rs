@@ -24,8 +24,8 @@ pub(super) fn mass(a: f64, b: f64) -> f64 {
 
 /// The z with P(Z < z) = `p`, for 0 < `p` <= 1/2.
 ///
-/// Newton on ln cdf, which is concave and increasing, from a start below the root (cdf(z) <= exp(-z^2/2)/2 for
-/// z <= 0): the iterates rise to the root and never pass it.
+/// Newton on ln cdf, which is concave and increasing, from a start below the root (cdf(z) <= exp(-z^2/2)/2
+/// for z <= 0): the iterates rise to the root and never pass it.
 pub(super) fn lower_quantile(p: f64) -> f64 {
     let mut z = -(-2.0 * libm::log(2.0 * p)).max(0.0).sqrt();
     for _ in 0..NEWTON_STEPS {

@@ -66,8 +66,8 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 mod tests {
     use super::*;
 
-    /// l is 0 or 1; one in four is 1 before, so the ratio for a step of ln 3 is (3 + 3) / 4 = 1.5 and half are 1
-    /// after.
+    /// l is 0 or 1; one in four is 1 before, so the ratio for a step of ln 3 is (3 + 3) / 4 = 1.5 and half
+    /// are 1 after.
     #[test]
     fn the_ratio_of_exact_populations_is_exact() {
         let step = libm::log(3.0);

@@ -14,9 +14,9 @@ pub(super) struct Factor {
 impl Factor {
     /// Factors the covariance of `states` with `weights` that sum to one.
     ///
-    /// The *correlation* matrix is factored and scaled back by the standard deviations, so a ridge 1e-6 as thick
-    /// as long keeps its shape; nothing is added to the diagonal. A correlation that is singular to rounding is
-    /// factored through its eigenvectors: the factor then spans what the states span and no more.
+    /// The *correlation* matrix is factored and scaled back by the standard deviations, so a ridge 1e-6 as
+    /// thick as long keeps its shape; nothing is added to the diagonal. A correlation that is singular to
+    /// rounding is factored through its eigenvectors: the factor then spans what the states span and no more.
     pub(super) fn new(states: &[&[f64]], weights: &[f64]) -> Self {
         let dimension = states.first().map_or(0, |state| state.len());
         let mut mean = vec![0.0; dimension];

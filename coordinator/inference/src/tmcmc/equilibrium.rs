@@ -1,10 +1,9 @@
 //! Tell whether a stage's chains have forgotten where they started.
 
-use super::stage::Chain;
 use crate::diagnostics::rank_correlation;
 
 /// Rank correlation between start and end below which a stage counts as moved.
-pub(super) const CORRELATION_LIMIT: f64 = 0.3;
+const CORRELATION_LIMIT: f64 = 0.3;
 
 /// |z| of the drift below which a stage may end.
 const DRIFT_LIMIT: f64 = 2.0;
@@ -27,29 +26,25 @@ pub(super) struct Drift {
 }
 
 impl Drift {
-    /// Drift of chains from their starts to their current states; `step` is the growth of the exponent before.
-    pub(super) fn of(chains: &[Chain], step: f64) -> Self {
-        let start: Vec<f64> = chains.iter().map(|chain| chain.start.value()).collect();
-        let end: Vec<f64> = chains
-            .iter()
-            .map(|chain| chain.current.log_likelihood.value())
-            .collect();
-        let ancestors: Vec<usize> = chains.iter().map(|chain| chain.ancestor).collect();
-        let still = if start == end { 1.0 } else { 0.0 };
-        let correlation = rank_correlation(&start, &end).unwrap_or(still);
+    /// Drift of particles from `start` to `end`, those of one cluster being dependent.
+    ///
+    /// `step` is the growth of the exponent before; `moved` decides where the log-likelihoods are all equal
+    /// and have no ranks.
+    pub(super) fn of(start: &[f64], end: &[f64], clusters: &[usize], step: f64, moved: bool) -> Self {
+        let correlation = rank_correlation(start, end).unwrap_or(if moved { 0.0 } else { 1.0 });
         let max = start
             .iter()
-            .chain(&end)
+            .chain(end)
             .fold(f64::NEG_INFINITY, |max, &l| max.max(l));
         let weight = |l: f64| libm::exp(step * (l - max));
-        let pairs = || start.iter().zip(&end);
+        let pairs = || start.iter().zip(end);
         let changes: Vec<f64> = pairs().map(|(start, end)| end - start).collect();
         let gains: Vec<f64> = pairs()
             .map(|(&start, &end)| weight(end) - weight(start))
             .collect();
         Self {
-            z: clustered_z(&changes, &ancestors),
-            weight_z: clustered_z(&gains, &ancestors),
+            z: clustered_z(&changes, clusters),
+            weight_z: clustered_z(&gains, clusters),
             correlation,
         }
     }
@@ -61,20 +56,34 @@ impl Drift {
             && self.weight_z.abs() < DRIFT_LIMIT
     }
 
-    /// Whether the stage is not in equilibrium.
-    pub(super) fn is_alarming(self) -> bool {
-        self.z.abs() > DRIFT_ALARM || self.weight_z.abs() > DRIFT_ALARM
+    /// Whether the stage forgot its start and did not drift.
+    pub(super) fn is_equilibrated(self) -> bool {
+        self.correlation < CORRELATION_LIMIT && !is_alarming(self.z) && !is_alarming(self.weight_z)
     }
+}
+
+/// Whether a z-score says that the target was not reached.
+pub(super) fn is_alarming(z: f64) -> bool {
+    z.abs() > DRIFT_ALARM
+}
+
+/// z-score of a drift that is too small to show in any one stage: sum / sqrt(count).
+///
+/// Chance drifts of neighbouring stages cancel in part (what one stage ends too high with, the next falls
+/// from), so this errs on the quiet side.
+pub(super) fn pooled_z(z: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = z.len().max(1) as f64;
+    z.sum::<f64>() / count.sqrt()
 }
 
 /// z-score of the mean of paired changes whose members of one cluster may be dependent:
 /// `z = sum d_i / sqrt(sum_c (sum_{i in c} (d_i - mean d))^2)`.
 ///
 /// Chains that start from one ancestor share their start, so only clusters are independent. The start's own
-/// sampling error is covered: a chain that forgets its start changes by (new - start), and the clusters' sums of
-/// the starts have the variance of the weighted sample they were drawn from.
-/// 0 when nothing changes. Where the clusters tell nothing of the spread (one cluster, or all alike) the z-score
-/// has no bound; it is then [`DRIFT_UNKNOWN`], with the sign of the change.
+/// sampling error is covered: a chain that forgets its start changes by (new - start), and the clusters' sums
+/// of the starts have the variance of the weighted sample they were drawn from. 0 when nothing changes. Where
+/// the clusters tell nothing of the spread (one cluster, or all alike) the z-score has no bound; it is then
+/// [`DRIFT_UNKNOWN`], with the sign of the change.
 fn clustered_z(changes: &[f64], clusters: &[usize]) -> f64 {
     let total: f64 = changes.iter().sum();
     if total.abs() <= 0.0 || changes.is_empty() {

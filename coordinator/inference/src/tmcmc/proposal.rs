@@ -12,8 +12,8 @@ const FULL_DIFFERENCES: f64 = 0.2;
 /// sd of ln(length): steps of many lengths serve targets that are narrow in one place and wide in another.
 const LENGTH_SPREAD: f64 = 0.7;
 
-/// Share of autoregressive jumps. They mix a nearly normal target many times faster than a random walk; more of
-/// them starve the others in a funnel, whose neck they miss.
+/// Share of autoregressive jumps. They mix a nearly normal target many times faster than a random walk; more
+/// of them starve the others in a funnel, whose neck they miss.
 const JUMPS: f64 = 0.1;
 
 /// Part of a jump that is new; sqrt(1 - 0.9^2) of the old deviation stays.
@@ -38,12 +38,14 @@ pub(super) struct Candidate {
 }
 
 impl Mixture {
-    /// Draws a candidate, with m and C the weighted mean and covariance of the pool that the stage began with.
+    /// Draws a candidate, with m and C the weighted mean and covariance of the pool that the stage began
+    /// with.
     ///
-    /// - 10 %: autoregressive, `m + sqrt(1 - 0.81) (x - m) + 0.9 N(0, C)` (reversible for N(m, C); Neal 1999);
+    /// - 10 %: autoregressive, `m + sqrt(1 - 0.81) (x - m) + 0.9 N(0, C)` (reversible for N(m, C); Neal
+    ///   1999);
     /// - 45 %: random walk, `x + s N(0, C)`;
-    /// - 45 %: differential evolution, `x + s / sqrt(2) (a - b)` with members a, b of the frozen population, or
-    ///   `x + (a - b)` in one of five (ter Braak 2006).
+    /// - 45 %: differential evolution, `x + s / sqrt(2) (a - b)` with members a, b of the frozen population,
+    ///   or `x + (a - b)` in one of five (ter Braak 2006).
     ///
     /// s is `scale` times a lognormal factor. Without frozen members: the random walk, s = `scale`.
     pub(super) fn candidate(&self, from: &[f64], scale: f64, stream: &mut Stream) -> Candidate {

@@ -13,8 +13,8 @@ pub struct StageRecord {
     pub acceptance: f64,
     /// z-score of the mean change of the log-likelihood over the moves; large in size: not in equilibrium.
     pub drift_z: f64,
-    /// The same of exp(step l), step being the growth of the exponent that led here: sees what lags among the best
-    /// particles, where `drift_z` is ruled by the worst.
+    /// The same of exp(step l), step being the growth of the exponent that led here: sees what lags among the
+    /// best particles, where `drift_z` is ruled by the worst.
     pub weight_drift_z: f64,
     /// Rank correlation of the log-likelihoods before and after the moves.
     pub correlation: f64,
@@ -64,7 +64,12 @@ pub struct Posterior {
     pub log_evidence: f64,
     /// Its standard error within the run.
     pub log_evidence_se: f64,
-    /// Whether every stage reached its target; if not, neither draws nor evidence can be trusted.
+    /// The stages' `drift_z` taken together: their sum / sqrt(number of stages).
+    pub drift_z: f64,
+    /// The stages' `weight_drift_z` taken together.
+    pub weight_drift_z: f64,
+    /// Whether every stage reached its target and the drifts taken together stay below 3 in size; if not,
+    /// neither draws nor evidence can be trusted.
     pub equilibrated: bool,
     /// Log-likelihoods asked for.
     pub evaluations: u64,

@@ -1,9 +1,9 @@
 //! Run the rounds: list proposals, take their log-likelihoods, advance.
 
-use super::equilibrium::{CORRELATION_LIMIT, Drift};
+use super::equilibrium::{Drift, is_alarming, pooled_z};
 use super::evidence::Evidence;
 use super::population::{Particle, Pool, Proposal, State};
-use super::record::{Current, Failure, Posterior, Progress, StageRecord, TellError};
+use super::record::{Failure, Posterior, Progress, StageRecord, TellError};
 use super::settings::{Algorithm, Settings, SettingsError};
 use super::stage::Stage;
 use super::transition::Transition;
@@ -16,29 +16,29 @@ const BLOCK: usize = 5;
 
 /// An ask/tell sampler.
 ///
-/// A round is a set of proposals that can be evaluated at the same time; the sampler advances when all have been
-/// told. Its state is a function of prior, settings and the told values, whatever their order.
+/// A round is a set of proposals that can be evaluated at the same time; the sampler advances when all have
+/// been told. Its state is a function of prior, settings and the told values, whatever their order.
 #[derive(Debug, Clone)]
 pub struct Sampler {
-    prior: Prior,
-    settings: Settings,
-    round: u64,
-    pending: Vec<Proposal>,
-    answers: Vec<Option<LogLikelihood>>,
-    missing: usize,
-    phase: Phase,
-    prior_draws: Vec<Particle>,
-    evidence: Evidence,
-    passage: Passage,
-    stages: Vec<StageRecord>,
-    posterior: Option<Posterior>,
-    evaluations: u64,
-    rejected: u64,
+    pub(super) prior: Prior,
+    pub(super) settings: Settings,
+    pub(super) round: u64,
+    pub(super) pending: Vec<Proposal>,
+    pub(super) answers: Vec<Option<LogLikelihood>>,
+    pub(super) missing: usize,
+    pub(super) phase: Phase,
+    pub(super) prior_draws: Vec<Particle>,
+    pub(super) evidence: Evidence,
+    pub(super) passage: Passage,
+    pub(super) stages: Vec<StageRecord>,
+    pub(super) posterior: Option<Posterior>,
+    pub(super) evaluations: u64,
+    pub(super) rejected: u64,
 }
 
 /// How the stage in progress was reached.
 #[derive(Debug, Clone, Copy, Default)]
-struct Passage {
+pub(super) struct Passage {
     /// Growth of the exponent.
     step: f64,
     weight_cov: f64,
@@ -48,7 +48,7 @@ struct Passage {
 
 /// What the sampler is doing.
 #[derive(Debug, Clone)]
-enum Phase {
+pub(super) enum Phase {
     /// Waiting for the prior draws, whose coordinates are held.
     Prior,
     Moving(Box<Stage>),
@@ -92,109 +92,6 @@ impl Sampler {
         Ok(sampler)
     }
 
-    /// The prior.
-    #[must_use]
-    pub fn prior(&self) -> &Prior {
-        &self.prior
-    }
-
-    /// The settings.
-    #[must_use]
-    pub fn settings(&self) -> &Settings {
-        &self.settings
-    }
-
-    /// Number of completed rounds; (round, particle) names an evaluation for ever.
-    #[must_use]
-    pub fn round(&self) -> u64 {
-        self.round
-    }
-
-    /// This round's proposals, by ascending particle, told or not.
-    ///
-    /// Those outside the prior's support are rejected at once and never listed. Empty only when the sampler has
-    /// finished or failed.
-    #[must_use]
-    pub fn pending(&self) -> &[Proposal] {
-        &self.pending
-    }
-
-    /// Whether a pending particle has been told.
-    #[must_use]
-    pub fn is_told(&self, particle: usize) -> bool {
-        self.slot(particle)
-            .is_some_and(|slot| self.answers[slot].is_some())
-    }
-
-    /// The finished stages.
-    #[must_use]
-    pub fn stages(&self) -> &[StageRecord] {
-        &self.stages
-    }
-
-    /// The prior draws with their log-likelihoods, once round 0 is complete.
-    #[must_use]
-    pub fn prior_draws(&self) -> &[Particle] {
-        &self.prior_draws
-    }
-
-    /// The result, once finished.
-    #[must_use]
-    pub fn posterior(&self) -> Option<&Posterior> {
-        self.posterior.as_ref()
-    }
-
-    /// Why the sampler failed, if it did.
-    #[must_use]
-    pub fn failure(&self) -> Option<Failure> {
-        if let Phase::Failed(failure) = self.phase {
-            Some(failure)
-        } else {
-            None
-        }
-    }
-
-    /// Log-likelihoods told so far in completed rounds.
-    #[must_use]
-    pub fn evaluations(&self) -> u64 {
-        self.evaluations
-    }
-
-    /// Those of them that were impossible.
-    #[must_use]
-    pub fn rejected(&self) -> u64 {
-        self.rejected
-    }
-
-    /// The stage in progress, for display; the last stage once finished.
-    #[must_use]
-    pub fn current(&self) -> Current {
-        let (told, proposals) = (self.pending.len() - self.missing, self.pending.len());
-        let mut current = Current {
-            stage: 0,
-            tempering_exponent: 0.0,
-            step: 0,
-            most_steps: 1,
-            acceptance: None,
-            told,
-            proposals,
-        };
-        if let Phase::Moving(stage) = &self.phase {
-            current.stage = stage.index;
-            current.tempering_exponent = stage.exponent;
-            current.step = stage.step;
-            current.most_steps = stage.chains.iter().map(|chain| chain.length).max().unwrap_or(0);
-            current.acceptance = stage.acceptance();
-        } else if let Some(last) = self.stages.last() {
-            current.stage = last.stage;
-            current.tempering_exponent = last.tempering_exponent;
-            current.step = last.steps;
-            current.most_steps = last.steps;
-            current.acceptance = Some(last.acceptance);
-        }
-        current
-    }
-
     /// Takes the log-likelihood of a pending particle; the last one of a round advances the sampler.
     ///
     /// # Errors
@@ -217,7 +114,7 @@ impl Sampler {
     }
 
     /// Position of a particle among the pending proposals.
-    fn slot(&self, particle: usize) -> Option<usize> {
+    pub(super) fn slot(&self, particle: usize) -> Option<usize> {
         self.pending
             .binary_search_by_key(&particle, |proposal| proposal.particle)
             .ok()
@@ -266,8 +163,8 @@ impl Sampler {
         }
     }
 
-    /// Turns the prior draws into the first stage; draws that the model rejected are dropped, and the evidence
-    /// multiplied by the surviving fraction.
+    /// Turns the prior draws into the first stage; draws that the model rejected are dropped, and the
+    /// evidence multiplied by the surviving fraction.
     fn finish_prior(&mut self, proposals: &[Proposal], answers: &[LogLikelihood]) -> Result<Phase, Failure> {
         let mut pool = Pool::default();
         for (proposal, &log_likelihood) in proposals.iter().zip(answers) {
@@ -334,12 +231,12 @@ impl Sampler {
             && stage.step >= least
             && (stage.step - least).is_multiple_of(BLOCK)
         {
-            drift = Some(Drift::of(&stage.chains, self.passage.step)).filter(|drift| drift.is_settled());
+            drift = Some(self.drift(&stage)).filter(|drift| drift.is_settled());
         }
         if drift.is_none() && !stage.is_exhausted() {
             return Ok(Phase::Moving(stage));
         }
-        let drift = drift.unwrap_or_else(|| Drift::of(&stage.chains, self.passage.step));
+        let drift = drift.unwrap_or_else(|| self.drift(&stage));
         self.record(&stage, drift);
         if stage.exponent < 1.0 {
             return self.begin_stage(
@@ -350,6 +247,8 @@ impl Sampler {
                 0.0,
             );
         }
+        let drift_z = pooled_z(self.stages.iter().map(|stage| stage.drift_z));
+        let weight_drift_z = pooled_z(self.stages.iter().map(|stage| stage.weight_drift_z));
         self.posterior = Some(Posterior {
             particles: self
                 .stages
@@ -358,11 +257,32 @@ impl Sampler {
                 .unwrap_or_default(),
             log_evidence: self.evidence.log,
             log_evidence_se: self.evidence.standard_error(),
-            equilibrated: self.stages.iter().all(|stage| stage.equilibrated),
+            drift_z,
+            weight_drift_z,
+            equilibrated: self.stages.iter().all(|stage| stage.equilibrated)
+                && !is_alarming(drift_z)
+                && !is_alarming(weight_drift_z),
             evaluations: self.evaluations,
             rejected: self.rejected,
         });
         Ok(Phase::Done)
+    }
+
+    /// Drift of a stage: of its chains from start to end or, after Ching and Chen, of every particle from the
+    /// leader of its chain. The chains have moved if they accepted one step each on average.
+    fn drift(&self, stage: &Stage) -> Drift {
+        let chains = &stage.chains;
+        let moved = stage.accepted >= chains.len() as u64;
+        let (members, end): (Vec<usize>, Vec<f64>) = match self.settings.algorithm {
+            Algorithm::Tmcmc => {
+                let end = chains.iter().map(|chain| chain.current.log_likelihood.value());
+                ((0..chains.len()).collect(), end.collect())
+            }
+            Algorithm::ChingChen2007 => (stage.pool.chains.clone(), stage.pool.log_likelihoods()),
+        };
+        let start: Vec<f64> = members.iter().map(|&chain| chains[chain].start.value()).collect();
+        let clusters: Vec<usize> = members.iter().map(|&chain| chains[chain].ancestor).collect();
+        Drift::of(&start, &end, &clusters, self.passage.step, moved)
     }
 
     /// Files a finished stage.
@@ -374,12 +294,9 @@ impl Sampler {
         } = self.passage;
         let ancestors = stage.chains.iter().map(|chain| chain.ancestor).collect();
         let log_evidence_increment = log_evidence + self.evidence.add(&stage.pool, ancestors, step);
-        let (population, moved): (Vec<&State>, bool) = match self.settings.algorithm {
-            Algorithm::Tmcmc => (
-                stage.chains.iter().map(|chain| &chain.current).collect(),
-                drift.correlation < CORRELATION_LIMIT,
-            ),
-            Algorithm::ChingChen2007 => (stage.pool.states.iter().collect(), true),
+        let population: Vec<&State> = match self.settings.algorithm {
+            Algorithm::Tmcmc => stage.chains.iter().map(|chain| &chain.current).collect(),
+            Algorithm::ChingChen2007 => stage.pool.states.iter().collect(),
         };
         self.stages.push(StageRecord {
             stage: stage.index,
@@ -394,7 +311,7 @@ impl Sampler {
             ess: self.settings.particles as f64 / (1.0 + weight_cov * weight_cov),
             scale: stage.scale,
             evaluations: stage.evaluations,
-            equilibrated: moved && !drift.is_alarming(),
+            equilibrated: drift.is_equilibrated(),
             population: population
                 .into_iter()
                 .map(|state| state.particle(&self.prior))

@@ -5,11 +5,11 @@ use super::weights::Weights;
 /// Relative tolerance of the step.
 const TOLERANCE: f64 = 1e-10;
 
-/// The step of the exponent at which the weights of `log_likelihoods` have the coefficient of variation `target`,
-/// or `remaining` = 1 - exponent if that comes first.
+/// The step of the exponent at which the weights of `log_likelihoods` have the coefficient of variation
+/// `target`, or `remaining` = 1 - exponent if that comes first.
 ///
-/// The coefficient rises with the step, so a bisection finds it; it runs on the logarithm of the step, because
-/// the first one can be 1e-10 or less. The log-likelihoods are finite and not empty.
+/// The coefficient rises with the step, so a bisection finds it; it runs on the logarithm of the step,
+/// because the first one can be 1e-10 or less. The log-likelihoods are finite and not empty.
 pub(super) fn exponent_step(log_likelihoods: &[f64], remaining: f64, target: f64) -> f64 {
     let cov = |step: f64| Weights::new(log_likelihoods, step).cov;
     if cov(remaining) <= target {
@@ -19,7 +19,8 @@ pub(super) fn exponent_step(log_likelihoods: &[f64], remaining: f64, target: f64
         .iter()
         .fold(f64::NEG_INFINITY, |max, &l| max.max(l));
     let min = log_likelihoods.iter().fold(f64::INFINITY, |min, &l| min.min(l));
-    // Weights between exp(-c) and 1 vary by at most sinh(c/2), which is below `target` for c = min(target, 1).
+    // Weights between exp(-c) and 1 vary by at most sinh(c/2), which is below `target` for c = min(target,
+    // 1).
     let least = target.min(1.0) / (max - min).min(f64::MAX);
     let (mut low, mut high) = (libm::log(least.min(remaining)), libm::log(remaining));
     while high - low > TOLERANCE {

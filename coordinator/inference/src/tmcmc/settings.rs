@@ -5,10 +5,11 @@
 pub enum Algorithm {
     /// Every particle moves by several steps of a mixed, self-scaling proposal; the default.
     Tmcmc,
-    /// The original sampler: each particle is one step of a chain that is as long as its leader's multiplicity.
+    /// The original sampler: each particle is one step of a chain that is as long as its leader's
+    /// multiplicity.
     ///
-    /// Ching & Chen 2007, J. Eng. Mech. 133:816. Kept because published calibrations used it; its steps are too
-    /// few to equilibrate, see the stages' drift.
+    /// Ching & Chen 2007, J. Eng. Mech. 133:816. Kept because published calibrations used it. Its chains are
+    /// too short to forget where they started, so its runs are reported as not equilibrated.
     ChingChen2007,
 }
 

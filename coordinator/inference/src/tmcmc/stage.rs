@@ -105,7 +105,8 @@ impl Stage {
         proposals
     }
 
-    /// Accepts or rejects every step; `answers` are the log-likelihoods of the last proposals, in their order.
+    /// Accepts or rejects every step; `answers` are the log-likelihoods of the last proposals, in their
+    /// order.
     pub(super) fn accept(&mut self, answers: &[LogLikelihood]) {
         self.evaluations += answers.len() as u64;
         let mut answers = answers.iter();

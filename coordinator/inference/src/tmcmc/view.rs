@@ -1,0 +1,112 @@
+//! Show a sampler's state to the outside.
+
+use super::population::{Particle, Proposal};
+use super::record::{Current, Failure, Posterior, StageRecord};
+use super::sampler::{Phase, Sampler};
+use super::settings::Settings;
+use crate::prior::Prior;
+
+impl Sampler {
+    /// The prior.
+    #[must_use]
+    pub fn prior(&self) -> &Prior {
+        &self.prior
+    }
+
+    /// The settings.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Number of completed rounds; (round, particle) names an evaluation for ever.
+    #[must_use]
+    pub fn round(&self) -> u64 {
+        self.round
+    }
+
+    /// This round's proposals, by ascending particle, told or not.
+    ///
+    /// Those outside the prior's support are rejected at once and never listed. Empty only when the sampler
+    /// has finished or failed.
+    #[must_use]
+    pub fn pending(&self) -> &[Proposal] {
+        &self.pending
+    }
+
+    /// Whether a pending particle has been told.
+    #[must_use]
+    pub fn is_told(&self, particle: usize) -> bool {
+        self.slot(particle)
+            .is_some_and(|slot| self.answers[slot].is_some())
+    }
+
+    /// The finished stages.
+    #[must_use]
+    pub fn stages(&self) -> &[StageRecord] {
+        &self.stages
+    }
+
+    /// The prior draws with their log-likelihoods, once round 0 is complete.
+    #[must_use]
+    pub fn prior_draws(&self) -> &[Particle] {
+        &self.prior_draws
+    }
+
+    /// The result, once finished.
+    #[must_use]
+    pub fn posterior(&self) -> Option<&Posterior> {
+        self.posterior.as_ref()
+    }
+
+    /// Why the sampler failed, if it did.
+    #[must_use]
+    pub fn failure(&self) -> Option<Failure> {
+        if let Phase::Failed(failure) = self.phase {
+            Some(failure)
+        } else {
+            None
+        }
+    }
+
+    /// Log-likelihoods told so far in completed rounds.
+    #[must_use]
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+
+    /// Those of them that were impossible.
+    #[must_use]
+    pub fn rejected(&self) -> u64 {
+        self.rejected
+    }
+
+    /// The stage in progress, for display; the last stage once finished.
+    #[must_use]
+    pub fn current(&self) -> Current {
+        let (told, proposals) = (self.pending.len() - self.missing, self.pending.len());
+        let mut current = Current {
+            stage: 0,
+            tempering_exponent: 0.0,
+            step: 0,
+            most_steps: 1,
+            acceptance: None,
+            told,
+            proposals,
+        };
+        if let Phase::Moving(stage) = &self.phase {
+            current.stage = stage.index;
+            current.tempering_exponent = stage.exponent;
+            current.step = stage.step;
+            current.most_steps = stage.chains.iter().map(|chain| chain.length).max().unwrap_or(0);
+            current.acceptance = stage.acceptance();
+        } else if let Some(last) = self.stages.last() {
+            current.stage = last.stage;
+            current.tempering_exponent = last.tempering_exponent;
+            current.step = last.steps;
+            current.most_steps = last.steps;
+            current.acceptance = Some(last.acceptance);
+        }
+        current
+    }
+}

@@ -1,0 +1,249 @@
+//! Check the protocol: order, refusals, impossible likelihoods, rounds without proposals.
+
+use crate::problems;
+use inference::rng::Stream;
+use inference::{
+    Algorithm, Distribution, Failure, LogLikelihood, Marginal, Prior, Progress, Sampler, Settings,
+    SettingsError, TellError,
+};
+
+fn small() -> Settings {
+    Settings {
+        particles: 60,
+        moves: [3, 8],
+        ..Settings::default()
+    }
+}
+
+fn unit_prior(dimension: usize) -> Prior {
+    let marginal = Marginal::new(
+        Distribution::Uniform {
+            lower: 0.0,
+            upper: 1.0,
+        },
+        None,
+    )
+    .unwrap();
+    Prior::new(vec![marginal; dimension])
+}
+
+/// Runs to the end, telling each round in an order of its own.
+fn run(prior: Prior, settings: Settings, score: impl Fn(&[f64]) -> f64, shuffle: u64) -> Sampler {
+    let mut sampler = Sampler::new(prior, settings).unwrap();
+    loop {
+        let mut proposals = sampler.pending().to_vec();
+        let mut stream = Stream::new(shuffle, 0, 0, sampler.round());
+        for last in (1..proposals.len()).rev() {
+            if shuffle > 0 {
+                proposals.swap(last, stream.below(last + 1));
+            }
+        }
+        let mut progress = Progress::Waiting;
+        for proposal in proposals {
+            assert_eq!(progress, Progress::Waiting);
+            progress = sampler
+                .tell(
+                    proposal.particle,
+                    LogLikelihood::new(score(&proposal.theta)).unwrap(),
+                )
+                .unwrap();
+        }
+        match progress {
+            Progress::NextRound | Progress::StageFinished => assert!(!sampler.pending().is_empty()),
+            Progress::Finished | Progress::Failed(_) => return sampler,
+            Progress::Waiting => panic!("a completed round left the sampler waiting"),
+        }
+    }
+}
+
+#[test]
+fn the_order_of_tells_is_irrelevant() {
+    let problem = problems::shear_building();
+    for algorithm in [Algorithm::Tmcmc, Algorithm::ChingChen2007] {
+        let settings = Settings { algorithm, ..small() };
+        let score = |theta: &[f64]| problem.score(theta).value();
+        let [straight, shuffled] = [0, 99].map(|shuffle| run(problem.prior(), settings, score, shuffle));
+        let bits = |sampler: &Sampler| {
+            let posterior = sampler.posterior().unwrap();
+            let mut bits: Vec<u64> = posterior
+                .particles
+                .iter()
+                .flat_map(|p| &p.theta)
+                .map(|x| x.to_bits())
+                .collect();
+            bits.push(posterior.log_evidence.to_bits());
+            bits.push(posterior.log_evidence_se.to_bits());
+            bits
+        };
+        assert_eq!(bits(&straight), bits(&shuffled));
+        assert_eq!(straight.stages(), shuffled.stages());
+    }
+}
+
+#[test]
+fn the_seed_matters() {
+    let problem = problems::shear_building();
+    let run = |seed| {
+        problem
+            .run(Settings { seed, ..small() })
+            .posterior()
+            .unwrap()
+            .log_evidence
+    };
+    assert!((run(1) - run(2)).abs() > 0.0);
+}
+
+#[test]
+fn pending_holds_still_and_refuses_what_it_did_not_ask() {
+    let mut sampler = Sampler::new(unit_prior(2), small()).unwrap();
+    let before = sampler.pending().to_vec();
+    let value = LogLikelihood::new(-1.0).unwrap();
+    assert_eq!(sampler.tell(7, value), Ok(Progress::Waiting));
+    assert_eq!(sampler.pending(), before);
+    assert!(sampler.is_told(7) && !sampler.is_told(8));
+    assert_eq!((sampler.current().told, sampler.current().proposals), (1, 60));
+    assert_eq!(
+        sampler.tell(7, value),
+        Err(TellError::AlreadyTold {
+            round: 0,
+            particle: 7
+        })
+    );
+    assert_eq!(
+        sampler.tell(60, value),
+        Err(TellError::NotPending {
+            round: 0,
+            particle: 60
+        })
+    );
+}
+
+#[test]
+fn most_of_the_prior_may_be_impossible() {
+    // L = 1 on the tenth x < 0.1, impossible elsewhere: Z = 0.1 and the posterior is uniform on it.
+    let settings = Settings {
+        particles: 1000,
+        ..Settings::default()
+    };
+    let score = |theta: &[f64]| if theta[0] < 0.1 { 0.0 } else { f64::NEG_INFINITY };
+    let sampler = run(unit_prior(2), settings, score, 0);
+    let posterior = sampler.posterior().unwrap();
+    let error = (posterior.log_evidence - 0.1_f64.ln()) / posterior.log_evidence_se;
+    assert!(error.abs() < 4.0, "{error}");
+    // sqrt((1 - f) / (f n)) at f = 0.1, n = 1000; the stage itself is exact.
+    assert!(
+        (posterior.log_evidence_se - 0.095).abs() < 0.015,
+        "{}",
+        posterior.log_evidence_se
+    );
+    assert!(
+        posterior
+            .particles
+            .iter()
+            .all(|p| p.theta[0] < 0.1 && p.log_likelihood.value().abs() < 1e-300)
+    );
+    assert!(posterior.rejected > 800 && posterior.rejected < posterior.evaluations);
+    let first: Vec<f64> = posterior.particles.iter().map(|p| p.theta[0]).collect();
+    let (mean, sd) = inference::diagnostics::mean_and_sd(&first).unwrap();
+    assert!(
+        (mean - 0.05).abs() < 0.008 && (sd / 0.1 - 12.0_f64.sqrt().recip()).abs() < 0.04,
+        "{mean} {sd}"
+    );
+}
+
+#[test]
+fn a_model_that_rejects_everything_is_reported() {
+    let sampler = run(unit_prior(2), small(), |_| f64::NEG_INFINITY, 0);
+    let failure = sampler.failure().unwrap();
+    assert_eq!(failure, Failure::AllImpossible { draws: 60 });
+    assert_eq!(
+        failure.to_string(),
+        "all 60 prior draws were rejected by the model"
+    );
+    assert!(sampler.pending().is_empty() && sampler.posterior().is_none());
+    let few = run(
+        unit_prior(3),
+        small(),
+        |theta| if theta[0] < 0.05 { 0.0 } else { f64::NEG_INFINITY },
+        0,
+    );
+    assert!(matches!(
+        few.failure(),
+        Some(Failure::TooFewPossible {
+            draws: 60,
+            needed: 5,
+            ..
+        })
+    ));
+}
+
+#[test]
+fn log_likelihoods_too_far_apart_are_reported() {
+    let sampler = run(unit_prior(1), small(), |theta| -1e300 * theta[0], 0);
+    assert!(sampler.failure().is_some() || sampler.posterior().is_some());
+}
+
+/// In a corner of ten dimensions nearly every proposal of a small population leaves the prior.
+#[test]
+fn rounds_without_proposals_inside_the_prior_advance_by_themselves() {
+    let settings = Settings {
+        particles: 22,
+        moves: [1, 3],
+        ..Settings::default()
+    };
+    let sampler = run(
+        unit_prior(10),
+        settings,
+        |theta| -2000.0 * theta.iter().sum::<f64>(),
+        0,
+    );
+    let posterior = sampler.posterior().unwrap();
+    assert!(sampler.round() > 10 && posterior.particles.len() == 22);
+}
+
+#[test]
+fn a_flat_likelihood_gives_back_the_prior() {
+    let sampler = run(unit_prior(1), small(), |_| -3.0, 0);
+    let posterior = sampler.posterior().unwrap();
+    assert_eq!(sampler.stages().len(), 1);
+    assert!((posterior.log_evidence + 3.0).abs() < 1e-12 && posterior.log_evidence_se < 1e-9);
+    assert!(posterior.equilibrated);
+}
+
+#[test]
+fn settings_that_cannot_work_are_refused() {
+    let refuse = |prior: Prior, settings| Sampler::new(prior, settings).map(|_| ()).unwrap_err();
+    assert_eq!(refuse(unit_prior(0), small()), SettingsError::NoParameters);
+    assert_eq!(
+        refuse(
+            unit_prior(5),
+            Settings {
+                particles: 11,
+                ..small()
+            }
+        )
+        .to_string(),
+        "11 particles are too few for 5 parameters, which need at least 12"
+    );
+    assert_eq!(
+        refuse(
+            unit_prior(1),
+            Settings {
+                moves: [5, 4],
+                ..small()
+            }
+        )
+        .to_string(),
+        "moves [5, 4] are not 1 <= least <= most"
+    );
+    assert!(matches!(
+        refuse(
+            unit_prior(1),
+            Settings {
+                target_cov: f64::NAN,
+                ..small()
+            }
+        ),
+        SettingsError::TargetCov { .. }
+    ));
+}

@@ -1,0 +1,239 @@
+//! Check marginals against numerical integration.
+
+use inference::rng::Stream;
+use inference::{Distribution, Marginal, Prior, PriorError};
+use proptest::prelude::*;
+
+fn cases() -> Vec<Marginal> {
+    let normal = Distribution::Normal { mean: 1.1, sd: 0.2 };
+    let lognormal = Distribution::Lognormal {
+        median: 0.008,
+        factor: 2.5,
+    };
+    let half = Distribution::HalfNormal { scale: 0.3 };
+    [
+        (
+            Distribution::Uniform {
+                lower: 4.0,
+                upper: 5.6,
+            },
+            None,
+        ),
+        (
+            Distribution::Uniform {
+                lower: 4.0,
+                upper: 5.6,
+            },
+            Some([4.5, 5.0]),
+        ),
+        (
+            Distribution::Loguniform {
+                lower: 1e-3,
+                upper: 2.0,
+            },
+            None,
+        ),
+        (
+            Distribution::Loguniform {
+                lower: 1e-3,
+                upper: 2.0,
+            },
+            Some([1e-2, 0.5]),
+        ),
+        (normal, None),
+        (normal, Some([0.8, 2.0])),
+        (normal, Some([1.8, 2.5])),
+        (normal, Some([-1.0, 0.5])),
+        (normal, Some([0.8, f64::INFINITY])),
+        (lognormal, Some([0.0, 0.03])),
+        (lognormal, None),
+        (lognormal, Some([0.004, 0.03])),
+        (half, None),
+        (half, Some([0.1, 0.7])),
+    ]
+    .map(|(distribution, bounds)| Marginal::new(distribution, bounds).unwrap())
+    .to_vec()
+}
+
+/// Integral of f(x) p(x) by the midpoint rule in ln x for positive supports, in x otherwise; 0 to 2 are
+/// the moments about `centre`.
+fn moment(marginal: &Marginal, power: i32, centre: f64) -> f64 {
+    const POINTS: u32 = 200_000;
+    let (low, high) = (marginal.quantile(1e-13), marginal.quantile(1.0 - 1e-13));
+    let (low, high) = if marginal.support().1.is_finite() {
+        marginal.support()
+    } else {
+        (low, high)
+    };
+    let log = low > 0.0;
+    let (from, to) = if log { (low.ln(), high.ln()) } else { (low, high) };
+    let step = (to - from) / f64::from(POINTS);
+    (0..POINTS)
+        .map(|i| {
+            let u = from + step * (f64::from(i) + 0.5);
+            let (x, jacobian) = if log { (u.exp(), u.exp()) } else { (u, 1.0) };
+            (x - centre).powi(power) * marginal.log_density(x).exp() * jacobian * step
+        })
+        .sum()
+}
+
+#[test]
+fn densities_integrate_to_one_and_have_the_stated_moments() {
+    for marginal in cases() {
+        let mass = moment(&marginal, 0, 0.0);
+        assert!((mass - 1.0).abs() < 1e-7, "{marginal:?}: mass {mass}");
+        let mean = moment(&marginal, 1, 0.0);
+        assert!(
+            (mean / marginal.mean() - 1.0).abs() < 1e-6,
+            "{marginal:?}: mean {mean}"
+        );
+        let sd = moment(&marginal, 2, mean).sqrt();
+        assert!((sd / marginal.sd() - 1.0).abs() < 1e-6, "{marginal:?}: sd {sd}");
+    }
+}
+
+#[test]
+fn closed_forms() {
+    let moments = |distribution| {
+        let marginal = Marginal::new(distribution, None).unwrap();
+        (marginal.mean(), marginal.sd())
+    };
+    let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-8, "{a} {b}");
+    let (mean, sd) = moments(Distribution::Uniform {
+        lower: 1.0,
+        upper: 4.0,
+    });
+    close(mean, 2.5);
+    close(sd, 3.0 / 12.0_f64.sqrt());
+    // s = ln 2.5: mean = m exp(s^2/2), sd = mean sqrt(exp(s^2) - 1).
+    let (mean, sd) = moments(Distribution::Lognormal {
+        median: 0.008,
+        factor: 2.5,
+    });
+    let variance = 2.5_f64.ln().powi(2);
+    close(mean, 0.008 * (variance / 2.0).exp());
+    close(sd, mean * (variance.exp() - 1.0).sqrt());
+    let (mean, sd) = moments(Distribution::HalfNormal { scale: 2.0 });
+    close(mean, 2.0 * (2.0 / std::f64::consts::PI).sqrt());
+    close(sd, 2.0 * (1.0 - 2.0 / std::f64::consts::PI).sqrt());
+    // (b - a) / ln(b / a).
+    let (mean, _) = moments(Distribution::Loguniform {
+        lower: 0.01,
+        upper: 1.0,
+    });
+    close(mean, 0.99 / 100.0_f64.ln());
+}
+
+#[test]
+fn draws_follow_the_density() {
+    for marginal in cases() {
+        let draws: Vec<f64> = (0..4000)
+            .map(|i| marginal.sample(&mut Stream::new(3, 0, i, 0)))
+            .collect();
+        let (low, high) = marginal.support();
+        assert!(draws.iter().all(|&x| low <= x && x <= high));
+        let (mean, sd) = inference::diagnostics::mean_and_sd(&draws).unwrap();
+        let error = (mean - marginal.mean()) / marginal.sd() * 4000.0_f64.sqrt();
+        assert!(error.abs() < 4.0, "{marginal:?}: {error} standard errors");
+        assert!((sd / marginal.sd() - 1.0).abs() < 0.3, "{marginal:?}: {sd}");
+    }
+}
+
+#[test]
+fn outside_the_support_the_density_is_zero() {
+    for marginal in cases() {
+        let (low, high) = marginal.support();
+        assert!(marginal.log_density(low - 1e-3).is_infinite());
+        assert!(marginal.log_density(high + 1e-3).is_infinite() || high.is_infinite());
+        assert!(marginal.log_density(f64::NAN).is_infinite());
+        assert!(marginal.log_density(marginal.quantile(0.3)).is_finite());
+    }
+    let prior = Prior::new(cases());
+    assert!(prior.log_density(&[1.0]).is_infinite(), "wrong length");
+}
+
+#[test]
+fn errors_name_value_and_bound() {
+    let refuse = |distribution, bounds| Marginal::new(distribution, bounds).unwrap_err().to_string();
+    let normal = Distribution::Normal { mean: 0.0, sd: 1.0 };
+    let lognormal = |factor| Distribution::Lognormal { median: 1.0, factor };
+    assert_eq!(
+        refuse(Distribution::Normal { mean: 0.0, sd: 0.0 }, None),
+        "sd 0 is not above 0"
+    );
+    assert_eq!(refuse(lognormal(1.0), None), "factor 1 is not above 1");
+    assert_eq!(
+        refuse(Distribution::HalfNormal { scale: -1.0 }, None),
+        "scale -1 is not above 0"
+    );
+    assert_eq!(
+        refuse(normal, Some([2.0, 1.0])),
+        "lower bound 2 is not below upper bound 1"
+    );
+    assert_eq!(
+        refuse(normal, Some([f64::NAN, 1.0])),
+        "lower bound NaN is not below upper bound 1"
+    );
+    assert_eq!(
+        refuse(normal, Some([60.0, 61.0])),
+        "bounds [60, 61] hold no probability"
+    );
+    assert_eq!(
+        refuse(
+            Distribution::Uniform {
+                lower: 0.0,
+                upper: 1.0
+            },
+            Some([0.5, 1.5])
+        ),
+        "bounds [0.5, 1.5] reach outside the support [0, 1]"
+    );
+    assert_eq!(
+        refuse(
+            Distribution::Loguniform {
+                lower: 0.0,
+                upper: 1.0
+            },
+            None
+        ),
+        "lower 0 is not above 0"
+    );
+    assert!(matches!(
+        Marginal::new(
+            Distribution::Uniform {
+                lower: 0.0,
+                upper: f64::INFINITY
+            },
+            None
+        ),
+        Err(PriorError::NotFinite { name: "upper", .. })
+    ));
+}
+
+#[test]
+fn nearness_to_a_bound_is_judged_in_the_sampling_coordinate() {
+    let marginal = Marginal::new(
+        Distribution::Loguniform {
+            lower: 1e-3,
+            upper: 10.0,
+        },
+        None,
+    )
+    .unwrap();
+    // 0.01 is a whole decade of four from the lower end, though within 2 % of the linear range.
+    assert!(!marginal.at_bound(0.01, 0.1));
+    assert!(marginal.at_bound(0.001_1, 0.1));
+}
+
+proptest! {
+    #[test]
+    fn quantiles_rise_and_stay_inside(mean in -5.0..5.0_f64, sd in 0.01..10.0_f64, low in -20.0..20.0_f64,
+                                      width in 0.1..20.0_f64, p in 0.0..1.0_f64, q in 0.0..1.0_f64) {
+        if let Ok(marginal) = Marginal::new(Distribution::Normal { mean, sd }, Some([low, low + width])) {
+            let (p, q) = (p.min(q), p.max(q));
+            let (a, b) = (marginal.quantile(p), marginal.quantile(q));
+            prop_assert!(low <= a && a <= b && b <= low + width);
+            prop_assert!(marginal.sd() > 0.0 && low < marginal.mean() && marginal.mean() < low + width);
+        }
+    }
+}
