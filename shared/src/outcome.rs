@@ -31,7 +31,7 @@ pub struct Observables {
     pub sinkage_m: Vec<f64>,
     /// Lateral force [N].
     pub lateral_force_n: Vec<f64>,
-    /// Mean effective width b_eff = 2A/L of the footprint [m].
+    /// Mean effective width `b_eff = 2A/L` of the footprint [m].
     pub b_eff_m: Vec<f64>,
     /// Mean contact length [m].
     pub contact_length_m: Vec<f64>,

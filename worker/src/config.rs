@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// Simulates wheel-soil contact for a Grouser coordinator.
 #[derive(Debug, clap::Parser)]
-#[command(version, args_conflicts_with_subcommands = true, arg_required_else_help = true)]
+#[command(version, args_conflicts_with_subcommands = true)]
 pub struct Config {
     /// What to do besides serving a coordinator.
     #[command(subcommand)]
@@ -17,7 +17,7 @@ pub struct Config {
 /// How to serve a coordinator.
 #[derive(Debug, clap::Args)]
 pub struct Serve {
-    /// The coordinator, as in http://host:7070.
+    /// The coordinator, as in `http://host:7070`.
     #[arg(long, env = "GROUSER_COORDINATOR", value_name = "URL")]
     pub coordinator: String,
     /// Threads that simulate; by default, one for each core.

@@ -119,3 +119,138 @@ impl Calibration {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use shared::file::FileSet;
+    use shared::outcome::Observables;
+
+    use super::super::{Identity, PREDICTIONS_FROM};
+    use super::*;
+    use crate::fact::{EvaluationRow, Kept};
+    use crate::spec::Spec;
+
+    const JOB: &str = "[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = { uniform = [4.0, 5.6] }\nkappa = 0.0\nn = { uniform = [0.8, 1.4] }\nfriction_angle_deg = 30.0\n[sampler]\nparticles = 20\nmoves = [2, 4]\n";
+    const EXPERIMENT: &str =
+        "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 0.05\n";
+    const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\na,w,s,0.2,100,0.008,5.0,fit\nb,w,s,0.4,100,0.008,5.1,holdout\n";
+
+    fn fresh() -> Calibration {
+        let files = FileSet { toml: EXPERIMENT.into(), files: [("runs.csv".into(), RUNS.into())].into() };
+        let spec = Spec::new("job.toml", JOB, "experiment.toml", &files).unwrap();
+        let identity = Identity { id: 1, name: "toy".into(), study: 1, experiment: 1 };
+        Calibration::new(identity, Arc::new(spec)).unwrap()
+    }
+
+    /// A model of one line, refusing a corner of the prior.
+    fn toy(theta: &[f64], runs: usize) -> Result<Observables, String> {
+        if theta[1] > 1.35 {
+            return Err("no_support: condition 0: toy".into());
+        }
+        let values = vec![theta[0] + 0.1 * theta[1]; runs];
+        Ok(Observables {
+            drawbar_pull_n: values.clone(),
+            torque_n_m: values.clone(),
+            sinkage_m: values.clone(),
+            lateral_force_n: values.clone(),
+            b_eff_m: values.clone(),
+            contact_length_m: values.clone(),
+            residual_load_n: values.clone(),
+            nodes_in_contact: vec![1; runs],
+            simulated_travel_m: values,
+        })
+    }
+
+    /// Completes up to `most` evaluations, the last asked for first if `backwards`.
+    fn work(calibration: &mut Calibration, most: usize, backwards: bool) -> Vec<Fact> {
+        let mut facts = Vec::new();
+        let mut done = 0;
+        while !calibration.state.is_final() {
+            let mut asked = calibration.queue.asked();
+            if backwards {
+                asked.reverse();
+            }
+            for evaluation in asked {
+                let Some((_, theta)) = calibration.lease_of(evaluation) else { break };
+                let runs = if evaluation >= PREDICTIONS_FROM { 2 } else { 1 };
+                let outcome = toy(theta, runs);
+                let (new, counted) = calibration.complete(evaluation, outcome, "toy").unwrap();
+                facts.extend(new);
+                done += usize::from(counted);
+                if done == most {
+                    return facts;
+                }
+            }
+        }
+        facts
+    }
+
+    fn rows(facts: &[Fact]) -> Vec<&EvaluationRow> {
+        facts.iter().filter_map(|f| if let Fact::Evaluated { row, .. } = f { Some(row) } else { None }).collect()
+    }
+
+    fn stored(facts: &[Fact]) -> Stored {
+        let evaluations = rows(facts)
+            .into_iter()
+            .map(|row| {
+                let evaluation = StoredEvaluation {
+                    theta: row.theta.clone(),
+                    log_likelihood: row.log_likelihood,
+                    rejected: matches!(row.kept, Kept::Refused(_)),
+                };
+                (row.evaluation, evaluation)
+            })
+            .collect();
+        Stored { evaluations, ..Stored::default() }
+    }
+
+    fn sorted(facts: &[Fact]) -> Vec<EvaluationRow> {
+        let mut rows: Vec<EvaluationRow> = rows(facts).into_iter().cloned().collect();
+        rows.sort_by_key(|r| r.evaluation);
+        rows
+    }
+
+    #[test]
+    fn the_order_of_results_does_not_matter() {
+        let forwards = work(&mut fresh(), usize::MAX, false);
+        let backwards = work(&mut fresh(), usize::MAX, true);
+        assert_eq!(sorted(&forwards), sorted(&backwards));
+        assert!(forwards.iter().any(|f| matches!(f, Fact::Posterior { .. })));
+    }
+
+    #[test]
+    fn a_replay_from_any_point_ends_with_the_same_evaluations() {
+        let whole = sorted(&work(&mut fresh(), usize::MAX, false));
+        for cut in [1, 19, 20, 33, whole.len() - 10, whole.len() - 1] {
+            let first = work(&mut fresh(), cut, false);
+            let mut again = fresh();
+            again.replay(stored(&first)).unwrap();
+            assert_eq!(again.evaluations, cut as u64);
+            let mut all = first;
+            all.extend(work(&mut again, usize::MAX, true));
+            assert_eq!(sorted(&all), whole, "cut after {cut}");
+            assert_eq!(again.state, CalibrationState::Finished);
+        }
+    }
+
+    #[test]
+    fn a_stored_theta_that_differs_by_a_bit_stops_the_replay() {
+        let mut stored = stored(&work(&mut fresh(), 5, false));
+        let theta = &mut stored.evaluations.get_mut(&3).unwrap().theta;
+        theta[0] = f64::from_bits(theta[0].to_bits() + 1);
+        assert!(matches!(fresh().replay(stored), Err(ReplayError::OtherTheta { evaluation: 3, .. })));
+    }
+
+    #[test]
+    fn final_draws_see_the_holdout_and_sampling_does_not() {
+        let facts = work(&mut fresh(), usize::MAX, false);
+        for row in rows(&facts) {
+            let whole = matches!(&row.kept, Kept::Whole(o) if o.sinkage_m.len() == 2);
+            let fitted = matches!(&row.kept, Kept::Fitted(v) if v.len() == 1);
+            let refused = matches!(row.kept, Kept::Refused(_));
+            assert!(refused || if row.evaluation >= PREDICTIONS_FROM { whole } else { fitted });
+        }
+    }
+}

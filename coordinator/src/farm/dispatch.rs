@@ -23,11 +23,18 @@ const TICK: Duration = Duration::from_millis(250);
 /// An answer together with the number of the fact that must be stored before it may be given.
 pub type Durable<T> = (T, u64);
 
+/// Where an exchange is answered.
+type ExchangeReply = oneshot::Sender<Durable<ExchangeResponse>>;
+/// A question to the farm at a time [ms].
+type Look = Box<dyn FnOnce(&Farm, u64) + Send>;
+/// What a command led to.
+pub type Controlled = Result<Durable<CalibrationState>, ControlError>;
+
 enum Message {
-    Exchange { request: ExchangeRequest, reply: oneshot::Sender<Durable<ExchangeResponse>> },
+    Exchange { request: ExchangeRequest, reply: ExchangeReply },
     Add { calibration: Box<Calibration>, facts: Vec<Fact>, reply: oneshot::Sender<()> },
-    Control { id: i64, control: Control, reply: oneshot::Sender<Result<Durable<CalibrationState>, ControlError>> },
-    Look { look: Box<dyn FnOnce(&Farm, u64) + Send> },
+    Control { id: i64, control: Control, reply: oneshot::Sender<Controlled> },
+    Look { look: Look },
     Stop,
 }
 
@@ -96,11 +103,7 @@ impl Dispatcher {
     ///
     /// # Errors
     /// [`Stopped`]; inside, [`ControlError`].
-    pub async fn control(
-        &self,
-        id: i64,
-        control: Control,
-    ) -> Result<Result<Durable<CalibrationState>, ControlError>, Stopped> {
+    pub async fn control(&self, id: i64, control: Control) -> Result<Controlled, Stopped> {
         let (reply, answer) = oneshot::channel();
         self.send(Message::Control { id, control, reply })?;
         answer.await.map_err(|_| Stopped)
@@ -168,7 +171,7 @@ struct Parked {
     model_version: String,
     want: u32,
     until_ms: u64,
-    reply: oneshot::Sender<Durable<ExchangeResponse>>,
+    reply: ExchangeReply,
 }
 
 struct Thread {
@@ -225,12 +228,7 @@ impl Thread {
         }
     }
 
-    fn exchange(
-        &mut self,
-        request: ExchangeRequest,
-        reply: oneshot::Sender<Durable<ExchangeResponse>>,
-        now_ms: u64,
-    ) {
+    fn exchange(&mut self, request: ExchangeRequest, reply: ExchangeReply, now_ms: u64) {
         let (worker, model_version) = (request.worker.clone(), request.model_version.clone());
         let (want, until_ms) = (request.want, now_ms + request.wait_ms);
         let response = self.farm.exchange(request, now_ms);
@@ -274,12 +272,7 @@ impl Thread {
     }
 
     /// Answers; leases for a worker that has gone away meanwhile are taken back at once.
-    fn answer(
-        &mut self,
-        reply: oneshot::Sender<Durable<ExchangeResponse>>,
-        answer: Durable<ExchangeResponse>,
-        now_ms: u64,
-    ) {
+    fn answer(&mut self, reply: ExchangeReply, answer: Durable<ExchangeResponse>, now_ms: u64) {
         if let Err((response, _)) = reply.send(answer) {
             for lease in response.leases {
                 self.farm.give_back(lease.lease);

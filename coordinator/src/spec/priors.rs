@@ -42,8 +42,7 @@ impl PriorEntry {
     pub(super) fn parse(&self, wheels: &BTreeSet<&str>) -> Result<Parsed, String> {
         let (unit, lower, upper) = bounds(&self.name, wheels)?;
         if let Some(value) = number(&self.value) {
-            let noise = self.name.starts_with(NOISE_PREFIX);
-            if noise {
+            if self.name.starts_with(NOISE_PREFIX) {
                 return Err(format!("{} is fixed in the experiment's [noise], not here", self.name));
             }
             return Ok(Parsed::Fixed(value));
@@ -55,13 +54,12 @@ impl PriorEntry {
             None => None,
             Some(value) => Some(pair("bounds", value).map_err(prefix)?),
         };
-        if let (Distribution::Uniform { lower: a, upper: b } | Distribution::Loguniform { lower: a, upper: b }, _) =
-            (&distribution, ())
+        if let Distribution::Uniform { lower: a, upper: b } | Distribution::Loguniform { lower: a, upper: b } =
+            distribution
+            && (a < lower || b > upper)
         {
-            if *a < lower || *b > upper {
-                let what = format!("[{a}, {b}] {unit} leaves the admissible range [{lower}, {upper}] {unit}");
-                return Err(prefix(what));
-            }
+            let what = format!("[{a}, {b}] {unit} leaves the admissible range [{lower}, {upper}] {unit}");
+            return Err(prefix(what));
         }
         if let Some([a, b]) = stated
             && (a < lower || b > upper)

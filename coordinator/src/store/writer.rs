@@ -23,7 +23,7 @@ const ROWS: usize = 2000;
 enum Write {
     Fact(Fact),
     Experiment { toml: String, files: String, now_ms: i64, reply: oneshot::Sender<i64> },
-    Calibration { new: NewCalibrationRow, reply: oneshot::Sender<(i64, i64)> },
+    Calibration { new: NewCalibrationRow, reply: oneshot::Sender<Ids> },
     Close,
 }
 
@@ -234,8 +234,11 @@ async fn run(
 #[derive(Default)]
 struct Replies {
     experiments: Vec<(oneshot::Sender<i64>, i64)>,
-    calibrations: Vec<(oneshot::Sender<(i64, i64)>, (i64, i64))>,
+    calibrations: Vec<(oneshot::Sender<Ids>, Ids)>,
 }
+
+/// A calibration and its study.
+type Ids = (i64, i64);
 
 impl Replies {
     fn send(self) {

@@ -15,7 +15,7 @@ pub struct TestRun {
     pub wheel: String,
     /// Which soil.
     pub soil: String,
-    /// `(omega R_s - v) / max(omega R_s, v)`, in [-1, 1); R_s is the rig's radius.
+    /// `(omega R_s - v) / max(omega R_s, v)`, in [-1, 1); `R_s` is the rig's radius.
     pub slip: f64,
     /// Vertical load on the wheel [N].
     pub wheel_load_n: f64,
