@@ -1,7 +1,11 @@
 //! Estimate the ratio of two neighbouring normalising constants from the states of both.
 
-/// Bisections of the root; the bracket shrinks by 2^-60.
-const BISECTIONS: usize = 60;
+use super::weights::Weights;
+
+/// Most steps of the search for the ratio; Newton's method takes about five.
+const MOST_STEPS: usize = 60;
+/// The search ends when a step changes the ratio by less, relative to its size or to 1.
+const TOLERANCE: f64 = 1e-13;
 
 /// The ratio Z(after) / Z(before) and each state's share of its error.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,20 +27,25 @@ impl Bridge {
         let all = || before.iter().chain(&after);
         let mut low = all().fold(f64::INFINITY, |low, &x| low.min(x));
         let mut high = all().fold(f64::NEG_INFINITY, |high, &x| high.max(x));
-        let forward = |r: f64| mean(before.iter().map(|x| logistic(x - r)));
-        let backward = |r: f64| mean(after.iter().map(|x| logistic(r - x)));
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            if forward(middle) > backward(middle) {
-                low = middle;
+        // The earlier pool alone has an estimate of its own; from there Newton's steps, kept in the bracket.
+        let mut r = Weights::new(&before, 1.0).log_mean;
+        let mut balance = Balance::at(&before, &after, r);
+        for _ in 0..MOST_STEPS {
+            if balance.forward > balance.backward {
+                low = low.max(r);
             } else {
-                high = middle;
+                high = high.min(r);
+            }
+            let newton = r + (balance.forward - balance.backward) / balance.slope;
+            let next = if low <= newton && newton <= high { newton } else { 0.5 * (low + high) };
+            let change = (next - r).abs();
+            r = next;
+            balance = Balance::at(&before, &after, r);
+            if change <= TOLERANCE * r.abs().max(1.0) {
+                break;
             }
         }
-        let r = 0.5 * (low + high);
-        let (level_before, level_after) = (forward(r), backward(r));
-        let slope = mean(before.iter().map(|x| logistic(x - r) * logistic(r - x)))
-            + mean(after.iter().map(|x| logistic(x - r) * logistic(r - x)));
+        let Balance { forward: level_before, backward: level_after, slope } = balance;
         let errors_before = before
             .iter()
             .map(|x| (logistic(x - r) - level_before) / (before.len() as f64 * slope))
@@ -57,9 +66,28 @@ fn logistic(x: f64) -> f64 {
     1.0 / (1.0 + libm::exp(-x))
 }
 
-fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len() as f64;
-    values.sum::<f64>() / count
+/// Both sides of the bridge's equation at a trial ratio, and how fast their difference falls.
+struct Balance {
+    forward: f64,
+    backward: f64,
+    slope: f64,
+}
+
+impl Balance {
+    fn at(before: &[f64], after: &[f64], r: f64) -> Self {
+        let side = |values: &[f64], sign: f64| {
+            let (mut level, mut slope) = (0.0, 0.0);
+            for x in values {
+                let p = logistic(sign * (x - r));
+                level += p;
+                slope += p * (1.0 - p);
+            }
+            let count = values.len() as f64;
+            (level / count, slope / count)
+        };
+        let ((forward, rising), (backward, falling)) = (side(before, 1.0), side(after, -1.0));
+        Self { forward, backward, slope: rising + falling }
+    }
 }
 
 #[cfg(test)]

@@ -4,12 +4,15 @@ use super::weights::Weights;
 
 /// Relative tolerance of the step.
 const TOLERANCE: f64 = 1e-10;
+/// Far more trials than false position takes.
+const MOST_TRIALS: usize = 200;
 
 /// The step of the exponent at which the weights of `log_likelihoods` have the coefficient of variation
 /// `target`, or `remaining` = 1 - exponent if that comes first.
 ///
-/// The coefficient rises with the step, so a bisection finds it; it runs on the logarithm of the step,
-/// because the first one can be 1e-10 or less. The log-likelihoods are finite and not empty.
+/// The coefficient rises with the step, nearly in proportion where it is small, so false position on the
+/// logarithms of both finds it in a few trials (Illinois variant: Dowell & Jarratt 1971, BIT 11:168). The step
+/// is sought on a logarithmic scale because the first one can be 1e-10 or less. The log-likelihoods are finite and not empty.
 pub(super) fn exponent_step(log_likelihoods: &[f64], remaining: f64, target: f64) -> f64 {
     let cov = |step: f64| Weights::new(log_likelihoods, step).cov;
     if cov(remaining) <= target {
@@ -22,13 +25,27 @@ pub(super) fn exponent_step(log_likelihoods: &[f64], remaining: f64, target: f64
     // Weights between exp(-c) and 1 vary by at most sinh(c/2), which is below `target` for c = min(target,
     // 1).
     let least = target.min(1.0) / (max - min).min(f64::MAX);
+    let excess = |log_step: f64| libm::log(cov(libm::exp(log_step)) / target);
     let (mut low, mut high) = (libm::log(least.min(remaining)), libm::log(remaining));
-    while high - low > TOLERANCE {
-        let middle = 0.5 * (low + high);
-        if cov(libm::exp(middle)) > target {
-            high = middle;
+    let (mut below, mut above) = (excess(low), excess(high));
+    let mut last_was_above = None;
+    for _ in 0..MOST_TRIALS {
+        let position = high - above * (high - low) / (above - below);
+        // No number, or no progress: a coefficient of 0 has no logarithm.
+        let trial = if low < position && position < high { position } else { 0.5 * (low + high) };
+        let value = excess(trial);
+        // An end that stays twice is given half its weight, or the other would creep.
+        let again = last_was_above.replace(value > 0.0) == Some(value > 0.0);
+        if value > 0.0 {
+            (high, above) = (trial, value);
+            below *= if again { 0.5 } else { 1.0 };
         } else {
-            low = middle;
+            (low, below) = (trial, value);
+            above *= if again { 0.5 } else { 1.0 };
+        }
+        if high - low <= TOLERANCE || value.abs() <= TOLERANCE {
+            low = trial;
+            break;
         }
     }
     libm::exp(low).min(remaining)
