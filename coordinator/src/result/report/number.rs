@@ -31,7 +31,7 @@ pub(super) fn to_spread(x: f64, spread: f64) -> String {
     if !spread.is_finite() || spread <= 0.0 {
         return significant(x, 4);
     }
-    let decimals = 1 - magnitude(spread);
+    let decimals = 1 - rounded_magnitude(spread);
     let size = x.abs().max(spread);
     if size >= LARGE || decimals > DECIMALS {
         let digits = (magnitude(size) + decimals).max(0) as usize;
@@ -52,6 +52,18 @@ pub(super) fn fixed(x: f64, decimals: i32) -> String {
     match text.strip_prefix('-') {
         Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.into(),
         _ => text,
+    }
+}
+
+/// A number as its author wrote it, as far as that can be known.
+pub(super) fn as_written(x: f64) -> String {
+    let size = x.abs();
+    if size < f64::MIN_POSITIVE {
+        "0".into()
+    } else if (1e-4..LARGE).contains(&size) {
+        x.to_string()
+    } else {
+        format!("{x:e}")
     }
 }
 
@@ -85,6 +97,11 @@ pub(super) fn magnitude(x: f64) -> i32 {
     x.abs().log10().floor() as i32
 }
 
+/// The same after rounding to two figures: 0.0996 becomes 0.10.
+fn rounded_magnitude(x: f64) -> i32 {
+    format!("{x:.1e}").split_once('e').and_then(|(_, k)| k.parse().ok()).unwrap_or_else(|| magnitude(x))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -95,6 +112,7 @@ mod tests {
         assert_eq!(with_spread(0.062_05, 4.647e-4), "0.06205 \u{b1} 0.00046");
         assert_eq!(with_spread(1_234_567.0, 45_678.0), "1.235e6 \u{b1} 4.568e4");
         assert_eq!(to_spread(26.0, 1.1), "26.0");
+        assert_eq!(with_spread(0.976, 0.0996), "0.98 \u{b1} 0.10");
         assert_eq!(to_spread(812.3, 150.0), "812");
     }
 

@@ -79,16 +79,17 @@ impl Axis {
         self.scale == Scale::Log
     }
 
-    /// About so many ticks with their labels.
+    /// About so many ticks with their labels; none for 0.
     pub(super) fn ticks(self, about: usize) -> Vec<(f64, String)> {
         match self.scale {
+            _ if about == 0 => Vec::new(),
             Scale::Log => self.log_ticks(about),
             _ => self.linear_ticks(about),
         }
     }
 
     fn linear_ticks(self, about: usize) -> Vec<(f64, String)> {
-        let mut step = nice_step((self.high - self.low) / about.max(1) as f64);
+        let mut step = nice_step((self.high - self.low) / about as f64);
         if self.scale == Scale::Whole {
             step = step.max(1.0);
         }
@@ -103,7 +104,7 @@ impl Axis {
     fn log_ticks(self, about: usize) -> Vec<(f64, String)> {
         let (first, last) = (magnitude(self.low), magnitude(self.high) + 1);
         let decades = (self.high / self.low).log10();
-        let every = (decades / about.max(1) as f64).ceil().max(1.0) as i32;
+        let every = (decades / about as f64).ceil().max(1.0) as i32;
         let parts: &[f64] = if decades < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let label = |v: f64, k: i32| {
             if (-3..=4).contains(&k) { number::fixed(v, -k) } else { format!("{}e{k}", number::fixed(v / power(k), 0)) }

@@ -58,8 +58,8 @@ fn span(parameter: &FreeParameter, draws: &[f64], summary: &ParameterSummary) ->
     let in_ratios = prior.coordinate(2.0) < 1.0;
     let log = in_ratios && summary.q05 > 0.0 && summary.q95 > WIDE * summary.q05;
     let scale = if log { Scale::Log } else { Scale::Linear };
-    let (forward, backward): (fn(f64) -> f64, fn(f64) -> f64) =
-        if log { (f64::ln, f64::exp) } else { (|x| x, |x| x) };
+    let forward = |x: f64| if log { x.ln() } else { x };
+    let backward = |u: f64| if log { u.exp() } else { u };
     let reach = REACH * (forward(summary.q95) - forward(summary.q05));
     let low = backward(forward(prior.quantile(TAIL)).max(forward(summary.q05) - reach));
     let high = backward(forward(prior.quantile(1.0 - TAIL)).min(forward(summary.q95) + reach));
@@ -118,12 +118,17 @@ fn prior_curve(parameter: &FreeParameter, x: Axis) -> Vec<(f64, f64)> {
     };
     let (from, to) = (x.low.max(lower), x.high.min(upper));
     let inner = Axis::new(from, to, if x.is_log() { Scale::Log } else { Scale::Linear });
-    let mut points = vec![(from, 0.0)];
+    let mut points = Vec::new();
+    if x.holds(lower) {
+        points.push((from, 0.0));
+    }
     points.extend((0..=CURVE_POINTS).map(|k| {
         let v = inner.value(k as f64 / CURVE_POINTS as f64).max(from).min(to);
         (v, density(v))
     }));
-    points.push((to, 0.0));
+    if x.holds(upper) {
+        points.push((to, 0.0));
+    }
     points
 }
 

@@ -48,7 +48,7 @@ fn panels(charts: Vec<(&str, ComparisonChart)>) -> Markup {
     html! {
         div.charts {
             @for (wheel, chart) in wheels.iter().zip(&charts) {
-                figure { (chart.draw(range)) figcaption { "wheel " b { (wheel) } } }
+                figure { figcaption { "wheel " b { (wheel) } } (chart.draw(range)) }
             }
         }
     }

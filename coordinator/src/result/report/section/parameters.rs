@@ -7,8 +7,11 @@ use crate::result::report::{chart, number};
 use crate::result::{Outcome, ParameterSummary};
 use crate::spec::FreeParameter;
 
-/// So many pairs are shown.
+/// At most so many pairs are shown, and none that hangs together less.
 const PAIRS: usize = 3;
+const LEAST_CORRELATION: f64 = 0.2;
+/// A bound so many standard deviations from the mean needs no mention.
+const FAR: f64 = 6.0;
 
 /// Table and pictures.
 pub(in crate::result::report) fn parameters(outcome: &Outcome) -> Markup {
@@ -27,7 +30,7 @@ pub(in crate::result::report) fn parameters(outcome: &Outcome) -> Markup {
                 "Fixed: "
                 @for (i, (name, value)) in outcome.spec.fit_variant.fixed.iter().enumerate() {
                     @if i > 0 { ", " }
-                    (name) " = " (number::significant(*value, 4))
+                    (name) " = " (number::as_written(*value))
                 }
                 "."
             }
@@ -80,7 +83,7 @@ fn table(free: &[FreeParameter], summaries: &[(String, ParameterSummary)]) -> Ma
 
 /// `normal, mean 3.93, sd 0.15, between 3 and 5`.
 fn prior_words(parameter: &FreeParameter) -> String {
-    let n = |x: f64| number::significant(x, 4);
+    let n = number::as_written;
     let (lower, upper) = parameter.marginal.support();
     let (words, own) = match parameter.marginal.distribution() {
         Distribution::Uniform { .. } => ("uniform".into(), false),
@@ -91,19 +94,18 @@ fn prior_words(parameter: &FreeParameter) -> String {
         }
         Distribution::HalfNormal { scale } => (format!("half-normal, scale {}", n(scale)), true),
     };
-    // Zero is where these end by nature.
-    let low_is_natural = own && lower.abs() < f64::MIN_POSITIVE;
-    match (lower.is_finite() && !low_is_natural, upper.is_finite()) {
-        (true, true) => format!("{words}, between {} and {}", trimmed(lower), trimmed(upper)),
-        (true, false) => format!("{words}, above {}", trimmed(lower)),
-        (false, true) => format!("{words}, below {}", trimmed(upper)),
+    // Zero is where some end by nature; and a bound without probability near it cuts nothing off.
+    let cuts = |bound: f64| {
+        let natural = own && bound.abs() < f64::MIN_POSITIVE;
+        let far = (bound - parameter.marginal.mean()).abs() > FAR * parameter.marginal.sd();
+        bound.is_finite() && !natural && !far
+    };
+    match (cuts(lower), cuts(upper)) {
+        (true, true) => format!("{words}, between {} and {}", n(lower), n(upper)),
+        (true, false) => format!("{words}, above {}", n(lower)),
+        (false, true) => format!("{words}, below {}", n(upper)),
         (false, false) => words,
     }
-}
-
-/// A bound as its author wrote it, as far as that can be known.
-fn trimmed(x: f64) -> String {
-    if x.abs() < 1e-4 || x.abs() >= 1e6 { number::significant(x, 3) } else { x.to_string() }
 }
 
 fn entangled(free: &[FreeParameter], draws: &[Vec<f64>]) -> Markup {
@@ -116,12 +118,12 @@ fn entangled(free: &[FreeParameter], draws: &[Vec<f64>]) -> Markup {
                     @let n = draws[i].len();
                     figure {
                         (chart::pair([&free[i], &free[j]], [&draws[i], &draws[j]]))
-                        figcaption { "correlation " b { (number::with_spread(r, correlation_se(r, n))) } }
+                        figcaption { "rank correlation " b { (number::with_spread(r, correlation_se(r, n))) } }
                     }
                 }
             }
             p.note {
-                "Each dot is a draw. Where the cloud is a narrow band, the data fix a combination of the two parameters and neither alone. "
+                "Each dot is a draw; pairs whose coefficient is below " (LEAST_CORRELATION) " are left out. Where the cloud is a narrow band, the data fix a combination of the two parameters and neither alone. "
                 "\u{b1}: standard error of the coefficient for that many independent draws."
             }
         }
@@ -133,25 +135,18 @@ fn correlation_se(r: f64, n: usize) -> f64 {
     ((1.0 - r * r) / (n.max(2) as f64 - 1.0).sqrt()).max(1e-3)
 }
 
-/// Positions and Pearson coefficients of the pairs, strongest first; the first of equals.
+/// Positions and rank correlations of the pairs, strongest first; the first of equals.
 fn most_correlated(draws: &[Vec<f64>]) -> Vec<(usize, usize, f64)> {
     let mut pairs: Vec<(usize, usize, f64)> = Vec::new();
     for i in 0..draws.len() {
         for j in i + 1..draws.len() {
-            pairs.extend(correlation(&draws[i], &draws[j]).map(|r| (i, j, r)));
+            pairs.extend(diagnostics::rank_correlation(&draws[i], &draws[j]).map(|r| (i, j, r)));
         }
     }
+    pairs.retain(|pair| pair.2.abs() >= LEAST_CORRELATION);
     pairs.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
     pairs.truncate(PAIRS);
     pairs
-}
-
-/// Pearson's coefficient; `None` where a series does not vary.
-fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {
-    let ((mean_x, _), (mean_y, _)) = (diagnostics::mean_and_sd(x)?, diagnostics::mean_and_sd(y)?);
-    let sum = |f: &dyn Fn(f64, f64) -> f64| x.iter().zip(y).map(|(a, b)| f(a - mean_x, b - mean_y)).sum::<f64>();
-    let r = sum(&|a, b| a * b) / (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt();
-    r.is_finite().then(|| r.clamp(-1.0, 1.0))
 }
 
 #[cfg(test)]
@@ -161,18 +156,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn correlation_of_lines_and_constants() {
-        let x = [1.0, 2.0, 3.0];
-        assert!((correlation(&x, &[3.0, 2.0, 1.0]).unwrap() + 1.0).abs() < 1e-12);
-        assert_eq!(correlation(&x, &[5.0; 3]), None);
-    }
-
-    #[test]
     fn strongest_pairs_come_first() {
-        let draws = [vec![1.0, 2.0, 3.0, 4.0], vec![1.0, 2.0, 3.0, 4.5], vec![4.0, 1.0, 3.0, 2.0]];
-        let pairs = most_correlated(&draws);
-        assert_eq!(pairs.len(), 3);
-        assert_eq!((pairs[0].0, pairs[0].1), (0, 1));
+        // Ranks: the first two agree, the third has 1 - 6 * 14 / 60 = -0.4 with both, the constant has none.
+        let draws = [
+            vec![1.0, 2.0, 3.0, 4.0],
+            vec![1.0, 2.0, 3.0, 4.5],
+            vec![4.0, 1.0, 3.0, 2.0],
+            vec![7.0; 4],
+        ];
+        let pairs: Vec<(usize, usize)> = most_correlated(&draws).iter().map(|p| (p.0, p.1)).collect();
+        assert_eq!(pairs, [(0, 1), (0, 2), (1, 2)]);
     }
 
     #[test]
@@ -182,8 +175,9 @@ mod tests {
             prior_words(&FreeParameter { name: "n".into(), unit: "1", marginal })
         };
         let normal = Distribution::Normal { mean: 1.1, sd: 0.2 };
-        assert_eq!(words(normal, Some([0.8, 2.0])), "normal, mean 1.100, sd 0.2000, between 0.8 and 2");
+        assert_eq!(words(normal, Some([0.8, 2.0])), "normal, mean 1.1, sd 0.2, between 0.8 and 2");
         let lognormal = Distribution::Lognormal { median: 2.0, factor: 2.8 };
-        assert_eq!(words(lognormal, None), "lognormal, median 2.000, factor 2.800");
+        assert_eq!(words(lognormal, None), "lognormal, median 2, factor 2.8");
+        assert_eq!(words(normal, Some([-50.0, 2.0])), "normal, mean 1.1, sd 0.2, below 2");
     }
 }

@@ -11,6 +11,7 @@ use crate::result::report::coverage::Coverage;
 use crate::result::report::number;
 use crate::result::report::quantity::Quantity;
 use crate::result::{Comparison, ErrorTable, Outcome, terminal};
+use crate::spec::repeat_scatter;
 
 /// Flags first, then the verdict, then what a reader must know of the model.
 pub(in crate::result::report) fn verdict(outcome: &Outcome, comparison: &Comparison) -> Markup {
@@ -130,7 +131,7 @@ fn coverage(comparison: &Comparison) -> Option<String> {
             Some(format!("{} of {} {word} measurements ({low} to {high} expected)", c.inside, c.of))
         })
         .collect();
-    (!parts.is_empty()).then(|| format!("In their 90 % predictive intervals lie {}.", number::list(&parts)))
+    (!parts.is_empty()).then(|| format!("In their 90\u{a0}% predictive intervals lie {}.", number::list(&parts)))
 }
 
 /// Where the noise was inferred from the misfit, a small error in units of it proves nothing.
@@ -139,13 +140,20 @@ fn inferred_noise(outcome: &Outcome) -> Option<String> {
         let parameter = outcome.spec.parameters.iter().position(|p| p.name == noise_parameter(channel))?;
         let (mean, sd) = diagnostics::mean_and_sd(&outcome.draws(parameter))?;
         let q = Quantity::of(channel);
-        Some(format!("{} {} for {}", number::with_spread(mean * q.scale, sd * q.scale), q.unit, channel.words()))
+        let mut text =
+            format!("{}\u{a0}{} for {}", number::with_spread(mean * q.scale, sd * q.scale), q.unit, channel.words());
+        if let Some((scatter, freedom)) = repeat_scatter(&outcome.spec.experiment, &outcome.spec.fit_runs, channel) {
+            let se = scatter / (2.0 * freedom as f64).sqrt();
+            let scatter = number::with_spread(scatter * q.scale, se * q.scale);
+            text.push_str(&format!(", where repeats of one condition scatter by {scatter}\u{a0}{}", q.unit));
+        }
+        Some(text)
     };
     let inferred: Vec<String> = Channel::ALL.into_iter().filter_map(noise).collect();
     (!inferred.is_empty()).then(|| {
         format!(
-            "The noise was inferred from these very misfits ({}): it holds whatever the model lacks besides the scatter of the rig, so compare it with the scatter of repeats before you trust intervals or errors in units of it.",
-            number::list(&inferred)
+            "The noise sd was inferred from these very misfits: {}. What exceeds the scatter of repeats is the model's own misfit, so neither the width of the intervals nor an error of one noise sd speaks for the model.",
+            inferred.join("; ")
         )
     })
 }
