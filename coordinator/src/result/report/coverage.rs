@@ -21,7 +21,10 @@ impl Coverage {
     pub(super) fn count<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
         let covered: Vec<bool> = rows.filter_map(ComparisonRow::covered).collect();
         let inside = covered.iter().filter(|c| **c).count();
-        (!covered.is_empty()).then_some(Coverage { inside, of: covered.len() })
+        (!covered.is_empty()).then_some(Coverage {
+            inside,
+            of: covered.len(),
+        })
     }
 
     /// The counts that right intervals would give 95 % of the time, if the rows were independent: the central

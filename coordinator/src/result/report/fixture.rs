@@ -71,19 +71,34 @@ pub(super) fn all_refused() -> Outcome {
 
 fn build(last: &str) -> Outcome {
     let runs = RUNS.replace("LAST", last);
-    let files = FileSet { toml: EXPERIMENT.into(), files: BTreeMap::from([("runs.csv".into(), runs)]) };
+    let files = FileSet {
+        toml: EXPERIMENT.into(),
+        files: BTreeMap::from([("runs.csv".into(), runs)]),
+    };
     let spec = Spec::new("job.toml", JOB, "experiment.toml", &files).expect("the fixture's files are valid");
     let n_runs = spec.experiment.runs.len();
     // The golden ratio's multiples spread evenly.
     let share = |k: usize, i: usize| (0.5 + 0.618_033_988_75 * (k * (i + 1)) as f64) % 1.0;
     let theta = |k: usize| -> Vec<f64> {
-        spec.parameters.iter().enumerate().map(|(i, p)| p.marginal.quantile(share(k, i))).collect()
+        spec.parameters
+            .iter()
+            .enumerate()
+            .map(|(i, p)| p.marginal.quantile(share(k, i)))
+            .collect()
     };
     let posterior: Vec<Sample> = (0..40)
-        .map(|k| Sample { theta: theta(k), log_likelihood: Some(-20.0 - share(k, 0)), log_prior: -1.0 })
+        .map(|k| Sample {
+            theta: theta(k),
+            log_likelihood: Some(-20.0 - share(k, 0)),
+            log_prior: -1.0,
+        })
         .collect();
     let predicted = |k: usize| {
-        let values = |base: f64, step: f64| (0..n_runs).map(|r| base + step * (r as f64 + share(k, r))).collect();
+        let values = |base: f64, step: f64| {
+            (0..n_runs)
+                .map(|r| base + step * (r as f64 + share(k, r)))
+                .collect()
+        };
         Observables {
             drawbar_pull_n: values(-6.0, 2.0),
             torque_n_m: values(0.1, 0.1),
@@ -92,7 +107,12 @@ fn build(last: &str) -> Outcome {
             ..Observables::default()
         }
     };
-    let predictions = (0..20).map(|k| Prediction { theta: theta(k), result: Ok(predicted(k)) }).collect();
+    let predictions = (0..20)
+        .map(|k| Prediction {
+            theta: theta(k),
+            result: Ok(predicted(k)),
+        })
+        .collect();
     let stage = |stage: u32, tempering_exponent: f64| StageRow {
         stage,
         tempering_exponent,

@@ -27,7 +27,11 @@ const STYLE: &str = include_str!("style.css");
 pub fn page(outcome: &Outcome) -> String {
     let comparison = outcome.comparison();
     let sections: [(&str, &str, Markup); 5] = [
-        ("comparison", "Model against measurement", section::comparison(outcome, &comparison)),
+        (
+            "comparison",
+            "Model against measurement",
+            section::comparison(outcome, &comparison),
+        ),
         ("errors", "Errors by channel", section::errors(&comparison)),
         ("parameters", "Parameters", section::parameters(outcome)),
         ("stages", "Sampler", section::stages(outcome)),
@@ -70,7 +74,10 @@ mod tests {
     #[test]
     fn names_of_users_are_escaped_everywhere() {
         let page = page(&fixture::outcome());
-        assert!(page.contains("&lt;script&gt;"), "the hostile names of the fixture are shown");
+        assert!(
+            page.contains("&lt;script&gt;"),
+            "the hostile names of the fixture are shown"
+        );
         assert!(!page.contains("<script"), "and never as markup");
         assert!(!page.contains("<i>bold"), "nor in the text of the job");
     }
@@ -85,7 +92,11 @@ mod tests {
 
     #[test]
     fn no_number_is_missing_from_a_picture() {
-        for outcome in [fixture::outcome(), fixture::without_holdout(), fixture::all_refused()] {
+        for outcome in [
+            fixture::outcome(),
+            fixture::without_holdout(),
+            fixture::all_refused(),
+        ] {
             let page = page(&outcome);
             for word in ["NaN", "inf ", "inf\"", "-inf"] {
                 assert!(!page.contains(word), "{word}");

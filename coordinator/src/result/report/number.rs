@@ -4,7 +4,7 @@
 pub(super) const NONE: &str = "\u{2013}";
 
 /// Beyond these sizes a number is written with an exponent.
-const LARGE: f64 = 1e6;
+const LARGE: f64 = 1e7;
 const DECIMALS: i32 = 7;
 
 /// A number to so many significant digits.
@@ -42,11 +42,19 @@ pub(super) fn to_spread(x: f64, spread: f64) -> String {
 
 /// A number with its spread: `2.76 ± 0.40`.
 pub(super) fn with_spread(x: f64, spread: f64) -> String {
-    format!("{} \u{b1} {}", to_spread(x, spread), to_spread(spread, spread))
+    format!(
+        "{}\u{a0}\u{b1}\u{a0}{}",
+        to_spread(x, spread),
+        to_spread(spread, spread)
+    )
 }
 
-/// So many decimals, and no negative zero.
+/// So many decimals (negative: whole tens, hundreds), and no negative zero.
 pub(super) fn fixed(x: f64, decimals: i32) -> String {
+    let x = match decimals {
+        0.. => x,
+        _ => (x / 10f64.powi(-decimals)).round() * 10f64.powi(-decimals),
+    };
     let decimals = decimals.max(0) as usize;
     let text = format!("{x:.decimals$}");
     match text.strip_prefix('-') {
@@ -99,7 +107,10 @@ pub(super) fn magnitude(x: f64) -> i32 {
 
 /// The same after rounding to two figures: 0.0996 becomes 0.10.
 fn rounded_magnitude(x: f64) -> i32 {
-    format!("{x:.1e}").split_once('e').and_then(|(_, k)| k.parse().ok()).unwrap_or_else(|| magnitude(x))
+    format!("{x:.1e}")
+        .split_once('e')
+        .and_then(|(_, k)| k.parse().ok())
+        .unwrap_or_else(|| magnitude(x))
 }
 
 #[cfg(test)]
@@ -108,12 +119,22 @@ mod tests {
 
     #[test]
     fn a_number_stops_at_the_second_figure_of_its_spread() {
-        assert_eq!(with_spread(3.816, 0.156), "3.82 \u{b1} 0.16");
-        assert_eq!(with_spread(0.062_05, 4.647e-4), "0.06205 \u{b1} 0.00046");
-        assert_eq!(with_spread(1_234_567.0, 45_678.0), "1.235e6 \u{b1} 4.568e4");
+        assert_eq!(with_spread(3.816, 0.156), "3.82\u{a0}\u{b1}\u{a0}0.16");
+        assert_eq!(
+            with_spread(0.062_05, 4.647e-4),
+            "0.06205\u{a0}\u{b1}\u{a0}0.00046"
+        );
+        assert_eq!(
+            with_spread(1_234_567.0, 45_678.0),
+            "1235000\u{a0}\u{b1}\u{a0}46000"
+        );
         assert_eq!(to_spread(26.0, 1.1), "26.0");
-        assert_eq!(with_spread(0.976, 0.0996), "0.98 \u{b1} 0.10");
-        assert_eq!(to_spread(812.3, 150.0), "812");
+        assert_eq!(with_spread(0.976, 0.0996), "0.98\u{a0}\u{b1}\u{a0}0.10");
+        assert_eq!(to_spread(812.3, 150.0), "810");
+        assert_eq!(
+            with_spread(280_063.0, 578_767.0),
+            "280000\u{a0}\u{b1}\u{a0}580000"
+        );
     }
 
     #[test]
@@ -128,14 +149,20 @@ mod tests {
     fn significant_digits() {
         assert_eq!(significant(2.756, 2), "2.8");
         assert_eq!(significant(-23.95, 3), "-23.9");
-        assert_eq!(significant(12_345.0, 3), "12345");
-        assert_eq!(significant(2.5e6, 3), "2.50e6");
+        assert_eq!(significant(12_345.0, 3), "12300");
+        assert_eq!(significant(2.5e8, 3), "2.50e8");
     }
 
     #[test]
     fn words_join_as_in_a_sentence() {
         let words = |n: usize| list(&["a", "b", "c"].map(String::from)[..n]);
-        assert_eq!((words(0), words(1), words(3)), (String::new(), "a".into(), "a, b and c".into()));
-        assert_eq!((count(1, "run"), count(3, "run")), ("1 run".into(), "3 runs".into()));
+        assert_eq!(
+            (words(0), words(1), words(3)),
+            (String::new(), "a".into(), "a, b and c".into())
+        );
+        assert_eq!(
+            (count(1, "run"), count(3, "run")),
+            ("1 run".into(), "3 runs".into())
+        );
     }
 }

@@ -44,6 +44,10 @@ impl Quantity {
 
     /// An error in this channel, to two digits and with its unit: `9.0 mm`.
     pub(super) fn words(self, value: f64) -> String {
-        format!("{}\u{a0}{}", number::significant(value * self.scale, 2), self.unit)
+        format!(
+            "{}\u{a0}{}",
+            number::significant(value * self.scale, 2),
+            self.unit
+        )
     }
 }

@@ -26,8 +26,16 @@ pub(super) struct Axis {
 impl Axis {
     /// An axis of exactly this range; an empty or unusable one is widened until it has a length.
     pub(super) fn new(low: f64, high: f64, scale: Scale) -> Self {
-        let (low, high) = if scale == Scale::Log && low <= 0.0 { (high.abs() * 1e-3, high.abs()) } else { (low, high) };
-        let (low, high) = if low.is_finite() && high.is_finite() { (low, high) } else { (0.0, 1.0) };
+        let (low, high) = if low.is_finite() && high.is_finite() {
+            (low, high)
+        } else {
+            (0.0, 1.0)
+        };
+        let (low, high) = if scale == Scale::Log && low <= 0.0 {
+            (high.abs() * 1e-3, high.abs())
+        } else {
+            (low, high)
+        };
         let least = 1e-9 * low.abs().max(high.abs());
         let (low, high) = match scale {
             _ if high - low > least => (low, high),
@@ -35,7 +43,13 @@ impl Axis {
             Scale::Log => (0.1, 1.0),
             _ => (low - 0.05 * low.abs().max(1e-9), low + 0.05 * low.abs().max(1e-9)),
         };
-        Axis { low, high, scale, start: 0.0, end: 1.0 }
+        Axis {
+            low,
+            high,
+            scale,
+            start: 0.0,
+            end: 1.0,
+        }
     }
 
     /// An axis around all finite values, with a margin on both sides as a share of the range.
@@ -44,11 +58,17 @@ impl Axis {
         let (low, high) = values
             .into_iter()
             .filter(usable)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+                (low.min(v), high.max(v))
+            });
         let axis = Axis::new(low, high, scale);
         let pad = margin * (axis.forward(axis.high) - axis.forward(axis.low));
         let (low, high) = (axis.forward(axis.low) - pad, axis.forward(axis.high) + pad);
-        Axis { low: axis.backward(low), high: axis.backward(high), ..axis }
+        Axis {
+            low: axis.backward(low),
+            high: axis.backward(high),
+            ..axis
+        }
     }
 
     /// The same axis on other pixels.
@@ -97,8 +117,17 @@ impl Axis {
         let first = (self.low / step - 1e-9).ceil() as i64;
         let last = (self.high / step + 1e-9).floor() as i64;
         let large = self.low.abs().max(self.high.abs()) >= 1e5 || decimals > 4;
-        let label = |v: f64| if large { exponential(v, step) } else { number::fixed(v, decimals) };
-        (first..=last).map(|k| k as f64 * step).map(|v| (v, minus(&label(v)))).collect()
+        let label = |v: f64| {
+            if large {
+                exponential(v, step)
+            } else {
+                number::fixed(v, decimals)
+            }
+        };
+        (first..=last)
+            .map(|k| k as f64 * step)
+            .map(|v| (v, minus(&label(v))))
+            .collect()
     }
 
     fn log_ticks(self, about: usize) -> Vec<(f64, String)> {
@@ -107,7 +136,11 @@ impl Axis {
         let every = (decades / about as f64).ceil().max(1.0) as i32;
         let parts: &[f64] = if decades < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let label = |v: f64, k: i32| {
-            if (-3..=4).contains(&k) { number::fixed(v, -k) } else { format!("{}e{k}", number::fixed(v / power(k), 0)) }
+            if (-3..=4).contains(&k) {
+                number::fixed(v, -k)
+            } else {
+                format!("{}e{k}", number::fixed(v / power(k), 0))
+            }
         };
         (first..=last)
             .filter(|k| k.rem_euclid(every) == 0)
@@ -118,7 +151,11 @@ impl Axis {
     }
 
     fn forward(self, value: f64) -> f64 {
-        if self.scale == Scale::Log { value.ln() } else { value }
+        if self.scale == Scale::Log {
+            value.ln()
+        } else {
+            value
+        }
     }
 
     fn backward(self, u: f64) -> f64 {
@@ -126,10 +163,18 @@ impl Axis {
     }
 }
 
-/// The next of 1, 2, 5, 10, ... times a power of ten.
+/// The nearest, as ratios go, of 1, 2, 5, 10 times a power of ten.
 fn nice_step(rough: f64) -> f64 {
     let unit = power(magnitude(rough));
-    let factor = [1.0, 2.0, 5.0].into_iter().find(|f| rough <= f * unit * 1.000_001).unwrap_or(10.0);
+    let ends = [
+        (1.0, std::f64::consts::SQRT_2),
+        (2.0, 10f64.sqrt()),
+        (5.0, 50f64.sqrt()),
+    ];
+    let factor = ends
+        .into_iter()
+        .find(|(_, end)| rough < end * unit)
+        .map_or(10.0, |(factor, _)| factor);
     factor * unit
 }
 
@@ -156,27 +201,56 @@ mod tests {
     use super::*;
 
     fn labels(low: f64, high: f64, scale: Scale) -> Vec<String> {
-        Axis::new(low, high, scale).ticks(5).into_iter().map(|t| t.1).collect()
+        Axis::new(low, high, scale)
+            .ticks(5)
+            .into_iter()
+            .map(|t| t.1)
+            .collect()
     }
 
     #[test]
     fn linear_ticks_step_by_one_two_or_five() {
-        assert_eq!(labels(0.0, 1.0, Scale::Linear), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
-        assert_eq!(labels(-27.0, 8.0, Scale::Linear), ["\u{2212}20", "\u{2212}10", "0"]);
-        assert_eq!(labels(0.0575, 0.0623, Scale::Linear), ["0.058", "0.059", "0.060", "0.061", "0.062"]);
-        assert_eq!(labels(0.0, 2.1e6, Scale::Linear), ["0", "5e5", "1.0e6", "1.5e6", "2.0e6"]);
+        assert_eq!(
+            labels(0.0, 1.0, Scale::Linear),
+            ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]
+        );
+        assert_eq!(
+            labels(-27.0, 12.0, Scale::Linear),
+            ["\u{2212}20", "\u{2212}10", "0", "10"]
+        );
+        assert_eq!(
+            labels(20.0, 32.0, Scale::Linear),
+            ["20", "22", "24", "26", "28", "30", "32"]
+        );
+        assert_eq!(
+            labels(0.0575, 0.0623, Scale::Linear),
+            ["0.058", "0.059", "0.060", "0.061", "0.062"]
+        );
+        assert_eq!(
+            labels(0.0, 2.1e6, Scale::Linear),
+            ["0", "5e5", "1.0e6", "1.5e6", "2.0e6"]
+        );
     }
 
     #[test]
     fn whole_and_log_ticks() {
         assert_eq!(labels(1.0, 3.0, Scale::Whole), ["1", "2", "3"]);
-        assert_eq!(labels(1e-4, 1.0, Scale::Log), ["1e\u{2212}4", "0.001", "0.01", "0.1", "1"]);
+        assert_eq!(
+            labels(1e-4, 1.0, Scale::Log),
+            ["1e\u{2212}4", "0.001", "0.01", "0.1", "1"]
+        );
         assert_eq!(labels(0.8, 12.0, Scale::Log), ["1", "2", "5", "10"]);
     }
 
     #[test]
     fn every_range_has_a_length_and_every_value_a_finite_place() {
-        for (low, high) in [(0.0, 0.0), (3.0, 3.0), (f64::NAN, 1.0), (f64::INFINITY, f64::NEG_INFINITY), (-2.0, -2.0)] {
+        for (low, high) in [
+            (0.0, 0.0),
+            (3.0, 3.0),
+            (f64::NAN, 1.0),
+            (f64::INFINITY, f64::NEG_INFINITY),
+            (-2.0, -2.0),
+        ] {
             for scale in [Scale::Linear, Scale::Whole, Scale::Log] {
                 let axis = Axis::new(low, high, scale).on(0.0, 100.0);
                 assert!(axis.high > axis.low, "{low} {high} {scale:?}");
@@ -190,6 +264,7 @@ mod tests {
     #[test]
     fn values_outside_lie_on_the_edge() {
         let axis = Axis::new(0.0, 10.0, Scale::Linear).on(100.0, 0.0);
-        assert_eq!([axis.at(-5.0), axis.at(2.5), axis.at(20.0)], [100.0, 75.0, 0.0]);
+        let pixels = [-5.0, 2.5, 20.0].map(|v| axis.at(v).round() as i32);
+        assert_eq!(pixels, [100, 75, 0]);
     }
 }

@@ -13,8 +13,8 @@ const HEIGHT: f64 = 290.0;
 /// Runs nearer than this many pixels are drawn side by side.
 const SAME_PLACE: f64 = 6.0;
 /// Distance of neighbours that are drawn side by side [pixels], and the room that all of them may take.
-const APART: f64 = 9.0;
-const ROOM: f64 = 44.0;
+const APART: f64 = 11.0;
+const ROOM: f64 = 55.0;
 
 /// Slips that differ less do not make an axis; nor do loads within such a factor, nor such angles [deg].
 const LEAST_SLIP: f64 = 0.05;
@@ -35,9 +35,15 @@ impl Against {
         let ends = |value: fn(&ComparisonRow) -> f64| {
             rows.iter()
                 .map(|r| value(r))
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+                    (low.min(v), high.max(v))
+                })
         };
-        let (slip, load, angle) = (ends(|r| r.slip), ends(|r| r.wheel_load_n), ends(|r| r.slip_angle_deg));
+        let (slip, load, angle) = (
+            ends(|r| r.slip),
+            ends(|r| r.wheel_load_n),
+            ends(|r| r.slip_angle_deg),
+        );
         if slip.1 - slip.0 >= LEAST_SLIP {
             Against::Slip
         } else if load.1 >= LEAST_LOAD_FACTOR * load.0 {
@@ -68,7 +74,11 @@ impl Against {
     }
 
     fn scale(self) -> Scale {
-        if self == Against::Run { Scale::Whole } else { Scale::Linear }
+        if self == Against::Run {
+            Scale::Whole
+        } else {
+            Scale::Linear
+        }
     }
 }
 
@@ -81,8 +91,15 @@ pub(in crate::result::report) struct ComparisonChart<'a> {
 
 impl<'a> ComparisonChart<'a> {
     /// The rows of one wheel and channel; `None` without any.
-    pub(in crate::result::report) fn new(rows: &'a [ComparisonRow], wheel: &str, quantity: Quantity) -> Option<Self> {
-        let rows: Vec<_> = rows.iter().filter(|r| r.wheel == wheel && quantity.is_of(r)).collect();
+    pub(in crate::result::report) fn new(
+        rows: &'a [ComparisonRow],
+        wheel: &str,
+        quantity: Quantity,
+    ) -> Option<Self> {
+        let rows: Vec<_> = rows
+            .iter()
+            .filter(|r| r.wheel == wheel && quantity.is_of(r))
+            .collect();
         (!rows.is_empty()).then_some(ComparisonChart { rows, quantity })
     }
 
@@ -124,7 +141,9 @@ impl<'a> ComparisonChart<'a> {
 
     /// Every value that must find room (SI).
     fn values(&self) -> impl Iterator<Item = f64> {
-        self.rows.iter().flat_map(|r| [Some(r.measured), r.q05, r.q95].into_iter().flatten())
+        self.rows
+            .iter()
+            .flat_map(|r| [Some(r.measured), r.q05, r.q95].into_iter().flatten())
     }
 
     /// Whether a line through the predictions compares like with like: one speed, one slip angle, about one load.
@@ -144,7 +163,9 @@ impl<'a> ComparisonChart<'a> {
         (0..groups)
             .filter_map(|g| {
                 let members = self.rows.iter().zip(pixels).filter(|(_, p)| p.group == g);
-                let (x, y): (Vec<f64>, Vec<f64>) = members.filter_map(|(r, p)| Some((p.centre, r.predicted?))).unzip();
+                let (x, y): (Vec<f64>, Vec<f64>) = members
+                    .filter_map(|(r, p)| Some((p.centre, r.predicted?)))
+                    .unzip();
                 let mean = y.iter().sum::<f64>() / y.len() as f64;
                 (!y.is_empty()).then(|| (x[0], at(mean)))
             })
@@ -152,9 +173,8 @@ impl<'a> ComparisonChart<'a> {
     }
 
     fn hint(&self, row: &ComparisonRow) -> String {
-        let value = |v: Option<f64>| {
-            v.map_or(number::NONE.into(), |v| number::fixed(v * self.quantity.scale, 2))
-        };
+        let value =
+            |v: Option<f64>| v.map_or(number::NONE.into(), |v| number::fixed(v * self.quantity.scale, 2));
         format!(
             "{} ({}): slip {}, load {} N; measured {} {unit}, model {} {unit}, 90 % interval {} to {} {unit}",
             row.run,
@@ -182,7 +202,9 @@ pub(in crate::result::report) fn shared_range(charts: &[ComparisonChart]) -> Opt
 }
 
 fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+        (low.min(v), high.max(v))
+    })
 }
 
 /// Where a run is drawn.
@@ -207,14 +229,25 @@ fn side_by_side(pixels: &[f64]) -> Vec<Place> {
             _ => groups.push(vec![i]),
         }
     }
-    let mut places = vec![Place { x: 0.0, centre: 0.0, group: 0 }; pixels.len()];
+    let mut places = vec![
+        Place {
+            x: 0.0,
+            centre: 0.0,
+            group: 0
+        };
+        pixels.len()
+    ];
     for (number, group) in groups.iter_mut().enumerate() {
         group.sort_unstable();
         let centre = group.iter().map(|&i| pixels[i]).sum::<f64>() / group.len() as f64;
         let apart = APART.min(ROOM / group.len() as f64);
         let middle = 0.5 * (group.len() - 1) as f64;
         for (k, &i) in group.iter().enumerate() {
-            places[i] = Place { x: centre + apart * (k as f64 - middle), centre, group: number };
+            places[i] = Place {
+                x: centre + apart * (k as f64 - middle),
+                centre,
+                group: number,
+            };
         }
     }
     places
@@ -228,7 +261,7 @@ mod tests {
     fn repeats_stand_side_by_side_in_their_order() {
         let places = side_by_side(&[101.0, 50.0, 100.0, 99.0]);
         let x: Vec<String> = places.iter().map(|p| px(p.x)).collect();
-        assert_eq!(x, ["91", "50", "100", "109"]);
+        assert_eq!(x, ["89", "50", "100", "111"]);
         assert_eq!(places.iter().map(|p| p.group).collect::<Vec<_>>(), [1, 0, 1, 1]);
     }
 

@@ -35,7 +35,12 @@ impl Frame {
     /// Lays two axes out on a picture of this size.
     pub(super) fn new(width: f64, height: f64, x: Axis, y: Axis) -> Self {
         let [left, right, top, bottom] = MARGINS;
-        Frame { width, height, x: x.on(left, width - right), y: y.on(height - bottom, top) }
+        Frame {
+            width,
+            height,
+            x: x.on(left, width - right),
+            y: y.on(height - bottom, top),
+        }
     }
 
     /// Pixels of the plotted area: left, right, top, bottom.
@@ -45,7 +50,14 @@ impl Frame {
     }
 
     /// The picture: frame, ticks and titles around the marks. `label` is what a reader who cannot see it is told.
-    pub(super) fn draw(&self, label: &str, x_title: &str, y_title: &str, ticks: [usize; 2], marks: &Markup) -> Markup {
+    pub(super) fn draw(
+        &self,
+        label: &str,
+        x_title: &str,
+        y_title: &str,
+        ticks: [usize; 2],
+        marks: &Markup,
+    ) -> Markup {
         let [left, right, top, bottom] = self.edges();
         let y_title_at = px(0.5 * (top + bottom));
         html! {
@@ -72,7 +84,10 @@ impl Frame {
 /// A mark at a pixel, with a text for the pointer that rests on it.
 pub(super) fn marker(kind: Marker, x: f64, y: f64, hint: &str) -> Markup {
     let shape = |points: &[(f64, f64)], close: &str| {
-        let points: Vec<String> = points.iter().map(|(dx, dy)| format!("{} {}", px(x + dx), px(y + dy))).collect();
+        let points: Vec<String> = points
+            .iter()
+            .map(|(dx, dy)| format!("{} {}", px(x + dx), px(y + dy)))
+            .collect();
         format!("M{}{close}", points.join("L"))
     };
     html! {
@@ -105,7 +120,10 @@ pub(super) fn interval(x: f64, low: f64, mean: f64, high: f64) -> Markup {
 
 /// A line through points; nothing for fewer than two.
 pub(super) fn line(class: &str, points: &[(f64, f64)]) -> Markup {
-    let text: Vec<String> = points.iter().map(|(x, y)| format!("{} {}", px(*x), px(*y))).collect();
+    let text: Vec<String> = points
+        .iter()
+        .map(|(x, y)| format!("{} {}", px(*x), px(*y)))
+        .collect();
     html! { @if points.len() > 1 { path class=(class) d={ "M" (text.join("L")) } {} } }
 }
 

@@ -4,14 +4,13 @@ use maud::{Markup, html};
 
 use super::axis::{Axis, Scale};
 use super::frame::{Frame, px};
+use super::scale::scale;
 use crate::result::ParameterSummary;
 use crate::spec::FreeParameter;
 
 const WIDTH: f64 = 320.0;
 const HEIGHT: f64 = 210.0;
 const CURVE_POINTS: usize = 160;
-/// A posterior over more than this factor is drawn against equal ratios, where the prior is made of ratios too.
-const WIDE: f64 = 8.0;
 /// How far the picture follows the prior beyond the posterior, in widths of the posterior's 90 % interval.
 const REACH: f64 = 2.0;
 /// Share of the prior on each side that need not be in the picture.
@@ -26,11 +25,17 @@ pub(in crate::result::report) fn marginal(
     let x = span(parameter, draws, summary);
     let bars = histogram(draws, x);
     let curve = prior_curve(parameter, x);
-    let top = bars.iter().map(|b| b.density).chain(curve.iter().map(|p| p.1)).fold(0.0, f64::max);
+    let top = bars
+        .iter()
+        .map(|b| b.density)
+        .chain(curve.iter().map(|p| p.1))
+        .fold(0.0, f64::max);
     let frame = Frame::new(WIDTH, HEIGHT, x, Axis::new(0.0, 1.15 * top, Scale::Linear));
     let [_, _, above, floor] = frame.edges();
-    let path: Vec<String> =
-        curve.iter().map(|(v, d)| format!("{} {}", px(frame.x.at(*v)), px(frame.y.at(*d)))).collect();
+    let path: Vec<String> = curve
+        .iter()
+        .map(|(v, d)| format!("{} {}", px(frame.x.at(*v)), px(frame.y.at(*d))))
+        .collect();
     let (lower, upper) = parameter.marginal.support();
     let y = above + 7.0;
     let marks = html! {
@@ -46,18 +51,26 @@ pub(in crate::result::report) fn marginal(
         circle.median cx=(px(frame.x.at(summary.q50))) cy=(px(y)) r="3" {}
     };
     let label = format!("posterior and prior of {}", parameter.name);
-    let density = if x.is_log() { "density of the logarithm" } else { "density" };
+    let density = if x.is_log() {
+        "density of the logarithm"
+    } else {
+        "density"
+    };
     // The area is one, so the height says nothing that the width does not.
-    frame.draw(&label, &format!("{} [{}]", parameter.name, parameter.unit), density, [4, 0], &marks)
+    frame.draw(
+        &label,
+        &format!("{} [{}]", parameter.name, parameter.unit),
+        density,
+        [4, 0],
+        &marks,
+    )
 }
 
 /// The range worth seeing: every draw, and the prior as far as it lies near.
 fn span(parameter: &FreeParameter, draws: &[f64], summary: &ParameterSummary) -> Axis {
     let prior = &parameter.marginal;
-    // Only priors in ln x have a coordinate of their own.
-    let in_ratios = prior.coordinate(2.0) < 1.0;
-    let log = in_ratios && summary.q05 > 0.0 && summary.q95 > WIDE * summary.q05;
-    let scale = if log { Scale::Log } else { Scale::Linear };
+    let scale = scale(parameter, draws);
+    let log = scale == Scale::Log;
     let forward = |x: f64| if log { x.ln() } else { x };
     let backward = |u: f64| if log { u.exp() } else { u };
     let reach = REACH * (forward(summary.q95) - forward(summary.q05));
@@ -65,11 +78,16 @@ fn span(parameter: &FreeParameter, draws: &[f64], summary: &ParameterSummary) ->
     let high = backward(forward(prior.quantile(1.0 - TAIL)).min(forward(summary.q95) + reach));
     // The ends of a flat prior belong in the picture where they are near.
     let (lower, upper) = prior.support();
-    let near = |bound: f64, end: f64| {
-        (forward(bound) - forward(end)).abs() < 0.25 * (forward(high) - forward(low))
-    };
-    let bounds = [(lower, low), (upper, high)].into_iter().filter(|(b, e)| b.is_finite() && near(*b, *e));
-    let values = draws.iter().copied().chain([low, high]).chain(bounds.map(|b| b.0));
+    let near =
+        |bound: f64, end: f64| (forward(bound) - forward(end)).abs() < 0.25 * (forward(high) - forward(low));
+    let bounds = [(lower, low), (upper, high)]
+        .into_iter()
+        .filter(|(b, e)| b.is_finite() && near(*b, *e));
+    let values = draws
+        .iter()
+        .copied()
+        .chain([low, high])
+        .chain(bounds.map(|b| b.0));
     Axis::around(values, 0.03, scale)
 }
 
@@ -86,12 +104,18 @@ fn histogram(draws: &[f64], x: Axis) -> Vec<Bar> {
     let unit = x.on(0.0, 1.0);
     let mut shares: Vec<f64> = draws.iter().map(|v| unit.at(*v)).collect();
     shares.sort_by(f64::total_cmp);
-    let (Some(&first), Some(&last)) = (shares.first(), shares.last()) else { return Vec::new() };
+    let (Some(&first), Some(&last)) = (shares.first(), shares.last()) else {
+        return Vec::new();
+    };
     let quartile = |p: f64| inference::diagnostics::quantile(&shares, p).unwrap_or(first);
     // Freedman & Diaconis 1981: 2 IQR / n^(1/3).
     let wanted = 2.0 * (quartile(0.75) - quartile(0.25)) / (shares.len() as f64).cbrt();
     let range = (last - first).max(1e-6);
-    let bins = if wanted > 0.0 { (range / wanted).ceil().clamp(5.0, 40.0) } else { 5.0 };
+    let bins = if wanted > 0.0 {
+        (range / wanted).ceil().clamp(5.0, 40.0)
+    } else {
+        5.0
+    };
     let width = range / bins;
     let mut counts = vec![0usize; bins as usize];
     for share in &shares {
@@ -134,7 +158,11 @@ fn prior_curve(parameter: &FreeParameter, x: Axis) -> Vec<(f64, f64)> {
 
 /// Length of the axis in its coordinate.
 fn axis_length(x: Axis) -> f64 {
-    if x.is_log() { (x.high / x.low).ln() } else { x.high - x.low }
+    if x.is_log() {
+        (x.high / x.low).ln()
+    } else {
+        x.high - x.low
+    }
 }
 
 #[cfg(test)]
@@ -144,26 +172,49 @@ mod tests {
     use super::*;
 
     fn parameter(distribution: Distribution, bounds: Option<[f64; 2]>) -> FreeParameter {
-        FreeParameter { name: "n".into(), unit: "1", marginal: Marginal::new(distribution, bounds).unwrap() }
+        FreeParameter {
+            name: "n".into(),
+            unit: "1",
+            marginal: Marginal::new(distribution, bounds).unwrap(),
+        }
     }
 
     fn area(points: &[(f64, f64)], log: bool) -> f64 {
         let u = |x: f64| if log { x.ln() } else { x };
-        points.windows(2).map(|w| 0.5 * (w[0].1 + w[1].1) * (u(w[1].0) - u(w[0].0))).sum()
+        points
+            .windows(2)
+            .map(|w| 0.5 * (w[0].1 + w[1].1) * (u(w[1].0) - u(w[0].0)))
+            .sum()
     }
 
     #[test]
     fn the_prior_s_curve_encloses_one() {
         let normal = parameter(Distribution::Normal { mean: 1.3, sd: 0.2 }, Some([0.8, 2.0]));
-        let flat = parameter(Distribution::Uniform { lower: 0.0, upper: 4.0 }, None);
-        let lognormal = parameter(Distribution::Lognormal { median: 2.0, factor: 2.8 }, None);
+        let flat = parameter(
+            Distribution::Uniform {
+                lower: 0.0,
+                upper: 4.0,
+            },
+            None,
+        );
+        let lognormal = parameter(
+            Distribution::Lognormal {
+                median: 2.0,
+                factor: 2.8,
+            },
+            None,
+        );
         for (parameter, axis) in [
             (&normal, Axis::new(0.0, 3.0, Scale::Linear)),
             (&flat, Axis::new(-1.0, 5.0, Scale::Linear)),
             (&lognormal, Axis::new(0.01, 400.0, Scale::Log)),
         ] {
             let curve = prior_curve(parameter, axis);
-            assert!((area(&curve, axis.is_log()) - 1.0).abs() < 0.01, "{:?}", parameter.marginal.distribution());
+            assert!(
+                (area(&curve, axis.is_log()) - 1.0).abs() < 0.01,
+                "{:?}",
+                parameter.marginal.distribution()
+            );
         }
     }
 
@@ -171,7 +222,10 @@ mod tests {
     fn the_histogram_encloses_one() {
         let draws: Vec<f64> = (0..500).map(|k| f64::from(k * k % 337)).collect();
         let axis = Axis::new(-50.0, 400.0, Scale::Linear);
-        let sum: f64 = histogram(&draws, axis).iter().map(|b| b.density * (b.high - b.low)).sum();
+        let sum: f64 = histogram(&draws, axis)
+            .iter()
+            .map(|b| b.density * (b.high - b.low))
+            .sum();
         assert!((sum - 1.0).abs() < 1e-9, "{sum}");
     }
 

@@ -5,6 +5,7 @@ mod comparison;
 mod frame;
 mod marginal;
 mod pair;
+mod scale;
 mod stages;
 
 pub(super) use comparison::{ComparisonChart, shared_range};

@@ -2,8 +2,9 @@
 
 use maud::{Markup, html};
 
-use super::axis::{Axis, Scale};
+use super::axis::Axis;
 use super::frame::{Frame, px};
+use super::scale::scale;
 use crate::spec::FreeParameter;
 
 const WIDTH: f64 = 320.0;
@@ -13,8 +14,8 @@ const DOTS: usize = 500;
 
 /// A scatter of the draws, evenly thinned.
 pub(in crate::result::report) fn pair(parameters: [&FreeParameter; 2], draws: [&[f64]; 2]) -> Markup {
-    let axis = |values: &[f64]| Axis::around(values.iter().copied(), 0.04, Scale::Linear);
-    let frame = Frame::new(WIDTH, HEIGHT, axis(draws[0]), axis(draws[1]));
+    let axis = |i: usize| Axis::around(draws[i].iter().copied(), 0.04, scale(parameters[i], draws[i]));
+    let frame = Frame::new(WIDTH, HEIGHT, axis(0), axis(1));
     let every = draws[0].len().div_ceil(DOTS).max(1);
     // A segment without length under a round cap is a dot.
     let dots: String = draws[0]
@@ -26,5 +27,11 @@ pub(in crate::result::report) fn pair(parameters: [&FreeParameter; 2], draws: [&
     let title = |p: &FreeParameter| format!("{} [{}]", p.name, p.unit);
     let label = format!("draws of {} against {}", parameters[1].name, parameters[0].name);
     let marks = html! { path.dots d=(dots) {} };
-    frame.draw(&label, &title(parameters[0]), &title(parameters[1]), [4, 5], &marks)
+    frame.draw(
+        &label,
+        &title(parameters[0]),
+        &title(parameters[1]),
+        [4, 5],
+        &marks,
+    )
 }

@@ -28,14 +28,29 @@ pub(in crate::result::report) fn exponent(stages: &[StageRow]) -> Markup {
             (marker(kind(stage), *x, *y, &hint))
         }
     };
-    frame.draw("tempering exponent by stage", "stage", "tempering exponent [1]", [8, 6], &marks)
+    frame.draw(
+        "tempering exponent by stage",
+        "stage",
+        "tempering exponent [1]",
+        [8, 6],
+        &marks,
+    )
 }
 
 /// Drift by stage with its limits.
 pub(in crate::result::report) fn drift(stages: &[StageRow]) -> Markup {
-    let largest = stages.iter().map(|s| s.drift_z.abs()).filter(|z| z.is_finite()).fold(ALARM + 1.0, f64::max);
+    let largest = stages
+        .iter()
+        .map(|s| s.drift_z.abs())
+        .filter(|z| z.is_finite())
+        .fold(ALARM + 1.0, f64::max);
     let half = largest.min(FARTHEST) * 1.05;
-    let frame = Frame::new(WIDTH, HEIGHT, numbers(stages), Axis::new(-half, half, Scale::Linear));
+    let frame = Frame::new(
+        WIDTH,
+        HEIGHT,
+        numbers(stages),
+        Axis::new(-half, half, Scale::Linear),
+    );
     let [left, right, ..] = frame.edges();
     let (top, bottom) = (frame.y.at(CALM), frame.y.at(-CALM));
     let marks = html! {
@@ -49,7 +64,13 @@ pub(in crate::result::report) fn drift(stages: &[StageRow]) -> Markup {
             (marker(kind(stage), frame.x.at(f64::from(stage.stage)), frame.y.at(stage.drift_z), &hint))
         }
     };
-    frame.draw("drift of the log-likelihood by stage", "stage", "drift z [standard errors]", [8, 6], &marks)
+    frame.draw(
+        "drift of the log-likelihood by stage",
+        "stage",
+        "drift z [standard errors]",
+        [8, 6],
+        &marks,
+    )
 }
 
 fn numbers(stages: &[StageRow]) -> Axis {
@@ -57,5 +78,9 @@ fn numbers(stages: &[StageRow]) -> Axis {
 }
 
 fn kind(stage: &StageRow) -> Marker {
-    if stage.equilibrated { Marker::Sound } else { Marker::Alarming }
+    if stage.equilibrated {
+        Marker::Sound
+    } else {
+        Marker::Alarming
+    }
 }

@@ -36,8 +36,8 @@ pub(in crate::result::report) fn errors(comparison: &Comparison) -> Markup {
         } }
         @if comparison.holdout.is_none() { p.note { "No holdout rows: the errors of prediction are not known." } }
         p.note {
-            "Error: measured minus the posterior-mean prediction. \u{b1} is the sampling error of a root mean square over n rows, "
-            "1/\u{221a}(2n) of it; repeats of one condition share their misfit, so the true uncertainty is larger. "
+            "Error: measured minus the posterior-mean prediction. \u{b1} is the sampling error of a root mean square over n rows "
+            "(itself over \u{221a}(2n)); repeats of one condition share their misfit, so the true uncertainty is larger. "
             "In units of the noise sd a perfect model scores about 1; so does any model whose noise was inferred. "
             "Interpolation: monotone cubic in slip between the fitted measurements of the same wheel, where it need not extrapolate. "
             "Expected: 95 % range of the count if the intervals are right and the rows independent."
@@ -46,7 +46,12 @@ pub(in crate::result::report) fn errors(comparison: &Comparison) -> Markup {
 }
 
 fn lines(comparison: &Comparison, quantity: Quantity) -> Vec<Line> {
-    let rows = |usage: &'static str| comparison.rows.iter().filter(move |r| r.usage == usage && quantity.is_of(r));
+    let rows = |usage: &'static str| {
+        comparison
+            .rows
+            .iter()
+            .filter(move |r| r.usage == usage && quantity.is_of(r))
+    };
     let of = |table: &Option<ErrorTable>| table.as_ref().and_then(|t| t.channel(quantity.channel));
     let known = |r: &&ComparisonRow| r.interpolated.is_some();
     let baseline = of(&comparison.baseline_holdout);
@@ -55,12 +60,22 @@ fn lines(comparison: &Comparison, quantity: Quantity) -> Vec<Line> {
     let same = baseline.filter(|b| holdout.is_some_and(|h| h.runs != b.runs));
     let same = same.and_then(|_| of(&ErrorTable::of_model(rows("holdout").filter(known))));
     let line = |rows, predictor, error: Option<ChannelError>, coverage| {
-        error.map(|error| Line { rows, predictor, error, coverage })
+        error.map(|error| Line {
+            rows,
+            predictor,
+            error,
+            coverage,
+        })
     };
     [
         line("fit", "model", of(&comparison.fit), Coverage::count(rows("fit"))),
         line("holdout", "model", holdout, Coverage::count(rows("holdout"))),
-        line("holdout, where interpolated", "model", same, Coverage::count(rows("holdout").filter(known))),
+        line(
+            "holdout, where interpolated",
+            "model",
+            same,
+            Coverage::count(rows("holdout").filter(known)),
+        ),
         line("holdout", "interpolation", baseline, None),
     ]
     .into_iter()
@@ -69,7 +84,11 @@ fn lines(comparison: &Comparison, quantity: Quantity) -> Vec<Line> {
 }
 
 fn cells(quantity: Quantity, first: bool, line: &Line) -> Markup {
-    let ChannelError { rmse, rmse_sigma, runs } = line.error;
+    let ChannelError {
+        rmse,
+        rmse_sigma,
+        runs,
+    } = line.error;
     html! {
         td.text { @if first { (quantity.channel.words()) } }
         td.text { (line.rows) }

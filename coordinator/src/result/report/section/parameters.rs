@@ -72,7 +72,7 @@ fn table(free: &[FreeParameter], summaries: &[(String, ParameterSummary)]) -> Ma
                         td { (value(p.q05)) } td { (value(p.q50)) } td { (value(p.q95)) } td { (value(p.map)) }
                         td { (p.prior_mean.map_or(number::NONE.into(), |m| number::to_spread(m, p.prior_sd.unwrap_or(0.0)))) }
                         td { (p.prior_sd.map_or(number::NONE.into(), |s| number::to_spread(s, s))) }
-                        td { (p.prior_sd.map_or(number::NONE.into(), |s| number::fixed(p.sd / s, 2))) }
+                        td { (p.prior_sd.map_or(number::NONE.into(), |s| number::significant(p.sd / s, 2))) }
                         td.text { @if p.at_bound { span.alarm { "AT BOUND" } } }
                     }
                 }
@@ -89,9 +89,10 @@ fn prior_words(parameter: &FreeParameter) -> String {
         Distribution::Uniform { .. } => ("uniform".into(), false),
         Distribution::Loguniform { .. } => ("uniform in the logarithm".into(), false),
         Distribution::Normal { mean, sd } => (format!("normal, mean {}, sd {}", n(mean), n(sd)), false),
-        Distribution::Lognormal { median, factor } => {
-            (format!("lognormal, median {}, factor {}", n(median), n(factor)), true)
-        }
+        Distribution::Lognormal { median, factor } => (
+            format!("lognormal, median {}, factor {}", n(median), n(factor)),
+            true,
+        ),
         Distribution::HalfNormal { scale } => (format!("half-normal, scale {}", n(scale)), true),
     };
     // Zero is where some end by nature; and a bound without probability near it cuts nothing off.
@@ -172,12 +173,25 @@ mod tests {
     fn priors_in_words() {
         let words = |d, bounds| {
             let marginal = Marginal::new(d, bounds).unwrap();
-            prior_words(&FreeParameter { name: "n".into(), unit: "1", marginal })
+            prior_words(&FreeParameter {
+                name: "n".into(),
+                unit: "1",
+                marginal,
+            })
         };
         let normal = Distribution::Normal { mean: 1.1, sd: 0.2 };
-        assert_eq!(words(normal, Some([0.8, 2.0])), "normal, mean 1.1, sd 0.2, between 0.8 and 2");
-        let lognormal = Distribution::Lognormal { median: 2.0, factor: 2.8 };
+        assert_eq!(
+            words(normal, Some([0.8, 2.0])),
+            "normal, mean 1.1, sd 0.2, between 0.8 and 2"
+        );
+        let lognormal = Distribution::Lognormal {
+            median: 2.0,
+            factor: 2.8,
+        };
         assert_eq!(words(lognormal, None), "lognormal, median 2, factor 2.8");
-        assert_eq!(words(normal, Some([-50.0, 2.0])), "normal, mean 1.1, sd 0.2, below 2");
+        assert_eq!(
+            words(normal, Some([-50.0, 2.0])),
+            "normal, mean 1.1, sd 0.2, below 2"
+        );
     }
 }

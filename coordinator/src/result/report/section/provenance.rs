@@ -3,9 +3,9 @@
 use maud::{Markup, html};
 use shared::experiment::RunUse;
 
+use crate::result::Outcome;
 use crate::result::report::number;
 use crate::result::summary::algorithm_name;
-use crate::result::Outcome;
 
 /// One line under the title: model, data, sampler.
 pub(in crate::result::report) fn subtitle(outcome: &Outcome) -> String {
@@ -26,7 +26,12 @@ pub(in crate::result::report) fn subtitle(outcome: &Outcome) -> String {
 pub(in crate::result::report) fn provenance(outcome: &Outcome) -> Markup {
     let spec = &outcome.spec;
     let [least, most] = spec.sampler.moves;
-    let held = spec.experiment.runs.iter().filter(|r| r.usage == RunUse::Holdout).count();
+    let held = spec
+        .experiment
+        .runs
+        .iter()
+        .filter(|r| r.usage == RunUse::Holdout)
+        .count();
     html! {
         dl {
             dt { "calibration" } dd { (outcome.experiment) }

@@ -11,7 +11,11 @@ use crate::store::StageRow;
 pub(in crate::result::report) fn stages(outcome: &Outcome) -> Markup {
     let row = &outcome.row;
     let refused = row.rejected.unwrap_or(0);
-    let kinds: Vec<String> = outcome.rejections.iter().map(|(kind, n)| format!("{kind} {n}")).collect();
+    let kinds: Vec<String> = outcome
+        .rejections
+        .iter()
+        .map(|(kind, n)| format!("{kind} {n}"))
+        .collect();
     let evidence = match (row.log_evidence, row.log_evidence_se) {
         (Some(z), Some(se)) => number::with_spread(z, se),
         (Some(z), None) => number::significant(z, 4),
