@@ -69,7 +69,7 @@ fn table(rows: &[ComparisonRow]) -> Markup {
             thead { tr {
                 th.text { "run" } th.text { "use" } th.text { "wheel" } th { "slip" } th { "load" br; "N" } th { "speed" br; "mm/s" }
                 @if angles { th { "slip angle" br; "deg" } }
-                th.text { "channel" } th { "measured" } th { "model" br; "mean" } th { "90 % interval" br; "of a new measurement" }
+                th.text { "channel" } th { "measured" } th { "model" br; "mean" } th { "90 % predictive" br; "interval" }
                 th { "residual" br; "noise sd" }
                 @if holdout { th { "inter-" br; "polation" } }
             } }
