@@ -13,6 +13,7 @@ use shared::model::{ModelSettings, ModelVariant};
 use shared::parameters;
 
 pub use job_file::Job;
+pub(crate) use noise::repeat_scatter;
 pub use priors::FreeParameter;
 
 /// A calibration as its files determine it; equal files give an equal specification.

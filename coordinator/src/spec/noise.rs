@@ -94,8 +94,33 @@ pub(super) fn data(
     Ok(data)
 }
 
-/// `sqrt(sum (y - mean of its repeats)^2 / (values - groups))` over the groups of repeated conditions.
+/// The least number of repeats that says something of the scatter.
+const LEAST_FREEDOM: usize = 3;
+
+/// The scatter of fitted repeats with its degrees of freedom; `None` with fewer than three.
+pub(crate) fn repeat_scatter(
+    experiment: &Experiment,
+    fit_runs: &[usize],
+    channel: Channel,
+) -> Option<(f64, usize)> {
+    let (sd, freedom) = pooled(experiment, fit_runs, channel);
+    (freedom >= LEAST_FREEDOM).then_some((sd, freedom))
+}
+
 fn pooled_sd(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> Result<f64, String> {
+    let column = channel.column();
+    match pooled(experiment, fit_runs, channel) {
+        (_, freedom) if freedom < LEAST_FREEDOM => Err(format!(
+            "[noise] {column} = \"replicates\": the fit runs repeat conditions only {freedom} times, at least {LEAST_FREEDOM} repeats are needed"
+        )),
+        (sd, _) if sd > 0.0 => Ok(sd),
+        _ => Err(format!("[noise] {column} = \"replicates\": all repeats are equal")),
+    }
+}
+
+/// `sqrt(sum (y - mean of its repeats)^2 / freedom)` over the groups of repeated conditions, with
+/// freedom = values - groups; not a number where that is 0.
+fn pooled(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> (f64, usize) {
     let c = channel.index();
     let mut groups: Vec<(&TestRun, Vec<f64>)> = Vec::new();
     for &i in fit_runs {
@@ -108,12 +133,6 @@ fn pooled_sd(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> R
     }
     let count: usize = groups.iter().map(|(_, values)| values.len()).sum();
     let freedom = count - groups.len();
-    if freedom < 3 {
-        return Err(format!(
-            "[noise] {} = \"replicates\": the fit runs repeat conditions only {freedom} times, at least 3 repeats are needed",
-            channel.column()
-        ));
-    }
     let sum: f64 = groups
         .iter()
         .map(|(_, values)| {
@@ -121,8 +140,7 @@ fn pooled_sd(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> R
             values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>()
         })
         .sum();
-    let sd = (sum / freedom as f64).sqrt();
-    if sd > 0.0 { Ok(sd) } else { Err(format!("[noise] {} = \"replicates\": all repeats are equal", channel.column())) }
+    ((sum / freedom as f64).sqrt(), freedom)
 }
 
 /// Whether two runs repeat one condition, within what a rig can hold: slip to 0.02, load to 15 %, speed to 5 %.

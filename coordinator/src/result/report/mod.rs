@@ -1,8 +1,124 @@
-//! The self-contained report.
+//! The self-contained report: one HTML page without scripts or external resources, for screen and paper.
+//!
+//! # Layout
+//! - `section`: the parts of the page, in reading order.
+//! - `chart`: the pictures, drawn as inline SVG.
+//! - `coverage`: how many measurements lie in their intervals, and how many should.
+//! - `number`, `quantity`: digits and units as people read them.
+//!
+//! Names come from users; the templates escape every text.
+
+mod chart;
+mod coverage;
+#[cfg(test)]
+mod fixture;
+mod number;
+mod quantity;
+mod section;
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::Outcome;
 
+/// Light, dark and paper.
+const STYLE: &str = include_str!("style.css");
+
 /// The report as one HTML page.
 pub fn page(outcome: &Outcome) -> String {
-    format!("<!doctype html><title>{}</title><pre>{}</pre>", outcome.experiment, super::terminal::summary(outcome))
+    let comparison = outcome.comparison();
+    let sections: [(&str, &str, Markup); 5] = [
+        (
+            "comparison",
+            "Model against measurement",
+            section::comparison(outcome, &comparison),
+        ),
+        ("errors", "Errors by channel", section::errors(&comparison)),
+        ("parameters", "Parameters", section::parameters(outcome)),
+        ("stages", "Sampler", section::stages(outcome)),
+        ("provenance", "Provenance", section::provenance(outcome)),
+    ];
+    let markup = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { "Calibration report: " (outcome.experiment) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                header {
+                    h1 { "Calibration report: " (outcome.experiment) }
+                    p.subtitle { (section::subtitle(outcome)) }
+                    nav {
+                        @for (id, title, _) in &sections { a href={ "#" (id) } { (title) } " " }
+                    }
+                }
+                main {
+                    (section::verdict(outcome, &comparison))
+                    @for (id, title, body) in &sections {
+                        section id=(id) { h2 { (title) } (body) }
+                    }
+                }
+            }
+        }
+    };
+    markup.into_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{fixture, page};
+
+    #[test]
+    fn names_of_users_are_escaped_everywhere() {
+        let page = page(&fixture::outcome());
+        assert!(
+            page.contains("&lt;script&gt;"),
+            "the hostile names of the fixture are shown"
+        );
+        assert!(!page.contains("<script"), "and never as markup");
+        assert!(!page.contains("<i>bold"), "nor in the text of the job");
+    }
+
+    #[test]
+    fn the_page_needs_nothing_from_elsewhere() {
+        let page = page(&fixture::outcome());
+        for word in ["http://", "https://", "src=", "@import", "url("] {
+            assert!(!page.contains(word), "{word}");
+        }
+    }
+
+    #[test]
+    fn no_number_is_missing_from_a_picture() {
+        for outcome in [
+            fixture::outcome(),
+            fixture::without_holdout(),
+            fixture::all_refused(),
+        ] {
+            let page = page(&outcome);
+            for word in ["NaN", "inf ", "inf\"", "-inf"] {
+                assert!(!page.contains(word), "{word}");
+            }
+        }
+    }
+
+    #[test]
+    fn equal_outcomes_give_equal_pages() {
+        assert_eq!(page(&fixture::outcome()), page(&fixture::outcome()));
+    }
+
+    #[test]
+    fn without_holdout_the_report_says_what_that_means() {
+        assert!(page(&fixture::without_holdout()).contains("No run was held out"));
+        assert!(!page(&fixture::outcome()).contains("No run was held out"));
+    }
+
+    #[test]
+    fn the_model_s_limits_and_the_likelihood_s_departure_are_always_stated() {
+        let page = page(&fixture::outcome());
+        assert!(page.contains("Grousers are not modelled here"));
+        assert!(page.contains("lack 1/sigma"));
+    }
 }

@@ -1,0 +1,155 @@
+//! A small outcome with hostile names, for tests.
+
+use std::collections::BTreeMap;
+
+use shared::api::CalibrationState;
+use shared::file::FileSet;
+use shared::outcome::Observables;
+
+use crate::result::Outcome;
+use crate::spec::Spec;
+use crate::store::{CalibrationRow, Prediction, Sample, StageRow};
+
+const JOB: &str = r#"
+# <i>bold & brave</i>
+experiment = "experiment.toml"
+[model]
+kind = "quasi_static"
+cohesion_pa = 0.0
+shear_velocity_m_s = 0.001
+[priors]
+log10_p_ref = { normal = [3.9, 0.2] }
+kappa = 0.0
+n = { uniform = [0.8, 1.6] }
+friction_angle_deg = { normal = [31.0, 4.0], bounds = [15.0, 45.0] }
+"noise.sinkage_m" = { lognormal = [0.002, 2.5] }
+[sampler]
+particles = 40
+"#;
+
+const EXPERIMENT: &str = r#"
+runs = "runs.csv"
+[wheel.a]
+radius_m = 0.1
+width_m = 0.05
+[soil.sand]
+[noise]
+drawbar_pull_n = 1.0
+sinkage_m = "unknown"
+"#;
+
+const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,sinkage_m,use
+<script>alert(1)</script>,a,sand,-0.2,25,0.01,-7.0,0.015,fit
+b&c,a,sand,0.2,25,0.01,0.5,0.020,fit
+d,a,sand,0.5,25,0.01,1.5,,fit
+e,a,sand,0.4,25,0.01,1.2,0.022,LAST
+";
+
+/// An outcome with a holdout run.
+pub(super) fn outcome() -> Outcome {
+    build("holdout")
+}
+
+/// The same with every run fitted.
+pub(super) fn without_holdout() -> Outcome {
+    build("fit")
+}
+
+/// The same where the model refused all final draws, drifted, and has no evidence.
+pub(super) fn all_refused() -> Outcome {
+    let mut outcome = outcome();
+    for prediction in &mut outcome.predictions {
+        prediction.result = Err("no_support".into());
+    }
+    for stage in &mut outcome.stages {
+        (stage.equilibrated, stage.drift_z, stage.tempering_exponent) = (false, 1e6, 0.0);
+    }
+    outcome.row.equilibrated = Some(false);
+    outcome.row.log_evidence = None;
+    outcome
+}
+
+fn build(last: &str) -> Outcome {
+    let runs = RUNS.replace("LAST", last);
+    let files = FileSet {
+        toml: EXPERIMENT.into(),
+        files: BTreeMap::from([("runs.csv".into(), runs)]),
+    };
+    let spec = Spec::new("job.toml", JOB, "experiment.toml", &files).expect("the fixture's files are valid");
+    let n_runs = spec.experiment.runs.len();
+    // The golden ratio's multiples spread evenly.
+    let share = |k: usize, i: usize| (0.5 + 0.618_033_988_75 * (k * (i + 1)) as f64) % 1.0;
+    let theta = |k: usize| -> Vec<f64> {
+        spec.parameters
+            .iter()
+            .enumerate()
+            .map(|(i, p)| p.marginal.quantile(share(k, i)))
+            .collect()
+    };
+    let posterior: Vec<Sample> = (0..40)
+        .map(|k| Sample {
+            theta: theta(k),
+            log_likelihood: Some(-20.0 - share(k, 0)),
+            log_prior: -1.0,
+        })
+        .collect();
+    let predicted = |k: usize| {
+        let values = |base: f64, step: f64| {
+            (0..n_runs)
+                .map(|r| base + step * (r as f64 + share(k, r)))
+                .collect()
+        };
+        Observables {
+            drawbar_pull_n: values(-6.0, 2.0),
+            torque_n_m: values(0.1, 0.1),
+            sinkage_m: values(0.014, 0.002),
+            lateral_force_n: values(0.0, 0.0),
+            ..Observables::default()
+        }
+    };
+    let predictions = (0..20)
+        .map(|k| Prediction {
+            theta: theta(k),
+            result: Ok(predicted(k)),
+        })
+        .collect();
+    let stage = |stage: u32, tempering_exponent: f64| StageRow {
+        stage,
+        tempering_exponent,
+        acceptance: 0.3,
+        drift_z: -0.4,
+        correlation: 0.1,
+        steps: 12,
+        log_evidence_increment: -3.0,
+        weight_cov: 1.0,
+        ess: 20.0,
+        scale: 0.5,
+        evaluations: 480,
+        equilibrated: true,
+    };
+    let row = CalibrationRow {
+        id: 1,
+        study: 1,
+        experiment: 1,
+        name: "<script>sand".into(),
+        toml: JOB.into(),
+        state: CalibrationState::Finished,
+        message: None,
+        model_version: Some("1".into()),
+        busy_ms: 1500,
+        log_evidence: Some(-25.0),
+        log_evidence_se: Some(0.2),
+        equilibrated: Some(true),
+        evaluations: Some(1000),
+        rejected: Some(3),
+    };
+    Outcome {
+        experiment: row.name.clone(),
+        row,
+        stages: vec![stage(1, 0.001), stage(2, 0.1), stage(3, 1.0)],
+        posterior,
+        predictions,
+        rejections: BTreeMap::from([("no_support".into(), 3)]),
+        spec,
+    }
+}

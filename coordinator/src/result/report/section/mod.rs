@@ -1,0 +1,15 @@
+//! The parts of the page, in reading order.
+
+mod comparison;
+mod errors;
+mod parameters;
+mod provenance;
+mod stages;
+mod verdict;
+
+pub(super) use comparison::comparison;
+pub(super) use errors::errors;
+pub(super) use parameters::parameters;
+pub(super) use provenance::{provenance, subtitle};
+pub(super) use stages::stages;
+pub(super) use verdict::verdict;
