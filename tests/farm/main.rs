@@ -1,0 +1,5 @@
+//! The whole farm, black-box: the two programs as processes, SQLite files, HTTP.
+
+mod bit_identity;
+mod forward;
+mod leases;
