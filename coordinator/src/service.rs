@@ -72,7 +72,7 @@ impl Service {
     /// [`ServiceError`].
     pub async fn open(path: &str, lease_ms: u64) -> Result<Service, ServiceError> {
         let store = Store::open(path, now_ms()).await?;
-        let farm = Farm::new(store.epoch(), lease_ms);
+        let farm = Farm::new(store.epochs(), lease_ms);
         let dispatcher = Dispatcher::start(farm, store.writer().sink()).map_err(|e| {
             ServiceError::Store(StoreError::Sqlite { path: "thread".into(), source: sqlx::Error::Io(e) })
         })?;

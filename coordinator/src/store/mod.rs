@@ -62,7 +62,7 @@ impl From<sqlx::Error> for StoreError {
 pub struct Store {
     readers: SqlitePool,
     writer: Writer,
-    epoch: u64,
+    epochs: Vec<u64>,
 }
 
 fn options(path: &str) -> Result<SqliteConnectOptions, StoreError> {
@@ -91,14 +91,10 @@ impl Store {
             .run(&mut connection)
             .await
             .map_err(|source| StoreError::Migrate { path: path.into(), source })?;
-        let epoch: i64 = sqlx::query_scalar("INSERT INTO epochs (started_at_ms) VALUES (?) RETURNING epoch")
-            .bind(now_ms)
-            .fetch_one(&mut connection)
-            .await
-            .map_err(wrap)?;
+        let epochs = begin_epoch(&mut connection, now_ms).await.map_err(wrap)?;
         let readers = pool(options).await.map_err(wrap)?;
         let writer = Writer::start(connection, lock);
-        Ok(Store { readers, writer, epoch: epoch.unsigned_abs() })
+        Ok(Store { readers, writer, epochs })
     }
 
     /// The way to the writer.
@@ -113,9 +109,9 @@ impl Store {
         self.writer.close().await;
     }
 
-    /// Number of this start of the coordinator.
-    pub fn epoch(&self) -> u64 {
-        self.epoch
+    /// Numbers of the coordinator's starts on this store, the present one included.
+    pub fn epochs(&self) -> &[u64] {
+        &self.epochs
     }
 
     /// What can be read.
@@ -154,6 +150,24 @@ fn json(theta: &[f64]) -> String {
 /// The numbers of a JSON array.
 fn numbers(json: &str) -> Result<Vec<f64>, StoreError> {
     serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("parameter vector {json}: {e}")))
+}
+
+/// Seconds from 1970 to 2026.
+const EPOCHS_FROM_S: i64 = 1_767_225_600;
+
+/// Numbers this start by the clock, but above every start before: so two stores never share an epoch. All of them.
+async fn begin_epoch(connection: &mut SqliteConnection, now_ms: i64) -> Result<Vec<u64>, sqlx::Error> {
+    sqlx::query(
+        "INSERT INTO epochs (epoch, started_at_ms)
+         VALUES (max(?, 1 + (SELECT coalesce(max(epoch), 0) FROM epochs)), ?)",
+    )
+    .bind(now_ms / 1000 - EPOCHS_FROM_S)
+    .bind(now_ms)
+    .execute(&mut *connection)
+    .await?;
+    let epochs: Vec<i64> =
+        sqlx::query_scalar("SELECT epoch FROM epochs ORDER BY epoch").fetch_all(connection).await?;
+    Ok(epochs.into_iter().map(i64::unsigned_abs).collect())
 }
 
 async fn pool(options: SqliteConnectOptions) -> Result<SqlitePool, sqlx::Error> {
