@@ -156,16 +156,25 @@ impl Service {
         line.and_then(|value| value.parse().ok()).unwrap_or_else(|| panic!("no {name} in\n{page}"))
     }
 
-    /// The record of the only worker.
+    /// The record of the only worker, once it has been heard of.
     ///
     /// # Panics
-    /// There are none, or several.
+    /// There are several.
     #[track_caller]
-    pub fn only_worker(&self) -> Value {
+    pub fn only_worker(&self) -> Option<Value> {
         let workers = self.client.json("/v1/workers");
-        let records = workers.as_object().expect("workers by name");
-        assert_eq!(records.len(), 1, "{workers}");
-        records.values().next().cloned().unwrap_or_default()
+        let records = workers.as_object()?;
+        assert!(records.len() < 2, "{workers}");
+        records.values().next().cloned()
+    }
+
+    /// The version of the equations that the program `worker` computes, as it says to this service.
+    #[track_caller]
+    pub fn model_version(&self) -> String {
+        let worker = self.worker("version", 1);
+        let record = until("a word of a worker", || self.only_worker());
+        drop(worker);
+        record["model_version"].as_str().unwrap_or_default().to_owned()
     }
 
     /// What the service has said on standard error, over all its starts.
