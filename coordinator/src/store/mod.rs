@@ -9,6 +9,7 @@ mod read;
 mod recovery;
 mod writer;
 
+use std::io::Read;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -46,6 +47,14 @@ pub enum StoreError {
     /// The writer has ended.
     #[error("the store no longer takes writes; the coordinator is going down")]
     Stopped,
+    /// The file cannot be a store.
+    #[error("store {path}: {reason}")]
+    Unfit {
+        /// The file.
+        path: String,
+        /// Why not.
+        reason: String,
+    },
     /// There is nothing to read.
     #[error("store {0}: no such file")]
     Missing(String),
@@ -83,6 +92,7 @@ impl Store {
     /// [`StoreError`] with the file and SQLite's reason; [`StoreError::InUse`] where another coordinator holds it.
     pub async fn open(path: &str, now_ms: i64) -> Result<Store, StoreError> {
         let wrap = |source| StoreError::Sqlite { path: path.into(), source };
+        examine(path)?;
         // The writer holds its lock file for as long as it lives; a second coordinator is turned away at once.
         let lock = lock(path)?;
         let options = options(path)?.create_if_missing(true);
@@ -172,6 +182,29 @@ async fn begin_epoch(connection: &mut SqliteConnection, now_ms: i64) -> Result<V
 
 async fn pool(options: SqliteConnectOptions) -> Result<SqlitePool, sqlx::Error> {
     SqlitePoolOptions::new().max_connections(4).connect_with(options).await
+}
+
+/// Refuses what cannot be a store before anything is written beside it.
+fn examine(path: &str) -> Result<(), StoreError> {
+    let file = Path::new(path.strip_prefix("sqlite://").unwrap_or(path));
+    if path.contains(":memory:") {
+        return Ok(());
+    }
+    let unfit = |reason: String| Err(StoreError::Unfit { path: file.display().to_string(), reason });
+    let folder = file.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match std::fs::File::open(file) {
+        Ok(open) if !open.metadata().is_ok_and(|m| m.is_file()) => unfit("this is no file".into()),
+        Ok(mut open) => {
+            let mut head = Vec::new();
+            match open.by_ref().take(16).read_to_end(&mut head) {
+                Ok(_) if head.is_empty() || head == b"SQLite format 3\0" => Ok(()),
+                Ok(_) => unfit("the file is not a database of SQLite".into()),
+                Err(error) => unfit(error.to_string()),
+            }
+        }
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound && folder.is_dir() => Ok(()),
+        Err(error) => unfit(error.to_string()),
+    }
 }
 
 /// Takes the lock file beside the store; it is released when the returned file is dropped, or at any death.
