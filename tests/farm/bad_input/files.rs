@@ -49,7 +49,7 @@ fn the_job_of_the_gallery_is_good() {
 fn unknown_keys_name_line_and_nearest_known() {
     refused(
         Job::small().in_job("particles = 60", "particels = 60"),
-        "job.toml line 15: unknown key \"particels\"; the nearest known is \"particles\"",
+        "job.toml line 16: unknown key \"particels\"; the nearest known is \"particles\"",
     );
     refused(
         Job::small().in_job("[priors]", "[prior]"),
@@ -223,9 +223,9 @@ fn settings_of_the_sampler_that_cannot_work_are_refused() {
         "job.toml: [sampler] unknown algorithm \"tmcm\"; the nearest known is \"tmcmc\"",
     );
     let message = refusal(&small().in_job("seed = 1", "seed = -1"));
-    assert!(message.starts_with("job.toml line 17: ") && message.contains("-1"), "{message}");
+    assert!(message.starts_with("job.toml line 18: ") && message.contains("-1"), "{message}");
     let message = refusal(&small().in_job("particles = 60", "particles = \"many\""));
-    assert!(message.starts_with("job.toml line 15: ") && message.contains("many"), "{message}");
+    assert!(message.starts_with("job.toml line 16: ") && message.contains("many"), "{message}");
 }
 
 #[test]

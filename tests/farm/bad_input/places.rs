@@ -23,8 +23,9 @@ fn a_store_that_is_not_sqlite_is_refused_and_untouched() {
     let notes = "These are notes, not a database. ".repeat(100);
     std::fs::write(&store, &notes).unwrap();
     let message = serve(&format!("sqlite://{}", store.display())).refusal();
-    assert!(message.contains("notes.txt") && message.contains("not a database"), "{message}");
+    assert!(message == format!("store {}: the file is not a database of SQLite", store.display()), "{message}");
     assert_eq!(std::fs::read_to_string(&store).unwrap(), notes);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "something lies beside the notes");
     for verb in ["list", "status", "export"] {
         let out = folder.path().join("folder");
         std::fs::create_dir_all(&out).unwrap();
@@ -45,7 +46,7 @@ fn a_store_in_a_place_that_cannot_be_written_is_refused() {
     let directory = folder.path().join("directory");
     std::fs::create_dir(&directory).unwrap();
     let message = serve(&format!("sqlite://{}", directory.display())).refusal();
-    assert!(message.contains(&text(&directory)), "{message}");
+    assert_eq!(message, format!("store {}: this is no file", directory.display()));
 
     let file = folder.path().join("file");
     std::fs::write(&file, "not a folder").unwrap();
@@ -232,7 +233,14 @@ fn settings_in_the_environment_do_not_forbid_other_choices() {
     command.env("GROUSER_URL", "http://127.0.0.1:7070");
     let message = run(command).refusal();
     assert!(message.contains("grouser.db") && message.contains("no such file"), "{message}");
+    // Both on the command line contradict each other.
+    let message = run(coordinator(["list", "--out", &text(folder.path()), "--url", "http://127.0.0.1:7070"])).refusal();
+    assert!(message.contains("--out") && message.contains("--url"), "{message}");
+}
 
+#[test]
+fn a_coordinator_in_the_environment_does_not_forbid_forward_runs() {
+    let folder = tempfile::tempdir().unwrap();
     let mut command = worker(["simulate", &text(&data("nothing-hidden/experiment.toml"))]);
     command.args(["--model", &text(&data("nothing-hidden/model.toml"))]);
     command.args(["--parameters", &text(&data("nothing-hidden/parameters.toml"))]);
