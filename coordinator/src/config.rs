@@ -106,7 +106,7 @@ pub struct Submit {
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 pub struct Source {
-    /// A service; by default, GROUSER_URL of the environment, or http://127.0.0.1:7070.
+    /// A service; by default, the one of `GROUSER_URL` in the environment, or port 7070 of this machine.
     #[arg(long)]
     pub url: Option<String>,
     /// The folder of a run.

@@ -5,8 +5,22 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 6] = ["shared", "coordinator", "coordinator/inference", "worker", "worker/scm", "tests"];
-const OURS: [&str; 6] = ["shared", "coordinator", "inference", "worker", "scm", "farm-tests"];
+const CRATES: [&str; 6] = [
+    "shared",
+    "coordinator",
+    "coordinator/inference",
+    "worker",
+    "worker/scm",
+    "tests",
+];
+const OURS: [&str; 6] = [
+    "shared",
+    "coordinator",
+    "inference",
+    "worker",
+    "scm",
+    "farm-tests",
+];
 
 /// The dependencies of a crate that its products are built from.
 fn dependencies(krate: &str) -> BTreeSet<String> {
@@ -14,7 +28,13 @@ fn dependencies(krate: &str) -> BTreeSet<String> {
     let manifest: toml::Table = manifest.parse().expect("a manifest");
     let mut names = BTreeSet::new();
     for table in ["dependencies", "build-dependencies"] {
-        names.extend(manifest.get(table).and_then(toml::Value::as_table).into_iter().flat_map(|t| t.keys().cloned()));
+        names.extend(
+            manifest
+                .get(table)
+                .and_then(toml::Value::as_table)
+                .into_iter()
+                .flat_map(|t| t.keys().cloned()),
+        );
     }
     names
 }
@@ -26,7 +46,10 @@ fn set(names: &[&str]) -> BTreeSet<String> {
 /// The lines of a source file that are code, with their numbers; what stands below `#[cfg(test)]` is left out.
 fn code(path: &Path) -> Vec<(usize, String)> {
     let source = text(path);
-    let lines = source.lines().enumerate().take_while(|(_, line)| !line.trim_start().starts_with("#[cfg(test)]"));
+    let lines = source
+        .lines()
+        .enumerate()
+        .take_while(|(_, line)| !line.trim_start().starts_with("#[cfg(test)]"));
     lines
         .filter(|(_, line)| !line.trim_start().starts_with("//"))
         // What stands in quotes is text, not code.
@@ -35,7 +58,10 @@ fn code(path: &Path) -> Vec<(usize, String)> {
 }
 
 fn relative(path: &Path) -> String {
-    path.strip_prefix(root()).expect("a file of the workspace").display().to_string()
+    path.strip_prefix(root())
+        .expect("a file of the workspace")
+        .display()
+        .to_string()
 }
 
 /// Whether `word` stands in `line` as a word of its own, so that `scm::` is not found in `my_scm::`.
@@ -53,7 +79,10 @@ fn strays(folders: &[&str], words: &[&str], allowed: &[&str]) -> Vec<String> {
     assert!(!sources.is_empty(), "no source in {folders:?}");
     for path in sources {
         let name = relative(&path);
-        if allowed.iter().any(|a| name == *a || (a.ends_with('/') && name.starts_with(a))) {
+        if allowed
+            .iter()
+            .any(|a| name == *a || (a.ends_with('/') && name.starts_with(a)))
+        {
             continue;
         }
         for (number, line) in code(&path) {
@@ -68,7 +97,11 @@ fn strays(folders: &[&str], words: &[&str], allowed: &[&str]) -> Vec<String> {
 #[track_caller]
 fn nowhere(folders: &[&str], words: &[&str], allowed: &[&str]) {
     let found = strays(folders, words, allowed);
-    assert!(found.is_empty(), "{words:?} outside {allowed:?}:\n{}", found.join("\n"));
+    assert!(
+        found.is_empty(),
+        "{words:?} outside {allowed:?}:\n{}",
+        found.join("\n")
+    );
 }
 
 #[test]
@@ -83,7 +116,10 @@ fn the_search_finds_what_is_there_and_only_that() {
 #[test]
 fn manifests_keep_the_direction_of_dependencies() {
     let ours = |krate: &str| -> BTreeSet<String> {
-        dependencies(krate).into_iter().filter(|d| OURS.contains(&d.as_str())).collect()
+        dependencies(krate)
+            .into_iter()
+            .filter(|d| OURS.contains(&d.as_str()))
+            .collect()
     };
     assert_eq!(ours("shared"), set(&[]));
     assert_eq!(ours("worker/scm"), set(&[]));
@@ -97,7 +133,17 @@ fn manifests_keep_the_direction_of_dependencies() {
 
 #[test]
 fn pure_crates_know_no_runtime_network_database_or_chance() {
-    let impure = ["tokio", "axum", "sqlx", "reqwest", "rayon", "tracing", "anyhow", "clap", "indicatif"];
+    let impure = [
+        "tokio",
+        "axum",
+        "sqlx",
+        "reqwest",
+        "rayon",
+        "tracing",
+        "anyhow",
+        "clap",
+        "indicatif",
+    ];
     for krate in ["shared", "worker/scm", "coordinator/inference"] {
         let dependencies = dependencies(krate);
         let found: Vec<&str> = impure.into_iter().filter(|d| dependencies.contains(*d)).collect();
@@ -105,43 +151,82 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
     }
     for krate in ["shared", "worker/scm"] {
         let dependencies = dependencies(krate);
-        assert!(!dependencies.iter().any(|d| d.starts_with("rand")), "{krate} draws random numbers");
+        assert!(
+            !dependencies.iter().any(|d| d.starts_with("rand")),
+            "{krate} draws random numbers"
+        );
     }
-    nowhere(&["coordinator/inference/src"], &["rand::", "rand_chacha::"], &["coordinator/inference/src/rng.rs"]);
-    nowhere(&["worker/scm/src"], &["HashMap", "HashSet", "std::collections::HashMap"], &[]);
+    nowhere(
+        &["coordinator/inference/src"],
+        &["rand::", "rand_chacha::"],
+        &["coordinator/inference/src/rng.rs"],
+    );
+    nowhere(
+        &["worker/scm/src"],
+        &["HashMap", "HashSet", "std::collections::HashMap"],
+        &[],
+    );
 }
 
 #[test]
 fn the_coordinator_knows_no_physics_and_the_worker_in_one_file() {
     nowhere(&["coordinator/src"], &["scm::", "use scm"], &[]);
-    nowhere(&["coordinator/src"], &["worker::"], &["coordinator/src/embedded.rs"]);
+    nowhere(
+        &["coordinator/src"],
+        &["worker::"],
+        &["coordinator/src/embedded.rs"],
+    );
     nowhere(&["worker/src"], &["inference::", "coordinator::"], &[]);
 }
 
 #[test]
 fn axum_sql_and_http_clients_stay_in_their_rooms() {
-    nowhere(&["coordinator/src"], &["axum::", "utoipa_axum::", "tower_http::"], &["coordinator/src/http/"]);
+    nowhere(
+        &["coordinator/src"],
+        &["axum::", "utoipa_axum::", "tower_http::"],
+        &["coordinator/src/http/"],
+    );
     nowhere(&["coordinator/src"], &["sqlx::"], &["coordinator/src/store/"]);
     nowhere(
         &["coordinator/src", "worker/src"],
         &["reqwest::"],
         &["worker/src/client.rs", "coordinator/src/command/source.rs"],
     );
-    nowhere(&["coordinator/src", "worker/src"], &["anyhow::", "anyhow!", "bail!"], &[
-        "coordinator/src/main.rs",
-        "coordinator/src/command/",
-        "worker/src/main.rs",
-    ]);
+    nowhere(
+        &["coordinator/src", "worker/src"],
+        &["anyhow::", "anyhow!", "bail!"],
+        &[
+            "coordinator/src/main.rs",
+            "coordinator/src/command/",
+            "worker/src/main.rs",
+        ],
+    );
     let settings = &["coordinator/src/config.rs", "worker/src/config.rs"];
-    nowhere(&["coordinator/src", "worker/src", "shared/src"], &["std::env::", "env::var"], settings);
+    nowhere(
+        &["coordinator/src", "worker/src", "shared/src"],
+        &["std::env::", "env::var"],
+        settings,
+    );
 }
 
 #[test]
 fn http_reads_the_farm_and_rules_know_nobody() {
-    nowhere(&["coordinator/src/store"], &["crate::http", "crate::farm", "crate::service", "crate::command"], &[]);
-    nowhere(&["coordinator/src/calibration", "coordinator/src/spec"], &["crate::http", "crate::farm"], &[]);
+    nowhere(
+        &["coordinator/src/store"],
+        &["crate::http", "crate::farm", "crate::service", "crate::command"],
+        &[],
+    );
+    nowhere(
+        &["coordinator/src/calibration", "coordinator/src/spec"],
+        &["crate::http", "crate::farm"],
+        &[],
+    );
     let lease = code(&root().join("coordinator/src/lease.rs"));
-    let imports: Vec<&String> = lease.iter().map(|(_, line)| line).filter(|l| l.contains("crate::")).collect();
+    let imports: Vec<&String> = lease
+        .iter()
+        .map(|(_, line)| line)
+        .filter(|l| l.contains("crate::"))
+        .collect();
     assert!(imports.is_empty(), "lease.rs imports {imports:?}");
 }
 
@@ -155,10 +240,22 @@ fn pure_rooms_read_no_clock() {
         "coordinator/src/spec",
         "coordinator/src/result",
     ];
-    let clocks = ["Instant::now", "SystemTime::now", "std::time::Instant::now", "std::time::SystemTime::now"];
+    let clocks = [
+        "Instant::now",
+        "SystemTime::now",
+        "std::time::Instant::now",
+        "std::time::SystemTime::now",
+    ];
     nowhere(&pure, &clocks, &[]);
-    for file in ["coordinator/src/lease.rs", "coordinator/src/farm/mod.rs", "coordinator/src/farm/progress.rs"] {
-        let found = code(&root().join(file)).into_iter().filter(|(_, l)| clocks.iter().any(|c| l.contains(c))).count();
+    for file in [
+        "coordinator/src/lease.rs",
+        "coordinator/src/farm/mod.rs",
+        "coordinator/src/farm/progress.rs",
+    ] {
+        let found = code(&root().join(file))
+            .into_iter()
+            .filter(|(_, l)| clocks.iter().any(|c| l.contains(c)))
+            .count();
         assert_eq!(found, 0, "{file} reads a clock");
     }
 }
@@ -191,6 +288,12 @@ fn every_crate_takes_the_lints_of_the_workspace() {
     let workspace = text(&root().join("Cargo.toml"));
     assert!(workspace.contains("unsafe_code = \"forbid\""));
     let code = CRATES.iter().flat_map(|krate| files(krate, ".rs"));
-    let allows: Vec<String> = code.filter(|p| text(p).contains(concat!("#[", "allow("))).map(|p| relative(&p)).collect();
-    assert!(allows.is_empty(), "expect, with a reason, instead of allow in {allows:?}");
+    let allows: Vec<String> = code
+        .filter(|p| text(p).contains(concat!("#[", "allow(")))
+        .map(|p| relative(&p))
+        .collect();
+    assert!(
+        allows.is_empty(),
+        "expect, with a reason, instead of allow in {allows:?}"
+    );
 }

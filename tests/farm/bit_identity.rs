@@ -8,7 +8,7 @@ use farm_tests::job::Job;
 use farm_tests::process::{Process, Signal};
 use farm_tests::programs;
 use farm_tests::random::Random;
-use farm_tests::service::Service;
+use farm_tests::service::{Service, free_address};
 use farm_tests::wait::until;
 use farm_tests::workspace::text;
 
@@ -29,8 +29,13 @@ fn reference() -> &'static (String, u64, usize) {
         let _worker = service.worker("worker", 1);
         service.wait_for(id, "finished");
         let summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
-        let evaluations = summary["calibrations"][0]["evaluations"].as_u64().expect("a count");
-        let stages = summary["calibrations"][0]["stages"].as_array().expect("stages").len();
+        let evaluations = summary["calibrations"][0]["evaluations"]
+            .as_u64()
+            .expect("a count");
+        let stages = summary["calibrations"][0]["stages"]
+            .as_array()
+            .expect("stages")
+            .len();
         (service.posterior_csv(id), evaluations, stages)
     })
 }
@@ -67,14 +72,22 @@ fn killing_coordinator_and_workers_at_random_moments_changes_no_byte() {
     let (expected, total, stages) = reference();
     let mut service = Service::start(&["--lease-ms", "500"]);
     let id = service.submit(&job());
-    let mut workers: Vec<Process> = (0..2).map(|k| service.worker(&format!("worker-{k}"), 1)).collect();
+    let mut workers: Vec<Process> = (0..2)
+        .map(|k| service.worker(&format!("worker-{k}"), 1))
+        .collect();
     let mut random = Random::new(20_070_816);
-    let mut moments: Vec<u64> = (0..KILLS).map(|_| total / 50 + random.below(total * 24 / 25)).collect();
+    let mut moments: Vec<u64> = (0..KILLS)
+        .map(|_| total / 50 + random.below(total * 24 / 25))
+        .collect();
+    // The last one falls among the final draws, behind the sampler's evaluations.
+    moments.push(total + 40);
     moments.sort_unstable();
     let mut kills: Vec<(Victim, u64, u64)> = Vec::new();
     for moment in moments {
         // The progress since the last kill, so that no two of them hit the same state.
-        let least = kills.last().map_or(moment, |&(_, evaluations, _)| moment.max(evaluations + 1));
+        let least = kills
+            .last()
+            .map_or(moment, |&(_, evaluations, _)| moment.max(evaluations + 1));
         let (evaluations, stage) = until("progress", || {
             let status = service.status(id);
             assert_ne!(status["state"], "paused", "{status}");
@@ -83,7 +96,9 @@ fn killing_coordinator_and_workers_at_random_moments_changes_no_byte() {
             (evaluations >= least).then(|| (evaluations, progress["stage"].as_u64().unwrap_or_default()))
         });
         std::thread::sleep(Duration::from_millis(random.below(20)));
-        let victim = [Victim::Coordinator, Victim::Worker, Victim::Both][random.below(3) as usize];
+        let last = kills.len() as u64 == KILLS;
+        let victim = if last { 2 } else { random.below(3) as usize };
+        let victim = [Victim::Coordinator, Victim::Worker, Victim::Both][victim];
         if victim != Victim::Worker {
             service.kill();
         }
@@ -103,7 +118,10 @@ fn killing_coordinator_and_workers_at_random_moments_changes_no_byte() {
     }
     let mut hit: Vec<u64> = kills.iter().map(|&(_, _, stage)| stage).collect();
     hit.dedup();
-    assert!(hit.len() * 3 >= stages * 2, "kills hit {hit:?} of {stages} stages");
+    assert!(
+        hit.len() * 3 >= stages * 2,
+        "kills hit {hit:?} of {stages} stages"
+    );
     assert!(kills.windows(2).all(|pair| pair[0].1 < pair[1].1), "{kills:?}");
     assert_eq!(&service.posterior_csv(id), expected);
     assert_eq!(service.metric("grouser_determinism_faults_total"), 0);
@@ -128,8 +146,15 @@ impl Run {
 
     fn arguments(&self) -> Vec<String> {
         let path = |p: &Path| p.display().to_string();
-        ["run".into(), path(&self.job), "--out".into(), path(&self.out()), "--local-workers".into(), "2".into()]
-            .into()
+        [
+            "run".into(),
+            path(&self.job),
+            "--out".into(),
+            path(&self.out()),
+            "--local-workers".into(),
+            "2".into(),
+        ]
+        .into()
     }
 
     fn start(&self) -> Process {
@@ -138,7 +163,11 @@ impl Run {
 
     /// Stages that the run's log has shown.
     fn stages_begun(process: &Process) -> usize {
-        process.log().lines().filter(|line| line.starts_with("stage ")).count()
+        process
+            .log()
+            .lines()
+            .filter(|line| line.starts_with("stage "))
+            .count()
     }
 
     /// Runs to the end; what stands on the terminal.
@@ -165,18 +194,50 @@ fn a_run_stopped_by_interrupt_or_kill_goes_on_to_the_same_bytes() {
             let mut process = run.start();
             let shown = Run::stages_begun(&process);
             until("a stage of the run", || {
-                assert!(process.is_running(), "the run ended too early:\n{}", process.log());
+                assert!(
+                    process.is_running(),
+                    "the run ended too early:\n{}",
+                    process.log()
+                );
                 (Run::stages_begun(&process) >= shown + 2).then_some(())
             });
             process.signal(signal);
             let ended = process.wait();
-            assert_eq!(ended.success(), signal != Signal::Kill, "{signal:?}, stop {stop}:\n{}", process.log());
-            assert!(!run.out().join("posterior.csv").exists(), "a result of an unfinished run");
+            assert_eq!(
+                ended.success(),
+                signal != Signal::Kill,
+                "{signal:?}, stop {stop}:\n{}",
+                process.log()
+            );
+            assert!(
+                !run.out().join("posterior.csv").exists(),
+                "a result of an unfinished run"
+            );
         }
         let table = run.finish();
         assert!(table.contains("log-evidence"), "{table}");
         assert_eq!(run.posterior(), reference().0, "{signal:?}");
     }
+}
+
+#[test]
+fn a_run_whose_workers_are_all_elsewhere_gives_the_same_bytes() {
+    let run = Run::new();
+    let address = free_address();
+    let arguments = [
+        &run.arguments()[..4],
+        &[
+            "--local-workers".into(),
+            "0".into(),
+            "--listen".into(),
+            address.clone(),
+        ],
+    ];
+    let mut process = Process::start(quiet(&arguments.concat()), &run.folder.path().join("run.log"));
+    let log = |name: &str| run.folder.path().join(name);
+    let _workers = ["a", "b"].map(|name| Process::worker(&format!("http://{address}"), 1, &log(name)));
+    assert!(process.wait().success(), "{}", process.log());
+    assert_eq!(run.posterior(), reference().0);
 }
 
 #[test]
@@ -199,7 +260,10 @@ fn a_finished_run_prints_its_result_again_and_a_changed_job_is_refused() {
     ] {
         changed.write(run.job.parent().expect("the job's folder"));
         let message = programs::run(programs::coordinator(run.arguments())).refusal();
-        assert!(message.contains("another job") && message.contains("has changed since"), "{message}");
+        assert!(
+            message.contains("another job") && message.contains("has changed since"),
+            "{message}"
+        );
         assert!(message.contains(&run.out().display().to_string()), "{message}");
         assert_eq!(run.posterior(), written);
     }

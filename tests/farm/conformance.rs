@@ -4,7 +4,9 @@ use farm_tests::fake_worker::{FakeWorker, evaluated};
 use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::service::Service;
 use serde_json::{Value, json};
-use shared::api::{CalibrationState, CalibrationStatus, ErrorBody, ErrorDetail, ErrorKind, NewCalibration, Progress};
+use shared::api::{
+    CalibrationState, CalibrationStatus, ErrorBody, ErrorDetail, ErrorKind, NewCalibration, Progress,
+};
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
 use shared::experiment::Wheel;
 use shared::model::{Condition, ModelKind, ModelVariant};
@@ -17,7 +19,10 @@ where
     T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,
 {
     assert_eq!(&serde_json::to_value(message).expect("JSON"), form);
-    assert_eq!(&serde_json::from_value::<T>(form.clone()).expect("the message"), message);
+    assert_eq!(
+        &serde_json::from_value::<T>(form.clone()).expect("the message"),
+        message
+    );
 }
 
 /// Keys and kinds of a message, numbers and text redacted: what does not depend on the moment.
@@ -56,8 +61,17 @@ fn observables_json() -> Value {
 
 #[test]
 fn an_exchange_request_has_one_form() {
-    let rejection = Rejection { kind: "no_support".into(), condition: 3, message: "sinkage 0.2 m".into() };
-    let result = |lease, outcome| WorkResult { lease, calibration: 1, evaluation: 7, outcome };
+    let rejection = Rejection {
+        kind: "no_support".into(),
+        condition: 3,
+        message: "sinkage 0.2 m".into(),
+    };
+    let result = |lease, outcome| WorkResult {
+        lease,
+        calibration: 1,
+        evaluation: 7,
+        outcome,
+    };
     let request = ExchangeRequest {
         worker: "host-1".into(),
         protocol: 1,
@@ -65,7 +79,12 @@ fn an_exchange_request_has_one_form() {
         results: vec![
             result(4_294_967_297, Outcome::Evaluated(observables())),
             result(2, Outcome::Rejected(rejection)),
-            result(3, Outcome::Fault(Fault { message: "disk full".into() })),
+            result(
+                3,
+                Outcome::Fault(Fault {
+                    message: "disk full".into(),
+                }),
+            ),
         ],
         holding: vec![9],
         returned: vec![10, 11],
@@ -89,8 +108,13 @@ fn an_exchange_request_has_one_form() {
 
 #[test]
 fn an_exchange_response_has_one_form() {
-    let lease =
-        Lease { lease: 5, calibration: 1, evaluation: 7, variant: "00ff".into(), theta: vec![4.5, 0.1 + 0.2] };
+    let lease = Lease {
+        lease: 5,
+        calibration: 1,
+        evaluation: 7,
+        variant: "00ff".into(),
+        theta: vec![4.5, 0.1 + 0.2],
+    };
     let response = ExchangeResponse {
         leases: vec![lease],
         lease_ms: 15_000,
@@ -150,7 +174,10 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         }),
     );
     assert_eq!(variant.hash(), variant.clone().hash());
-    let other = ModelVariant { gravity_m_s2: 1.62, ..variant.clone() };
+    let other = ModelVariant {
+        gravity_m_s2: 1.62,
+        ..variant.clone()
+    };
     assert_ne!(variant.hash(), other.hash());
     assert_eq!(variant.hash().len(), 32);
 }
@@ -189,7 +216,18 @@ fn a_status_has_one_form() {
         }),
     );
     let names: Vec<&str> = CalibrationState::ALL.iter().map(|s| s.name()).collect();
-    assert_eq!(names, ["queued", "running", "paused", "waiting", "finished", "failed", "cancelled"]);
+    assert_eq!(
+        names,
+        [
+            "queued",
+            "running",
+            "paused",
+            "waiting",
+            "finished",
+            "failed",
+            "cancelled"
+        ]
+    );
 }
 
 #[test]
@@ -205,16 +243,29 @@ fn errors_are_a_closed_list() {
         (ErrorKind::NotAvailable, "not_available"),
         (ErrorKind::Internal, "internal"),
     ] {
-        let body = ErrorBody { error: ErrorDetail { kind, message: "what, value, unit, bound".into() } };
-        golden(&body, &json!({"error": {"type": word, "message": "what, value, unit, bound"}}));
+        let body = ErrorBody {
+            error: ErrorDetail {
+                kind,
+                message: "what, value, unit, bound".into(),
+            },
+        };
+        golden(
+            &body,
+            &json!({"error": {"type": word, "message": "what, value, unit, bound"}}),
+        );
     }
 }
 
 #[test]
 fn what_may_be_left_out_of_a_new_calibration_may_and_what_is_unknown_may_not() {
     let short: NewCalibration = serde_json::from_value(json!({"experiment": 1, "toml": ""})).unwrap();
-    golden(&short, &json!({"experiment": 1, "toml": "", "files": {}, "name": null}));
-    assert!(serde_json::from_value::<NewCalibration>(json!({"experiment": 1, "toml": "", "nam": ""})).is_err());
+    golden(
+        &short,
+        &json!({"experiment": 1, "toml": "", "files": {}, "name": null}),
+    );
+    assert!(
+        serde_json::from_value::<NewCalibration>(json!({"experiment": 1, "toml": "", "nam": ""})).is_err()
+    );
     assert!(serde_json::from_value::<NewCalibration>(json!({"toml": ""})).is_err());
 }
 
@@ -234,20 +285,36 @@ fn a_living_coordinator_speaks_these_forms() {
         })
     );
     let lease = &response["leases"][0];
-    assert_eq!((&lease["calibration"], &lease["evaluation"]), (&json!(id), &json!(0)));
-    assert!(lease["lease"].as_u64() < Some(1 << 53), "a double cannot hold {}", lease["lease"]);
+    assert_eq!(
+        (&lease["calibration"], &lease["evaluation"]),
+        (&json!(id), &json!(0))
+    );
+    assert!(
+        lease["lease"].as_u64() < Some(1 << 53),
+        "a double cannot hold {}",
+        lease["lease"]
+    );
     let hash = lease["variant"].as_str().expect("a hash").to_owned();
     let variant = service.client.json(&format!("/v1/work/variants/{hash}"));
     let typed: ModelVariant = serde_json::from_value(variant).unwrap();
     assert_eq!(typed.hash(), hash);
     assert_eq!(typed.conditions.len(), FIT_RUNS);
-    assert_eq!(typed.parameters, ["log10_p_ref", "n", "friction_angle_deg", "wheel_radius_m"]);
-    assert_eq!(lease["theta"].as_array().map(Vec::len), Some(typed.parameters.len()));
+    assert_eq!(
+        typed.parameters,
+        ["log10_p_ref", "n", "friction_angle_deg", "wheel_radius_m"]
+    );
+    assert_eq!(
+        lease["theta"].as_array().map(Vec::len),
+        Some(typed.parameters.len())
+    );
     // A worker never sees measurements: holdout rows are not even named.
     assert!(!serde_json::to_string(&typed).unwrap().contains("8.4839442"));
 
     let answer = worker.answer(std::slice::from_ref(lease), |l| evaluated(l, FIT_RUNS));
-    assert_eq!((&answer["duplicates"], &answer["leases"]), (&json!(0), &json!([])));
+    assert_eq!(
+        (&answer["duplicates"], &answer["leases"]),
+        (&json!(0), &json!([]))
+    );
     let status: CalibrationStatus = serde_json::from_value(service.status(id)).unwrap();
     assert_eq!(status.state, CalibrationState::Running);
     assert_eq!(status.progress.map(|p| p.evaluations), Some(1));
@@ -268,11 +335,19 @@ fn every_error_type_has_its_status() {
     let none = json!({});
     for (status, kind, response) in [
         (400, "invalid_body", client.post_text("/v1/experiments", "{")),
-        (422, "invalid_file", client.post("/v1/experiments", &json!({"toml": "wheel = 1"}))),
+        (
+            422,
+            "invalid_file",
+            client.post("/v1/experiments", &json!({"toml": "wheel = 1"})),
+        ),
         (404, "not_found", client.get("/v1/calibrations/5")),
         (409, "conflict", client.post("/v1/calibrations/1/resume", &none)),
         (426, "protocol_mismatch", client.post("/v1/work/exchange", &old)),
-        (501, "not_available", client.post("/v1/calibrations/1/extend", &none)),
+        (
+            501,
+            "not_available",
+            client.post("/v1/calibrations/1/extend", &none),
+        ),
     ] {
         assert_eq!(response.status, status, "{}", response.body);
         let body: ErrorBody = serde_json::from_str(&response.body).expect("the form of every error");

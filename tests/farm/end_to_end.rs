@@ -29,14 +29,22 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
     assert_eq!((experiment.status, experiment.json()), (201, json!({"id": 2})));
     let new = json!({"experiment": 2, "toml": other.job, "name": "by hand"});
     let created = service.client.post("/v1/calibrations", &new);
-    assert_eq!((created.status, created.json()), (201, json!({"id": 2, "study": 2})));
+    assert_eq!(
+        (created.status, created.json()),
+        (201, json!({"id": 2, "study": 2}))
+    );
     assert_eq!(created.header("location"), Some("/v1/calibrations/2"));
     let list = verb(&service, &["list"]);
-    assert!(list.contains("sand") && list.contains("by hand") && list.matches("queued").count() == 2, "{list}");
+    assert!(
+        list.contains("sand") && list.contains("by hand") && list.matches("queued").count() == 2,
+        "{list}"
+    );
 
     let mut workers = [service.worker("first", 1), service.worker("second", 1)];
     let moved = |service: &Service, from: u64| {
-        until("progress", || service.evaluations(1).filter(|&evaluations| evaluations > from))
+        until("progress", || {
+            service.evaluations(1).filter(|&evaluations| evaluations > from)
+        })
     };
     let before = moved(&service, 300);
     let status = verb(&service, &["status", "1"]);
@@ -46,7 +54,10 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
     assert!(workers.iter_mut().all(|w| w.is_running()));
     service.restart();
     let after = service.evaluations(1);
-    assert!(after >= Some(before), "{after:?} of {before} evaluations were kept");
+    assert!(
+        after >= Some(before),
+        "{after:?} of {before} evaluations were kept"
+    );
     moved(&service, after.unwrap_or(before));
     for worker in &mut workers {
         assert!(worker.is_running(), "{}", worker.log());
@@ -63,21 +74,40 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
 
     // Results, by verbs and over HTTP.
     let compared = verb(&service, &["compare", "1"]);
-    for word in ["r00", "r39", "holdout measurements lie in", "pull N", "90 % interval"] {
+    for word in [
+        "r00",
+        "r39",
+        "holdout measurements lie in",
+        "pull N",
+        "90 % interval",
+    ] {
         assert!(compared.contains(word), "{word} in\n{compared}");
     }
     let report = verb(&service, &["report", "1"]);
-    assert!(report.to_lowercase().starts_with("<!doctype html>") && report.contains("sand"), "{report}");
+    assert!(
+        report.to_lowercase().starts_with("<!doctype html>") && report.contains("sand"),
+        "{report}"
+    );
     let file = service.folder().join("report.html");
-    assert_eq!(verb(&service, &["report", "1", "--output", &file.display().to_string()]), "");
+    assert_eq!(
+        verb(
+            &service,
+            &["report", "1", "--output", &file.display().to_string()]
+        ),
+        ""
+    );
     assert_eq!(std::fs::read_to_string(&file).unwrap(), report);
     let csv = verb(&service, &["export", "1", "--format", "csv"]);
     let header = "log_likelihood,log_prior,log10_p_ref,n,friction_angle_deg,wheel_radius_m";
     assert_eq!((csv.lines().next(), csv.lines().count()), (Some(header), 151));
-    let exported: Value = serde_json::from_str(&verb(&service, &["export", "1", "--format", "json"])).unwrap();
+    let exported: Value =
+        serde_json::from_str(&verb(&service, &["export", "1", "--format", "json"])).unwrap();
     assert_eq!(exported["summary"]["status"], "finished");
     assert_eq!(exported["posterior"]["rows"].as_array().map(Vec::len), Some(150));
-    assert_eq!(exported["comparison"]["rows"].as_array().map(Vec::len), Some(40 * 3));
+    assert_eq!(
+        exported["comparison"]["rows"].as_array().map(Vec::len),
+        Some(40 * 3)
+    );
     for part in ["stages", "samples", "posterior", "comparison", "flags", "summary"] {
         let answer = service.client.json(&format!("/v1/calibrations/2/{part}"));
         assert!(answer.is_object() || answer.is_array(), "{part}: {answer}");
@@ -85,7 +115,10 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
     let studies = service.client.json("/v1/studies");
     assert_eq!(studies[1], json!({"id": 2, "experiment": 2, "calibrations": [2]}));
     let ledger = service.client.json("/v1/studies/1")["ledger"].clone();
-    assert_eq!(ledger[0]["evaluations"], exported["summary"]["calibrations"][0]["evaluations"]);
+    assert_eq!(
+        ledger[0]["evaluations"],
+        exported["summary"]["calibrations"][0]["evaluations"]
+    );
 
     // The store alone says the same, the coordinator gone.
     assert!(service.terminate());
@@ -102,29 +135,53 @@ fn pausing_resuming_and_cancelling_do_what_they_say() {
     until("progress", || service.evaluations(id).filter(|&n| n > 100));
     assert_eq!(verb(&service, &["pause", "1"]), "calibration 1 is paused\n");
     // What was leased is completed, then nothing moves, also after a restart.
-    until("no lease", || (service.metric("grouser_leases_out") == 0).then_some(()));
+    until("no lease", || {
+        (service.metric("grouser_leases_out") == 0).then_some(())
+    });
     let paused = service.status(id);
-    assert_eq!((paused["state"].as_str(), paused["message"].as_str()), (Some("paused"), Some("paused by a user")));
+    assert_eq!(
+        (paused["state"].as_str(), paused["message"].as_str()),
+        (Some("paused"), Some("paused by a user"))
+    );
     let given = service.metric("grouser_leases_given_total");
-    assert_eq!(service.client.post("/v1/calibrations/1/pause", &json!({})).status, 409);
+    assert_eq!(
+        service.client.post("/v1/calibrations/1/pause", &json!({})).status,
+        409
+    );
     let other = service.submit(&Job::small());
     service.wait_for(other, "finished");
-    assert_eq!(service.evaluations(id), paused["progress"]["evaluations"].as_u64());
+    assert_eq!(
+        service.evaluations(id),
+        paused["progress"]["evaluations"].as_u64()
+    );
     assert!(service.metric("grouser_leases_given_total") > given);
     service.kill();
     service.restart();
     assert_eq!(service.status(id)["state"], "paused");
-    assert_eq!(service.evaluations(id), paused["progress"]["evaluations"].as_u64());
+    assert_eq!(
+        service.evaluations(id),
+        paused["progress"]["evaluations"].as_u64()
+    );
 
     assert_eq!(verb(&service, &["resume", "1"]), "calibration 1 is running\n");
-    until("progress", || service.evaluations(id).filter(|n| Some(*n) > paused["progress"]["evaluations"].as_u64()));
+    until("progress", || {
+        service
+            .evaluations(id)
+            .filter(|n| Some(*n) > paused["progress"]["evaluations"].as_u64())
+    });
     assert_eq!(verb(&service, &["cancel", "1"]), "calibration 1 is cancelled\n");
     assert_eq!(service.status(id)["state"], "cancelled");
     service.kill();
     service.restart();
     assert_eq!(service.status(id)["state"], "cancelled");
     assert_eq!(service.metric("grouser_calibrations_in_hand"), 0);
-    assert_eq!(service.client.post("/v1/calibrations/1/resume", &json!({})).status, 409);
+    assert_eq!(
+        service
+            .client
+            .post("/v1/calibrations/1/resume", &json!({}))
+            .status,
+        409
+    );
     assert_eq!(service.status(other)["state"], "finished");
 }
 
@@ -139,30 +196,39 @@ fn events_tell_every_stage_once_and_end_with_the_calibration() {
             let _worker = service.worker("worker", 1);
             service.wait_for(id, "finished");
         });
-        let ended = service.client.events(&format!("/v1/calibrations/{id}/events"), |event, data| {
-            let data: Value = serde_json::from_str(data).expect("JSON in an event");
-            match event {
-                "stage" => told.push(data["stage"].as_u64().expect("a stage")),
-                "status" => states.push(data["state"].as_str().expect("a state").to_owned()),
-                other => panic!("event {other}"),
-            }
-            true
-        });
+        let ended = service
+            .client
+            .events(&format!("/v1/calibrations/{id}/events"), |event, data| {
+                let data: Value = serde_json::from_str(data).expect("JSON in an event");
+                match event {
+                    "stage" => told.push(data["stage"].as_u64().expect("a stage")),
+                    "status" => states.push(data["state"].as_str().expect("a state").to_owned()),
+                    other => panic!("event {other}"),
+                }
+                true
+            });
         assert!(ended);
         workers.join().expect("the calibration finishes");
     });
     let stages = service.client.json(&format!("/v1/calibrations/{id}/stages"));
-    let stages: Vec<u64> = stages.as_array().into_iter().flatten().filter_map(|s| s["stage"].as_u64()).collect();
+    let stages: Vec<u64> = stages
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|s| s["stage"].as_u64())
+        .collect();
     assert!(stages.len() > 3, "{stages:?}");
     assert_eq!(told, stages);
     assert_eq!(states.last().map(String::as_str), Some("finished"));
     // Whoever comes late is told the same at once.
     let mut again = Vec::new();
-    service.client.events(&format!("/v1/calibrations/{id}/events"), |event, data| {
-        let data: Value = serde_json::from_str(data).expect("JSON in an event");
-        again.extend((event == "stage").then(|| data["stage"].as_u64()).flatten());
-        true
-    });
+    service
+        .client
+        .events(&format!("/v1/calibrations/{id}/events"), |event, data| {
+            let data: Value = serde_json::from_str(data).expect("JSON in an event");
+            again.extend((event == "stage").then(|| data["stage"].as_u64()).flatten());
+            true
+        });
     assert_eq!(again, stages);
 }
 
@@ -174,7 +240,15 @@ fn the_openapi_document_lists_every_route_of_the_contract() {
         .as_object()
         .into_iter()
         .flatten()
-        .map(|(path, methods)| (path.clone(), methods.as_object().map(|m| m.keys().cloned().collect()).unwrap_or_default()))
+        .map(|(path, methods)| {
+            (
+                path.clone(),
+                methods
+                    .as_object()
+                    .map(|m| m.keys().cloned().collect())
+                    .unwrap_or_default(),
+            )
+        })
         .collect();
     let calibration = "/v1/calibrations/{id}";
     let mut routes: Vec<(&str, String)> = vec![
@@ -193,19 +267,38 @@ fn the_openapi_document_lists_every_route_of_the_contract() {
         ("get", "/metrics".into()),
         ("get", "/health".into()),
     ];
-    routes.extend(["cancel", "pause", "resume", "extend", "discovery"].map(|v| ("post", format!("{calibration}/{v}"))));
     routes.extend(
-        ["stages", "samples", "posterior", "comparison", "flags", "summary", "events", "discovery"]
-            .map(|part| ("get", format!("{calibration}/{part}"))),
+        ["cancel", "pause", "resume", "extend", "discovery"].map(|v| ("post", format!("{calibration}/{v}"))),
+    );
+    routes.extend(
+        [
+            "stages",
+            "samples",
+            "posterior",
+            "comparison",
+            "flags",
+            "summary",
+            "events",
+            "discovery",
+        ]
+        .map(|part| ("get", format!("{calibration}/{part}"))),
     );
     for (method, path) in routes {
-        let methods = paths.get(&path).unwrap_or_else(|| panic!("{path} is not in {:?}", paths.keys()));
-        assert!(methods.iter().any(|m| m == method), "{method} {path}: {methods:?}");
+        let methods = paths
+            .get(&path)
+            .unwrap_or_else(|| panic!("{path} is not in {:?}", paths.keys()));
+        assert!(
+            methods.iter().any(|m| m == method),
+            "{method} {path}: {methods:?}"
+        );
     }
     for (path, methods) in &paths {
         for method in methods {
             let operation = &document["paths"][path][method];
-            let said = operation["summary"].as_str().or(operation["description"].as_str()).unwrap_or_default();
+            let said = operation["summary"]
+                .as_str()
+                .or(operation["description"].as_str())
+                .unwrap_or_default();
             assert!(!said.is_empty(), "{method} {path} says nothing");
         }
     }
@@ -218,7 +311,9 @@ fn the_metrics_page_counts_what_happened() {
     let _worker = service.worker("worker", 2);
     service.wait_for(id, "finished");
     let summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
-    let sampled = summary["calibrations"][0]["evaluations"].as_u64().expect("a count");
+    let sampled = summary["calibrations"][0]["evaluations"]
+        .as_u64()
+        .expect("a count");
     // The final draws, simulated on every run: the best particle, then the 60 of the population.
     let completed = service.metric("grouser_evaluations_completed_total");
     assert_eq!(completed, sampled + 61);
@@ -233,6 +328,9 @@ fn the_metrics_page_counts_what_happened() {
         let name = line.split(' ').next().unwrap_or_default();
         assert!(name.starts_with("grouser_"), "{line}");
         let bare = name.trim_end_matches("_total");
-        assert!(page.contains(&format!("# HELP {bare} ")) && page.contains(&format!("# TYPE {bare} ")), "{name}");
+        assert!(
+            page.contains(&format!("# HELP {bare} ")) && page.contains(&format!("# TYPE {bare} ")),
+            "{name}"
+        );
     }
 }

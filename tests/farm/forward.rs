@@ -12,7 +12,12 @@ const CHANNELS: [&str; 3] = ["drawbar_pull_n", "torque_n_m", "sinkage_m"];
 fn simulate(out: &Path, more: &[&str]) -> Ended {
     let file = |name: &str| data("nothing-hidden").join(name).display().to_string();
     let mut command = programs::worker(["simulate", &file("experiment.toml")]);
-    command.args(["--model", &file("model.toml"), "--parameters", &file("parameters.toml")]);
+    command.args([
+        "--model",
+        &file("model.toml"),
+        "--parameters",
+        &file("parameters.toml"),
+    ]);
     command.arg("--out").arg(out).args(more);
     programs::run(command)
 }
@@ -21,12 +26,20 @@ fn simulate(out: &Path, more: &[&str]) -> Ended {
 fn channels(csv: &str) -> Vec<(String, [f64; 3])> {
     let mut lines = csv.lines().filter(|line| !line.starts_with('#'));
     let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-    let position = |name: &str| header.iter().position(|h| *h == name).unwrap_or_else(|| panic!("no column {name}"));
+    let position = |name: &str| {
+        header
+            .iter()
+            .position(|h| *h == name)
+            .unwrap_or_else(|| panic!("no column {name}"))
+    };
     let (run, columns) = (position("run"), CHANNELS.map(position));
     lines
         .map(|line| {
             let cells: Vec<&str> = line.split(',').collect();
-            (cells[run].to_owned(), columns.map(|c| cells[c].parse().expect("a number")))
+            (
+                cells[run].to_owned(),
+                columns.map(|c| cells[c].parse().expect("a number")),
+            )
         })
         .collect()
 }
@@ -44,7 +57,13 @@ fn forward_runs_reproduce_another_implementation_within_a_twentieth_of_the_noise
         assert_eq!(run, name);
         for c in 0..3 {
             let off = (got[c] - expected[c]).abs() / NOISE_SD[c];
-            assert!(off < 0.05, "{run}: {} {} is {off:.3} sd from {}", CHANNELS[c], got[c], expected[c]);
+            assert!(
+                off < 0.05,
+                "{run}: {} {} is {off:.3} sd from {}",
+                CHANNELS[c],
+                got[c],
+                expected[c]
+            );
         }
     }
 }
@@ -60,7 +79,9 @@ fn a_forward_run_has_the_columns_and_conditions_of_its_experiment() {
         let rows = csv.lines().filter(|line| !line.starts_with('#')).skip(1);
         rows.map(|line| {
             let cells: Vec<&str> = line.split(',').collect();
-            let numbers = cells[3..8].iter().map(|cell| cell.parse::<f64>().expect("a number").to_string());
+            let numbers = cells[3..8]
+                .iter()
+                .map(|cell| cell.parse::<f64>().expect("a number").to_string());
             let ends = [cells[0], cells[1], cells[2], cells[12]].map(str::to_owned);
             ends.into_iter().chain(numbers).collect::<Vec<_>>().join(" ")
         })
@@ -94,6 +115,10 @@ fn simulated_noise_is_reproducible_and_has_the_declared_sd() {
         let variance = noise.iter().map(|e| e * e).sum::<f64>() / noise.len() as f64;
         assert_eq!(noise.len(), 80);
         assert!(mean.abs() < 0.45, "{}: mean {mean}", CHANNELS[c]);
-        assert!((variance - 1.0).abs() < 0.64, "{}: variance {variance}", CHANNELS[c]);
+        assert!(
+            (variance - 1.0).abs() < 0.64,
+            "{}: variance {variance}",
+            CHANNELS[c]
+        );
     }
 }

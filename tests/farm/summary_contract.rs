@@ -108,7 +108,11 @@ impl Complaints {
                 self.need(stage, key, Number, true);
             }
         }
-        for parameter in calibration["parameters"].as_object().into_iter().flat_map(|p| p.values()) {
+        for parameter in calibration["parameters"]
+            .as_object()
+            .into_iter()
+            .flat_map(|p| p.values())
+        {
             for key in ["mean", "sd", "q05", "q50", "q95", "map", "prior_mean", "prior_sd"] {
                 self.need(parameter, key, Number, true);
             }
@@ -120,8 +124,16 @@ impl Complaints {
     }
 }
 
-const FLAGS: [&str; 8] =
-    ["trend", "chi2", "outlier", "conflict", "bound", "not_equilibrated", "no_information", "rejections"];
+const FLAGS: [&str; 8] = [
+    "trend",
+    "chi2",
+    "outlier",
+    "conflict",
+    "bound",
+    "not_equilibrated",
+    "no_information",
+    "rejections",
+];
 
 fn complaints(summary: &Value) -> Vec<String> {
     let mut complaints = Complaints::default();
@@ -167,14 +179,27 @@ fn a_summary_keeps_the_contract() {
     assert_eq!(complaints(&summary), Vec::<String>::new());
     let calibration = &summary["calibrations"][0];
     assert_eq!(summary["calibrations"].as_array().map(Vec::len), Some(1));
-    assert_eq!((summary["status"].as_str(), summary["seed"].as_u64()), (Some("finished"), Some(1)));
+    assert_eq!(
+        (summary["status"].as_str(), summary["seed"].as_u64()),
+        (Some("finished"), Some(1))
+    );
     assert_eq!(summary["model_kind"], "quasi_static");
     assert_eq!(calibration["algorithm"], "tmcmc");
-    assert_eq!(calibration["parameters"].as_object().map(serde_json::Map::len), Some(4));
-    let last = calibration["stages"].as_array().and_then(|s| s.last()).expect("a stage");
+    assert_eq!(
+        calibration["parameters"].as_object().map(serde_json::Map::len),
+        Some(4)
+    );
+    let last = calibration["stages"]
+        .as_array()
+        .and_then(|s| s.last())
+        .expect("a stage");
     assert_eq!(last["tempering_exponent"].as_f64(), Some(1.0));
     // The mean of 24 equal numbers, rounding included.
-    assert!(calibration["noise_sd"]["drawbar_pull"].as_f64().is_some_and(|sd| (sd - 1.2).abs() < 1e-12));
+    assert!(
+        calibration["noise_sd"]["drawbar_pull"]
+            .as_f64()
+            .is_some_and(|sd| (sd - 1.2).abs() < 1e-12)
+    );
     assert_eq!(calibration["error"]["fit"]["torque"]["runs"], 24);
     assert_eq!(calibration["error"]["holdout"]["sinkage"]["runs"], 16);
     assert_eq!(calibration["error"]["fit"]["lateral_force"], Value::Null);
@@ -185,16 +210,31 @@ fn a_summary_keeps_the_contract() {
 #[test]
 fn a_summary_without_holdout_rows_and_with_unknown_noise_keeps_the_contract() {
     let job = Job::small();
-    let rows: Vec<&str> = job.runs.lines().filter(|line| !line.ends_with("holdout")).collect();
-    let job = Job { runs: rows.join("\n") + "\n", ..job.clone() }
-        .in_experiment("torque_n_m = 0.15", "torque_n_m = \"unknown\"");
+    let rows: Vec<&str> = job
+        .runs
+        .lines()
+        .filter(|line| !line.ends_with("holdout"))
+        .collect();
+    let job = Job {
+        runs: rows.join("\n") + "\n",
+        ..job.clone()
+    }
+    .in_experiment("torque_n_m = 0.15", "torque_n_m = \"unknown\"");
     let summary = summary(&job);
     assert_eq!(complaints(&summary), Vec::<String>::new());
     let calibration = &summary["calibrations"][0];
     assert_eq!(calibration["error"]["holdout"], Value::Null);
     assert_eq!(calibration["coverage90"]["holdout"], Value::Null);
-    assert!(calibration["parameters"]["noise.torque_n_m"]["mean"].is_number(), "{calibration}");
-    assert!(calibration["noise_sd"]["torque"].as_f64().is_some_and(|sd| sd > 0.0), "{calibration}");
+    assert!(
+        calibration["parameters"]["noise.torque_n_m"]["mean"].is_number(),
+        "{calibration}"
+    );
+    assert!(
+        calibration["noise_sd"]["torque"]
+            .as_f64()
+            .is_some_and(|sd| sd > 0.0),
+        "{calibration}"
+    );
 }
 
 #[test]
@@ -211,6 +251,9 @@ fn the_check_notices_what_breaks_the_contract() {
     };
     assert_eq!(broken("seed", "one".into()), 1);
     assert_eq!(broken("status", Value::Null), 1);
-    assert_eq!(broken("flags", serde_json::json!([{"kind": "hunch", "text": ""}])), 4);
+    assert_eq!(
+        broken("flags", serde_json::json!([{"kind": "hunch", "text": ""}])),
+        4
+    );
     assert!(broken("calibrations", serde_json::json!([{}])) >= 14);
 }

@@ -18,12 +18,19 @@ pub struct FakeWorker {
 impl FakeWorker {
     /// A worker that has not said anything yet.
     pub fn new(client: &Client, name: &str) -> Self {
-        FakeWorker { client: client.clone(), name: name.into(), model_version: "fake-1".into() }
+        FakeWorker {
+            client: client.clone(),
+            name: name.into(),
+            model_version: "fake-1".into(),
+        }
     }
 
     /// The same worker, saying that it computes another version of the equations than `fake-1`.
     pub fn computing(self, model_version: &str) -> Self {
-        FakeWorker { model_version: model_version.into(), ..self }
+        FakeWorker {
+            model_version: model_version.into(),
+            ..self
+        }
     }
 
     /// An empty exchange.
@@ -58,7 +65,10 @@ impl FakeWorker {
     pub fn take(&self, want: u32) -> Vec<Value> {
         let mut request = self.request();
         request["want"] = want.into();
-        self.exchange(&request)["leases"].as_array().cloned().unwrap_or_default()
+        self.exchange(&request)["leases"]
+            .as_array()
+            .cloned()
+            .unwrap_or_default()
     }
 
     /// Answers leases with one outcome each; the whole answer.

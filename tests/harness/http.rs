@@ -20,7 +20,10 @@ pub struct Response {
 impl Response {
     /// The value of a head line.
     pub fn header(&self, name: &str) -> Option<&str> {
-        self.head.iter().find(|(n, _)| n == name).map(|(_, value)| value.as_str())
+        self.head
+            .iter()
+            .find(|(n, _)| n == name)
+            .map(|(_, value)| value.as_str())
     }
 
     /// The body as JSON.
@@ -81,7 +84,8 @@ impl Client {
     /// No answer.
     #[track_caller]
     pub fn post_text(&self, path: &str, body: &str) -> Response {
-        self.send("POST", path, Some(body)).unwrap_or_else(|e| panic!("POST {path}: {e}"))
+        self.send("POST", path, Some(body))
+            .unwrap_or_else(|e| panic!("POST {path}: {e}"))
     }
 
     /// Any request.
@@ -92,11 +96,18 @@ impl Client {
         let (status, head, mut reader) = self.open(method, path, body)?;
         let mut text = Vec::new();
         reader.read_to_end(&mut text)?;
-        let length = head.iter().find(|(name, _)| name == "content-length").and_then(|(_, v)| v.parse().ok());
+        let length = head
+            .iter()
+            .find(|(name, _)| name == "content-length")
+            .and_then(|(_, v)| v.parse().ok());
         if length.is_some_and(|length: usize| length != text.len()) {
             return Err(std::io::ErrorKind::UnexpectedEof.into());
         }
-        Ok(Response { status, head, body: String::from_utf8_lossy(&text).into_owned() })
+        Ok(Response {
+            status,
+            head,
+            body: String::from_utf8_lossy(&text).into_owned(),
+        })
     }
 
     /// Opens a stream of server-sent events and hands each (event, data) to `take` until that says to stop or
@@ -123,7 +134,10 @@ impl Client {
         }
     }
 
-    #[expect(clippy::type_complexity, reason = "status, head and what follows, for two callers here")]
+    #[expect(
+        clippy::type_complexity,
+        reason = "status, head and what follows, for two callers here"
+    )]
     fn open(
         &self,
         method: &str,
@@ -134,7 +148,10 @@ impl Client {
         stream.set_read_timeout(Some(Duration::from_secs(60)))?;
         let mut request = format!("{method} {path} HTTP/1.0\r\nHost: {}\r\n", self.0);
         if let Some(body) = body {
-            request += &format!("Content-Type: application/json\r\nContent-Length: {}\r\n", body.len());
+            request += &format!(
+                "Content-Type: application/json\r\nContent-Length: {}\r\n",
+                body.len()
+            );
         }
         request += "\r\n";
         stream.write_all(request.as_bytes())?;

@@ -40,7 +40,10 @@ impl Job {
     /// It is not there exactly once.
     #[track_caller]
     pub fn in_job(self, old: &str, new: &str) -> Job {
-        Job { job: replace(&self.job, old, new), ..self }
+        Job {
+            job: replace(&self.job, old, new),
+            ..self
+        }
     }
 
     /// Changes a passage of `experiment.toml`.
@@ -49,7 +52,10 @@ impl Job {
     /// It is not there exactly once.
     #[track_caller]
     pub fn in_experiment(self, old: &str, new: &str) -> Job {
-        Job { experiment: replace(&self.experiment, old, new), ..self }
+        Job {
+            experiment: replace(&self.experiment, old, new),
+            ..self
+        }
     }
 
     /// Changes a passage of `runs.csv`.
@@ -58,7 +64,10 @@ impl Job {
     /// It is not there exactly once.
     #[track_caller]
     pub fn in_runs(self, old: &str, new: &str) -> Job {
-        Job { runs: replace(&self.runs, old, new), ..self }
+        Job {
+            runs: replace(&self.runs, old, new),
+            ..self
+        }
     }
 
     /// Writes the three files into a folder; the path of the job.
@@ -67,9 +76,11 @@ impl Job {
     /// They cannot be written.
     pub fn write(&self, folder: &Path) -> PathBuf {
         std::fs::create_dir_all(folder).expect("the folder of a job");
-        for (name, text) in
-            [("experiment.toml", &self.experiment), ("runs.csv", &self.runs), ("job.toml", &self.job)]
-        {
+        for (name, text) in [
+            ("experiment.toml", &self.experiment),
+            ("runs.csv", &self.runs),
+            ("job.toml", &self.job),
+        ] {
             std::fs::write(folder.join(name), text).expect("a file of a job");
         }
         folder.join("job.toml")

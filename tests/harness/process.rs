@@ -34,9 +34,16 @@ impl Process {
     /// # Panics
     /// The operating system refuses.
     pub fn start(mut command: Command, log: &Path) -> Process {
-        let file = File::options().create(true).append(true).open(log).expect("the log can be written");
+        let file = File::options()
+            .create(true)
+            .append(true)
+            .open(log)
+            .expect("the log can be written");
         let child = command.stderr(file).spawn().expect("the program starts");
-        Process { child, log: log.to_owned() }
+        Process {
+            child,
+            log: log.to_owned(),
+        }
     }
 
     /// Starts a worker.
@@ -59,7 +66,10 @@ impl Process {
             Signal::Continue => "CONT",
         };
         let line = format!("kill -{name} {}", self.child.id());
-        let sent = Command::new("sh").args(["-c", &line]).status().expect("there is a shell");
+        let sent = Command::new("sh")
+            .args(["-c", &line])
+            .status()
+            .expect("there is a shell");
         assert!(sent.success(), "{line}");
     }
 
@@ -87,7 +97,9 @@ impl Process {
     /// It does not end in time.
     #[track_caller]
     pub fn wait(&mut self) -> ExitStatus {
-        until("the end of a process", || self.child.try_wait().expect("a child can be asked"))
+        until("the end of a process", || {
+            self.child.try_wait().expect("a child can be asked")
+        })
     }
 
     /// What it and its predecessors with the same log have said on standard error.

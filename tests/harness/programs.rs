@@ -33,9 +33,17 @@ impl Ended {
     #[track_caller]
     pub fn refusal(self) -> String {
         let Ended { code, stdout, stderr } = self;
-        assert!(code.is_some_and(|c| c != 0), "exit code {code:?} where a refusal was due\n{stdout}\n{stderr}");
-        assert!(!stderr.contains("panicked") && !stderr.contains("RUST_BACKTRACE"), "panic:\n{stderr}");
-        let message = stderr.find("error: ").map(|at| stderr[at + "error: ".len()..].trim().to_owned());
+        assert!(
+            code.is_some_and(|c| c != 0),
+            "exit code {code:?} where a refusal was due\n{stdout}\n{stderr}"
+        );
+        assert!(
+            !stderr.contains("panicked") && !stderr.contains("RUST_BACKTRACE"),
+            "panic:\n{stderr}"
+        );
+        let message = stderr
+            .find("error: ")
+            .map(|at| stderr[at + "error: ".len()..].trim().to_owned());
         message.unwrap_or_else(|| panic!("no message:\n{stderr}"))
     }
 }
@@ -89,13 +97,28 @@ fn built() -> &'static Path {
         let test = std::env::current_exe().expect("a running program has a path");
         // TARGET/PROFILE/deps/farm-HASH
         let folder = test.ancestors().nth(2).expect("tests stand in deps").to_owned();
-        let target = folder.parent().expect("a profile's folder stands in the target folder");
+        let target = folder
+            .parent()
+            .expect("a profile's folder stands in the target folder");
         let mut build = Command::new(env!("CARGO"));
-        build.args(["build", "--quiet", "-p", "coordinator", "-p", "worker", "--target-dir"]).arg(target);
+        build
+            .args([
+                "build",
+                "--quiet",
+                "-p",
+                "coordinator",
+                "-p",
+                "worker",
+                "--target-dir",
+            ])
+            .arg(target);
         if folder.ends_with("release") {
             build.arg("--release");
         }
-        let built = build.current_dir(crate::workspace::root()).status().expect("cargo starts");
+        let built = build
+            .current_dir(crate::workspace::root())
+            .status()
+            .expect("cargo starts");
         built.success().then_some(folder)
     });
     built.as_deref().expect("the programs build")

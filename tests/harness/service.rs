@@ -39,7 +39,12 @@ impl Service {
         let mut arguments: Vec<String> = vec!["serve".into(), "--listen".into(), address.clone()];
         arguments.extend(["--store".into(), store]);
         arguments.extend(more.iter().map(|&a| a.to_owned()));
-        let mut service = Service { client: Client(address), folder, arguments, process: None };
+        let mut service = Service {
+            client: Client(address),
+            folder,
+            arguments,
+            process: None,
+        };
         service.restart();
         service
     }
@@ -94,7 +99,11 @@ impl Service {
 
     /// Starts a worker of this service with a log of its own.
     pub fn worker(&self, name: &str, threads: usize) -> Process {
-        Process::worker(&self.url(), threads, &self.folder.path().join(format!("{name}.log")))
+        Process::worker(
+            &self.url(),
+            threads,
+            &self.folder.path().join(format!("{name}.log")),
+        )
     }
 
     /// Submits a job by plain HTTP; its id.
@@ -142,7 +151,13 @@ impl Service {
     /// The posterior of a finished calibration, as `export --format csv` writes it.
     #[track_caller]
     pub fn posterior_csv(&self, id: i64) -> String {
-        programs::run(programs::coordinator(["export", &id.to_string(), "--url", &self.url()])).success()
+        programs::run(programs::coordinator([
+            "export",
+            &id.to_string(),
+            "--url",
+            &self.url(),
+        ]))
+        .success()
     }
 
     /// A figure of the metrics page.
@@ -152,8 +167,11 @@ impl Service {
     #[track_caller]
     pub fn metric(&self, name: &str) -> u64 {
         let page = self.client.get("/metrics").body;
-        let line = page.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
-        line.and_then(|value| value.parse().ok()).unwrap_or_else(|| panic!("no {name} in\n{page}"))
+        let line = page
+            .lines()
+            .find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
+        line.and_then(|value| value.parse().ok())
+            .unwrap_or_else(|| panic!("no {name} in\n{page}"))
     }
 
     /// The record of the only worker, once it has been heard of.

@@ -22,7 +22,11 @@ impl Tokens {
     pub(super) fn new(epochs: impl IntoIterator<Item = u64>) -> Self {
         let mut past: BTreeSet<u64> = epochs.into_iter().collect();
         let epoch = past.pop_last().unwrap_or_default();
-        Tokens { past, epoch, given: 0 }
+        Tokens {
+            past,
+            epoch,
+            given: 0,
+        }
     }
 
     /// The next number: larger than every one before.

@@ -9,7 +9,13 @@ use farm_tests::service::{Service, free_address};
 use farm_tests::workspace::data;
 
 fn serve(store: &str) -> Ended {
-    run(coordinator(["serve", "--listen", &free_address(), "--store", store]))
+    run(coordinator([
+        "serve",
+        "--listen",
+        &free_address(),
+        "--store",
+        store,
+    ]))
 }
 
 fn text(path: &Path) -> String {
@@ -23,15 +29,25 @@ fn a_store_that_is_not_sqlite_is_refused_and_untouched() {
     let notes = "These are notes, not a database. ".repeat(100);
     std::fs::write(&store, &notes).unwrap();
     let message = serve(&format!("sqlite://{}", store.display())).refusal();
-    assert!(message == format!("store {}: the file is not a database of SQLite", store.display()), "{message}");
+    assert!(
+        message == format!("store {}: the file is not a database of SQLite", store.display()),
+        "{message}"
+    );
     assert_eq!(std::fs::read_to_string(&store).unwrap(), notes);
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "something lies beside the notes");
+    assert_eq!(
+        std::fs::read_dir(folder.path()).unwrap().count(),
+        1,
+        "something lies beside the notes"
+    );
     for verb in ["list", "status", "export"] {
         let out = folder.path().join("folder");
         std::fs::create_dir_all(&out).unwrap();
         std::fs::copy(&store, out.join("grouser.db")).unwrap();
         let message = run(coordinator([verb, "--out", &text(&out)])).refusal();
-        assert!(message.contains("grouser.db") && message.contains("not a database"), "{message}");
+        assert!(
+            message.contains("grouser.db") && message.contains("not a database"),
+            "{message}"
+        );
     }
 }
 
@@ -40,7 +56,10 @@ fn a_store_in_a_place_that_cannot_be_written_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let missing = folder.path().join("missing").join("grouser.db");
     let message = serve(&format!("sqlite://{}", missing.display())).refusal();
-    assert!(message.contains(&text(&missing)) && message.contains("No such file"), "{message}");
+    assert!(
+        message.contains(&text(&missing)) && message.contains("No such file"),
+        "{message}"
+    );
     assert!(!missing.parent().unwrap().exists());
 
     let directory = folder.path().join("directory");
@@ -52,7 +71,10 @@ fn a_store_in_a_place_that_cannot_be_written_is_refused() {
     std::fs::write(&file, "not a folder").unwrap();
     let job = text(&Job::small().write(&folder.path().join("job")));
     let message = run(coordinator(["run", &job, "--out", &text(&file)])).refusal();
-    assert!(message.contains(&format!("--out {}", file.display())), "{message}");
+    assert!(
+        message.contains(&format!("--out {}", file.display())),
+        "{message}"
+    );
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "not a folder");
 }
 
@@ -61,7 +83,10 @@ fn a_second_coordinator_on_a_store_is_turned_away() {
     let service = Service::start(&[]);
     let id = service.submit(&Job::small());
     let message = serve(&format!("sqlite://{}", service.store().display())).refusal();
-    assert!(message.contains("another coordinator is using this file"), "{message}");
+    assert!(
+        message.contains("another coordinator is using this file"),
+        "{message}"
+    );
     assert!(message.contains(&text(&service.store())), "{message}");
     assert_eq!(service.status(id)["state"], "queued");
 }
@@ -72,14 +97,31 @@ fn a_port_in_use_is_named_and_nothing_is_written() {
     let address = taken.local_addr().unwrap().to_string();
     let folder = tempfile::tempdir().unwrap();
     let store = folder.path().join("grouser.db");
-    let served = coordinator(["serve", "--listen", &address, "--store", &format!("sqlite://{}", store.display())]);
+    let served = coordinator([
+        "serve",
+        "--listen",
+        &address,
+        "--store",
+        &format!("sqlite://{}", store.display()),
+    ]);
     let message = run(served).refusal();
-    assert!(message.starts_with(&format!("--listen {address}: ")) && message.contains("in use"), "{message}");
+    assert!(
+        message.starts_with(&format!("--listen {address}: ")) && message.contains("in use"),
+        "{message}"
+    );
     assert!(!store.exists());
 
     let job = text(&Job::small().write(&folder.path().join("job")));
     let out = folder.path().join("out");
-    let message = run(coordinator(["run", &job, "--listen", &address, "--out", &text(&out)])).refusal();
+    let message = run(coordinator([
+        "run",
+        &job,
+        "--listen",
+        &address,
+        "--out",
+        &text(&out),
+    ]))
+    .refusal();
     assert!(message.starts_with(&format!("--listen {address}: ")), "{message}");
     assert!(!out.exists());
 }
@@ -89,7 +131,10 @@ fn a_url_that_leads_nowhere_is_named() {
     let nobody = format!("http://{}", free_address());
     let message = run(coordinator(["list", "--url", &nobody])).refusal();
     assert!(message.contains(&format!("no answer from {nobody}")), "{message}");
-    for (url, what) in [("not a url", "not a url"), ("ftp://127.0.0.1:7070", "scheme ftp is not http")] {
+    for (url, what) in [
+        ("not a url", "not a url"),
+        ("ftp://127.0.0.1:7070", "scheme ftp is not http"),
+    ] {
         let message = run(coordinator(["status", "1", "--url", url])).refusal();
         assert!(message.contains(what), "{message}");
         let message = run(worker(["--coordinator", url])).refusal();
@@ -102,7 +147,10 @@ fn an_address_of_something_else_is_told_from_a_coordinator() {
     let service = Service::start(&[]);
     let elsewhere = format!("{}/elsewhere", service.url());
     let message = run(worker(["--coordinator", &elsewhere])).refusal();
-    assert!(message.contains("is no Grouser coordinator") && message.contains(&elsewhere), "{message}");
+    assert!(
+        message.contains("is no Grouser coordinator") && message.contains(&elsewhere),
+        "{message}"
+    );
 }
 
 #[test]
@@ -114,9 +162,15 @@ fn a_calibration_that_is_not_there_or_not_ready_is_named() {
     assert_eq!(verb(&["status", "77"]), "there is no calibration 77");
     assert_eq!(verb(&["cancel", "77"]), "there is no calibration 77");
     for words in [["compare", "1"], ["report", "1"], ["export", "1"]] {
-        assert_eq!(verb(&words), "calibration 1 is queued; results are there when it is finished");
+        assert_eq!(
+            verb(&words),
+            "calibration 1 is queued; results are there when it is finished"
+        );
     }
-    assert_eq!(verb(&["resume", "1"]), "calibration 1 is queued; it cannot be resumed");
+    assert_eq!(
+        verb(&["resume", "1"]),
+        "calibration 1 is queued; it cannot be resumed"
+    );
     service.submit(&Job::small());
     assert_eq!(verb(&["status"]), "there are 2 calibrations: name one by its id");
     assert_eq!(service.status(id)["state"], "queued");
@@ -126,7 +180,10 @@ fn a_calibration_that_is_not_there_or_not_ready_is_named() {
     }
     let folder = tempfile::tempdir().unwrap();
     let message = run(coordinator(["status", "--out", &text(folder.path())])).refusal();
-    assert!(message.contains("grouser.db") && message.contains("no such file"), "{message}");
+    assert!(
+        message.contains("grouser.db") && message.contains("no such file"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -137,7 +194,9 @@ fn a_job_that_is_refused_is_not_half_submitted() {
     let message = run(coordinator(["submit", &path, "--url", &service.url()])).refusal();
     assert!(message.contains("9 particles are too few"), "{message}");
     // The next experiment is the first.
-    let created = service.client.post("/v1/experiments", &Job::small().experiment_json());
+    let created = service
+        .client
+        .post("/v1/experiments", &Job::small().experiment_json());
     assert_eq!(created.json()["id"], 1);
 }
 
@@ -149,7 +208,9 @@ fn output_that_nobody_reads_any_more_is_no_panic() {
     run(coordinator(["run", &job, "--out", &out, "--local-workers", "1"])).success();
     for words in [vec!["export", "--format", "json"], vec!["compare"], vec!["list"]] {
         let mut command = coordinator(words.iter().copied().chain(["--out", &out]));
-        command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped());
+        command
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped());
         let mut child = command.spawn().unwrap();
         drop(child.stdout.take());
         let ended = child.wait_with_output().unwrap();
@@ -168,7 +229,14 @@ fn simulate(model: &str, parameters: &str) -> String {
     let (model, parameters) = (file("model.toml", model), file("theta.toml", parameters));
     let out = folder.path().join("runs.csv");
     let mut command = worker(["simulate", &text(&data("nothing-hidden/experiment.toml"))]);
-    command.args(["--model", &model, "--parameters", &parameters, "--out", &text(&out)]);
+    command.args([
+        "--model",
+        &model,
+        "--parameters",
+        &parameters,
+        "--out",
+        &text(&out),
+    ]);
     let message = run(command).refusal();
     assert!(!out.exists(), "{message}");
     message.replace(&format!("{}/", folder.path().display()), "")
@@ -182,19 +250,31 @@ fn forward_runs_refuse_wrong_models_and_parameters() {
         let lines = theta.lines().filter(|line| !line.starts_with(name));
         lines.map(|line| format!("{line}\n")).collect::<String>()
     };
-    assert_eq!(simulate("", &theta), "model.toml: kind is missing: \"quasi_static\" or \"scm\"");
+    assert_eq!(
+        simulate("", &theta),
+        "model.toml: kind is missing: \"quasi_static\" or \"scm\""
+    );
     assert_eq!(
         simulate("kind = \"quasi-static\"\n", &theta),
         "model.toml: unknown kind \"quasi-static\"; the nearest known is \"quasi_static\""
     );
-    assert_eq!(simulate("kind = \"scm\"\n", &theta), "model.toml: kind = \"scm\" is not available in this version");
-    assert_eq!(simulate(model, &without("n =")), "theta.toml: parameter n has neither a prior nor a fixed value");
+    assert_eq!(
+        simulate("kind = \"scm\"\n", &theta),
+        "model.toml: kind = \"scm\" is not available in this version"
+    );
+    assert_eq!(
+        simulate(model, &without("n =")),
+        "theta.toml: parameter n has neither a prior nor a fixed value"
+    );
     assert_eq!(
         simulate(model, &without("k_c")),
         "theta.toml: the stiffness needs k_c and k_phi, or log10_p_ref and kappa"
     );
     let with = |line: &str| format!("{}{line}\n", without("n ="));
-    assert_eq!(simulate(model, &with("n = -1.0")), "theta.toml: n = -1 1 lies outside [0, 10] 1");
+    assert_eq!(
+        simulate(model, &with("n = -1.0")),
+        "theta.toml: n = -1 1 lies outside [0, 10] 1"
+    );
     assert_eq!(
         simulate(model, &(theta.clone() + "m = 1.0\n")),
         "theta.toml: unknown parameter \"m\"; the nearest known is \"n\""
@@ -204,7 +284,10 @@ fn forward_runs_refuse_wrong_models_and_parameters() {
     // Soil that cannot carry the wheel is refused by the model, with the run's name.
     let soft = without("k_phi") + "k_phi = 1.0\n";
     let said = simulate(model, &soft);
-    assert!(said.starts_with("run r00: the model refuses these parameters: "), "{said}");
+    assert!(
+        said.starts_with("run r00: the model refuses these parameters: "),
+        "{said}"
+    );
 }
 
 #[test]
@@ -220,9 +303,15 @@ fn noise_of_an_unknown_sd_and_histories_are_refused() {
         run(command).refusal()
     };
     let message = simulate(&["--noise-seed", "1"]);
-    assert!(message.contains("experiment.toml: --noise-seed needs a number for [noise] torque_n_m"), "{message}");
+    assert!(
+        message.contains("experiment.toml: --noise-seed needs a number for [noise] torque_n_m"),
+        "{message}"
+    );
     let message = simulate(&["--histories", &text(folder.path())]);
-    assert!(message.contains("--histories") && message.contains("not available in this version"), "{message}");
+    assert!(
+        message.contains("--histories") && message.contains("not available in this version"),
+        "{message}"
+    );
     assert!(!folder.path().join("out.csv").exists());
 }
 
@@ -232,10 +321,23 @@ fn settings_in_the_environment_do_not_forbid_other_choices() {
     let mut command = coordinator(["list", "--out", &text(folder.path())]);
     command.env("GROUSER_URL", "http://127.0.0.1:7070");
     let message = run(command).refusal();
-    assert!(message.contains("grouser.db") && message.contains("no such file"), "{message}");
+    assert!(
+        message.contains("grouser.db") && message.contains("no such file"),
+        "{message}"
+    );
     // Both on the command line contradict each other.
-    let message = run(coordinator(["list", "--out", &text(folder.path()), "--url", "http://127.0.0.1:7070"])).refusal();
-    assert!(message.contains("--out") && message.contains("--url"), "{message}");
+    let message = run(coordinator([
+        "list",
+        "--out",
+        &text(folder.path()),
+        "--url",
+        "http://127.0.0.1:7070",
+    ]))
+    .refusal();
+    assert!(
+        message.contains("--out") && message.contains("--url"),
+        "{message}"
+    );
 }
 
 #[test]

@@ -20,13 +20,33 @@ fn malformed_files_over_http_are_422_and_leave_nothing() {
     let service = Service::start(&[]);
     let bad = Job::small().in_runs("r00,w,s,0.05,60.0", "r00,w,s,0.05,-60.0");
     let refused = service.client.post("/v1/experiments", &bad.experiment_json());
-    is(&refused, 422, "invalid_file", "runs.csv line 4: wheel_load_n -60 N must be > 0 N");
-    let missing = service.client.post("/v1/experiments", &json!({"toml": Job::small().experiment}));
-    is(&missing, 422, "invalid_file", "experiment.toml: file \"runs.csv\" is named but was not sent along");
+    is(
+        &refused,
+        422,
+        "invalid_file",
+        "runs.csv line 4: wheel_load_n -60 N must be > 0 N",
+    );
+    let missing = service
+        .client
+        .post("/v1/experiments", &json!({"toml": Job::small().experiment}));
+    is(
+        &missing,
+        422,
+        "invalid_file",
+        "experiment.toml: file \"runs.csv\" is named but was not sent along",
+    );
 
-    let experiment = service.client.post("/v1/experiments", &Job::small().experiment_json()).json()["id"].clone();
+    let experiment = service
+        .client
+        .post("/v1/experiments", &Job::small().experiment_json())
+        .json()["id"]
+        .clone();
     assert_eq!(experiment, 1, "a refused experiment took an id");
-    let post = |job: &Job| service.client.post("/v1/calibrations", &json!({"experiment": 1, "toml": job.job}));
+    let post = |job: &Job| {
+        service
+            .client
+            .post("/v1/calibrations", &json!({"experiment": 1, "toml": job.job}))
+    };
     is(
         &post(&Job::small().in_job("kappa = 0.0", "kapa = 0.0")),
         422,
@@ -59,7 +79,11 @@ fn bodies_that_are_not_the_expected_json_are_400() {
         ("/v1/work/exchange", "[]", "invalid"),
     ] {
         let (status, kind, message) = error(&service.client.post_text(path, body));
-        assert_eq!((status, kind.as_str()), (400, "invalid_body"), "{path} {body}: {message}");
+        assert_eq!(
+            (status, kind.as_str()),
+            (400, "invalid_body"),
+            "{path} {body}: {message}"
+        );
         assert!(message.contains(what), "{path} {body}: {message}");
     }
 }
@@ -78,31 +102,90 @@ fn an_oversized_body_is_413_and_the_service_goes_on() {
 fn what_is_not_there_is_404_and_what_does_not_fit_is_409() {
     let service = Service::start(&[]);
     let client = &service.client;
-    is(&client.get("/v1/calibrations/9"), 404, "not_found", "there is no calibration 9");
-    is(&client.get("/v1/studies/9"), 404, "not_found", "there is no study 9");
-    is(&client.get("/v2/calibrations"), 404, "not_found", "there is no /v2/calibrations; /openapi.json lists what there is");
+    is(
+        &client.get("/v1/calibrations/9"),
+        404,
+        "not_found",
+        "there is no calibration 9",
+    );
+    is(
+        &client.get("/v1/studies/9"),
+        404,
+        "not_found",
+        "there is no study 9",
+    );
+    is(
+        &client.get("/v2/calibrations"),
+        404,
+        "not_found",
+        "there is no /v2/calibrations; /openapi.json lists what there is",
+    );
     let hash = "0".repeat(32);
     let variant = client.get(&format!("/v1/work/variants/{hash}"));
-    is(&variant, 404, "not_found", &format!("no calibration in progress uses variant {hash}"));
+    is(
+        &variant,
+        404,
+        "not_found",
+        &format!("no calibration in progress uses variant {hash}"),
+    );
     assert_eq!(error(&client.get("/v1/calibrations/nine")).0, 404);
-    let wrong = client.post("/v1/calibrations", &json!({"experiment": 9, "toml": Job::small().job}));
+    let wrong = client.post(
+        "/v1/calibrations",
+        &json!({"experiment": 9, "toml": Job::small().job}),
+    );
     is(&wrong, 404, "not_found", "there is no experiment 9");
-    let method = client.send("DELETE", "/v1/calibrations", None).expect("an answer");
+    let method = client
+        .send("DELETE", "/v1/calibrations", None)
+        .expect("an answer");
     assert_eq!(error(&method).0, 404, "{method:?}");
-    for path in ["", "/stages", "/samples", "/posterior", "/comparison", "/flags", "/summary", "/report", "/events"] {
-        assert_eq!(error(&client.get(&format!("/v1/calibrations/9{path}"))).0, 404, "{path}");
+    for path in [
+        "",
+        "/stages",
+        "/samples",
+        "/posterior",
+        "/comparison",
+        "/flags",
+        "/summary",
+        "/report",
+        "/events",
+    ] {
+        assert_eq!(
+            error(&client.get(&format!("/v1/calibrations/9{path}"))).0,
+            404,
+            "{path}"
+        );
     }
 
     let id = service.submit(&Job::small());
     let post = |verb: &str| client.post(&format!("/v1/calibrations/{id}/{verb}"), &json!({}));
     for path in ["posterior", "comparison", "flags", "summary", "report"] {
         let message = "calibration 1 is queued; results are there when it is finished";
-        is(&client.get(&format!("/v1/calibrations/{id}/{path}")), 409, "conflict", message);
+        is(
+            &client.get(&format!("/v1/calibrations/{id}/{path}")),
+            409,
+            "conflict",
+            message,
+        );
     }
-    is(&post("resume"), 409, "conflict", "calibration 1 is queued; it cannot be resumed");
+    is(
+        &post("resume"),
+        409,
+        "conflict",
+        "calibration 1 is queued; it cannot be resumed",
+    );
     assert_eq!(post("cancel").json(), json!({"state": "cancelled"}));
-    is(&post("cancel"), 409, "conflict", "calibration 1 is cancelled; it cannot be cancelled");
-    is(&post("pause"), 409, "conflict", "calibration 1 is cancelled; it cannot be paused");
+    is(
+        &post("cancel"),
+        409,
+        "conflict",
+        "calibration 1 is cancelled; it cannot be cancelled",
+    );
+    is(
+        &post("pause"),
+        409,
+        "conflict",
+        "calibration 1 is cancelled; it cannot be paused",
+    );
     let stage = client.get(&format!("/v1/calibrations/{id}/samples?stage=first"));
     assert_eq!(error(&stage).0, 400, "{stage:?}");
 }
