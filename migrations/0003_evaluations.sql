@@ -27,7 +27,8 @@ CREATE TABLE faults (
 
 CREATE INDEX faults_by_evaluation ON faults (calibration, evaluation);
 
--- Starts of the coordinator; the number is the upper half of every lease number given out since.
+-- Starts of the coordinator: by the clock [s since 2026], but growing in any case; the upper part of every lease
+-- number given out since.
 CREATE TABLE epochs (
     epoch         INTEGER PRIMARY KEY,
     started_at_ms INTEGER NOT NULL

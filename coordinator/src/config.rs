@@ -106,12 +106,20 @@ pub struct Submit {
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 pub struct Source {
-    /// A service.
-    #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
-    pub url: String,
+    /// A service; by default, the one of `GROUSER_URL` in the environment, or port 7070 of this machine.
+    #[arg(long)]
+    pub url: Option<String>,
     /// The folder of a run.
     #[arg(long)]
     pub out: Option<PathBuf>,
+}
+
+impl Source {
+    /// The service: the one named, or the environment's, which a folder that is named outdoes.
+    pub fn url(&self) -> String {
+        let environment = || std::env::var("GROUSER_URL").ok();
+        self.url.clone().or_else(environment).unwrap_or_else(|| "http://127.0.0.1:7070".into())
+    }
 }
 
 /// One calibration.

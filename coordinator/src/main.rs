@@ -17,8 +17,15 @@ async fn main() -> std::process::ExitCode {
     match coordinator::command::execute(config.command).await {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            eprintln!("error: {}", sentence(&error));
             std::process::ExitCode::FAILURE
         }
     }
+}
+
+/// What went wrong with its causes, each said once.
+fn sentence(error: &anyhow::Error) -> String {
+    error.chain().map(ToString::to_string).reduce(|text, cause| {
+        if text.contains(&cause) { text } else { format!("{text}: {cause}") }
+    }).unwrap_or_default()
 }

@@ -42,6 +42,9 @@ pub enum ServiceError {
     /// The store fails.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// The operating system refuses a thread.
+    #[error("the thread of the farm: {0}")]
+    Thread(std::io::Error),
     /// The coordinator is going down.
     #[error(transparent)]
     Stopped(#[from] Stopped),
@@ -72,10 +75,8 @@ impl Service {
     /// [`ServiceError`].
     pub async fn open(path: &str, lease_ms: u64) -> Result<Service, ServiceError> {
         let store = Store::open(path, now_ms()).await?;
-        let farm = Farm::new(store.epoch(), lease_ms);
-        let dispatcher = Dispatcher::start(farm, store.writer().sink()).map_err(|e| {
-            ServiceError::Store(StoreError::Sqlite { path: "thread".into(), source: sqlx::Error::Io(e) })
-        })?;
+        let farm = Farm::new(store.epochs(), lease_ms);
+        let dispatcher = Dispatcher::start(farm, store.writer().sink()).map_err(ServiceError::Thread)?;
         let service = Service { store, dispatcher };
         service.recover().await?;
         Ok(service)

@@ -1,1 +1,22 @@
-//! Placeholder.
+//! What the tests of the whole farm stand on: real programs, real files, real HTTP.
+//!
+//! # Layout
+//! - [`programs`]: builds the two programs once and runs them.
+//! - [`process`]: a program that is running: its log, signals, its end.
+//! - [`service`]: `coordinator serve` on a port and a store that outlive its process.
+//! - [`http`]: a small blocking client.
+//! - [`fake_worker`]: a worker that a test plays by hand.
+//! - [`job`]: the files of a small job, and ways to change them.
+//! - [`workspace`]: the workspace's own files.
+//! - [`wait`]: waiting with a deadline.
+//! - [`random`]: seeded numbers.
+
+pub mod fake_worker;
+pub mod http;
+pub mod job;
+pub mod process;
+pub mod programs;
+pub mod random;
+pub mod service;
+pub mod wait;
+pub mod workspace;

@@ -26,7 +26,7 @@ fn main() -> std::process::ExitCode {
     match done {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            eprintln!("error: {}", sentence(&error));
             std::process::ExitCode::FAILURE
         }
     }
@@ -63,4 +63,11 @@ fn stop_signal() -> anyhow::Result<impl Future<Output = ()>> {
             _ = tokio::signal::ctrl_c() => {}
         }
     })
+}
+
+/// What went wrong with its causes, each said once.
+fn sentence(error: &anyhow::Error) -> String {
+    error.chain().map(ToString::to_string).reduce(|text, cause| {
+        if text.contains(&cause) { text } else { format!("{text}: {cause}") }
+    }).unwrap_or_default()
 }

@@ -21,6 +21,8 @@ const WORK_S: f64 = 1.5;
 const WAIT_MS: u64 = 20_000;
 /// Results are sent at least so often, even while there is work left.
 const FLUSH: Duration = Duration::from_secs(1);
+/// How long a worker that stops waits for an answer that may be on its way.
+const PARTING: Duration = Duration::from_millis(300);
 /// Pauses between attempts to reach a coordinator that is away: doubled from the first to the last.
 const BACK_OFF: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(5)];
 
@@ -119,15 +121,26 @@ impl<C: Coordinator> Worker<C> {
                 tokio::select! {
                     () = &mut shutdown => return self.stop().await,
                     () = self.evaluator.woken() => {}
-                    () = tokio::time::sleep(FLUSH) => {}
+                    // Short leases are looked after more often.
+                    () = tokio::time::sleep(FLUSH.min(self.renewal_period())) => {}
                 }
                 continue;
             }
             let request = self.request();
             let coordinator = self.coordinator.clone();
+            let exchange = coordinator.exchange(request);
+            tokio::pin!(exchange);
             let answer = tokio::select! {
-                () = &mut shutdown => return self.stop().await,
-                answer = coordinator.exchange(request) => answer,
+                () = &mut shutdown => {
+                    // Leases may be under way: the answer gets a moment, so that they go back too.
+                    match tokio::time::timeout(PARTING, exchange).await {
+                        Ok(Ok(response)) => self.held.extend(response.leases.iter().map(|l| l.lease)),
+                        Ok(Err((_, results))) => self.outbox.extend(results),
+                        Err(_) => {}
+                    }
+                    return self.stop().await;
+                }
+                answer = &mut exchange => answer,
             };
             match answer {
                 Ok(response) => {
@@ -175,8 +188,12 @@ impl<C: Coordinator> Worker<C> {
             || self.renewal_due()
     }
 
+    fn renewal_period(&self) -> Duration {
+        Duration::from_millis(self.known.lease_ms / 3)
+    }
+
     fn renewal_due(&self) -> bool {
-        !self.held.is_empty() && self.renewed.elapsed() >= Duration::from_millis(self.known.lease_ms / 3)
+        !self.held.is_empty() && self.renewed.elapsed() >= self.renewal_period()
     }
 
     /// `want = min(1.5 s of work, remaining / (2 x workers))`, at least one for every thread.

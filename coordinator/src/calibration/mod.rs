@@ -310,7 +310,14 @@ impl Calibration {
 
     /// Goes on after a pause; evaluations that had used up their attempts get new ones.
     pub fn resume(&mut self, facts: &mut Vec<Fact>) {
-        self.failed.clear();
+        // An attempt 0 in the list of faults: the new attempts outlive a restart.
+        facts.extend(std::mem::take(&mut self.failed).into_keys().map(|evaluation| Fact::Fault {
+            calibration: self.identity.id,
+            evaluation,
+            attempt: 0,
+            worker: String::new(),
+            message: "given new attempts by a user".into(),
+        }));
         let done = std::mem::take(&mut self.done);
         self.ask();
         for &evaluation in &done {

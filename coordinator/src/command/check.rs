@@ -7,6 +7,7 @@ use std::time::Instant;
 use shared::outcome::Outcome as Evaluated;
 
 use super::job;
+use super::output::say;
 use crate::calibration::{Calibration, Identity, result_of};
 use crate::embedded::Evaluate;
 use crate::result::terminal;
@@ -18,28 +19,30 @@ const PILOT_S: f64 = 30.0;
 
 pub(super) async fn check(path: &Path) -> anyhow::Result<()> {
     let job = job::read(path)?;
-    print!("{}", terminal::specification(&job.spec));
+    let mut text = terminal::specification(&job.spec);
     for note in terminal::notes(&job.spec) {
-        println!("note: {note}");
+        text += &format!("note: {note}\n");
     }
+    say(&text)?;
     let particles = job.spec.sampler.particles;
     let pilot = tokio::task::spawn_blocking(move || pilot(job.spec)).await??;
     let evaluations = pilot.evaluations as f64 * particles as f64 / pilot.particles as f64;
     let simulations = evaluations * pilot.runs as f64;
     let core_s = evaluations * pilot.seconds_per_evaluation;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    println!("\nA pilot of {} particles took {} evaluations.", pilot.particles, pilot.evaluations);
+    let mut text = String::new();
+    text += &format!("\nA pilot of {} particles took {} evaluations.\n", pilot.particles, pilot.evaluations);
     if !pilot.complete {
-        println!("It was stopped at tempering exponent {:.2e}: what follows is a lower bound.", pilot.exponent);
+        text += &format!("It was stopped at tempering exponent {:.2e}: what follows is a lower bound.\n", pilot.exponent);
     }
-    println!("expected evaluations   {evaluations:>12.0}   (one = {} runs)", pilot.runs);
-    println!("expected simulations   {simulations:>12.0}");
-    println!("expected core hours    {:>12.3}", core_s / 3600.0);
-    println!("on {cores} cores            {:>12.3} h = {:.0} s", core_s / 3600.0 / cores as f64, core_s / cores as f64);
+    text += &format!("expected evaluations   {evaluations:>12.0}   (one = {} runs)\n", pilot.runs);
+    text += &format!("expected simulations   {simulations:>12.0}\n");
+    text += &format!("expected core hours    {:>12.3}\n", core_s / 3600.0);
+    text += &format!("on {cores} cores            {:>12.3} h = {:.0} s\n", core_s / 3600.0 / cores as f64, core_s / cores as f64);
     if pilot.rejected_share > 0.0 {
-        println!("the model refused {:.0} % of the pilot's parameter vectors", 100.0 * pilot.rejected_share);
+        text += &format!("the model refused {:.0} % of the pilot's parameter vectors\n", 100.0 * pilot.rejected_share);
     }
-    Ok(())
+    Ok(say(&text)?)
 }
 
 struct Pilot {

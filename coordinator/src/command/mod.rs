@@ -2,6 +2,7 @@
 
 mod check;
 mod job;
+mod output;
 mod progress;
 mod run;
 mod serve;

@@ -6,6 +6,8 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use shared::api::{CalibrationState, CalibrationStatus};
 
+use super::output::note;
+
 /// A bar on a terminal; a line for each stage elsewhere.
 pub(super) struct Display {
     bar: Option<ProgressBar>,
@@ -42,12 +44,12 @@ impl Display {
                 bar.set_position(p.step_done);
                 bar.set_message(message);
             }
-            None if self.stage != Some(p.stage) => eprintln!("{message}"),
+            None if self.stage != Some(p.stage) => note(&message),
             None => {}
         }
         self.stage = Some(p.stage);
         if status.state == CalibrationState::Paused && self.bar.is_none() {
-            eprintln!("paused: {}", status.message.clone().unwrap_or_default());
+            note(&format!("paused: {}", status.message.as_deref().unwrap_or_default()));
         }
     }
 

@@ -9,6 +9,7 @@ use tokio::net::TcpListener;
 use tokio::sync::watch;
 
 use super::job::{self, JobOnDisk};
+use super::output::{note, say};
 use super::progress::Display;
 use crate::config::Run;
 use crate::embedded::LocalWorkers;
@@ -27,8 +28,8 @@ enum End {
 
 pub(super) async fn run(config: Run) -> anyhow::Result<()> {
     let job = job::read(&config.job)?;
-    for note in crate::result::terminal::notes(&job.spec) {
-        eprintln!("note: {note}");
+    for text in terminal::notes(&job.spec) {
+        note(&format!("note: {text}"));
     }
     let out = config.out.clone().unwrap_or_else(|| Path::new("out").join(&job.name));
     // The address is taken before anything is written, so that a port in use leaves nothing behind.
@@ -58,7 +59,7 @@ async fn in_folder(
         match calibrate(config, id, service, listener).await? {
             End::Over => {}
             End::Stopped => {
-                eprintln!("stopped; the same command goes on from here");
+                note("stopped; the same command goes on from here");
                 return Ok(());
             }
         }
@@ -68,9 +69,8 @@ async fn in_folder(
         CalibrationState::Finished => {
             let outcome = Outcome::load(&service.store().reader(), &row).await?;
             write_results(&outcome, out)?;
-            print!("{}", terminal::summary(&outcome));
-            println!("\nin {}: summary.json, posterior.csv, report.html, grouser.db", out.display());
-            Ok(())
+            let files = format!("\nin {}: summary.json, posterior.csv, report.html, grouser.db\n", out.display());
+            Ok(say(&(terminal::summary(&outcome) + &files))?)
         }
         state => bail!("calibration {}: {}", state.name(), row.message.unwrap_or_default()),
     }
@@ -116,7 +116,7 @@ async fn calibrate(
     };
     let server = listener.map(|listener| {
         if let Ok(address) = listener.local_addr() {
-            eprintln!("workers may join: worker --coordinator http://{address}");
+            note(&format!("workers may join: worker --coordinator http://{address}"));
         }
         tokio::spawn(crate::http::serve(listener, service.clone(), until_stopped()))
     });
@@ -133,11 +133,11 @@ async fn calibrate(
     stop.send_replace(true);
     if let Some(workers) = workers {
         let share = workers.simulated_s() / (wall_s * workers.threads as f64);
-        eprintln!(
+        note(&format!(
             "{} local workers simulated {:.1} % of {wall_s:.1} s",
             workers.threads,
             100.0 * share
-        );
+        ));
         workers.join().await;
     }
     if let Some(server) = server {

@@ -21,7 +21,7 @@ impl Place {
                 let file = out.join("grouser.db");
                 Ok(Place::Folder(Reader::open(&file.display().to_string()).await?))
             }
-            None => Ok(Place::Service(Client::new(&source.url)?)),
+            None => Ok(Place::Service(Client::new(&source.url())?)),
         }
     }
 

@@ -7,6 +7,7 @@ use serde_json::json;
 use shared::api::{CalibrationCreated, ExperimentCreated, NewCalibration, NewExperiment};
 
 use super::job;
+use super::output::say;
 use super::source::{Client, Place};
 use crate::config::{Export, Format, Report, Source, Submit, Target};
 use crate::result::terminal;
@@ -23,21 +24,18 @@ pub(super) async fn submit(config: &Submit) -> anyhow::Result<()> {
         name: Some(job.name),
     };
     let created: CalibrationCreated = client.post("/v1/calibrations", &new).await?;
-    println!("calibration {} of study {}", created.id, created.study);
-    Ok(())
+    Ok(say(&format!("calibration {} of study {}\n", created.id, created.study))?)
 }
 
 pub(super) async fn list(source: &Source) -> anyhow::Result<()> {
     let statuses = Place::open(source).await?.list().await?;
-    print!("{}", terminal::status_table(&statuses));
-    Ok(())
+    Ok(say(&terminal::status_table(&statuses))?)
 }
 
 pub(super) async fn status(target: &Target) -> anyhow::Result<()> {
     let place = Place::open(&target.source).await?;
     let status = place.status(place.id(target).await?).await?;
-    print!("{}", terminal::status_table(&[status]));
-    Ok(())
+    Ok(say(&terminal::status_table(&[status]))?)
 }
 
 pub(super) async fn control(target: &Target, verb: &str) -> anyhow::Result<()> {
@@ -47,15 +45,14 @@ pub(super) async fn control(target: &Target, verb: &str) -> anyhow::Result<()> {
     };
     let id = place.id(target).await?;
     let answer: serde_json::Value = client.post(&format!("/v1/calibrations/{id}/{verb}"), &json!({})).await?;
-    println!("calibration {id} is {}", answer["state"].as_str().unwrap_or("in an unknown state"));
-    Ok(())
+    let state = answer["state"].as_str().unwrap_or("in an unknown state");
+    Ok(say(&format!("calibration {id} is {state}\n"))?)
 }
 
 pub(super) async fn compare(target: &Target) -> anyhow::Result<()> {
     let place = Place::open(&target.source).await?;
     let comparison = place.comparison(place.id(target).await?).await?;
-    print!("{}", terminal::comparison(&comparison));
-    Ok(())
+    Ok(say(&terminal::comparison(&comparison))?)
 }
 
 pub(super) async fn report(config: &Report) -> anyhow::Result<()> {
@@ -84,9 +81,6 @@ pub(super) async fn export(config: &Export) -> anyhow::Result<()> {
 fn write(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
     match path {
         Some(path) => std::fs::write(path, text).with_context(|| path.display().to_string()),
-        None => {
-            print!("{text}");
-            Ok(())
-        }
+        None => Ok(say(text)?),
     }
 }

@@ -4,6 +4,7 @@
 
 pub mod dispatch;
 mod progress;
+mod token;
 
 use std::collections::BTreeMap;
 
@@ -14,6 +15,7 @@ use shared::model::ModelVariant;
 use crate::calibration::{Calibration, result_of};
 use crate::fact::Fact;
 use progress::Pace;
+use token::Tokens;
 
 /// A worker is counted as connected for so long after its last message [ms].
 const WORKER_SILENCE_MS: u64 = 60_000;
@@ -92,8 +94,7 @@ pub struct Farm {
     workers: BTreeMap<String, WorkerRecord>,
     counters: Counters,
     facts: Vec<Fact>,
-    epoch: u64,
-    leases: u64,
+    tokens: Tokens,
     lease_ms: u64,
 }
 
@@ -106,15 +107,14 @@ struct Entry {
 }
 
 impl Farm {
-    /// An empty farm; `epoch` is fresh at every start of the coordinator, so lease numbers never repeat.
-    pub fn new(epoch: u64, lease_ms: u64) -> Self {
+    /// An empty farm; `epochs` number the starts of the coordinator, this one included, so lease numbers never repeat.
+    pub fn new(epochs: &[u64], lease_ms: u64) -> Self {
         Farm {
             calibrations: BTreeMap::new(),
             workers: BTreeMap::new(),
             counters: Counters::default(),
             facts: Vec::new(),
-            epoch,
-            leases: 0,
+            tokens: Tokens::new(epochs.iter().copied()),
             lease_ms,
         }
     }
@@ -192,7 +192,8 @@ impl Farm {
     }
 
     fn take_result(&mut self, worker: &str, result: shared::exchange::WorkResult, now_ms: u64) -> bool {
-        let Some(entry) = self.calibrations.get_mut(&result.calibration) else {
+        let ours = self.tokens.is_ours(result.lease);
+        let Some(entry) = self.calibrations.get_mut(&result.calibration).filter(|_| ours) else {
             self.counters.duplicates += 1;
             return false;
         };
@@ -261,11 +262,8 @@ impl Farm {
                     self.facts.push(Fact::ModelVersion { calibration: id, version: version.to_owned() });
                 }
             }
-            let (epoch, counter) = (self.epoch, &mut self.leases);
-            let next_lease = || {
-                *counter += 1;
-                (epoch << 32) | *counter
-            };
+            let tokens = &mut self.tokens;
+            let next_lease = || tokens.next_token();
             let claims =
                 calibration.queue.claim(worker, want - leases.len(), holds, expires_ms, next_lease);
             holds += claims.len();

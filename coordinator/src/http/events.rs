@@ -10,7 +10,9 @@ use axum::extract::State;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use futures::Stream;
 use futures::stream;
-use shared::api::CalibrationStatus;
+use shared::api::{CalibrationStatus, ErrorBody};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
 
 use super::error::{HttpError, Id};
 use crate::service::Service;
@@ -25,8 +27,15 @@ struct Watch {
     over: bool,
 }
 
+pub(super) fn routes() -> OpenApiRouter<Service> {
+    OpenApiRouter::new().routes(routes!(events))
+}
+
 /// Streams what happens to a calibration.
-pub(super) async fn events(
+#[utoipa::path(get, path = "/calibrations/{id}/events", params(("id" = i64, Path)), responses(
+    (status = 200, content_type = "text/event-stream", body = String, description = "events: status, stage"),
+    (status = 404, body = ErrorBody)))]
+async fn events(
     State(service): State<Service>,
     Id(id): Id,
 ) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>, HttpError> {

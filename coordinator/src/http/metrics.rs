@@ -8,6 +8,8 @@ use prometheus_client::encoding::text::encode;
 use prometheus_client::metrics::counter::Counter;
 use prometheus_client::metrics::gauge::Gauge;
 use prometheus_client::registry::Registry;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
 
 use super::error::HttpError;
 use crate::service::Service;
@@ -24,8 +26,13 @@ fn gauge(registry: &mut Registry, name: &str, help: &str, value: usize) {
     registry.register(name, help, gauge);
 }
 
+pub(super) fn routes() -> OpenApiRouter<Service> {
+    OpenApiRouter::new().routes(routes!(metrics)).routes(routes!(health))
+}
+
 /// Figures of farm and store in the text format of Prometheus.
-pub(super) async fn metrics(State(service): State<Service>) -> Result<String, HttpError> {
+#[utoipa::path(get, path = "/metrics", responses((status = 200, content_type = "text/plain", body = String)))]
+async fn metrics(State(service): State<Service>) -> Result<String, HttpError> {
     let figures = service.dispatcher().figures().await?;
     let health = service.store().writer().health();
     let stored = |value: &std::sync::atomic::AtomicU64| value.load(Ordering::Relaxed);
@@ -53,14 +60,15 @@ pub(super) async fn metrics(State(service): State<Service>) -> Result<String, Ht
 }
 
 /// What `/health` says.
-#[derive(serde::Serialize)]
-pub(super) struct Health {
+#[derive(serde::Serialize, utoipa::ToSchema)]
+struct Health {
     status: &'static str,
     version: &'static str,
 }
 
 /// Answers while farm and store work.
-pub(super) async fn health(State(service): State<Service>) -> Result<Json<Health>, HttpError> {
+#[utoipa::path(get, path = "/health", responses((status = 200, body = Health)))]
+async fn health(State(service): State<Service>) -> Result<Json<Health>, HttpError> {
     service.dispatcher().figures().await?;
     Ok(Json(Health { status: "ok", version: env!("CARGO_PKG_VERSION") }))
 }

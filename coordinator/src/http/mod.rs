@@ -43,17 +43,16 @@ pub fn router(service: Service) -> Router {
             OpenApiRouter::new()
                 .merge(experiments::routes())
                 .merge(calibrations::routes())
+                .merge(events::routes())
                 .merge(studies::routes())
                 .merge(work::routes())
                 .merge(later::routes()),
         )
+        .merge(metrics::routes())
         .split_for_parts();
     let document = axum::Json(document);
     router
         .route("/openapi.json", get(async move || document))
-        .route("/v1/calibrations/{id}/events", get(events::events))
-        .route("/metrics", get(metrics::metrics))
-        .route("/health", get(metrics::health))
         .fallback(error::no_route)
         .method_not_allowed_fallback(error::no_method)
         .layer(DefaultBodyLimit::max(BODY_LIMIT))

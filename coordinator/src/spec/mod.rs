@@ -77,6 +77,7 @@ impl Spec {
         if parameters.is_empty() {
             return Err(in_job("[priors] leaves no parameter free: there is nothing to calibrate".into()));
         }
+        job.sampler.check(parameters.len()).map_err(|e| in_job(format!("[sampler] {e}")))?;
         let model_parameters: Vec<String> = parameters
             .iter()
             .filter(|p| !p.name.starts_with(parameters::NOISE_PREFIX))

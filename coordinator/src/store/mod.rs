@@ -9,6 +9,7 @@ mod read;
 mod recovery;
 mod writer;
 
+use std::io::Read;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -46,6 +47,14 @@ pub enum StoreError {
     /// The writer has ended.
     #[error("the store no longer takes writes; the coordinator is going down")]
     Stopped,
+    /// The file cannot be a store.
+    #[error("store {path}: {reason}")]
+    Unfit {
+        /// The file.
+        path: String,
+        /// Why not.
+        reason: String,
+    },
     /// There is nothing to read.
     #[error("store {0}: no such file")]
     Missing(String),
@@ -62,7 +71,7 @@ impl From<sqlx::Error> for StoreError {
 pub struct Store {
     readers: SqlitePool,
     writer: Writer,
-    epoch: u64,
+    epochs: Vec<u64>,
 }
 
 fn options(path: &str) -> Result<SqliteConnectOptions, StoreError> {
@@ -83,6 +92,7 @@ impl Store {
     /// [`StoreError`] with the file and SQLite's reason; [`StoreError::InUse`] where another coordinator holds it.
     pub async fn open(path: &str, now_ms: i64) -> Result<Store, StoreError> {
         let wrap = |source| StoreError::Sqlite { path: path.into(), source };
+        examine(path)?;
         // The writer holds its lock file for as long as it lives; a second coordinator is turned away at once.
         let lock = lock(path)?;
         let options = options(path)?.create_if_missing(true);
@@ -91,14 +101,10 @@ impl Store {
             .run(&mut connection)
             .await
             .map_err(|source| StoreError::Migrate { path: path.into(), source })?;
-        let epoch: i64 = sqlx::query_scalar("INSERT INTO epochs (started_at_ms) VALUES (?) RETURNING epoch")
-            .bind(now_ms)
-            .fetch_one(&mut connection)
-            .await
-            .map_err(wrap)?;
+        let epochs = begin_epoch(&mut connection, now_ms).await.map_err(wrap)?;
         let readers = pool(options).await.map_err(wrap)?;
         let writer = Writer::start(connection, lock);
-        Ok(Store { readers, writer, epoch: epoch.unsigned_abs() })
+        Ok(Store { readers, writer, epochs })
     }
 
     /// The way to the writer.
@@ -113,9 +119,9 @@ impl Store {
         self.writer.close().await;
     }
 
-    /// Number of this start of the coordinator.
-    pub fn epoch(&self) -> u64 {
-        self.epoch
+    /// Numbers of the coordinator's starts on this store, the present one included.
+    pub fn epochs(&self) -> &[u64] {
+        &self.epochs
     }
 
     /// What can be read.
@@ -156,8 +162,49 @@ fn numbers(json: &str) -> Result<Vec<f64>, StoreError> {
     serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("parameter vector {json}: {e}")))
 }
 
+/// Seconds from 1970 to 2026.
+const EPOCHS_FROM_S: i64 = 1_767_225_600;
+
+/// Numbers this start by the clock, but above every start before: so two stores never share an epoch. All of them.
+async fn begin_epoch(connection: &mut SqliteConnection, now_ms: i64) -> Result<Vec<u64>, sqlx::Error> {
+    sqlx::query(
+        "INSERT INTO epochs (epoch, started_at_ms)
+         VALUES (max(?, 1 + (SELECT coalesce(max(epoch), 0) FROM epochs)), ?)",
+    )
+    .bind(now_ms / 1000 - EPOCHS_FROM_S)
+    .bind(now_ms)
+    .execute(&mut *connection)
+    .await?;
+    let epochs: Vec<i64> =
+        sqlx::query_scalar("SELECT epoch FROM epochs ORDER BY epoch").fetch_all(connection).await?;
+    Ok(epochs.into_iter().map(i64::unsigned_abs).collect())
+}
+
 async fn pool(options: SqliteConnectOptions) -> Result<SqlitePool, sqlx::Error> {
     SqlitePoolOptions::new().max_connections(4).connect_with(options).await
+}
+
+/// Refuses what cannot be a store before anything is written beside it.
+fn examine(path: &str) -> Result<(), StoreError> {
+    let file = Path::new(path.strip_prefix("sqlite://").unwrap_or(path));
+    if path.contains(":memory:") {
+        return Ok(());
+    }
+    let unfit = |reason: String| Err(StoreError::Unfit { path: file.display().to_string(), reason });
+    let folder = file.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match std::fs::File::open(file) {
+        Ok(open) if !open.metadata().is_ok_and(|m| m.is_file()) => unfit("this is no file".into()),
+        Ok(mut open) => {
+            let mut head = Vec::new();
+            match open.by_ref().take(16).read_to_end(&mut head) {
+                Ok(_) if head.is_empty() || head == b"SQLite format 3\0" => Ok(()),
+                Ok(_) => unfit("the file is not a database of SQLite".into()),
+                Err(error) => unfit(error.to_string()),
+            }
+        }
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound && folder.is_dir() => Ok(()),
+        Err(error) => unfit(error.to_string()),
+    }
 }
 
 /// Takes the lock file beside the store; it is released when the returned file is dropped, or at any death.

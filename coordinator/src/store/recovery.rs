@@ -51,7 +51,7 @@ impl Reader {
             })
             .collect();
         let faults =
-            sqlx::query("SELECT evaluation, max(attempt) AS n FROM faults WHERE calibration = ? GROUP BY evaluation")
+            sqlx::query("SELECT evaluation, attempt AS n, max(id) FROM faults WHERE calibration = ? GROUP BY evaluation")
                 .bind(calibration)
                 .fetch_all(&self.pool)
                 .await?;

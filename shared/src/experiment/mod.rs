@@ -96,7 +96,7 @@ mod tests {
         let experiment = parse(TOML, &csv).unwrap();
         assert_eq!(experiment.runs[0].measured, [Some(5.5), None, None, None]);
         assert_eq!(experiment.runs[1].usage, RunUse::Holdout);
-        assert_eq!(experiment.wheels["w"].rig_radius_m, 0.1);
+        assert!((experiment.wheels["w"].rig_radius_m - 0.1).abs() < 1e-15);
         assert!(experiment.measures(Channel::Sinkage, RunUse::Holdout));
         assert!(!experiment.measures(Channel::Sinkage, RunUse::Fit));
     }
@@ -124,6 +124,8 @@ mod tests {
         let two = format!("{HEADER}a,w,s,0.2,100,0.01,1,,fit\na,w,s,0.2,100,0.01,1,,fit\n");
         assert_eq!(parse(TOML, &two).unwrap_err(), "runs.csv line 3: run \"a\" stands twice (first on line 2)");
         assert_eq!(parse(TOML, HEADER).unwrap_err(), "runs.csv: no test run stands in the file");
+        let commented = format!("# a\n\n{HEADER}a,w,s,0.2,100,0.01,1,,fit\n# b\n# c\nd,w,s,2,100,0.01,1,,fit");
+        assert_eq!(parse(TOML, &commented).unwrap_err(), "runs.csv line 7: slip 2 must lie in [-1, 1)");
         let column = "run,wheel,soil,slipp,wheel_load_n,sled_speed_m_s\n";
         assert_eq!(
             parse(TOML, column).unwrap_err(),

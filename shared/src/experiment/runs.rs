@@ -56,12 +56,12 @@ pub(super) fn parse(
     let mut reader =
         csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| FileError::at(file, 1, e.to_string()))?.clone();
-    let columns = columns(&header).map_err(|e| FileError::at(file, header_line(&header), e))?;
+    let columns = columns(&header).map_err(|e| FileError::at(file, line_of(text, &header), e))?;
     let mut first_line: BTreeMap<String, usize> = BTreeMap::new();
     let mut runs = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| FileError::whole(file, e.to_string()))?;
-        let line = header_line(&record);
+        let line = line_of(text, &record);
         if record.len() != header.len() {
             let message = format!("{} fields where the header has {}", record.len(), header.len());
             return Err(FileError::at(file, line, message));
@@ -79,8 +79,12 @@ pub(super) fn parse(
     Ok(runs)
 }
 
-fn header_line(record: &csv::StringRecord) -> usize {
-    record.position().map_or(1, |p| usize::try_from(p.line()).unwrap_or(1))
+/// The line in which a record stands, counted from 1: its position is that of the comments before it.
+fn line_of(text: &str, record: &csv::StringRecord) -> usize {
+    let Some(position) = record.position() else { return 1 };
+    let [line, byte] = [position.line(), position.byte()].map(|n| usize::try_from(n).unwrap_or(usize::MAX));
+    let rest = text.get(byte..).unwrap_or_default();
+    line + rest.lines().take_while(|l| l.is_empty() || l.starts_with('#')).count()
 }
 
 /// Where each known column stands in the file.

@@ -75,7 +75,10 @@ pub enum SettingsError {
 
 impl Settings {
     /// Checks the settings for a prior of `dimension` parameters; at least `2 dimension + 2` particles.
-    pub(super) fn check(&self, dimension: usize) -> Result<(), SettingsError> {
+    ///
+    /// # Errors
+    /// [`SettingsError`] with the setting and its bound.
+    pub fn check(&self, dimension: usize) -> Result<(), SettingsError> {
         let least = 2 * dimension + 2;
         let [fewest, most] = self.moves;
         if dimension == 0 {

@@ -1,0 +1,36 @@
+//! A gallery of wrong inputs: each gives one clear message, another exit code than 0, and leaves nothing behind.
+
+mod experiments;
+mod jobs;
+mod places;
+mod requests;
+
+use std::path::Path;
+
+use farm_tests::job::Job;
+use farm_tests::programs::{coordinator, run};
+
+/// The message of a job that must be refused, by `check` and by `run` alike; `run` leaves no folder.
+#[track_caller]
+fn refusal(job: &Job) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    refusal_in(&job.write(folder.path()), folder.path())
+}
+
+#[track_caller]
+fn refusal_in(path: &Path, folder: &Path) -> String {
+    let out = folder.join("out");
+    let path = path.display().to_string();
+    let checked = run(coordinator(["check", &path])).refusal();
+    let ran = run(coordinator(["run", &path, "--out", &out.display().to_string()])).refusal();
+    assert_eq!(checked, ran);
+    assert!(!out.exists(), "a folder was left behind for: {ran}");
+    assert_eq!(ran.lines().count(), 1, "more than one line: {ran}");
+    ran.replace(&format!("{}/", folder.display()), "")
+}
+
+/// Every case is a change of a good job and the whole message.
+#[track_caller]
+fn refused(job: Job, message: &str) {
+    assert_eq!(refusal(&job), message);
+}

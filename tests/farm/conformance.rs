@@ -1,0 +1,358 @@
+//! The wire, message by message: what a worker or client in any language may rely on.
+
+use farm_tests::fake_worker::{FakeWorker, evaluated};
+use farm_tests::job::{FIT_RUNS, Job};
+use farm_tests::service::Service;
+use serde_json::{Value, json};
+use shared::api::{
+    CalibrationState, CalibrationStatus, ErrorBody, ErrorDetail, ErrorKind, NewCalibration, Progress,
+};
+use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
+use shared::experiment::Wheel;
+use shared::model::{Condition, ModelKind, ModelVariant};
+use shared::outcome::{Fault, Observables, Outcome, Rejection};
+
+/// A message has one form: it is written so, and read back to the same.
+#[track_caller]
+fn golden<T>(message: &T, form: &Value)
+where
+    T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,
+{
+    assert_eq!(&serde_json::to_value(message).expect("JSON"), form);
+    assert_eq!(
+        &serde_json::from_value::<T>(form.clone()).expect("the message"),
+        message
+    );
+}
+
+/// Keys and kinds of a message, numbers and text redacted: what does not depend on the moment.
+fn shape(value: &Value) -> Value {
+    match value {
+        Value::Object(table) => table.iter().map(|(k, v)| (k.clone(), shape(v))).collect(),
+        Value::Array(list) => Value::Array(list.first().map(shape).into_iter().collect()),
+        Value::Number(n) if n.is_f64() => "number".into(),
+        Value::Number(_) => "whole".into(),
+        Value::String(_) => "text".into(),
+        other => other.clone(),
+    }
+}
+
+fn observables() -> Observables {
+    Observables {
+        drawbar_pull_n: vec![12.5],
+        torque_n_m: vec![2.25],
+        sinkage_m: vec![0.006],
+        lateral_force_n: vec![0.0],
+        b_eff_m: vec![0.03],
+        contact_length_m: vec![0.05],
+        residual_load_n: vec![1e-9],
+        nodes_in_contact: vec![16],
+        simulated_travel_m: vec![0.0],
+    }
+}
+
+fn observables_json() -> Value {
+    json!({
+        "drawbar_pull_n": [12.5], "torque_n_m": [2.25], "sinkage_m": [0.006], "lateral_force_n": [0.0],
+        "b_eff_m": [0.03], "contact_length_m": [0.05], "residual_load_n": [1e-9], "nodes_in_contact": [16],
+        "simulated_travel_m": [0.0],
+    })
+}
+
+#[test]
+fn an_exchange_request_has_one_form() {
+    let rejection = Rejection {
+        kind: "no_support".into(),
+        condition: 3,
+        message: "sinkage 0.2 m".into(),
+    };
+    let result = |lease, outcome| WorkResult {
+        lease,
+        calibration: 1,
+        evaluation: 7,
+        outcome,
+    };
+    let request = ExchangeRequest {
+        worker: "host-1".into(),
+        protocol: 1,
+        model_version: "1".into(),
+        results: vec![
+            result(4_294_967_297, Outcome::Evaluated(observables())),
+            result(2, Outcome::Rejected(rejection)),
+            result(
+                3,
+                Outcome::Fault(Fault {
+                    message: "disk full".into(),
+                }),
+            ),
+        ],
+        holding: vec![9],
+        returned: vec![10, 11],
+        want: 16,
+        wait_ms: 20_000,
+    };
+    golden(
+        &request,
+        &json!({
+            "worker": "host-1", "protocol": 1, "model_version": "1",
+            "results": [
+                {"lease": 4_294_967_297_u64, "calibration": 1, "evaluation": 7, "outcome": {"evaluated": observables_json()}},
+                {"lease": 2, "calibration": 1, "evaluation": 7,
+                 "outcome": {"rejected": {"kind": "no_support", "condition": 3, "message": "sinkage 0.2 m"}}},
+                {"lease": 3, "calibration": 1, "evaluation": 7, "outcome": {"fault": {"message": "disk full"}}},
+            ],
+            "holding": [9], "returned": [10, 11], "want": 16, "wait_ms": 20_000,
+        }),
+    );
+}
+
+#[test]
+fn an_exchange_response_has_one_form() {
+    let lease = Lease {
+        lease: 5,
+        calibration: 1,
+        evaluation: 7,
+        variant: "00ff".into(),
+        theta: vec![4.5, 0.1 + 0.2],
+    };
+    let response = ExchangeResponse {
+        leases: vec![lease],
+        lease_ms: 15_000,
+        remaining: 40,
+        workers: 3,
+        duplicates: 1,
+        refused: Some("another version".into()),
+    };
+    golden(
+        &response,
+        &json!({
+            "leases": [{"lease": 5, "calibration": 1, "evaluation": 7, "variant": "00ff", "theta": [4.5, 0.30000000000000004]}],
+            "lease_ms": 15_000, "remaining": 40, "workers": 3, "duplicates": 1, "refused": "another version",
+        }),
+    );
+}
+
+#[test]
+fn a_variant_has_one_form_and_its_hash_names_it() {
+    let wheel = Wheel {
+        radius_m: 0.125,
+        width_m: 0.112,
+        grouser_count: 0,
+        grouser_height_m: 0.0,
+        grouser_thickness_m: 0.0,
+        rig_radius_m: 0.125,
+    };
+    let condition = Condition {
+        wheel: "w".into(),
+        slip: 0.05,
+        wheel_load_n: 60.0,
+        sled_speed_m_s: 0.0095,
+        slip_angle_deg: 0.0,
+        pass: 1,
+    };
+    let variant = ModelVariant {
+        kind: ModelKind::QuasiStatic,
+        effects: Vec::new(),
+        parameters: vec!["n".into()],
+        fixed: [("kappa".to_owned(), 0.0)].into(),
+        wheels: [("w".to_owned(), wheel)].into(),
+        gravity_m_s2: 9.81,
+        conditions: vec![condition],
+        protocol: Default::default(),
+    };
+    golden(
+        &variant,
+        &json!({
+            "kind": "quasi_static", "effects": [], "parameters": ["n"], "fixed": {"kappa": 0.0},
+            "wheels": {"w": {"radius_m": 0.125, "width_m": 0.112, "grouser_count": 0, "grouser_height_m": 0.0,
+                             "grouser_thickness_m": 0.0, "rig_radius_m": 0.125}},
+            "gravity_m_s2": 9.81,
+            "conditions": [{"wheel": "w", "slip": 0.05, "wheel_load_n": 60.0, "sled_speed_m_s": 0.0095,
+                            "slip_angle_deg": 0.0, "pass": 1}],
+            "protocol": {"kind": "steady", "measured_transient_s": 40.0, "simulated_transient_force_s": 20.0,
+                         "simulated_transient_sinkage_s": 1.0, "lowpass_hz": 0.5},
+        }),
+    );
+    assert_eq!(variant.hash(), variant.clone().hash());
+    let other = ModelVariant {
+        gravity_m_s2: 1.62,
+        ..variant.clone()
+    };
+    assert_ne!(variant.hash(), other.hash());
+    assert_eq!(variant.hash().len(), 32);
+}
+
+#[test]
+fn a_status_has_one_form() {
+    let status = CalibrationStatus {
+        id: 3,
+        name: "sand".into(),
+        study: 2,
+        experiment: 1,
+        state: CalibrationState::Running,
+        message: None,
+        model_kind: "quasi_static".into(),
+        model_version: Some("1".into()),
+        progress: Some(Progress {
+            stage: 4,
+            tempering_exponent: 0.25,
+            step: 2,
+            acceptance: 0.5,
+            evaluations: 1000,
+            rejected: 10,
+            step_done: 30,
+            step_size: 60,
+            evaluations_per_s: 500.0,
+            remaining_s: None,
+        }),
+    };
+    golden(
+        &status,
+        &json!({
+            "id": 3, "name": "sand", "study": 2, "experiment": 1, "state": "running", "message": null,
+            "model_kind": "quasi_static", "model_version": "1",
+            "progress": {"stage": 4, "tempering_exponent": 0.25, "step": 2, "acceptance": 0.5, "evaluations": 1000,
+                         "rejected": 10, "step_done": 30, "step_size": 60, "evaluations_per_s": 500.0, "remaining_s": null},
+        }),
+    );
+    let names: Vec<&str> = CalibrationState::ALL.iter().map(|s| s.name()).collect();
+    assert_eq!(
+        names,
+        [
+            "queued",
+            "running",
+            "paused",
+            "waiting",
+            "finished",
+            "failed",
+            "cancelled"
+        ]
+    );
+}
+
+#[test]
+fn errors_are_a_closed_list() {
+    for (kind, word) in [
+        (ErrorKind::InvalidBody, "invalid_body"),
+        (ErrorKind::InvalidFile, "invalid_file"),
+        (ErrorKind::NotFound, "not_found"),
+        (ErrorKind::Conflict, "conflict"),
+        (ErrorKind::TooLarge, "too_large"),
+        (ErrorKind::ProtocolMismatch, "protocol_mismatch"),
+        (ErrorKind::Busy, "busy"),
+        (ErrorKind::NotAvailable, "not_available"),
+        (ErrorKind::Internal, "internal"),
+    ] {
+        let body = ErrorBody {
+            error: ErrorDetail {
+                kind,
+                message: "what, value, unit, bound".into(),
+            },
+        };
+        golden(
+            &body,
+            &json!({"error": {"type": word, "message": "what, value, unit, bound"}}),
+        );
+    }
+}
+
+#[test]
+fn what_may_be_left_out_of_a_new_calibration_may_and_what_is_unknown_may_not() {
+    let short: NewCalibration = serde_json::from_value(json!({"experiment": 1, "toml": ""})).unwrap();
+    golden(
+        &short,
+        &json!({"experiment": 1, "toml": "", "files": {}, "name": null}),
+    );
+    assert!(
+        serde_json::from_value::<NewCalibration>(json!({"experiment": 1, "toml": "", "nam": ""})).is_err()
+    );
+    assert!(serde_json::from_value::<NewCalibration>(json!({"toml": ""})).is_err());
+}
+
+#[test]
+fn a_living_coordinator_speaks_these_forms() {
+    let service = Service::start(&[]);
+    let id = service.submit(&Job::small());
+    let worker = FakeWorker::new(&service.client, "any");
+    let mut request = worker.request();
+    request["want"] = 1.into();
+    let response = worker.exchange(&request);
+    assert_eq!(
+        shape(&response),
+        json!({
+            "leases": [{"lease": "whole", "calibration": "whole", "evaluation": "whole", "variant": "text", "theta": ["number"]}],
+            "lease_ms": "whole", "remaining": "whole", "workers": "whole", "duplicates": "whole", "refused": null,
+        })
+    );
+    let lease = &response["leases"][0];
+    assert_eq!(
+        (&lease["calibration"], &lease["evaluation"]),
+        (&json!(id), &json!(0))
+    );
+    assert!(
+        lease["lease"].as_u64() < Some(1 << 53),
+        "a double cannot hold {}",
+        lease["lease"]
+    );
+    let hash = lease["variant"].as_str().expect("a hash").to_owned();
+    let variant = service.client.json(&format!("/v1/work/variants/{hash}"));
+    let typed: ModelVariant = serde_json::from_value(variant).unwrap();
+    assert_eq!(typed.hash(), hash);
+    assert_eq!(typed.conditions.len(), FIT_RUNS);
+    assert_eq!(
+        typed.parameters,
+        ["log10_p_ref", "n", "friction_angle_deg", "wheel_radius_m"]
+    );
+    assert_eq!(
+        lease["theta"].as_array().map(Vec::len),
+        Some(typed.parameters.len())
+    );
+    // A worker never sees measurements: holdout rows are not even named.
+    assert!(!serde_json::to_string(&typed).unwrap().contains("8.4839442"));
+
+    let answer = worker.answer(std::slice::from_ref(lease), |l| evaluated(l, FIT_RUNS));
+    assert_eq!(
+        (&answer["duplicates"], &answer["leases"]),
+        (&json!(0), &json!([]))
+    );
+    let status: CalibrationStatus = serde_json::from_value(service.status(id)).unwrap();
+    assert_eq!(status.state, CalibrationState::Running);
+    assert_eq!(status.progress.map(|p| p.evaluations), Some(1));
+    let workers = service.client.json("/v1/workers");
+    assert_eq!(
+        shape(&workers),
+        json!({"any": {"model_version": "text", "holds": "whole", "completed": "whole", "faults": "whole", "silent_ms": "whole"}})
+    );
+}
+
+#[test]
+fn every_error_type_has_its_status() {
+    let service = Service::start(&[]);
+    service.submit(&Job::small());
+    let client = &service.client;
+    let mut old = FakeWorker::new(client, "old").request();
+    old["protocol"] = 0.into();
+    let none = json!({});
+    for (status, kind, response) in [
+        (400, "invalid_body", client.post_text("/v1/experiments", "{")),
+        (
+            422,
+            "invalid_file",
+            client.post("/v1/experiments", &json!({"toml": "wheel = 1"})),
+        ),
+        (404, "not_found", client.get("/v1/calibrations/5")),
+        (409, "conflict", client.post("/v1/calibrations/1/resume", &none)),
+        (426, "protocol_mismatch", client.post("/v1/work/exchange", &old)),
+        (
+            501,
+            "not_available",
+            client.post("/v1/calibrations/1/extend", &none),
+        ),
+    ] {
+        assert_eq!(response.status, status, "{}", response.body);
+        let body: ErrorBody = serde_json::from_str(&response.body).expect("the form of every error");
+        assert_eq!(serde_json::to_value(body.error.kind).expect("a word"), kind);
+        assert!(!body.error.message.is_empty());
+        assert_eq!(response.header("content-type"), Some("application/json"));
+    }
+}

@@ -1,0 +1,23 @@
+//! Leases: what a worker that halts, leaves, lies or poisons costs, and whom.
+
+mod faults;
+mod lost;
+mod tokens;
+mod workers;
+
+use serde_json::{Value, json};
+
+fn rejected() -> Value {
+    json!({"rejected": {"kind": "no_support", "condition": 3, "message": "sinkage 0.2 m exceeds the radius 0.1 m"}})
+}
+
+fn fault() -> Value {
+    json!({"fault": {"message": "the disk is full"}})
+}
+
+fn numbers(leases: &[Value], key: &str) -> Vec<u64> {
+    leases
+        .iter()
+        .map(|lease| lease[key].as_u64().expect("a number"))
+        .collect()
+}

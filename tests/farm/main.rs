@@ -1,0 +1,10 @@
+//! The whole farm, black-box: the two programs as processes, SQLite files, HTTP.
+
+mod architecture;
+mod bad_input;
+mod bit_identity;
+mod conformance;
+mod end_to_end;
+mod forward;
+mod leases;
+mod summary_contract;

@@ -1,0 +1,104 @@
+//! A worker that a test plays by hand, over plain HTTP.
+
+use serde_json::{Value, json};
+
+use crate::http::{Client, Response};
+
+/// Version of the protocol.
+pub const PROTOCOL: u32 = 1;
+
+/// A worker by name; it does what a test says and nothing else.
+#[derive(Debug)]
+pub struct FakeWorker {
+    client: Client,
+    name: String,
+    model_version: String,
+}
+
+impl FakeWorker {
+    /// A worker that has not said anything yet.
+    pub fn new(client: &Client, name: &str) -> Self {
+        FakeWorker {
+            client: client.clone(),
+            name: name.into(),
+            model_version: "fake-1".into(),
+        }
+    }
+
+    /// The same worker, saying that it computes another version of the equations than `fake-1`.
+    pub fn computing(self, model_version: &str) -> Self {
+        FakeWorker {
+            model_version: model_version.into(),
+            ..self
+        }
+    }
+
+    /// An empty exchange.
+    pub fn request(&self) -> Value {
+        json!({
+            "worker": self.name, "protocol": PROTOCOL, "model_version": self.model_version,
+            "results": [], "holding": [], "returned": [], "want": 0, "wait_ms": 0,
+        })
+    }
+
+    /// Sends an exchange, whatever the answer.
+    pub fn send(&self, request: &Value) -> Response {
+        self.client.post("/v1/work/exchange", request)
+    }
+
+    /// Sends an exchange that must succeed.
+    ///
+    /// # Panics
+    /// It is refused.
+    #[track_caller]
+    pub fn exchange(&self, request: &Value) -> Value {
+        let response = self.send(request);
+        assert_eq!(response.status, 200, "{}", response.body);
+        response.json()
+    }
+
+    /// Takes up to so many leases.
+    ///
+    /// # Panics
+    /// The exchange is refused.
+    #[track_caller]
+    pub fn take(&self, want: u32) -> Vec<Value> {
+        let mut request = self.request();
+        request["want"] = want.into();
+        self.exchange(&request)["leases"]
+            .as_array()
+            .cloned()
+            .unwrap_or_default()
+    }
+
+    /// Answers leases with one outcome each; the whole answer.
+    ///
+    /// # Panics
+    /// The exchange is refused.
+    #[track_caller]
+    pub fn answer(&self, leases: &[Value], outcome: impl Fn(&Value) -> Value) -> Value {
+        let mut request = self.request();
+        request["results"] = leases.iter().map(|lease| result(lease, outcome(lease))).collect();
+        self.exchange(&request)
+    }
+}
+
+/// A result that answers a lease.
+pub fn result(lease: &Value, outcome: Value) -> Value {
+    json!({
+        "lease": lease["lease"], "calibration": lease["calibration"], "evaluation": lease["evaluation"],
+        "outcome": outcome,
+    })
+}
+
+/// Plausible averages of so many runs that differ from one parameter vector to the next.
+pub fn evaluated(lease: &Value, runs: usize) -> Value {
+    let theta = lease["theta"].as_array().cloned().unwrap_or_default();
+    let sum: f64 = theta.iter().filter_map(Value::as_f64).sum();
+    let vector = |value: f64| vec![value; runs];
+    json!({"evaluated": {
+        "drawbar_pull_n": vector(20.0 + sum), "torque_n_m": vector(4.0), "sinkage_m": vector(0.006),
+        "lateral_force_n": vector(0.0), "b_eff_m": vector(0.03), "contact_length_m": vector(0.05),
+        "residual_load_n": vector(0.0), "nodes_in_contact": vec![16; runs], "simulated_travel_m": vector(0.0),
+    }})
+}

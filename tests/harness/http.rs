@@ -1,0 +1,177 @@
+//! A small blocking HTTP client: HTTP/1.0, so an answer ends where its connection does.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+
+use serde_json::Value;
+
+/// An answer.
+#[derive(Debug, Clone)]
+pub struct Response {
+    /// Status code.
+    pub status: u16,
+    /// Head lines, names in lower case.
+    pub head: Vec<(String, String)>,
+    /// Body.
+    pub body: String,
+}
+
+impl Response {
+    /// The value of a head line.
+    pub fn header(&self, name: &str) -> Option<&str> {
+        self.head
+            .iter()
+            .find(|(n, _)| n == name)
+            .map(|(_, value)| value.as_str())
+    }
+
+    /// The body as JSON.
+    ///
+    /// # Panics
+    /// It is none.
+    #[track_caller]
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.body).unwrap_or_else(|e| panic!("{e} in {}", self.body))
+    }
+}
+
+/// Where a request goes: an address, as in `127.0.0.1:7070`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Client(pub String);
+
+impl Client {
+    /// `GET path`, whatever the status.
+    ///
+    /// # Errors
+    /// No connection, or one that broke.
+    pub fn try_get(&self, path: &str) -> std::io::Result<Response> {
+        self.send("GET", path, None)
+    }
+
+    /// `GET path`, whatever the status.
+    ///
+    /// # Panics
+    /// No answer.
+    #[track_caller]
+    pub fn get(&self, path: &str) -> Response {
+        self.try_get(path).unwrap_or_else(|e| panic!("GET {path}: {e}"))
+    }
+
+    /// The JSON of `GET path` that must succeed.
+    ///
+    /// # Panics
+    /// No answer, or another status than 200.
+    #[track_caller]
+    pub fn json(&self, path: &str) -> Value {
+        let response = self.get(path);
+        assert_eq!(response.status, 200, "GET {path}: {}", response.body);
+        response.json()
+    }
+
+    /// `POST path` with a JSON body, whatever the status.
+    ///
+    /// # Panics
+    /// No answer.
+    #[track_caller]
+    pub fn post(&self, path: &str, body: &Value) -> Response {
+        self.post_text(path, &body.to_string())
+    }
+
+    /// `POST path` with any body said to be JSON, whatever the status.
+    ///
+    /// # Panics
+    /// No answer.
+    #[track_caller]
+    pub fn post_text(&self, path: &str, body: &str) -> Response {
+        self.send("POST", path, Some(body))
+            .unwrap_or_else(|e| panic!("POST {path}: {e}"))
+    }
+
+    /// Any request.
+    ///
+    /// # Errors
+    /// No connection, or one that broke.
+    pub fn send(&self, method: &str, path: &str, body: Option<&str>) -> std::io::Result<Response> {
+        let (status, head, mut reader) = self.open(method, path, body)?;
+        let mut text = Vec::new();
+        reader.read_to_end(&mut text)?;
+        let length = head
+            .iter()
+            .find(|(name, _)| name == "content-length")
+            .and_then(|(_, v)| v.parse().ok());
+        if length.is_some_and(|length: usize| length != text.len()) {
+            return Err(std::io::ErrorKind::UnexpectedEof.into());
+        }
+        Ok(Response {
+            status,
+            head,
+            body: String::from_utf8_lossy(&text).into_owned(),
+        })
+    }
+
+    /// Opens a stream of server-sent events and hands each (event, data) to `take` until that says to stop or
+    /// the stream ends; whether it ended by itself.
+    ///
+    /// # Panics
+    /// No stream.
+    pub fn events(&self, path: &str, mut take: impl FnMut(&str, &str) -> bool) -> bool {
+        let (status, _, mut reader) = self.open("GET", path, None).expect("a stream of events");
+        assert_eq!(status, 200, "GET {path}");
+        let (mut line, mut event) = (String::new(), String::new());
+        loop {
+            line.clear();
+            if reader.read_line(&mut line).expect("a line of the stream") == 0 {
+                return true;
+            }
+            if let Some(name) = line.strip_prefix("event: ") {
+                event = name.trim_end().to_owned();
+            } else if let Some(data) = line.strip_prefix("data: ")
+                && !take(&event, data.trim_end())
+            {
+                return false;
+            }
+        }
+    }
+
+    #[expect(
+        clippy::type_complexity,
+        reason = "status, head and what follows, for two callers here"
+    )]
+    fn open(
+        &self,
+        method: &str,
+        path: &str,
+        body: Option<&str>,
+    ) -> std::io::Result<(u16, Vec<(String, String)>, BufReader<TcpStream>)> {
+        let mut stream = TcpStream::connect(&self.0)?;
+        stream.set_read_timeout(Some(Duration::from_secs(60)))?;
+        let mut request = format!("{method} {path} HTTP/1.0\r\nHost: {}\r\n", self.0);
+        if let Some(body) = body {
+            request += &format!(
+                "Content-Type: application/json\r\nContent-Length: {}\r\n",
+                body.len()
+            );
+        }
+        request += "\r\n";
+        stream.write_all(request.as_bytes())?;
+        if let Some(body) = body {
+            // A server that has heard enough answers and hangs up; its answer can still be read.
+            let _ = stream.write_all(body.as_bytes());
+        }
+        let mut reader = BufReader::new(stream);
+        let mut line = String::new();
+        reader.read_line(&mut line)?;
+        let status = line.split(' ').nth(1).and_then(|code| code.parse().ok());
+        let status = status.ok_or(std::io::ErrorKind::UnexpectedEof)?;
+        let mut head = Vec::new();
+        loop {
+            line.clear();
+            reader.read_line(&mut line)?;
+            match line.trim_end().split_once(": ") {
+                Some((name, value)) => head.push((name.to_lowercase(), value.to_owned())),
+                None => return Ok((status, head, reader)),
+            }
+        }
+    }
+}

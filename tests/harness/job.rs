@@ -1,0 +1,119 @@
+//! The files of a small job, and ways to change them.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+/// An experiment and a job, as text.
+#[derive(Debug, Clone)]
+pub struct Job {
+    /// `experiment.toml`.
+    pub experiment: String,
+    /// `runs.csv`.
+    pub runs: String,
+    /// `job.toml`.
+    pub job: String,
+}
+
+/// Fitted runs of [`Job::small`].
+pub const FIT_RUNS: usize = 24;
+
+impl Job {
+    /// The experiment `nothing-hidden`: four free parameters, 24 fitted runs and 16 others.
+    pub fn small() -> Job {
+        Job {
+            experiment: include_str!("../data/nothing-hidden/experiment.toml").into(),
+            runs: include_str!("../data/nothing-hidden/runs.csv").into(),
+            job: SMALL.into(),
+        }
+    }
+
+    /// The same job with other settings of the sampler.
+    pub fn sampler(self, particles: usize, moves: [usize; 2], seed: u64) -> Job {
+        let sampler = format!("particles = {particles}\nmoves = {moves:?}\nseed = {seed}");
+        self.in_job("particles = 60\nmoves = [2, 4]\nseed = 1", &sampler)
+    }
+
+    /// Changes a passage of `job.toml`.
+    ///
+    /// # Panics
+    /// It is not there exactly once.
+    #[track_caller]
+    pub fn in_job(self, old: &str, new: &str) -> Job {
+        Job {
+            job: replace(&self.job, old, new),
+            ..self
+        }
+    }
+
+    /// Changes a passage of `experiment.toml`.
+    ///
+    /// # Panics
+    /// It is not there exactly once.
+    #[track_caller]
+    pub fn in_experiment(self, old: &str, new: &str) -> Job {
+        Job {
+            experiment: replace(&self.experiment, old, new),
+            ..self
+        }
+    }
+
+    /// Changes a passage of `runs.csv`.
+    ///
+    /// # Panics
+    /// It is not there exactly once.
+    #[track_caller]
+    pub fn in_runs(self, old: &str, new: &str) -> Job {
+        Job {
+            runs: replace(&self.runs, old, new),
+            ..self
+        }
+    }
+
+    /// Writes the three files into a folder; the path of the job.
+    ///
+    /// # Panics
+    /// They cannot be written.
+    pub fn write(&self, folder: &Path) -> PathBuf {
+        std::fs::create_dir_all(folder).expect("the folder of a job");
+        for (name, text) in [
+            ("experiment.toml", &self.experiment),
+            ("runs.csv", &self.runs),
+            ("job.toml", &self.job),
+        ] {
+            std::fs::write(folder.join(name), text).expect("a file of a job");
+        }
+        folder.join("job.toml")
+    }
+
+    /// The body of `POST /v1/experiments`.
+    pub fn experiment_json(&self) -> Value {
+        json!({"toml": self.experiment, "files": {"runs.csv": self.runs}})
+    }
+}
+
+#[track_caller]
+fn replace(text: &str, old: &str, new: &str) -> String {
+    assert_eq!(text.matches(old).count(), 1, "{old:?} in\n{text}");
+    text.replacen(old, new, 1)
+}
+
+const SMALL: &str = r#"experiment = "experiment.toml"
+
+[model]
+kind = "quasi_static"
+shear_velocity_m_s = 0.001
+
+[priors]
+log10_p_ref = { uniform = [4.0, 5.6] }
+kappa = 0.0
+n = { normal = [1.1, 0.2], bounds = [0.8, 2.0] }
+friction_angle_deg = { normal = [30.0, 5.7], bounds = [11.5, 37.3] }
+wheel_radius_m = { uniform = [0.125, 0.155] }
+
+[sampler]
+algorithm = "tmcmc"
+particles = 60
+moves = [2, 4]
+seed = 1
+"#;

@@ -1,0 +1,224 @@
+//! `coordinator serve` on a port and a store that outlive its process.
+
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU16, Ordering};
+
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use crate::http::Client;
+use crate::job::Job;
+use crate::process::{Process, Signal};
+use crate::programs;
+use crate::wait::until;
+
+/// A service that can be killed and started again where it was.
+#[derive(Debug)]
+pub struct Service {
+    /// The client of its address.
+    pub client: Client,
+    folder: TempDir,
+    arguments: Vec<String>,
+    process: Option<Process>,
+}
+
+impl Service {
+    /// Starts a service on an empty store; `more` are arguments such as `--lease-ms`.
+    pub fn start(more: &[&str]) -> Service {
+        Service::start_at(free_address(), more)
+    }
+
+    /// Starts a service on an empty store at an address.
+    ///
+    /// # Panics
+    /// It does not start.
+    pub fn start_at(address: String, more: &[&str]) -> Service {
+        let folder = tempfile::tempdir().expect("a folder for the store");
+        let store = format!("sqlite://{}", folder.path().join("grouser.db").display());
+        let mut arguments: Vec<String> = vec!["serve".into(), "--listen".into(), address.clone()];
+        arguments.extend(["--store".into(), store]);
+        arguments.extend(more.iter().map(|&a| a.to_owned()));
+        let mut service = Service {
+            client: Client(address),
+            folder,
+            arguments,
+            process: None,
+        };
+        service.restart();
+        service
+    }
+
+    /// Starts it again, on the same store and port.
+    ///
+    /// # Panics
+    /// It runs, or does not start.
+    pub fn restart(&mut self) {
+        assert!(self.process.is_none(), "the service is running");
+        let command = programs::coordinator(&self.arguments);
+        let mut process = Process::start(command, &self.folder.path().join("coordinator.log"));
+        until("an answer of the service", || {
+            assert!(process.is_running(), "the service ended:\n{}", process.log());
+            self.client.try_get("/health").ok().filter(|r| r.status == 200)
+        });
+        self.process = Some(process);
+    }
+
+    /// Kills it with SIGKILL.
+    ///
+    /// # Panics
+    /// It is not running.
+    pub fn kill(&mut self) {
+        self.process.take().expect("the service is running").kill();
+    }
+
+    /// Sends SIGTERM and waits for its end; whether that was orderly.
+    ///
+    /// # Panics
+    /// It is not running.
+    pub fn terminate(&mut self) -> bool {
+        let mut process = self.process.take().expect("the service is running");
+        process.signal(Signal::Terminate);
+        process.wait().success()
+    }
+
+    /// URL for workers and verbs.
+    pub fn url(&self) -> String {
+        format!("http://{}", self.client.0)
+    }
+
+    /// The file of its store.
+    pub fn store(&self) -> PathBuf {
+        self.folder.path().join("grouser.db")
+    }
+
+    /// A folder for whatever a test writes.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Starts a worker of this service with a log of its own.
+    pub fn worker(&self, name: &str, threads: usize) -> Process {
+        Process::worker(
+            &self.url(),
+            threads,
+            &self.folder.path().join(format!("{name}.log")),
+        )
+    }
+
+    /// Submits a job by plain HTTP; its id.
+    ///
+    /// # Panics
+    /// It is refused.
+    #[track_caller]
+    pub fn submit(&self, job: &Job) -> i64 {
+        let experiment = self.client.post("/v1/experiments", &job.experiment_json());
+        assert_eq!(experiment.status, 201, "{}", experiment.body);
+        let new = json!({"experiment": experiment.json()["id"], "toml": job.job});
+        let created = self.client.post("/v1/calibrations", &new);
+        assert_eq!(created.status, 201, "{}", created.body);
+        created.json()["id"].as_i64().expect("an id")
+    }
+
+    /// Where a calibration stands.
+    #[track_caller]
+    pub fn status(&self, id: i64) -> Value {
+        self.client.json(&format!("/v1/calibrations/{id}"))
+    }
+
+    /// Evaluations done so far; `None` where the service does not say (it is away, or the calibration is over).
+    pub fn evaluations(&self, id: i64) -> Option<u64> {
+        let response = self.client.try_get(&format!("/v1/calibrations/{id}")).ok()?;
+        (response.status == 200).then(|| response.json()["progress"]["evaluations"].as_u64())?
+    }
+
+    /// Waits until a calibration is in a state.
+    ///
+    /// # Panics
+    /// It ends in another one, or does not get there.
+    #[track_caller]
+    pub fn wait_for(&self, id: i64, state: &str) -> Value {
+        until(&format!("calibration {id} {state}"), || {
+            let status = self.status(id);
+            let now = status["state"].as_str().unwrap_or_default().to_owned();
+            let over = ["finished", "failed", "cancelled"].contains(&now.as_str());
+            assert!(now == state || !over, "{status}");
+            assert!(now == state || now != "paused", "{status}");
+            (now == state).then_some(status)
+        })
+    }
+
+    /// The posterior of a finished calibration, as `export --format csv` writes it.
+    #[track_caller]
+    pub fn posterior_csv(&self, id: i64) -> String {
+        programs::run(programs::coordinator([
+            "export",
+            &id.to_string(),
+            "--url",
+            &self.url(),
+        ]))
+        .success()
+    }
+
+    /// A figure of the metrics page.
+    ///
+    /// # Panics
+    /// There is no such figure.
+    #[track_caller]
+    pub fn metric(&self, name: &str) -> u64 {
+        let page = self.client.get("/metrics").body;
+        let line = page
+            .lines()
+            .find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
+        line.and_then(|value| value.parse().ok())
+            .unwrap_or_else(|| panic!("no {name} in\n{page}"))
+    }
+
+    /// The record of the only worker, once it has been heard of.
+    ///
+    /// # Panics
+    /// There are several.
+    #[track_caller]
+    pub fn only_worker(&self) -> Option<Value> {
+        let workers = self.client.json("/v1/workers");
+        let records = workers.as_object()?;
+        assert!(records.len() < 2, "{workers}");
+        records.values().next().cloned()
+    }
+
+    /// The version of the equations that the program `worker` computes, as it says to this service.
+    #[track_caller]
+    pub fn model_version(&self) -> String {
+        let worker = self.worker("version", 1);
+        let record = until("a word of a worker", || self.only_worker());
+        drop(worker);
+        record["model_version"].as_str().unwrap_or_default().to_owned()
+    }
+
+    /// What the service has said on standard error, over all its starts.
+    ///
+    /// # Panics
+    /// The log is gone.
+    pub fn log(&self) -> String {
+        let log = std::fs::read(self.folder.path().join("coordinator.log")).expect("the log can be read");
+        String::from_utf8_lossy(&log).into_owned()
+    }
+}
+
+/// An address that nobody listens at, outside the range that the system gives to outgoing connections: it stays
+/// free while its service is down.
+///
+/// # Panics
+/// Every port is taken.
+pub fn free_address() -> String {
+    static NEXT: AtomicU16 = AtomicU16::new(0);
+    let start = (std::process::id() % 10_000) as u16;
+    for _ in 0..10_000 {
+        let port = 20_000 + (start + NEXT.fetch_add(1, Ordering::Relaxed)) % 10_000;
+        let address = format!("127.0.0.1:{port}");
+        if TcpListener::bind(&address).is_ok() {
+            return address;
+        }
+    }
+    panic!("no free port");
+}
