@@ -28,8 +28,7 @@ const GOAL_P99_MS: f64 = 50.0;
 const GOAL_CPU_US: f64 = 40.0;
 
 const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 1.0\n";
-const RUNS: &str =
-    "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n\na,w,s,0.2,100,0.008,30\n";
+const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n\na,w,s,0.2,100,0.008,30\n";
 
 fn job() -> String {
     format!(
@@ -87,7 +86,13 @@ async fn measure(batch: u32) -> Anyhow<Measured> {
     let store = format!("sqlite://{}", folder.path().join("bench.db").display());
     let server = Server(
         Command::new(env!("CARGO_BIN_EXE_coordinator"))
-            .args(["serve", "--listen", &format!("127.0.0.1:{port}"), "--store", &store])
+            .args([
+                "serve",
+                "--listen",
+                &format!("127.0.0.1:{port}"),
+                "--store",
+                &store,
+            ])
             .stderr(Stdio::null())
             .spawn()?,
     );
@@ -95,9 +100,21 @@ async fn measure(batch: u32) -> Anyhow<Measured> {
     while client.get(format!("{url}/health")).send().await.is_err() {
         tokio::time::sleep(Duration::from_millis(20)).await;
     }
-    let experiment = post(&client, &url, "experiments", json!({"toml": EXPERIMENT, "files": {"runs.csv": RUNS}})).await?;
+    let experiment = post(
+        &client,
+        &url,
+        "experiments",
+        json!({"toml": EXPERIMENT, "files": {"runs.csv": RUNS}}),
+    )
+    .await?;
     for _ in 0..CALIBRATIONS {
-        post(&client, &url, "calibrations", json!({"experiment": experiment["id"], "toml": job()})).await?;
+        post(
+            &client,
+            &url,
+            "calibrations",
+            json!({"experiment": experiment["id"], "toml": job()}),
+        )
+        .await?;
     }
 
     let completed = Arc::new(AtomicU64::new(0));
@@ -105,7 +122,16 @@ async fn measure(batch: u32) -> Anyhow<Measured> {
     let began = Instant::now();
     let until = began + Duration::from_secs(SECONDS);
     let workers: Vec<_> = (0..WORKERS)
-        .map(|k| tokio::spawn(work(Client::new(), url.clone(), k, batch, until, completed.clone())))
+        .map(|k| {
+            tokio::spawn(work(
+                Client::new(),
+                url.clone(),
+                k,
+                batch,
+                until,
+                completed.clone(),
+            ))
+        })
         .collect();
     let mut latencies_ms = Vec::new();
     for worker in workers {
@@ -166,7 +192,11 @@ async fn work(
             wait_ms: 1000,
         };
         let sent = Instant::now();
-        let response = client.post(format!("{url}/v1/work/exchange")).json(&request).send().await?;
+        let response = client
+            .post(format!("{url}/v1/work/exchange"))
+            .json(&request)
+            .send()
+            .await?;
         let response: ExchangeResponse = response.error_for_status()?.json().await?;
         latencies_ms.push(sent.elapsed().as_secs_f64() * 1e3);
         completed.fetch_add(done, Ordering::Relaxed);

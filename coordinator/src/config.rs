@@ -82,7 +82,12 @@ pub struct Serve {
     #[arg(long, env = "GROUSER_LISTEN", default_value = "127.0.0.1:7070")]
     pub listen: std::net::SocketAddr,
     /// The store.
-    #[arg(long, env = "GROUSER_STORE", default_value = "sqlite://grouser.db", value_name = "sqlite://FILE")]
+    #[arg(
+        long,
+        env = "GROUSER_STORE",
+        default_value = "sqlite://grouser.db",
+        value_name = "sqlite://FILE"
+    )]
     pub store: String,
     /// Threads that simulate in this process.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS", default_value_t = 0)]
@@ -118,7 +123,10 @@ impl Source {
     /// The service: the one named, or the environment's, which a folder that is named outdoes.
     pub fn url(&self) -> String {
         let environment = || std::env::var("GROUSER_URL").ok();
-        self.url.clone().or_else(environment).unwrap_or_else(|| "http://127.0.0.1:7070".into())
+        self.url
+            .clone()
+            .or_else(environment)
+            .unwrap_or_else(|| "http://127.0.0.1:7070".into())
     }
 }
 

@@ -28,7 +28,10 @@ impl Coordinator for InProcess {
     }
 
     async fn variant(&self, hash: &str) -> Result<Option<ModelVariant>, ExchangeError> {
-        self.0.variant(hash.to_owned()).await.map_err(|e| ExchangeError::Refused(e.to_string()))
+        self.0
+            .variant(hash.to_owned())
+            .await
+            .map_err(|e| ExchangeError::Refused(e.to_string()))
     }
 }
 
@@ -49,8 +52,16 @@ impl LocalWorkers {
         shutdown: impl Future<Output = ()> + Send + 'static,
     ) -> Self {
         let clock = Arc::new(SimulationClock::default());
-        let settings = Settings { name: format!("local-{}", std::process::id()), threads };
-        let task = tokio::spawn(run(Arc::new(InProcess(dispatcher)), settings, clock.clone(), shutdown));
+        let settings = Settings {
+            name: format!("local-{}", std::process::id()),
+            threads,
+        };
+        let task = tokio::spawn(run(
+            Arc::new(InProcess(dispatcher)),
+            settings,
+            clock.clone(),
+            shutdown,
+        ));
         LocalWorkers { threads, clock, task }
     }
 

@@ -113,7 +113,9 @@ impl Fingerprint {
         Fingerprint(match result {
             Ok(observables) => observables.fingerprint().cast_signed(),
             // A refusal is compared by its text.
-            Err(reason) => reason.bytes().fold(7, |hash: i64, b| hash.wrapping_mul(31).wrapping_add(i64::from(b))),
+            Err(reason) => reason
+                .bytes()
+                .fold(7, |hash: i64, b| hash.wrapping_mul(31).wrapping_add(i64::from(b))),
         })
     }
 }

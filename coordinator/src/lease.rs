@@ -80,13 +80,24 @@ impl Queue {
         *self = Queue::default();
         for evaluation in evaluations {
             let failed = failed(evaluation);
-            self.entries.insert(evaluation, Entry { failed, state: State::Ready });
+            self.entries.insert(
+                evaluation,
+                Entry {
+                    failed,
+                    state: State::Ready,
+                },
+            );
             self.make_ready(evaluation, failed);
         }
     }
 
     fn make_ready(&mut self, evaluation: u64, failed: u32) {
-        if failed > 0 { &mut self.suspects } else { &mut self.ready }.push_back(evaluation);
+        if failed > 0 {
+            &mut self.suspects
+        } else {
+            &mut self.ready
+        }
+        .push_back(evaluation);
     }
 
     /// Evaluations that nobody holds and that are not done.
@@ -157,8 +168,15 @@ impl Queue {
             .into_iter()
             .map(|evaluation| {
                 let lease = next_lease();
-                let claim = Claim { lease, worker: worker.to_owned(), expires_ms };
-                let entry = self.entries.get_mut(&evaluation).expect("a ready evaluation has an entry");
+                let claim = Claim {
+                    lease,
+                    worker: worker.to_owned(),
+                    expires_ms,
+                };
+                let entry = self
+                    .entries
+                    .get_mut(&evaluation)
+                    .expect("a ready evaluation has an entry");
                 entry.state = State::Leased(claim);
                 self.leased.insert(lease, evaluation);
                 *self.held.entry(worker.to_owned()).or_default() += 1;
@@ -169,7 +187,9 @@ impl Queue {
 
     /// Extends a lease; `false` where it is no longer out.
     pub fn renew(&mut self, lease: u64, until_ms: u64) -> bool {
-        let Some(evaluation) = self.leased.get(&lease) else { return false };
+        let Some(evaluation) = self.leased.get(&lease) else {
+            return false;
+        };
         match self.entries.get_mut(evaluation).map(|e| &mut e.state) {
             Some(State::Leased(claim)) => {
                 claim.expires_ms = until_ms;
@@ -181,7 +201,9 @@ impl Queue {
 
     /// Takes a completion, whether or not its lease is still out: the first valid one wins.
     pub fn complete(&mut self, evaluation: u64) -> Completion {
-        let Some(entry) = self.entries.get_mut(&evaluation) else { return Completion::Unknown };
+        let Some(entry) = self.entries.get_mut(&evaluation) else {
+            return Completion::Unknown;
+        };
         match std::mem::replace(&mut entry.state, State::Done) {
             State::Done => Completion::Duplicate,
             State::Leased(claim) => {
@@ -198,11 +220,18 @@ impl Queue {
 
     /// Takes back a lease that its worker returns unevaluated; it costs no attempt.
     pub fn give_back(&mut self, lease: u64) -> bool {
-        let Some((evaluation, claim)) = self.take_claim(lease) else { return false };
+        let Some((evaluation, claim)) = self.take_claim(lease) else {
+            return false;
+        };
         self.release(lease, &claim.worker);
         let failed = self.entries[&evaluation].failed;
         // In front: what was leased earlier is waited for earlier.
-        if failed > 0 { &mut self.suspects } else { &mut self.ready }.push_front(evaluation);
+        if failed > 0 {
+            &mut self.suspects
+        } else {
+            &mut self.ready
+        }
+        .push_front(evaluation);
         true
     }
 
@@ -214,7 +243,11 @@ impl Queue {
         entry.failed += 1;
         let attempt = entry.failed;
         self.suspects.push_back(evaluation);
-        Some(Failure { evaluation, worker: claim.worker, attempt })
+        Some(Failure {
+            evaluation,
+            worker: claim.worker,
+            attempt,
+        })
     }
 
     /// Ends a claim; its evaluation is ready again.
@@ -290,7 +323,10 @@ mod tests {
         for attempt in 1..=3 {
             let lease = claim(&mut queue, "a", 1, 0, attempt * 10)[0].0;
             let failure = queue.fail(lease).unwrap();
-            assert_eq!((failure.attempt, failure.exhausted()), (attempt as u32, attempt == 3));
+            assert_eq!(
+                (failure.attempt, failure.exhausted()),
+                (attempt as u32, attempt == 3)
+            );
         }
     }
 

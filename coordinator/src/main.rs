@@ -25,7 +25,15 @@ async fn main() -> std::process::ExitCode {
 
 /// What went wrong with its causes, each said once.
 fn sentence(error: &anyhow::Error) -> String {
-    error.chain().map(ToString::to_string).reduce(|text, cause| {
-        if text.contains(&cause) { text } else { format!("{text}: {cause}") }
-    }).unwrap_or_default()
+    error
+        .chain()
+        .map(ToString::to_string)
+        .reduce(|text, cause| {
+            if text.contains(&cause) {
+                text
+            } else {
+                format!("{text}: {cause}")
+            }
+        })
+        .unwrap_or_default()
 }

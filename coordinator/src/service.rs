@@ -104,9 +104,16 @@ impl Service {
             let row = self.calibration_row(id).await?;
             let stored = reader.stored(id).await?;
             let spec = Arc::new(self.spec_of(&row).await?);
-            let (evaluations, paused) = (stored.evaluations.len(), stored.state == Some(CalibrationState::Paused));
-            let identity =
-                Identity { id, name: row.name.clone(), study: row.study, experiment: row.experiment };
+            let (evaluations, paused) = (
+                stored.evaluations.len(),
+                stored.state == Some(CalibrationState::Paused),
+            );
+            let identity = Identity {
+                id,
+                name: row.name.clone(),
+                study: row.study,
+                experiment: row.experiment,
+            };
             // Replaying is seconds of CPU for a long calibration: not on the async runtime.
             let replayed = tokio::task::spawn_blocking(move || {
                 let mut calibration = Calibration::new(identity, spec)?;
@@ -129,10 +136,17 @@ impl Service {
     /// # Errors
     /// [`ServiceError`].
     pub async fn add_experiment(&self, new: NewExperiment) -> Result<i64, ServiceError> {
-        let files = FileSet { toml: new.toml, files: new.files };
+        let files = FileSet {
+            toml: new.toml,
+            files: new.files,
+        };
         shared::experiment::Experiment::parse("experiment.toml", &files)?;
         let json = file_json(&files.files);
-        Ok(self.store.writer().add_experiment(files.toml, json, now_ms()).await?)
+        Ok(self
+            .store
+            .writer()
+            .add_experiment(files.toml, json, now_ms())
+            .await?)
     }
 
     /// Stores a calibration after validating it, and takes it in hand.
@@ -141,11 +155,23 @@ impl Service {
     /// [`ServiceError`].
     pub async fn add_calibration(&self, new: NewCalibration) -> Result<CalibrationCreated, ServiceError> {
         let experiment = self.store.reader().experiment(new.experiment).await?;
-        let experiment = experiment
-            .ok_or_else(|| ServiceError::NotFound { what: "experiment", id: new.experiment.to_string() })?;
-        let spec = Arc::new(Spec::new("job.toml", &new.toml, "experiment.toml", &experiment.files)?);
+        let experiment = experiment.ok_or_else(|| ServiceError::NotFound {
+            what: "experiment",
+            id: new.experiment.to_string(),
+        })?;
+        let spec = Arc::new(Spec::new(
+            "job.toml",
+            &new.toml,
+            "experiment.toml",
+            &experiment.files,
+        )?);
         // The sampler is built once before anything is stored: what it refuses leaves nothing half-written.
-        let trial = Identity { id: 0, name: String::new(), study: 0, experiment: new.experiment };
+        let trial = Identity {
+            id: 0,
+            name: String::new(),
+            study: 0,
+            experiment: new.experiment,
+        };
         let mut calibration = Calibration::new(trial, spec)?;
         let name = new.name.unwrap_or_else(|| "calibration".into());
         let row = NewCalibrationRow {
@@ -156,7 +182,12 @@ impl Service {
             now_ms: now_ms(),
         };
         let (id, study) = self.store.writer().add_calibration(row).await?;
-        calibration.identity = Identity { id, name, study, experiment: new.experiment };
+        calibration.identity = Identity {
+            id,
+            name,
+            study,
+            experiment: new.experiment,
+        };
         self.dispatcher.add(calibration, Vec::new()).await?;
         Ok(CalibrationCreated { id, study })
     }
@@ -167,7 +198,10 @@ impl Service {
     /// [`ServiceError::NotFound`] and others.
     pub async fn calibration_row(&self, id: i64) -> Result<CalibrationRow, ServiceError> {
         let row = self.store.reader().calibration(id).await?;
-        row.ok_or_else(|| ServiceError::NotFound { what: "calibration", id: id.to_string() })
+        row.ok_or_else(|| ServiceError::NotFound {
+            what: "calibration",
+            id: id.to_string(),
+        })
     }
 
     /// The specification of a stored calibration.
@@ -234,7 +268,8 @@ impl Service {
 /// [`FileError`].
 pub fn experiment_of(job_name: &str, job_toml: &str) -> Result<String, FileError> {
     let job = Job::parse(job_name, job_toml)?;
-    job.experiment.ok_or_else(|| FileError::whole(job_name, "experiment = \"experiment.toml\" is missing"))
+    job.experiment
+        .ok_or_else(|| FileError::whole(job_name, "experiment = \"experiment.toml\" is missing"))
 }
 
 fn file_json(files: &BTreeMap<String, String>) -> String {

@@ -100,7 +100,10 @@ impl CalibrationState {
 
     /// Whether nothing will happen any more.
     pub fn is_final(self) -> bool {
-        matches!(self, CalibrationState::Finished | CalibrationState::Failed | CalibrationState::Cancelled)
+        matches!(
+            self,
+            CalibrationState::Finished | CalibrationState::Failed | CalibrationState::Cancelled
+        )
     }
 }
 

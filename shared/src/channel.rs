@@ -18,8 +18,12 @@ pub enum Channel {
 
 impl Channel {
     /// Every channel, in the order of all tables and files.
-    pub const ALL: [Channel; 4] =
-        [Channel::DrawbarPull, Channel::Torque, Channel::Sinkage, Channel::LateralForce];
+    pub const ALL: [Channel; 4] = [
+        Channel::DrawbarPull,
+        Channel::Torque,
+        Channel::Sinkage,
+        Channel::LateralForce,
+    ];
 
     /// Position in [`Channel::ALL`].
     pub fn index(self) -> usize {

@@ -27,12 +27,20 @@ pub struct FileError {
 impl FileError {
     /// An error of a whole file.
     pub fn whole(file: &str, message: impl Into<String>) -> Self {
-        FileError { file: file.to_owned(), line: None, message: message.into() }
+        FileError {
+            file: file.to_owned(),
+            line: None,
+            message: message.into(),
+        }
     }
 
     /// An error of one line, counted from 1.
     pub fn at(file: &str, line: usize, message: impl Into<String>) -> Self {
-        FileError { file: file.to_owned(), line: Some(line), message: message.into() }
+        FileError {
+            file: file.to_owned(),
+            line: Some(line),
+            message: message.into(),
+        }
     }
 }
 
@@ -56,7 +64,11 @@ pub fn sibling(beside: &Path, name: &str) -> PathBuf {
 pub fn parse_toml<T: serde::de::DeserializeOwned>(file: &str, text: &str) -> Result<T, FileError> {
     toml::from_str(text).map_err(|e| {
         let line = e.span().map(|span| line_of(text, span.start));
-        FileError { file: file.to_owned(), line, message: with_nearest_key(e.message()) }
+        FileError {
+            file: file.to_owned(),
+            line,
+            message: with_nearest_key(e.message()),
+        }
     })
 }
 
@@ -111,6 +123,9 @@ mod tests {
 
     #[test]
     fn a_word_near_nothing_lists_what_is_known() {
-        assert_eq!(unknown_word("column", "zzzzzz", ["run", "slip"]), "unknown column \"zzzzzz\"; known are run, slip");
+        assert_eq!(
+            unknown_word("column", "zzzzzz", ["run", "slip"]),
+            "unknown column \"zzzzzz\"; known are run, slip"
+        );
     }
 }

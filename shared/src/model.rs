@@ -61,10 +61,13 @@ impl ModelSettings {
                 }
                 ("effects", toml::Value::Array(names)) if names.is_empty() => {}
                 ("effects", _) => return Err("effects are not available in this version".into()),
-                (key, _) if LATER.contains(&key) => return Err(format!("{key} is not available in this version")),
+                (key, _) if LATER.contains(&key) => {
+                    return Err(format!("{key} is not available in this version"));
+                }
                 (key, value) => {
                     let number = value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
-                    let known = key.starts_with("wheel_radius_m.") || parameters::BASE.iter().any(|p| p.name == key);
+                    let known =
+                        key.starts_with("wheel_radius_m.") || parameters::BASE.iter().any(|p| p.name == key);
                     if !known {
                         let names = parameters::BASE.iter().map(|p| p.name).chain(["kind", "effects"]);
                         return Err(unknown_word("key", key, names));
@@ -149,7 +152,9 @@ impl ModelVariant {
         let wheels = experiment.wheel_names();
         let mut fixed = settings.fixed.clone();
         for parameter in parameters::BASE {
-            let Some(default) = parameter.default else { continue };
+            let Some(default) = parameter.default else {
+                continue;
+            };
             if !parameters.iter().any(|p| p == parameter.name) {
                 fixed.entry(parameter.name.to_owned()).or_insert(default);
             }
@@ -160,7 +165,11 @@ impl ModelVariant {
         if let Some(twice) = parameters.iter().find(|p| fixed.contains_key(*p)) {
             return Err(format!("parameter {twice} is both fixed and free"));
         }
-        let names: BTreeSet<&str> = parameters.iter().chain(fixed.keys()).map(String::as_str).collect();
+        let names: BTreeSet<&str> = parameters
+            .iter()
+            .chain(fixed.keys())
+            .map(String::as_str)
+            .collect();
         check_complete(&names, &wheels)?;
         Ok(ModelVariant {
             kind: settings.kind,
@@ -178,6 +187,9 @@ impl ModelVariant {
     pub fn hash(&self) -> String {
         // Struct fields and ordered maps serialise in one order, so equal variants have equal text.
         let text = serde_json::to_vec(self).expect("a variant holds only numbers, text and ordered maps");
-        Sha256::digest(&text)[..16].iter().map(|byte| format!("{byte:02x}")).collect()
+        Sha256::digest(&text)[..16]
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
     }
 }

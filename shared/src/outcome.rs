@@ -74,9 +74,14 @@ impl Observables {
     /// Whether every vector has an entry for each of `runs` conditions.
     pub fn covers(&self, runs: usize) -> bool {
         Channel::ALL.iter().all(|&c| self.channel(c).len() == runs)
-            && [&self.b_eff_m, &self.contact_length_m, &self.residual_load_n, &self.simulated_travel_m]
-                .iter()
-                .all(|v| v.len() == runs)
+            && [
+                &self.b_eff_m,
+                &self.contact_length_m,
+                &self.residual_load_n,
+                &self.simulated_travel_m,
+            ]
+            .iter()
+            .all(|v| v.len() == runs)
             && self.nodes_in_contact.len() == runs
     }
 }
@@ -103,7 +108,9 @@ pub struct Fault {
 
 /// FNV-1a with a rotation, over 64-bit words: stable over versions, unlike the standard library's hasher.
 fn fnv(words: impl Iterator<Item = u64>) -> u64 {
-    words.fold(0xcbf2_9ce4_8422_2325, |hash, word| (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(29))
+    words.fold(0xcbf2_9ce4_8422_2325, |hash, word| {
+        (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(29)
+    })
 }
 
 #[cfg(test)]
@@ -112,7 +119,10 @@ mod tests {
 
     #[test]
     fn one_bit_changes_the_fingerprint() {
-        let mut observables = Observables { sinkage_m: vec![0.1, 0.2, 0.3], ..Observables::default() };
+        let mut observables = Observables {
+            sinkage_m: vec![0.1, 0.2, 0.3],
+            ..Observables::default()
+        };
         let before = observables.fingerprint();
         observables.sinkage_m[1] = f64::from_bits(observables.sinkage_m[1].to_bits() ^ 1);
         assert_ne!(observables.fingerprint(), before);

@@ -24,8 +24,20 @@ pub struct BaseParameter {
     pub default: Option<f64>,
 }
 
-const fn base(name: &'static str, unit: &'static str, lower: f64, upper: f64, default: Option<f64>) -> BaseParameter {
-    BaseParameter { name, unit, lower, upper, default }
+const fn base(
+    name: &'static str,
+    unit: &'static str,
+    lower: f64,
+    upper: f64,
+    default: Option<f64>,
+) -> BaseParameter {
+    BaseParameter {
+        name,
+        unit,
+        lower,
+        upper,
+        default,
+    }
 }
 
 /// Every base parameter. `wheel_radius_m` defaults to the experiment's radius of each wheel.
@@ -55,7 +67,9 @@ pub fn noise_parameter(channel: Channel) -> String {
 /// # Errors
 /// A sentence that names the unknown name and the nearest known one.
 pub fn lookup(name: &str, wheels: &BTreeSet<&str>) -> Result<BaseParameter, String> {
-    let (stem, wheel) = name.split_once('.').map_or((name, None), |(stem, wheel)| (stem, Some(wheel)));
+    let (stem, wheel) = name
+        .split_once('.')
+        .map_or((name, None), |(stem, wheel)| (stem, Some(wheel)));
     let found = BASE.iter().find(|p| p.name == stem);
     match (found, wheel) {
         (Some(p), None) => Ok(*p),
@@ -66,8 +80,13 @@ pub fn lookup(name: &str, wheels: &BTreeSet<&str>) -> Result<BaseParameter, Stri
                 Err(unknown_word("wheel", w, wheels.iter().copied()))
             }
         }
-        (Some(p), Some(_)) => Err(format!("parameter {} belongs to the soil, not to one wheel: \"{name}\"", p.name)),
-        (None, Some(_)) => Err(format!("parameter \"{name}\" of an effect is not available in this version")),
+        (Some(p), Some(_)) => Err(format!(
+            "parameter {} belongs to the soil, not to one wheel: \"{name}\"",
+            p.name
+        )),
+        (None, Some(_)) => Err(format!(
+            "parameter \"{name}\" of an effect is not available in this version"
+        )),
         (None, None) => Err(unknown_word("parameter", name, BASE.iter().map(|p| p.name))),
     }
 }
@@ -77,12 +96,16 @@ pub fn lookup(name: &str, wheels: &BTreeSet<&str>) -> Result<BaseParameter, Stri
 /// # Errors
 /// A sentence with the name, the value, the unit and the bound.
 pub fn check_value(parameter: &BaseParameter, name: &str, value: f64) -> Result<(), String> {
-    let BaseParameter { unit, lower, upper, .. } = *parameter;
+    let BaseParameter {
+        unit, lower, upper, ..
+    } = *parameter;
     if !value.is_finite() {
         return Err(format!("{name} = {value} is not a finite number"));
     }
     if value < lower || value > upper {
-        return Err(format!("{name} = {value} {unit} lies outside [{lower}, {upper}] {unit}"));
+        return Err(format!(
+            "{name} = {value} {unit} lies outside [{lower}, {upper}] {unit}"
+        ));
     }
     Ok(())
 }
@@ -129,9 +152,20 @@ mod tests {
     #[test]
     fn either_stiffness_is_complete_and_both_are_refused() {
         assert_eq!(check(&["k_c", "k_phi", "n", "friction_angle_deg"]), Ok(()));
-        assert_eq!(check(&["log10_p_ref", "kappa", "n", "friction_angle_deg"]), Ok(()));
-        assert!(check(&["k_c", "k_phi", "kappa", "n", "friction_angle_deg"]).unwrap_err().contains("twice"));
-        assert!(check(&["k_c", "n", "friction_angle_deg"]).unwrap_err().contains("needs"));
+        assert_eq!(
+            check(&["log10_p_ref", "kappa", "n", "friction_angle_deg"]),
+            Ok(())
+        );
+        assert!(
+            check(&["k_c", "k_phi", "kappa", "n", "friction_angle_deg"])
+                .unwrap_err()
+                .contains("twice")
+        );
+        assert!(
+            check(&["k_c", "n", "friction_angle_deg"])
+                .unwrap_err()
+                .contains("needs")
+        );
     }
 
     #[test]

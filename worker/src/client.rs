@@ -27,27 +27,42 @@ impl HttpCoordinator {
     pub fn new(url: &str) -> Result<Self, String> {
         let parsed = reqwest::Url::parse(url).map_err(|e| format!("coordinator URL \"{url}\": {e}"))?;
         if parsed.scheme() != "http" {
-            return Err(format!("coordinator URL \"{url}\": scheme {} is not http", parsed.scheme()));
+            return Err(format!(
+                "coordinator URL \"{url}\": scheme {} is not http",
+                parsed.scheme()
+            ));
         }
         let client = Client::builder()
             .timeout(TIMEOUT)
             .connect_timeout(Duration::from_secs(5))
             .build()
             .map_err(|e| format!("HTTP client: {e}"))?;
-        Ok(HttpCoordinator { client, url: url.trim_end_matches('/').to_owned() })
+        Ok(HttpCoordinator {
+            client,
+            url: url.trim_end_matches('/').to_owned(),
+        })
     }
 
     async fn post(&self, request: &ExchangeRequest) -> Result<ExchangeResponse, ExchangeError> {
         let url = format!("{}/v1/work/exchange", self.url);
         let response = self.send(self.client.post(url).json(request)).await?;
         if response.status() == StatusCode::NOT_FOUND {
-            return Err(ExchangeError::Refused(format!("{} is no Grouser coordinator", self.url)));
+            return Err(ExchangeError::Refused(format!(
+                "{} is no Grouser coordinator",
+                self.url
+            )));
         }
-        response.json().await.map_err(|e| ExchangeError::Away(root_cause(&e)))
+        response
+            .json()
+            .await
+            .map_err(|e| ExchangeError::Away(root_cause(&e)))
     }
 
     async fn send(&self, request: RequestBuilder) -> Result<reqwest::Response, ExchangeError> {
-        let response = request.send().await.map_err(|e| ExchangeError::Away(root_cause(&e)))?;
+        let response = request
+            .send()
+            .await
+            .map_err(|e| ExchangeError::Away(root_cause(&e)))?;
         let status = response.status();
         if status.is_success() || status == StatusCode::NOT_FOUND {
             return Ok(response);
@@ -75,7 +90,9 @@ impl Coordinator for HttpCoordinator {
         &self,
         request: ExchangeRequest,
     ) -> Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)> {
-        self.post(&request).await.map_err(|error| (error, request.results))
+        self.post(&request)
+            .await
+            .map_err(|error| (error, request.results))
     }
 
     async fn variant(&self, hash: &str) -> Result<Option<ModelVariant>, ExchangeError> {
@@ -84,6 +101,10 @@ impl Coordinator for HttpCoordinator {
         if response.status() == StatusCode::NOT_FOUND {
             return Ok(None);
         }
-        response.json().await.map(Some).map_err(|e| ExchangeError::Away(root_cause(&e)))
+        response
+            .json()
+            .await
+            .map(Some)
+            .map_err(|e| ExchangeError::Away(root_cause(&e)))
     }
 }

@@ -67,7 +67,11 @@ impl Evaluator {
             .num_threads(threads)
             .thread_name(|i| format!("simulate-{i}"))
             .build()?;
-        Ok(Evaluator { pool, bench: Arc::default(), clock })
+        Ok(Evaluator {
+            pool,
+            bench: Arc::default(),
+            clock,
+        })
     }
 
     /// Queues evaluations behind those that wait; a panic of the model is a fault, not a loss.
@@ -80,7 +84,11 @@ impl Evaluator {
                 // Once the worker stops, what has not begun is given back instead.
                 if !bench.cancelled.load(Ordering::Acquire) {
                     let result = evaluate(lease, &variant, &clock);
-                    bench.results.lock().unwrap_or_else(PoisonError::into_inner).push(result);
+                    bench
+                        .results
+                        .lock()
+                        .unwrap_or_else(PoisonError::into_inner)
+                        .push(result);
                 }
                 let left = bench.outstanding.fetch_sub(1, Ordering::AcqRel) - 1;
                 if left == 0 || left == bench.wake_at.load(Ordering::Acquire) {
@@ -113,10 +121,24 @@ impl Evaluator {
 fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) -> WorkResult {
     let began = Instant::now();
     let outcome = std::panic::catch_unwind(AssertUnwindSafe(|| variant.evaluate(&lease.theta)))
-        .unwrap_or_else(|_| Outcome::Fault(Fault { message: "the model panicked".into() }));
+        .unwrap_or_else(|_| {
+            Outcome::Fault(Fault {
+                message: "the model panicked".into(),
+            })
+        });
     let elapsed = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);
     clock.simulated_ns.fetch_add(elapsed, Ordering::Relaxed);
     clock.evaluations.fetch_add(1, Ordering::Relaxed);
-    let Lease { lease, calibration, evaluation, .. } = lease;
-    WorkResult { lease, calibration, evaluation, outcome }
+    let Lease {
+        lease,
+        calibration,
+        evaluation,
+        ..
+    } = lease;
+    WorkResult {
+        lease,
+        calibration,
+        evaluation,
+        outcome,
+    }
 }

@@ -38,19 +38,36 @@ async fn pull(serve: &Serve) -> anyhow::Result<()> {
     let cores = std::thread::available_parallelism().map_or(1, Into::into);
     let threads = serve.threads.map_or(cores, Into::into);
     let name = name();
-    tracing::info!(name, threads, coordinator = serve.coordinator, model = worker::model_version(), "worker");
+    tracing::info!(
+        name,
+        threads,
+        coordinator = serve.coordinator,
+        model = worker::model_version(),
+        "worker"
+    );
     let clock = Arc::new(SimulationClock::default());
-    run(Arc::new(coordinator), Settings { name, threads }, clock, stop_signal()?)
-        .await
-        .context("worker")
+    run(
+        Arc::new(coordinator),
+        Settings { name, threads },
+        clock,
+        stop_signal()?,
+    )
+    .await
+    .context("worker")
 }
 
 /// Host, process and time: fresh for every process, so a dead worker's leases are never taken for a new one's.
 fn name() -> String {
     let host = std::fs::read_to_string("/etc/hostname").unwrap_or_default();
     let host = host.trim();
-    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |d| d.as_millis());
-    format!("{}-{}-{since:x}", if host.is_empty() { "worker" } else { host }, std::process::id())
+    let since = std::time::SystemTime::now()
+        .duration_since(std::time::UNIX_EPOCH)
+        .map_or(0, |d| d.as_millis());
+    format!(
+        "{}-{}-{since:x}",
+        if host.is_empty() { "worker" } else { host },
+        std::process::id()
+    )
 }
 
 /// Ready at ^C or SIGTERM.
@@ -67,7 +84,15 @@ fn stop_signal() -> anyhow::Result<impl Future<Output = ()>> {
 
 /// What went wrong with its causes, each said once.
 fn sentence(error: &anyhow::Error) -> String {
-    error.chain().map(ToString::to_string).reduce(|text, cause| {
-        if text.contains(&cause) { text } else { format!("{text}: {cause}") }
-    }).unwrap_or_default()
+    error
+        .chain()
+        .map(ToString::to_string)
+        .reduce(|text, cause| {
+            if text.contains(&cause) {
+                text
+            } else {
+                format!("{text}: {cause}")
+            }
+        })
+        .unwrap_or_default()
 }

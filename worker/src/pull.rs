@@ -46,7 +46,8 @@ pub trait Coordinator: Send + Sync + 'static {
     ) -> impl Future<Output = Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)>> + Send;
 
     /// The variant of a hash; `None` where no calibration at hand uses it.
-    fn variant(&self, hash: &str) -> impl Future<Output = Result<Option<ModelVariant>, ExchangeError>> + Send;
+    fn variant(&self, hash: &str)
+    -> impl Future<Output = Result<Option<ModelVariant>, ExchangeError>> + Send;
 }
 
 /// Who the worker is and how it works.
@@ -78,7 +79,12 @@ pub async fn run<C: Coordinator>(
         variants: VariantCache::default(),
         held: BTreeSet::new(),
         outbox: Vec::new(),
-        known: Known { remaining: 0, workers: 1, lease_ms: WAIT_MS, asked: 0 },
+        known: Known {
+            remaining: 0,
+            workers: 1,
+            lease_ms: WAIT_MS,
+            asked: 0,
+        },
         flushed: Instant::now(),
         renewed: Instant::now(),
     };
@@ -152,7 +158,11 @@ impl<C: Coordinator> Worker<C> {
                 }
                 Err((ExchangeError::Away(reason), results)) => {
                     if !std::mem::replace(&mut away, true) {
-                        tracing::warn!(worker = self.settings.name, reason, "the coordinator is away; trying again");
+                        tracing::warn!(
+                            worker = self.settings.name,
+                            reason,
+                            "the coordinator is away; trying again"
+                        );
                     }
                     self.outbox.splice(0..0, results);
                     tokio::select! {
@@ -199,7 +209,10 @@ impl<C: Coordinator> Worker<C> {
     /// `want = min(1.5 s of work, remaining / (2 x workers))`, at least one for every thread.
     fn want(&self) -> u32 {
         let threads = self.settings.threads as f64;
-        let work = self.clock.mean_s().map_or(threads, |mean| WORK_S * threads / mean.max(1e-9));
+        let work = self
+            .clock
+            .mean_s()
+            .map_or(threads, |mean| WORK_S * threads / mean.max(1e-9));
         let share = self.known.remaining as f64 / (2.0 * f64::from(self.known.workers.max(1)));
         let want = work.min(share.max(threads)) - self.held.len() as f64;
         want.clamp(0.0, 100_000.0) as u32
@@ -217,7 +230,11 @@ impl<C: Coordinator> Worker<C> {
             protocol: PROTOCOL_VERSION,
             model_version: crate::model_version().to_owned(),
             results: std::mem::take(&mut self.outbox),
-            holding: if renew { self.held.iter().copied().collect() } else { Vec::new() },
+            holding: if renew {
+                self.held.iter().copied().collect()
+            } else {
+                Vec::new()
+            },
             returned: Vec::new(),
             want: self.want().max(u32::from(idle)),
             // Whoever still has work in hand comes back for more by itself.
@@ -233,7 +250,11 @@ impl<C: Coordinator> Worker<C> {
             asked: response.leases.len() + self.held.len(),
         };
         if let Some(reason) = response.refused {
-            tracing::error!(worker = self.settings.name, reason, "no lease of a waiting calibration");
+            tracing::error!(
+                worker = self.settings.name,
+                reason,
+                "no lease of a waiting calibration"
+            );
             tokio::time::sleep(BACK_OFF[1]).await;
         }
         let hashes: BTreeSet<String> = response.leases.iter().map(|l| l.variant.clone()).collect();
@@ -257,9 +278,19 @@ impl<C: Coordinator> Worker<C> {
     /// A lease whose variant cannot be had is a fault of this machine.
     fn refuse(&mut self, lease: Lease, reasons: &BTreeMap<String, String>) {
         let message = reasons.get(&lease.variant).cloned().unwrap_or_default();
-        let Lease { lease, calibration, evaluation, .. } = lease;
+        let Lease {
+            lease,
+            calibration,
+            evaluation,
+            ..
+        } = lease;
         let outcome = Outcome::Fault(Fault { message });
-        self.take(WorkResult { lease, calibration, evaluation, outcome });
+        self.take(WorkResult {
+            lease,
+            calibration,
+            evaluation,
+            outcome,
+        });
     }
 
     /// Sees to it that a variant is in the cache.
@@ -289,7 +320,10 @@ impl<C: Coordinator> Worker<C> {
         let farewell = tokio::time::timeout(Duration::from_secs(5), self.coordinator.exchange(request)).await;
         match farewell {
             Ok(Ok(_)) => tracing::info!(worker = self.settings.name, sent, returned, "stopped"),
-            _ => tracing::warn!(worker = self.settings.name, "stopped; the coordinator could not be told"),
+            _ => tracing::warn!(
+                worker = self.settings.name,
+                "stopped; the coordinator could not be told"
+            ),
         }
         Ok(())
     }

@@ -54,15 +54,25 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
         Outcome::Evaluated(observables) => observables,
         Outcome::Rejected(r) => {
             let run = experiment.runs[r.condition as usize].name.clone();
-            return Err(SimulateError::Rejected { run, message: r.message });
+            return Err(SimulateError::Rejected {
+                run,
+                message: r.message,
+            });
         }
-        Outcome::Fault(f) => return Err(SimulateError::Rejected { run: String::new(), message: f.message }),
+        Outcome::Fault(f) => {
+            return Err(SimulateError::Rejected {
+                run: String::new(),
+                message: f.message,
+            });
+        }
     };
     let noise = noise(&experiment, command.noise_seed)
         .map_err(|e| FileError::whole(&command.experiment.display().to_string(), e))?;
     let text = table(&experiment, &observables, &noise);
-    std::fs::write(&command.out, text)
-        .map_err(|source| SimulateError::Write { path: command.out.display().to_string(), source })
+    std::fs::write(&command.out, text).map_err(|source| SimulateError::Write {
+        path: command.out.display().to_string(),
+        source,
+    })
 }
 
 /// Reads an experiment with the files that it names.
@@ -106,7 +116,10 @@ fn noise(experiment: &Experiment, seed: Option<u64>) -> Result<Vec<[f64; 4]>, St
                 (Some(sd), _) | (None, Some(NoiseSd::Known(sd))) => sd,
                 (None, None) => 0.0,
                 (None, Some(_)) => {
-                    return Err(format!("--noise-seed needs a number for [noise] {}", channel.column()));
+                    return Err(format!(
+                        "--noise-seed needs a number for [noise] {}",
+                        channel.column()
+                    ));
                 }
             };
             // Box-Muller; 1 - u lies in (0, 1], so the logarithm is finite.
@@ -125,7 +138,11 @@ fn table(experiment: &Experiment, observables: &Observables, noise: &[[f64; 4]])
     }
     text.push_str(",use\n");
     for (i, run) in experiment.runs.iter().enumerate() {
-        let usage = if run.usage == RunUse::Fit { "fit" } else { "holdout" };
+        let usage = if run.usage == RunUse::Fit {
+            "fit"
+        } else {
+            "holdout"
+        };
         text.push_str(&format!(
             "{},{},{},{},{},{},{},{}",
             run.name,

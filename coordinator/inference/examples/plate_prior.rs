@@ -31,10 +31,15 @@ fn read(path: &str) -> Result<Vec<Test>, Box<dyn std::error::Error>> {
     for line in text.lines().filter(|l| !l.starts_with('#')).skip(1) {
         let cells: Vec<&str> = line.split(',').collect();
         let [name, radius, sinkage, pressure] = cells[..] else {
-            return Err(format!("{path}: \"{line}\" is not test,plate_radius_m,sinkage_m,pressure_pa").into());
+            return Err(
+                format!("{path}: \"{line}\" is not test,plate_radius_m,sinkage_m,pressure_pa").into(),
+            );
         };
         let (radius_m, z, p): (f64, f64, f64) = (radius.parse()?, sinkage.parse()?, pressure.parse()?);
-        let test = tests.entry(name.into()).or_insert(Test { radius_m, readings: Vec::new() });
+        let test = tests.entry(name.into()).or_insert(Test {
+            radius_m,
+            readings: Vec::new(),
+        });
         test.readings.push((libm::log(z / Z_REF), libm::log(p)));
     }
     Ok(tests.into_values().collect())
@@ -42,7 +47,9 @@ fn read(path: &str) -> Result<Vec<Test>, Box<dyn std::error::Error>> {
 
 /// Log-density of a test's readings.
 fn log_density(test: &Test, theta: &[f64]) -> f64 {
-    let &[log10_p_ref, kappa, n, s_u, s_v, s_e] = theta else { return f64::NEG_INFINITY };
+    let &[log10_p_ref, kappa, n, s_u, s_v, s_e] = theta else {
+        return f64::NEG_INFINITY;
+    };
     let stiffness = (1.0 + kappa * B_REF / test.radius_m) / (1.0 + kappa);
     if stiffness <= 0.0 {
         return f64::NEG_INFINITY;
@@ -59,7 +66,11 @@ fn log_density(test: &Test, theta: &[f64]) -> f64 {
     let [count, sx, sxx, sr, srx, srr] = sums;
     // Woodbury with the 2 x 2 matrix M = D^-1 + B' B / s_e^2, B = [1 x], D = diag(s_u^2, s_v^2).
     let e2 = s_e * s_e;
-    let (a, b, c) = (1.0 / (s_u * s_u) + count / e2, sx / e2, 1.0 / (s_v * s_v) + sxx / e2);
+    let (a, b, c) = (
+        1.0 / (s_u * s_u) + count / e2,
+        sx / e2,
+        1.0 / (s_v * s_v) + sxx / e2,
+    );
     let determinant = a * c - b * b;
     let (f, g) = (sr / e2, srx / e2);
     let quadratic = srr / e2 - (c * f * f - 2.0 * b * f * g + a * g * g) / determinant;
@@ -93,12 +104,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     };
     let readings: usize = tests.iter().map(|t| t.readings.len()).sum();
-    println!("{} tests, {readings} readings; equilibrated: {}", tests.len(), posterior.equilibrated);
-    println!("{:<12} {:>9} {:>9} {:>9} {:>9}", "parameter", "mean", "sd", "5 %", "95 %");
+    println!(
+        "{} tests, {readings} readings; equilibrated: {}",
+        tests.len(),
+        posterior.equilibrated
+    );
+    println!(
+        "{:<12} {:>9} {:>9} {:>9} {:>9}",
+        "parameter", "mean", "sd", "5 %", "95 %"
+    );
     for (k, name) in NAMES.iter().enumerate() {
         let draws: Vec<f64> = posterior.particles.iter().map(|p| p.theta[k]).collect();
         let s = summary(&draws).ok_or("no draws")?;
-        println!("{name:<12} {:>9.4} {:>9.4} {:>9.4} {:>9.4}", s.mean, s.sd, s.q05, s.q95);
+        println!(
+            "{name:<12} {:>9.4} {:>9.4} {:>9.4} {:>9.4}",
+            s.mean, s.sd, s.q05, s.q95
+        );
     }
     Ok(())
 }

@@ -121,7 +121,11 @@ impl Calibration {
     /// The hash and parameter vector that an evaluation is leased with.
     pub fn lease_of(&self, evaluation: u64) -> Option<(&str, &[f64])> {
         let theta = self.theta(evaluation)?;
-        let hash = if self.draws.is_some() { &self.all_hash } else { &self.fit_hash };
+        let hash = if self.draws.is_some() {
+            &self.all_hash
+        } else {
+            &self.fit_hash
+        };
         Some((hash, self.spec.model_theta(theta)))
     }
 
@@ -136,7 +140,10 @@ impl Calibration {
 
     /// The whole parameter vector of an evaluation that is asked for at present.
     fn theta(&self, evaluation: u64) -> Option<&[f64]> {
-        match (EvaluationKey::of(evaluation, self.spec.sampler.particles), &self.draws) {
+        match (
+            EvaluationKey::of(evaluation, self.spec.sampler.particles),
+            &self.draws,
+        ) {
             (EvaluationKey::Prediction { draw }, Some(draws)) => draws.get(draw).map(Vec::as_slice),
             (EvaluationKey::Sampling { round, particle }, None) if round == self.sampler.round() => self
                 .sampler
@@ -160,11 +167,13 @@ impl Calibration {
             }
             None => {
                 let round = self.sampler.round();
-                let keys = self
-                    .sampler
-                    .pending()
-                    .iter()
-                    .map(|p| EvaluationKey::Sampling { round, particle: p.particle }.number(particles));
+                let keys = self.sampler.pending().iter().map(|p| {
+                    EvaluationKey::Sampling {
+                        round,
+                        particle: p.particle,
+                    }
+                    .number(particles)
+                });
                 self.queue.ask(keys, failed);
             }
         }
@@ -182,7 +191,13 @@ impl Calibration {
         outcome: Result<Observables, String>,
         worker: &str,
     ) -> Result<(Vec<Fact>, bool), ResultError> {
-        let runs = if self.draws.is_some() { &self.spec.all_variant } else { &self.spec.fit_variant }.conditions.len();
+        let runs = if self.draws.is_some() {
+            &self.spec.all_variant
+        } else {
+            &self.spec.fit_variant
+        }
+        .conditions
+        .len();
         if self.theta(evaluation).is_some()
             && let Ok(observables) = &outcome
             && !observables.covers(runs)
@@ -194,11 +209,26 @@ impl Calibration {
             Completion::Duplicate | Completion::Unknown => {
                 let fingerprint = Fingerprint::of(&outcome);
                 let (calibration, worker) = (self.identity.id, worker.to_owned());
-                return Ok((vec![Fact::Duplicate { calibration, evaluation, fingerprint, worker }], false));
+                return Ok((
+                    vec![Fact::Duplicate {
+                        calibration,
+                        evaluation,
+                        fingerprint,
+                        worker,
+                    }],
+                    false,
+                ));
             }
         }
-        let theta = self.theta(evaluation).expect("the queue holds only evaluations asked for").to_vec();
-        let scored = if self.draws.is_some() { Ok(None) } else { self.score(&outcome, &theta).map(Some) };
+        let theta = self
+            .theta(evaluation)
+            .expect("the queue holds only evaluations asked for")
+            .to_vec();
+        let scored = if self.draws.is_some() {
+            Ok(None)
+        } else {
+            self.score(&outcome, &theta).map(Some)
+        };
         let scored = match scored {
             Ok(scored) => scored,
             Err(error) => {
@@ -214,8 +244,18 @@ impl Calibration {
         let rejected = outcome.is_err();
         let fingerprint = Fingerprint::of(&outcome);
         let kept = self.kept(outcome);
-        let row = EvaluationRow { evaluation, theta, log_likelihood, kept, fingerprint, worker: worker.to_owned() };
-        let mut facts = vec![Fact::Evaluated { calibration: self.identity.id, row }];
+        let row = EvaluationRow {
+            evaluation,
+            theta,
+            log_likelihood,
+            kept,
+            fingerprint,
+            worker: worker.to_owned(),
+        };
+        let mut facts = vec![Fact::Evaluated {
+            calibration: self.identity.id,
+            row,
+        }];
         self.record(evaluation, rejected, scored, &mut facts);
         Ok((facts, true))
     }
@@ -226,13 +266,23 @@ impl Calibration {
         outcome: &Result<Observables, String>,
         theta: &[f64],
     ) -> Result<LogLikelihood, inference::LikelihoodError> {
-        let Ok(observables) = outcome else { return Ok(LogLikelihood::Impossible) };
+        let Ok(observables) = outcome else {
+            return Ok(LogLikelihood::Impossible);
+        };
         let channels = Channel::ALL.map(|c| observables.channel(c));
-        self.spec.likelihood.log_likelihood(|run, channel| channels[channel][run], theta)
+        self.spec
+            .likelihood
+            .log_likelihood(|run, channel| channels[channel][run], theta)
     }
 
     /// Lets a completed evaluation take effect on counts, sampler and phase.
-    fn record(&mut self, evaluation: u64, rejected: bool, scored: Option<LogLikelihood>, facts: &mut Vec<Fact>) {
+    fn record(
+        &mut self,
+        evaluation: u64,
+        rejected: bool,
+        scored: Option<LogLikelihood>,
+        facts: &mut Vec<Fact>,
+    ) {
         self.evaluations += 1;
         self.rejected += u64::from(rejected);
         self.done.insert(evaluation);
@@ -242,7 +292,8 @@ impl Calibration {
             }
             return;
         };
-        let EvaluationKey::Sampling { particle, .. } = EvaluationKey::of(evaluation, self.spec.sampler.particles)
+        let EvaluationKey::Sampling { particle, .. } =
+            EvaluationKey::of(evaluation, self.spec.sampler.particles)
         else {
             return;
         };
@@ -284,7 +335,12 @@ impl Calibration {
     pub fn change_state(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
         self.state = state;
         self.message.clone_from(&message);
-        facts.push(Fact::State { calibration: self.identity.id, state, message, busy_ms: self.busy_ms });
+        facts.push(Fact::State {
+            calibration: self.identity.id,
+            state,
+            message,
+            busy_ms: self.busy_ms,
+        });
     }
 
     /// Records that a lease failed: kept over restarts; when the attempts are used up, the calibration pauses.
@@ -298,7 +354,10 @@ impl Calibration {
             message: message.to_owned(),
         }];
         if failure.exhausted() {
-            let theta = self.theta(failure.evaluation).map(<[f64]>::to_vec).unwrap_or_default();
+            let theta = self
+                .theta(failure.evaluation)
+                .map(<[f64]>::to_vec)
+                .unwrap_or_default();
             let message = format!(
                 "evaluation {} at theta = {theta:?} failed on {} attempts, the last on worker {}: {message}",
                 failure.evaluation, failure.attempt, failure.worker
@@ -311,13 +370,17 @@ impl Calibration {
     /// Goes on after a pause; evaluations that had used up their attempts get new ones.
     pub fn resume(&mut self, facts: &mut Vec<Fact>) {
         // An attempt 0 in the list of faults: the new attempts outlive a restart.
-        facts.extend(std::mem::take(&mut self.failed).into_keys().map(|evaluation| Fact::Fault {
-            calibration: self.identity.id,
-            evaluation,
-            attempt: 0,
-            worker: String::new(),
-            message: "given new attempts by a user".into(),
-        }));
+        facts.extend(
+            std::mem::take(&mut self.failed)
+                .into_keys()
+                .map(|evaluation| Fact::Fault {
+                    calibration: self.identity.id,
+                    evaluation,
+                    attempt: 0,
+                    worker: String::new(),
+                    message: "given new attempts by a user".into(),
+                }),
+        );
         let done = std::mem::take(&mut self.done);
         self.ask();
         for &evaluation in &done {
@@ -333,7 +396,14 @@ impl Calibration {
             Ok(observables) if self.draws.is_some() => Kept::Whole(Box::new(observables)),
             Ok(observables) => {
                 let channels = Channel::ALL.map(|c| observables.channel(c));
-                Kept::Fitted(self.spec.likelihood.data().iter().map(|d| channels[d.channel][d.run]).collect())
+                Kept::Fitted(
+                    self.spec
+                        .likelihood
+                        .data()
+                        .iter()
+                        .map(|d| channels[d.channel][d.run])
+                        .collect(),
+                )
             }
         }
     }
@@ -349,14 +419,20 @@ fn final_draws(posterior: &Posterior) -> Vec<Vec<f64>> {
     let spread = crate::spec::PREDICTION_DRAWS - 1;
     let count = particles.len().min(spread);
     let even = (0..count).map(|k| k * particles.len() / count);
-    best.into_iter().chain(even).map(|i| particles[i].theta.clone()).collect()
+    best.into_iter()
+        .chain(even)
+        .map(|i| particles[i].theta.clone())
+        .collect()
 }
 
 /// Turns what a worker says into what a calibration takes; a fault is no result.
 pub fn result_of(outcome: Outcome) -> Result<Result<Observables, String>, String> {
     match outcome {
         Outcome::Evaluated(observables) => Ok(Ok(observables)),
-        Outcome::Rejected(r) => Ok(Err(format!("{}: condition {}: {}", r.kind, r.condition, r.message))),
+        Outcome::Rejected(r) => Ok(Err(format!(
+            "{}: condition {}: {}",
+            r.kind, r.condition, r.message
+        ))),
         Outcome::Fault(fault) => Err(fault.message),
     }
 }

@@ -103,9 +103,16 @@ impl Calibration {
     ) -> Result<(), ReplayError> {
         let proposed = self.theta(evaluation).unwrap_or_default().to_vec();
         let same = proposed.len() == stored.theta.len()
-            && proposed.iter().zip(&stored.theta).all(|(a, b)| a.to_bits() == b.to_bits());
+            && proposed
+                .iter()
+                .zip(&stored.theta)
+                .all(|(a, b)| a.to_bits() == b.to_bits());
         if !same {
-            return Err(ReplayError::OtherTheta { evaluation, stored: stored.theta.clone(), proposed });
+            return Err(ReplayError::OtherTheta {
+                evaluation,
+                stored: stored.theta.clone(),
+                proposed,
+            });
         }
         let scored = match (self.draws.is_some(), stored.log_likelihood) {
             (true, _) => None,
@@ -133,14 +140,21 @@ mod tests {
     use crate::spec::Spec;
 
     const JOB: &str = "[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = { uniform = [4.0, 5.6] }\nkappa = 0.0\nn = { uniform = [0.8, 1.4] }\nfriction_angle_deg = 30.0\n[sampler]\nparticles = 20\nmoves = [2, 4]\n";
-    const EXPERIMENT: &str =
-        "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 0.05\n";
+    const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 0.05\n";
     const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\na,w,s,0.2,100,0.008,5.0,fit\nb,w,s,0.4,100,0.008,5.1,holdout\n";
 
     fn fresh() -> Calibration {
-        let files = FileSet { toml: EXPERIMENT.into(), files: [("runs.csv".into(), RUNS.into())].into() };
+        let files = FileSet {
+            toml: EXPERIMENT.into(),
+            files: [("runs.csv".into(), RUNS.into())].into(),
+        };
         let spec = Spec::new("job.toml", JOB, "experiment.toml", &files).unwrap();
-        let identity = Identity { id: 1, name: "toy".into(), study: 1, experiment: 1 };
+        let identity = Identity {
+            id: 1,
+            name: "toy".into(),
+            study: 1,
+            experiment: 1,
+        };
         Calibration::new(identity, Arc::new(spec)).unwrap()
     }
 
@@ -173,7 +187,9 @@ mod tests {
                 asked.reverse();
             }
             for evaluation in asked {
-                let Some((_, theta)) = calibration.lease_of(evaluation) else { break };
+                let Some((_, theta)) = calibration.lease_of(evaluation) else {
+                    break;
+                };
                 let runs = if evaluation >= PREDICTIONS_FROM { 2 } else { 1 };
                 let outcome = toy(theta, runs);
                 let (new, counted) = calibration.complete(evaluation, outcome, "toy").unwrap();
@@ -188,7 +204,16 @@ mod tests {
     }
 
     fn rows(facts: &[Fact]) -> Vec<&EvaluationRow> {
-        facts.iter().filter_map(|f| if let Fact::Evaluated { row, .. } = f { Some(row) } else { None }).collect()
+        facts
+            .iter()
+            .filter_map(|f| {
+                if let Fact::Evaluated { row, .. } = f {
+                    Some(row)
+                } else {
+                    None
+                }
+            })
+            .collect()
     }
 
     fn stored(facts: &[Fact]) -> Stored {
@@ -203,7 +228,10 @@ mod tests {
                 (row.evaluation, evaluation)
             })
             .collect();
-        Stored { evaluations, ..Stored::default() }
+        Stored {
+            evaluations,
+            ..Stored::default()
+        }
     }
 
     fn sorted(facts: &[Fact]) -> Vec<EvaluationRow> {
@@ -240,7 +268,10 @@ mod tests {
         let mut stored = stored(&work(&mut fresh(), 5, false));
         let theta = &mut stored.evaluations.get_mut(&3).unwrap().theta;
         theta[0] = f64::from_bits(theta[0].to_bits() + 1);
-        assert!(matches!(fresh().replay(stored), Err(ReplayError::OtherTheta { evaluation: 3, .. })));
+        assert!(matches!(
+            fresh().replay(stored),
+            Err(ReplayError::OtherTheta { evaluation: 3, .. })
+        ));
     }
 
     #[test]
@@ -250,7 +281,14 @@ mod tests {
             let whole = matches!(&row.kept, Kept::Whole(o) if o.sinkage_m.len() == 2);
             let fitted = matches!(&row.kept, Kept::Fitted(v) if v.len() == 1);
             let refused = matches!(row.kept, Kept::Refused(_));
-            assert!(refused || if row.evaluation >= PREDICTIONS_FROM { whole } else { fitted });
+            assert!(
+                refused
+                    || if row.evaluation >= PREDICTIONS_FROM {
+                        whole
+                    } else {
+                        fitted
+                    }
+            );
         }
     }
 }

@@ -31,16 +31,32 @@ pub(super) async fn check(path: &Path) -> anyhow::Result<()> {
     let core_s = evaluations * pilot.seconds_per_evaluation;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let mut text = String::new();
-    text += &format!("\nA pilot of {} particles took {} evaluations.\n", pilot.particles, pilot.evaluations);
+    text += &format!(
+        "\nA pilot of {} particles took {} evaluations.\n",
+        pilot.particles, pilot.evaluations
+    );
     if !pilot.complete {
-        text += &format!("It was stopped at tempering exponent {:.2e}: what follows is a lower bound.\n", pilot.exponent);
+        text += &format!(
+            "It was stopped at tempering exponent {:.2e}: what follows is a lower bound.\n",
+            pilot.exponent
+        );
     }
-    text += &format!("expected evaluations   {evaluations:>12.0}   (one = {} runs)\n", pilot.runs);
+    text += &format!(
+        "expected evaluations   {evaluations:>12.0}   (one = {} runs)\n",
+        pilot.runs
+    );
     text += &format!("expected simulations   {simulations:>12.0}\n");
     text += &format!("expected core hours    {:>12.3}\n", core_s / 3600.0);
-    text += &format!("on {cores} cores            {:>12.3} h = {:.0} s\n", core_s / 3600.0 / cores as f64, core_s / cores as f64);
+    text += &format!(
+        "on {cores} cores            {:>12.3} h = {:.0} s\n",
+        core_s / 3600.0 / cores as f64,
+        core_s / cores as f64
+    );
     if pilot.rejected_share > 0.0 {
-        text += &format!("the model refused {:.0} % of the pilot's parameter vectors\n", 100.0 * pilot.rejected_share);
+        text += &format!(
+            "the model refused {:.0} % of the pilot's parameter vectors\n",
+            100.0 * pilot.rejected_share
+        );
     }
     Ok(say(&text)?)
 }
@@ -57,11 +73,19 @@ struct Pilot {
 
 /// The same calibration in small, in memory.
 fn pilot(mut spec: crate::spec::Spec) -> anyhow::Result<Pilot> {
-    spec.sampler.particles = spec.sampler.particles.min(PILOT_PARTICLES.max(2 * spec.parameters.len() + 2));
+    spec.sampler.particles = spec
+        .sampler
+        .particles
+        .min(PILOT_PARTICLES.max(2 * spec.parameters.len() + 2));
     let particles = spec.sampler.particles;
     let runs = spec.fit_runs.len();
     let model = Evaluate::new(&spec.fit_variant).map_err(anyhow::Error::msg)?;
-    let identity = Identity { id: 0, name: "pilot".into(), study: 0, experiment: 0 };
+    let identity = Identity {
+        id: 0,
+        name: "pilot".into(),
+        study: 0,
+        experiment: 0,
+    };
     let mut calibration = Calibration::new(identity, Arc::new(spec))?;
     let began = Instant::now();
     let mut simulated_s = 0.0;
@@ -70,7 +94,9 @@ fn pilot(mut spec: crate::spec::Spec) -> anyhow::Result<Pilot> {
             break;
         }
         for evaluation in calibration.queue.asked() {
-            let Some((_, theta)) = calibration.lease_of(evaluation) else { break };
+            let Some((_, theta)) = calibration.lease_of(evaluation) else {
+                break;
+            };
             let start = Instant::now();
             let outcome: Evaluated = model.evaluate(theta);
             simulated_s += start.elapsed().as_secs_f64();

@@ -33,9 +33,17 @@ pub(super) fn read(path: &Path) -> Result<JobOnDisk, FileError> {
         let text = read_text(&sibling(&experiment_path, &file))?;
         files.insert(file, text);
     }
-    let experiment = FileSet { toml: experiment_toml, files };
+    let experiment = FileSet {
+        toml: experiment_toml,
+        files,
+    };
     let spec = Spec::new(&job_name, &toml, &experiment_name, &experiment)?;
-    Ok(JobOnDisk { name: name(path), toml, experiment, spec })
+    Ok(JobOnDisk {
+        name: name(path),
+        toml,
+        experiment,
+        spec,
+    })
 }
 
 /// The job's name: its file's, or its folder's where the file is just `job.toml`.

@@ -49,7 +49,10 @@ impl Display {
         }
         self.stage = Some(p.stage);
         if status.state == CalibrationState::Paused && self.bar.is_none() {
-            note(&format!("paused: {}", status.message.as_deref().unwrap_or_default()));
+            note(&format!(
+                "paused: {}",
+                status.message.as_deref().unwrap_or_default()
+            ));
         }
     }
 

@@ -31,12 +31,17 @@ pub(super) async fn run(config: Run) -> anyhow::Result<()> {
     for text in terminal::notes(&job.spec) {
         note(&format!("note: {text}"));
     }
-    let out = config.out.clone().unwrap_or_else(|| Path::new("out").join(&job.name));
+    let out = config
+        .out
+        .clone()
+        .unwrap_or_else(|| Path::new("out").join(&job.name));
     // The address is taken before anything is written, so that a port in use leaves nothing behind.
     let listener = match config.listen {
-        Some(address) => {
-            Some(TcpListener::bind(address).await.with_context(|| format!("--listen {address}"))?)
-        }
+        Some(address) => Some(
+            TcpListener::bind(address)
+                .await
+                .with_context(|| format!("--listen {address}"))?,
+        ),
         None => None,
     };
     std::fs::create_dir_all(&out).with_context(|| format!("--out {}", out.display()))?;
@@ -69,10 +74,17 @@ async fn in_folder(
         CalibrationState::Finished => {
             let outcome = Outcome::load(&service.store().reader(), &row).await?;
             write_results(&outcome, out)?;
-            let files = format!("\nin {}: summary.json, posterior.csv, report.html, grouser.db\n", out.display());
+            let files = format!(
+                "\nin {}: summary.json, posterior.csv, report.html, grouser.db\n",
+                out.display()
+            );
             Ok(say(&(terminal::summary(&outcome) + &files))?)
         }
-        state => bail!("calibration {}: {}", state.name(), row.message.unwrap_or_default()),
+        state => bail!(
+            "calibration {}: {}",
+            state.name(),
+            row.message.unwrap_or_default()
+        ),
     }
 }
 
@@ -80,7 +92,10 @@ async fn in_folder(
 async fn take_up(job: &JobOnDisk, out: &Path, service: &Service) -> anyhow::Result<i64> {
     let rows = service.store().reader().calibrations().await?;
     let Some(row) = rows.first() else {
-        let experiment = NewExperiment { toml: job.experiment.toml.clone(), files: job.experiment.files.clone() };
+        let experiment = NewExperiment {
+            toml: job.experiment.toml.clone(),
+            files: job.experiment.files.clone(),
+        };
         let experiment = service.add_experiment(experiment).await?;
         let new = NewCalibration {
             experiment,
@@ -116,7 +131,9 @@ async fn calibrate(
     };
     let server = listener.map(|listener| {
         if let Ok(address) = listener.local_addr() {
-            note(&format!("workers may join: worker --coordinator http://{address}"));
+            note(&format!(
+                "workers may join: worker --coordinator http://{address}"
+            ));
         }
         tokio::spawn(crate::http::serve(listener, service.clone(), until_stopped()))
     });
@@ -163,7 +180,10 @@ async fn watch_until_over(id: i64, service: &Service) -> anyhow::Result<End> {
         let status = service.status(id).await?;
         if status.state == CalibrationState::Paused {
             display.finish();
-            bail!("paused: {}; the same command goes on from here", status.message.unwrap_or_default());
+            bail!(
+                "paused: {}; the same command goes on from here",
+                status.message.unwrap_or_default()
+            );
         }
         if status.state.is_final() {
             display.finish();

@@ -12,8 +12,9 @@ pub(super) async fn serve(config: Serve) -> anyhow::Result<()> {
     if config.lease_ms < 100 {
         bail!("--lease-ms {} ms must be >= 100 ms", config.lease_ms);
     }
-    let listener =
-        TcpListener::bind(config.listen).await.with_context(|| format!("--listen {}", config.listen))?;
+    let listener = TcpListener::bind(config.listen)
+        .await
+        .with_context(|| format!("--listen {}", config.listen))?;
     let service = Service::open(&config.store, config.lease_ms).await?;
     let address = listener.local_addr()?;
     tracing::info!(%address, store = config.store, "serving");
@@ -24,7 +25,11 @@ pub(super) async fn serve(config: Serve) -> anyhow::Result<()> {
         async move { drop(stopped.wait_for(|s| *s).await) }
     };
     let workers = (config.local_workers > 0).then(|| {
-        LocalWorkers::start(service.dispatcher().clone(), config.local_workers, until_stopped())
+        LocalWorkers::start(
+            service.dispatcher().clone(),
+            config.local_workers,
+            until_stopped(),
+        )
     });
     let server = tokio::spawn(crate::http::serve(listener, service.clone(), until_stopped()));
     let signal = super::stop_signal()?;

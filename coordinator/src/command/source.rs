@@ -87,7 +87,10 @@ impl Place {
 }
 
 async fn outcome(reader: &Reader, id: i64) -> anyhow::Result<Outcome> {
-    let row = reader.calibration(id).await?.with_context(|| format!("there is no calibration {id}"))?;
+    let row = reader
+        .calibration(id)
+        .await?
+        .with_context(|| format!("there is no calibration {id}"))?;
     Ok(Outcome::load(reader, &row).await?)
 }
 
@@ -103,11 +106,17 @@ impl Client {
         if parsed.scheme() != "http" {
             bail!("--url {url}: scheme {} is not http", parsed.scheme());
         }
-        Ok(Client { client: reqwest::Client::new(), url: url.trim_end_matches('/').to_owned() })
+        Ok(Client {
+            client: reqwest::Client::new(),
+            url: url.trim_end_matches('/').to_owned(),
+        })
     }
 
     async fn answer(&self, request: reqwest::RequestBuilder) -> anyhow::Result<String> {
-        let response = request.send().await.with_context(|| format!("no answer from {}", self.url))?;
+        let response = request
+            .send()
+            .await
+            .with_context(|| format!("no answer from {}", self.url))?;
         let status = response.status();
         let text = response.text().await?;
         if status.is_success() {
@@ -125,7 +134,8 @@ impl Client {
 
     pub(super) async fn get<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
         let text = self.text(path).await?;
-        serde_json::from_str(&text).with_context(|| format!("{} is no Grouser coordinator of this version", self.url))
+        serde_json::from_str(&text)
+            .with_context(|| format!("{} is no Grouser coordinator of this version", self.url))
     }
 
     pub(super) async fn post<T: DeserializeOwned>(
@@ -133,7 +143,10 @@ impl Client {
         path: &str,
         body: &impl serde::Serialize,
     ) -> anyhow::Result<T> {
-        let text = self.answer(self.client.post(format!("{}{path}", self.url)).json(body)).await?;
-        serde_json::from_str(&text).with_context(|| format!("{} is no Grouser coordinator of this version", self.url))
+        let text = self
+            .answer(self.client.post(format!("{}{path}", self.url)).json(body))
+            .await?;
+        serde_json::from_str(&text)
+            .with_context(|| format!("{} is no Grouser coordinator of this version", self.url))
     }
 }

@@ -15,7 +15,10 @@ use crate::result::terminal;
 pub(super) async fn submit(config: &Submit) -> anyhow::Result<()> {
     let job = job::read(&config.job)?;
     let client = Client::new(&config.url)?;
-    let experiment = NewExperiment { toml: job.experiment.toml, files: job.experiment.files };
+    let experiment = NewExperiment {
+        toml: job.experiment.toml,
+        files: job.experiment.files,
+    };
     let experiment: ExperimentCreated = client.post("/v1/experiments", &experiment).await?;
     let new = NewCalibration {
         experiment: experiment.id,
@@ -24,7 +27,10 @@ pub(super) async fn submit(config: &Submit) -> anyhow::Result<()> {
         name: Some(job.name),
     };
     let created: CalibrationCreated = client.post("/v1/calibrations", &new).await?;
-    Ok(say(&format!("calibration {} of study {}\n", created.id, created.study))?)
+    Ok(say(&format!(
+        "calibration {} of study {}\n",
+        created.id, created.study
+    ))?)
 }
 
 pub(super) async fn list(source: &Source) -> anyhow::Result<()> {
@@ -41,10 +47,14 @@ pub(super) async fn status(target: &Target) -> anyhow::Result<()> {
 pub(super) async fn control(target: &Target, verb: &str) -> anyhow::Result<()> {
     let place = Place::open(&target.source).await?;
     let Place::Service(client) = &place else {
-        bail!("{verb} needs a service (--url): the run of a folder is stopped by ^C and goes on by running it again");
+        bail!(
+            "{verb} needs a service (--url): the run of a folder is stopped by ^C and goes on by running it again"
+        );
     };
     let id = place.id(target).await?;
-    let answer: serde_json::Value = client.post(&format!("/v1/calibrations/{id}/{verb}"), &json!({})).await?;
+    let answer: serde_json::Value = client
+        .post(&format!("/v1/calibrations/{id}/{verb}"), &json!({}))
+        .await?;
     let state = answer["state"].as_str().unwrap_or("in an unknown state");
     Ok(say(&format!("calibration {id} is {state}\n"))?)
 }

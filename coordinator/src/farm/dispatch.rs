@@ -31,10 +31,23 @@ type Look = Box<dyn FnOnce(&Farm, u64) + Send>;
 pub type Controlled = Result<Durable<CalibrationState>, ControlError>;
 
 enum Message {
-    Exchange { request: ExchangeRequest, reply: ExchangeReply },
-    Add { calibration: Box<Calibration>, facts: Vec<Fact>, reply: oneshot::Sender<()> },
-    Control { id: i64, control: Control, reply: oneshot::Sender<Controlled> },
-    Look { look: Look },
+    Exchange {
+        request: ExchangeRequest,
+        reply: ExchangeReply,
+    },
+    Add {
+        calibration: Box<Calibration>,
+        facts: Vec<Fact>,
+        reply: oneshot::Sender<()>,
+    },
+    Control {
+        id: i64,
+        control: Control,
+        reply: oneshot::Sender<Controlled>,
+    },
+    Look {
+        look: Look,
+    },
     Stop,
 }
 
@@ -69,9 +82,15 @@ impl Dispatcher {
     /// The operating system refuses a thread.
     pub fn start(farm: Farm, sink: FactSink) -> std::io::Result<Dispatcher> {
         let (sender, receiver) = mpsc::channel();
-        std::thread::Builder::new()
-            .name("farm".into())
-            .spawn(move || Thread { farm, sink, parked: VecDeque::new(), began: Instant::now() }.run(&receiver))?;
+        std::thread::Builder::new().name("farm".into()).spawn(move || {
+            Thread {
+                farm,
+                sink,
+                parked: VecDeque::new(),
+                began: Instant::now(),
+            }
+            .run(&receiver)
+        })?;
         Ok(Dispatcher { sender })
     }
 
@@ -95,7 +114,11 @@ impl Dispatcher {
     /// [`Stopped`].
     pub async fn add(&self, calibration: Calibration, facts: Vec<Fact>) -> Result<(), Stopped> {
         let (reply, answer) = oneshot::channel();
-        self.send(Message::Add { calibration: Box::new(calibration), facts, reply })?;
+        self.send(Message::Add {
+            calibration: Box::new(calibration),
+            facts,
+            reply,
+        })?;
         answer.await.map_err(|_| Stopped)
     }
 
@@ -214,7 +237,11 @@ impl Thread {
     fn handle(&mut self, message: Message, now_ms: u64) {
         match message {
             Message::Exchange { request, reply } => self.exchange(request, reply, now_ms),
-            Message::Add { calibration, facts, reply } => {
+            Message::Add {
+                calibration,
+                facts,
+                reply,
+            } => {
                 self.farm.add(*calibration, facts, now_ms);
                 let _ = reply.send(());
             }
@@ -234,7 +261,13 @@ impl Thread {
         let response = self.farm.exchange(request, now_ms);
         let Some(fact) = self.flush() else { return };
         if response.leases.is_empty() && want > 0 && until_ms > now_ms && response.refused.is_none() {
-            self.parked.push_back(Parked { worker, model_version, want, until_ms, reply });
+            self.parked.push_back(Parked {
+                worker,
+                model_version,
+                want,
+                until_ms,
+                reply,
+            });
         } else {
             self.answer(reply, (response, fact), now_ms);
         }
@@ -243,7 +276,9 @@ impl Thread {
     /// Gives work, or the news that there is none, to those whose turn it is.
     fn serve_parked(&mut self, now_ms: u64) {
         for _ in 0..self.parked.len() {
-            let Some(parked) = self.parked.pop_front() else { return };
+            let Some(parked) = self.parked.pop_front() else {
+                return;
+            };
             if parked.reply.is_closed() {
                 continue;
             }

@@ -124,7 +124,11 @@ impl Farm {
         self.facts.extend(facts);
         if !calibration.state.is_final() {
             let pace = Pace::new(calibration.evaluations, now_ms);
-            let entry = Entry { calibration, pace, counted_ms: now_ms };
+            let entry = Entry {
+                calibration,
+                pace,
+                counted_ms: now_ms,
+            };
             self.calibrations.insert(entry.calibration.identity.id, entry);
         }
     }
@@ -141,7 +145,10 @@ impl Farm {
 
     /// Leases that are out.
     pub fn leased(&self) -> usize {
-        self.calibrations.values().map(|e| e.calibration.queue.leased()).sum()
+        self.calibrations
+            .values()
+            .map(|e| e.calibration.queue.leased())
+            .sum()
     }
 
     /// Whether an exchange would give a lease to somebody.
@@ -157,14 +164,17 @@ impl Farm {
     /// Takes a worker's results, renewals and returns, and leases it what it wants.
     pub fn exchange(&mut self, request: ExchangeRequest, now_ms: u64) -> ExchangeResponse {
         let worker = request.worker;
-        let record = self.workers.entry(worker.clone()).or_insert_with(|| WorkerRecord {
-            model_version: request.model_version.clone(),
-            holds: 0,
-            completed: 0,
-            faults: 0,
-            silent_ms: 0,
-            last_seen_ms: now_ms,
-        });
+        let record = self
+            .workers
+            .entry(worker.clone())
+            .or_insert_with(|| WorkerRecord {
+                model_version: request.model_version.clone(),
+                holds: 0,
+                completed: 0,
+                faults: 0,
+                silent_ms: 0,
+                last_seen_ms: now_ms,
+            });
         record.last_seen_ms = now_ms;
         let mut duplicates = 0;
         for result in request.results {
@@ -174,7 +184,9 @@ impl Farm {
         }
         for lease in request.holding {
             let until = now_ms + self.lease_ms;
-            self.calibrations.values_mut().any(|e| e.calibration.queue.renew(lease, until));
+            self.calibrations
+                .values_mut()
+                .any(|e| e.calibration.queue.renew(lease, until));
         }
         for lease in request.returned {
             self.give_back(lease);
@@ -209,7 +221,10 @@ impl Farm {
             },
             Err(fault) => Err(fault),
         };
-        let record = self.workers.get_mut(worker).expect("the worker of an exchange is on record");
+        let record = self
+            .workers
+            .get_mut(worker)
+            .expect("the worker of an exchange is on record");
         let counted = match taken {
             Ok(counted) => counted,
             Err(message) => {
@@ -231,15 +246,26 @@ impl Farm {
     }
 
     fn give_back(&mut self, lease: u64) {
-        self.calibrations.values_mut().any(|e| e.calibration.queue.give_back(lease));
+        self.calibrations
+            .values_mut()
+            .any(|e| e.calibration.queue.give_back(lease));
     }
 
     fn held_by(&self, worker: &str) -> usize {
-        self.calibrations.values().map(|e| e.calibration.queue.held_by(worker)).sum()
+        self.calibrations
+            .values()
+            .map(|e| e.calibration.queue.held_by(worker))
+            .sum()
     }
 
     /// Leases up to `want` evaluations, oldest calibration first.
-    fn lease(&mut self, worker: &str, version: &str, want: usize, now_ms: u64) -> (Vec<Lease>, Option<String>) {
+    fn lease(
+        &mut self,
+        worker: &str,
+        version: &str,
+        want: usize,
+        now_ms: u64,
+    ) -> (Vec<Lease>, Option<String>) {
         let mut leases = Vec::new();
         let mut refused = None;
         let expires_ms = now_ms + self.lease_ms;
@@ -259,23 +285,34 @@ impl Farm {
                 Some(_) => {}
                 None => {
                     calibration.model_version = Some(version.to_owned());
-                    self.facts.push(Fact::ModelVersion { calibration: id, version: version.to_owned() });
+                    self.facts.push(Fact::ModelVersion {
+                        calibration: id,
+                        version: version.to_owned(),
+                    });
                 }
             }
             let tokens = &mut self.tokens;
             let next_lease = || tokens.next_token();
-            let claims =
-                calibration.queue.claim(worker, want - leases.len(), holds, expires_ms, next_lease);
+            let claims = calibration
+                .queue
+                .claim(worker, want - leases.len(), holds, expires_ms, next_lease);
             holds += claims.len();
             self.counters.leased += claims.len() as u64;
             if !claims.is_empty() && calibration.state == CalibrationState::Queued {
                 calibration.change_state(CalibrationState::Running, None, &mut self.facts);
             }
             for (lease, evaluation) in claims {
-                let (variant, theta) =
-                    calibration.lease_of(evaluation).expect("a claimed evaluation is asked for at present");
+                let (variant, theta) = calibration
+                    .lease_of(evaluation)
+                    .expect("a claimed evaluation is asked for at present");
                 let (variant, theta) = (variant.to_owned(), theta.to_vec());
-                leases.push(Lease { lease, calibration: id, evaluation, variant, theta });
+                leases.push(Lease {
+                    lease,
+                    calibration: id,
+                    evaluation,
+                    variant,
+                    theta,
+                });
             }
         }
         (leases, refused)
@@ -290,10 +327,12 @@ impl Farm {
                     record.faults += 1;
                 }
                 let message = format!("the lease expired after {} ms without renewal", self.lease_ms);
-                self.facts.extend(entry.calibration.lease_failed(&failure, &message));
+                self.facts
+                    .extend(entry.calibration.lease_failed(&failure, &message));
             }
         }
-        self.workers.retain(|_, w| now_ms.saturating_sub(w.last_seen_ms) < WORKER_SILENCE_MS);
+        self.workers
+            .retain(|_, w| now_ms.saturating_sub(w.last_seen_ms) < WORKER_SILENCE_MS);
         self.account(now_ms);
     }
 
@@ -312,19 +351,41 @@ impl Farm {
     ///
     /// # Errors
     /// [`ControlError`] where the calibration is over or the command does not fit.
-    pub fn control(&mut self, id: i64, control: Control, now_ms: u64) -> Result<CalibrationState, ControlError> {
-        let entry = self.calibrations.get_mut(&id).ok_or(ControlError::NotInProgress(id))?;
+    pub fn control(
+        &mut self,
+        id: i64,
+        control: Control,
+        now_ms: u64,
+    ) -> Result<CalibrationState, ControlError> {
+        let entry = self
+            .calibrations
+            .get_mut(&id)
+            .ok_or(ControlError::NotInProgress(id))?;
         let calibration = &mut entry.calibration;
         let state = calibration.state;
         match (control, state) {
-            (Control::Cancel, _) => calibration.change_state(CalibrationState::Cancelled, None, &mut self.facts),
+            (Control::Cancel, _) => {
+                calibration.change_state(CalibrationState::Cancelled, None, &mut self.facts)
+            }
             (Control::Pause, CalibrationState::Queued | CalibrationState::Running) => {
                 let message = Some("paused by a user".to_owned());
                 calibration.change_state(CalibrationState::Paused, message, &mut self.facts);
             }
             (Control::Resume, CalibrationState::Paused) => calibration.resume(&mut self.facts),
-            (Control::Pause, _) => return Err(ControlError::WrongState { id, state, verb: "paused" }),
-            (Control::Resume, _) => return Err(ControlError::WrongState { id, state, verb: "resumed" }),
+            (Control::Pause, _) => {
+                return Err(ControlError::WrongState {
+                    id,
+                    state,
+                    verb: "paused",
+                });
+            }
+            (Control::Resume, _) => {
+                return Err(ControlError::WrongState {
+                    id,
+                    state,
+                    verb: "resumed",
+                });
+            }
         }
         let state = calibration.state;
         self.account(now_ms);
@@ -333,7 +394,9 @@ impl Farm {
 
     /// Where a calibration in hand stands.
     pub fn status(&self, id: i64, now_ms: u64) -> Option<CalibrationStatus> {
-        self.calibrations.get(&id).map(|e| progress::status(&e.calibration, &e.pace, now_ms))
+        self.calibrations
+            .get(&id)
+            .map(|e| progress::status(&e.calibration, &e.pace, now_ms))
     }
 
     /// The calibrations in hand.
@@ -353,6 +416,9 @@ impl Farm {
 
     /// The variant of a hash, if a calibration in hand uses it.
     pub fn variant(&self, hash: &str) -> Option<ModelVariant> {
-        self.calibrations.values().find_map(|e| e.calibration.variant(hash)).cloned()
+        self.calibrations
+            .values()
+            .find_map(|e| e.calibration.variant(hash))
+            .cloned()
     }
 }

@@ -19,7 +19,10 @@ pub(super) struct Pace {
 
 impl Pace {
     pub(super) fn new(evaluations: u64, now_ms: u64) -> Self {
-        Pace { marks: VecDeque::from([(now_ms, evaluations)]), began: (now_ms, evaluations) }
+        Pace {
+            marks: VecDeque::from([(now_ms, evaluations)]),
+            began: (now_ms, evaluations),
+        }
     }
 
     /// Notes how many evaluations are done by now.
@@ -72,8 +75,13 @@ pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> Cal
 /// Rough time to go: exponents grow by about a constant factor a stage, so the stages to come follow from the
 /// growth so far; each is taken to cost as much as the mean of the stages behind.
 fn remaining_s(calibration: &Calibration, per_second: f64) -> Option<f64> {
-    let exponents: Vec<f64> =
-        calibration.sampler().stages().iter().map(|s| s.tempering_exponent).filter(|&b| b > 0.0).collect();
+    let exponents: Vec<f64> = calibration
+        .sampler()
+        .stages()
+        .iter()
+        .map(|s| s.tempering_exponent)
+        .filter(|&b| b > 0.0)
+        .collect();
     let (&first, &last) = (exponents.first()?, exponents.last()?);
     if exponents.len() < 2 || per_second <= 0.0 {
         return None;

@@ -73,7 +73,9 @@ struct NewState {
 }
 
 async fn control(service: &Service, id: i64, control: Control) -> Result<Json<NewState>, HttpError> {
-    Ok(Json(NewState { state: service.control(id, control).await? }))
+    Ok(Json(NewState {
+        state: service.control(id, control).await?,
+    }))
 }
 
 /// Stops a calibration for good.

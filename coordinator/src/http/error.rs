@@ -20,12 +20,18 @@ pub struct HttpError {
 impl HttpError {
     /// An error of a type with its message.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
-        HttpError { kind, message: message.into() }
+        HttpError {
+            kind,
+            message: message.into(),
+        }
     }
 
     /// What a later version brings.
     pub fn not_available(what: &str) -> Self {
-        HttpError::new(ErrorKind::NotAvailable, format!("{what} is not available in this version"))
+        HttpError::new(
+            ErrorKind::NotAvailable,
+            format!("{what} is not available in this version"),
+        )
     }
 
     fn status(&self) -> StatusCode {
@@ -47,8 +53,17 @@ impl IntoResponse for HttpError {
     fn into_response(self) -> Response {
         let status = self.status();
         let busy = self.kind == ErrorKind::Busy;
-        let body = ErrorBody { error: ErrorDetail { kind: self.kind, message: self.message } };
-        if busy { (status, [("retry-after", "1")], Json(body)).into_response() } else { (status, Json(body)).into_response() }
+        let body = ErrorBody {
+            error: ErrorDetail {
+                kind: self.kind,
+                message: self.message,
+            },
+        };
+        if busy {
+            (status, [("retry-after", "1")], Json(body)).into_response()
+        } else {
+            (status, Json(body)).into_response()
+        }
     }
 }
 
@@ -119,10 +134,19 @@ impl From<QueryRejection> for HttpError {
 
 /// Answer to a path that is none of ours.
 pub(super) async fn no_route(uri: axum::http::Uri) -> HttpError {
-    HttpError::new(ErrorKind::NotFound, format!("there is no {}; /openapi.json lists what there is", uri.path()))
+    HttpError::new(
+        ErrorKind::NotFound,
+        format!("there is no {}; /openapi.json lists what there is", uri.path()),
+    )
 }
 
 /// Answer to a method that a path does not take.
 pub(super) async fn no_method(method: axum::http::Method, uri: axum::http::Uri) -> HttpError {
-    HttpError::new(ErrorKind::NotFound, format!("{} does not take {method}; /openapi.json lists what it takes", uri.path()))
+    HttpError::new(
+        ErrorKind::NotFound,
+        format!(
+            "{} does not take {method}; /openapi.json lists what it takes",
+            uri.path()
+        ),
+    )
 }

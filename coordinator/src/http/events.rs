@@ -40,7 +40,13 @@ async fn events(
     Id(id): Id,
 ) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>, HttpError> {
     service.status(id).await?;
-    let watch = Watch { service, id, seen: None, stages: 0, over: false };
+    let watch = Watch {
+        service,
+        id,
+        seen: None,
+        stages: 0,
+        over: false,
+    };
     let batches = stream::unfold(watch, |mut watch| async move {
         if watch.over {
             return None;
@@ -62,7 +68,13 @@ impl Watch {
             return Vec::new();
         };
         let mut events = Vec::new();
-        let stages = self.service.store().reader().stages(self.id).await.unwrap_or_default();
+        let stages = self
+            .service
+            .store()
+            .reader()
+            .stages(self.id)
+            .await
+            .unwrap_or_default();
         for stage in stages.iter().skip(self.stages) {
             events.extend(Event::default().event("stage").json_data(stage));
         }

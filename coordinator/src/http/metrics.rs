@@ -27,7 +27,9 @@ fn gauge(registry: &mut Registry, name: &str, help: &str, value: usize) {
 }
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
-    OpenApiRouter::new().routes(routes!(metrics)).routes(routes!(health))
+    OpenApiRouter::new()
+        .routes(routes!(metrics))
+        .routes(routes!(health))
 }
 
 /// Figures of farm and store in the text format of Prometheus.
@@ -38,16 +40,51 @@ async fn metrics(State(service): State<Service>) -> Result<String, HttpError> {
     let stored = |value: &std::sync::atomic::AtomicU64| value.load(Ordering::Relaxed);
     let mut registry = Registry::with_prefix("grouser");
     let r = &mut registry;
-    counter(r, "evaluations_completed", "Results that counted", figures.counters.completed);
-    counter(r, "evaluations_duplicate", "Results that changed nothing", figures.counters.duplicates);
+    counter(
+        r,
+        "evaluations_completed",
+        "Results that counted",
+        figures.counters.completed,
+    );
+    counter(
+        r,
+        "evaluations_duplicate",
+        "Results that changed nothing",
+        figures.counters.duplicates,
+    );
     counter(r, "leases_given", "Leases given out", figures.counters.leased);
-    counter(r, "leases_failed", "Leases that expired or ended in a fault", figures.counters.failed_leases);
+    counter(
+        r,
+        "leases_failed",
+        "Leases that expired or ended in a fault",
+        figures.counters.failed_leases,
+    );
     gauge(r, "leases_out", "Leases that are out", figures.leased);
-    gauge(r, "calibrations_in_hand", "Calibrations that are not over", figures.calibrations);
-    gauge(r, "workers_connected", "Workers heard of in the last minute", figures.workers);
-    counter(r, "store_commits", "Commits of the store", stored(&health.commits));
+    gauge(
+        r,
+        "calibrations_in_hand",
+        "Calibrations that are not over",
+        figures.calibrations,
+    );
+    gauge(
+        r,
+        "workers_connected",
+        "Workers heard of in the last minute",
+        figures.workers,
+    );
+    counter(
+        r,
+        "store_commits",
+        "Commits of the store",
+        stored(&health.commits),
+    );
     counter(r, "store_facts", "Facts committed", stored(&health.facts));
-    counter(r, "store_busy_microseconds", "Time spent writing and committing", stored(&health.busy_us));
+    counter(
+        r,
+        "store_busy_microseconds",
+        "Time spent writing and committing",
+        stored(&health.busy_us),
+    );
     counter(
         r,
         "determinism_faults",
@@ -70,5 +107,8 @@ struct Health {
 #[utoipa::path(get, path = "/health", responses((status = 200, body = Health)))]
 async fn health(State(service): State<Service>) -> Result<Json<Health>, HttpError> {
     service.dispatcher().figures().await?;
-    Ok(Json(Health { status: "ok", version: env!("CARGO_PKG_VERSION") }))
+    Ok(Json(Health {
+        status: "ok",
+        version: env!("CARGO_PKG_VERSION"),
+    }))
 }

@@ -11,7 +11,10 @@ use crate::result::{CalibrationSummary, Outcome};
 use crate::service::Service;
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
-    OpenApiRouter::new().routes(routes!(list)).routes(routes!(ledger)).routes(routes!(add_runs))
+    OpenApiRouter::new()
+        .routes(routes!(list))
+        .routes(routes!(ledger))
+        .routes(routes!(add_runs))
 }
 
 /// A study.
@@ -35,7 +38,11 @@ struct Ledger {
 #[utoipa::path(get, path = "/studies", responses((status = 200, body = Vec<Study>)))]
 async fn list(State(service): State<Service>) -> Result<Json<Vec<Study>>, HttpError> {
     let studies = service.store().reader().studies().await?;
-    let studies = studies.into_iter().map(|(id, experiment, calibrations)| Study { id, experiment, calibrations });
+    let studies = studies.into_iter().map(|(id, experiment, calibrations)| Study {
+        id,
+        experiment,
+        calibrations,
+    });
     Ok(Json(studies.collect()))
 }
 
@@ -57,7 +64,12 @@ async fn ledger(State(service): State<Service>, Id(id): Id) -> Result<Json<Ledge
             ledger.push(Outcome::load(&reader, &row).await?.calibration_summary());
         }
     }
-    Ok(Json(Ledger { id, experiment, calibrations, ledger }))
+    Ok(Json(Ledger {
+        id,
+        experiment,
+        calibrations,
+        ledger,
+    }))
 }
 
 /// Adds measurements to a study. Not available in this version.

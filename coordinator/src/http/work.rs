@@ -18,7 +18,10 @@ use crate::service::Service;
 const LONGEST_WAIT_MS: u64 = 30_000;
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
-    OpenApiRouter::new().routes(routes!(exchange)).routes(routes!(variant)).routes(routes!(workers))
+    OpenApiRouter::new()
+        .routes(routes!(exchange))
+        .routes(routes!(variant))
+        .routes(routes!(workers))
 }
 
 /// Takes results and gives leases; waits for work up to `wait_ms`. The answer means: results are durable.
@@ -51,7 +54,10 @@ async fn variant(
 ) -> Result<Json<ModelVariant>, HttpError> {
     let variant = service.dispatcher().variant(hash.clone()).await?;
     variant.map(Json).ok_or_else(|| {
-        HttpError::new(ErrorKind::NotFound, format!("no calibration in progress uses variant {hash}"))
+        HttpError::new(
+            ErrorKind::NotFound,
+            format!("no calibration in progress uses variant {hash}"),
+        )
     })
 }
 

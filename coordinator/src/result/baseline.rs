@@ -74,7 +74,11 @@ fn monotone_cubic(points: &[(f64, f64)], x: f64) -> Option<f64> {
             return secant(if i == 0 { 0 } else { i - 1 });
         }
         let (before, after) = (secant(i - 1), secant(i));
-        if before * after <= 0.0 { 0.0 } else { 2.0 * before * after / (before + after) }
+        if before * after <= 0.0 {
+            0.0
+        } else {
+            2.0 * before * after / (before + after)
+        }
     };
     let left = right - 1;
     let width = points[right].0 - points[left].0;

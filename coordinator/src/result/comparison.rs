@@ -73,7 +73,9 @@ impl Outcome {
         let mut rows = Vec::new();
         for (i, run) in self.spec.experiment.runs.iter().enumerate() {
             for channel in Channel::ALL {
-                let Some(measured) = run.measured[channel.index()] else { continue };
+                let Some(measured) = run.measured[channel.index()] else {
+                    continue;
+                };
                 let p = predictive(self, i, channel);
                 let holdout = run.usage == RunUse::Holdout;
                 rows.push(ComparisonRow {
@@ -92,7 +94,11 @@ impl Outcome {
                     q95: p.map(|p| p.q95),
                     noise_sd: p.and_then(|p| p.noise_sd),
                     residual_sigma: p.and_then(|p| p.noise_sd.map(|sd| (measured - p.mean) / sd)),
-                    interpolated: if holdout { baseline.interpolate(run, channel) } else { None },
+                    interpolated: if holdout {
+                        baseline.interpolate(run, channel)
+                    } else {
+                        None
+                    },
                 });
             }
         }

@@ -15,7 +15,10 @@ impl Outcome {
     /// The equally weighted draws.
     pub fn posterior_table(&self) -> PosteriorTable {
         let parameters = self.spec.parameters.iter().map(|p| p.name.clone());
-        let columns = ["log_likelihood".to_owned(), "log_prior".to_owned()].into_iter().chain(parameters).collect();
+        let columns = ["log_likelihood".to_owned(), "log_prior".to_owned()]
+            .into_iter()
+            .chain(parameters)
+            .collect();
         let rows = self
             .posterior
             .iter()

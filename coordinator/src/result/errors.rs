@@ -101,6 +101,8 @@ fn table<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, f64)>) -> Option<Err
         torque: channel(Channel::Torque),
         sinkage: channel(Channel::Sinkage),
         lateral_force: channel(Channel::LateralForce),
-        all: AllError { rmse_sigma: sigma(&all) },
+        all: AllError {
+            rmse_sigma: sigma(&all),
+        },
     })
 }

@@ -28,10 +28,20 @@ impl Outcome {
     pub fn flags(&self) -> Vec<Flag> {
         let mut flags = Vec::new();
         let mut flag = |kind: &str, text: String| {
-            flags.push(Flag { kind: kind.into(), channel: None, against: None, p: None, text });
+            flags.push(Flag {
+                kind: kind.into(),
+                channel: None,
+                against: None,
+                p: None,
+                text,
+            });
         };
-        let unbalanced: Vec<String> =
-            self.stages.iter().filter(|s| !s.equilibrated).map(|s| s.stage.to_string()).collect();
+        let unbalanced: Vec<String> = self
+            .stages
+            .iter()
+            .filter(|s| !s.equilibrated)
+            .map(|s| s.stage.to_string())
+            .collect();
         if self.row.equilibrated == Some(false) {
             let text = if unbalanced.is_empty() {
                 "the sampler did not reach equilibrium: neither draws nor evidence can be trusted".into()
@@ -59,7 +69,11 @@ impl Outcome {
         }
         let (evaluations, rejected) = (self.row.evaluations.unwrap_or(0), self.row.rejected.unwrap_or(0));
         if rejected as f64 > MANY_REJECTED * evaluations as f64 {
-            let kinds: Vec<String> = self.rejections.iter().map(|(kind, n)| format!("{kind} {n}")).collect();
+            let kinds: Vec<String> = self
+                .rejections
+                .iter()
+                .map(|(kind, n)| format!("{kind} {n}"))
+                .collect();
             let text = format!(
                 "the model refused {rejected} of {evaluations} parameter vectors ({}): much of the prior means nothing to it",
                 kinds.join(", ")

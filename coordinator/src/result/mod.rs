@@ -53,7 +53,11 @@ impl Outcome {
     /// [`ServiceError::Control`] where it is not finished; others where the store cannot be read.
     pub async fn load(reader: &Reader, row: &CalibrationRow) -> Result<Outcome, ServiceError> {
         if row.state != CalibrationState::Finished {
-            return Err(crate::farm::ControlError::NotFinished { id: row.id, state: row.state }.into());
+            return Err(crate::farm::ControlError::NotFinished {
+                id: row.id,
+                state: row.state,
+            }
+            .into());
         }
         let stages = reader.stages(row.id).await?;
         Ok(Outcome {
@@ -70,7 +74,9 @@ impl Outcome {
     /// The most probable particle: highest likelihood times prior; the first of equals.
     pub fn most_probable(&self) -> Option<&Sample> {
         let score = |s: &Sample| s.log_likelihood.unwrap_or(f64::NEG_INFINITY) + s.log_prior;
-        self.posterior.iter().reduce(|best, s| if score(s) > score(best) { s } else { best })
+        self.posterior
+            .iter()
+            .reduce(|best, s| if score(s) > score(best) { s } else { best })
     }
 
     /// The draws of one parameter.
@@ -87,8 +93,16 @@ pub async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, Serv
     let experiment = reader
         .experiment(row.experiment)
         .await?
-        .ok_or_else(|| ServiceError::NotFound { what: "experiment", id: row.experiment.to_string() })?;
-    Ok(Spec::new("job.toml", &row.toml, "experiment.toml", &experiment.files)?)
+        .ok_or_else(|| ServiceError::NotFound {
+            what: "experiment",
+            id: row.experiment.to_string(),
+        })?;
+    Ok(Spec::new(
+        "job.toml",
+        &row.toml,
+        "experiment.toml",
+        &experiment.files,
+    )?)
 }
 
 /// Where a calibration stands that nobody has in hand.

@@ -29,7 +29,10 @@ fn noise_source(outcome: &Outcome, run: usize, channel: Channel) -> Option<Sd> {
         (Some(sd), _) | (None, Some(NoiseSd::Known(sd))) => Some(Sd::Known(sd)),
         (None, Some(NoiseSd::Unknown)) => {
             let name = noise_parameter(channel);
-            spec.parameters.iter().position(|p| p.name == name).map(|parameter| Sd::Inferred { parameter })
+            spec.parameters
+                .iter()
+                .position(|p| p.name == name)
+                .map(|parameter| Sd::Inferred { parameter })
         }
         // Pooled from the fitted repeats: every fitted datum of the channel without an sd of its own has it.
         (None, Some(NoiseSd::Replicates)) => {
@@ -84,12 +87,20 @@ fn mixture_quantile(draws: &[(f64, Option<f64>)], p: f64) -> f64 {
             .sum();
         sum / draws.len() as f64
     };
-    let spread = |sign: f64| draws.iter().map(move |&(mean, sd)| mean + sign * 10.0 * sd.unwrap_or(0.0));
+    let spread = |sign: f64| {
+        draws
+            .iter()
+            .map(move |&(mean, sd)| mean + sign * 10.0 * sd.unwrap_or(0.0))
+    };
     let mut low = spread(-1.0).fold(f64::INFINITY, f64::min);
     let mut high = spread(1.0).fold(f64::NEG_INFINITY, f64::max);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if cdf(middle) < p { low = middle } else { high = middle }
+        if cdf(middle) < p {
+            low = middle
+        } else {
+            high = middle
+        }
     }
     0.5 * (low + high)
 }

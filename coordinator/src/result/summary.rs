@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use inference::diagnostics;
 use shared::channel::Channel;
 
+use super::Outcome;
 use super::comparison::ComparisonRow;
 use super::errors::ErrorTable;
 use super::flags::Flag;
-use super::Outcome;
 
 /// The summary of a study; what does not apply is null.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -153,7 +153,10 @@ impl Outcome {
         let noise_sd = Channel::ALL
             .iter()
             .filter_map(|c| {
-                let rows = comparison.rows.iter().filter(|r| r.usage == "fit" && r.channel == c.name());
+                let rows = comparison
+                    .rows
+                    .iter()
+                    .filter(|r| r.usage == "fit" && r.channel == c.name());
                 let sds: Vec<f64> = rows.filter_map(|r| r.noise_sd).collect();
                 Some((c.name().to_owned(), diagnostics::mean(&sds)?))
             })
@@ -187,7 +190,10 @@ impl Outcome {
                 fit: coverage(&comparison.rows, "fit"),
                 holdout: coverage(&comparison.rows, "holdout"),
             },
-            error: ErrorSummary { fit: comparison.fit, holdout: comparison.holdout },
+            error: ErrorSummary {
+                fit: comparison.fit,
+                holdout: comparison.holdout,
+            },
         }
     }
 
@@ -227,7 +233,11 @@ pub(super) fn algorithm_name(algorithm: inference::Algorithm) -> &'static str {
 }
 
 fn coverage(rows: &[ComparisonRow], usage: &str) -> Option<f64> {
-    let covered: Vec<bool> = rows.iter().filter(|r| r.usage == usage).filter_map(ComparisonRow::covered).collect();
+    let covered: Vec<bool> = rows
+        .iter()
+        .filter(|r| r.usage == usage)
+        .filter_map(ComparisonRow::covered)
+        .collect();
     let inside = covered.iter().filter(|c| **c).count();
     (!covered.is_empty()).then(|| inside as f64 / covered.len() as f64)
 }

@@ -5,10 +5,10 @@ use std::fmt::Write;
 use shared::api::CalibrationStatus;
 use shared::channel::Channel;
 
+use super::Outcome;
 use super::comparison::{Comparison, ComparisonRow};
 use super::errors::ErrorTable;
 use super::summary::algorithm_name;
-use super::Outcome;
 use crate::spec::Spec;
 
 /// What a reader of the result should know of the model before it runs.
@@ -28,7 +28,8 @@ pub fn notes(spec: &Spec) -> Vec<String> {
         ));
     }
     if spec.experiment.runs.iter().any(|r| r.pass > 1) {
-        notes.push("quasi_static has no memory between passes: every pass is predicted like the first".into());
+        notes
+            .push("quasi_static has no memory between passes: every pass is predicted like the first".into());
     }
     notes
 }
@@ -47,7 +48,11 @@ pub fn specification(spec: &Spec) -> String {
         spec.sampler.particles,
         spec.sampler.seed
     );
-    let _ = writeln!(text, "{:<28} {:>12} {:>12} {:>12} {:>12}  unit", "parameter", "prior mean", "prior sd", "lower", "upper");
+    let _ = writeln!(
+        text,
+        "{:<28} {:>12} {:>12} {:>12} {:>12}  unit",
+        "parameter", "prior mean", "prior sd", "lower", "upper"
+    );
     for p in &spec.parameters {
         let (lower, upper) = p.marginal.support();
         let _ = writeln!(
@@ -91,7 +96,11 @@ pub fn summary(outcome: &Outcome) -> String {
         "parameter", "mean", "sd", "5 %", "95 %", "best", "unit"
     );
     for ((name, p), free) in outcome.parameter_summaries().iter().zip(&outcome.spec.parameters) {
-        let prior = format!("{} +- {}", number(free.marginal.mean()), number(free.marginal.sd()));
+        let prior = format!(
+            "{} +- {}",
+            number(free.marginal.mean()),
+            number(free.marginal.sd())
+        );
         let bound = if p.at_bound { "  AT BOUND" } else { "" };
         let _ = writeln!(
             text,
@@ -140,7 +149,11 @@ pub fn comparison(comparison: &Comparison) -> String {
             row.residual_sigma.map_or("-".into(), |r| format!("{r:+.1}"))
         );
     }
-    let _ = writeln!(text, "\n{:<28} {:>16} {:>16} {:>16} {:>14} {:>8}", "root mean square error", "pull N", "torque N m", "sinkage mm", "lateral N", "sigma");
+    let _ = writeln!(
+        text,
+        "\n{:<28} {:>16} {:>16} {:>16} {:>14} {:>8}",
+        "root mean square error", "pull N", "torque N m", "sinkage mm", "lateral N", "sigma"
+    );
     for (name, table) in [
         ("fit", &comparison.fit),
         ("holdout", &comparison.holdout),
@@ -151,11 +164,19 @@ pub fn comparison(comparison: &Comparison) -> String {
         }
     }
     for usage in ["fit", "holdout"] {
-        let covered: Vec<bool> =
-            comparison.rows.iter().filter(|r| r.usage == usage).filter_map(ComparisonRow::covered).collect();
+        let covered: Vec<bool> = comparison
+            .rows
+            .iter()
+            .filter(|r| r.usage == usage)
+            .filter_map(ComparisonRow::covered)
+            .collect();
         if !covered.is_empty() {
             let inside = covered.iter().filter(|c| **c).count();
-            let _ = writeln!(text, "{inside} of {} {usage} measurements lie in their 90 % interval", covered.len());
+            let _ = writeln!(
+                text,
+                "{inside} of {} {usage} measurements lie in their 90 % interval",
+                covered.len()
+            );
         }
     }
     text
@@ -164,7 +185,9 @@ pub fn comparison(comparison: &Comparison) -> String {
 fn error_line(name: &str, table: &ErrorTable) -> String {
     let cell = |c: Channel| {
         let scale = if c == Channel::Sinkage { 1000.0 } else { 1.0 };
-        table.channel(c).map_or("-".into(), |e| format!("{:.2} ({})", e.rmse * scale, e.runs))
+        table
+            .channel(c)
+            .map_or("-".into(), |e| format!("{:.2} ({})", e.rmse * scale, e.runs))
     };
     let sigma = table.all.rmse_sigma.map_or("-".into(), |s| format!("{s:.2}"));
     format!(
@@ -206,7 +229,11 @@ pub fn status_table(statuses: &[CalibrationStatus]) -> String {
 
 /// Factor and unit in which a row's channel is shown: sinkage in millimetres.
 fn shown(row: &ComparisonRow) -> (f64, &str) {
-    if row.channel == "sinkage" { (1000.0, "mm") } else { (1.0, &row.unit) }
+    if row.channel == "sinkage" {
+        (1000.0, "mm")
+    } else {
+        (1.0, &row.unit)
+    }
 }
 
 fn short(channel: &str) -> &str {

@@ -48,7 +48,12 @@ struct RawSampler {
 
 impl Default for RawSampler {
     fn default() -> Self {
-        RawSampler { algorithm: "tmcmc".into(), particles: 1000, moves: [10, 60], seed: 1 }
+        RawSampler {
+            algorithm: "tmcmc".into(),
+            particles: 1000,
+            moves: [10, 60],
+            seed: 1,
+        }
     }
 }
 
@@ -61,7 +66,10 @@ struct RawDiscovery {
 
 impl Default for RawDiscovery {
     fn default() -> Self {
-        RawDiscovery { apply: "off".into(), max_effects: 3 }
+        RawDiscovery {
+            apply: "off".into(),
+            max_effects: 3,
+        }
     }
 }
 
@@ -74,7 +82,10 @@ struct RawLikelihood {
 
 impl Default for RawLikelihood {
     fn default() -> Self {
-        RawLikelihood { kind: "gaussian".into(), discrepancy: toml::Value::Float(0.0) }
+        RawLikelihood {
+            kind: "gaussian".into(),
+            discrepancy: toml::Value::Float(0.0),
+        }
     }
 }
 
@@ -88,20 +99,36 @@ impl Job {
     pub fn parse(name: &str, toml: &str) -> Result<Job, FileError> {
         let raw: RawJob = parse_toml(name, toml)?;
         let fail = |message: String| FileError::whole(name, message);
-        raw.discovery.check().map_err(|e| fail(format!("[discovery] {e}")))?;
-        raw.likelihood.check().map_err(|e| fail(format!("[likelihood] {e}")))?;
+        raw.discovery
+            .check()
+            .map_err(|e| fail(format!("[discovery] {e}")))?;
+        raw.likelihood
+            .check()
+            .map_err(|e| fail(format!("[likelihood] {e}")))?;
         let model = ModelSettings::from_table(&raw.model).map_err(|e| fail(format!("[model] {e}")))?;
-        let sampler = raw.sampler.settings().map_err(|e| fail(format!("[sampler] {e}")))?;
+        let sampler = raw
+            .sampler
+            .settings()
+            .map_err(|e| fail(format!("[sampler] {e}")))?;
         let mut priors: Vec<_> = raw.priors.into_iter().collect();
         priors.sort_by_key(|(_, value)| value.span().start);
         let priors = priors
             .into_iter()
             .map(|(key, value)| {
                 let line = toml[..value.span().start].matches('\n').count() + 1;
-                PriorEntry { name: key, line, value: value.into_inner() }
+                PriorEntry {
+                    name: key,
+                    line,
+                    value: value.into_inner(),
+                }
             })
             .collect();
-        Ok(Job { experiment: raw.experiment, model, priors, sampler })
+        Ok(Job {
+            experiment: raw.experiment,
+            model,
+            priors,
+            sampler,
+        })
     }
 }
 
@@ -110,7 +137,9 @@ impl RawSampler {
         let algorithm = match self.algorithm.as_str() {
             "tmcmc" => Algorithm::Tmcmc,
             "ching-chen-2007" => Algorithm::ChingChen2007,
-            later @ ("basis" | "ga" | "cma-es" | "lm") => return Err(format!("algorithm = \"{later}\" {LATER}")),
+            later @ ("basis" | "ga" | "cma-es" | "lm") => {
+                return Err(format!("algorithm = \"{later}\" {LATER}"));
+            }
             other => return Err(unknown_word("algorithm", other, ["tmcmc", "ching-chen-2007"])),
         };
         Ok(Settings {
@@ -141,7 +170,10 @@ impl RawLikelihood {
             "student_t" => return Err(format!("kind = \"student_t\" {LATER}")),
             other => return Err(unknown_word("kind", other, ["gaussian", "student_t"])),
         }
-        let none = self.discrepancy.as_float().or(self.discrepancy.as_integer().map(|i| i as f64));
+        let none = self
+            .discrepancy
+            .as_float()
+            .or(self.discrepancy.as_integer().map(|i| i as f64));
         match none {
             Some(zero) if zero.abs() == 0.0 => Ok(()),
             _ => Err(format!("discrepancy = {} {LATER}; 0.0 is", self.discrepancy)),

@@ -45,7 +45,12 @@ impl Spec {
     ///
     /// # Errors
     /// [`FileError`] names the file, the line or field, the value, the unit and the bound.
-    pub fn new(job_name: &str, job_toml: &str, experiment_name: &str, files: &FileSet) -> Result<Spec, FileError> {
+    pub fn new(
+        job_name: &str,
+        job_toml: &str,
+        experiment_name: &str,
+        files: &FileSet,
+    ) -> Result<Spec, FileError> {
         let job = Job::parse(job_name, job_toml)?;
         let experiment = Experiment::parse(experiment_name, files)?;
         let in_job = |message: String| FileError::whole(job_name, message);
@@ -54,30 +59,43 @@ impl Spec {
         let mut model = job.model;
         let mut parameters = Vec::new();
         for entry in job.priors {
-            match entry.parse(&wheels).map_err(|e| FileError::at(job_name, entry.line, e))? {
+            match entry
+                .parse(&wheels)
+                .map_err(|e| FileError::at(job_name, entry.line, e))?
+            {
                 priors::Parsed::Fixed(value) => {
                     if model.fixed.insert(entry.name.clone(), value).is_some() {
-                        let message = format!("{} is fixed under [model] and stands again under [priors]", entry.name);
+                        let message = format!(
+                            "{} is fixed under [model] and stands again under [priors]",
+                            entry.name
+                        );
                         return Err(FileError::at(job_name, entry.line, message));
                     }
                 }
                 priors::Parsed::Free(parameter) => parameters.push(parameter),
             }
         }
-        let fit_runs: Vec<usize> =
-            (0..experiment.runs.len()).filter(|&i| experiment.runs[i].usage == RunUse::Fit).collect();
+        let fit_runs: Vec<usize> = (0..experiment.runs.len())
+            .filter(|&i| experiment.runs[i].usage == RunUse::Fit)
+            .collect();
         noise::add_unknown_sds(&experiment, &mut parameters);
         noise::check_names(&experiment, &parameters).map_err(in_job)?;
         let in_experiment = |message: String| FileError::whole(experiment_name, message);
         let data = noise::data(&experiment, &fit_runs, &parameters).map_err(in_experiment)?;
         if data.is_empty() {
-            return Err(in_experiment("no fit run has a measured channel: there is nothing to fit".into()));
+            return Err(in_experiment(
+                "no fit run has a measured channel: there is nothing to fit".into(),
+            ));
         }
         let likelihood = GaussianLikelihood::new(data).map_err(|e| in_experiment(e.to_string()))?;
         if parameters.is_empty() {
-            return Err(in_job("[priors] leaves no parameter free: there is nothing to calibrate".into()));
+            return Err(in_job(
+                "[priors] leaves no parameter free: there is nothing to calibrate".into(),
+            ));
         }
-        job.sampler.check(parameters.len()).map_err(|e| in_job(format!("[sampler] {e}")))?;
+        job.sampler
+            .check(parameters.len())
+            .map_err(|e| in_job(format!("[sampler] {e}")))?;
         let model_parameters: Vec<String> = parameters
             .iter()
             .filter(|p| !p.name.starts_with(parameters::NOISE_PREFIX))
@@ -89,7 +107,16 @@ impl Spec {
         };
         let fit_variant = variant(&mut fit_runs.iter().copied()).map_err(in_job)?;
         let all_variant = variant(&mut (0..experiment.runs.len())).map_err(in_job)?;
-        Ok(Spec { experiment, model, parameters, sampler: job.sampler, fit_runs, fit_variant, all_variant, likelihood })
+        Ok(Spec {
+            experiment,
+            model,
+            parameters,
+            sampler: job.sampler,
+            fit_runs,
+            fit_variant,
+            all_variant,
+            likelihood,
+        })
     }
 
     /// Whether another specification means the same calibration; comments and the order of keys do not count.
@@ -102,7 +129,6 @@ impl Spec {
     pub fn prior(&self) -> Prior {
         Prior::new(self.parameters.iter().map(|p| p.marginal.clone()).collect())
     }
-
 
     /// The part of a parameter vector that the model takes: everything but the noise sds.
     ///

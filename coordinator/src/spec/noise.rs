@@ -22,7 +22,11 @@ pub(super) fn add_unknown_sds(experiment: &Experiment, parameters: &mut Vec<Free
             let scale = USUAL_SD[channel.index()];
             let marginal = Marginal::new(Distribution::HalfNormal { scale }, None)
                 .expect("the usual scales are positive and finite");
-            parameters.push(FreeParameter { name, unit: channel.unit(), marginal });
+            parameters.push(FreeParameter {
+                name,
+                unit: channel.unit(),
+                marginal,
+            });
         }
     }
     // A stable sort keeps the order of the file within each part.
@@ -36,7 +40,9 @@ pub(super) fn check_names(experiment: &Experiment, parameters: &[FreeParameter])
         let stated = parameters.iter().any(|p| p.name == name);
         if stated && experiment.noise.sd[channel.index()] != Some(NoiseSd::Unknown) {
             let column = channel.column();
-            return Err(format!("{name} has a prior, but the experiment does not say {column} = \"unknown\" under [noise]"));
+            return Err(format!(
+                "{name} has a prior, but the experiment does not say {column} = \"unknown\" under [noise]"
+            ));
         }
         if stated && !needs_experiment_sd(experiment, channel) {
             return Err(format!("{name} has a prior, but no fit run needs it"));
@@ -48,7 +54,10 @@ pub(super) fn check_names(experiment: &Experiment, parameters: &[FreeParameter])
 /// Whether any fitted measurement of the channel lacks a standard deviation of its own.
 fn needs_experiment_sd(experiment: &Experiment, channel: Channel) -> bool {
     let c = channel.index();
-    experiment.runs.iter().any(|r| r.usage == RunUse::Fit && r.measured[c].is_some() && r.sd[c].is_none())
+    experiment
+        .runs
+        .iter()
+        .any(|r| r.usage == RunUse::Fit && r.measured[c].is_some() && r.sd[c].is_none())
 }
 
 /// The fitted measurements with their standard deviations.
@@ -77,7 +86,9 @@ pub(super) fn data(
                 (None, Some(NoiseSd::Unknown)) => {
                     let name = noise_parameter(channel);
                     let parameter = parameters.iter().position(|p| p.name == name);
-                    Sd::Inferred { parameter: parameter.ok_or(format!("{name} has no prior"))? }
+                    Sd::Inferred {
+                        parameter: parameter.ok_or(format!("{name} has no prior"))?,
+                    }
                 }
                 (None, None) => {
                     let column = channel.column();
@@ -88,7 +99,12 @@ pub(super) fn data(
                     ));
                 }
             };
-            data.push(Datum { run: position, channel: c, value, sd });
+            data.push(Datum {
+                run: position,
+                channel: c,
+                value,
+                sd,
+            });
         }
     }
     Ok(data)
@@ -114,7 +130,9 @@ fn pooled_sd(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> R
             "[noise] {column} = \"replicates\": the fit runs repeat conditions only {freedom} times, at least {LEAST_FREEDOM} repeats are needed"
         )),
         (sd, _) if sd > 0.0 => Ok(sd),
-        _ => Err(format!("[noise] {column} = \"replicates\": all repeats are equal")),
+        _ => Err(format!(
+            "[noise] {column} = \"replicates\": all repeats are equal"
+        )),
     }
 }
 

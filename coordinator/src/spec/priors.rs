@@ -43,11 +43,17 @@ impl PriorEntry {
         let (unit, lower, upper) = bounds(&self.name, wheels)?;
         if let Some(value) = number(&self.value) {
             if self.name.starts_with(NOISE_PREFIX) {
-                return Err(format!("{} is fixed in the experiment's [noise], not here", self.name));
+                return Err(format!(
+                    "{} is fixed in the experiment's [noise], not here",
+                    self.name
+                ));
             }
             return Ok(Parsed::Fixed(value));
         }
-        let table = self.value.as_table().ok_or_else(|| format!("{}: a number or a table is expected", self.name))?;
+        let table = self
+            .value
+            .as_table()
+            .ok_or_else(|| format!("{}: a number or a table is expected", self.name))?;
         let prefix = |e: String| format!("{}: {e}", self.name);
         let distribution = distribution(table).map_err(prefix)?;
         let stated = match table.get("bounds") {
@@ -64,7 +70,8 @@ impl PriorEntry {
         if let Some([a, b]) = stated
             && (a < lower || b > upper)
         {
-            let what = format!("bounds [{a}, {b}] {unit} leave the admissible range [{lower}, {upper}] {unit}");
+            let what =
+                format!("bounds [{a}, {b}] {unit} leave the admissible range [{lower}, {upper}] {unit}");
             return Err(prefix(what));
         }
         // A prior without bounds of its own ends where the quantity does.
@@ -74,7 +81,11 @@ impl PriorEntry {
             Distribution::Lognormal { .. } | Distribution::HalfNormal { .. } => Some([lower.max(0.0), upper]),
         });
         let marginal = Marginal::new(distribution, bounds).map_err(|e| prefix(e.to_string()))?;
-        Ok(Parsed::Free(FreeParameter { name: self.name.clone(), unit, marginal }))
+        Ok(Parsed::Free(FreeParameter {
+            name: self.name.clone(),
+            unit,
+            marginal,
+        }))
     }
 }
 
@@ -110,7 +121,11 @@ fn distribution(table: &toml::Table) -> Result<Distribution, String> {
         "lognormal" => two().map(|[median, factor]| Distribution::Lognormal { median, factor })?,
         "half_normal" => match number(value) {
             Some(scale) => Distribution::HalfNormal { scale },
-            None => return Err(format!("half_normal = {value}: one number, its scale, is expected")),
+            None => {
+                return Err(format!(
+                    "half_normal = {value}: one number, its scale, is expected"
+                ));
+            }
         },
         other => return Err(unknown_word("distribution", other, DISTRIBUTIONS)),
     })

@@ -23,7 +23,12 @@ pub(super) fn encode_whole(o: &Observables) -> Vec<u8> {
     push(&o.b_eff_m);
     push(&o.contact_length_m);
     push(&o.residual_load_n);
-    push(&o.nodes_in_contact.iter().map(|&n| f64::from(n)).collect::<Vec<_>>());
+    push(
+        &o.nodes_in_contact
+            .iter()
+            .map(|&n| f64::from(n))
+            .collect::<Vec<_>>(),
+    );
     push(&o.simulated_travel_m);
     bytes
 }
@@ -32,7 +37,10 @@ pub(super) fn encode_whole(o: &Observables) -> Vec<u8> {
 pub(super) fn decode(bytes: &[u8]) -> Result<Observables, StoreError> {
     let (words, rest) = bytes.as_chunks::<8>();
     if !rest.is_empty() || words.len() % VECTORS != 0 {
-        return Err(StoreError::Corrupt(format!("observables of {} bytes", bytes.len())));
+        return Err(StoreError::Corrupt(format!(
+            "observables of {} bytes",
+            bytes.len()
+        )));
     }
     let values: Vec<f64> = words.iter().map(|w| f64::from_le_bytes(*w)).collect();
     let runs = values.len() / VECTORS;

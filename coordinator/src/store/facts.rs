@@ -5,8 +5,8 @@ use std::sync::atomic::Ordering;
 use inference::StageRecord;
 use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 
-use super::writer::StoreHealth;
 use super::json;
+use super::writer::StoreHealth;
 use crate::fact::{Fact, Fingerprint};
 
 /// Most samples in one statement.
@@ -20,14 +20,24 @@ pub(super) async fn write(
 ) -> Result<(), sqlx::Error> {
     match fact {
         Fact::Evaluated { .. } => unreachable!("evaluations go in groups"),
-        Fact::Duplicate { calibration, evaluation, fingerprint, worker } => {
-            compare(connection, calibration, evaluation, fingerprint, &worker, health).await
-        }
-        Fact::Stage { calibration, record, busy_ms } => {
+        Fact::Duplicate {
+            calibration,
+            evaluation,
+            fingerprint,
+            worker,
+        } => compare(connection, calibration, evaluation, fingerprint, &worker, health).await,
+        Fact::Stage {
+            calibration,
+            record,
+            busy_ms,
+        } => {
             stage(connection, calibration, &record).await?;
             busy(connection, calibration, busy_ms).await
         }
-        Fact::Posterior { calibration, posterior } => sqlx::query(
+        Fact::Posterior {
+            calibration,
+            posterior,
+        } => sqlx::query(
             "UPDATE calibrations SET log_evidence = ?, log_evidence_se = ?, equilibrated = ?,
              evaluations = ?, rejected = ? WHERE id = ?",
         )
@@ -40,7 +50,12 @@ pub(super) async fn write(
         .execute(connection)
         .await
         .map(drop),
-        Fact::State { calibration, state, message, busy_ms } => {
+        Fact::State {
+            calibration,
+            state,
+            message,
+            busy_ms,
+        } => {
             sqlx::query("UPDATE calibrations SET state = ?, message = ? WHERE id = ?")
                 .bind(state.name())
                 .bind(message)
@@ -57,7 +72,13 @@ pub(super) async fn write(
                 .await
                 .map(drop)
         }
-        Fact::Fault { calibration, evaluation, attempt, worker, message } => sqlx::query(
+        Fact::Fault {
+            calibration,
+            evaluation,
+            attempt,
+            worker,
+            message,
+        } => sqlx::query(
             "INSERT INTO faults (calibration, evaluation, attempt, worker, message, at_ms)
              VALUES (?, ?, ?, ?, ?, unixepoch('subsec') * 1000)",
         )
@@ -81,7 +102,11 @@ async fn busy(connection: &mut SqliteConnection, calibration: i64, busy_ms: u64)
         .map(drop)
 }
 
-async fn stage(connection: &mut SqliteConnection, calibration: i64, s: &StageRecord) -> Result<(), sqlx::Error> {
+async fn stage(
+    connection: &mut SqliteConnection,
+    calibration: i64,
+    s: &StageRecord,
+) -> Result<(), sqlx::Error> {
     sqlx::query(
         "INSERT OR REPLACE INTO stages (calibration, stage, tempering_exponent, acceptance, drift_z, correlation,
          steps, log_evidence_increment, weight_cov, ess, scale, evaluations, equilibrated)
@@ -130,14 +155,20 @@ async fn compare(
     second: &str,
     health: &StoreHealth,
 ) -> Result<(), sqlx::Error> {
-    let stored: Option<(i64, String)> =
-        sqlx::query_as("SELECT fingerprint, worker FROM evaluations WHERE calibration = ? AND evaluation = ?")
-            .bind(calibration)
-            .bind(evaluation as i64)
-            .fetch_optional(connection)
-            .await?;
+    let stored: Option<(i64, String)> = sqlx::query_as(
+        "SELECT fingerprint, worker FROM evaluations WHERE calibration = ? AND evaluation = ?",
+    )
+    .bind(calibration)
+    .bind(evaluation as i64)
+    .fetch_optional(connection)
+    .await?;
     match stored {
-        None => tracing::warn!(calibration, evaluation, worker = second, "result of an unknown evaluation"),
+        None => tracing::warn!(
+            calibration,
+            evaluation,
+            worker = second,
+            "result of an unknown evaluation"
+        ),
         Some((same, _)) if same == fingerprint.0 => {}
         Some((_, first)) => {
             health.differing_duplicates.fetch_add(1, Ordering::Relaxed);

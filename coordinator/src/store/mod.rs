@@ -62,7 +62,10 @@ pub enum StoreError {
 
 impl From<sqlx::Error> for StoreError {
     fn from(source: sqlx::Error) -> Self {
-        StoreError::Sqlite { path: "query".into(), source }
+        StoreError::Sqlite {
+            path: "query".into(),
+            source,
+        }
     }
 }
 
@@ -76,8 +79,11 @@ pub struct Store {
 
 fn options(path: &str) -> Result<SqliteConnectOptions, StoreError> {
     let file = path.strip_prefix("sqlite://").unwrap_or(path);
-    let options = SqliteConnectOptions::from_str(&format!("sqlite://{file}"))
-        .map_err(|source| StoreError::Sqlite { path: path.into(), source })?;
+    let options =
+        SqliteConnectOptions::from_str(&format!("sqlite://{file}")).map_err(|source| StoreError::Sqlite {
+            path: path.into(),
+            source,
+        })?;
     Ok(options
         .journal_mode(SqliteJournalMode::Wal)
         .synchronous(SqliteSynchronous::Full)
@@ -91,7 +97,10 @@ impl Store {
     /// # Errors
     /// [`StoreError`] with the file and SQLite's reason; [`StoreError::InUse`] where another coordinator holds it.
     pub async fn open(path: &str, now_ms: i64) -> Result<Store, StoreError> {
-        let wrap = |source| StoreError::Sqlite { path: path.into(), source };
+        let wrap = |source| StoreError::Sqlite {
+            path: path.into(),
+            source,
+        };
         examine(path)?;
         // The writer holds its lock file for as long as it lives; a second coordinator is turned away at once.
         let lock = lock(path)?;
@@ -100,11 +109,18 @@ impl Store {
         sqlx::migrate!("../migrations")
             .run(&mut connection)
             .await
-            .map_err(|source| StoreError::Migrate { path: path.into(), source })?;
+            .map_err(|source| StoreError::Migrate {
+                path: path.into(),
+                source,
+            })?;
         let epochs = begin_epoch(&mut connection, now_ms).await.map_err(wrap)?;
         let readers = pool(options).await.map_err(wrap)?;
         let writer = Writer::start(connection, lock);
-        Ok(Store { readers, writer, epochs })
+        Ok(Store {
+            readers,
+            writer,
+            epochs,
+        })
     }
 
     /// The way to the writer.
@@ -126,7 +142,9 @@ impl Store {
 
     /// What can be read.
     pub fn reader(&self) -> Reader {
-        Reader { pool: self.readers.clone() }
+        Reader {
+            pool: self.readers.clone(),
+        }
     }
 }
 
@@ -146,8 +164,10 @@ impl Reader {
         if !Path::new(file).is_file() {
             return Err(StoreError::Missing(file.into()));
         }
-        let pool =
-            pool(options(path)?).await.map_err(|source| StoreError::Sqlite { path: path.into(), source })?;
+        let pool = pool(options(path)?).await.map_err(|source| StoreError::Sqlite {
+            path: path.into(),
+            source,
+        })?;
         Ok(Reader { pool })
     }
 }
@@ -175,13 +195,17 @@ async fn begin_epoch(connection: &mut SqliteConnection, now_ms: i64) -> Result<V
     .bind(now_ms)
     .execute(&mut *connection)
     .await?;
-    let epochs: Vec<i64> =
-        sqlx::query_scalar("SELECT epoch FROM epochs ORDER BY epoch").fetch_all(connection).await?;
+    let epochs: Vec<i64> = sqlx::query_scalar("SELECT epoch FROM epochs ORDER BY epoch")
+        .fetch_all(connection)
+        .await?;
     Ok(epochs.into_iter().map(i64::unsigned_abs).collect())
 }
 
 async fn pool(options: SqliteConnectOptions) -> Result<SqlitePool, sqlx::Error> {
-    SqlitePoolOptions::new().max_connections(4).connect_with(options).await
+    SqlitePoolOptions::new()
+        .max_connections(4)
+        .connect_with(options)
+        .await
 }
 
 /// Refuses what cannot be a store before anything is written beside it.
@@ -190,8 +214,16 @@ fn examine(path: &str) -> Result<(), StoreError> {
     if path.contains(":memory:") {
         return Ok(());
     }
-    let unfit = |reason: String| Err(StoreError::Unfit { path: file.display().to_string(), reason });
-    let folder = file.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let unfit = |reason: String| {
+        Err(StoreError::Unfit {
+            path: file.display().to_string(),
+            reason,
+        })
+    };
+    let folder = file
+        .parent()
+        .filter(|f| !f.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
     match std::fs::File::open(file) {
         Ok(open) if !open.metadata().is_ok_and(|m| m.is_file()) => unfit("this is no file".into()),
         Ok(mut open) => {
@@ -214,8 +246,16 @@ fn lock(path: &str) -> Result<Option<std::fs::File>, StoreError> {
         return Ok(None);
     }
     let name = format!("{file}.lock");
-    let io = |e: std::io::Error| StoreError::Sqlite { path: name.clone(), source: sqlx::Error::Io(e) };
-    let lock = std::fs::OpenOptions::new().create(true).truncate(false).write(true).open(&name).map_err(io)?;
+    let io = |e: std::io::Error| StoreError::Sqlite {
+        path: name.clone(),
+        source: sqlx::Error::Io(e),
+    };
+    let lock = std::fs::OpenOptions::new()
+        .create(true)
+        .truncate(false)
+        .write(true)
+        .open(&name)
+        .map_err(io)?;
     match lock.try_lock() {
         Ok(()) => Ok(Some(lock)),
         Err(std::fs::TryLockError::WouldBlock) => Err(StoreError::InUse(file.into())),

@@ -116,7 +116,13 @@ impl Reader {
             .await?;
         row.map(|row| {
             let files = file_map(row.get("files"))?;
-            Ok(ExperimentRow { id, files: FileSet { toml: row.get("toml"), files } })
+            Ok(ExperimentRow {
+                id,
+                files: FileSet {
+                    toml: row.get("toml"),
+                    files,
+                },
+            })
         })
         .transpose()
     }
@@ -127,7 +133,10 @@ impl Reader {
     /// [`StoreError`].
     pub async fn calibration(&self, id: i64) -> Result<Option<CalibrationRow>, StoreError> {
         let query = format!("{CALIBRATION} WHERE c.id = ?");
-        let row = sqlx::query(sqlx::AssertSqlSafe(query)).bind(id).fetch_optional(&self.pool).await?;
+        let row = sqlx::query(sqlx::AssertSqlSafe(query))
+            .bind(id)
+            .fetch_optional(&self.pool)
+            .await?;
         row.as_ref().map(calibration_row).transpose()
     }
 
@@ -137,7 +146,9 @@ impl Reader {
     /// [`StoreError`].
     pub async fn calibrations(&self) -> Result<Vec<CalibrationRow>, StoreError> {
         let query = format!("{CALIBRATION} ORDER BY c.id");
-        let rows = sqlx::query(sqlx::AssertSqlSafe(query)).fetch_all(&self.pool).await?;
+        let rows = sqlx::query(sqlx::AssertSqlSafe(query))
+            .fetch_all(&self.pool)
+            .await?;
         rows.iter().map(calibration_row).collect()
     }
 
@@ -232,7 +243,10 @@ impl Reader {
                     Some(rejection) => Err(rejection),
                     None => Ok(blob::decode(row.get("observables"))?),
                 };
-                Ok(Prediction { theta: numbers(row.get("theta"))?, result })
+                Ok(Prediction {
+                    theta: numbers(row.get("theta"))?,
+                    result,
+                })
             })
             .collect()
     }
@@ -249,7 +263,10 @@ impl Reader {
         .bind(calibration)
         .fetch_all(&self.pool)
         .await?;
-        Ok(rows.iter().map(|row| (row.get("kind"), row.get::<i64, _>("n").unsigned_abs())).collect())
+        Ok(rows
+            .iter()
+            .map(|row| (row.get("kind"), row.get::<i64, _>("n").unsigned_abs()))
+            .collect())
     }
 }
 

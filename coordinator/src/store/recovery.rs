@@ -50,13 +50,21 @@ impl Reader {
                 Ok((number, stored))
             })
             .collect();
-        let faults =
-            sqlx::query("SELECT evaluation, attempt AS n, max(id) FROM faults WHERE calibration = ? GROUP BY evaluation")
-                .bind(calibration)
-                .fetch_all(&self.pool)
-                .await?;
-        let failed =
-            faults.iter().map(|row| (row.get::<i64, _>("evaluation").unsigned_abs(), row.get::<u32, _>("n"))).collect();
+        let faults = sqlx::query(
+            "SELECT evaluation, attempt AS n, max(id) FROM faults WHERE calibration = ? GROUP BY evaluation",
+        )
+        .bind(calibration)
+        .fetch_all(&self.pool)
+        .await?;
+        let failed = faults
+            .iter()
+            .map(|row| {
+                (
+                    row.get::<i64, _>("evaluation").unsigned_abs(),
+                    row.get::<u32, _>("n"),
+                )
+            })
+            .collect();
         let state: String = row.get("state");
         Ok(Stored {
             state: CalibrationState::from_name(&state),

@@ -4,8 +4,8 @@
 //! number of the last committed fact has reached it: acknowledged means durable.
 
 use std::sync::Arc;
-use std::time::Duration;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 use sqlx::{Connection, QueryBuilder, Sqlite, SqliteConnection};
 use tokio::sync::{Notify, mpsc, oneshot, watch};
@@ -22,8 +22,16 @@ const ROWS: usize = 2000;
 
 enum Write {
     Fact(Fact),
-    Experiment { toml: String, files: String, now_ms: i64, reply: oneshot::Sender<i64> },
-    Calibration { new: NewCalibrationRow, reply: oneshot::Sender<Ids> },
+    Experiment {
+        toml: String,
+        files: String,
+        now_ms: i64,
+        reply: oneshot::Sender<i64>,
+    },
+    Calibration {
+        new: NewCalibrationRow,
+        reply: oneshot::Sender<Ids>,
+    },
     Close,
 }
 
@@ -134,12 +142,21 @@ impl Writer {
             }
             // Dropping `committed_sender` tells everyone who waits for a commit.
         });
-        Writer { sender, committed, health, waiting }
+        Writer {
+            sender,
+            committed,
+            health,
+            waiting,
+        }
     }
 
     /// The farm's end. Facts are numbered per sink, so a store has one.
     pub fn sink(&self) -> FactSink {
-        FactSink { sender: self.sender.clone(), sent: 0, health: self.health.clone() }
+        FactSink {
+            sender: self.sender.clone(),
+            sent: 0,
+            health: self.health.clone(),
+        }
     }
 
     /// Waits until a fact is durable.
@@ -149,7 +166,11 @@ impl Writer {
     pub async fn durable(&self, fact: u64) -> Result<(), StoreError> {
         let mut committed = self.committed.clone();
         let durable = committed.wait_for(|&c| c >= fact);
-        self.waiting.while_urgent(durable).await.map(|_| ()).map_err(|_| StoreError::Stopped)
+        self.waiting
+            .while_urgent(durable)
+            .await
+            .map(|_| ())
+            .map_err(|_| StoreError::Stopped)
     }
 
     /// Waits until the writer has ended: only a failing store ends it before its handles are gone.
@@ -167,7 +188,10 @@ impl Writer {
 
     /// Facts that wait to be stored.
     pub fn backlog(&self) -> u64 {
-        self.health.sent.load(Ordering::Relaxed).saturating_sub(*self.committed.borrow())
+        self.health
+            .sent
+            .load(Ordering::Relaxed)
+            .saturating_sub(*self.committed.borrow())
     }
 
     /// Figures of the writer.
@@ -181,9 +205,17 @@ impl Writer {
     /// [`StoreError::Stopped`].
     pub async fn add_experiment(&self, toml: String, files: String, now_ms: i64) -> Result<i64, StoreError> {
         let (reply, answer) = oneshot::channel();
-        let write = Write::Experiment { toml, files, now_ms, reply };
+        let write = Write::Experiment {
+            toml,
+            files,
+            now_ms,
+            reply,
+        };
         self.sender.send(write).map_err(|_| StoreError::Stopped)?;
-        self.waiting.while_urgent(answer).await.map_err(|_| StoreError::Stopped)
+        self.waiting
+            .while_urgent(answer)
+            .await
+            .map_err(|_| StoreError::Stopped)
     }
 
     /// Stores a calibration and the study that it opens; their ids.
@@ -192,8 +224,13 @@ impl Writer {
     /// [`StoreError::Stopped`].
     pub async fn add_calibration(&self, new: NewCalibrationRow) -> Result<(i64, i64), StoreError> {
         let (reply, answer) = oneshot::channel();
-        self.sender.send(Write::Calibration { new, reply }).map_err(|_| StoreError::Stopped)?;
-        self.waiting.while_urgent(answer).await.map_err(|_| StoreError::Stopped)
+        self.sender
+            .send(Write::Calibration { new, reply })
+            .map_err(|_| StoreError::Stopped)?;
+        self.waiting
+            .while_urgent(answer)
+            .await
+            .map_err(|_| StoreError::Stopped)
     }
 }
 
@@ -224,7 +261,10 @@ async fn run(
         replies.send();
         health.commits.fetch_add(1, Ordering::Relaxed);
         health.facts.fetch_add(facts, Ordering::Relaxed);
-        health.busy_us.fetch_add(u64::try_from(began.elapsed().as_micros()).unwrap_or(0), Ordering::Relaxed);
+        health.busy_us.fetch_add(
+            u64::try_from(began.elapsed().as_micros()).unwrap_or(0),
+            Ordering::Relaxed,
+        );
         committed.send_replace(number);
     }
     connection.close().await
@@ -273,7 +313,12 @@ async fn write_group(
                 }
             }
             Write::Close => {}
-            Write::Experiment { toml, files, now_ms, reply } => {
+            Write::Experiment {
+                toml,
+                files,
+                now_ms,
+                reply,
+            } => {
                 let id = sqlx::query_scalar(
                     "INSERT INTO experiments (toml, files, created_at_ms) VALUES (?, ?, ?) RETURNING id",
                 )
@@ -285,10 +330,11 @@ async fn write_group(
                 replies.experiments.push((reply, id));
             }
             Write::Calibration { new, reply } => {
-                let study: i64 = sqlx::query_scalar("INSERT INTO studies (experiment) VALUES (?) RETURNING id")
-                    .bind(new.experiment)
-                    .fetch_one(&mut *connection)
-                    .await?;
+                let study: i64 =
+                    sqlx::query_scalar("INSERT INTO studies (experiment) VALUES (?) RETURNING id")
+                        .bind(new.experiment)
+                        .fetch_one(&mut *connection)
+                        .await?;
                 let id: i64 = sqlx::query_scalar(
                     "INSERT INTO calibrations (study, name, toml, files, state, created_at_ms)
                      VALUES (?, ?, ?, ?, 'queued', ?) RETURNING id",

@@ -45,16 +45,24 @@ impl Experiment {
     pub fn parse(name: &str, files: &FileSet) -> Result<Experiment, FileError> {
         let file = settings::parse(name, &files.toml)?;
         let Some(runs_name) = &file.runs else {
-            return Err(FileError::whole(name, "the experiment names no test runs: add runs = \"runs.csv\""));
+            return Err(FileError::whole(
+                name,
+                "the experiment names no test runs: add runs = \"runs.csv\"",
+            ));
         };
         let Some(text) = files.files.get(runs_name) else {
-            return Err(FileError::whole(name, format!("file \"{runs_name}\" is named but was not sent along")));
+            return Err(FileError::whole(
+                name,
+                format!("file \"{runs_name}\" is named but was not sent along"),
+            ));
         };
         let runs = runs::parse(runs_name, text, &file.wheel, &file.soil)?;
         let used: BTreeSet<&str> = runs.iter().map(|r| r.soil.as_str()).collect();
         if used.len() > 1 {
             let list = used.into_iter().collect::<Vec<_>>().join(", ");
-            let message = format!("one experiment is about one soil, but the runs name {list}: the soil parameters would be shared");
+            let message = format!(
+                "one experiment is about one soil, but the runs name {list}: the soil parameters would be shared"
+            );
             return Err(FileError::whole(runs_name, message));
         }
         Ok(Experiment {
@@ -74,7 +82,9 @@ impl Experiment {
 
     /// Whether any run of this use has a measurement of the channel.
     pub fn measures(&self, channel: Channel, usage: RunUse) -> bool {
-        self.runs.iter().any(|r| r.usage == usage && r.measured[channel.index()].is_some())
+        self.runs
+            .iter()
+            .any(|r| r.usage == usage && r.measured[channel.index()].is_some())
     }
 }
 
@@ -86,7 +96,10 @@ mod tests {
     const HEADER: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,sinkage_m,use\n";
 
     fn parse(toml: &str, csv: &str) -> Result<Experiment, String> {
-        let files = FileSet { toml: toml.into(), files: BTreeMap::from([("runs.csv".into(), csv.into())]) };
+        let files = FileSet {
+            toml: toml.into(),
+            files: BTreeMap::from([("runs.csv".into(), csv.into())]),
+        };
         Experiment::parse("experiment.toml", &files).map_err(|e| e.to_string())
     }
 
@@ -106,26 +119,60 @@ mod tests {
     fn malformed_experiments_say_what_is_wrong() {
         let row = |row: &str| parse(TOML, &format!("{HEADER}{row}\n")).unwrap_err();
         for (wrong, message) in [
-            ("a,w,s,1.0,100,0.01,1,,fit", "runs.csv line 2: slip 1 must lie in [-1, 1)"),
-            ("a,w,s,0.2,-5,0.01,1,,fit", "runs.csv line 2: wheel_load_n -5 N must be > 0 N"),
-            ("a,w,s,0.2,100,0,1,,fit", "runs.csv line 2: sled_speed_m_s 0 m/s must be > 0 m/s"),
+            (
+                "a,w,s,1.0,100,0.01,1,,fit",
+                "runs.csv line 2: slip 1 must lie in [-1, 1)",
+            ),
+            (
+                "a,w,s,0.2,-5,0.01,1,,fit",
+                "runs.csv line 2: wheel_load_n -5 N must be > 0 N",
+            ),
+            (
+                "a,w,s,0.2,100,0,1,,fit",
+                "runs.csv line 2: sled_speed_m_s 0 m/s must be > 0 m/s",
+            ),
             (
                 "a,w,s,0.2,100,0.01,1,5.2,fit",
                 "runs.csv line 2: sinkage_m 5.2 m is more than the wheel's diameter 0.2 m: metres are expected, were these millimetres?",
             ),
-            ("a,v,s,0.2,100,0.01,1,,fit", "runs.csv line 2: unknown wheel \"v\"; the nearest known is \"w\""),
-            ("a,w,s,zero,100,0.01,1,,fit", "runs.csv line 2: slip \"zero\" is not a number"),
-            ("a,w,s,0.2,100,0.01,NaN,,fit", "runs.csv line 2: drawbar_pull_n NaN is not a finite number"),
-            ("a,w,s,0.2,100,0.01,1,,both", "runs.csv line 2: use \"both\" must be fit or holdout"),
-            ("a,w,s,0.2,100,0.01", "runs.csv line 2: 6 fields where the header has 9"),
+            (
+                "a,v,s,0.2,100,0.01,1,,fit",
+                "runs.csv line 2: unknown wheel \"v\"; the nearest known is \"w\"",
+            ),
+            (
+                "a,w,s,zero,100,0.01,1,,fit",
+                "runs.csv line 2: slip \"zero\" is not a number",
+            ),
+            (
+                "a,w,s,0.2,100,0.01,NaN,,fit",
+                "runs.csv line 2: drawbar_pull_n NaN is not a finite number",
+            ),
+            (
+                "a,w,s,0.2,100,0.01,1,,both",
+                "runs.csv line 2: use \"both\" must be fit or holdout",
+            ),
+            (
+                "a,w,s,0.2,100,0.01",
+                "runs.csv line 2: 6 fields where the header has 9",
+            ),
         ] {
             assert_eq!(row(wrong), message);
         }
         let two = format!("{HEADER}a,w,s,0.2,100,0.01,1,,fit\na,w,s,0.2,100,0.01,1,,fit\n");
-        assert_eq!(parse(TOML, &two).unwrap_err(), "runs.csv line 3: run \"a\" stands twice (first on line 2)");
-        assert_eq!(parse(TOML, HEADER).unwrap_err(), "runs.csv: no test run stands in the file");
-        let commented = format!("# a\n\n{HEADER}a,w,s,0.2,100,0.01,1,,fit\n# b\n# c\nd,w,s,2,100,0.01,1,,fit");
-        assert_eq!(parse(TOML, &commented).unwrap_err(), "runs.csv line 7: slip 2 must lie in [-1, 1)");
+        assert_eq!(
+            parse(TOML, &two).unwrap_err(),
+            "runs.csv line 3: run \"a\" stands twice (first on line 2)"
+        );
+        assert_eq!(
+            parse(TOML, HEADER).unwrap_err(),
+            "runs.csv: no test run stands in the file"
+        );
+        let commented =
+            format!("# a\n\n{HEADER}a,w,s,0.2,100,0.01,1,,fit\n# b\n# c\nd,w,s,2,100,0.01,1,,fit");
+        assert_eq!(
+            parse(TOML, &commented).unwrap_err(),
+            "runs.csv line 7: slip 2 must lie in [-1, 1)"
+        );
         let column = "run,wheel,soil,slipp,wheel_load_n,sled_speed_m_s\n";
         assert_eq!(
             parse(TOML, column).unwrap_err(),
@@ -141,8 +188,16 @@ mod tests {
     #[test]
     fn what_a_later_version_brings_says_so() {
         let toml = TOML.replace("width_m", "mesh = \"w.stl\"\nwidth_m");
-        assert!(parse(&toml, HEADER).unwrap_err().contains("not available in this version"));
+        assert!(
+            parse(&toml, HEADER)
+                .unwrap_err()
+                .contains("not available in this version")
+        );
         let toml = TOML.replace("[noise]", "[noise]\nrun_scatter = 0.1");
-        assert!(parse(&toml, HEADER).unwrap_err().contains("not available in this version"));
+        assert!(
+            parse(&toml, HEADER)
+                .unwrap_err()
+                .contains("not available in this version")
+        );
     }
 }

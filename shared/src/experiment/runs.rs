@@ -42,8 +42,16 @@ pub enum RunUse {
     Holdout,
 }
 
-const CONDITION: [&str; 8] =
-    ["run", "wheel", "soil", "slip", "wheel_load_n", "sled_speed_m_s", "slip_angle_deg", "pass"];
+const CONDITION: [&str; 8] = [
+    "run",
+    "wheel",
+    "soil",
+    "slip",
+    "wheel_load_n",
+    "sled_speed_m_s",
+    "slip_angle_deg",
+    "pass",
+];
 const REQUIRED: usize = 6;
 
 /// Parses `runs.csv` against the wheels and soils of its experiment.
@@ -53,9 +61,15 @@ pub(super) fn parse(
     wheels: &BTreeMap<String, Wheel>,
     soils: &BTreeMap<String, Soil>,
 ) -> Result<Vec<TestRun>, FileError> {
-    let mut reader =
-        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|e| FileError::at(file, 1, e.to_string()))?.clone();
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .flexible(true)
+        .from_reader(text.as_bytes());
+    let header = reader
+        .headers()
+        .map_err(|e| FileError::at(file, 1, e.to_string()))?
+        .clone();
     let columns = columns(&header).map_err(|e| FileError::at(file, line_of(text, &header), e))?;
     let mut first_line: BTreeMap<String, usize> = BTreeMap::new();
     let mut runs = Vec::new();
@@ -66,10 +80,19 @@ pub(super) fn parse(
             let message = format!("{} fields where the header has {}", record.len(), header.len());
             return Err(FileError::at(file, line, message));
         }
-        let row = Row { columns: &columns, record: &record };
-        let run = row.test_run(wheels, soils).map_err(|e| FileError::at(file, line, e))?;
+        let row = Row {
+            columns: &columns,
+            record: &record,
+        };
+        let run = row
+            .test_run(wheels, soils)
+            .map_err(|e| FileError::at(file, line, e))?;
         if let Some(first) = first_line.insert(run.name.clone(), line) {
-            return Err(FileError::at(file, line, format!("run \"{}\" stands twice (first on line {first})", run.name)));
+            return Err(FileError::at(
+                file,
+                line,
+                format!("run \"{}\" stands twice (first on line {first})", run.name),
+            ));
         }
         runs.push(run);
     }
@@ -81,15 +104,23 @@ pub(super) fn parse(
 
 /// The line in which a record stands, counted from 1: its position is that of the comments before it.
 fn line_of(text: &str, record: &csv::StringRecord) -> usize {
-    let Some(position) = record.position() else { return 1 };
+    let Some(position) = record.position() else {
+        return 1;
+    };
     let [line, byte] = [position.line(), position.byte()].map(|n| usize::try_from(n).unwrap_or(usize::MAX));
     let rest = text.get(byte..).unwrap_or_default();
-    line + rest.lines().take_while(|l| l.is_empty() || l.starts_with('#')).count()
+    line + rest
+        .lines()
+        .take_while(|l| l.is_empty() || l.starts_with('#'))
+        .count()
 }
 
 /// Where each known column stands in the file.
 fn columns(header: &csv::StringRecord) -> Result<BTreeMap<String, usize>, String> {
-    let sd_columns: Vec<String> = Channel::ALL.iter().map(|c| format!("{}_sd", c.column())).collect();
+    let sd_columns: Vec<String> = Channel::ALL
+        .iter()
+        .map(|c| format!("{}_sd", c.column()))
+        .collect();
     let mut known: Vec<&str> = CONDITION.to_vec();
     known.extend(Channel::ALL.iter().map(|c| c.column()));
     known.extend(sd_columns.iter().map(String::as_str));
@@ -97,7 +128,9 @@ fn columns(header: &csv::StringRecord) -> Result<BTreeMap<String, usize>, String
     let mut columns = BTreeMap::new();
     for (position, name) in header.iter().enumerate() {
         if name == "history" {
-            return Err("column \"history\": averaging time histories is not available in this version".into());
+            return Err(
+                "column \"history\": averaging time histories is not available in this version".into(),
+            );
         }
         if !known.contains(&name) {
             return Err(unknown_word("column", name, known));
@@ -120,13 +153,24 @@ struct Row<'a> {
 impl Row<'_> {
     /// The field of a column; `None` where it is blank or the column absent.
     fn text(&self, column: &str) -> Option<&str> {
-        self.columns.get(column).and_then(|&i| self.record.get(i)).filter(|s| !s.is_empty())
+        self.columns
+            .get(column)
+            .and_then(|&i| self.record.get(i))
+            .filter(|s| !s.is_empty())
     }
 
     fn number(&self, column: &str) -> Result<Option<f64>, String> {
-        let Some(text) = self.text(column) else { return Ok(None) };
-        let value: f64 = text.parse().map_err(|_| format!("{column} \"{text}\" is not a number"))?;
-        if value.is_finite() { Ok(Some(value)) } else { Err(format!("{column} {value} is not a finite number")) }
+        let Some(text) = self.text(column) else {
+            return Ok(None);
+        };
+        let value: f64 = text
+            .parse()
+            .map_err(|_| format!("{column} \"{text}\" is not a number"))?;
+        if value.is_finite() {
+            Ok(Some(value))
+        } else {
+            Err(format!("{column} {value} is not a finite number"))
+        }
     }
 
     fn required(&self, column: &str) -> Result<f64, String> {
@@ -142,7 +186,11 @@ impl Row<'_> {
         }
     }
 
-    fn test_run(&self, wheels: &BTreeMap<String, Wheel>, soils: &BTreeMap<String, Soil>) -> Result<TestRun, String> {
+    fn test_run(
+        &self,
+        wheels: &BTreeMap<String, Wheel>,
+        soils: &BTreeMap<String, Soil>,
+    ) -> Result<TestRun, String> {
         let wheel = self.named("wheel", wheels)?;
         let slip = self.required("slip")?;
         if !(-1.0..1.0).contains(&slip) {
@@ -152,7 +200,9 @@ impl Row<'_> {
         let sled_speed_m_s = self.positive("sled_speed_m_s", "m/s")?;
         let slip_angle_deg = self.number("slip_angle_deg")?.unwrap_or(0.0);
         if slip_angle_deg.abs() > 90.0 {
-            return Err(format!("slip_angle_deg {slip_angle_deg} deg must lie in [-90, 90] deg"));
+            return Err(format!(
+                "slip_angle_deg {slip_angle_deg} deg must lie in [-90, 90] deg"
+            ));
         }
         let pass = match self.text("pass") {
             None => 1,
@@ -197,6 +247,10 @@ impl Row<'_> {
 
     fn positive(&self, column: &str, unit: &str) -> Result<f64, String> {
         let value = self.required(column)?;
-        if value > 0.0 { Ok(value) } else { Err(format!("{column} {value} {unit} must be > 0 {unit}")) }
+        if value > 0.0 {
+            Ok(value)
+        } else {
+            Err(format!("{column} {value} {unit} must be > 0 {unit}"))
+        }
     }
 }

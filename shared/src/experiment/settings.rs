@@ -46,7 +46,10 @@ pub struct Rig {
 
 impl Default for Rig {
     fn default() -> Self {
-        Rig { gravity_m_s2: 9.81, bin_length_m: None }
+        Rig {
+            gravity_m_s2: 9.81,
+            bin_length_m: None,
+        }
     }
 }
 
@@ -172,7 +175,9 @@ pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError>
     let fail = |message: String| FileError::whole(name, message);
     for (key, value) in [("plates", &raw.plates), ("shear", &raw.shear)] {
         if value.is_some() {
-            return Err(fail(format!("{key}: bevameter rows in the likelihood are not available in this version")));
+            return Err(fail(format!(
+                "{key}: bevameter rows in the likelihood are not available in this version"
+            )));
         }
     }
     if raw.wheel.is_empty() {
@@ -203,12 +208,17 @@ fn wheel(raw: RawWheel) -> Result<Wheel, String> {
         return Err("mesh: a wheel given as a surface mesh is not available in this version".into());
     }
     let rig_radius_m = raw.rig_radius_m.unwrap_or(raw.radius_m);
-    for (key, value) in [("radius_m", raw.radius_m), ("width_m", raw.width_m), ("rig_radius_m", rig_radius_m)] {
+    for (key, value) in [
+        ("radius_m", raw.radius_m),
+        ("width_m", raw.width_m),
+        ("rig_radius_m", rig_radius_m),
+    ] {
         positive(key, value, "m")?;
     }
-    for (key, value) in
-        [("grouser_height_m", raw.grouser_height_m), ("grouser_thickness_m", raw.grouser_thickness_m)]
-    {
+    for (key, value) in [
+        ("grouser_height_m", raw.grouser_height_m),
+        ("grouser_thickness_m", raw.grouser_thickness_m),
+    ] {
         if !(value.is_finite() && value >= 0.0) {
             return Err(format!("{key} {value} m must be >= 0 m"));
         }
@@ -227,9 +237,16 @@ fn noise(raw: RawNoise) -> Result<Noise, String> {
     match raw.run_scatter {
         None => {}
         Some(RawSd::Number(x)) if x.abs() == 0.0 => {}
-        Some(_) => return Err("run_scatter: soil scatter from run to run is not available in this version".into()),
+        Some(_) => {
+            return Err("run_scatter: soil scatter from run to run is not available in this version".into());
+        }
     }
-    let entries = [raw.drawbar_pull_n, raw.torque_n_m, raw.sinkage_m, raw.lateral_force_n];
+    let entries = [
+        raw.drawbar_pull_n,
+        raw.torque_n_m,
+        raw.sinkage_m,
+        raw.lateral_force_n,
+    ];
     let mut sd = [None; 4];
     for (channel, entry) in Channel::ALL.into_iter().zip(entries) {
         sd[channel.index()] = match entry {
@@ -243,7 +260,9 @@ fn noise(raw: RawNoise) -> Result<Noise, String> {
                 "unknown" => Some(NoiseSd::Unknown),
                 _ => {
                     let column = channel.column();
-                    return Err(format!("{column} = \"{word}\" must be a number, \"replicates\" or \"unknown\""));
+                    return Err(format!(
+                        "{column} = \"{word}\" must be a number, \"replicates\" or \"unknown\""
+                    ));
                 }
             },
         };
@@ -252,5 +271,9 @@ fn noise(raw: RawNoise) -> Result<Noise, String> {
 }
 
 fn positive(key: &str, value: f64, unit: &str) -> Result<(), String> {
-    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(format!("{key} {value} {unit} must be > 0 {unit}")) }
+    if value.is_finite() && value > 0.0 {
+        Ok(())
+    } else {
+        Err(format!("{key} {value} {unit} must be > 0 {unit}"))
+    }
 }

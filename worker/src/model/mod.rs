@@ -26,7 +26,10 @@ impl CompiledVariant {
     /// A sentence that names what this worker does not know or cannot express.
     pub fn new(variant: &ModelVariant) -> Result<Self, String> {
         if variant.kind != ModelKind::QuasiStatic {
-            return Err(format!("kind = \"{}\" is not available in this version", variant.kind.name()));
+            return Err(format!(
+                "kind = \"{}\" is not available in this version",
+                variant.kind.name()
+            ));
         }
         if let Some(effect) = variant.effects.first() {
             return Err(format!("effect \"{effect}\" is not available in this version"));
@@ -37,7 +40,11 @@ impl CompiledVariant {
             .wheels
             .iter()
             .map(|(name, w)| {
-                let wheel = Wheel { radius_m: w.radius_m, width_m: w.width_m, rig_radius_m: w.rig_radius_m };
+                let wheel = Wheel {
+                    radius_m: w.radius_m,
+                    width_m: w.width_m,
+                    rig_radius_m: w.rig_radius_m,
+                };
                 (wheel, Radius::new(variant, name))
             })
             .collect();
@@ -45,7 +52,10 @@ impl CompiledVariant {
             .conditions
             .iter()
             .map(|c| {
-                let wheel = names.iter().position(|n| *n == c.wheel).ok_or(format!("unknown wheel \"{}\"", c.wheel))?;
+                let wheel = names
+                    .iter()
+                    .position(|n| *n == c.wheel)
+                    .ok_or(format!("unknown wheel \"{}\"", c.wheel))?;
                 let condition = Condition {
                     slip: c.slip,
                     wheel_load_n: c.wheel_load_n,
@@ -56,13 +66,22 @@ impl CompiledVariant {
                 Ok((wheel, condition))
             })
             .collect::<Result<_, String>>()?;
-        Ok(CompiledVariant { dimension: variant.parameters.len(), soil, wheels, conditions })
+        Ok(CompiledVariant {
+            dimension: variant.parameters.len(),
+            soil,
+            wheels,
+            conditions,
+        })
     }
 
     /// Simulates every condition at one parameter vector. The first refusal ends it.
     pub fn evaluate(&self, theta: &[f64]) -> Outcome {
         if theta.len() != self.dimension {
-            let message = format!("theta has {} entries, the variant has {}", theta.len(), self.dimension);
+            let message = format!(
+                "theta has {} entries, the variant has {}",
+                theta.len(),
+                self.dimension
+            );
             return rejected("invalid_parameter", 0, message);
         }
         let soil: Soil = match self.soil.soil(theta).checked() {
@@ -83,7 +102,10 @@ impl CompiledVariant {
         };
         for (position, (wheel, condition)) in self.conditions.iter().enumerate() {
             let (wheel, radius) = &self.wheels[*wheel];
-            let wheel = Wheel { radius_m: radius.value(theta).unwrap_or(wheel.radius_m), ..*wheel };
+            let wheel = Wheel {
+                radius_m: radius.value(theta).unwrap_or(wheel.radius_m),
+                ..*wheel
+            };
             match quasi_static::simulate(&soil, &wheel, condition) {
                 Ok(averages) => push(&mut observables, &averages),
                 Err(rejection) => return rejected(rejection.kind(), position, rejection.to_string()),
@@ -106,7 +128,11 @@ fn push(o: &mut Observables, a: &Averages) {
 }
 
 fn rejected(kind: &str, condition: usize, message: String) -> Outcome {
-    Outcome::Rejected(Rejection { kind: kind.to_owned(), condition: condition as u32, message })
+    Outcome::Rejected(Rejection {
+        kind: kind.to_owned(),
+        condition: condition as u32,
+        message,
+    })
 }
 
 /// Variants by hash, each compiled once.
@@ -128,10 +154,13 @@ impl VariantCache {
     pub fn add(&mut self, hash: &str, variant: &ModelVariant) -> Result<(), String> {
         let own = variant.hash();
         if own != hash {
-            return Err(format!("variant {hash} came with hash {own}: coordinator and worker read it differently"));
+            return Err(format!(
+                "variant {hash} came with hash {own}: coordinator and worker read it differently"
+            ));
         }
         let compiled = CompiledVariant::new(variant)?;
-        self.variants.insert(hash.to_owned(), std::sync::Arc::new(compiled));
+        self.variants
+            .insert(hash.to_owned(), std::sync::Arc::new(compiled));
         Ok(())
     }
 }

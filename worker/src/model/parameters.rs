@@ -13,12 +13,17 @@ enum Source {
 
 impl Source {
     fn find(variant: &ModelVariant, name: &str) -> Option<Source> {
-        let free = variant.parameters.iter().position(|p| p == name).map(Source::Free);
+        let free = variant
+            .parameters
+            .iter()
+            .position(|p| p == name)
+            .map(Source::Free);
         free.or_else(|| variant.fixed.get(name).copied().map(Source::Fixed))
     }
 
     fn required(variant: &ModelVariant, name: &str) -> Result<Source, String> {
-        Source::find(variant, name).ok_or_else(|| format!("parameter {name} has neither a prior nor a fixed value"))
+        Source::find(variant, name)
+            .ok_or_else(|| format!("parameter {name} has neither a prior nor a fixed value"))
     }
 
     fn value(self, theta: &[f64]) -> f64 {

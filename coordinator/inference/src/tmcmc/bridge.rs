@@ -37,7 +37,11 @@ impl Bridge {
                 high = high.min(r);
             }
             let newton = r + (balance.forward - balance.backward) / balance.slope;
-            let next = if low <= newton && newton <= high { newton } else { 0.5 * (low + high) };
+            let next = if low <= newton && newton <= high {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
             let change = (next - r).abs();
             r = next;
             balance = Balance::at(&before, &after, r);
@@ -45,7 +49,11 @@ impl Bridge {
                 break;
             }
         }
-        let Balance { forward: level_before, backward: level_after, slope } = balance;
+        let Balance {
+            forward: level_before,
+            backward: level_after,
+            slope,
+        } = balance;
         let errors_before = before
             .iter()
             .map(|x| (logistic(x - r) - level_before) / (before.len() as f64 * slope))
@@ -86,7 +94,11 @@ impl Balance {
             (level / count, slope / count)
         };
         let ((forward, rising), (backward, falling)) = (side(before, 1.0), side(after, -1.0));
-        Self { forward, backward, slope: rising + falling }
+        Self {
+            forward,
+            backward,
+            slope: rising + falling,
+        }
     }
 }
 

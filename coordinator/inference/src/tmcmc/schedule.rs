@@ -32,7 +32,11 @@ pub(super) fn exponent_step(log_likelihoods: &[f64], remaining: f64, target: f64
     for _ in 0..MOST_TRIALS {
         let position = high - above * (high - low) / (above - below);
         // No number, or no progress: a coefficient of 0 has no logarithm.
-        let trial = if low < position && position < high { position } else { 0.5 * (low + high) };
+        let trial = if low < position && position < high {
+            position
+        } else {
+            0.5 * (low + high)
+        };
         let value = excess(trial);
         // An end that stays twice is given half its weight, or the other would creep.
         let again = last_was_above.replace(value > 0.0) == Some(value > 0.0);
