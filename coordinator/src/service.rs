@@ -224,6 +224,21 @@ impl Service {
         crate::result::stored_status(&row)
     }
 
+    /// Where every calibration stands, oldest first.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn list(&self) -> Result<Vec<CalibrationStatus>, ServiceError> {
+        let mut in_hand = self.dispatcher.statuses().await?;
+        let rows = self.store.reader().calibrations().await?;
+        rows.iter()
+            .map(|row| match in_hand.remove(&row.id) {
+                Some(status) => Ok(status),
+                None => crate::result::stored_status(row),
+            })
+            .collect()
+    }
+
     /// Carries out a user's command; the answer is durable.
     ///
     /// # Errors

@@ -140,6 +140,15 @@ impl Dispatcher {
         self.look(move |farm, now| farm.status(id, now)).await
     }
 
+    /// Where every calibration in hand stands, by id.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn statuses(&self) -> Result<BTreeMap<i64, CalibrationStatus>, Stopped> {
+        self.look(|farm, now| farm.ids().into_iter().filter_map(|id| Some((id, farm.status(id, now)?))).collect())
+            .await
+    }
+
     /// The workers heard of.
     ///
     /// # Errors

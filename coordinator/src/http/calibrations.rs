@@ -52,11 +52,7 @@ async fn create(
 /// Every calibration, oldest first.
 #[utoipa::path(get, path = "/calibrations", responses((status = 200, body = Vec<CalibrationStatus>)))]
 async fn list(State(service): State<Service>) -> Result<Json<Vec<CalibrationStatus>>, HttpError> {
-    let mut statuses = Vec::new();
-    for row in service.store().reader().calibrations().await? {
-        statuses.push(service.status(row.id).await?);
-    }
-    Ok(Json(statuses))
+    Ok(Json(service.list().await?))
 }
 
 /// Where a calibration stands.
