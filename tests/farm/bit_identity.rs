@@ -9,6 +9,7 @@ use farm_tests::process::{Process, Signal};
 use farm_tests::programs;
 use farm_tests::random::Random;
 use farm_tests::service::{Service, free_address};
+use farm_tests::text::same;
 use farm_tests::wait::until;
 use farm_tests::workspace::text;
 
@@ -47,7 +48,7 @@ fn three_workers_of_two_threads_give_the_bytes_of_one_worker_of_one_thread() {
     let id = service.submit(&job());
     let _workers = ["a", "b", "c"].map(|name| service.worker(name, 2));
     service.wait_for(id, "finished");
-    assert_eq!(&service.posterior_csv(id), expected);
+    same(&service.posterior_csv(id), expected);
     assert_eq!(expected.lines().count(), 201);
 }
 
@@ -56,7 +57,7 @@ fn another_seed_gives_other_bytes() {
     let service = Service::start(&["--local-workers", "2"]);
     let id = service.submit(&Job::small().sampler(200, [4, 10], 4));
     service.wait_for(id, "finished");
-    assert_ne!(service.posterior_csv(id), reference().0);
+    assert!(service.posterior_csv(id) != reference().0);
 }
 
 /// What dies.
@@ -123,7 +124,7 @@ fn killing_coordinator_and_workers_at_random_moments_changes_no_byte() {
         "kills hit {hit:?} of {stages} stages"
     );
     assert!(kills.windows(2).all(|pair| pair[0].1 < pair[1].1), "{kills:?}");
-    assert_eq!(&service.posterior_csv(id), expected);
+    same(&service.posterior_csv(id), expected);
     assert_eq!(service.metric("grouser_determinism_faults_total"), 0);
 }
 
@@ -216,7 +217,7 @@ fn a_run_stopped_by_interrupt_or_kill_goes_on_to_the_same_bytes() {
         }
         let table = run.finish();
         assert!(table.contains("log-evidence"), "{table}");
-        assert_eq!(run.posterior(), reference().0, "{signal:?}");
+        same(&run.posterior(), &reference().0);
     }
 }
 
@@ -237,7 +238,7 @@ fn a_run_whose_workers_are_all_elsewhere_gives_the_same_bytes() {
     let log = |name: &str| run.folder.path().join(name);
     let _workers = ["a", "b"].map(|name| Process::worker(&format!("http://{address}"), 1, &log(name)));
     assert!(process.wait().success(), "{}", process.log());
-    assert_eq!(run.posterior(), reference().0);
+    same(&run.posterior(), &reference().0);
 }
 
 #[test]
@@ -245,12 +246,12 @@ fn a_finished_run_prints_its_result_again_and_a_changed_job_is_refused() {
     let run = Run::new();
     let first = run.finish();
     let written = run.posterior();
-    assert_eq!(written, reference().0);
-    assert_eq!(run.finish(), first);
+    same(&written, &reference().0);
+    same(&run.finish(), &first);
 
     let commented = job().in_job("[sampler]", "# A comment changes nothing.\n[sampler]");
     commented.write(run.job.parent().expect("the job's folder"));
-    assert_eq!(run.finish(), first);
+    same(&run.finish(), &first);
 
     for changed in [
         job().in_job("seed = 3", "seed = 5"),
@@ -265,6 +266,6 @@ fn a_finished_run_prints_its_result_again_and_a_changed_job_is_refused() {
             "{message}"
         );
         assert!(message.contains(&run.out().display().to_string()), "{message}");
-        assert_eq!(run.posterior(), written);
+        same(&run.posterior(), &written);
     }
 }

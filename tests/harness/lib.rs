@@ -8,6 +8,7 @@
 //! - [`fake_worker`]: a worker that a test plays by hand.
 //! - [`job`]: the files of a small job, and ways to change them.
 //! - [`workspace`]: the workspace's own files.
+//! - [`text`]: comparing long texts.
 //! - [`wait`]: waiting with a deadline.
 //! - [`random`]: seeded numbers.
 
@@ -18,5 +19,6 @@ pub mod process;
 pub mod programs;
 pub mod random;
 pub mod service;
+pub mod text;
 pub mod wait;
 pub mod workspace;
