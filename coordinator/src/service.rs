@@ -8,7 +8,7 @@ use shared::api::{CalibrationCreated, CalibrationState, CalibrationStatus, NewCa
 use shared::exchange::{ExchangeRequest, ExchangeResponse};
 use shared::file::{FileError, FileSet};
 
-use crate::calibration::{Calibration, Identity, ReplayError};
+use crate::calibration::{Calibration, Identity};
 use crate::farm::dispatch::{Dispatcher, Stopped};
 use crate::farm::{Control, ControlError, Farm};
 use crate::spec::{Job, Spec};
@@ -51,14 +51,6 @@ pub enum ServiceError {
     /// More facts wait than the store takes.
     #[error("{0} facts wait to be stored; try again in a second")]
     Busy(u64),
-    /// A stored calibration cannot go on.
-    #[error("calibration {id} cannot go on: {source}")]
-    Replay {
-        /// The calibration.
-        id: i64,
-        /// Why.
-        source: ReplayError,
-    },
 }
 
 /// Store and farm together; clones are cheap.
@@ -103,11 +95,15 @@ impl Service {
         for id in reader.unfinished().await? {
             let row = self.calibration_row(id).await?;
             let stored = reader.stored(id).await?;
-            let spec = Arc::new(self.spec_of(&row).await?);
-            let (evaluations, paused) = (
-                stored.evaluations.len(),
-                stored.state == Some(CalibrationState::Paused),
-            );
+            // One calibration that this version cannot take up must not keep the others waiting.
+            let spec = match self.spec_of(&row).await {
+                Ok(spec) => Arc::new(spec),
+                Err(error) => {
+                    tracing::error!(id, name = row.name, %error, "left alone: its files are not understood");
+                    continue;
+                }
+            };
+            let evaluations = stored.evaluations.len();
             let identity = Identity {
                 id,
                 name: row.name.clone(),
@@ -117,15 +113,37 @@ impl Service {
             // Replaying is seconds of CPU for a long calibration: not on the async runtime.
             let replayed = tokio::task::spawn_blocking(move || {
                 let mut calibration = Calibration::new(identity, spec)?;
-                let facts = calibration
-                    .replay(stored)
-                    .map_err(|source| ServiceError::Replay { id, source })?;
+                let facts = match calibration.replay(stored) {
+                    Ok(facts) => facts,
+                    Err(error) => {
+                        let mut facts = Vec::new();
+                        calibration.change_state(
+                            CalibrationState::Failed,
+                            Some(error.to_string()),
+                            &mut facts,
+                        );
+                        facts
+                    }
+                };
                 Ok::<_, ServiceError>((calibration, facts))
             })
             .await
             .map_err(|_| Stopped)?;
             let (calibration, facts) = replayed?;
-            tracing::info!(id, name = row.name, evaluations, paused, "taken up again");
+            match (calibration.state, &calibration.message) {
+                (CalibrationState::Failed, Some(message)) => {
+                    tracing::error!(id, name = row.name, message, "cannot go on");
+                }
+                (state, _) => {
+                    tracing::info!(
+                        id,
+                        name = row.name,
+                        evaluations,
+                        state = state.name(),
+                        "taken up again"
+                    );
+                }
+            }
             self.dispatcher.add(calibration, facts).await?;
         }
         Ok(())

@@ -19,6 +19,8 @@ use crate::model::VariantCache;
 const WORK_S: f64 = 1.5;
 /// Longest wait of a long poll [ms].
 const WAIT_MS: u64 = 20_000;
+/// A worker holds at most so many runs, over all its leases: their results fit into one message.
+const MOST_RUNS: usize = 100_000;
 /// Results are sent at least so often, even while there is work left.
 const FLUSH: Duration = Duration::from_secs(1);
 /// How long a worker that stops waits for an answer that may be on its way.
@@ -79,11 +81,13 @@ pub async fn run<C: Coordinator>(
         variants: VariantCache::default(),
         held: BTreeSet::new(),
         outbox: Vec::new(),
+        returned: Vec::new(),
         known: Known {
             remaining: 0,
             workers: 1,
             lease_ms: WAIT_MS,
             asked: 0,
+            runs: 1,
         },
         flushed: Instant::now(),
         renewed: Instant::now(),
@@ -99,6 +103,16 @@ struct Known {
     lease_ms: u64,
     /// How many leases the last successful request brought.
     asked: usize,
+    /// Runs of an evaluation; the most of the last batch.
+    runs: usize,
+}
+
+/// Why a variant is not in the cache.
+enum Missing {
+    /// It cannot be had now.
+    Away,
+    /// This worker cannot compute it.
+    Unusable(String),
 }
 
 struct Worker<C> {
@@ -111,6 +125,8 @@ struct Worker<C> {
     held: BTreeSet<u64>,
     /// Results that the coordinator has not acknowledged.
     outbox: Vec<WorkResult>,
+    /// Leases that this worker cannot serve at present, to be given back.
+    returned: Vec<u64>,
     known: Known,
     flushed: Instant,
     renewed: Instant,
@@ -215,7 +231,8 @@ impl<C: Coordinator> Worker<C> {
             .map_or(threads, |mean| WORK_S * threads / mean.max(1e-9));
         let share = self.known.remaining as f64 / (2.0 * f64::from(self.known.workers.max(1)));
         let want = work.min(share.max(threads)) - self.held.len() as f64;
-        want.clamp(0.0, 100_000.0) as u32
+        let most = (MOST_RUNS / self.known.runs).max(self.settings.threads);
+        want.clamp(0.0, most as f64) as u32
     }
 
     fn request(&mut self) -> ExchangeRequest {
@@ -235,7 +252,7 @@ impl<C: Coordinator> Worker<C> {
             } else {
                 Vec::new()
             },
-            returned: Vec::new(),
+            returned: std::mem::take(&mut self.returned),
             want: self.want().max(u32::from(idle)),
             // Whoever still has work in hand comes back for more by itself.
             wait_ms: if idle { WAIT_MS } else { 0 },
@@ -248,6 +265,7 @@ impl<C: Coordinator> Worker<C> {
             workers: response.workers,
             lease_ms: response.lease_ms,
             asked: response.leases.len() + self.held.len(),
+            runs: self.known.runs,
         };
         if let Some(reason) = response.refused {
             tracing::error!(
@@ -258,26 +276,32 @@ impl<C: Coordinator> Worker<C> {
             tokio::time::sleep(BACK_OFF[1]).await;
         }
         let hashes: BTreeSet<String> = response.leases.iter().map(|l| l.variant.clone()).collect();
-        let mut unknown = BTreeMap::new();
+        let mut missing = BTreeMap::new();
         for hash in hashes {
             if let Err(reason) = self.fetch(&hash).await {
-                unknown.insert(hash, reason);
+                missing.insert(hash, reason);
             }
         }
         let mut batch = Vec::with_capacity(response.leases.len());
         for lease in response.leases {
-            self.held.insert(lease.lease);
-            match self.variants.get(&lease.variant) {
-                Some(variant) => batch.push((lease, variant)),
-                None => self.refuse(lease, &unknown),
+            match (self.variants.get(&lease.variant), missing.get(&lease.variant)) {
+                (Some(variant), _) => {
+                    self.held.insert(lease.lease);
+                    self.known.runs = variant.runs().max(1);
+                    batch.push((lease, variant));
+                }
+                (None, Some(Missing::Unusable(reason))) => self.refuse(lease, reason.clone()),
+                (None, _) => self.returned.push(lease.lease),
             }
         }
         self.evaluator.start(batch);
+        if !self.returned.is_empty() {
+            tokio::time::sleep(BACK_OFF[0]).await;
+        }
     }
 
-    /// A lease whose variant cannot be had is a fault of this machine.
-    fn refuse(&mut self, lease: Lease, reasons: &BTreeMap<String, String>) {
-        let message = reasons.get(&lease.variant).cloned().unwrap_or_default();
+    /// A lease whose variant cannot be computed here is a fault of this machine.
+    fn refuse(&mut self, lease: Lease, message: String) {
         let Lease {
             lease,
             calibration,
@@ -294,14 +318,14 @@ impl<C: Coordinator> Worker<C> {
     }
 
     /// Sees to it that a variant is in the cache.
-    async fn fetch(&mut self, hash: &str) -> Result<(), String> {
+    async fn fetch(&mut self, hash: &str) -> Result<(), Missing> {
         if self.variants.get(hash).is_some() {
             return Ok(());
         }
         match self.coordinator.variant(hash).await {
-            Ok(Some(variant)) => self.variants.add(hash, &variant),
-            Ok(None) => Err(format!("the coordinator does not know variant {hash}")),
-            Err(error) => Err(error.to_string()),
+            Ok(Some(variant)) => self.variants.add(hash, &variant).map_err(Missing::Unusable),
+            // The calibration has ended meanwhile, or the coordinator is away: nobody is to blame.
+            Ok(None) | Err(_) => Err(Missing::Away),
         }
     }
 
@@ -310,7 +334,7 @@ impl<C: Coordinator> Worker<C> {
         self.evaluator.cancel().await;
         self.collect();
         let request = ExchangeRequest {
-            returned: self.held.iter().copied().collect(),
+            returned: self.held.iter().chain(&self.returned).copied().collect(),
             want: 0,
             wait_ms: 0,
             holding: Vec::new(),

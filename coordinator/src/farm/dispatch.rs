@@ -145,8 +145,13 @@ impl Dispatcher {
     /// # Errors
     /// [`Stopped`].
     pub async fn statuses(&self) -> Result<BTreeMap<i64, CalibrationStatus>, Stopped> {
-        self.look(|farm, now| farm.ids().into_iter().filter_map(|id| Some((id, farm.status(id, now)?))).collect())
-            .await
+        self.look(|farm, now| {
+            farm.ids()
+                .into_iter()
+                .filter_map(|id| Some((id, farm.status(id, now)?)))
+                .collect()
+        })
+        .await
     }
 
     /// The workers heard of.

@@ -74,10 +74,9 @@ impl From<ServiceError> for HttpError {
             ServiceError::NotFound { .. } => ErrorKind::NotFound,
             ServiceError::Control(_) => ErrorKind::Conflict,
             ServiceError::Busy(_) => ErrorKind::Busy,
-            ServiceError::Store(_)
-            | ServiceError::Thread(_)
-            | ServiceError::Stopped(_)
-            | ServiceError::Replay { .. } => ErrorKind::Internal,
+            ServiceError::Store(_) | ServiceError::Thread(_) | ServiceError::Stopped(_) => {
+                ErrorKind::Internal
+            }
         };
         if kind == ErrorKind::Internal {
             // The cause stays in the log; a client cannot mend it.

@@ -74,6 +74,11 @@ impl CompiledVariant {
         })
     }
 
+    /// Conditions that an evaluation simulates.
+    pub fn runs(&self) -> usize {
+        self.conditions.len()
+    }
+
     /// Simulates every condition at one parameter vector. The first refusal ends it.
     pub fn evaluate(&self, theta: &[f64]) -> Outcome {
         if theta.len() != self.dimension {
