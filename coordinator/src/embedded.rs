@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
 use shared::model::ModelVariant;
+use tokio::sync::watch;
 use worker::evaluator::SimulationClock;
 use worker::pull::{Coordinator, ExchangeError, Settings, run};
 
@@ -41,7 +42,13 @@ pub struct LocalWorkers {
     /// How many threads simulate.
     pub threads: usize,
     clock: Arc<SimulationClock>,
-    task: tokio::task::JoinHandle<Result<(), ExchangeError>>,
+    failure: watch::Receiver<Option<String>>,
+    task: tokio::task::JoinHandle<()>,
+}
+
+/// Version of the equations that local workers compute.
+pub fn model_version() -> &'static str {
+    worker::model_version()
 }
 
 impl LocalWorkers {
@@ -56,13 +63,34 @@ impl LocalWorkers {
             name: format!("local-{}", std::process::id()),
             threads,
         };
-        let task = tokio::spawn(run(
-            Arc::new(InProcess(dispatcher)),
-            settings,
-            clock.clone(),
-            shutdown,
-        ));
-        LocalWorkers { threads, clock, task }
+        let work = run(Arc::new(InProcess(dispatcher)), settings, clock.clone(), shutdown);
+        let (failed, failure) = watch::channel(None);
+        let task = tokio::spawn(async move {
+            if let Err(error) = work.await {
+                failed.send_replace(Some(error.to_string()));
+            }
+        });
+        LocalWorkers {
+            threads,
+            clock,
+            failure,
+            task,
+        }
+    }
+
+    /// Ready with the reason when the workers have failed; never, as long as they have not.
+    pub fn failure(&self) -> impl Future<Output = String> + Send + 'static {
+        let mut failure = self.failure.clone();
+        async move {
+            let reason = match failure.wait_for(Option::is_some).await {
+                Ok(reason) => reason.clone(),
+                Err(_) => None,
+            };
+            match reason {
+                Some(reason) => reason,
+                None => std::future::pending().await,
+            }
+        }
     }
 
     /// Seconds spent simulating, summed over the threads.
@@ -72,9 +100,8 @@ impl LocalWorkers {
 
     /// Waits until the threads have given back what they held.
     pub async fn join(self) {
-        if let Ok(Err(error)) = self.task.await {
-            tracing::debug!(%error, "local workers ended");
-        }
+        // A panic of the task has been logged where it happened.
+        let _ = self.task.await;
     }
 }
 

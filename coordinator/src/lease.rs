@@ -185,6 +185,11 @@ impl Queue {
             .collect()
     }
 
+    /// The evaluation of a lease that is out.
+    pub fn evaluation_of(&self, lease: u64) -> Option<u64> {
+        self.leased.get(&lease).copied()
+    }
+
     /// Extends a lease; `false` where it is no longer out.
     pub fn renew(&mut self, lease: u64, until_ms: u64) -> bool {
         let Some(evaluation) = self.leased.get(&lease) else {

@@ -58,6 +58,7 @@ pub enum ServiceError {
 pub struct Service {
     store: Store,
     dispatcher: Dispatcher,
+    left_alone: Arc<BTreeMap<i64, String>>,
 }
 
 impl Service {
@@ -69,8 +70,12 @@ impl Service {
         let store = Store::open(path, now_ms()).await?;
         let farm = Farm::new(store.epochs(), lease_ms);
         let dispatcher = Dispatcher::start(farm, store.writer().sink()).map_err(ServiceError::Thread)?;
-        let service = Service { store, dispatcher };
-        service.recover().await?;
+        let mut service = Service {
+            store,
+            dispatcher,
+            left_alone: Arc::default(),
+        };
+        service.left_alone = Arc::new(service.recover().await?);
         Ok(service)
     }
 
@@ -78,6 +83,11 @@ impl Service {
     pub async fn close(&self) {
         self.dispatcher.stop();
         self.store.close().await;
+    }
+
+    /// Why this version cannot take up a stored calibration, if it cannot.
+    pub fn left_alone(&self, id: i64) -> Option<&str> {
+        self.left_alone.get(&id).map(String::as_str)
     }
 
     /// The store.
@@ -90,7 +100,10 @@ impl Service {
         &self.dispatcher
     }
 
-    async fn recover(&self) -> Result<(), ServiceError> {
+    /// Takes up what is not over; returns what this version cannot take up, with the reason. Nothing is written
+    /// of those: another version may be able to.
+    async fn recover(&self) -> Result<BTreeMap<i64, String>, ServiceError> {
+        let mut left_alone = BTreeMap::new();
         let reader = self.store.reader();
         for id in reader.unfinished().await? {
             let row = self.calibration_row(id).await?;
@@ -99,7 +112,7 @@ impl Service {
             let spec = match self.spec_of(&row).await {
                 Ok(spec) => Arc::new(spec),
                 Err(error) => {
-                    tracing::error!(id, name = row.name, %error, "left alone: its files are not understood");
+                    left_alone.insert(id, error.to_string());
                     continue;
                 }
             };
@@ -113,40 +126,32 @@ impl Service {
             // Replaying is seconds of CPU for a long calibration: not on the async runtime.
             let replayed = tokio::task::spawn_blocking(move || {
                 let mut calibration = Calibration::new(identity, spec)?;
-                let facts = match calibration.replay(stored) {
-                    Ok(facts) => facts,
-                    Err(error) => {
-                        let mut facts = Vec::new();
-                        calibration.change_state(
-                            CalibrationState::Failed,
-                            Some(error.to_string()),
-                            &mut facts,
-                        );
-                        facts
-                    }
-                };
+                let facts = calibration.replay(stored).map_err(|e| e.to_string());
                 Ok::<_, ServiceError>((calibration, facts))
             })
             .await
             .map_err(|_| Stopped)?;
             let (calibration, facts) = replayed?;
-            match (calibration.state, &calibration.message) {
-                (CalibrationState::Failed, Some(message)) => {
-                    tracing::error!(id, name = row.name, message, "cannot go on");
+            let facts = match facts {
+                Ok(facts) => facts,
+                Err(reason) => {
+                    left_alone.insert(id, reason);
+                    continue;
                 }
-                (state, _) => {
-                    tracing::info!(
-                        id,
-                        name = row.name,
-                        evaluations,
-                        state = state.name(),
-                        "taken up again"
-                    );
-                }
-            }
+            };
+            tracing::info!(
+                id,
+                name = row.name,
+                evaluations,
+                state = calibration.state.name(),
+                "taken up again"
+            );
             self.dispatcher.add(calibration, facts).await?;
         }
-        Ok(())
+        for (id, reason) in &left_alone {
+            tracing::error!(id, reason, "left alone: this version cannot take it up");
+        }
+        Ok(left_alone)
     }
 
     /// Stores an experiment after validating it; its id.
@@ -190,7 +195,9 @@ impl Service {
             study: 0,
             experiment: new.experiment,
         };
-        let mut calibration = Calibration::new(trial, spec)?;
+        // Drawing a large population from the prior is CPU work: not on the async runtime.
+        let drawn = tokio::task::spawn_blocking(move || Calibration::new(trial, spec));
+        let mut calibration = drawn.await.map_err(|_| Stopped)??;
         let name = new.name.unwrap_or_else(|| "calibration".into());
         let row = NewCalibrationRow {
             experiment: new.experiment,
@@ -239,7 +246,15 @@ impl Service {
             return Ok(status);
         }
         let row = self.calibration_row(id).await?;
-        crate::result::stored_status(&row)
+        Ok(self.stored_status(&row))
+    }
+
+    fn stored_status(&self, row: &CalibrationRow) -> CalibrationStatus {
+        let mut status = crate::result::stored_status(row);
+        if let Some(reason) = self.left_alone(row.id) {
+            status.message = Some(format!("cannot go on with this version: {reason}"));
+        }
+        status
     }
 
     /// Where every calibration stands, oldest first.
@@ -249,12 +264,9 @@ impl Service {
     pub async fn list(&self) -> Result<Vec<CalibrationStatus>, ServiceError> {
         let mut in_hand = self.dispatcher.statuses().await?;
         let rows = self.store.reader().calibrations().await?;
-        rows.iter()
-            .map(|row| match in_hand.remove(&row.id) {
-                Some(status) => Ok(status),
-                None => crate::result::stored_status(row),
-            })
-            .collect()
+        let status =
+            |row: &CalibrationRow| in_hand.remove(&row.id).unwrap_or_else(|| self.stored_status(row));
+        Ok(rows.iter().map(status).collect())
     }
 
     /// Carries out a user's command; the answer is durable.

@@ -122,8 +122,8 @@ pub struct CalibrationStatus {
     pub state: CalibrationState,
     /// Why it is paused or failed.
     pub message: Option<String>,
-    /// `quasi_static` or `scm`.
-    pub model_kind: String,
+    /// `quasi_static` or `scm`; `None` where this version does not understand the job.
+    pub model_kind: Option<String>,
     /// Version of the equations, once the first lease has pinned it.
     pub model_version: Option<String>,
     /// Live figures of the sampler; `None` before it starts.

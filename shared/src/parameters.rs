@@ -45,9 +45,9 @@ pub const BASE: [BaseParameter; 10] = [
     base("k_c", "N/m^(n+1)", f64::NEG_INFINITY, f64::INFINITY, None),
     base("k_phi", "N/m^(n+2)", 0.0, f64::INFINITY, None),
     base("log10_p_ref", "log10 Pa", -3.0, 12.0, None),
-    base("kappa", "1", -1.0, f64::INFINITY, None),
-    base("n", "1", 0.0, 10.0, None),
-    base("friction_angle_deg", "deg", 0.0, 90.0, None),
+    base("kappa", "1", -0.999, f64::INFINITY, None),
+    base("n", "1", 0.01, 10.0, None),
+    base("friction_angle_deg", "deg", 0.0, 89.0, None),
     base("wheel_radius_m", "m", 1e-4, 100.0, None),
     base("cohesion_pa", "Pa", 0.0, f64::INFINITY, Some(0.0)),
     base("shear_velocity_m_s", "m/s", 0.0, f64::INFINITY, Some(0.001)),
@@ -178,6 +178,6 @@ mod tests {
     fn a_value_outside_its_bounds_names_value_unit_and_bound() {
         let phi = lookup("friction_angle_deg", &BTreeSet::new()).unwrap();
         let error = check_value(&phi, phi.name, 95.0).unwrap_err();
-        assert_eq!(error, "friction_angle_deg = 95 deg lies outside [0, 90] deg");
+        assert_eq!(error, "friction_angle_deg = 95 deg lies outside [0, 89] deg");
     }
 }

@@ -191,7 +191,7 @@ fn a_status_has_one_form() {
         experiment: 1,
         state: CalibrationState::Running,
         message: None,
-        model_kind: "quasi_static".into(),
+        model_kind: Some("quasi_static".into()),
         model_version: Some("1".into()),
         progress: Some(Progress {
             stage: 4,

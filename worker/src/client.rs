@@ -101,10 +101,13 @@ impl Coordinator for HttpCoordinator {
         if response.status() == StatusCode::NOT_FOUND {
             return Ok(None);
         }
-        response
-            .json()
+        let text = response
+            .text()
             .await
+            .map_err(|e| ExchangeError::Away(root_cause(&e)))?;
+        // What arrived whole and cannot be read will not be readable the next time either.
+        serde_json::from_str(&text)
             .map(Some)
-            .map_err(|e| ExchangeError::Away(root_cause(&e)))
+            .map_err(|e| ExchangeError::Refused(format!("variant {hash} cannot be read: {e}")))
     }
 }

@@ -232,7 +232,7 @@ impl<C: Coordinator> Worker<C> {
         let share = self.known.remaining as f64 / (2.0 * f64::from(self.known.workers.max(1)));
         let want = work.min(share.max(threads)) - self.held.len() as f64;
         let most = (MOST_RUNS / self.known.runs).max(self.settings.threads);
-        want.clamp(0.0, most as f64) as u32
+        want.clamp(0.0, most.saturating_sub(self.held.len()) as f64) as u32
     }
 
     fn request(&mut self) -> ExchangeRequest {
@@ -267,7 +267,7 @@ impl<C: Coordinator> Worker<C> {
             asked: response.leases.len() + self.held.len(),
             runs: self.known.runs,
         };
-        if let Some(reason) = response.refused {
+        if let Some(reason) = response.refused.filter(|_| response.leases.is_empty()) {
             tracing::error!(
                 worker = self.settings.name,
                 reason,
@@ -282,12 +282,13 @@ impl<C: Coordinator> Worker<C> {
                 missing.insert(hash, reason);
             }
         }
+        self.known.runs = 1;
         let mut batch = Vec::with_capacity(response.leases.len());
         for lease in response.leases {
             match (self.variants.get(&lease.variant), missing.get(&lease.variant)) {
                 (Some(variant), _) => {
                     self.held.insert(lease.lease);
-                    self.known.runs = variant.runs().max(1);
+                    self.known.runs = self.known.runs.max(variant.runs());
                     batch.push((lease, variant));
                 }
                 (None, Some(Missing::Unusable(reason))) => self.refuse(lease, reason.clone()),
@@ -324,8 +325,9 @@ impl<C: Coordinator> Worker<C> {
         }
         match self.coordinator.variant(hash).await {
             Ok(Some(variant)) => self.variants.add(hash, &variant).map_err(Missing::Unusable),
+            Err(ExchangeError::Refused(reason)) => Err(Missing::Unusable(reason)),
             // The calibration has ended meanwhile, or the coordinator is away: nobody is to blame.
-            Ok(None) | Err(_) => Err(Missing::Away),
+            Ok(None) | Err(ExchangeError::Away(_)) => Err(Missing::Away),
         }
     }
 

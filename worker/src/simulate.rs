@@ -6,7 +6,7 @@ use std::path::Path;
 use rand::{RngExt, SeedableRng};
 use shared::channel::Channel;
 use shared::experiment::{Experiment, NoiseSd, RunUse};
-use shared::file::{FileError, FileSet, parse_toml, read_text, sibling};
+use shared::file::{FileError, parse_toml, read_text};
 use shared::model::{ModelSettings, ModelVariant};
 use shared::outcome::{Observables, Outcome};
 
@@ -46,7 +46,8 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
         let message = "--histories: quasi_static has no time histories; a model that has them is not available in this version";
         return Err(FileError::whole(&command.model.display().to_string(), message).into());
     }
-    let experiment = read_experiment(&command.experiment)?;
+    let name = command.experiment.display().to_string();
+    let experiment = Experiment::parse(&name, &Experiment::read_files(&command.experiment)?)?;
     let variant = variant(&experiment, &command.model, &command.parameters)?;
     let compiled = CompiledVariant::new(&variant)
         .map_err(|e| FileError::whole(&command.model.display().to_string(), e))?;
@@ -68,26 +69,13 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
     };
     let noise = noise(&experiment, command.noise_seed)
         .map_err(|e| FileError::whole(&command.experiment.display().to_string(), e))?;
-    let text = table(&experiment, &observables, &noise);
+    let path = command.out.display().to_string();
+    let text =
+        table(&experiment, &observables, &noise).map_err(|e| FileError::whole(&path, e.to_string()))?;
     std::fs::write(&command.out, text).map_err(|source| SimulateError::Write {
         path: command.out.display().to_string(),
         source,
     })
-}
-
-/// Reads an experiment with the files that it names.
-///
-/// # Errors
-/// [`FileError`].
-pub fn read_experiment(path: &Path) -> Result<Experiment, FileError> {
-    let name = path.display().to_string();
-    let toml = read_text(path)?;
-    let mut files = BTreeMap::new();
-    for file in Experiment::referenced_files(&name, &toml)? {
-        let text = read_text(&sibling(path, &file))?;
-        files.insert(file, text);
-    }
-    Experiment::parse(&name, &FileSet { toml, files })
 }
 
 fn variant(experiment: &Experiment, model: &Path, parameters: &Path) -> Result<ModelVariant, FileError> {
@@ -130,35 +118,42 @@ fn noise(experiment: &Experiment, seed: Option<u64>) -> Result<Vec<[f64; 4]>, St
     Ok(noise)
 }
 
-fn table(experiment: &Experiment, observables: &Observables, noise: &[[f64; 4]]) -> String {
-    let mut text = String::from("run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,pass");
-    for channel in Channel::ALL {
-        text.push(',');
-        text.push_str(channel.column());
-    }
-    text.push_str(",use\n");
+fn table(
+    experiment: &Experiment,
+    observables: &Observables,
+    noise: &[[f64; 4]],
+) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let condition = [
+        "run",
+        "wheel",
+        "soil",
+        "slip",
+        "wheel_load_n",
+        "sled_speed_m_s",
+        "slip_angle_deg",
+        "pass",
+    ];
+    writer.write_record(
+        condition
+            .into_iter()
+            .chain(Channel::ALL.map(Channel::column))
+            .chain(["use"]),
+    )?;
     for (i, run) in experiment.runs.iter().enumerate() {
         let usage = if run.usage == RunUse::Fit {
             "fit"
         } else {
             "holdout"
         };
-        text.push_str(&format!(
-            "{},{},{},{},{},{},{},{}",
-            run.name,
-            run.wheel,
-            run.soil,
-            run.slip,
-            run.wheel_load_n,
-            run.sled_speed_m_s,
-            run.slip_angle_deg,
-            run.pass
-        ));
-        for channel in Channel::ALL {
-            let value = observables.channel(channel)[i] + noise[i][channel.index()];
-            text.push_str(&format!(",{value}"));
-        }
-        text.push_str(&format!(",{usage}\n"));
+        let mut row = vec![run.name.clone(), run.wheel.clone(), run.soil.clone()];
+        row.extend(
+            [run.slip, run.wheel_load_n, run.sled_speed_m_s, run.slip_angle_deg].map(|x| x.to_string()),
+        );
+        row.push(run.pass.to_string());
+        row.extend(Channel::ALL.map(|c| (observables.channel(c)[i] + noise[i][c.index()]).to_string()));
+        row.push(usage.to_owned());
+        writer.write_record(&row)?;
     }
-    text
+    writer.into_inner().map_err(|e| e.into_error().into())
 }

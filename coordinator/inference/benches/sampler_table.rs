@@ -120,7 +120,7 @@ fn main() {
     );
     let base = Settings::default();
     // With the settings that make about 20 000 evaluations (c3, c4: the flags are the point), and the
-    // log-evidence rmse of INFERENCE section 1: Ching-Chen 2007, the best tempered variant, the goal.
+    // log-evidence rmse of prototypes of these samplers: Ching-Chen 2007, the best tempered variant, the goal.
     let problems = [
         (problems::correlated_gaussian(), 160, 10, "1.87, .37, goal .4"),
         (problems::shear_building(), 285, 10, ".25, .12, goal .2"),

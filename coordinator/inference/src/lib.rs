@@ -10,7 +10,7 @@
 //! - [`prior`]: distributions, truncated and renormalised; the coordinates in which the sampler moves.
 //! - [`rng`]: one random stream per (seed, stage, particle, step).
 //! - [`tmcmc`]: the ask/tell sampler, its stages and its evidence.
-//! - [`diagnostics`]: summaries of draws: moments, quantiles, coverage, errors.
+//! - [`diagnostics`]: summaries of draws: moments, quantiles, bounds, effective sizes.
 
 pub mod diagnostics;
 pub mod likelihood;

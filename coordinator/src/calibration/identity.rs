@@ -1,6 +1,7 @@
 //! The number that names an evaluation for ever.
 
-/// Numbers from here on are final draws, simulated on every run; below, they are the sampler's.
+/// Numbers from here on are final draws: the fitted runs of draw k are number 2k, its holdout runs 2k + 1.
+/// Below, they are the sampler's.
 pub const PREDICTIONS_FROM: u64 = 1 << 40;
 
 /// What an evaluation is for. Its number depends on the job alone, so it is the same after a restart.
@@ -17,6 +18,9 @@ pub enum EvaluationKey {
     Prediction {
         /// Position among the draws.
         draw: usize,
+        /// Its holdout runs, or its fitted ones. Apart, so that a holdout run that the model refuses takes no
+        /// fitted one along.
+        holdout: bool,
     },
 }
 
@@ -25,14 +29,19 @@ impl EvaluationKey {
     pub fn number(self, particles: usize) -> u64 {
         match self {
             EvaluationKey::Sampling { round, particle } => round * particles as u64 + particle as u64,
-            EvaluationKey::Prediction { draw } => PREDICTIONS_FROM + draw as u64,
+            EvaluationKey::Prediction { draw, holdout } => {
+                PREDICTIONS_FROM + 2 * draw as u64 + u64::from(holdout)
+            }
         }
     }
 
     /// The evaluation of a number.
     pub fn of(number: u64, particles: usize) -> Self {
         match number.checked_sub(PREDICTIONS_FROM) {
-            Some(draw) => EvaluationKey::Prediction { draw: draw as usize },
+            Some(k) => EvaluationKey::Prediction {
+                draw: (k / 2) as usize,
+                holdout: k % 2 == 1,
+            },
             None => EvaluationKey::Sampling {
                 round: number / particles as u64,
                 particle: (number % particles as u64) as usize,

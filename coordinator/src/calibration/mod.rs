@@ -58,8 +58,8 @@ pub struct Calibration {
     pub rejected: u64,
     sampler: Sampler,
     fit_hash: String,
-    all_hash: String,
-    /// The final draws to simulate on every run; `None` while sampling.
+    holdout_hash: Option<String>,
+    /// The final draws, to simulate on fitted and holdout runs; `None` while sampling.
     draws: Option<Vec<Vec<f64>>>,
     /// Evaluations of the present round that are done.
     done: BTreeSet<u64>,
@@ -90,7 +90,7 @@ impl Calibration {
         let mut calibration = Calibration {
             identity,
             fit_hash: spec.fit_variant.hash(),
-            all_hash: spec.all_variant.hash(),
+            holdout_hash: spec.holdout_variant.as_ref().map(ModelVariant::hash),
             spec,
             state: CalibrationState::Queued,
             message: None,
@@ -121,19 +121,25 @@ impl Calibration {
     /// The hash and parameter vector that an evaluation is leased with.
     pub fn lease_of(&self, evaluation: u64) -> Option<(&str, &[f64])> {
         let theta = self.theta(evaluation)?;
-        let hash = if self.draws.is_some() {
-            &self.all_hash
+        let hash = if self.is_holdout(evaluation) {
+            self.holdout_hash.as_deref()?
         } else {
             &self.fit_hash
         };
         Some((hash, self.spec.model_theta(theta)))
     }
 
+    /// Whether an evaluation is of the holdout runs.
+    fn is_holdout(&self, evaluation: u64) -> bool {
+        let key = EvaluationKey::of(evaluation, self.spec.sampler.particles);
+        matches!(key, EvaluationKey::Prediction { holdout: true, .. })
+    }
+
     /// The variant of a hash, if it is one of this calibration's.
     pub fn variant(&self, hash: &str) -> Option<&ModelVariant> {
         match hash {
             h if h == self.fit_hash => Some(&self.spec.fit_variant),
-            h if h == self.all_hash => Some(&self.spec.all_variant),
+            h if Some(h) == self.holdout_hash.as_deref() => self.spec.holdout_variant.as_ref(),
             _ => None,
         }
     }
@@ -144,7 +150,7 @@ impl Calibration {
             EvaluationKey::of(evaluation, self.spec.sampler.particles),
             &self.draws,
         ) {
-            (EvaluationKey::Prediction { draw }, Some(draws)) => draws.get(draw).map(Vec::as_slice),
+            (EvaluationKey::Prediction { draw, .. }, Some(draws)) => draws.get(draw).map(Vec::as_slice),
             (EvaluationKey::Sampling { round, particle }, None) if round == self.sampler.round() => self
                 .sampler
                 .pending()
@@ -162,7 +168,11 @@ impl Calibration {
         let failed = |evaluation| self.failed.get(&evaluation).copied().unwrap_or(0);
         match &self.draws {
             Some(draws) => {
-                let keys = (0..draws.len()).map(|draw| EvaluationKey::Prediction { draw }.number(particles));
+                let parts = if self.holdout_hash.is_some() { 2 } else { 1 };
+                let keys = (0..draws.len()).flat_map(|draw| {
+                    let part = move |holdout| EvaluationKey::Prediction { draw, holdout }.number(particles);
+                    [false, true].into_iter().take(parts).map(part)
+                });
                 self.queue.ask(keys, failed);
             }
             None => {
@@ -191,13 +201,11 @@ impl Calibration {
         outcome: Result<Observables, String>,
         worker: &str,
     ) -> Result<(Vec<Fact>, bool), ResultError> {
-        let runs = if self.draws.is_some() {
-            &self.spec.all_variant
+        let runs = if self.is_holdout(evaluation) {
+            self.spec.holdout_runs.len()
         } else {
-            &self.spec.fit_variant
-        }
-        .conditions
-        .len();
+            self.spec.fit_runs.len()
+        };
         if self.theta(evaluation).is_some()
             && let Ok(observables) = &outcome
             && !observables.covers(runs)

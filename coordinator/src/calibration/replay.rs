@@ -190,7 +190,7 @@ mod tests {
                 let Some((_, theta)) = calibration.lease_of(evaluation) else {
                     break;
                 };
-                let runs = if evaluation >= PREDICTIONS_FROM { 2 } else { 1 };
+                let runs = 1;
                 let outcome = toy(theta, runs);
                 let (new, counted) = calibration.complete(evaluation, outcome, "toy").unwrap();
                 facts.extend(new);
@@ -278,7 +278,7 @@ mod tests {
     fn final_draws_see_the_holdout_and_sampling_does_not() {
         let facts = work(&mut fresh(), usize::MAX, false);
         for row in rows(&facts) {
-            let whole = matches!(&row.kept, Kept::Whole(o) if o.sinkage_m.len() == 2);
+            let whole = matches!(&row.kept, Kept::Whole(o) if o.sinkage_m.len() == 1);
             let fitted = matches!(&row.kept, Kept::Fitted(v) if v.len() == 1);
             let refused = matches!(row.kept, Kept::Refused(_));
             assert!(
@@ -290,5 +290,42 @@ mod tests {
                     }
             );
         }
+    }
+
+    #[test]
+    fn a_refused_holdout_run_takes_no_fitted_one_along() {
+        let mut calibration = fresh();
+        let mut facts = Vec::new();
+        while !calibration.state.is_final() {
+            for evaluation in calibration.queue.asked() {
+                let Some((_, theta)) = calibration.lease_of(evaluation) else {
+                    break;
+                };
+                let holdout = evaluation >= PREDICTIONS_FROM && evaluation % 2 == 1;
+                let outcome = if holdout {
+                    Err("no_support: condition 0: toy".into())
+                } else {
+                    toy(theta, 1)
+                };
+                facts.extend(calibration.complete(evaluation, outcome, "toy").unwrap().0);
+            }
+        }
+        let drawn = |r: &&&EvaluationRow| r.evaluation >= PREDICTIONS_FROM;
+        let rows = rows(&facts);
+        let refused = rows
+            .iter()
+            .filter(drawn)
+            .filter(|r| matches!(r.kept, Kept::Refused(_)))
+            .count();
+        let whole = rows
+            .iter()
+            .filter(drawn)
+            .filter(|r| matches!(r.kept, Kept::Whole(_)))
+            .count();
+        assert_eq!(
+            (refused, whole),
+            (21, 21),
+            "20 particles and the most probable one"
+        );
     }
 }

@@ -1,6 +1,5 @@
 //! A job on disk with the files it names.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use shared::experiment::Experiment;
@@ -27,16 +26,7 @@ pub(super) fn read(path: &Path) -> Result<JobOnDisk, FileError> {
     let toml = read_text(path)?;
     let experiment_path = sibling(path, &experiment_of(&job_name, &toml)?);
     let experiment_name = experiment_path.display().to_string();
-    let experiment_toml = read_text(&experiment_path)?;
-    let mut files = BTreeMap::new();
-    for file in Experiment::referenced_files(&experiment_name, &experiment_toml)? {
-        let text = read_text(&sibling(&experiment_path, &file))?;
-        files.insert(file, text);
-    }
-    let experiment = FileSet {
-        toml: experiment_toml,
-        files,
-    };
+    let experiment = Experiment::read_files(&experiment_path)?;
     let spec = Spec::new(&job_name, &toml, &experiment_name, &experiment)?;
     Ok(JobOnDisk {
         name: name(path),

@@ -12,7 +12,7 @@ use super::job::{self, JobOnDisk};
 use super::output::{note, say};
 use super::progress::Display;
 use crate::config::Run;
-use crate::embedded::LocalWorkers;
+use crate::embedded::{LocalWorkers, model_version};
 use crate::farm::Control;
 use crate::result::{Outcome, report, terminal};
 use crate::service::{LEASE_MS, Service};
@@ -112,6 +112,23 @@ async fn take_up(job: &JobOnDisk, out: &Path, service: &Service) -> anyhow::Resu
             out.display()
         );
     }
+    if let Some(reason) = service.left_alone(row.id) {
+        bail!(
+            "{} holds a calibration that cannot go on: {reason}",
+            out.display()
+        );
+    }
+    if let Some(pinned) = row
+        .model_version
+        .as_deref()
+        .filter(|v| *v != model_version() && !row.state.is_final())
+    {
+        bail!(
+            "{} holds a calibration begun with model version {pinned}, this program computes {}: give another --out, or finish it with the older program",
+            out.display(),
+            model_version()
+        );
+    }
     if row.state == CalibrationState::Paused {
         service.control(row.id, Control::Resume).await?;
     }
@@ -145,7 +162,8 @@ async fn calibrate(
     let began = Instant::now();
     let workers =
         (threads > 0).then(|| LocalWorkers::start(service.dispatcher().clone(), threads, until_stopped()));
-    let end = watch_until_over(id, service).await;
+    let failure = workers.as_ref().map(LocalWorkers::failure);
+    let end = watch_until_over(id, service, failure).await;
     let wall_s = began.elapsed().as_secs_f64();
     stop.send_replace(true);
     if let Some(workers) = workers {
@@ -165,7 +183,18 @@ async fn calibrate(
 }
 
 /// Shows progress until the calibration is over, or until ^C.
-async fn watch_until_over(id: i64, service: &Service) -> anyhow::Result<End> {
+async fn watch_until_over(
+    id: i64,
+    service: &Service,
+    failure: Option<impl Future<Output = String>>,
+) -> anyhow::Result<End> {
+    let failure = async {
+        match failure {
+            Some(failure) => failure.await,
+            None => std::future::pending().await,
+        }
+    };
+    tokio::pin!(failure);
     let stop = super::stop_signal()?;
     tokio::pin!(stop);
     let store_fails = service.store().writer().stopped();
@@ -175,6 +204,7 @@ async fn watch_until_over(id: i64, service: &Service) -> anyhow::Result<End> {
         tokio::select! {
             () = &mut stop => { display.finish(); return Ok(End::Stopped); }
             () = &mut store_fails => bail!("the store can no longer be written; its log line says why"),
+            reason = &mut failure => bail!("the local workers ended: {reason}"),
             () = tokio::time::sleep(LOOK) => {}
         }
         let status = service.status(id).await?;

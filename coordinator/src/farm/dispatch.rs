@@ -227,11 +227,19 @@ impl Thread {
                 Ok(message) => Some(message),
                 Err(mpsc::RecvTimeoutError::Timeout) => None,
             };
-            let now_ms = u64::try_from(self.began.elapsed().as_millis()).unwrap_or(u64::MAX);
+            let mut now_ms = self.now_ms();
             if let Some(message) = message {
                 self.handle(message, now_ms);
             }
             if Instant::now() >= next_tick {
+                // Renewals may have come in during a long step of a sampler: they count before time passes.
+                while let Ok(message) = receiver.try_recv() {
+                    if matches!(message, Message::Stop) {
+                        return;
+                    }
+                    now_ms = self.now_ms();
+                    self.handle(message, now_ms);
+                }
                 next_tick = Instant::now() + TICK;
                 self.farm.tick(now_ms);
             }
@@ -241,6 +249,10 @@ impl Thread {
             }
             self.serve_parked(now_ms);
         }
+    }
+
+    fn now_ms(&self) -> u64 {
+        u64::try_from(self.began.elapsed().as_millis()).unwrap_or(u64::MAX)
     }
 
     /// Hands the new facts to the store; the number of the last fact so far.

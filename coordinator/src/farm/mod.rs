@@ -203,6 +203,7 @@ impl Farm {
         }
     }
 
+    /// Takes a result; `false` where it changes nothing.
     fn take_result(&mut self, worker: &str, result: shared::exchange::WorkResult, now_ms: u64) -> bool {
         let ours = self.tokens.is_ours(result.lease);
         let Some(entry) = self.calibrations.get_mut(&result.calibration).filter(|_| ours) else {
@@ -210,7 +211,13 @@ impl Farm {
             return false;
         };
         let calibration = &mut entry.calibration;
+        let leased = calibration.queue.evaluation_of(result.lease);
         let taken = match result_of(result.outcome) {
+            // A lapsed lease is taken on trust; one that is out must be answered for what it was given for.
+            Ok(_) if leased.is_some_and(|e| e != result.evaluation) => Err(format!(
+                "the result of lease {} names evaluation {}, not its own",
+                result.lease, result.evaluation
+            )),
             Ok(outcome) => match calibration.complete(result.evaluation, outcome, worker) {
                 Ok((facts, counted)) => {
                     self.facts.extend(facts);
@@ -225,24 +232,25 @@ impl Farm {
             .workers
             .get_mut(worker)
             .expect("the worker of an exchange is on record");
-        let counted = match taken {
-            Ok(counted) => counted,
+        match taken {
+            Ok(true) => {
+                record.completed += 1;
+                self.counters.completed += 1;
+                true
+            }
+            Ok(false) => {
+                self.counters.duplicates += 1;
+                false
+            }
             Err(message) => {
                 record.faults += 1;
                 self.counters.failed_leases += 1;
                 if let Some(failure) = calibration.queue.fail(result.lease) {
                     self.facts.extend(calibration.lease_failed(&failure, &message));
                 }
-                false
+                true
             }
-        };
-        if counted {
-            record.completed += 1;
-            self.counters.completed += 1;
-        } else {
-            self.counters.duplicates += 1;
         }
-        counted
     }
 
     fn give_back(&mut self, lease: u64) {

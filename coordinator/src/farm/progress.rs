@@ -55,7 +55,7 @@ pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> Cal
         experiment: identity.experiment,
         state: calibration.state,
         message: calibration.message.clone(),
-        model_kind: calibration.spec.model.kind.name().to_owned(),
+        model_kind: Some(calibration.spec.model.kind.name().to_owned()),
         model_version: calibration.model_version.clone(),
         progress: Some(Progress {
             stage: current.stage as u32,

@@ -68,17 +68,13 @@ impl Watch {
             return Vec::new();
         };
         let mut events = Vec::new();
-        let stages = self
-            .service
-            .store()
-            .reader()
-            .stages(self.id)
-            .await
-            .unwrap_or_default();
-        for stage in stages.iter().skip(self.stages) {
-            events.extend(Event::default().event("stage").json_data(stage));
+        // A failed read tells nothing new; the next look will.
+        if let Ok(stages) = self.service.store().reader().stages(self.id).await {
+            for stage in stages.iter().skip(self.stages) {
+                events.extend(Event::default().event("stage").json_data(stage));
+            }
+            self.stages = stages.len();
         }
-        self.stages = stages.len();
         self.over = status.state.is_final();
         if self.seen.as_ref() != Some(&status) {
             events.extend(Event::default().event("status").json_data(&status));

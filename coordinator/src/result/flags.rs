@@ -80,10 +80,12 @@ impl Outcome {
             );
             flag("rejections", text);
         }
-        let refused = self.predictions.iter().filter(|p| p.result.is_err()).count();
-        if refused > 0 {
+        let holdout = self.predictions.iter().filter_map(|p| p.holdout.as_ref());
+        let refused: Vec<&String> = holdout.filter_map(|h| h.as_ref().err()).collect();
+        if let Some(reason) = refused.first() {
             let text = format!(
-                "the model refuses {refused} of {} final draws on the whole experiment: a condition outside the fit is beyond it",
+                "the model refuses {} of {} final draws on the holdout runs ({reason}): a condition outside the fit is beyond it",
+                refused.len(),
                 self.predictions.len()
             );
             flag("rejections", text);

@@ -4,6 +4,7 @@
 
 mod baseline;
 mod comparison;
+mod coverage;
 mod csv;
 mod errors;
 mod flags;
@@ -106,20 +107,18 @@ pub async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, Serv
 }
 
 /// Where a calibration stands that nobody has in hand.
-///
-/// # Errors
-/// [`ServiceError`].
-pub fn stored_status(row: &CalibrationRow) -> Result<CalibrationStatus, ServiceError> {
-    let model = crate::spec::Job::parse("job.toml", &row.toml)?.model;
-    Ok(CalibrationStatus {
+pub fn stored_status(row: &CalibrationRow) -> CalibrationStatus {
+    // A job that this version does not understand still has a line in every list.
+    let model = crate::spec::Job::parse("job.toml", &row.toml).map(|job| job.model);
+    CalibrationStatus {
         id: row.id,
         name: row.name.clone(),
         study: row.study,
         experiment: row.experiment,
         state: row.state,
         message: row.message.clone(),
-        model_kind: model.kind.name().to_owned(),
+        model_kind: model.ok().map(|m| m.kind.name().to_owned()),
         model_version: row.model_version.clone(),
         progress: None,
-    })
+    }
 }

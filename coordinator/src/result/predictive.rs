@@ -48,13 +48,19 @@ fn noise_source(outcome: &Outcome, run: usize, channel: Channel) -> Option<Sd> {
 /// The predictive distribution of a run and channel; `None` where every draw was refused.
 pub(super) fn predictive(outcome: &Outcome, run: usize, channel: Channel) -> Option<Predictive> {
     let source = noise_source(outcome, run, channel);
-    let draws: Vec<(f64, Option<f64>)> = accepted(outcome)
-        .map(|(theta, observables)| {
+    let spec = &outcome.spec;
+    let position = |runs: &[usize]| runs.iter().position(|&r| r == run);
+    let place = match position(&spec.fit_runs) {
+        Some(position) => Place::Fit(position),
+        None => Place::Holdout(position(&spec.holdout_runs)?),
+    };
+    let draws: Vec<(f64, Option<f64>)> = accepted(outcome, place)
+        .map(|(theta, observables, position)| {
             let sd = source.map(|s| match s {
                 Sd::Known(sd) => sd,
                 Sd::Inferred { parameter } => theta[parameter],
             });
-            (observables.channel(channel)[run], sd)
+            (observables.channel(channel)[position], sd)
         })
         .collect();
     let values: Vec<f64> = draws.iter().map(|d| d.0).collect();
@@ -68,11 +74,25 @@ pub(super) fn predictive(outcome: &Outcome, run: usize, channel: Channel) -> Opt
     })
 }
 
+/// Where a run stands in the observables of a final draw.
+#[derive(Clone, Copy)]
+enum Place {
+    Fit(usize),
+    Holdout(usize),
+}
+
 /// The final draws that the model took. The first prediction, the most probable particle, is no random draw
 /// and stays out.
-fn accepted(outcome: &Outcome) -> impl Iterator<Item = (&[f64], &Observables)> {
+fn accepted(outcome: &Outcome, place: Place) -> impl Iterator<Item = (&[f64], &Observables, usize)> {
     let draws = outcome.predictions.iter().skip(1);
-    draws.filter_map(|p| p.result.as_ref().ok().map(|o| (p.theta.as_slice(), o)))
+    draws.filter_map(move |p| {
+        let (result, position) = match place {
+            Place::Fit(position) => (&p.fit, position),
+            Place::Holdout(position) => (p.holdout.as_ref()?, position),
+        };
+        let observables = result.as_ref().ok()?;
+        Some((p.theta.as_slice(), observables, position))
+    })
 }
 
 /// Quantile of an equal mixture of normals by bisection; without noise, of the values themselves.

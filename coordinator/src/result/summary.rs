@@ -7,6 +7,7 @@ use shared::channel::Channel;
 
 use super::Outcome;
 use super::comparison::ComparisonRow;
+use super::coverage::Coverage;
 use super::errors::ErrorTable;
 use super::flags::Flag;
 
@@ -233,11 +234,6 @@ pub(super) fn algorithm_name(algorithm: inference::Algorithm) -> &'static str {
 }
 
 fn coverage(rows: &[ComparisonRow], usage: &str) -> Option<f64> {
-    let covered: Vec<bool> = rows
-        .iter()
-        .filter(|r| r.usage == usage)
-        .filter_map(ComparisonRow::covered)
-        .collect();
-    let inside = covered.iter().filter(|c| **c).count();
-    (!covered.is_empty()).then(|| inside as f64 / covered.len() as f64)
+    let coverage = Coverage::count(rows.iter().filter(|r| r.usage == usage))?;
+    Some(coverage.inside as f64 / coverage.of as f64)
 }

@@ -7,6 +7,7 @@ use shared::channel::Channel;
 
 use super::Outcome;
 use super::comparison::{Comparison, ComparisonRow};
+use super::coverage::Coverage;
 use super::errors::ErrorTable;
 use super::summary::algorithm_name;
 use crate::spec::Spec;
@@ -164,19 +165,10 @@ pub fn comparison(comparison: &Comparison) -> String {
         }
     }
     for usage in ["fit", "holdout"] {
-        let covered: Vec<bool> = comparison
-            .rows
-            .iter()
-            .filter(|r| r.usage == usage)
-            .filter_map(ComparisonRow::covered)
-            .collect();
-        if !covered.is_empty() {
-            let inside = covered.iter().filter(|c| **c).count();
-            let _ = writeln!(
-                text,
-                "{inside} of {} {usage} measurements lie in their 90 % interval",
-                covered.len()
-            );
+        let rows = comparison.rows.iter().filter(|r| r.usage == usage);
+        if let Some(coverage) = Coverage::count(rows) {
+            let words = coverage.words();
+            let _ = writeln!(text, "90 % intervals hold {words} {usage} measurements");
         }
     }
     text

@@ -4,8 +4,6 @@ mod job_file;
 mod noise;
 mod priors;
 
-use std::collections::BTreeSet;
-
 use inference::{GaussianLikelihood, Prior, Settings};
 use shared::experiment::{Experiment, RunUse};
 use shared::file::{FileError, FileSet};
@@ -29,10 +27,12 @@ pub struct Spec {
     pub sampler: Settings,
     /// The fitted runs, as positions in the experiment.
     pub fit_runs: Vec<usize>,
+    /// The runs that are not fitted, as positions in the experiment.
+    pub holdout_runs: Vec<usize>,
     /// What workers evaluate while sampling: the fitted runs alone.
     pub fit_variant: ModelVariant,
-    /// What workers evaluate for the final draws: every run.
-    pub all_variant: ModelVariant,
+    /// What workers evaluate for the final draws besides: the holdout runs, if there are any.
+    pub holdout_variant: Option<ModelVariant>,
     /// The likelihood of the measurements that are fitted; runs count within [`Spec::fit_runs`].
     pub likelihood: GaussianLikelihood,
 }
@@ -75,9 +75,8 @@ impl Spec {
                 priors::Parsed::Free(parameter) => parameters.push(parameter),
             }
         }
-        let fit_runs: Vec<usize> = (0..experiment.runs.len())
-            .filter(|&i| experiment.runs[i].usage == RunUse::Fit)
-            .collect();
+        let (fit_runs, holdout_runs): (Vec<usize>, Vec<usize>) =
+            (0..experiment.runs.len()).partition(|&i| experiment.runs[i].usage == RunUse::Fit);
         noise::add_unknown_sds(&experiment, &mut parameters);
         noise::check_names(&experiment, &parameters).map_err(in_job)?;
         let in_experiment = |message: String| FileError::whole(experiment_name, message);
@@ -101,20 +100,24 @@ impl Spec {
             .filter(|p| !p.name.starts_with(parameters::NOISE_PREFIX))
             .map(|p| p.name.clone())
             .collect();
-        let variant = |runs: &mut dyn Iterator<Item = usize>| {
-            let runs: Vec<_> = runs.map(|i| &experiment.runs[i]).collect();
-            ModelVariant::new(&experiment, &model, model_parameters.clone(), runs)
+        let variant = |runs: &[usize]| {
+            let runs = runs.iter().map(|&i| &experiment.runs[i]);
+            ModelVariant::new(&experiment, &model, model_parameters.clone(), runs).map_err(in_job)
         };
-        let fit_variant = variant(&mut fit_runs.iter().copied()).map_err(in_job)?;
-        let all_variant = variant(&mut (0..experiment.runs.len())).map_err(in_job)?;
+        let fit_variant = variant(&fit_runs)?;
+        let holdout_variant = match holdout_runs.as_slice() {
+            [] => None,
+            runs => Some(variant(runs)?),
+        };
         Ok(Spec {
             experiment,
             model,
             parameters,
             sampler: job.sampler,
             fit_runs,
+            holdout_runs,
             fit_variant,
-            all_variant,
+            holdout_variant,
             likelihood,
         })
     }
@@ -135,10 +138,5 @@ impl Spec {
     /// Noise parameters stand behind the model's, so this is a prefix.
     pub fn model_theta<'a>(&self, theta: &'a [f64]) -> &'a [f64] {
         &theta[..self.fit_variant.parameters.len()]
-    }
-
-    /// The names of the channels that have a fitted measurement.
-    pub fn fitted_channels(&self) -> BTreeSet<usize> {
-        self.likelihood.data().iter().map(|d| d.channel).collect()
     }
 }

@@ -40,6 +40,7 @@ const DISTRIBUTIONS: [&str; 5] = ["uniform", "loguniform", "normal", "lognormal"
 impl PriorEntry {
     /// Reads the entry and checks it against the parameter's physical bounds.
     pub(super) fn parse(&self, wheels: &BTreeSet<&str>) -> Result<Parsed, String> {
+        self.check_quotes(wheels)?;
         let (unit, lower, upper) = bounds(&self.name, wheels)?;
         if let Some(value) = number(&self.value) {
             if self.name.starts_with(NOISE_PREFIX) {
@@ -86,6 +87,21 @@ impl PriorEntry {
             unit,
             marginal,
         }))
+    }
+}
+
+impl PriorEntry {
+    /// A dotted name without quotes is a table of tables to TOML; says so where one was probably meant.
+    fn check_quotes(&self, wheels: &BTreeSet<&str>) -> Result<(), String> {
+        let Some(table) = self.value.as_table() else {
+            return Ok(());
+        };
+        let dotted =
+            |key: &&String| wheels.contains(key.as_str()) || Channel::ALL.iter().any(|c| c.column() == *key);
+        match table.keys().find(dotted) {
+            None => Ok(()),
+            Some(key) => Err(format!("write the name in quotes: \"{}.{key}\"", self.name)),
+        }
     }
 }
 

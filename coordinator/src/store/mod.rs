@@ -11,7 +11,6 @@ mod writer;
 
 use std::io::Read;
 use std::path::Path;
-use std::str::FromStr;
 
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
 use sqlx::{Connection, SqliteConnection, SqlitePool};
@@ -77,18 +76,33 @@ pub struct Store {
     epochs: Vec<u64>,
 }
 
-fn options(path: &str) -> Result<SqliteConnectOptions, StoreError> {
-    let file = path.strip_prefix("sqlite://").unwrap_or(path);
-    let options =
-        SqliteConnectOptions::from_str(&format!("sqlite://{file}")).map_err(|source| StoreError::Sqlite {
-            path: path.into(),
-            source,
-        })?;
-    Ok(options
-        .journal_mode(SqliteJournalMode::Wal)
-        .synchronous(SqliteSynchronous::Full)
+/// The file's name without the scheme.
+fn file_of(path: &str) -> &str {
+    path.strip_prefix("sqlite://").unwrap_or(path)
+}
+
+fn options(path: &str) -> SqliteConnectOptions {
+    // By file name, not by URL: a name may hold a `%` or a `?`.
+    SqliteConnectOptions::new()
+        .filename(file_of(path))
         .foreign_keys(true)
-        .busy_timeout(std::time::Duration::from_secs(2)))
+        .busy_timeout(std::time::Duration::from_secs(2))
+}
+
+/// Refuses a database that somebody else has made.
+async fn recognise(connection: &mut SqliteConnection, path: &str) -> Result<(), StoreError> {
+    let ours = "SELECT count(*) FROM sqlite_schema WHERE name = '_sqlx_migrations' OR name = 'calibrations'";
+    let known: i64 = sqlx::query_scalar(ours).fetch_one(&mut *connection).await?;
+    let all: i64 = sqlx::query_scalar("SELECT count(*) FROM sqlite_schema")
+        .fetch_one(connection)
+        .await?;
+    if known == 2 || all == 0 {
+        return Ok(());
+    }
+    Err(StoreError::Unfit {
+        path: file_of(path).into(),
+        reason: "the database is not one of Grouser's".into(),
+    })
 }
 
 impl Store {
@@ -104,8 +118,12 @@ impl Store {
         examine(path)?;
         // The writer holds its lock file for as long as it lives; a second coordinator is turned away at once.
         let lock = lock(path)?;
-        let options = options(path)?.create_if_missing(true);
+        let options = options(path)
+            .create_if_missing(true)
+            .journal_mode(SqliteJournalMode::Wal)
+            .synchronous(SqliteSynchronous::Full);
         let mut connection = SqliteConnection::connect_with(&options).await.map_err(wrap)?;
+        recognise(&mut connection, path).await?;
         sqlx::migrate!("../migrations")
             .run(&mut connection)
             .await
@@ -160,14 +178,18 @@ impl Reader {
     /// # Errors
     /// [`StoreError`] with the file and the reason.
     pub async fn open(path: &str) -> Result<Reader, StoreError> {
-        let file = path.strip_prefix("sqlite://").unwrap_or(path);
+        let file = file_of(path);
         if !Path::new(file).is_file() {
             return Err(StoreError::Missing(file.into()));
         }
-        let pool = pool(options(path)?).await.map_err(|source| StoreError::Sqlite {
-            path: path.into(),
-            source,
-        })?;
+        examine(path)?;
+        let pool = pool(options(path).read_only(true))
+            .await
+            .map_err(|source| StoreError::Sqlite {
+                path: path.into(),
+                source,
+            })?;
+        recognise(&mut *pool.acquire().await?, path).await?;
         Ok(Reader { pool })
     }
 }
@@ -210,7 +232,7 @@ async fn pool(options: SqliteConnectOptions) -> Result<SqlitePool, sqlx::Error> 
 
 /// Refuses what cannot be a store before anything is written beside it.
 fn examine(path: &str) -> Result<(), StoreError> {
-    let file = Path::new(path.strip_prefix("sqlite://").unwrap_or(path));
+    let file = Path::new(file_of(path));
     if path.contains(":memory:") {
         return Ok(());
     }
@@ -241,7 +263,7 @@ fn examine(path: &str) -> Result<(), StoreError> {
 
 /// Takes the lock file beside the store; it is released when the returned file is dropped, or at any death.
 fn lock(path: &str) -> Result<Option<std::fs::File>, StoreError> {
-    let file = path.strip_prefix("sqlite://").unwrap_or(path);
+    let file = file_of(path);
     if file.contains(":memory:") {
         return Ok(None);
     }

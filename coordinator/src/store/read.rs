@@ -9,7 +9,7 @@ use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 
 use super::{Reader, StoreError, blob, numbers};
-use crate::calibration::PREDICTIONS_FROM;
+use crate::calibration::{EvaluationKey, PREDICTIONS_FROM};
 
 /// A stored experiment.
 #[derive(Debug, Clone)]
@@ -93,13 +93,15 @@ pub struct Sample {
     pub log_prior: f64,
 }
 
-/// A final draw, simulated on every run.
+/// A final draw.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
     /// Parameter vector, noise parameters included.
     pub theta: Vec<f64>,
-    /// What the model gave, or why it refused.
-    pub result: Result<Observables, String>,
+    /// What the model gave for the fitted runs, or why it refused.
+    pub fit: Result<Observables, String>,
+    /// The same for the holdout runs, where there are any.
+    pub holdout: Option<Result<Observables, String>>,
 }
 
 const CALIBRATION: &str = "SELECT c.*, s.experiment FROM calibrations c JOIN studies s ON s.id = c.study";
@@ -230,25 +232,30 @@ impl Reader {
     /// [`StoreError`].
     pub async fn predictions(&self, calibration: i64) -> Result<Vec<Prediction>, StoreError> {
         let rows = sqlx::query(
-            "SELECT theta, rejection, observables FROM evaluations
+            "SELECT evaluation, theta, rejection, observables FROM evaluations
              WHERE calibration = ? AND evaluation >= ? ORDER BY evaluation",
         )
         .bind(calibration)
         .bind(PREDICTIONS_FROM as i64)
         .fetch_all(&self.pool)
         .await?;
-        rows.iter()
-            .map(|row| {
-                let result = match row.get::<Option<String>, _>("rejection") {
-                    Some(rejection) => Err(rejection),
-                    None => Ok(blob::decode(row.get("observables"))?),
-                };
-                Ok(Prediction {
+        let mut predictions: Vec<Prediction> = Vec::new();
+        for row in &rows {
+            let result = match row.get::<Option<String>, _>("rejection") {
+                Some(rejection) => Err(rejection),
+                None => Ok(blob::decode(row.get("observables"))?),
+            };
+            let number = row.get::<i64, _>("evaluation").unsigned_abs();
+            match (EvaluationKey::of(number, 1), predictions.last_mut()) {
+                (EvaluationKey::Prediction { holdout: true, .. }, Some(last)) => last.holdout = Some(result),
+                _ => predictions.push(Prediction {
                     theta: numbers(row.get("theta"))?,
-                    result,
-                })
-            })
-            .collect()
+                    fit: result,
+                    holdout: None,
+                }),
+            }
+        }
+        Ok(predictions)
     }
 
     /// How often the model refused, by the kind of refusal.

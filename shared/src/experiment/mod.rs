@@ -4,12 +4,13 @@ mod runs;
 mod settings;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 pub use runs::{RunUse, TestRun};
 pub use settings::{Noise, NoiseSd, Protocol, ProtocolKind, Rig, Soil, Wheel};
 
 use crate::channel::Channel;
-use crate::file::{FileError, FileSet};
+use crate::file::{FileError, FileSet, read_text, sibling};
 
 /// A measured data set: everything that stands in `experiment.toml` and the files it names.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +36,20 @@ impl Experiment {
     /// [`FileError`] where the TOML cannot be parsed.
     pub fn referenced_files(name: &str, toml: &str) -> Result<Vec<String>, FileError> {
         Ok(settings::parse(name, toml)?.runs.into_iter().collect())
+    }
+
+    /// Reads an experiment's file and those that it names, unparsed.
+    ///
+    /// # Errors
+    /// [`FileError`] names the file that is missing or cannot be read.
+    pub fn read_files(path: &Path) -> Result<FileSet, FileError> {
+        let toml = read_text(path)?;
+        let mut files = BTreeMap::new();
+        for file in Experiment::referenced_files(&path.display().to_string(), &toml)? {
+            let text = read_text(&sibling(path, &file))?;
+            files.insert(file, text);
+        }
+        Ok(FileSet { toml, files })
     }
 
     /// Parses and validates an experiment; `name` is how messages call its TOML file.

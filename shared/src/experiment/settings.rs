@@ -191,7 +191,7 @@ pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError>
         let wheel = wheel(raw_wheel).map_err(|e| fail(format!("[wheel.{wheel_name}] {e}")))?;
         wheels.insert(wheel_name, wheel);
     }
-    positive("gravity_m_s2", raw.rig.gravity_m_s2, "m/s^2").map_err(|e| fail(format!("[rig] {e}")))?;
+    check_numbers(&raw.rig, &raw.soil, &raw.protocol).map_err(fail)?;
     let noise = noise(raw.noise).map_err(|e| fail(format!("[noise] {e}")))?;
     Ok(ExperimentFile {
         runs: raw.runs,
@@ -201,6 +201,45 @@ pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError>
         noise,
         protocol: raw.protocol,
     })
+}
+
+/// Refuses numbers of rig, soils and protocol that are not finite or have the wrong sign.
+fn check_numbers(rig: &Rig, soils: &BTreeMap<String, Soil>, protocol: &Protocol) -> Result<(), String> {
+    let in_rig = |e: String| format!("[rig] {e}");
+    positive("gravity_m_s2", rig.gravity_m_s2, "m/s^2").map_err(in_rig)?;
+    if let Some(length) = rig.bin_length_m {
+        positive("bin_length_m", length, "m").map_err(in_rig)?;
+    }
+    for (name, soil) in soils {
+        let in_soil = |e: String| format!("[soil.{name}] {e}");
+        for (key, value, unit) in [
+            ("density_kg_m3", soil.density_kg_m3, "kg/m^3"),
+            ("repose_angle_deg", soil.repose_angle_deg, "deg"),
+        ] {
+            if let Some(value) = value {
+                positive(key, value, unit).map_err(in_soil)?;
+            }
+        }
+    }
+    for (key, value, unit) in [
+        ("measured_transient_s", protocol.measured_transient_s, "s"),
+        (
+            "simulated_transient_force_s",
+            protocol.simulated_transient_force_s,
+            "s",
+        ),
+        (
+            "simulated_transient_sinkage_s",
+            protocol.simulated_transient_sinkage_s,
+            "s",
+        ),
+        ("lowpass_hz", protocol.lowpass_hz, "Hz"),
+    ] {
+        if !(value.is_finite() && value >= 0.0) {
+            return Err(format!("[protocol] {key} {value} {unit} must be >= 0 {unit}"));
+        }
+    }
+    Ok(())
 }
 
 fn wheel(raw: RawWheel) -> Result<Wheel, String> {

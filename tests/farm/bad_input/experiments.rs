@@ -180,3 +180,20 @@ fn files_that_are_not_there_or_not_text_are_named() {
     let broken = refusal(&Job::small().in_job("[priors]", "[priors"));
     assert!(broken.starts_with("job.toml line 7: "), "{broken}");
 }
+
+#[test]
+fn numbers_of_rig_soil_and_protocol_are_checked() {
+    let with = |table: &str| Job::small().in_experiment("[noise]", &format!("{table}\n[noise]"));
+    refused(
+        with("[protocol]\nlowpass_hz = nan"),
+        "experiment.toml: [protocol] lowpass_hz NaN Hz must be >= 0 Hz",
+    );
+    refused(
+        with("[protocol]\nmeasured_transient_s = -5.0"),
+        "experiment.toml: [protocol] measured_transient_s -5 s must be >= 0 s",
+    );
+    refused(
+        with("[rig]\nbin_length_m = 0.0"),
+        "experiment.toml: [rig] bin_length_m 0 m must be > 0 m",
+    );
+}

@@ -32,6 +32,18 @@ fn unknown_keys_name_line_and_nearest_known() {
 }
 
 #[test]
+fn a_dotted_name_without_quotes_says_so() {
+    refused(
+        Job::small().in_job("wheel_radius_m =", "wheel_radius_m.w ="),
+        "job.toml line 12: write the name in quotes: \"wheel_radius_m.w\"",
+    );
+    refused(
+        Job::small().in_job(N, "noise.sinkage_m = { half_normal = 0.001 }"),
+        "job.toml line 10: write the name in quotes: \"noise.sinkage_m\"",
+    );
+}
+
+#[test]
 fn impossible_priors_are_refused() {
     let n = |new: &str| Job::small().in_job(N, new);
     refused(
@@ -52,11 +64,11 @@ fn impossible_priors_are_refused() {
     );
     refused(
         n("n = { uniform = [-1.0, 2.0] }"),
-        "job.toml line 10: n: [-1, 2] 1 leaves the admissible range [0, 10] 1",
+        "job.toml line 10: n: [-1, 2] 1 leaves the admissible range [0.01, 10] 1",
     );
     refused(
         Job::small().in_job("[11.5, 37.3]", "[11.5, 137.3]"),
-        "job.toml line 11: friction_angle_deg: bounds [11.5, 137.3] deg leave the admissible range [0, 90] deg",
+        "job.toml line 11: friction_angle_deg: bounds [11.5, 137.3] deg leave the admissible range [0, 89] deg",
     );
     refused(
         n("n = { normal = [1.1, 0.2], uniform = [0.8, 2.0] }"),
@@ -141,11 +153,11 @@ fn settings_of_the_sampler_that_cannot_work_are_refused() {
     );
     refused(
         small().sampler(60, [0, 4], 1),
-        "job.toml: [sampler] moves [0, 4] are not 1 <= least <= most",
+        "job.toml: [sampler] moves [0, 4] are not 1 <= least <= most <= 10000",
     );
     refused(
         small().sampler(60, [5, 4], 1),
-        "job.toml: [sampler] moves [5, 4] are not 1 <= least <= most",
+        "job.toml: [sampler] moves [5, 4] are not 1 <= least <= most <= 10000",
     );
     refused(
         small().in_job("\"tmcmc\"", "\"tmcm\""),

@@ -133,7 +133,7 @@ fn a_fault_is_retried_and_a_rejection_is_not() {
     let worker = FakeWorker::new(&service.client, "mixed");
     let leases = worker.take(2);
     let answer = worker.answer(&leases[..1], |_| fault());
-    assert_eq!(answer["duplicates"], 1, "a fault is no result");
+    assert_eq!(answer["duplicates"], 0, "a fault is no duplicate");
     worker.answer(&leases[1..], |_| rejected());
     let progress = service.status(id)["progress"].clone();
     assert_eq!(

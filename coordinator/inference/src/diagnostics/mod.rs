@@ -2,13 +2,11 @@
 //!
 //! An empty slice has no mean: such questions answer `None`.
 
-mod agreement;
 mod bound;
 mod ess;
 mod moments;
 mod quantile;
 
-pub use agreement::{coverage, rmse};
 pub use bound::at_bound;
 pub use ess::{kish_ess, rank_correlation, weight_cov};
 pub use moments::{mean, mean_and_sd};

@@ -2,7 +2,7 @@
 
 use super::equilibrium::{Drift, is_alarming, pooled_z};
 use super::evidence::Evidence;
-use super::population::{Particle, Pool, Proposal, State};
+use super::population::{Pool, Proposal, State};
 use super::record::{Failure, Posterior, Progress, StageRecord, TellError};
 use super::settings::{Algorithm, Settings, SettingsError};
 use super::stage::Stage;
@@ -27,7 +27,6 @@ pub struct Sampler {
     pub(super) answers: Vec<Option<LogLikelihood>>,
     pub(super) missing: usize,
     pub(super) phase: Phase,
-    pub(super) prior_draws: Vec<Particle>,
     pub(super) evidence: Evidence,
     pub(super) passage: Passage,
     pub(super) stages: Vec<StageRecord>,
@@ -80,7 +79,6 @@ impl Sampler {
             answers: Vec::new(),
             missing: 0,
             phase: Phase::Prior,
-            prior_draws: Vec::new(),
             evidence: Evidence::default(),
             passage: Passage::default(),
             stages: Vec::new(),
@@ -168,13 +166,6 @@ impl Sampler {
     fn finish_prior(&mut self, proposals: &[Proposal], answers: &[LogLikelihood]) -> Result<Phase, Failure> {
         let mut pool = Pool::default();
         for (proposal, &log_likelihood) in proposals.iter().zip(answers) {
-            let theta = proposal.theta.clone();
-            let log_prior = self.prior.log_density(&theta);
-            self.prior_draws.push(Particle {
-                theta,
-                log_likelihood,
-                log_prior,
-            });
             if !log_likelihood.is_impossible() {
                 let coordinates = self.prior.coordinates(&proposal.theta);
                 let log_prior = self.prior.log_density_of_coordinates(&coordinates);

@@ -41,6 +41,11 @@ impl Default for Settings {
     }
 }
 
+/// Largest population: gigabytes at a dozen parameters.
+const MOST_PARTICLES: usize = 1_000_000;
+/// Most moves in a stage.
+const MOST_MOVES: usize = 10_000;
+
 /// Settings that cannot work.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SettingsError {
@@ -57,8 +62,14 @@ pub enum SettingsError {
         /// The least population.
         least: usize,
     },
-    /// The moves are not 1 <= least <= most.
-    #[error("moves [{least}, {most}] are not 1 <= least <= most")]
+    /// The population does not fit into memory.
+    #[error("{particles} particles are more than {MOST_PARTICLES}")]
+    TooManyParticles {
+        /// The setting.
+        particles: usize,
+    },
+    /// The moves are not 1 <= least <= most <= 10,000.
+    #[error("moves [{least}, {most}] are not 1 <= least <= most <= {MOST_MOVES}")]
     Moves {
         /// Least moves.
         least: usize,
@@ -89,7 +100,11 @@ impl Settings {
                 dimension,
                 least,
             })
-        } else if fewest == 0 || fewest > most {
+        } else if self.particles > MOST_PARTICLES {
+            Err(SettingsError::TooManyParticles {
+                particles: self.particles,
+            })
+        } else if fewest == 0 || fewest > most || most > MOST_MOVES {
             Err(SettingsError::Moves { least: fewest, most })
         } else if !(self.target_cov.is_finite() && self.target_cov > 0.0) {
             Err(SettingsError::TargetCov {

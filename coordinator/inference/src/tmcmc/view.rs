@@ -1,6 +1,6 @@
 //! Show a sampler's state to the outside.
 
-use super::population::{Particle, Proposal};
+use super::population::Proposal;
 use super::record::{Current, Failure, Posterior, StageRecord};
 use super::sampler::{Phase, Sampler};
 use super::settings::Settings;
@@ -45,12 +45,6 @@ impl Sampler {
     #[must_use]
     pub fn stages(&self) -> &[StageRecord] {
         &self.stages
-    }
-
-    /// The prior draws with their log-likelihoods, once round 0 is complete.
-    #[must_use]
-    pub fn prior_draws(&self) -> &[Particle] {
-        &self.prior_draws
     }
 
     /// The result, once finished.

@@ -59,7 +59,8 @@ pub(super) fn without_holdout() -> Outcome {
 pub(super) fn all_refused() -> Outcome {
     let mut outcome = outcome();
     for prediction in &mut outcome.predictions {
-        prediction.result = Err("no_support".into());
+        prediction.fit = Err("no_support".into());
+        prediction.holdout = prediction.holdout.take().map(|_| Err("no_support".into()));
     }
     for stage in &mut outcome.stages {
         (stage.equilibrated, stage.drift_z, stage.tempering_exponent) = (false, 1e6, 0.0);
@@ -76,7 +77,6 @@ fn build(last: &str) -> Outcome {
         files: BTreeMap::from([("runs.csv".into(), runs)]),
     };
     let spec = Spec::new("job.toml", JOB, "experiment.toml", &files).expect("the fixture's files are valid");
-    let n_runs = spec.experiment.runs.len();
     // The golden ratio's multiples spread evenly.
     let share = |k: usize, i: usize| (0.5 + 0.618_033_988_75 * (k * (i + 1)) as f64) % 1.0;
     let theta = |k: usize| -> Vec<f64> {
@@ -93,10 +93,10 @@ fn build(last: &str) -> Outcome {
             log_prior: -1.0,
         })
         .collect();
-    let predicted = |k: usize| {
+    let predicted = |k: usize, runs: &[usize]| {
         let values = |base: f64, step: f64| {
-            (0..n_runs)
-                .map(|r| base + step * (r as f64 + share(k, r)))
+            runs.iter()
+                .map(|&r| base + step * (r as f64 + share(k, r)))
                 .collect()
         };
         Observables {
@@ -110,7 +110,8 @@ fn build(last: &str) -> Outcome {
     let predictions = (0..20)
         .map(|k| Prediction {
             theta: theta(k),
-            result: Ok(predicted(k)),
+            fit: Ok(predicted(k, &spec.fit_runs)),
+            holdout: (!spec.holdout_runs.is_empty()).then(|| Ok(predicted(k, &spec.holdout_runs))),
         })
         .collect();
     let stage = |stage: u32, tempering_exponent: f64| StageRow {

@@ -9,7 +9,6 @@
 //! Names come from users; the templates escape every text.
 
 mod chart;
-mod coverage;
 #[cfg(test)]
 mod fixture;
 mod number;

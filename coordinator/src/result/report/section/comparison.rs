@@ -18,7 +18,7 @@ pub(in crate::result::report) fn comparison(outcome: &Outcome, comparison: &Comp
         .predictions
         .iter()
         .skip(1)
-        .filter(|p| p.result.is_ok())
+        .filter(|p| p.fit.is_ok())
         .count();
     html! {
         div.legend {

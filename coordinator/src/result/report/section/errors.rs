@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::result::report::coverage::Coverage;
+use crate::result::coverage::Coverage;
 use crate::result::report::number;
 use crate::result::report::quantity::Quantity;
 use crate::result::{ChannelError, Comparison, ComparisonRow, ErrorTable};

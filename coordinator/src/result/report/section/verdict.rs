@@ -7,7 +7,7 @@ use shared::experiment::RunUse;
 use shared::model::ModelKind;
 use shared::parameters::noise_parameter;
 
-use crate::result::report::coverage::Coverage;
+use crate::result::coverage::Coverage;
 use crate::result::report::number;
 use crate::result::report::quantity::Quantity;
 use crate::result::{Comparison, ErrorTable, Outcome, terminal};

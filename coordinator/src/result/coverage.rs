@@ -9,16 +9,16 @@ const EXPECTED: f64 = 0.95;
 
 /// Measurements inside their interval, of those that have one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Coverage {
+pub(in crate::result) struct Coverage {
     /// Inside.
-    pub(super) inside: usize,
+    pub(in crate::result) inside: usize,
     /// With an interval.
-    pub(super) of: usize,
+    pub(in crate::result) of: usize,
 }
 
 impl Coverage {
     /// Counts rows; `None` where no row has an interval.
-    pub(super) fn count<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
+    pub(in crate::result) fn count<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
         let covered: Vec<bool> = rows.filter_map(ComparisonRow::covered).collect();
         let inside = covered.iter().filter(|c| **c).count();
         (!covered.is_empty()).then_some(Coverage {
@@ -29,13 +29,13 @@ impl Coverage {
 
     /// The counts that right intervals would give 95 % of the time, if the rows were independent: the central
     /// range of the binomial distribution.
-    pub(super) fn expected(self) -> [usize; 2] {
+    pub(in crate::result) fn expected(self) -> [usize; 2] {
         let tail = 0.5 * (1.0 - EXPECTED);
         [quantile(self.of, tail), quantile(self.of, 1.0 - tail)]
     }
 
     /// `42 of 48 (44 to 47 expected)`.
-    pub(super) fn words(self) -> String {
+    pub(in crate::result) fn words(self) -> String {
         let [low, high] = self.expected();
         format!("{} of {} ({low} to {high} expected)", self.inside, self.of)
     }
