@@ -46,7 +46,7 @@ impl Drop for Server {
 }
 
 impl Server {
-    /// CPU time of the process so far [s].
+    /// CPU time of the process so far `[s]`.
     fn cpu_s(&self) -> Anyhow<f64> {
         let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.0.id()))?;
         let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or("").split_whitespace().collect();
@@ -157,7 +157,7 @@ async fn post(client: &Client, url: &str, what: &str, body: Value) -> Anyhow<Val
     Ok(response.error_for_status()?.json().await?)
 }
 
-/// A worker whose model costs nothing; the times of its exchanges [ms].
+/// A worker whose model costs nothing; the times of its exchanges `[ms]`.
 async fn work(
     client: Client,
     url: String,

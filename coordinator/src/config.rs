@@ -92,7 +92,7 @@ pub struct Serve {
     /// Threads that simulate in this process.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS", default_value_t = 0)]
     pub local_workers: usize,
-    /// How long a lease lasts without renewal [ms].
+    /// How long a lease lasts without renewal `[ms]`.
     #[arg(long, env = "GROUSER_LEASE_MS", default_value_t = crate::service::LEASE_MS)]
     pub lease_ms: u64,
 }

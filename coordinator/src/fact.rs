@@ -31,7 +31,7 @@ pub enum Fact {
         calibration: i64,
         /// The stage with its population.
         record: Box<StageRecord>,
-        /// Wall time spent on the calibration so far [ms].
+        /// Wall time spent on the calibration so far `[ms]`.
         busy_ms: u64,
     },
     /// The sampler ended.
@@ -49,7 +49,7 @@ pub enum Fact {
         state: CalibrationState,
         /// Why, where there is something to say.
         message: Option<String>,
-        /// Wall time spent on the calibration so far [ms].
+        /// Wall time spent on the calibration so far `[ms]`.
         busy_ms: u64,
     },
     /// The first lease pinned the version of the equations.

@@ -14,7 +14,7 @@ use crate::farm::{Control, ControlError, Farm};
 use crate::spec::{Job, Spec};
 use crate::store::{CalibrationRow, NewCalibrationRow, Store, StoreError};
 
-/// A lease lasts so long without renewal [ms].
+/// A lease lasts so long without renewal `[ms]`.
 pub const LEASE_MS: u64 = 15_000;
 /// So many facts may wait for the store before the service asks for patience.
 const BACKLOG: u64 = 200_000;

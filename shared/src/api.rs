@@ -151,7 +151,7 @@ pub struct Progress {
     pub step_size: u64,
     /// Evaluations per second, lately.
     pub evaluations_per_s: f64,
-    /// Rough time to go [s]; `None` while nothing is known.
+    /// Rough time to go `[s]`; `None` while nothing is known.
     pub remaining_s: Option<f64>,
 }
 

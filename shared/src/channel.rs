@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Channel {
-    /// Net forward force of the wheel on the sled along the heading [N], positive = the wheel pulls.
+    /// Net forward force of the wheel on the sled along the heading `[N]`, positive = the wheel pulls.
     DrawbarPull,
     /// Torque about the axle \[N m\], positive = the motor works.
     Torque,
-    /// Wheel radius minus hub height above the undisturbed surface [m].
+    /// Wheel radius minus hub height above the undisturbed surface `[m]`.
     Sinkage,
-    /// Force across the heading [N], positive = the soil resists the motion of a positive slip angle.
+    /// Force across the heading `[N]`, positive = the soil resists the motion of a positive slip angle.
     LateralForce,
 }
 

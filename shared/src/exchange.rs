@@ -26,7 +26,7 @@ pub struct ExchangeRequest {
     pub returned: Vec<u64>,
     /// Most leases that the worker takes now.
     pub want: u32,
-    /// How long the coordinator may wait for work before it answers [ms].
+    /// How long the coordinator may wait for work before it answers `[ms]`.
     pub wait_ms: u64,
 }
 
@@ -50,7 +50,7 @@ pub struct WorkResult {
 pub struct ExchangeResponse {
     /// New leases, at most as many as wanted.
     pub leases: Vec<Lease>,
-    /// How long a lease lasts without renewal [ms].
+    /// How long a lease lasts without renewal `[ms]`.
     pub lease_ms: u64,
     /// Evaluations not yet leased in the calibrations at hand; bounds the next `want`.
     pub remaining: u64,

@@ -90,11 +90,11 @@ pub struct Condition {
     pub wheel: String,
     /// Slip by the rig's radius, in [-1, 1).
     pub slip: f64,
-    /// Vertical load [N].
+    /// Vertical load `[N]`.
     pub wheel_load_n: f64,
-    /// Sled speed along travel [m/s].
+    /// Sled speed along travel `[m/s]`.
     pub sled_speed_m_s: f64,
-    /// From wheel heading to travel [deg].
+    /// From wheel heading to travel `[deg]`.
     pub slip_angle_deg: f64,
     /// How often the wheel passes; the last pass counts.
     pub pass: u32,
@@ -128,7 +128,7 @@ pub struct ModelVariant {
     /// The wheels by name.
     #[schema(value_type = Object)]
     pub wheels: BTreeMap<String, Wheel>,
-    /// Acceleration of gravity [m/s^2].
+    /// Acceleration of gravity `[m/s^2]`.
     pub gravity_m_s2: f64,
     /// The conditions to simulate, in the order of the observables.
     pub conditions: Vec<Condition>,

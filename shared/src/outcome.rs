@@ -23,23 +23,23 @@ pub enum Outcome {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Observables {
-    /// Drawbar pull [N].
+    /// Drawbar pull `[N]`.
     pub drawbar_pull_n: Vec<f64>,
     /// Torque \[N m\].
     pub torque_n_m: Vec<f64>,
-    /// Sinkage [m].
+    /// Sinkage `[m]`.
     pub sinkage_m: Vec<f64>,
-    /// Lateral force [N].
+    /// Lateral force `[N]`.
     pub lateral_force_n: Vec<f64>,
-    /// Mean effective width `b_eff = 2A/L` of the footprint [m].
+    /// Mean effective width `b_eff = 2A/L` of the footprint `[m]`.
     pub b_eff_m: Vec<f64>,
-    /// Mean contact length [m].
+    /// Mean contact length `[m]`.
     pub contact_length_m: Vec<f64>,
-    /// What the vertical balance leaves over [N].
+    /// What the vertical balance leaves over `[N]`.
     pub residual_load_n: Vec<f64>,
     /// Nodes, or quadrature points, in contact.
     pub nodes_in_contact: Vec<u32>,
-    /// Travel that was simulated [m].
+    /// Travel that was simulated `[m]`.
     pub simulated_travel_m: Vec<f64>,
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use farm_tests::programs::{self, Ended};
 use farm_tests::workspace::{data, text};
 
-/// Noise of the experiment: drawbar pull [N], torque [N m], sinkage [m].
+/// Noise of the experiment: drawbar pull `[N]`, torque [N m], sinkage `[m]`.
 const NOISE_SD: [f64; 3] = [1.2, 0.15, 4e-4];
 const CHANNELS: [&str; 3] = ["drawbar_pull_n", "torque_n_m", "sinkage_m"];
 

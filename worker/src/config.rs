@@ -37,7 +37,7 @@ pub enum Command {
 pub struct Simulate {
     /// The experiment; its measurements are not read, only its conditions.
     pub experiment: PathBuf,
-    /// The model: the keys of a job's [model], or a job file.
+    /// The model: the keys of a job's `[model]`, or a job file.
     #[arg(long)]
     pub model: PathBuf,
     /// The parameters: lines `name = value`.

@@ -29,7 +29,7 @@ impl SimulationClock {
         self.evaluations.load(Ordering::Relaxed)
     }
 
-    /// Mean time of an evaluation [s]; `None` before the first.
+    /// Mean time of an evaluation `[s]`; `None` before the first.
     pub fn mean_s(&self) -> Option<f64> {
         let evaluations = self.evaluations();
         (evaluations > 0).then(|| self.simulated_s() / evaluations as f64)

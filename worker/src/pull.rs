@@ -15,9 +15,9 @@ use shared::outcome::{Fault, Outcome};
 use crate::evaluator::{Evaluator, SimulationClock};
 use crate::model::VariantCache;
 
-/// A worker holds about so much work [s].
+/// A worker holds about so much work `[s]`.
 const WORK_S: f64 = 1.5;
-/// Longest wait of a long poll [ms].
+/// Longest wait of a long poll `[ms]`.
 const WAIT_MS: u64 = 20_000;
 /// A worker holds at most so many runs, over all its leases: their results fit into one message.
 const MOST_RUNS: usize = 100_000;

@@ -50,7 +50,7 @@ pub struct Calibration {
     pub model_version: Option<String>,
     /// Evaluations asked for at present, and who holds them.
     pub queue: Queue,
-    /// Wall time spent [ms].
+    /// Wall time spent `[ms]`.
     pub busy_ms: u64,
     /// Evaluations completed, over all stages.
     pub evaluations: u64,

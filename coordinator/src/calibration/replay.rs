@@ -17,7 +17,7 @@ pub struct Stored {
     pub message: Option<String>,
     /// The pinned version of the equations.
     pub model_version: Option<String>,
-    /// Wall time spent before [ms].
+    /// Wall time spent before `[ms]`.
     pub busy_ms: u64,
     /// Its evaluations by number: parameter vector, log-likelihood, whether the model refused.
     pub evaluations: BTreeMap<u64, StoredEvaluation>,

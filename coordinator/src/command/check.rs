@@ -14,7 +14,7 @@ use crate::result::terminal;
 
 /// Particles of the pilot: enough to find the number of stages, which hardly depends on them.
 const PILOT_PARTICLES: usize = 100;
-/// The pilot ends after so long; what it has seen by then is extrapolated [s].
+/// The pilot ends after so long; what it has seen by then is extrapolated `[s]`.
 const PILOT_S: f64 = 30.0;
 
 pub(super) async fn check(path: &Path) -> anyhow::Result<()> {

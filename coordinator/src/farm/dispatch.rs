@@ -17,7 +17,7 @@ use crate::calibration::Calibration;
 use crate::fact::Fact;
 use crate::store::FactSink;
 
-/// How often time passes for leases [ms].
+/// How often time passes for leases `[ms]`.
 const TICK: Duration = Duration::from_millis(250);
 
 /// An answer together with the number of the fact that must be stored before it may be given.
@@ -25,7 +25,7 @@ pub type Durable<T> = (T, u64);
 
 /// Where an exchange is answered.
 type ExchangeReply = oneshot::Sender<Durable<ExchangeResponse>>;
-/// A question to the farm at a time [ms].
+/// A question to the farm at a time `[ms]`.
 type Look = Box<dyn FnOnce(&Farm, u64) + Send>;
 /// What a command led to.
 pub type Controlled = Result<Durable<CalibrationState>, ControlError>;

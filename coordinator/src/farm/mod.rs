@@ -17,7 +17,7 @@ use crate::fact::Fact;
 use progress::Pace;
 use token::Tokens;
 
-/// A worker is counted as connected for so long after its last message [ms].
+/// A worker is counted as connected for so long after its last message `[ms]`.
 const WORKER_SILENCE_MS: u64 = 60_000;
 
 /// What is known of a worker process.
@@ -102,7 +102,7 @@ pub struct Farm {
 struct Entry {
     calibration: Calibration,
     pace: Pace,
-    /// When busy time was last added up [ms].
+    /// When busy time was last added up `[ms]`.
     counted_ms: u64,
 }
 

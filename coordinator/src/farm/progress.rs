@@ -6,7 +6,7 @@ use shared::api::{CalibrationStatus, Progress};
 
 use crate::calibration::Calibration;
 
-/// The pace is an average over so much of the past [ms].
+/// The pace is an average over so much of the past `[ms]`.
 const WINDOW_MS: u64 = 10_000;
 
 /// Evaluations over the last seconds.

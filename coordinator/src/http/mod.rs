@@ -24,7 +24,7 @@ use crate::service::Service;
 
 pub use error::HttpError;
 
-/// Largest body: the results of a large batch, or the files of a large experiment [bytes].
+/// Largest body: the results of a large batch, or the files of a large experiment `[bytes]`.
 const BODY_LIMIT: usize = 64 << 20;
 
 /// The document that the handlers complete.

@@ -14,7 +14,7 @@ use super::error::{Body, HttpError};
 use crate::farm::WorkerRecord;
 use crate::service::Service;
 
-/// A poll may last so long [ms].
+/// A poll may last so long `[ms]`.
 const LONGEST_WAIT_MS: u64 = 30_000;
 
 pub(super) fn routes() -> OpenApiRouter<Service> {

@@ -33,11 +33,11 @@ pub struct ComparisonRow {
     pub wheel: String,
     /// Slip.
     pub slip: f64,
-    /// Wheel load [N].
+    /// Wheel load `[N]`.
     pub wheel_load_n: f64,
-    /// Sled speed [m/s].
+    /// Sled speed `[m/s]`.
     pub sled_speed_m_s: f64,
-    /// Slip angle [deg].
+    /// Slip angle `[deg]`.
     pub slip_angle_deg: f64,
     /// Channel without unit.
     pub channel: String,

@@ -53,7 +53,7 @@ pub struct CalibrationSummary {
     pub evaluations: Option<u64>,
     /// Of these, refused by the model.
     pub rejected: Option<u64>,
-    /// Wall time [s].
+    /// Wall time `[s]`.
     pub wall_s: f64,
     /// Stages.
     pub stages: Vec<StageSummary>,

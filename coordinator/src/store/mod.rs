@@ -1,6 +1,6 @@
 //! The SQLite file: the only place that knows SQL.
 //!
-//! One task writes ([`writer`]); everybody else reads through a pool of their own. What the tables mean stands
+//! One task writes (`writer`); everybody else reads through a pool of their own. What the tables mean stands
 //! in `migrations/README.md`.
 
 mod blob;

@@ -39,7 +39,7 @@ pub struct CalibrationRow {
     pub message: Option<String>,
     /// Version of the equations.
     pub model_version: Option<String>,
-    /// Wall time spent [ms].
+    /// Wall time spent `[ms]`.
     pub busy_ms: u64,
     /// Log-evidence.
     pub log_evidence: Option<f64>,

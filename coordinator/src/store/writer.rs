@@ -59,7 +59,7 @@ pub struct StoreHealth {
     pub commits: AtomicU64,
     /// Facts committed.
     pub facts: AtomicU64,
-    /// Time spent writing and committing [us].
+    /// Time spent writing and committing `[us]`.
     pub busy_us: AtomicU64,
     /// Late duplicates that differed from what is stored: faults of determinism.
     pub differing_duplicates: AtomicU64,

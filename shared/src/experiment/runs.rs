@@ -17,11 +17,11 @@ pub struct TestRun {
     pub soil: String,
     /// `(omega R_s - v) / max(omega R_s, v)`, in [-1, 1); `R_s` is the rig's radius.
     pub slip: f64,
-    /// Vertical load on the wheel [N].
+    /// Vertical load on the wheel `[N]`.
     pub wheel_load_n: f64,
-    /// Sled speed along travel [m/s].
+    /// Sled speed along travel `[m/s]`.
     pub sled_speed_m_s: f64,
-    /// From wheel heading to travel [deg].
+    /// From wheel heading to travel `[deg]`.
     pub slip_angle_deg: f64,
     /// How often the wheel passes; the last pass is measured.
     pub pass: u32,

@@ -10,17 +10,17 @@ use crate::file::{FileError, parse_toml};
 /// A rigid wheel. `quasi_static` models its smooth rim alone: grousers enter through a radius of its own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Wheel {
-    /// Radius of the rim [m].
+    /// Radius of the rim `[m]`.
     pub radius_m: f64,
-    /// Width of the rim [m].
+    /// Width of the rim `[m]`.
     pub width_m: f64,
     /// Number of straight grousers.
     pub grouser_count: u32,
-    /// Height of a grouser above the rim [m].
+    /// Height of a grouser above the rim `[m]`.
     pub grouser_height_m: f64,
-    /// Thickness of a grouser along the rim [m].
+    /// Thickness of a grouser along the rim `[m]`.
     pub grouser_thickness_m: f64,
-    /// Radius with which the rig turns slip into rim speed [m].
+    /// Radius with which the rig turns slip into rim speed `[m]`.
     pub rig_radius_m: f64,
 }
 
@@ -28,9 +28,9 @@ pub struct Wheel {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Soil {
-    /// Bulk density [kg/m^3].
+    /// Bulk density `[kg/m^3]`.
     pub density_kg_m3: Option<f64>,
-    /// Angle of repose [deg].
+    /// Angle of repose `[deg]`.
     pub repose_angle_deg: Option<f64>,
 }
 
@@ -38,9 +38,9 @@ pub struct Soil {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rig {
-    /// Acceleration of gravity [m/s^2].
+    /// Acceleration of gravity `[m/s^2]`.
     pub gravity_m_s2: f64,
-    /// Length of the soil bin along travel [m].
+    /// Length of the soil bin along travel `[m]`.
     pub bin_length_m: Option<f64>,
 }
 
@@ -77,11 +77,11 @@ pub struct Noise {
 pub struct Protocol {
     /// When a simulated run ends.
     pub kind: ProtocolKind,
-    /// Time cut from the start of a measured history [s].
+    /// Time cut from the start of a measured history `[s]`.
     pub measured_transient_s: f64,
-    /// Time cut from simulated drawbar pull and torque [s].
+    /// Time cut from simulated drawbar pull and torque `[s]`.
     pub simulated_transient_force_s: f64,
-    /// Time cut from simulated sinkage [s].
+    /// Time cut from simulated sinkage `[s]`.
     pub simulated_transient_sinkage_s: f64,
     /// Cut-off of the zero-phase low-pass filter \[Hz\].
     pub lowpass_hz: f64,

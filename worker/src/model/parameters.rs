@@ -101,7 +101,7 @@ impl Radius {
         Radius(own.or_else(|| Source::find(variant, "wheel_radius_m")))
     }
 
-    /// The radius [m]; `None` = the experiment's.
+    /// The radius `[m]`; `None` = the experiment's.
     pub(super) fn value(&self, theta: &[f64]) -> Option<f64> {
         self.0.map(|source| source.value(theta))
     }

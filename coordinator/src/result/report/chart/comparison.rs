@@ -12,11 +12,11 @@ const WIDTH: f64 = 460.0;
 const HEIGHT: f64 = 290.0;
 /// Runs nearer than this many pixels are drawn side by side.
 const SAME_PLACE: f64 = 6.0;
-/// Distance of neighbours that are drawn side by side [pixels], and the room that all of them may take.
+/// Distance of neighbours that are drawn side by side `[pixels]`, and the room that all of them may take.
 const APART: f64 = 11.0;
 const ROOM: f64 = 55.0;
 
-/// Slips that differ less do not make an axis; nor do loads within such a factor, nor such angles [deg].
+/// Slips that differ less do not make an axis; nor do loads within such a factor, nor such angles `[deg]`.
 const LEAST_SLIP: f64 = 0.05;
 const LEAST_LOAD_FACTOR: f64 = 1.1;
 const LEAST_ANGLE_DEG: f64 = 2.0;
