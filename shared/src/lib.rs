@@ -9,7 +9,7 @@
 //! - [`outcome`]: what an evaluation gives: observables, a rejection of the parameters, or a fault.
 //! - [`exchange`]: the messages between worker and coordinator.
 //! - [`api`]: the messages between a user and the service.
-//! - [`file`]: text files by name, and errors that name file, line and the nearest known word.
+//! - [`mod@file`]: text files by name, and errors that name file, line and the nearest known word.
 //!
 //! No behaviour lives here but parsing and validation; no clock, no network, no database.
 
