@@ -234,7 +234,7 @@ fn settings_that_cannot_work_are_refused() {
             }
         )
         .to_string(),
-        "moves [5, 4] are not 1 <= least <= most"
+        "moves [5, 4] are not 1 <= least <= most <= 10000"
     );
     assert!(matches!(
         refuse(
