@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rand::{RngExt, SeedableRng};
 use shared::channel::Channel;
-use shared::experiment::{Experiment, NoiseSd, RunUse};
+use shared::experiment::{CONDITION_COLUMNS, Experiment, NoiseSd};
 use shared::file::{FileError, parse_toml, read_text};
 use shared::model::{ModelSettings, ModelVariant};
 use shared::outcome::{Observables, Outcome};
@@ -124,35 +124,20 @@ fn table(
     noise: &[[f64; 4]],
 ) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let condition = [
-        "run",
-        "wheel",
-        "soil",
-        "slip",
-        "wheel_load_n",
-        "sled_speed_m_s",
-        "slip_angle_deg",
-        "pass",
-    ];
     writer.write_record(
-        condition
+        CONDITION_COLUMNS
             .into_iter()
             .chain(Channel::ALL.map(Channel::column))
             .chain(["use"]),
     )?;
     for (i, run) in experiment.runs.iter().enumerate() {
-        let usage = if run.usage == RunUse::Fit {
-            "fit"
-        } else {
-            "holdout"
-        };
         let mut row = vec![run.name.clone(), run.wheel.clone(), run.soil.clone()];
         row.extend(
             [run.slip, run.wheel_load_n, run.sled_speed_m_s, run.slip_angle_deg].map(|x| x.to_string()),
         );
         row.push(run.pass.to_string());
         row.extend(Channel::ALL.map(|c| (observables.channel(c)[i] + noise[i][c.index()]).to_string()));
-        row.push(usage.to_owned());
+        row.push(run.usage.name().to_owned());
         writer.write_record(&row)?;
     }
     writer.into_inner().map_err(|e| e.into_error().into())

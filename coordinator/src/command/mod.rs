@@ -10,6 +10,7 @@ mod source;
 mod verbs;
 
 use anyhow::bail;
+use tokio::sync::watch;
 
 use crate::config::Command;
 
@@ -49,4 +50,23 @@ fn stop_signal() -> anyhow::Result<impl Future<Output = ()> + Send + 'static> {
             _ = tokio::signal::ctrl_c() => {}
         }
     })
+}
+
+/// Tells everything that was started here to stop.
+struct Stop(watch::Sender<bool>);
+
+impl Stop {
+    fn new() -> Self {
+        Stop(watch::Sender::new(false))
+    }
+
+    fn now(&self) {
+        self.0.send_replace(true);
+    }
+
+    /// Ready when it is time to stop.
+    fn wait(&self) -> impl Future<Output = ()> + Send + 'static {
+        let mut stopped = self.0.subscribe();
+        async move { drop(stopped.wait_for(|s| *s).await) }
+    }
 }

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, bail};
 use shared::api::{CalibrationState, NewCalibration, NewExperiment};
 use tokio::net::TcpListener;
-use tokio::sync::watch;
 
+use super::Stop;
 use super::job::{self, JobOnDisk};
 use super::output::{note, say};
 use super::progress::Display;
@@ -141,18 +141,14 @@ async fn calibrate(
     service: &Service,
     listener: Option<TcpListener>,
 ) -> anyhow::Result<End> {
-    let (stop, stopped) = watch::channel(false);
-    let until_stopped = move || {
-        let mut stopped = stopped.clone();
-        async move { drop(stopped.wait_for(|s| *s).await) }
-    };
+    let stop = Stop::new();
     let server = listener.map(|listener| {
         if let Ok(address) = listener.local_addr() {
             note(&format!(
                 "workers may join: worker --coordinator http://{address}"
             ));
         }
-        tokio::spawn(crate::http::serve(listener, service.clone(), until_stopped()))
+        tokio::spawn(crate::http::serve(listener, service.clone(), stop.wait()))
     });
     let cores = std::thread::available_parallelism().map_or(1, Into::into);
     let threads = config.local_workers.unwrap_or(cores);
@@ -161,11 +157,11 @@ async fn calibrate(
     }
     let began = Instant::now();
     let workers =
-        (threads > 0).then(|| LocalWorkers::start(service.dispatcher().clone(), threads, until_stopped()));
+        (threads > 0).then(|| LocalWorkers::start(service.dispatcher().clone(), threads, stop.wait()));
     let failure = workers.as_ref().map(LocalWorkers::failure);
     let end = watch_until_over(id, service, failure).await;
     let wall_s = began.elapsed().as_secs_f64();
-    stop.send_replace(true);
+    stop.now();
     if let Some(workers) = workers {
         let share = workers.simulated_s() / (wall_s * workers.threads as f64);
         note(&format!(

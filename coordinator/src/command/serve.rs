@@ -2,8 +2,8 @@
 
 use anyhow::{Context, bail};
 use tokio::net::TcpListener;
-use tokio::sync::watch;
 
+use super::Stop;
 use crate::config::Serve;
 use crate::embedded::LocalWorkers;
 use crate::service::Service;
@@ -19,25 +19,16 @@ pub(super) async fn serve(config: Serve) -> anyhow::Result<()> {
     let address = listener.local_addr()?;
     tracing::info!(%address, store = config.store, "serving");
 
-    let (stop, stopped) = watch::channel(false);
-    let until_stopped = move || {
-        let mut stopped = stopped.clone();
-        async move { drop(stopped.wait_for(|s| *s).await) }
-    };
-    let workers = (config.local_workers > 0).then(|| {
-        LocalWorkers::start(
-            service.dispatcher().clone(),
-            config.local_workers,
-            until_stopped(),
-        )
-    });
-    let server = tokio::spawn(crate::http::serve(listener, service.clone(), until_stopped()));
+    let stop = Stop::new();
+    let workers = (config.local_workers > 0)
+        .then(|| LocalWorkers::start(service.dispatcher().clone(), config.local_workers, stop.wait()));
+    let server = tokio::spawn(crate::http::serve(listener, service.clone(), stop.wait()));
     let signal = super::stop_signal()?;
     tokio::select! {
         () = signal => tracing::info!("stopping; workers will find us again"),
         () = service.store().writer().stopped() => bail!("the store can no longer be written; the log says why"),
     }
-    stop.send_replace(true);
+    stop.now();
     if let Some(workers) = workers {
         workers.join().await;
     }

@@ -12,16 +12,14 @@ const WINDOW_MS: u64 = 10_000;
 /// Evaluations over the last seconds.
 #[derive(Debug)]
 pub(super) struct Pace {
-    /// (time, evaluations by then), a few a second.
+    /// (time, evaluations by then), a few a second; never empty.
     marks: VecDeque<(u64, u64)>,
-    began: (u64, u64),
 }
 
 impl Pace {
     pub(super) fn new(evaluations: u64, now_ms: u64) -> Self {
         Pace {
             marks: VecDeque::from([(now_ms, evaluations)]),
-            began: (now_ms, evaluations),
         }
     }
 
@@ -36,7 +34,7 @@ impl Pace {
     }
 
     fn per_second(&self, evaluations: u64, now_ms: u64) -> f64 {
-        let (since, before) = self.marks.front().copied().unwrap_or(self.began);
+        let (since, before) = self.marks[0];
         let seconds = now_ms.saturating_sub(since).max(1) as f64 / 1000.0;
         evaluations.saturating_sub(before) as f64 / seconds
     }

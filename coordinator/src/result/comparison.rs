@@ -80,7 +80,7 @@ impl Outcome {
                 let holdout = run.usage == RunUse::Holdout;
                 rows.push(ComparisonRow {
                     run: run.name.clone(),
-                    usage: if holdout { "holdout" } else { "fit" }.into(),
+                    usage: run.usage.name().into(),
                     wheel: run.wheel.clone(),
                     slip: run.slip,
                     wheel_load_n: run.wheel_load_n,

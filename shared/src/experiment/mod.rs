@@ -6,7 +6,7 @@ mod settings;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-pub use runs::{RunUse, TestRun};
+pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
 pub use settings::{Noise, NoiseSd, Protocol, ProtocolKind, Rig, Soil, Wheel};
 
 use crate::channel::Channel;

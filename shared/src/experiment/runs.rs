@@ -42,7 +42,18 @@ pub enum RunUse {
     Holdout,
 }
 
-const CONDITION: [&str; 8] = [
+impl RunUse {
+    /// Word in the column `use` and in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            RunUse::Fit => "fit",
+            RunUse::Holdout => "holdout",
+        }
+    }
+}
+
+/// The columns of `runs.csv` that state a run's condition, in the order of the file.
+pub const CONDITION_COLUMNS: [&str; 8] = [
     "run",
     "wheel",
     "soil",
@@ -121,7 +132,7 @@ fn columns(header: &csv::StringRecord) -> Result<BTreeMap<String, usize>, String
         .iter()
         .map(|c| format!("{}_sd", c.column()))
         .collect();
-    let mut known: Vec<&str> = CONDITION.to_vec();
+    let mut known: Vec<&str> = CONDITION_COLUMNS.to_vec();
     known.extend(Channel::ALL.iter().map(|c| c.column()));
     known.extend(sd_columns.iter().map(String::as_str));
     known.extend(["use", "history"]);
@@ -139,7 +150,10 @@ fn columns(header: &csv::StringRecord) -> Result<BTreeMap<String, usize>, String
             return Err(format!("column \"{name}\" stands twice"));
         }
     }
-    match CONDITION[..REQUIRED].iter().find(|&&c| !columns.contains_key(c)) {
+    match CONDITION_COLUMNS[..REQUIRED]
+        .iter()
+        .find(|&&c| !columns.contains_key(c))
+    {
         Some(missing) => Err(format!("column \"{missing}\" is missing")),
         None => Ok(columns),
     }
