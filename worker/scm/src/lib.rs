@@ -6,7 +6,7 @@
 //! - [`pressure_sinkage`]: normal pressure from sinkage (Bekker).
 //! - [`pressure_distribution`]: gamma, the weight that takes the pressure to zero at the border.
 //! - [`footprint`]: the effective width `2 A / L` of a footprint.
-//! - [`shear`]: the Mohr–Coulomb limit and how much of it a slip velocity mobilises.
+//! - [`shear`]: the Mohr–Coulomb limit and how much of it a slip velocity or a displacement mobilises.
 //!
 //! Boundary of the crate:
 //! - [`wheel`], [`condition`]: the rigid wheel and one run of the rig.
@@ -15,6 +15,7 @@
 //!
 //! Models:
 //! - [`quasi_static`]: a smooth wheel in steady motion, integrated along the rim.
+//! - [`bevameter`]: a plate pressed into the soil and a ring turned on it, by the same laws as the wheel.
 //!
 //! Numerics:
 //! - [`elementary`]: `exp`, `ln` and powers that vectorise and give the same bits on every machine.
@@ -25,6 +26,7 @@
 //! and the pure-Rust `libm` are used, and every sum has a fixed order.
 
 pub mod averages;
+pub mod bevameter;
 pub mod condition;
 pub mod elementary;
 pub mod footprint;

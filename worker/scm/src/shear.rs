@@ -56,6 +56,44 @@ impl ShearVelocity {
     }
 }
 
+/// The shear-displacement law: the share of the strength that a displacement along the surface mobilises.
+///
+/// `tau = tau_max (1 − exp(−j / K))` after the displacement j.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShearDisplacement {
+    per_displacement: f64,
+}
+
+impl ShearDisplacement {
+    /// The law with shear modulus K `[m]`, ≥ 0; with K = 0 any displacement mobilises everything.
+    pub fn new(modulus_m: f64) -> Self {
+        // As for the velocity law: 0 · ∞ at no displacement would be no number.
+        Self {
+            per_displacement: (1.0 / modulus_m).min(f64::MAX),
+        }
+    }
+
+    /// Mobilised share of the strength.
+    ///
+    /// `1 − exp(−j / K)`, one exponential.
+    ///
+    /// # Arguments
+    /// - `displacement_m`: j `[m]`, ≥ 0.
+    ///
+    /// # Returns
+    /// `[–]`, in [0, 1]; exactly 0 at j = 0, also with K = 0.
+    ///
+    /// # Validity
+    /// Monotonic shearing: j is the whole way since the surface touched the soil.
+    ///
+    /// # Source
+    /// Janosi & Hanamoto 1961. Checked by this file's tests and `bevameter::strength_is_reached_by_way`.
+    #[inline]
+    pub fn mobilised(&self, displacement_m: f64) -> f64 {
+        1.0 - crate::elementary::exp(-displacement_m * self.per_displacement)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -72,5 +110,20 @@ mod tests {
         let law = ShearVelocity::new(0.0);
         assert!((law.mobilised_per_velocity(1e-9) * 1e-9 - 1.0).abs() < 1e-15);
         assert!((law.mobilised_per_velocity(0.0) * 0.0).abs() < f64::MIN_POSITIVE);
+    }
+
+    #[test]
+    fn stress_follows_the_displacement_law() {
+        // 1 − 1/e of the strength at j = K
+        let law = ShearDisplacement::new(8e-3);
+        assert!((law.mobilised(8e-3) - 0.632_120_558_828_557_7).abs() < 1e-15);
+        assert!(law.mobilised(0.0).abs() < f64::MIN_POSITIVE);
+    }
+
+    #[test]
+    fn zero_modulus_mobilises_everything_but_before_any_displacement() {
+        let law = ShearDisplacement::new(0.0);
+        assert!((law.mobilised(1e-12) - 1.0).abs() < 1e-15);
+        assert!(law.mobilised(0.0).abs() < f64::MIN_POSITIVE);
     }
 }

@@ -1,5 +1,6 @@
 //! Checks the physics against closed forms, invariants, a brute-force integrator and another implementation.
 
+mod bevameter;
 mod brute_force;
 mod closed_forms;
 mod crossing;
