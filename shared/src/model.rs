@@ -66,8 +66,8 @@ impl ModelSettings {
                 }
                 (key, value) => {
                     let number = value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
-                    let known =
-                        key.starts_with("wheel_radius_m.") || parameters::BASE.iter().any(|p| p.name == key);
+                    let mut parameters = parameters::BASE.iter().chain(&parameters::EFFECTS);
+                    let known = key.starts_with("wheel_radius_m.") || parameters.any(|p| p.name == key);
                     if !known {
                         let names = parameters::BASE.iter().map(|p| p.name).chain(["kind", "effects"]);
                         return Err(unknown_word("key", key, names));
@@ -171,7 +171,7 @@ impl ModelVariant {
             .map(String::as_str)
             .collect();
         check_complete(&names, &wheels)?;
-        Ok(ModelVariant {
+        let variant = ModelVariant {
             kind: settings.kind,
             effects: Vec::new(),
             parameters,
@@ -180,7 +180,28 @@ impl ModelVariant {
             gravity_m_s2: experiment.rig.gravity_m_s2,
             conditions: runs.into_iter().map(Condition::from).collect(),
             protocol: experiment.protocol.clone(),
-        })
+        };
+        variant.check_expressible()?;
+        Ok(variant)
+    }
+
+    /// Checks that the forward model can express what the variant asks of a wheel. Without conditions no wheel
+    /// rolls, and nothing is asked of it.
+    ///
+    /// # Errors
+    /// A sentence that names what the model of this kind lacks.
+    pub fn check_expressible(&self) -> Result<(), String> {
+        if self.kind != ModelKind::QuasiStatic || self.conditions.is_empty() {
+            return Ok(());
+        }
+        let modulus = parameters::SHEAR_MODULUS;
+        let fixed = self.fixed.get(modulus).is_some_and(|k| k.abs() > 0.0);
+        if fixed || self.parameters.iter().any(|p| p == modulus) {
+            return Err(format!(
+                "{modulus}: janosi_hanamoto is not available in this version for quasi_static; 0 m is without it"
+            ));
+        }
+        Ok(())
     }
 
     /// Name of the variant on the wire: the first 128 bits of the SHA-256 of its JSON, in hex.

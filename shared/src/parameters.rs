@@ -2,7 +2,8 @@
 //!
 //! A parameter of one wheel of several carries the wheel's name behind a dot (`wheel_radius_m.smooth`);
 //! a noise standard deviation that is inferred is `noise.` and the channel's column
-//! (`noise.drawbar_pull_n`). Effects' parameters (`EFFECT.PARAMETER`) are not available in this version.
+//! (`noise.drawbar_pull_n`). Of the effects' parameters (`EFFECT.PARAMETER`) this version knows those in
+//! [`EFFECTS`].
 
 use std::collections::BTreeSet;
 
@@ -54,6 +55,15 @@ pub const BASE: [BaseParameter; 10] = [
     base("gamma_exponent", "1", 0.0, 100.0, Some(0.5)),
 ];
 
+/// Every known parameter of an effect, with the value at which the effect is absent. A variant that says
+/// nothing of one does not carry it, so its hash is that of a version without the effect.
+///
+/// `janosi_hanamoto.shear_modulus_m`: K of `tau = tau_max (1 − exp(−j / K))`; 0: no displacement law.
+pub const EFFECTS: [BaseParameter; 1] = [base(SHEAR_MODULUS, "m", 0.0, f64::INFINITY, Some(0.0))];
+
+/// Name of the modulus of the shear-displacement law.
+pub const SHEAR_MODULUS: &str = "janosi_hanamoto.shear_modulus_m";
+
 /// Prefix of the inferred noise standard deviations.
 pub const NOISE_PREFIX: &str = "noise.";
 
@@ -67,6 +77,9 @@ pub fn noise_parameter(channel: Channel) -> String {
 /// # Errors
 /// A sentence that names the unknown name and the nearest known one.
 pub fn lookup(name: &str, wheels: &BTreeSet<&str>) -> Result<BaseParameter, String> {
+    if let Some(effect) = EFFECTS.iter().find(|p| p.name == name) {
+        return Ok(*effect);
+    }
     let (stem, wheel) = name
         .split_once('.')
         .map_or((name, None), |(stem, wheel)| (stem, Some(wheel)));
@@ -172,6 +185,17 @@ mod tests {
     fn a_radius_of_an_unknown_wheel_names_the_nearest() {
         let error = lookup("wheel_radius_m.smoth", &BTreeSet::from(["smooth"])).unwrap_err();
         assert_eq!(error, "unknown wheel \"smoth\"; the nearest known is \"smooth\"");
+    }
+
+    #[test]
+    fn a_parameter_of_an_effect_has_a_unit_and_a_bound() {
+        let modulus = lookup(SHEAR_MODULUS, &BTreeSet::new()).unwrap();
+        assert_eq!(
+            check_value(&modulus, modulus.name, -0.01).unwrap_err(),
+            "janosi_hanamoto.shear_modulus_m = -0.01 m lies outside [0, inf] m"
+        );
+        let error = lookup("bulldozing.share", &BTreeSet::new()).unwrap_err();
+        assert!(error.contains("not available in this version"), "{error}");
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod architecture;
 mod bad_input;
+mod bevameter;
 mod bit_identity;
 mod conformance;
 mod end_to_end;

@@ -13,6 +13,8 @@ pub struct Job {
     pub runs: String,
     /// `job.toml`.
     pub job: String,
+    /// Other files that the experiment names: name and content.
+    pub others: Vec<(String, Vec<u8>)>,
 }
 
 /// Fitted runs of [`Job::small`].
@@ -25,6 +27,7 @@ impl Job {
             experiment: include_str!("../data/nothing-hidden/experiment.toml").into(),
             runs: include_str!("../data/nothing-hidden/runs.csv").into(),
             job: SMALL.into(),
+            others: Vec::new(),
         }
     }
 
@@ -70,18 +73,26 @@ impl Job {
         }
     }
 
-    /// Writes the three files into a folder; the path of the job.
+    /// Puts another file beside the experiment.
+    pub fn beside(mut self, name: &str, content: impl Into<Vec<u8>>) -> Job {
+        self.others.push((name.to_owned(), content.into()));
+        self
+    }
+
+    /// Writes the files into a folder; the path of the job.
     ///
     /// # Panics
     /// They cannot be written.
     pub fn write(&self, folder: &Path) -> PathBuf {
         std::fs::create_dir_all(folder).expect("the folder of a job");
-        for (name, text) in [
-            ("experiment.toml", &self.experiment),
-            ("runs.csv", &self.runs),
-            ("job.toml", &self.job),
-        ] {
-            std::fs::write(folder.join(name), text).expect("a file of a job");
+        let texts = [
+            ("experiment.toml", self.experiment.as_bytes()),
+            ("runs.csv", self.runs.as_bytes()),
+            ("job.toml", self.job.as_bytes()),
+        ];
+        let others = self.others.iter().map(|(name, content)| (&**name, &**content));
+        for (name, content) in texts.into_iter().chain(others) {
+            std::fs::write(folder.join(name), content).expect("a file of a job");
         }
         folder.join("job.toml")
     }

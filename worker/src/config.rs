@@ -32,8 +32,9 @@ pub enum Command {
     Simulate(Simulate),
 }
 
-/// Forward runs of an experiment.
+/// Forward runs of an experiment; each of `--out`, `--plates` and `--shear` asks for one table, at least one must.
 #[derive(Debug, clap::Args)]
+#[command(group = clap::ArgGroup::new("tables").required(true).multiple(true).args(["out", "plates", "shear"]))]
 pub struct Simulate {
     /// The experiment; its measurements are not read, only its conditions.
     pub experiment: PathBuf,
@@ -43,13 +44,20 @@ pub struct Simulate {
     /// The parameters: lines `name = value`.
     #[arg(long)]
     pub parameters: PathBuf,
-    /// Adds noise of the experiment's standard deviations, drawn from this seed.
-    #[arg(long)]
+    /// Adds noise of the experiment's standard deviations to the runs, drawn from this seed; plates and shear
+    /// readings get none, because none is declared for them.
+    #[arg(long, requires = "out")]
     pub noise_seed: Option<u64>,
     /// Where to write time histories (a model that has them: not in this version).
-    #[arg(long)]
+    #[arg(long, requires = "out")]
     pub histories: Option<PathBuf>,
-    /// Where to write the averages, with the columns of runs.csv.
-    #[arg(long)]
-    pub out: PathBuf,
+    /// Where to write the averages of the wheel's runs, with the columns of runs.csv.
+    #[arg(long, value_name = "CSV")]
+    pub out: Option<PathBuf>,
+    /// Where to write the pressures under the experiment's plates, with the columns of plates.csv.
+    #[arg(long, value_name = "CSV")]
+    pub plates: Option<PathBuf>,
+    /// Where to write the shear stresses under the experiment's rings, with the columns of shear.csv.
+    #[arg(long, value_name = "CSV")]
+    pub shear: Option<PathBuf>,
 }

@@ -54,6 +54,17 @@ impl Spec {
         let job = Job::parse(job_name, job_toml)?;
         let experiment = Experiment::parse(experiment_name, files)?;
         let in_job = |message: String| FileError::whole(job_name, message);
+        for (key, readings) in [
+            ("plates", experiment.plates.len()),
+            ("shear", experiment.shear.len()),
+        ] {
+            if readings > 0 {
+                let message = format!(
+                    "{key}: bevameter rows in the likelihood are not available in this version; `worker simulate` predicts them"
+                );
+                return Err(FileError::whole(experiment_name, message));
+            }
+        }
 
         let wheels = experiment.wheel_names();
         let mut model = job.model;

@@ -96,8 +96,13 @@ impl PriorEntry {
         let Some(table) = self.value.as_table() else {
             return Ok(());
         };
-        let dotted =
-            |key: &&String| wheels.contains(key.as_str()) || Channel::ALL.iter().any(|c| c.column() == *key);
+        let dotted = |key: &&String| {
+            wheels.contains(key.as_str())
+                || Channel::ALL.iter().any(|c| c.column() == *key)
+                || parameters::EFFECTS
+                    .iter()
+                    .any(|p| p.name.split_once('.') == Some((&self.name, key)))
+        };
         match table.keys().find(dotted) {
             None => Ok(()),
             Some(key) => Err(format!("write the name in quotes: \"{}.{key}\"", self.name)),

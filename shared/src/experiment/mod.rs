@@ -1,11 +1,20 @@
-//! An experiment as its files describe it: wheels, rig, noise, protocol, test runs.
+//! An experiment as its files describe it: wheels, rig, noise, protocol, test runs, bevameter readings.
+//!
+//! # Layout
+//! - `settings`: the tables of `experiment.toml`.
+//! - `runs`: the rows of `runs.csv`.
+//! - `bevameter`: the rows of `plates.csv` and `shear.csv`.
+//! - `table`: rows of a CSV file whose columns are known by name.
 
+mod bevameter;
 mod runs;
 mod settings;
+mod table;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+pub use bevameter::{PLATE_COLUMNS, PlateReading, SHEAR_COLUMNS, ShearReading};
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
 pub use settings::{Noise, NoiseSd, Protocol, ProtocolKind, Rig, Soil, Wheel};
 
@@ -25,8 +34,12 @@ pub struct Experiment {
     pub noise: Noise,
     /// How histories become averages.
     pub protocol: Protocol,
-    /// The test runs, in the order of `runs.csv`.
+    /// The test runs, in the order of `runs.csv`; empty where the experiment names bevameter readings alone.
     pub runs: Vec<TestRun>,
+    /// Readings of plates, in the order of `plates.csv`; empty where the experiment names no such file.
+    pub plates: Vec<PlateReading>,
+    /// Readings of rings, in the order of `shear.csv`; empty where the experiment names no such file.
+    pub shear: Vec<ShearReading>,
 }
 
 impl Experiment {
@@ -35,7 +48,11 @@ impl Experiment {
     /// # Errors
     /// [`FileError`] where the TOML cannot be parsed.
     pub fn referenced_files(name: &str, toml: &str) -> Result<Vec<String>, FileError> {
-        Ok(settings::parse(name, toml)?.runs.into_iter().collect())
+        let file = settings::parse(name, toml)?;
+        Ok([file.runs, file.plates, file.shear]
+            .into_iter()
+            .flatten()
+            .collect())
     }
 
     /// Reads an experiment's file and those that it names, unparsed.
@@ -59,26 +76,28 @@ impl Experiment {
     /// Checked by `tests::malformed_experiments_say_what_is_wrong`.
     pub fn parse(name: &str, files: &FileSet) -> Result<Experiment, FileError> {
         let file = settings::parse(name, &files.toml)?;
-        let Some(runs_name) = &file.runs else {
-            return Err(FileError::whole(
-                name,
-                "the experiment names no test runs: add runs = \"runs.csv\"",
-            ));
+        let text = |named: &str| {
+            files.files.get(named).ok_or_else(|| {
+                FileError::whole(name, format!("file \"{named}\" is named but was not sent along"))
+            })
         };
-        let Some(text) = files.files.get(runs_name) else {
-            return Err(FileError::whole(
-                name,
-                format!("file \"{runs_name}\" is named but was not sent along"),
-            ));
-        };
-        let runs = runs::parse(runs_name, text, &file.wheel, &file.soil)?;
+        let (mut runs, mut plates, mut shear) = (Vec::new(), Vec::new(), Vec::new());
+        if let Some(named) = &file.runs {
+            runs = runs::parse(named, text(named)?, &file.wheel, &file.soil)?;
+        }
+        if let Some(named) = &file.plates {
+            plates = bevameter::plates(named, text(named)?)?;
+        }
+        if let Some(named) = &file.shear {
+            shear = bevameter::shear(named, text(named)?)?;
+        }
         let used: BTreeSet<&str> = runs.iter().map(|r| r.soil.as_str()).collect();
         if used.len() > 1 {
             let list = used.into_iter().collect::<Vec<_>>().join(", ");
             let message = format!(
                 "one experiment is about one soil, but the runs name {list}: the soil parameters would be shared"
             );
-            return Err(FileError::whole(runs_name, message));
+            return Err(FileError::whole(file.runs.as_deref().unwrap_or(name), message));
         }
         Ok(Experiment {
             wheels: file.wheel,
@@ -87,6 +106,8 @@ impl Experiment {
             noise: file.noise,
             protocol: file.protocol,
             runs,
+            plates,
+            shear,
         })
     }
 

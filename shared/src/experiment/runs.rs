@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::settings::{Soil, Wheel};
+use super::table::{self, Columns, Row};
 use crate::channel::Channel;
-use crate::file::{FileError, unknown_word};
+use crate::file::FileError;
 
 /// One run of the rig: its condition and what was measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,134 +73,37 @@ pub(super) fn parse(
     wheels: &BTreeMap<String, Wheel>,
     soils: &BTreeMap<String, Soil>,
 ) -> Result<Vec<TestRun>, FileError> {
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .flexible(true)
-        .from_reader(text.as_bytes());
-    let header = reader
-        .headers()
-        .map_err(|e| FileError::at(file, 1, e.to_string()))?
-        .clone();
-    let columns = columns(&header).map_err(|e| FileError::at(file, line_of(text, &header), e))?;
+    let sd_columns = Channel::ALL.map(|c| format!("{}_sd", c.column()));
+    let mut known: Vec<&str> = CONDITION_COLUMNS.to_vec();
+    known.extend(Channel::ALL.iter().map(|c| c.column()));
+    known.extend(sd_columns.iter().map(String::as_str));
+    known.push("use");
+    let columns = Columns {
+        known,
+        required: &CONDITION_COLUMNS[..REQUIRED],
+        later: &[(
+            "history",
+            "averaging time histories is not available in this version",
+        )],
+    };
     let mut first_line: BTreeMap<String, usize> = BTreeMap::new();
-    let mut runs = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|e| FileError::whole(file, e.to_string()))?;
-        let line = line_of(text, &record);
-        if record.len() != header.len() {
-            let message = format!("{} fields where the header has {}", record.len(), header.len());
-            return Err(FileError::at(file, line, message));
+    let runs = table::rows(file, text, &columns, |row, line| {
+        let run = row.test_run(wheels, soils)?;
+        match first_line.insert(run.name.clone(), line) {
+            Some(first) => Err(format!(
+                "run \"{}\" stands twice (first on line {first})",
+                run.name
+            )),
+            None => Ok(run),
         }
-        let row = Row {
-            columns: &columns,
-            record: &record,
-        };
-        let run = row
-            .test_run(wheels, soils)
-            .map_err(|e| FileError::at(file, line, e))?;
-        if let Some(first) = first_line.insert(run.name.clone(), line) {
-            return Err(FileError::at(
-                file,
-                line,
-                format!("run \"{}\" stands twice (first on line {first})", run.name),
-            ));
-        }
-        runs.push(run);
-    }
+    })?;
     if runs.is_empty() {
         return Err(FileError::whole(file, "no test run stands in the file"));
     }
     Ok(runs)
 }
 
-/// The line in which a record stands, counted from 1: its position is that of the comments before it.
-fn line_of(text: &str, record: &csv::StringRecord) -> usize {
-    let Some(position) = record.position() else {
-        return 1;
-    };
-    let [line, byte] = [position.line(), position.byte()].map(|n| usize::try_from(n).unwrap_or(usize::MAX));
-    let rest = text.get(byte..).unwrap_or_default();
-    line + rest
-        .lines()
-        .take_while(|l| l.is_empty() || l.starts_with('#'))
-        .count()
-}
-
-/// Where each known column stands in the file.
-fn columns(header: &csv::StringRecord) -> Result<BTreeMap<String, usize>, String> {
-    let sd_columns: Vec<String> = Channel::ALL
-        .iter()
-        .map(|c| format!("{}_sd", c.column()))
-        .collect();
-    let mut known: Vec<&str> = CONDITION_COLUMNS.to_vec();
-    known.extend(Channel::ALL.iter().map(|c| c.column()));
-    known.extend(sd_columns.iter().map(String::as_str));
-    known.extend(["use", "history"]);
-    let mut columns = BTreeMap::new();
-    for (position, name) in header.iter().enumerate() {
-        if name == "history" {
-            return Err(
-                "column \"history\": averaging time histories is not available in this version".into(),
-            );
-        }
-        if !known.contains(&name) {
-            return Err(unknown_word("column", name, known));
-        }
-        if columns.insert(name.to_owned(), position).is_some() {
-            return Err(format!("column \"{name}\" stands twice"));
-        }
-    }
-    match CONDITION_COLUMNS[..REQUIRED]
-        .iter()
-        .find(|&&c| !columns.contains_key(c))
-    {
-        Some(missing) => Err(format!("column \"{missing}\" is missing")),
-        None => Ok(columns),
-    }
-}
-
-struct Row<'a> {
-    columns: &'a BTreeMap<String, usize>,
-    record: &'a csv::StringRecord,
-}
-
 impl Row<'_> {
-    /// The field of a column; `None` where it is blank or the column absent.
-    fn text(&self, column: &str) -> Option<&str> {
-        self.columns
-            .get(column)
-            .and_then(|&i| self.record.get(i))
-            .filter(|s| !s.is_empty())
-    }
-
-    fn number(&self, column: &str) -> Result<Option<f64>, String> {
-        let Some(text) = self.text(column) else {
-            return Ok(None);
-        };
-        let value: f64 = text
-            .parse()
-            .map_err(|_| format!("{column} \"{text}\" is not a number"))?;
-        if value.is_finite() {
-            Ok(Some(value))
-        } else {
-            Err(format!("{column} {value} is not a finite number"))
-        }
-    }
-
-    fn required(&self, column: &str) -> Result<f64, String> {
-        self.number(column)?.ok_or_else(|| format!("{column} is blank"))
-    }
-
-    fn named<T>(&self, column: &str, known: &BTreeMap<String, T>) -> Result<String, String> {
-        let name = self.text(column).ok_or_else(|| format!("{column} is blank"))?;
-        if known.contains_key(name) {
-            Ok(name.to_owned())
-        } else {
-            Err(unknown_word(column, name, known.keys().map(String::as_str)))
-        }
-    }
-
     fn test_run(
         &self,
         wheels: &BTreeMap<String, Wheel>,
@@ -245,7 +149,7 @@ impl Row<'_> {
             ));
         }
         Ok(TestRun {
-            name: self.text("run").ok_or("run is blank")?.to_owned(),
+            name: self.word("run")?.to_owned(),
             wheel,
             soil: self.named("soil", soils)?,
             slip,
@@ -257,14 +161,5 @@ impl Row<'_> {
             sd,
             usage,
         })
-    }
-
-    fn positive(&self, column: &str, unit: &str) -> Result<f64, String> {
-        let value = self.required(column)?;
-        if value > 0.0 {
-            Ok(value)
-        } else {
-            Err(format!("{column} {value} {unit} must be > 0 {unit}"))
-        }
     }
 }

@@ -112,6 +112,8 @@ impl Default for Protocol {
 /// `experiment.toml`, validated, before the files it names are read.
 pub(super) struct ExperimentFile {
     pub(super) runs: Option<String>,
+    pub(super) plates: Option<String>,
+    pub(super) shear: Option<String>,
     pub(super) wheel: BTreeMap<String, Wheel>,
     pub(super) soil: BTreeMap<String, Soil>,
     pub(super) rig: Rig,
@@ -173,15 +175,14 @@ enum RawSd {
 pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError> {
     let raw: RawExperiment = parse_toml(name, toml)?;
     let fail = |message: String| FileError::whole(name, message);
-    for (key, value) in [("plates", &raw.plates), ("shear", &raw.shear)] {
-        if value.is_some() {
-            return Err(fail(format!(
-                "{key}: bevameter rows in the likelihood are not available in this version"
-            )));
-        }
-    }
-    if raw.wheel.is_empty() {
+    let bevameter = raw.plates.is_some() || raw.shear.is_some();
+    if raw.wheel.is_empty() && (raw.runs.is_some() || !bevameter) {
         return Err(fail("no wheel: add a table [wheel.NAME]".into()));
+    }
+    if raw.runs.is_none() && !bevameter {
+        return Err(fail(
+            "the experiment names no test runs: add runs = \"runs.csv\"".into(),
+        ));
     }
     if raw.soil.is_empty() {
         return Err(fail("no soil: add a table [soil.NAME]".into()));
@@ -195,6 +196,8 @@ pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError>
     let noise = noise(raw.noise).map_err(|e| fail(format!("[noise] {e}")))?;
     Ok(ExperimentFile {
         runs: raw.runs,
+        plates: raw.plates,
+        shear: raw.shear,
         wheel: wheels,
         soil: raw.soil,
         rig: raw.rig,

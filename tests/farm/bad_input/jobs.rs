@@ -2,7 +2,7 @@
 
 use farm_tests::job::Job;
 
-use super::{refusal, refused};
+use super::{PLATES, SHEAR, refusal, refused};
 
 const KAPPA: &str = "kappa = 0.0";
 const N: &str = "n = { normal = [1.1, 0.2], bounds = [0.8, 2.0] }";
@@ -36,6 +36,10 @@ fn a_dotted_name_without_quotes_says_so() {
     refused(
         Job::small().in_job("wheel_radius_m =", "wheel_radius_m.w ="),
         "job.toml line 12: write the name in quotes: \"wheel_radius_m.w\"",
+    );
+    refused(
+        Job::small().in_job(N, "janosi_hanamoto.shear_modulus_m = 0.008"),
+        "job.toml line 10: write the name in quotes: \"janosi_hanamoto.shear_modulus_m\"",
     );
     refused(
         Job::small().in_job(N, "noise.sinkage_m = { half_normal = 0.001 }"),
@@ -238,8 +242,25 @@ fn what_a_later_version_brings_says_so() {
         experiment: format!("{text}\n{}", small().experiment),
         ..small()
     };
-    later(top("plates = \"plates.csv\""), "plates");
-    later(top("shear = \"shear.csv\""), "shear");
+    later(
+        top("plates = \"plates.csv\"").beside("plates.csv", PLATES),
+        "plates: bevameter rows in the likelihood",
+    );
+    later(
+        top("shear = \"shear.csv\"").beside("shear.csv", SHEAR),
+        "shear: bevameter rows in the likelihood",
+    );
+    later(
+        small().in_job(
+            "[priors]",
+            "\"janosi_hanamoto.shear_modulus_m\" = 0.008\n[priors]",
+        ),
+        "janosi_hanamoto is not available in this version for quasi_static",
+    );
+    later(
+        small().in_job(KAPPA, "kappa = 0.0\n\"bulldozing.share\" = 0.1"),
+        "\"bulldozing.share\"",
+    );
     later(
         small().in_experiment("width_m = 0.112", "width_m = 0.112\nmesh = \"wheel.stl\""),
         "[wheel.w] mesh",

@@ -1,5 +1,6 @@
 //! A gallery of wrong inputs: each gives one clear message, another exit code than 0, and leaves nothing behind.
 
+mod bevameter;
 mod experiments;
 mod jobs;
 mod places;
@@ -9,6 +10,11 @@ use std::path::Path;
 
 use farm_tests::job::Job;
 use farm_tests::programs::{coordinator, run};
+
+/// A small `plates.csv`.
+const PLATES: &str = "test,plate_radius_m,sinkage_m,pressure_pa\np1,0.04,0.002,9000\np1,0.04,0.006,\n";
+/// A small `shear.csv`.
+const SHEAR: &str = "test,normal_stress_pa,shear_displacement_m,shear_stress_pa\nr1,20000,0.012,\n";
 
 /// The message of a job that must be refused, by `check` and by `run` alike; `run` leaves no folder.
 #[track_caller]

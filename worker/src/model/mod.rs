@@ -1,5 +1,6 @@
 //! A variant made ready to evaluate: shared names become the physics' types.
 
+mod bevameter;
 mod parameters;
 
 use std::collections::BTreeMap;
@@ -8,6 +9,7 @@ use scm::{Averages, Condition, Soil, Wheel, quasi_static};
 use shared::model::{ModelKind, ModelVariant};
 use shared::outcome::{Observables, Outcome, Rejection};
 
+pub use bevameter::{Bevameter, Readings};
 use parameters::{Radius, SoilMap};
 
 /// A variant whose names are resolved, so that an evaluation looks up nothing.
@@ -34,6 +36,7 @@ impl CompiledVariant {
         if let Some(effect) = variant.effects.first() {
             return Err(format!("effect \"{effect}\" is not available in this version"));
         }
+        variant.check_expressible()?;
         let names: Vec<&str> = variant.wheels.keys().map(String::as_str).collect();
         let soil = SoilMap::new(variant)?;
         let wheels = variant

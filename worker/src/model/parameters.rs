@@ -5,14 +5,14 @@ use shared::model::ModelVariant;
 
 /// The source of one quantity.
 #[derive(Debug, Clone, Copy)]
-enum Source {
+pub(super) enum Source {
     /// Position in the parameter vector.
     Free(usize),
     Fixed(f64),
 }
 
 impl Source {
-    fn find(variant: &ModelVariant, name: &str) -> Option<Source> {
+    pub(super) fn find(variant: &ModelVariant, name: &str) -> Option<Source> {
         let free = variant
             .parameters
             .iter()
@@ -26,7 +26,7 @@ impl Source {
             .ok_or_else(|| format!("parameter {name} has neither a prior nor a fixed value"))
     }
 
-    fn value(self, theta: &[f64]) -> f64 {
+    pub(super) fn value(self, theta: &[f64]) -> f64 {
         match self {
             Source::Free(position) => theta[position],
             Source::Fixed(value) => value,

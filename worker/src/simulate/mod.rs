@@ -1,17 +1,23 @@
 //! Forward runs of an experiment without a coordinator.
+//!
+//! # Layout
+//! - here: the wheel's runs, and which table goes where.
+//! - `bevameter`: the tables of plates and rings.
+
+mod bevameter;
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rand::{RngExt, SeedableRng};
 use shared::channel::Channel;
-use shared::experiment::{CONDITION_COLUMNS, Experiment, NoiseSd};
+use shared::experiment::{CONDITION_COLUMNS, Experiment, NoiseSd, TestRun};
 use shared::file::{FileError, parse_toml, read_text};
 use shared::model::{ModelSettings, ModelVariant};
 use shared::outcome::{Observables, Outcome};
 
 use crate::config::Simulate;
-use crate::model::CompiledVariant;
+use crate::model::{Bevameter, CompiledVariant};
 
 /// Why there are no forward runs.
 #[derive(Debug, thiserror::Error)]
@@ -20,13 +26,18 @@ pub enum SimulateError {
     #[error(transparent)]
     File(#[from] FileError),
     /// The model refuses the parameters.
-    #[error("run {run}: the model refuses these parameters: {message}")]
+    #[error("{what} {name}: the model refuses these parameters: {message}")]
     Rejected {
-        /// The run.
-        run: String,
+        /// A run of the wheel, or a test of the bevameter.
+        what: &'static str,
+        /// Its name.
+        name: String,
         /// Quantity, value, unit, bound.
         message: String,
     },
+    /// A table cannot be put together.
+    #[error("table: {0}")]
+    Table(#[from] csv::Error),
     /// The result cannot be written.
     #[error("{path}: {source}")]
     Write {
@@ -37,7 +48,10 @@ pub enum SimulateError {
     },
 }
 
-/// Simulates every run of an experiment and writes the averages as CSV.
+/// Simulates an experiment and writes each table that is asked for as CSV.
+///
+/// The tables: averages of the wheel's runs, pressures under plates, shear stresses under rings. A refusal of the
+/// model in any of them leaves no file.
 ///
 /// # Errors
 /// [`SimulateError`].
@@ -48,37 +62,74 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
     }
     let name = command.experiment.display().to_string();
     let experiment = Experiment::parse(&name, &Experiment::read_files(&command.experiment)?)?;
-    let variant = variant(&experiment, &command.model, &command.parameters)?;
-    let compiled = CompiledVariant::new(&variant)
+    for (flag, key, asked, rows) in [
+        ("--out", "runs", &command.out, experiment.runs.len()),
+        ("--plates", "plates", &command.plates, experiment.plates.len()),
+        ("--shear", "shear", &command.shear, experiment.shear.len()),
+    ] {
+        if asked.is_some() && rows == 0 {
+            let message = format!("{flag}: the experiment names no {key}: add {key} = \"{key}.csv\"");
+            return Err(FileError::whole(&name, message).into());
+        }
+    }
+    // Where no table of runs is asked for, no wheel rolls, and a model need not be able to roll it.
+    let runs: &[TestRun] = command.out.as_ref().map_or(&[], |_| &experiment.runs);
+    let variant = variant(&experiment, runs, &command.model, &command.parameters)?;
+    let mut tables: Vec<(&PathBuf, Vec<u8>)> = Vec::new();
+    if let Some(path) = &command.out {
+        tables.push((path, wheel_runs(&experiment, &variant, command)?));
+    }
+    if command.plates.is_some() || command.shear.is_some() {
+        let bevameter = Bevameter::new(&variant)
+            .map_err(|e| FileError::whole(&command.model.display().to_string(), e))?
+            .at(&[]);
+        if let Some(path) = &command.plates {
+            tables.push((path, bevameter::plates(&experiment, &bevameter)?));
+        }
+        if let Some(path) = &command.shear {
+            tables.push((path, bevameter::shear(&experiment, &bevameter)?));
+        }
+    }
+    for (path, table) in tables {
+        std::fs::write(path, table).map_err(|source| SimulateError::Write {
+            path: path.display().to_string(),
+            source,
+        })?;
+    }
+    Ok(())
+}
+
+/// The table of the wheel's runs.
+fn wheel_runs(
+    experiment: &Experiment,
+    variant: &ModelVariant,
+    command: &Simulate,
+) -> Result<Vec<u8>, SimulateError> {
+    let compiled = CompiledVariant::new(variant)
         .map_err(|e| FileError::whole(&command.model.display().to_string(), e))?;
+    let refused = |run: &str, message: String| SimulateError::Rejected {
+        what: "run",
+        name: run.to_owned(),
+        message,
+    };
     let observables = match compiled.evaluate(&[]) {
         Outcome::Evaluated(observables) => observables,
         Outcome::Rejected(r) => {
-            let run = experiment.runs[r.condition as usize].name.clone();
-            return Err(SimulateError::Rejected {
-                run,
-                message: r.message,
-            });
+            return Err(refused(&experiment.runs[r.condition as usize].name, r.message));
         }
-        Outcome::Fault(f) => {
-            return Err(SimulateError::Rejected {
-                run: String::new(),
-                message: f.message,
-            });
-        }
+        Outcome::Fault(f) => return Err(refused("", f.message)),
     };
-    let noise = noise(&experiment, command.noise_seed)
+    let noise = noise(experiment, command.noise_seed)
         .map_err(|e| FileError::whole(&command.experiment.display().to_string(), e))?;
-    let path = command.out.display().to_string();
-    let text =
-        table(&experiment, &observables, &noise).map_err(|e| FileError::whole(&path, e.to_string()))?;
-    std::fs::write(&command.out, text).map_err(|source| SimulateError::Write {
-        path: command.out.display().to_string(),
-        source,
-    })
+    Ok(table(experiment, &observables, &noise)?)
 }
 
-fn variant(experiment: &Experiment, model: &Path, parameters: &Path) -> Result<ModelVariant, FileError> {
+fn variant(
+    experiment: &Experiment,
+    runs: &[TestRun],
+    model: &Path,
+    parameters: &Path,
+) -> Result<ModelVariant, FileError> {
     let (model_name, parameters_name) = (model.display().to_string(), parameters.display().to_string());
     let mut table: toml::Table = parse_toml(&model_name, &read_text(model)?)?;
     // A job file serves as well: its [model] counts.
@@ -88,7 +139,7 @@ fn variant(experiment: &Experiment, model: &Path, parameters: &Path) -> Result<M
     let mut settings = ModelSettings::from_table(&table).map_err(|e| FileError::whole(&model_name, e))?;
     let theta: BTreeMap<String, f64> = parse_toml(&parameters_name, &read_text(parameters)?)?;
     settings.fixed.extend(theta);
-    ModelVariant::new(experiment, &settings, Vec::new(), &experiment.runs)
+    ModelVariant::new(experiment, &settings, Vec::new(), runs)
         .map_err(|e| FileError::whole(&parameters_name, e))
 }
 

@@ -1,0 +1,165 @@
+//! Rows of a CSV file whose columns are known by name.
+
+use std::collections::BTreeMap;
+
+use crate::file::{FileError, unknown_word};
+
+/// Which columns a file may and must have.
+pub(super) struct Columns<'a> {
+    /// Every known name.
+    pub(super) known: Vec<&'a str>,
+    /// Names that must be there.
+    pub(super) required: &'a [&'a str],
+    /// Names that a later version understands, with what to say of each.
+    pub(super) later: &'a [(&'a str, &'a str)],
+}
+
+impl Columns<'_> {
+    /// Where each column stands in the header.
+    fn find(&self, header: &csv::StringRecord) -> Result<BTreeMap<String, usize>, String> {
+        let mut positions = BTreeMap::new();
+        for (position, name) in header.iter().enumerate() {
+            if let Some((_, why)) = self.later.iter().find(|(later, _)| *later == name) {
+                return Err(format!("column \"{name}\": {why}"));
+            }
+            if !self.known.contains(&name) {
+                let later = self.later.iter().map(|(name, _)| *name);
+                return Err(unknown_word(
+                    "column",
+                    name,
+                    self.known.iter().copied().chain(later),
+                ));
+            }
+            if positions.insert(name.to_owned(), position).is_some() {
+                return Err(format!("column \"{name}\" stands twice"));
+            }
+        }
+        match self.required.iter().find(|&&c| !positions.contains_key(c)) {
+            Some(missing) => Err(format!("column \"{missing}\" is missing")),
+            None => Ok(positions),
+        }
+    }
+}
+
+/// Parses the rows of a file with `row`, which also gets the line, counted from 1.
+///
+/// # Errors
+/// [`FileError`] with the line of the header or of the row.
+pub(super) fn rows<T>(
+    file: &str,
+    text: &str,
+    columns: &Columns<'_>,
+    mut row: impl FnMut(&Row<'_>, usize) -> Result<T, String>,
+) -> Result<Vec<T>, FileError> {
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .flexible(true)
+        .from_reader(text.as_bytes());
+    let header = reader
+        .headers()
+        .map_err(|e| FileError::at(file, 1, e.to_string()))?
+        .clone();
+    let positions = columns
+        .find(&header)
+        .map_err(|e| FileError::at(file, line_of(text, &header), e))?;
+    let mut parsed = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|e| FileError::whole(file, e.to_string()))?;
+        let line = line_of(text, &record);
+        if record.len() != header.len() {
+            let message = format!("{} fields where the header has {}", record.len(), header.len());
+            return Err(FileError::at(file, line, message));
+        }
+        let fields = Row {
+            positions: &positions,
+            record: &record,
+        };
+        parsed.push(row(&fields, line).map_err(|e| FileError::at(file, line, e))?);
+    }
+    Ok(parsed)
+}
+
+/// The line in which a record stands, counted from 1: its position is that of the comments before it.
+fn line_of(text: &str, record: &csv::StringRecord) -> usize {
+    let Some(position) = record.position() else {
+        return 1;
+    };
+    let [line, byte] = [position.line(), position.byte()].map(|n| usize::try_from(n).unwrap_or(usize::MAX));
+    let rest = text.get(byte..).unwrap_or_default();
+    line + rest
+        .lines()
+        .take_while(|l| l.is_empty() || l.starts_with('#'))
+        .count()
+}
+
+/// One row, by the names of its columns.
+pub(super) struct Row<'a> {
+    positions: &'a BTreeMap<String, usize>,
+    record: &'a csv::StringRecord,
+}
+
+impl Row<'_> {
+    /// The field of a column; `None` where it is blank or the column absent.
+    pub(super) fn text(&self, column: &str) -> Option<&str> {
+        self.positions
+            .get(column)
+            .and_then(|&i| self.record.get(i))
+            .filter(|s| !s.is_empty())
+    }
+
+    /// The field of a column, which must not be blank.
+    pub(super) fn word(&self, column: &str) -> Result<&str, String> {
+        self.text(column).ok_or_else(|| format!("{column} is blank"))
+    }
+
+    /// A finite number; `None` where the field is blank or the column absent.
+    pub(super) fn number(&self, column: &str) -> Result<Option<f64>, String> {
+        let Some(text) = self.text(column) else {
+            return Ok(None);
+        };
+        let value: f64 = text
+            .parse()
+            .map_err(|_| format!("{column} \"{text}\" is not a number"))?;
+        if value.is_finite() {
+            Ok(Some(value))
+        } else {
+            Err(format!("{column} {value} is not a finite number"))
+        }
+    }
+
+    /// A finite number that must be there.
+    pub(super) fn required(&self, column: &str) -> Result<f64, String> {
+        self.number(column)?.ok_or_else(|| format!("{column} is blank"))
+    }
+
+    /// A number above 0 that must be there.
+    pub(super) fn positive(&self, column: &str, unit: &str) -> Result<f64, String> {
+        let value = self.required(column)?;
+        if value > 0.0 {
+            Ok(value)
+        } else {
+            Err(format!("{column} {value} {unit} must be > 0 {unit}"))
+        }
+    }
+
+    /// A number of at least 0 that must be there.
+    pub(super) fn not_negative(&self, column: &str, unit: &str) -> Result<f64, String> {
+        let value = self.required(column)?;
+        if value >= 0.0 {
+            Ok(value)
+        } else {
+            Err(format!("{column} {value} {unit} must be >= 0 {unit}"))
+        }
+    }
+
+    /// A name that must be one of `known`.
+    pub(super) fn named<T>(&self, column: &str, known: &BTreeMap<String, T>) -> Result<String, String> {
+        let name = self.word(column)?;
+        if known.contains_key(name) {
+            Ok(name.to_owned())
+        } else {
+            Err(unknown_word(column, name, known.keys().map(String::as_str)))
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! `worker simulate` on plates and rings, against the closed forms.
+
+use std::path::Path;
+
+use farm_tests::programs::{run, worker};
+use farm_tests::workspace::text;
+
+const EXPERIMENT: &str = r#"plates = "plates.csv"
+shear = "shear.csv"
+[soil.s]
+"#;
+const PLATES: &str = "# b in metres
+test,plate_radius_m,sinkage_m,pressure_pa
+big,0.05,0.01,
+small,0.02,0.01,1
+small,0.02,0,
+";
+const SHEAR: &str = "test,normal_stress_pa,shear_displacement_m,shear_stress_pa
+r1,20000,0.012,
+r1,20000,0,
+r2,5000,0.03,
+";
+const THETA: &str = r#"k_c = 2e4
+k_phi = 1e7
+n = 1.0
+friction_angle_deg = 30.0
+cohesion_pa = 500.0
+"janosi_hanamoto.shear_modulus_m" = 0.012
+"#;
+
+/// Writes the files; the arguments of `worker simulate` up to the tables.
+fn command(folder: &Path, experiment: &str) -> std::process::Command {
+    for (name, content) in [
+        ("experiment.toml", experiment),
+        ("plates.csv", PLATES),
+        ("shear.csv", SHEAR),
+        ("model.toml", "kind = \"quasi_static\"\n"),
+        ("theta.toml", THETA),
+    ] {
+        std::fs::write(folder.join(name), content).unwrap();
+    }
+    let path = |name: &str| folder.join(name).display().to_string();
+    let mut command = worker(["simulate", &path("experiment.toml")]);
+    command.args([
+        "--model",
+        &path("model.toml"),
+        "--parameters",
+        &path("theta.toml"),
+    ]);
+    command
+}
+
+/// The cells of each row below a header that must be this.
+fn cells(csv: &str, header: &str) -> Vec<Vec<String>> {
+    let mut lines = csv.lines();
+    assert_eq!(lines.next(), Some(header));
+    lines
+        .map(|line| line.split(',').map(str::to_owned).collect())
+        .collect()
+}
+
+#[track_caller]
+fn close(cell: &str, expected: f64) {
+    let got: f64 = cell.parse().expect("a number");
+    assert!(
+        (got - expected).abs() <= 1e-12 * expected,
+        "{got} where {expected} is due"
+    );
+}
+
+#[test]
+fn plates_and_rings_are_predicted_without_a_wheel() {
+    let folder = tempfile::tempdir().unwrap();
+    let (plates, shear) = (folder.path().join("p.csv"), folder.path().join("s.csv"));
+    let mut command = command(folder.path(), EXPERIMENT);
+    command.arg("--plates").arg(&plates).arg("--shear").arg(&shear);
+    run(command).success();
+
+    let rows = cells(&text(&plates), "test,plate_radius_m,sinkage_m,pressure_pa");
+    let conditions: Vec<&[String]> = rows.iter().map(|row| &row[..3]).collect();
+    assert_eq!(
+        conditions,
+        [
+            ["big", "0.05", "0.01"],
+            ["small", "0.02", "0.01"],
+            ["small", "0.02", "0"]
+        ]
+    );
+    // (k_c / b + k_phi) z: 1.04e7 · 0.01 and 1.1e7 · 0.01
+    close(&rows[0][3], 104_000.0);
+    close(&rows[1][3], 110_000.0);
+    close(&rows[2][3], 0.0);
+
+    let rows = cells(
+        &text(&shear),
+        "test,normal_stress_pa,shear_displacement_m,shear_stress_pa",
+    );
+    // (c + sigma tan 30°) (1 − exp(−j / K)): 1 − 1/e at j = K, 1 − exp(−2.5) at 2.5 K
+    close(&rows[0][3], 12_047.005_383_792_515 * 0.632_120_558_828_557_7);
+    close(&rows[1][3], 0.0);
+    close(&rows[2][3], 3_386.751_345_948_129 * 0.917_915_001_376_101_3);
+}
+
+#[test]
+fn one_table_may_be_asked_for_and_its_conditions_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("plates.csv");
+    // What was predicted is an experiment's file of its own: writing over the input and going on gives the same.
+    let mut first = command(folder.path(), EXPERIMENT);
+    first.arg("--plates").arg(&out);
+    run(first).success();
+    let predicted = text(&out);
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let mut again = worker(["simulate", &path("experiment.toml")]);
+    again.args([
+        "--model",
+        &path("model.toml"),
+        "--parameters",
+        &path("theta.toml"),
+    ]);
+    again.arg("--plates").arg(&out);
+    run(again).success();
+    assert_eq!(text(&out), predicted);
+}

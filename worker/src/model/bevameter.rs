@@ -1,0 +1,63 @@
+//! Plates and rings by the parameters of a variant.
+
+use scm::bevameter::{Plate, plate, ring};
+use scm::shear::ShearDisplacement;
+use scm::{Rejection, Soil};
+use shared::model::ModelVariant;
+use shared::parameters::SHEAR_MODULUS;
+
+use super::parameters::{SoilMap, Source};
+
+/// The soil and the shear-displacement law of a variant, ready to be asked what a bevameter reads.
+#[derive(Debug)]
+pub struct Bevameter {
+    soil: SoilMap,
+    modulus: Option<Source>,
+}
+
+/// What a bevameter reads at one parameter vector.
+#[derive(Debug)]
+pub struct Readings {
+    soil: Soil,
+    law: ShearDisplacement,
+}
+
+impl Bevameter {
+    /// Resolves the names of a variant; its wheels and conditions do not count.
+    ///
+    /// # Errors
+    /// A sentence that names the parameter that is missing.
+    pub fn new(variant: &ModelVariant) -> Result<Self, String> {
+        Ok(Bevameter {
+            soil: SoilMap::new(variant)?,
+            modulus: Source::find(variant, SHEAR_MODULUS),
+        })
+    }
+
+    /// The readings at one parameter vector.
+    pub fn at(&self, theta: &[f64]) -> Readings {
+        Readings {
+            soil: self.soil.soil(theta),
+            law: ShearDisplacement::new(self.modulus.map_or(0.0, |k| k.value(theta))),
+        }
+    }
+}
+
+impl Readings {
+    /// Pressure `[Pa]` under a round plate of this radius `[m]` at this sinkage `[m]`.
+    ///
+    /// # Errors
+    /// [`Rejection`]: the soil cannot carry such a plate, or a number is outside its bounds.
+    pub fn pressure_pa(&self, plate_radius_m: f64, sinkage_m: f64) -> Result<f64, Rejection> {
+        let radius_m = plate_radius_m;
+        plate::pressure(&self.soil, &Plate::Circle { radius_m }, sinkage_m)
+    }
+
+    /// Shear stress `[Pa]` under a ring at this normal stress `[Pa]` after this displacement `[m]`.
+    ///
+    /// # Errors
+    /// [`Rejection`]: a number is outside its bounds.
+    pub fn shear_stress_pa(&self, normal_stress_pa: f64, displacement_m: f64) -> Result<f64, Rejection> {
+        ring::shear_stress(&self.soil, &self.law, normal_stress_pa, displacement_m)
+    }
+}
