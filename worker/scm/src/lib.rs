@@ -17,6 +17,9 @@
 //! - [`quasi_static`]: a smooth wheel in steady motion, integrated along the rim.
 //! - [`bevameter`]: a plate pressed into the soil and a ring turned on it, by the same laws as the wheel.
 //!
+//! After a model:
+//! - [`signal`]: a time history to averages: resampling, zero-phase low-pass, means over whole periods.
+//!
 //! Numerics:
 //! - [`elementary`]: `exp`, `ln` and powers that vectorise and give the same bits on every machine.
 //! - `quadrature`: the Gauss rule of the rim.
@@ -36,6 +39,7 @@ mod quadrature;
 pub mod quasi_static;
 pub mod rejection;
 pub mod shear;
+pub mod signal;
 pub mod soil;
 pub mod wheel;
 

@@ -9,4 +9,5 @@ mod nothing_hidden;
 mod quadrature;
 mod reference_table;
 mod rejections;
+mod signal;
 mod support;
