@@ -194,6 +194,14 @@ impl ModelVariant {
         if self.kind != ModelKind::QuasiStatic || self.conditions.is_empty() {
             return Ok(());
         }
+        for condition in &self.conditions {
+            let name = &condition.wheel;
+            if self.wheels.get(name).is_some_and(|wheel| wheel.mesh.is_some()) {
+                return Err(format!(
+                    "wheel {name} is a surface mesh: quasi_static rolls a smooth cylinder; use kind = \"scm\""
+                ));
+            }
+        }
         let modulus = parameters::SHEAR_MODULUS;
         let fixed = self.fixed.get(modulus).is_some_and(|k| k.abs() > 0.0);
         if fixed || self.parameters.iter().any(|p| p == modulus) {

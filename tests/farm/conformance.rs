@@ -141,6 +141,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         grouser_height_m: 0.0,
         grouser_thickness_m: 0.0,
         rig_radius_m: 0.125,
+        mesh: None,
     };
     let condition = Condition {
         wheel: "w".into(),

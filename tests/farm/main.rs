@@ -8,4 +8,5 @@ mod conformance;
 mod end_to_end;
 mod forward;
 mod leases;
+mod mesh;
 mod summary_contract;

@@ -79,6 +79,18 @@ impl Job {
         self
     }
 
+    /// The small job with a surface in place of the rim of its wheel; the file itself is still to be put beside it.
+    pub fn with_mesh(file: &str) -> Job {
+        let small = Job::small();
+        let lines = small
+            .experiment
+            .lines()
+            .filter(|line| !line.starts_with("grouser_"));
+        let experiment = lines.map(|line| format!("{line}\n")).collect();
+        Job { experiment, ..small }
+            .in_experiment("width_m = 0.112", &format!("width_m = 0.112\nmesh = \"{file}\""))
+    }
+
     /// Writes the files into a folder; the path of the job.
     ///
     /// # Panics
@@ -99,7 +111,11 @@ impl Job {
 
     /// The body of `POST /v1/experiments`.
     pub fn experiment_json(&self) -> Value {
-        json!({"toml": self.experiment, "files": {"runs.csv": self.runs}})
+        let mut files = json!({"runs.csv": self.runs});
+        for (name, content) in &self.others {
+            files[name] = String::from_utf8_lossy(content).into();
+        }
+        json!({"toml": self.experiment, "files": files})
     }
 }
 

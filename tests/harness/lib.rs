@@ -6,12 +6,14 @@
 //! - [`service`]: `coordinator serve` on a port and a store that outlive its process.
 //! - [`http`]: a small blocking client.
 //! - [`fake_worker`]: a worker that a test plays by hand.
+//! - [`cylinder`]: the surface of a wheel as a mesh file.
 //! - [`job`]: the files of a small job, and ways to change them.
 //! - [`workspace`]: the workspace's own files.
 //! - [`text`]: comparing long texts.
 //! - [`wait`]: waiting with a deadline.
 //! - [`random`]: seeded numbers.
 
+pub mod cylinder;
 pub mod fake_worker;
 pub mod http;
 pub mod job;

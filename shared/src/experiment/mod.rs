@@ -1,22 +1,27 @@
 //! An experiment as its files describe it: wheels, rig, noise, protocol, test runs, bevameter readings.
 //!
 //! # Layout
-//! - `settings`: the tables of `experiment.toml`.
+//! - `settings`: the tables of `experiment.toml`; `wheel`: those of the wheels.
+//! - `mesh`: a wheel given as a surface of triangles.
 //! - `runs`: the rows of `runs.csv`.
 //! - `bevameter`: the rows of `plates.csv` and `shear.csv`.
 //! - `table`: rows of a CSV file whose columns are known by name.
 
 mod bevameter;
+mod mesh;
 mod runs;
 mod settings;
 mod table;
+mod wheel;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 pub use bevameter::{PLATE_COLUMNS, PlateReading, SHEAR_COLUMNS, ShearReading};
+pub use mesh::{MOST_BYTES, MOST_TRIANGLES, SurfaceMesh};
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
-pub use settings::{Noise, NoiseSd, Protocol, ProtocolKind, Rig, Soil, Wheel};
+pub use settings::{Noise, NoiseSd, Protocol, ProtocolKind, Rig, Soil};
+pub use wheel::Wheel;
 
 use crate::channel::Channel;
 use crate::file::{FileError, FileSet, read_text, sibling};
@@ -43,27 +48,20 @@ pub struct Experiment {
 }
 
 impl Experiment {
-    /// The names of the files that `experiment.toml` refers to.
-    ///
-    /// # Errors
-    /// [`FileError`] where the TOML cannot be parsed.
-    pub fn referenced_files(name: &str, toml: &str) -> Result<Vec<String>, FileError> {
-        let file = settings::parse(name, toml)?;
-        Ok([file.runs, file.plates, file.shear]
-            .into_iter()
-            .flatten()
-            .collect())
-    }
-
-    /// Reads an experiment's file and those that it names, unparsed.
+    /// Reads an experiment's file and those that it names, unparsed but for binary STL, which becomes ASCII STL.
     ///
     /// # Errors
     /// [`FileError`] names the file that is missing or cannot be read.
     pub fn read_files(path: &Path) -> Result<FileSet, FileError> {
         let toml = read_text(path)?;
+        let named = settings::parse(&path.display().to_string(), &toml)?;
         let mut files = BTreeMap::new();
-        for file in Experiment::referenced_files(&path.display().to_string(), &toml)? {
+        for file in [named.runs, named.plates, named.shear].into_iter().flatten() {
             let text = read_text(&sibling(path, &file))?;
+            files.insert(file, text);
+        }
+        for file in named.meshes.into_values() {
+            let text = mesh::read(&sibling(path, &file))?;
             files.insert(file, text);
         }
         Ok(FileSet { toml, files })
@@ -75,12 +73,20 @@ impl Experiment {
     /// [`FileError`] names the file, the line, the value, the unit and the bound.
     /// Checked by `tests::malformed_experiments_say_what_is_wrong`.
     pub fn parse(name: &str, files: &FileSet) -> Result<Experiment, FileError> {
-        let file = settings::parse(name, &files.toml)?;
+        let mut file = settings::parse(name, &files.toml)?;
         let text = |named: &str| {
             files.files.get(named).ok_or_else(|| {
                 FileError::whole(name, format!("file \"{named}\" is named but was not sent along"))
             })
         };
+        for (wheel_name, named) in &file.meshes {
+            let mesh = SurfaceMesh::parse(named, text(named)?)?;
+            if let Some(wheel) = file.wheel.get_mut(wheel_name) {
+                mesh.check_against(wheel.radius_m, wheel.width_m)
+                    .map_err(|e| FileError::whole(named, e))?;
+                wheel.mesh = Some(mesh);
+            }
+        }
         let (mut runs, mut plates, mut shear) = (Vec::new(), Vec::new(), Vec::new());
         if let Some(named) = &file.runs {
             runs = runs::parse(named, text(named)?, &file.wheel, &file.soil)?;
@@ -223,12 +229,6 @@ mod tests {
 
     #[test]
     fn what_a_later_version_brings_says_so() {
-        let toml = TOML.replace("width_m", "mesh = \"w.stl\"\nwidth_m");
-        assert!(
-            parse(&toml, HEADER)
-                .unwrap_err()
-                .contains("not available in this version")
-        );
         let toml = TOML.replace("[noise]", "[noise]\nrun_scatter = 0.1");
         assert!(
             parse(&toml, HEADER)

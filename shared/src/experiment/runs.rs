@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::settings::{Soil, Wheel};
+use super::settings::Soil;
 use super::table::{self, Columns, Row};
+use super::wheel::Wheel;
 use crate::channel::Channel;
 use crate::file::FileError;
 

@@ -4,25 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::wheel::{RawWheel, Wheel};
 use crate::channel::Channel;
 use crate::file::{FileError, parse_toml};
-
-/// A rigid wheel. `quasi_static` models its smooth rim alone: grousers enter through a radius of its own.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Wheel {
-    /// Radius of the rim `[m]`.
-    pub radius_m: f64,
-    /// Width of the rim `[m]`.
-    pub width_m: f64,
-    /// Number of straight grousers.
-    pub grouser_count: u32,
-    /// Height of a grouser above the rim `[m]`.
-    pub grouser_height_m: f64,
-    /// Thickness of a grouser along the rim `[m]`.
-    pub grouser_thickness_m: f64,
-    /// Radius with which the rig turns slip into rim speed `[m]`.
-    pub rig_radius_m: f64,
-}
 
 /// What is known of a soil besides the calibrated parameters.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -115,6 +99,8 @@ pub(super) struct ExperimentFile {
     pub(super) plates: Option<String>,
     pub(super) shear: Option<String>,
     pub(super) wheel: BTreeMap<String, Wheel>,
+    /// Names of the mesh files, by wheel; the wheels themselves are still without.
+    pub(super) meshes: BTreeMap<String, String>,
     pub(super) soil: BTreeMap<String, Soil>,
     pub(super) rig: Rig,
     pub(super) noise: Noise,
@@ -137,21 +123,6 @@ struct RawExperiment {
     noise: RawNoise,
     #[serde(default)]
     protocol: Protocol,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawWheel {
-    mesh: Option<String>,
-    radius_m: f64,
-    width_m: f64,
-    #[serde(default)]
-    grouser_count: u32,
-    #[serde(default)]
-    grouser_height_m: f64,
-    #[serde(default)]
-    grouser_thickness_m: f64,
-    rig_radius_m: Option<f64>,
 }
 
 #[derive(Default, Deserialize)]
@@ -187,9 +158,12 @@ pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError>
     if raw.soil.is_empty() {
         return Err(fail("no soil: add a table [soil.NAME]".into()));
     }
-    let mut wheels = BTreeMap::new();
+    let (mut wheels, mut meshes) = (BTreeMap::new(), BTreeMap::new());
     for (wheel_name, raw_wheel) in raw.wheel {
-        let wheel = wheel(raw_wheel).map_err(|e| fail(format!("[wheel.{wheel_name}] {e}")))?;
+        let (wheel, mesh) = raw_wheel
+            .check()
+            .map_err(|e| fail(format!("[wheel.{wheel_name}] {e}")))?;
+        meshes.extend(mesh.map(|file| (wheel_name.clone(), file)));
         wheels.insert(wheel_name, wheel);
     }
     check_numbers(&raw.rig, &raw.soil, &raw.protocol).map_err(fail)?;
@@ -199,6 +173,7 @@ pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError>
         plates: raw.plates,
         shear: raw.shear,
         wheel: wheels,
+        meshes,
         soil: raw.soil,
         rig: raw.rig,
         noise,
@@ -245,36 +220,6 @@ fn check_numbers(rig: &Rig, soils: &BTreeMap<String, Soil>, protocol: &Protocol)
     Ok(())
 }
 
-fn wheel(raw: RawWheel) -> Result<Wheel, String> {
-    if raw.mesh.is_some() {
-        return Err("mesh: a wheel given as a surface mesh is not available in this version".into());
-    }
-    let rig_radius_m = raw.rig_radius_m.unwrap_or(raw.radius_m);
-    for (key, value) in [
-        ("radius_m", raw.radius_m),
-        ("width_m", raw.width_m),
-        ("rig_radius_m", rig_radius_m),
-    ] {
-        positive(key, value, "m")?;
-    }
-    for (key, value) in [
-        ("grouser_height_m", raw.grouser_height_m),
-        ("grouser_thickness_m", raw.grouser_thickness_m),
-    ] {
-        if !(value.is_finite() && value >= 0.0) {
-            return Err(format!("{key} {value} m must be >= 0 m"));
-        }
-    }
-    Ok(Wheel {
-        radius_m: raw.radius_m,
-        width_m: raw.width_m,
-        grouser_count: raw.grouser_count,
-        grouser_height_m: raw.grouser_height_m,
-        grouser_thickness_m: raw.grouser_thickness_m,
-        rig_radius_m,
-    })
-}
-
 fn noise(raw: RawNoise) -> Result<Noise, String> {
     match raw.run_scatter {
         None => {}
@@ -312,7 +257,7 @@ fn noise(raw: RawNoise) -> Result<Noise, String> {
     Ok(Noise { sd })
 }
 
-fn positive(key: &str, value: f64, unit: &str) -> Result<(), String> {
+pub(super) fn positive(key: &str, value: f64, unit: &str) -> Result<(), String> {
     if value.is_finite() && value > 0.0 {
         Ok(())
     } else {

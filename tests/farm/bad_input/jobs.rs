@@ -262,10 +262,6 @@ fn what_a_later_version_brings_says_so() {
         "\"bulldozing.share\"",
     );
     later(
-        small().in_experiment("width_m = 0.112", "width_m = 0.112\nmesh = \"wheel.stl\""),
-        "[wheel.w] mesh",
-    );
-    later(
         small().in_experiment("[noise]", "[noise]\nrun_scatter = 0.1"),
         "[noise] run_scatter",
     );

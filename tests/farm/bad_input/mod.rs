@@ -3,6 +3,7 @@
 mod bevameter;
 mod experiments;
 mod jobs;
+mod meshes;
 mod places;
 mod requests;
 

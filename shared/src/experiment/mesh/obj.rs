@@ -1,0 +1,110 @@
+//! Wavefront OBJ files.
+
+use std::io::Cursor;
+
+use tobj::{LoadError, LoadOptions, load_obj_buf};
+
+use super::SurfaceMesh;
+use crate::file::FileError;
+
+/// Parses OBJ. All objects of a file are one surface; faces with more corners are split into fans about their first
+/// corner; materials, normals and texture are not used.
+pub(super) fn parse(file: &str, text: &str) -> Result<SurfaceMesh, FileError> {
+    let options = LoadOptions {
+        triangulate: true,
+        ignore_points: true,
+        ignore_lines: true,
+        ..LoadOptions::default()
+    };
+    let mut cursor = Cursor::new(text.as_bytes());
+    let (models, _) = load_obj_buf(&mut cursor, &options, |_| Ok(Default::default())).map_err(|error| {
+        let read = usize::try_from(cursor.position()).unwrap_or(usize::MAX);
+        match error {
+            // Faces are resolved once their object has ended.
+            LoadError::FaceVertexOutOfBounds => missing_vertex(file, text),
+            _ => FileError::at(file, line_at(text, read), error.to_string()),
+        }
+    })?;
+    let mut mesh = SurfaceMesh {
+        vertices_m: Vec::new(),
+        triangles: Vec::new(),
+    };
+    for tobj::Mesh {
+        positions, indices, ..
+    } in models.into_iter().map(|m| m.mesh)
+    {
+        let offset = mesh.vertices_m.len() as u32;
+        mesh.vertices_m
+            .extend(positions.chunks_exact(3).map(|v| [v[0], v[1], v[2]]));
+        mesh.triangles.extend(
+            indices
+                .chunks_exact(3)
+                .map(|t| [t[0], t[1], t[2]].map(|i| i + offset)),
+        );
+    }
+    Ok(mesh)
+}
+
+/// The line, counted from 1, that ends at this byte.
+fn line_at(text: &str, end: usize) -> usize {
+    let read = &text.as_bytes()[..end.min(text.len())];
+    let ended = read.iter().filter(|&&b| b == b'\n').count();
+    ended + usize::from(read.last().is_some_and(|&b| b != b'\n'))
+}
+
+/// Names the first face that refers to a vertex that is not there.
+fn missing_vertex(file: &str, text: &str) -> FileError {
+    let words = |line: &str, key: &str| {
+        let mut words = line.split_whitespace();
+        (words.next() == Some(key)).then(|| words.map(str::to_owned).collect::<Vec<_>>())
+    };
+    let vertices = text.lines().filter(|line| words(line, "v").is_some()).count();
+    for (i, line) in text.lines().enumerate() {
+        let missing = words(line, "f").into_iter().flatten().find(|corner| {
+            let index = corner.split('/').next().and_then(|v| v.parse::<i64>().ok());
+            index.is_some_and(|v| v == 0 || v.unsigned_abs() as usize > vertices)
+        });
+        if let Some(corner) = missing {
+            let message = format!("face vertex \"{corner}\" is not among the {vertices} vertices");
+            return FileError::at(file, i + 1, message);
+        }
+    }
+    FileError::whole(file, "a face refers to a vertex that is not there")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: &str = "# a square and a triangle\nmtllib w.mtl\nv 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\n\
+        vn 0 0 1\no rim\nusemtl steel\nf 1//1 2//1 3//1 4//1\no cap\nv 0.3 0 0\nf -1 1 2\n";
+
+    #[test]
+    fn objects_of_a_file_are_one_surface_and_corners_are_split() {
+        let mesh = parse("w.obj", SQUARE).unwrap();
+        assert_eq!(mesh.triangles.len(), 3);
+        let corner = |t: usize, c: usize| mesh.vertices_m[mesh.triangles[t][c] as usize];
+        let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(x, y)| (x - y).abs() < 1e-15);
+        assert!(near(corner(1, 0), [0.0; 3]) && near(corner(1, 2), [0.0, 0.1, 0.0]));
+        assert!(near(corner(2, 0), [0.3, 0.0, 0.0]) && near(corner(2, 2), [0.1, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn malformed_files_name_the_line() {
+        let wrong = |old: &str, new: &str| {
+            assert!(SQUARE.contains(old), "{old}");
+            parse("w.obj", &SQUARE.replacen(old, new, 1))
+                .unwrap_err()
+                .to_string()
+        };
+        assert_eq!(
+            wrong("v 0.1 0.1 0", "v 0.1 nought 0"),
+            "w.obj line 5: position parse error"
+        );
+        assert_eq!(wrong("f -1 1 2", "f a b c"), "w.obj line 13: face parse error");
+        assert_eq!(
+            wrong("4//1", "9//1"),
+            "w.obj line 10: face vertex \"9//1\" is not among the 5 vertices"
+        );
+    }
+}
