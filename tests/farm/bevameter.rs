@@ -37,7 +37,7 @@ fn command(folder: &Path, experiment: &str) -> std::process::Command {
         ("model.toml", "kind = \"quasi_static\"\n"),
         ("theta.toml", THETA),
     ] {
-        std::fs::write(folder.join(name), content).unwrap();
+        std::fs::write(folder.join(name), content).expect("a file");
     }
     let path = |name: &str| folder.join(name).display().to_string();
     let mut command = worker(["simulate", &path("experiment.toml")]);

@@ -22,10 +22,10 @@ fn with(file: &str, content: impl Into<Vec<u8>>) -> Job {
 
 /// The mesh of a job that is written to disk and read back; its text, too.
 fn read(file: &str, job: &Job) -> (SurfaceMesh, String) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a folder");
     job.write(folder.path());
-    let files = Experiment::read_files(&folder.path().join("experiment.toml")).unwrap();
-    let experiment = Experiment::parse("experiment.toml", &files).unwrap();
+    let files = Experiment::read_files(&folder.path().join("experiment.toml")).expect("files");
+    let experiment = Experiment::parse("experiment.toml", &files).expect("an experiment");
     let mesh = experiment.wheels["w"].mesh.clone().expect("a mesh");
     (mesh, files.files[file].clone())
 }
@@ -45,8 +45,8 @@ fn ascii_and_binary_stl_and_obj_are_the_same_surface() {
             let of = |mesh: &SurfaceMesh| mesh.vertices_m[mesh.triangles[t][c] as usize];
             assert_eq!(of(&obj).map(f64::to_bits), corner.map(|x| (x + 0.0).to_bits()));
             assert_eq!(
-                of(&ascii).map(|x| x as f32),
-                corner.map(|x| x as f32),
+                of(&ascii).map(|x| (x as f32).to_bits()),
+                corner.map(|x| (x as f32).to_bits()),
                 "triangle {t}"
             );
         }
