@@ -101,6 +101,10 @@ fn forward_runs_refuse_tables_and_parameters_that_they_cannot_give() {
     );
     let with_modulus = |k: &str| format!("{theta}\n\"janosi_hanamoto.shear_modulus_m\" = {k}\n");
     assert_eq!(
+        simulate(both(), &with_modulus("0.01").replace('"', ""), &["shear"]),
+        "theta.toml: write the name in quotes: \"janosi_hanamoto.shear_modulus_m\""
+    );
+    assert_eq!(
         simulate(both(), &with_modulus("-0.01"), &["shear"]),
         "theta.toml: janosi_hanamoto.shear_modulus_m = -0.01 m lies outside [0, inf] m"
     );

@@ -137,10 +137,23 @@ fn variant(
         table = inner;
     }
     let mut settings = ModelSettings::from_table(&table).map_err(|e| FileError::whole(&model_name, e))?;
-    let theta: BTreeMap<String, f64> = parse_toml(&parameters_name, &read_text(parameters)?)?;
+    let text = read_text(parameters)?;
+    check_quotes(&text).map_err(|e| FileError::whole(&parameters_name, e))?;
+    let theta: BTreeMap<String, f64> = parse_toml(&parameters_name, &text)?;
     settings.fixed.extend(theta);
     ModelVariant::new(experiment, &settings, Vec::new(), runs)
         .map_err(|e| FileError::whole(&parameters_name, e))
+}
+
+/// A dotted name without quotes is a table to TOML; says so.
+fn check_quotes(parameters: &str) -> Result<(), String> {
+    // What is no TOML at all is for the parser to say.
+    for (name, value) in parameters.parse::<toml::Table>().unwrap_or_default() {
+        if let Some(key) = value.as_table().and_then(|table| table.keys().next()) {
+            return Err(format!("write the name in quotes: \"{name}.{key}\""));
+        }
+    }
+    Ok(())
 }
 
 /// Noise by run and channel: independent normal draws, one stream for each seed.

@@ -8,8 +8,9 @@ use super::SurfaceMesh;
 use crate::file::FileError;
 
 /// Parses OBJ. All objects of a file are one surface; faces with more corners are split into fans about their first
-/// corner; materials, normals and texture are not used.
+/// corner; materials, normals, texture and colours are not used.
 pub(super) fn parse(file: &str, text: &str) -> Result<SurfaceMesh, FileError> {
+    let text = &shape(text);
     let options = LoadOptions {
         triangulate: true,
         ignore_points: true,
@@ -20,7 +21,7 @@ pub(super) fn parse(file: &str, text: &str) -> Result<SurfaceMesh, FileError> {
     let (models, _) = load_obj_buf(&mut cursor, &options, |_| Ok(Default::default())).map_err(|error| {
         let read = usize::try_from(cursor.position()).unwrap_or(usize::MAX);
         match error {
-            // Faces are resolved once their object has ended.
+            // Faces are resolved once the file has ended.
             LoadError::FaceVertexOutOfBounds => missing_vertex(file, text),
             _ => FileError::at(file, line_at(text, read), error.to_string()),
         }
@@ -43,6 +44,26 @@ pub(super) fn parse(file: &str, text: &str) -> Result<SurfaceMesh, FileError> {
         );
     }
     Ok(mesh)
+}
+
+/// The vertices and faces of a file, each in its line; what else stands there is left out, so that nothing wrong with it
+/// keeps a surface from being read.
+fn shape(text: &str) -> String {
+    let mut shape = String::with_capacity(text.len());
+    for line in text.trim_start_matches('\u{feff}').lines() {
+        let line = line.split('#').next().unwrap_or_default();
+        let words = || line.split_whitespace();
+        match words().next() {
+            // Behind the three coordinates stands a weight, or a colour of three numbers.
+            Some("v") if words().count() > 5 => {
+                words().take(4).for_each(|word| shape.extend([word, " "]));
+            }
+            Some("v" | "f") => shape.push_str(line),
+            _ => {}
+        }
+        shape.push('\n');
+    }
+    shape
 }
 
 /// The line, counted from 1, that ends at this byte.
@@ -86,7 +107,16 @@ mod tests {
         let corner = |t: usize, c: usize| mesh.vertices_m[mesh.triangles[t][c] as usize];
         let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(x, y)| (x - y).abs() < 1e-15);
         assert!(near(corner(1, 0), [0.0; 3]) && near(corner(1, 2), [0.0, 0.1, 0.0]));
+        // Objects share their vertices.
+        assert_eq!(mesh.vertices_m.len(), 5);
         assert!(near(corner(2, 0), [0.3, 0.0, 0.0]) && near(corner(2, 2), [0.1, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn comments_colours_and_texture_do_not_disturb() {
+        let text = "\u{feff}v 0 0 0 1 0.5 0 # red\r\nv 0.1 0 0 # plain\r\nv 0 0 0.1\r\nvt oops\r\nusemtl #1\r\nf 1/7/8 2/7/8 3/7/8 # face\r\n";
+        let mesh = parse("w.obj", text).unwrap();
+        assert_eq!((mesh.vertices_m.len(), mesh.triangles), (3, vec![[0, 1, 2]]));
     }
 
     #[test]
