@@ -9,20 +9,22 @@
 //! - [`likelihood`]: score predictions against measurements.
 //! - [`prior`]: distributions, truncated and renormalised; the coordinates in which the sampler moves.
 //! - [`rng`]: one random stream per (seed, stage, particle, step).
+//! - [`round`]: proposals that can be evaluated at the same time; what every ask/tell algorithm shares.
 //! - [`tmcmc`]: the ask/tell sampler, its stages and its evidence.
+//! - [`lm`]: the ask/tell fit of the most probable parameters.
 //! - [`diagnostics`]: summaries of draws: moments, quantiles, bounds, effective sizes.
 
 pub mod diagnostics;
 pub mod likelihood;
+pub mod lm;
 pub mod log_likelihood;
 pub mod prior;
 pub mod rng;
+pub mod round;
 pub mod tmcmc;
 
 pub use likelihood::{Datum, GaussianLikelihood, LikelihoodError, Sd};
 pub use log_likelihood::{LogLikelihood, NotANumber};
 pub use prior::{Distribution, Marginal, Prior, PriorError};
-pub use tmcmc::{
-    Algorithm, Current, Failure, Particle, Posterior, Progress, Proposal, Sampler, Settings, SettingsError,
-    StageRecord, TellError,
-};
+pub use round::{Failure, Progress, Proposal, TellError};
+pub use tmcmc::{Algorithm, Current, Particle, Posterior, Sampler, Settings, SettingsError, StageRecord};

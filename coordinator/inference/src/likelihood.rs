@@ -138,37 +138,55 @@ impl GaussianLikelihood {
         predicted: impl Fn(usize, usize) -> f64,
         theta: &[f64],
     ) -> Result<LogLikelihood, LikelihoodError> {
+        let values = self.data.iter().map(|datum| predicted(datum.run, datum.channel));
+        self.sum(values, theta)
+    }
+
+    /// The same for predicted values in the order of the data, as the store keeps them.
+    ///
+    /// # Errors
+    /// Those of [`GaussianLikelihood::log_likelihood`].
+    pub fn log_likelihood_of(&self, values: &[f64], theta: &[f64]) -> Result<LogLikelihood, LikelihoodError> {
+        self.sum(values.iter().copied(), theta)
+    }
+
+    fn sum(
+        &self,
+        values: impl Iterator<Item = f64>,
+        theta: &[f64],
+    ) -> Result<LogLikelihood, LikelihoodError> {
         let mut sum = 0.0;
-        for &Datum {
-            run,
-            channel,
-            value: measured,
-            sd,
-        } in &self.data
-        {
-            let sd = match sd {
-                Sd::Known(sd) => sd,
-                Sd::Inferred { parameter } => {
-                    *theta.get(parameter).ok_or(LikelihoodError::MissingParameter {
-                        parameter,
-                        dimension: theta.len(),
-                    })?
-                }
-            };
-            if !(sd.is_finite() && sd > 0.0) {
-                return Err(LikelihoodError::Noise {
-                    run,
-                    channel,
-                    value: sd,
-                });
-            }
-            let value = predicted(run, channel);
+        for (datum, value) in self.data.iter().zip(values) {
+            let &Datum { run, channel, .. } = datum;
+            let sd = datum.noise_sd(theta)?;
             if !value.is_finite() {
                 return Err(LikelihoodError::Prediction { run, channel, value });
             }
-            let residual = (measured - value) / sd;
+            let residual = (datum.value - value) / sd;
             sum += -LN_SQRT_TAU - libm::log(sd) - 0.5 * residual * residual;
         }
         Ok(LogLikelihood::new(sum)?)
+    }
+}
+
+impl Datum {
+    /// The noise sd, known or in theta, above 0.
+    fn noise_sd(&self, theta: &[f64]) -> Result<f64, LikelihoodError> {
+        let sd = match self.sd {
+            Sd::Known(sd) => sd,
+            Sd::Inferred { parameter } => *theta.get(parameter).ok_or(LikelihoodError::MissingParameter {
+                parameter,
+                dimension: theta.len(),
+            })?,
+        };
+        if sd.is_finite() && sd > 0.0 {
+            Ok(sd)
+        } else {
+            Err(LikelihoodError::Noise {
+                run: self.run,
+                channel: self.channel,
+                value: sd,
+            })
+        }
     }
 }

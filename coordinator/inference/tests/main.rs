@@ -6,5 +6,6 @@ mod answers;
 mod ask_tell;
 mod flags;
 mod likelihood;
+mod lm;
 mod priors;
 mod problems;

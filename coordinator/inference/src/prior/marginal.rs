@@ -181,10 +181,7 @@ impl Marginal {
             self.upper
         } else if p > 0.0 {
             // Rounding of exp(ln x) may step over an end by one unit in the last place.
-            self.coordinate
-                .value(self.density.quantile(p))
-                .max(self.lower)
-                .min(self.upper)
+            self.inside(self.density.quantile(p))
         } else {
             self.lower
         }
@@ -209,8 +206,51 @@ impl Marginal {
         diagnostics::at_bound(u(q05), u(q95), (u(self.lower), u(self.upper)))
     }
 
+    /// Slope and curvature of -ln p(x(u)) along the sampling coordinate u; p is the density of x, not of u.
+    ///
+    /// In its coordinate every distribution here is a parabola or a straight line, so the curvature is constant
+    /// and never negative. A log coordinate adds u, because ln p(x) = ln p(u) - u there.
+    pub(crate) fn slope(&self, u: f64) -> (f64, f64) {
+        let jacobian = if self.coordinate == Coordinate::Log {
+            1.0
+        } else {
+            0.0
+        };
+        match self.density {
+            Density::Uniform { .. } => (jacobian, 0.0),
+            Density::Normal { mean, sd, .. } => ((u - mean) / sd / sd + jacobian, 1.0 / sd / sd),
+        }
+    }
+
+    /// Spread of the sampling coordinate: its standard deviation, or that of a uniform density between the
+    /// bounds where they cut off more.
+    pub(crate) fn width(&self) -> f64 {
+        match self.density {
+            Density::Uniform { width, .. } => width / 12.0_f64.sqrt(),
+            Density::Normal { sd, low, high, .. } => sd * ((high - low) / 12.0_f64.sqrt()).min(1.0),
+        }
+    }
+
+    /// Whether the sampling coordinate is ln x.
+    pub(crate) fn is_logarithmic(&self) -> bool {
+        self.coordinate == Coordinate::Log
+    }
+
+    /// dx/du.
+    pub(crate) fn rate(&self, x: f64) -> f64 {
+        match self.coordinate {
+            Coordinate::Identity => 1.0,
+            Coordinate::Log => x,
+        }
+    }
+
+    /// x of a sampling coordinate inside the support; rounding does not step over an end.
+    pub(crate) fn inside(&self, u: f64) -> f64 {
+        self.coordinate.value(u).max(self.lower).min(self.upper)
+    }
+
     /// x of a sampling coordinate.
-    pub(super) fn value(&self, u: f64) -> f64 {
+    pub(crate) fn value(&self, u: f64) -> f64 {
         self.coordinate.value(u)
     }
 

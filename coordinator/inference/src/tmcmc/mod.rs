@@ -2,7 +2,7 @@
 //!
 //! Prior draws are weighted by a growing power of the likelihood, resampled, and moved by Metropolis-Hastings
 //! steps at each power (Ching & Chen 2007, J. Eng. Mech. 133:816). [`Sampler`] never calls the likelihood: it
-//! lists [`Proposal`]s and waits until each has been told, in any order.
+//! lists [`Proposal`](crate::Proposal)s and waits until each has been told, in any order.
 //!
 //! # Departures from the paper
 //! - Every particle moves, by several steps; [`Algorithm::ChingChen2007`] keeps the paper's moves.
@@ -31,7 +31,7 @@ mod transition;
 mod view;
 mod weights;
 
-pub use population::{Particle, Proposal};
-pub use record::{Current, Failure, Posterior, Progress, StageRecord, TellError};
+pub use population::Particle;
+pub use record::{Current, Posterior, StageRecord};
 pub use sampler::Sampler;
 pub use settings::{Algorithm, Settings, SettingsError};

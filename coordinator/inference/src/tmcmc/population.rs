@@ -14,15 +14,6 @@ pub struct Particle {
     pub log_prior: f64,
 }
 
-/// A parameter vector that awaits its log-likelihood.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Proposal {
-    /// Index of the particle; with the round it names the evaluation for ever.
-    pub particle: usize,
-    /// The parameters, in the order of the prior.
-    pub theta: Vec<f64>,
-}
-
 /// A state in sampling coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct State {

@@ -2,14 +2,15 @@
 
 use super::equilibrium::{Drift, is_alarming, pooled_z};
 use super::evidence::Evidence;
-use super::population::{Pool, Proposal, State};
-use super::record::{Failure, Posterior, Progress, StageRecord, TellError};
+use super::population::{Pool, State};
+use super::record::{Posterior, StageRecord};
 use super::settings::{Algorithm, Settings, SettingsError};
 use super::stage::Stage;
 use super::transition::Transition;
 use crate::log_likelihood::LogLikelihood;
 use crate::prior::Prior;
 use crate::rng::Stream;
+use crate::round::{Failure, Progress, Proposal, Round, TellError};
 
 /// Steps between two looks at a stage's equilibrium.
 const BLOCK: usize = 5;
@@ -22,10 +23,7 @@ const BLOCK: usize = 5;
 pub struct Sampler {
     pub(super) prior: Prior,
     pub(super) settings: Settings,
-    pub(super) round: u64,
-    pub(super) pending: Vec<Proposal>,
-    pub(super) answers: Vec<Option<LogLikelihood>>,
-    pub(super) missing: usize,
+    pub(super) round: Round<LogLikelihood>,
     pub(super) phase: Phase,
     pub(super) evidence: Evidence,
     pub(super) passage: Passage,
@@ -74,10 +72,7 @@ impl Sampler {
         let mut sampler = Self {
             prior,
             settings,
-            round: 0,
-            pending: Vec::new(),
-            answers: Vec::new(),
-            missing: 0,
+            round: Round::default(),
             phase: Phase::Prior,
             evidence: Evidence::default(),
             passage: Passage::default(),
@@ -86,7 +81,7 @@ impl Sampler {
             evaluations: 0,
             rejected: 0,
         };
-        sampler.ask(pending);
+        sampler.round.ask(pending);
         Ok(sampler)
     }
 
@@ -95,45 +90,20 @@ impl Sampler {
     /// # Errors
     /// [`TellError::AlreadyTold`] and [`TellError::NotPending`]; the sampler is then unchanged.
     pub fn tell(&mut self, particle: usize, value: LogLikelihood) -> Result<Progress, TellError> {
-        let round = self.round;
-        let slot = self
-            .slot(particle)
-            .ok_or(TellError::NotPending { round, particle })?;
-        if self.answers[slot].is_some() {
-            return Err(TellError::AlreadyTold { round, particle });
-        }
-        self.answers[slot] = Some(value);
-        self.missing -= 1;
-        Ok(if self.missing > 0 {
-            Progress::Waiting
-        } else {
+        Ok(if self.round.tell(particle, value)? {
             self.advance()
+        } else {
+            Progress::Waiting
         })
-    }
-
-    /// Position of a particle among the pending proposals.
-    pub(super) fn slot(&self, particle: usize) -> Option<usize> {
-        self.pending
-            .binary_search_by_key(&particle, |proposal| proposal.particle)
-            .ok()
-    }
-
-    /// Lists proposals.
-    fn ask(&mut self, proposals: Vec<Proposal>) {
-        self.missing = proposals.len();
-        self.answers = vec![None; proposals.len()];
-        self.pending = proposals;
     }
 
     /// Completes rounds until proposals are pending or the sampler has ended.
     fn advance(&mut self) -> Progress {
         let stages = self.stages.len();
         loop {
-            let answers: Vec<LogLikelihood> = self.answers.drain(..).flatten().collect();
-            self.round += 1;
+            let (proposals, answers) = self.round.complete();
             self.evaluations += answers.len() as u64;
             self.rejected += answers.iter().filter(|answer| answer.is_impossible()).count() as u64;
-            let proposals = std::mem::take(&mut self.pending);
             let next = match std::mem::replace(&mut self.phase, Phase::Done) {
                 Phase::Prior => self.finish_prior(&proposals, &answers),
                 Phase::Moving(mut stage) => {
@@ -146,12 +116,12 @@ impl Sampler {
             match &mut self.phase {
                 Phase::Moving(stage) => {
                     let proposals = stage.propose(&self.prior, self.settings.seed);
-                    self.ask(proposals);
+                    self.round.ask(proposals);
                 }
                 Phase::Failed(failure) => return Progress::Failed(*failure),
                 Phase::Prior | Phase::Done => return Progress::Finished,
             }
-            if !self.pending.is_empty() {
+            if !self.round.pending().is_empty() {
                 return if self.stages.len() > stages {
                     Progress::StageFinished
                 } else {

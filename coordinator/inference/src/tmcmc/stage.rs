@@ -1,10 +1,11 @@
 //! Move the chains of one stage, one step per round.
 
-use super::population::{Pool, Proposal, State};
+use super::population::{Pool, State};
 use super::proposal::{Candidate, Mixture, target_acceptance};
 use crate::log_likelihood::LogLikelihood;
 use crate::prior::Prior;
 use crate::rng::Stream;
+use crate::round::Proposal;
 
 /// One chain of a stage.
 #[derive(Debug, Clone)]

@@ -4,13 +4,13 @@ use super::ching_chen;
 use super::covariance::Factor;
 use super::population::Pool;
 use super::proposal::{Mixture, initial_scale};
-use super::record::Failure;
 use super::resample::systematic;
 use super::schedule::exponent_step;
 use super::settings::{Algorithm, Settings};
 use super::stage::{Chain, Stage};
 use super::weights::Weights;
 use crate::rng::Stream;
+use crate::round::Failure;
 
 /// Stream of a stage's resampling; particles never reach this number.
 const RESAMPLING: u64 = u64::MAX;

@@ -1,10 +1,10 @@
 //! Show a sampler's state to the outside.
 
-use super::population::Proposal;
-use super::record::{Current, Failure, Posterior, StageRecord};
+use super::record::{Current, Posterior, StageRecord};
 use super::sampler::{Phase, Sampler};
 use super::settings::Settings;
 use crate::prior::Prior;
+use crate::round::{Failure, Proposal};
 
 impl Sampler {
     /// The prior.
@@ -22,7 +22,7 @@ impl Sampler {
     /// Number of completed rounds; (round, particle) names an evaluation for ever.
     #[must_use]
     pub fn round(&self) -> u64 {
-        self.round
+        self.round.number()
     }
 
     /// This round's proposals, by ascending particle, told or not.
@@ -31,14 +31,13 @@ impl Sampler {
     /// has finished or failed.
     #[must_use]
     pub fn pending(&self) -> &[Proposal] {
-        &self.pending
+        self.round.pending()
     }
 
     /// Whether a pending particle has been told.
     #[must_use]
     pub fn is_told(&self, particle: usize) -> bool {
-        self.slot(particle)
-            .is_some_and(|slot| self.answers[slot].is_some())
+        self.round.is_told(particle)
     }
 
     /// The finished stages.
@@ -78,7 +77,7 @@ impl Sampler {
     /// The stage in progress, for display; the last stage once finished.
     #[must_use]
     pub fn current(&self) -> Current {
-        let (told, proposals) = (self.pending.len() - self.missing, self.pending.len());
+        let (told, proposals) = (self.round.told(), self.round.pending().len());
         let mut current = Current {
             stage: 0,
             tempering_exponent: 0.0,

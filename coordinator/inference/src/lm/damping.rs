@@ -1,0 +1,85 @@
+//! Decide how far to trust the parabola.
+
+/// Dampings of neighbouring trials differ by this factor.
+const SPREAD: f64 = 8.0;
+/// Damped trials of a round.
+const TRIALS: i32 = 3;
+/// The damping that a fit begins with: a tenth of the parabola's own curvature.
+const FIRST: f64 = 0.1;
+/// The least damping; less changes no digit that matters.
+const LEAST: f64 = 1e-9;
+
+/// The damping of the next trials.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Damping {
+    least: f64,
+    growth: f64,
+    undamped: bool,
+}
+
+impl Default for Damping {
+    fn default() -> Self {
+        Self {
+            least: FIRST,
+            growth: 2.0,
+            undamped: true,
+        }
+    }
+}
+
+impl Damping {
+    /// The dampings to try at the same time, most promising first: the whole step, then ever shorter ones.
+    pub(super) fn trials(&self) -> Vec<f64> {
+        let whole = self.undamped.then_some(0.0);
+        let damped = (0..TRIALS).map(|k| self.least * SPREAD.powi(k));
+        whole.into_iter().chain(damped).collect()
+    }
+
+    /// After a step that gained `ratio` times what the parabola promised.
+    ///
+    /// Nielsen's rule, `damping * max(1/3, 1 - (2 ratio - 1)^3)`, with 1/[`SPREAD`] in place of a third because several
+    /// dampings are tried at once.
+    pub(super) fn accept(&mut self, damping: f64, ratio: f64) {
+        let from = damping.max(self.least / SPREAD);
+        let miss = 2.0 * ratio - 1.0;
+        let factor = (1.0 - miss * miss * miss).max(1.0 / SPREAD).min(SPREAD);
+        *self = Self {
+            least: (from * factor).max(LEAST),
+            ..Self::default()
+        };
+    }
+
+    /// After a round without gain: shorter than all that was tried, and ever faster.
+    pub(super) fn reject(&mut self) {
+        self.least *= SPREAD.powi(TRIALS - 1) * self.growth;
+        self.growth *= 2.0;
+        self.undamped = false;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn trials_without_gain_are_never_tried_again() {
+        let mut damping = Damping::default();
+        let mut longest = f64::NEG_INFINITY;
+        for _ in 0..5 {
+            let trials = damping.trials();
+            assert!(trials.iter().all(|&t| t > longest), "{trials:?}");
+            longest = trials.last().copied().unwrap();
+            damping.reject();
+        }
+    }
+
+    #[test]
+    fn a_good_step_lessens_the_damping_and_a_poor_one_does_not() {
+        let after = |ratio| {
+            let mut damping = Damping::default();
+            damping.accept(0.8, ratio);
+            damping.least
+        };
+        assert!(after(1.0) < 0.8 && after(0.1) > 0.8);
+    }
+}

@@ -1,0 +1,129 @@
+//! Find the most probable noise sd for given residuals.
+
+use crate::likelihood::{GaussianLikelihood, Sd};
+use crate::prior::{Marginal, Prior};
+
+/// Where the prior reaches down to 0, a noise sd ends at this share of the prior's: residuals that vanish would
+/// else have none.
+const LEAST_SHARE: f64 = 1e-9;
+/// Cells in which the least value is looked for before it is refined.
+const CELLS: u32 = 64;
+/// Halvings of the cell: below one unit in the last place.
+const HALVINGS: u32 = 80;
+
+/// An inferred noise sd and the data that share it.
+#[derive(Debug, Clone)]
+pub(super) struct Noise {
+    /// Index in theta.
+    pub(super) parameter: usize,
+    marginal: Marginal,
+    data: Vec<usize>,
+}
+
+/// The most probable noise sd.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Profiled {
+    pub(super) sd: f64,
+    pub(super) at_bound: bool,
+    /// Standard deviation of the noise sd itself, from the curvature along its logarithm; none at a bound.
+    pub(super) uncertainty: Option<f64>,
+}
+
+impl Noise {
+    /// The inferred noise sds of a likelihood, by ascending parameter.
+    pub(super) fn all(prior: &Prior, likelihood: &GaussianLikelihood) -> Vec<Self> {
+        let data = likelihood.data();
+        prior
+            .marginals()
+            .iter()
+            .enumerate()
+            .filter_map(|(parameter, marginal)| {
+                let own = Sd::Inferred { parameter };
+                let data: Vec<usize> = (0..data.len()).filter(|&i| data[i].sd == own).collect();
+                (!data.is_empty()).then(|| Self {
+                    parameter,
+                    marginal: marginal.clone(),
+                    data,
+                })
+            })
+            .collect()
+    }
+
+    /// Minimises `n ln sd + S / (2 sd^2) - ln p(sd)` with S the sum of the squares of the n residuals.
+    ///
+    /// # Arguments
+    /// - `residuals`: measured minus predicted, of all data, in the unit of the datum.
+    ///
+    /// # Returns
+    /// The sd in the unit of its data. The likelihood alone wants sqrt(S/n), the prior alone its mode, and the answer lies
+    /// between them; along ln sd the interval is searched in cells, then halved.
+    /// Checked by `lm::noise_has_its_closed_form`.
+    pub(super) fn profile(&self, residuals: &[f64]) -> Profiled {
+        let squares: f64 = self.data.iter().map(|&i| residuals[i] * residuals[i]).sum();
+        let count = self.data.len() as f64;
+        let (lower, upper) = self.marginal.support();
+        let lower = lower.max(LEAST_SHARE * self.marginal.sd());
+        let within = |sd: f64| sd.max(lower).min(upper);
+        let wishes = [within((squares / count).sqrt()), within(self.mode(lower, upper))];
+        let (low, high) = (
+            libm::log(wishes[0].min(wishes[1])),
+            libm::log(wishes[0].max(wishes[1])),
+        );
+        let value = |v: f64| {
+            let sd = libm::exp(v);
+            count * v + 0.5 * squares / sd / sd - self.marginal.log_density(within(sd))
+        };
+        let node = |k: u32| low + (high - low) * f64::from(k) / f64::from(CELLS);
+        let best = (0..=CELLS).reduce(|a, b| if value(node(b)) < value(node(a)) { b } else { a });
+        let best = best.unwrap_or(0);
+        let (mut left, mut right) = (node(best.saturating_sub(1)), node((best + 1).min(CELLS)));
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (left + right);
+            if self.slope(middle, count, squares).0 > 0.0 {
+                right = middle;
+            } else {
+                left = middle;
+            }
+        }
+        let v = 0.5 * (left + right);
+        let sd = within(libm::exp(v));
+        let curvature = self.slope(v, count, squares).1;
+        let at_bound = sd <= lower || sd >= upper;
+        Profiled {
+            sd,
+            at_bound,
+            uncertainty: (!at_bound && curvature > 0.0).then(|| sd / curvature.sqrt()),
+        }
+    }
+
+    /// Slope and curvature of the objective along v = ln sd.
+    fn slope(&self, v: f64, count: f64, squares: f64) -> (f64, f64) {
+        let sd = libm::exp(v);
+        let ratio = squares / sd / sd;
+        let (slope, curvature) = self.marginal.slope(self.marginal.coordinate(sd));
+        // u is v, or sd itself.
+        let rate = sd / self.marginal.rate(sd);
+        let bend = if self.marginal.is_logarithmic() {
+            0.0
+        } else {
+            sd * slope
+        };
+        (
+            count - ratio + rate * slope,
+            2.0 * ratio + rate * rate * curvature + bend,
+        )
+    }
+
+    /// Where the prior is densest between two sds.
+    fn mode(&self, lower: f64, upper: f64) -> f64 {
+        let (slope, curvature) = self.marginal.slope(0.0);
+        if curvature > 0.0 {
+            self.marginal.value(-slope / curvature)
+        } else if slope > 0.0 {
+            lower
+        } else {
+            // Flat: no wish of its own. The likelihood's is then inside or at an end already.
+            0.5 * (lower + upper)
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! Evaluate the negative log-posterior at a point, and its parabola there.
+
+use nalgebra::DMatrix;
+
+use super::axis::Axis;
+use super::noise::{Noise, Profiled};
+use super::quadratic::Quadratic;
+use crate::likelihood::{GaussianLikelihood, Sd};
+use crate::log_likelihood::LogLikelihood;
+use crate::prior::Prior;
+
+/// A column of the Jacobian: the change of every predicted value along one axis; `None` where it is not known.
+pub(super) type Column = Option<Vec<f64>>;
+
+/// What is minimised.
+#[derive(Debug, Clone)]
+pub(super) struct Objective {
+    pub(super) prior: Prior,
+    pub(super) likelihood: GaussianLikelihood,
+    /// The parameters that the model takes.
+    pub(super) axes: Vec<Axis>,
+    /// The others.
+    pub(super) noises: Vec<Noise>,
+}
+
+/// An evaluated point, its noise sds the most probable ones there.
+#[derive(Debug, Clone)]
+pub(super) struct Point {
+    /// Position along every axis.
+    pub(super) position: Vec<f64>,
+    pub(super) theta: Vec<f64>,
+    pub(super) predicted: Vec<f64>,
+    /// f, in nats.
+    pub(super) value: f64,
+    pub(super) log_likelihood: f64,
+    pub(super) log_prior: f64,
+    /// One for each of [`Objective::noises`].
+    pub(super) noise: Vec<Profiled>,
+}
+
+impl Objective {
+    pub(super) fn new(prior: Prior, likelihood: GaussianLikelihood) -> Self {
+        let noises = Noise::all(&prior, &likelihood);
+        let axes = prior
+            .marginals()
+            .iter()
+            .enumerate()
+            .filter(|(parameter, _)| noises.iter().all(|noise| noise.parameter != *parameter))
+            .map(|(parameter, marginal)| Axis::new(parameter, marginal))
+            .collect();
+        Self {
+            prior,
+            likelihood,
+            axes,
+            noises,
+        }
+    }
+
+    /// The point of a parameter vector; its own noise sds are not looked at. `None` where f is infinite.
+    pub(super) fn point(&self, theta: &[f64], predicted: &[f64]) -> Option<Point> {
+        let residuals: Vec<f64> = self
+            .likelihood
+            .data()
+            .iter()
+            .zip(predicted)
+            .map(|(datum, value)| datum.value - value)
+            .collect();
+        let noise: Vec<Profiled> = self
+            .noises
+            .iter()
+            .map(|noise| noise.profile(&residuals))
+            .collect();
+        let mut theta = theta.to_vec();
+        for (source, profiled) in self.noises.iter().zip(&noise) {
+            theta[source.parameter] = profiled.sd;
+        }
+        let log_prior = self.prior.log_density(&theta);
+        let Ok(LogLikelihood::Finite(log_likelihood)) = self.likelihood.log_likelihood_of(predicted, &theta)
+        else {
+            return None;
+        };
+        let value = -(log_likelihood.get() + log_prior);
+        value.is_finite().then(|| Point {
+            position: self
+                .axes
+                .iter()
+                .map(|axis| axis.position(theta[axis.parameter]))
+                .collect(),
+            theta,
+            predicted: predicted.to_vec(),
+            value,
+            log_likelihood: log_likelihood.get(),
+            log_prior,
+            noise,
+        })
+    }
+
+    /// The parameter vector at a position, with the noise sds of a point.
+    pub(super) fn theta(&self, point: &Point, position: &[f64]) -> Vec<f64> {
+        let mut theta = point.theta.clone();
+        for (axis, &t) in self.axes.iter().zip(position) {
+            theta[axis.parameter] = axis.value(t);
+        }
+        theta
+    }
+
+    /// The parabola of f along the axes around a point: slopes
+    /// `-sum_i J_ik r_i / sd_i^2 + (-ln p_k)'`, curvatures `sum_i J_ik J_il / sd_i^2 + (-ln p_k)''`.
+    ///
+    /// The model's own curvature is left out, as Gauss and Newton do; so is the change of the noise sds, whose mixed
+    /// curvature with the axes has expectation zero. Axes without a column do not move.
+    pub(super) fn quadratic(&self, point: &Point, columns: &[Column]) -> Quadratic {
+        let data = self.likelihood.data();
+        let sd = |i: usize| match data[i].sd {
+            Sd::Known(sd) => sd,
+            Sd::Inferred { parameter } => point.theta[parameter],
+        };
+        let scaled: Vec<Option<Vec<f64>>> = columns
+            .iter()
+            .map(|column| {
+                let column = column.as_ref()?;
+                Some(
+                    column
+                        .iter()
+                        .enumerate()
+                        .map(|(i, change)| change / sd(i))
+                        .collect(),
+                )
+            })
+            .collect();
+        let residuals: Vec<f64> = (0..data.len())
+            .map(|i| (data[i].value - point.predicted[i]) / sd(i))
+            .collect();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        let count = self.axes.len();
+        let mut gradient = vec![0.0; count];
+        let mut hessian = DMatrix::zeros(count, count);
+        for (k, axis) in self.axes.iter().enumerate() {
+            let (slope, curvature) = axis.slope(point.position[k]);
+            gradient[k] = slope;
+            hessian[(k, k)] = curvature;
+            let Some(own) = &scaled[k] else { continue };
+            gradient[k] -= dot(own, &residuals);
+            for (l, other) in scaled.iter().enumerate() {
+                if let Some(other) = other {
+                    hessian[(k, l)] += dot(own, other);
+                }
+            }
+        }
+        Quadratic {
+            gradient,
+            hessian,
+            lower: self.room(point, |axis| axis.lower),
+            upper: self.room(point, |axis| axis.upper),
+            held: columns.iter().map(Option::is_none).collect(),
+        }
+    }
+
+    fn room(&self, point: &Point, bound: impl Fn(&Axis) -> f64) -> Vec<f64> {
+        self.axes
+            .iter()
+            .zip(&point.position)
+            .map(|(axis, t)| bound(axis) - t)
+            .collect()
+    }
+
+    /// A position moved by a step; exactly at a bound where the step ends there.
+    pub(super) fn moved(&self, point: &Point, step: &[f64]) -> Vec<f64> {
+        self.axes
+            .iter()
+            .zip(point.position.iter().zip(step))
+            .map(|(axis, (t, move_by))| {
+                if *move_by <= axis.lower - t {
+                    axis.lower
+                } else if *move_by >= axis.upper - t {
+                    axis.upper
+                } else {
+                    t + move_by
+                }
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,134 @@
+//! Hold the settings of a fit and refuse those that cannot work.
+
+/// Settings of a fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Points of the first round: the prior mean, then prior draws.
+    pub starts: usize,
+    /// Most evaluations, all rounds together.
+    pub max_evaluations: usize,
+    /// Step of the differences, in units of the prior's width: its standard deviation, or that of a uniform density
+    /// between its bounds where these are closer.
+    ///
+    /// A difference over h is wrong by the model's curvature times h/2 and by its noise times 2/h. A model on a grid has
+    /// noise of some 0.3 % of a force; over a width of its prior a parameter that matters moves a force by a
+    /// third or more, so 2 % of a width moves it by twice the noise: each datum then says which way is down,
+    /// and a fit has dozens. A much smaller step would differentiate noise, a much larger one blurs a curved
+    /// model; the last Jacobian has differences to both sides, which cancels the curvature.
+    pub difference_step: f64,
+    /// Seed of the prior draws.
+    pub seed: u64,
+    /// The fit has settled when a step gains, or can gain, no more than this share of 1 + |f|.
+    pub decrease_tolerance: f64,
+    /// The fit gives up on steps shorter than this, in units of the prior's width.
+    pub step_tolerance: f64,
+}
+
+impl Default for Settings {
+    /// 5 starts, 200 evaluations, differences over 2 % of the prior's width, seed 1, tolerances 1e-6 and 1e-4.
+    fn default() -> Self {
+        Self {
+            starts: 5,
+            max_evaluations: 200,
+            difference_step: 0.02,
+            seed: 1,
+            decrease_tolerance: 1e-6,
+            step_tolerance: 1e-4,
+        }
+    }
+}
+
+/// Most evaluations of a fit.
+const MOST_EVALUATIONS: usize = 1_000_000;
+/// Longest difference: a step to one side always fits between the bounds.
+const LONGEST_DIFFERENCE: f64 = 0.5;
+
+/// Settings that cannot work.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SettingsError {
+    /// The prior has no parameters.
+    #[error("the prior has no parameters")]
+    NoParameters,
+    /// Nothing to start from.
+    #[error("starts = 0 is below 1")]
+    NoStart,
+    /// The budget does not reach to a first step.
+    #[error(
+        "max_evaluations = {max_evaluations} is below {least}: {starts} starts, {dimension} differences and one step"
+    )]
+    TooFewEvaluations {
+        /// The setting.
+        max_evaluations: usize,
+        /// The least budget.
+        least: usize,
+        /// Starts.
+        starts: usize,
+        /// Number of parameters.
+        dimension: usize,
+    },
+    /// The budget is beyond reason.
+    #[error("max_evaluations = {max_evaluations} is above {MOST_EVALUATIONS}")]
+    TooManyEvaluations {
+        /// The setting.
+        max_evaluations: usize,
+    },
+    /// The step of the differences is not in (0, 0.5].
+    #[error("difference_step = {value} prior widths is not above 0 and at most {LONGEST_DIFFERENCE}")]
+    DifferenceStep {
+        /// The setting.
+        value: f64,
+    },
+    /// A tolerance is not a finite number above 0.
+    #[error("{name} = {value} is not a finite number above 0")]
+    Tolerance {
+        /// The setting.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+}
+
+impl Settings {
+    /// Checks the settings for a prior of `dimension` parameters.
+    ///
+    /// # Errors
+    /// [`SettingsError`] with the setting, its value and its bound.
+    pub fn check(&self, dimension: usize) -> Result<(), SettingsError> {
+        let &Self {
+            starts,
+            max_evaluations,
+            difference_step: value,
+            ..
+        } = self;
+        let least = starts.saturating_add(dimension + 1);
+        if dimension == 0 {
+            return Err(SettingsError::NoParameters);
+        }
+        if starts == 0 {
+            return Err(SettingsError::NoStart);
+        }
+        if max_evaluations < least {
+            return Err(SettingsError::TooFewEvaluations {
+                max_evaluations,
+                least,
+                starts,
+                dimension,
+            });
+        }
+        if max_evaluations > MOST_EVALUATIONS {
+            return Err(SettingsError::TooManyEvaluations { max_evaluations });
+        }
+        if !(value > 0.0 && value <= LONGEST_DIFFERENCE) {
+            return Err(SettingsError::DifferenceStep { value });
+        }
+        for (name, value) in [
+            ("decrease_tolerance", self.decrease_tolerance),
+            ("step_tolerance", self.step_tolerance),
+        ] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(SettingsError::Tolerance { name, value });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,111 @@
+//! Ask for the differences that make a Jacobian.
+
+use super::axis::Axis;
+use super::objective::Column;
+
+/// To which sides differences are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sides {
+    /// To one, away from a bound: the direction of descent needs no more.
+    One,
+    /// To both, within the bounds: no error from the model's curvature.
+    Both,
+}
+
+/// A rejected difference is tried on the other side, then so much shorter on both.
+const SHORTER: f64 = 0.25;
+
+/// The differences around a point, as far as they are known.
+#[derive(Debug, Clone)]
+pub(super) struct Stencil {
+    axes: Vec<Differences>,
+    /// The differences of the round: axis and offset.
+    asked: Vec<(usize, f64)>,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Differences {
+    /// Offset and predicted values there.
+    known: Vec<(f64, Vec<f64>)>,
+    /// Offsets within the bounds that have not been tried, most wanted first.
+    untried: Vec<f64>,
+}
+
+impl Stencil {
+    /// A stencil of `step` widths around a position.
+    pub(super) fn new(axes: &[Axis], position: &[f64], step: f64) -> Self {
+        let differences = |(axis, &t): (&Axis, &f64)| {
+            let inside = |offset: &f64| (axis.lower..=axis.upper).contains(&(t + offset));
+            let untried = [step, -step, SHORTER * step, -SHORTER * step];
+            Differences {
+                known: Vec::new(),
+                untried: untried.into_iter().filter(inside).collect(),
+            }
+        };
+        Self {
+            axes: axes.iter().zip(position).map(differences).collect(),
+            asked: Vec::new(),
+        }
+    }
+
+    /// Asks for what is missing: a first difference of every axis or, to both sides, a second one across.
+    ///
+    /// # Returns
+    /// Axis and offset of every difference; empty when nothing is missing or can be had.
+    pub(super) fn ask(&mut self, sides: Sides) -> &[(usize, f64)] {
+        self.asked.clear();
+        for (k, axis) in self.axes.iter().enumerate() {
+            let known = axis.known.first().map(|(offset, _)| *offset);
+            let across = |from: f64| axis.untried.iter().copied().find(|offset| offset * from < 0.0);
+            match (known, axis.known.len(), sides) {
+                (None, ..) => {
+                    let first = axis.untried.first().copied();
+                    self.asked.extend(first.map(|offset| (k, offset)));
+                    let second = first.and_then(across).filter(|_| sides == Sides::Both);
+                    self.asked.extend(second.map(|offset| (k, offset)));
+                }
+                (Some(offset), 1, Sides::Both) => {
+                    self.asked.extend(across(offset).map(|offset| (k, offset)));
+                }
+                _ => {}
+            }
+        }
+        &self.asked
+    }
+
+    /// Takes the predicted values of what was asked for, in that order; `None` where the model refused.
+    pub(super) fn accept(&mut self, answers: Vec<Option<Vec<f64>>>) {
+        for ((k, offset), answer) in self.asked.drain(..).zip(answers) {
+            let axis = &mut self.axes[k];
+            axis.untried.retain(|untried| (untried - offset).abs() > 0.0);
+            axis.known.extend(answer.map(|values| (offset, values)));
+        }
+    }
+
+    /// Whether an axis is without any difference.
+    pub(super) fn is_incomplete(&self) -> bool {
+        self.axes
+            .iter()
+            .any(|axis| axis.known.is_empty() && !axis.untried.is_empty())
+    }
+
+    /// The columns of the Jacobian. With a difference a and one across, b, that of the parabola through all three
+    /// points: `(b^2 (m_a - m) - a^2 (m_b - m)) / (a b (b - a))`.
+    pub(super) fn columns(&self, predicted: &[f64]) -> Vec<Column> {
+        let column = |axis: &Differences| match axis.known.as_slice() {
+            [] => None,
+            [(a, at_a)] => Some(at_a.iter().zip(predicted).map(|(x, m)| (x - m) / a).collect()),
+            [(a, at_a), (b, at_b), ..] => {
+                let divisor = a * b * (b - a);
+                let (of_a, of_b) = (b * b / divisor, a * a / divisor);
+                let values = at_a.iter().zip(at_b).zip(predicted);
+                Some(
+                    values
+                        .map(|((x, y), m)| of_a * (x - m) - of_b * (y - m))
+                        .collect(),
+                )
+            }
+        };
+        self.axes.iter().map(column).collect()
+    }
+}

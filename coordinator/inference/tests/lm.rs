@@ -1,0 +1,555 @@
+//! Fits against closed forms, and on models as unpleasant as real ones.
+
+use inference::lm::{Estimate, Optimiser, Settings, SettingsError, Stop};
+use inference::{
+    Datum, Distribution, Failure, GaussianLikelihood, LikelihoodError, Marginal, Prior, Progress, Sd,
+    TellError,
+};
+use nalgebra::{DMatrix, DVector};
+
+/// A model: one predicted value for each datum, or none.
+type Model<'a> = &'a dyn Fn(&[f64]) -> Option<Vec<f64>>;
+
+fn uniform(lower: f64, upper: f64) -> Marginal {
+    Marginal::new(Distribution::Uniform { lower, upper }, None).unwrap()
+}
+
+fn normal(mean: f64, sd: f64) -> Marginal {
+    Marginal::new(Distribution::Normal { mean, sd }, None).unwrap()
+}
+
+fn data(values: &[f64], sd: impl Fn(usize) -> Sd) -> GaussianLikelihood {
+    let datum = |(run, &value): (usize, &f64)| Datum {
+        run,
+        channel: 0,
+        value,
+        sd: sd(run),
+    };
+    GaussianLikelihood::new(values.iter().enumerate().map(datum).collect()).unwrap()
+}
+
+fn begin(prior: &[Marginal], likelihood: &GaussianLikelihood, settings: Settings) -> Optimiser {
+    Optimiser::new(Prior::new(prior.to_vec()), likelihood.clone(), settings).unwrap()
+}
+
+/// Runs a fit to its end, each round's results told in an order of its own.
+fn end(mut fit: Optimiser, model: Model, order: impl Fn(u64, &mut Vec<usize>)) -> Optimiser {
+    while !fit.pending().is_empty() {
+        let pending = fit.pending().to_vec();
+        let mut indices: Vec<usize> = (0..pending.len()).collect();
+        order(fit.round(), &mut indices);
+        for k in indices {
+            let proposal = &pending[k];
+            fit.tell(proposal.particle, model(&proposal.theta).as_deref())
+                .unwrap();
+        }
+    }
+    fit
+}
+
+fn fit(prior: &[Marginal], likelihood: &GaussianLikelihood, settings: Settings, model: Model) -> Estimate {
+    let ended = end(begin(prior, likelihood, settings), model, |_, _| ());
+    ended.estimate().unwrap().clone()
+}
+
+#[track_caller]
+fn near(given: f64, expected: f64, tolerance: f64) {
+    assert!(
+        (given - expected).abs() <= tolerance * expected.abs().max(1.0),
+        "{given}, not {expected}"
+    );
+}
+
+/// A straight line in three parameters at twelve places.
+fn design() -> DMatrix<f64> {
+    DMatrix::from_fn(12, 3, |i, k| {
+        let x = i as f64 / 6.0 - 1.0;
+        [1.0, x, x * x * x - 0.3 * x][k]
+    })
+}
+
+fn linear(theta: &[f64]) -> Option<Vec<f64>> {
+    let values = design() * DVector::from_column_slice(&theta[..3]);
+    Some(values.iter().copied().collect())
+}
+
+/// Measurements around (2, -1, 0.5), off by a fixed pattern.
+fn measured() -> Vec<f64> {
+    let clean = linear(&[2.0, -1.0, 0.5]).unwrap();
+    clean
+        .iter()
+        .enumerate()
+        .map(|(i, y)| y + 0.2 * libm::sin(2.7 * i as f64 + 1.0))
+        .collect()
+}
+
+#[test]
+fn a_linear_model_with_normal_priors_has_its_closed_form() {
+    let (means, sds) = ([1.0, 0.0, 1.0], [2.0, 0.5, 3.0]);
+    let prior: Vec<Marginal> = means.iter().zip(sds).map(|(&m, s)| normal(m, s)).collect();
+    let sd = |i: usize| 0.1 + 0.02 * i as f64;
+    let likelihood = data(&measured(), |i| Sd::Known(sd(i)));
+    let estimate = fit(&prior, &likelihood, Settings::default(), &linear);
+
+    // Precision P = A' W A + S^-2, mean P^-1 (A' W y + S^-2 m).
+    let a = design();
+    let weights = DMatrix::from_fn(12, 12, |i, j| if i == j { 1.0 / (sd(i) * sd(i)) } else { 0.0 });
+    let prior_precision = DMatrix::from_fn(3, 3, |i, j| if i == j { 1.0 / (sds[i] * sds[i]) } else { 0.0 });
+    let precision = a.transpose() * &weights * &a + &prior_precision;
+    let right = a.transpose() * &weights * DVector::from_vec(measured())
+        + &prior_precision * DVector::from_column_slice(&means);
+    let covariance = precision.try_inverse().unwrap();
+    let mean = &covariance * right;
+    for i in 0..3 {
+        near(estimate.theta[i], mean[i], 1e-8);
+        near(estimate.sd[i].unwrap() / covariance[(i, i)].sqrt(), 1.0, 1e-8);
+        for j in 0..3 {
+            near(estimate.covariance[i][j] / covariance[(i, j)], 1.0, 1e-8);
+        }
+    }
+    assert_eq!(
+        (estimate.stop, estimate.at_bound.as_slice()),
+        (Stop::Decrease, &[false; 3][..])
+    );
+    // 5 starts, differences, one round of steps, differences to both sides.
+    assert_eq!(estimate.evaluations, 5 + 3 + 4 + 6);
+    let expected = Prior::new(prior).log_density(&estimate.theta);
+    near(estimate.log_prior, expected, 1e-12);
+    near(
+        estimate.log_likelihood,
+        likelihood
+            .log_likelihood_of(&linear(&estimate.theta).unwrap(), &estimate.theta)
+            .unwrap()
+            .value(),
+        1e-12,
+    );
+}
+
+#[test]
+fn a_curved_valley_is_followed_to_its_end() {
+    // Rosenbrock's valley as residuals: 10 (y - x^2) and 1 - x, from the far side of its bend.
+    let likelihood = data(&[0.0, 1.0], |_| Sd::Known(1.0));
+    let model = |theta: &[f64]| Some(vec![10.0 * (theta[1] - theta[0] * theta[0]), theta[0]]);
+    let prior = [uniform(-4.4, 2.0), uniform(-2.0, 4.0)];
+    let settings = Settings {
+        starts: 1,
+        ..Settings::default()
+    };
+    let estimate = fit(&prior, &likelihood, settings, &model);
+    assert_eq!(estimate.stop, Stop::Decrease);
+    near(estimate.theta[0], 1.0, 1e-3);
+    near(estimate.theta[1], 1.0, 2e-3);
+    // J = [[-20, 10], [1, 0]]: variances 1 and 4.01.
+    near(estimate.sd[0].unwrap(), 1.0, 1e-2);
+    near(estimate.sd[1].unwrap(), 4.01_f64.sqrt(), 1e-2);
+    assert!(estimate.evaluations <= 120, "{}", estimate.evaluations);
+}
+
+#[test]
+fn a_parameter_at_its_bound_is_reported_and_the_others_make_the_best_of_it() {
+    // The data want -1 for the second parameter, the prior ends at -0.5.
+    let prior = [normal(0.0, 10.0), uniform(-0.5, 3.0), normal(0.0, 10.0)];
+    let likelihood = data(&measured(), |_| Sd::Known(0.1));
+    let estimate = fit(&prior, &likelihood, Settings::default(), &linear);
+    assert_eq!(estimate.theta[1].to_bits(), (-0.5_f64).to_bits());
+    assert_eq!(estimate.at_bound, [false, true, false]);
+    assert_eq!(estimate.sd[1], None);
+    // With the second parameter at -0.5 the other two have the closed form.
+    let a = design();
+    let two = DMatrix::from_fn(12, 2, |i, k| a[(i, 2 * k)]);
+    let rest = DVector::from_vec(measured()) + 0.5 * a.column(1);
+    let precision = two.transpose() * &two * 100.0 + DMatrix::identity(2, 2) * 0.01;
+    let covariance = precision.try_inverse().unwrap();
+    let mean = &covariance * (two.transpose() * rest * 100.0);
+    for (k, parameter) in [0, 2].into_iter().enumerate() {
+        near(estimate.theta[parameter], mean[k], 1e-8);
+        near(
+            estimate.sd[parameter].unwrap() / covariance[(k, k)].sqrt(),
+            1.0,
+            1e-8,
+        );
+    }
+}
+
+#[test]
+fn a_bound_in_the_way_of_the_first_steps_is_left_again() {
+    // From the far corner the first parabola points over the bound of y; the answer lies inside.
+    let likelihood = data(&[0.5, 1.3], |_| Sd::Known(0.01));
+    let model = |theta: &[f64]| Some(vec![theta[0] * theta[1], theta[0] + theta[1] * theta[1]]);
+    let prior = [uniform(0.0, 4.0), uniform(0.0, 2.0)];
+    let estimate = fit(
+        &prior,
+        &likelihood,
+        Settings {
+            starts: 1,
+            ..Settings::default()
+        },
+        &model,
+    );
+    assert_eq!(estimate.at_bound, [false, false]);
+    let values = model(&estimate.theta).unwrap();
+    near(values[0], 0.5, 1e-4);
+    near(values[1], 1.3, 1e-4);
+}
+
+#[test]
+fn noise_has_its_closed_form() {
+    // Residuals are known once the one model parameter is at the mean: its prior is as good as a fixed value.
+    let values = [0.3, -0.8, 1.1, 0.2, -0.5, 0.9, -1.3, 0.4];
+    let model = |theta: &[f64]| Some(vec![theta[0]; 8]);
+    let count = 8.0;
+    let noise = |distribution, bounds| {
+        let prior = [normal(0.0, 1e-7), Marginal::new(distribution, bounds).unwrap()];
+        let likelihood = data(&values, |_| Sd::Inferred { parameter: 1 });
+        fit(&prior, &likelihood, Settings::default(), &model)
+    };
+    let squares: f64 = values.iter().map(|v| v * v).sum();
+    let flat = noise(
+        Distribution::Uniform {
+            lower: 0.0,
+            upper: 5.0,
+        },
+        None,
+    );
+    near(flat.theta[1], (squares / count).sqrt(), 1e-8);
+    // f'' along ln sd is 2 n there.
+    near(flat.sd[1].unwrap(), flat.theta[1] / (2.0 * count).sqrt(), 1e-8);
+    let log_flat = noise(
+        Distribution::Loguniform {
+            lower: 1e-3,
+            upper: 10.0,
+        },
+        None,
+    );
+    near(log_flat.theta[1], (squares / (count + 1.0)).sqrt(), 1e-8);
+    // n - S/v + v/s^2 = 0 for the variance v.
+    let scale = 0.4_f64;
+    let half = noise(Distribution::HalfNormal { scale }, None);
+    let s2 = scale * scale;
+    let variance = 0.5 * s2 * (-count + (count * count + 4.0 * squares / s2).sqrt());
+    near(half.theta[1], variance.sqrt(), 1e-8);
+    // Lognormal: n - S/sd^2 + (ln sd - ln median) / (ln factor)^2 + 1 = 0.
+    let lognormal = noise(
+        Distribution::Lognormal {
+            median: 0.3,
+            factor: 1.5,
+        },
+        None,
+    );
+    let sd = lognormal.theta[1];
+    let pull = (libm::log(sd) - libm::log(0.3)) / (libm::log(1.5) * libm::log(1.5));
+    near(count - squares / sd / sd + pull + 1.0, 0.0, 1e-8);
+    let bounded = noise(Distribution::Normal { mean: 0.2, sd: 0.1 }, Some([0.1, 0.3]));
+    assert_eq!(
+        (bounded.theta[1].to_bits(), bounded.at_bound[1], bounded.sd[1]),
+        (0.3_f64.to_bits(), true, None)
+    );
+}
+
+#[test]
+fn model_parameters_and_noise_are_fitted_together() {
+    // With a flat prior on the noise, the joint optimum has least squares and sd^2 = S / n.
+    let prior = [
+        uniform(-10.0, 10.0),
+        uniform(-10.0, 10.0),
+        uniform(-10.0, 10.0),
+        uniform(0.0, 5.0),
+    ];
+    let likelihood = data(&measured(), |_| Sd::Inferred { parameter: 3 });
+    let estimate = fit(&prior, &likelihood, Settings::default(), &linear);
+    let a = design();
+    let inverse = (a.transpose() * &a).try_inverse().unwrap();
+    let least = &inverse * a.transpose() * DVector::from_vec(measured());
+    let residuals = DVector::from_vec(measured()) - &a * &least;
+    let variance = residuals.norm_squared() / 12.0;
+    near(estimate.theta[3], variance.sqrt(), 1e-8);
+    for i in 0..3 {
+        near(estimate.theta[i], least[i], 1e-8);
+        near(estimate.sd[i].unwrap(), (variance * inverse[(i, i)]).sqrt(), 1e-8);
+    }
+}
+
+/// Noise of a grid: differs from one parameter vector to the next, and is the same when asked again.
+fn grid_noise(theta: &[f64], i: usize) -> f64 {
+    let bits = theta.iter().fold(i as u64 + 1, |hash, x| {
+        (hash ^ x.to_bits())
+            .wrapping_mul(0x9e37_79b9_7f4a_7c15)
+            .rotate_left(29)
+    });
+    (bits >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
+}
+
+/// Three forces of a wheel-like curve at eight slips, without noise.
+fn wheel(theta: &[f64]) -> Vec<f64> {
+    let (stiffness, exponent, friction) = (theta[0], theta[1], theta[2]);
+    (0..24)
+        .map(|i| {
+            let slip = f64::from(i / 3) / 8.0 + 0.05;
+            let sinkage = libm::exp((4.0 - stiffness) / exponent);
+            match i % 3 {
+                0 => 100.0 * libm::tan(friction) * (1.0 - libm::exp(-8.0 * slip)) - 30.0 * sinkage,
+                1 => 20.0 * libm::tan(friction) * (1.0 - libm::exp(-8.0 * slip)) + 4.0 * slip,
+                _ => 20.0 * sinkage * (1.0 + 0.5 * slip),
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn a_model_with_the_noise_of_a_grid_is_fitted_within_its_uncertainty() {
+    let truth = [4.6, 1.1, 0.5];
+    let prior = [uniform(4.0, 5.6), normal(1.1, 0.2), normal(0.55, 0.1)];
+    let clean = wheel(&truth);
+    let sd = |i: usize| Sd::Known([1.0, 0.2, 0.4][i % 3]);
+    let values: Vec<f64> = (0..24)
+        .map(|i| {
+            let Sd::Known(sd) = sd(i) else { panic!("known") };
+            clean[i] + sd * libm::sin(1.9 * i as f64)
+        })
+        .collect();
+    let likelihood = data(&values, sd);
+    let smooth = fit(&prior, &likelihood, Settings::default(), &|theta| {
+        Some(wheel(theta))
+    });
+    assert_eq!(smooth.stop, Stop::Decrease);
+    for share in [0.001, 0.003] {
+        let noisy = |theta: &[f64]| {
+            let values = wheel(theta).into_iter().enumerate();
+            Some(
+                values
+                    .map(|(i, v)| v * (1.0 + share * grid_noise(theta, i)))
+                    .collect(),
+            )
+        };
+        for seed in 1..=4 {
+            let estimate = fit(
+                &prior,
+                &likelihood,
+                Settings {
+                    seed,
+                    ..Settings::default()
+                },
+                &noisy,
+            );
+            for i in 0..3 {
+                let (off, sd) = (estimate.theta[i] - smooth.theta[i], smooth.sd[i].unwrap());
+                assert!(
+                    off.abs() < 0.5 * sd,
+                    "{share}, seed {seed}, {i}: {off} of sd {sd}"
+                );
+                let ratio = estimate.sd[i].unwrap() / sd;
+                assert!(
+                    (0.7..1.4).contains(&ratio),
+                    "{share}, seed {seed}, {i}: sd {ratio}"
+                );
+            }
+            assert!(smooth.log_posterior() - estimate.log_posterior() < 0.5);
+            assert!(
+                estimate.evaluations <= 200 && estimate.stop != Stop::Budget,
+                "{estimate:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn rejections_around_the_start_turn_differences_round_and_shorten_steps() {
+    let likelihood = data(&measured(), |_| Sd::Known(0.1));
+    let prior = [uniform(-3.0, 5.0), uniform(-4.0, 4.0), uniform(-3.0, 5.0)];
+    // The prior mean is (1, 0, 1): right behind it on the first axis the model refuses; so it does further down the
+    // second, where whole steps would lead, and close to the mean on both sides of the third.
+    let wall = |theta: &[f64]| {
+        let refused = (theta[0] > 1.0 && theta[0] < 1.2)
+            || theta[1] < -1.2
+            || ((theta[2] - 1.0).abs() > 0.02 && (theta[2] - 1.0).abs() < 0.1);
+        (!refused).then(|| linear(theta)).flatten()
+    };
+    let free = fit(&prior, &likelihood, Settings::default(), &linear);
+    let settings = Settings {
+        starts: 1,
+        ..Settings::default()
+    };
+    let estimate = fit(&prior, &likelihood, settings, &wall);
+    assert!(estimate.rejected >= 3, "{estimate:?}");
+    for i in 0..3 {
+        near(estimate.theta[i], free.theta[i], 1e-6);
+    }
+}
+
+#[test]
+fn a_fit_walled_in_on_one_axis_holds_it() {
+    let likelihood = data(&measured(), |_| Sd::Known(0.1));
+    let prior = [uniform(-3.0, 5.0), uniform(-4.0, 4.0), uniform(-3.0, 5.0)];
+    let slit = |theta: &[f64]| ((theta[1]).abs() < 1e-6).then(|| linear(theta)).flatten();
+    let estimate = fit(
+        &prior,
+        &likelihood,
+        Settings {
+            starts: 1,
+            ..Settings::default()
+        },
+        &slit,
+    );
+    assert!(estimate.theta[1].abs() < 1e-6);
+    assert_eq!(estimate.sd[1], None);
+    assert!(estimate.sd[0].is_some() && estimate.sd[2].is_some());
+}
+
+#[test]
+fn a_model_that_refuses_everything_fails_with_half_of_the_budget() {
+    let likelihood = data(&[1.0], |_| Sd::Known(0.1));
+    let ended = end(
+        begin(&[uniform(0.0, 1.0)], &likelihood, Settings::default()),
+        &|_| None,
+        |_, _| (),
+    );
+    assert_eq!(ended.failure(), Some(Failure::AllImpossible { draws: 100 }));
+    assert_eq!((ended.estimate(), ended.rejected()), (None, 100));
+}
+
+#[test]
+fn the_order_within_a_round_does_not_matter() {
+    let prior = [
+        uniform(4.0, 5.6),
+        normal(1.1, 0.2),
+        normal(0.55, 0.1),
+        Marginal::new(
+            Distribution::Lognormal {
+                median: 1.0,
+                factor: 3.0,
+            },
+            None,
+        )
+        .unwrap(),
+    ];
+    let values = wheel(&[4.9, 1.0, 0.6]);
+    let likelihood = data(&values, |i| match i % 3 {
+        0 => Sd::Inferred { parameter: 3 },
+        _ => Sd::Known(0.1),
+    });
+    let model = |theta: &[f64]| {
+        let values = wheel(theta).into_iter().enumerate();
+        let noisy = values
+            .map(|(i, v)| v * (1.0 + 0.003 * grid_noise(theta, i)))
+            .collect();
+        (theta[1] > 0.7).then_some(noisy)
+    };
+    let run = |order: &dyn Fn(u64, &mut Vec<usize>)| {
+        let fit = end(begin(&prior, &likelihood, Settings::default()), &model, order);
+        format!("{:?}", fit.estimate().unwrap())
+    };
+    let forwards = run(&|_, _| ());
+    assert_eq!(run(&|_, indices| indices.reverse()), forwards);
+    assert_eq!(
+        run(&|round, indices| {
+            let by = round as usize % indices.len();
+            indices.rotate_left(by);
+        }),
+        forwards
+    );
+    // Another seed starts elsewhere.
+    let other = Settings {
+        seed: 2,
+        ..Settings::default()
+    };
+    assert_ne!(
+        begin(&prior, &likelihood, other).pending(),
+        begin(&prior, &likelihood, Settings::default()).pending()
+    );
+}
+
+#[test]
+fn the_budget_is_never_exceeded_and_says_so() {
+    let prior = [uniform(-4.4, 2.0), uniform(-2.0, 4.0)];
+    let likelihood = data(&[0.0, 1.0], |_| Sd::Known(1.0));
+    let model = |theta: &[f64]| Some(vec![10.0 * (theta[1] - theta[0] * theta[0]), theta[0]]);
+    for max_evaluations in 4..40 {
+        let settings = Settings {
+            starts: 1,
+            max_evaluations,
+            ..Settings::default()
+        };
+        let estimate = fit(&prior, &likelihood, settings, &model);
+        assert!(estimate.evaluations <= max_evaluations as u64);
+        assert_eq!(estimate.stop, Stop::Budget, "{max_evaluations}");
+        // Differences were affordable, so there is an uncertainty.
+        assert!(estimate.sd.iter().all(Option::is_some));
+    }
+}
+
+#[test]
+fn what_fits_no_datum_is_refused_and_changes_nothing() {
+    let likelihood = data(&[1.0, 2.0], |_| Sd::Known(0.1));
+    let mut fit = begin(&[uniform(0.0, 1.0)], &likelihood, Settings::default());
+    assert_eq!(
+        fit.tell(0, Some(&[1.0])),
+        Err(TellError::Length {
+            expected: 2,
+            given: 1
+        })
+    );
+    let refused = fit.tell(0, Some(&[1.0, f64::INFINITY]));
+    assert_eq!(
+        refused,
+        Err(LikelihoodError::Prediction {
+            run: 1,
+            channel: 0,
+            value: f64::INFINITY
+        }
+        .into())
+    );
+    assert!(!fit.is_told(0));
+    assert_eq!(fit.tell(0, None), Ok(Progress::Waiting));
+    assert_eq!(
+        fit.tell(0, None),
+        Err(TellError::AlreadyTold {
+            round: 0,
+            particle: 0
+        })
+    );
+    assert_eq!(
+        fit.tell(9, None),
+        Err(TellError::NotPending {
+            round: 0,
+            particle: 9
+        })
+    );
+}
+
+#[test]
+fn settings_that_cannot_work_are_refused() {
+    let ok = Settings::default();
+    assert_eq!(ok.check(0), Err(SettingsError::NoParameters));
+    assert_eq!(Settings { starts: 0, ..ok }.check(2), Err(SettingsError::NoStart));
+    assert_eq!(
+        Settings {
+            max_evaluations: 13,
+            ..ok
+        }
+        .check(8),
+        Err(SettingsError::TooFewEvaluations {
+            max_evaluations: 13,
+            least: 14,
+            starts: 5,
+            dimension: 8
+        })
+    );
+    assert_eq!(
+        Settings {
+            max_evaluations: 14,
+            ..ok
+        }
+        .check(8),
+        Ok(())
+    );
+    for value in [0.0, -0.1, 0.6, f64::NAN] {
+        assert!(matches!(
+            Settings {
+                difference_step: value,
+                ..ok
+            }
+            .check(2),
+            Err(SettingsError::DifferenceStep { .. })
+        ));
+    }
+}
