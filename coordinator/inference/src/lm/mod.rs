@@ -15,6 +15,9 @@
 //! 2. Differences: the columns of the Jacobian, one parameter moved in each.
 //! 3. Trials: steps of several dampings; the best is taken if it is an improvement, else they grow shorter.
 //!
+//! Before it ends, a fit takes differences to both sides and over longer steps, because noise of the model looks like
+//! information over short ones.
+//!
 //! Noise standard deviations cost no evaluation: given the residuals, each has a one-dimensional problem of its
 //! own, which is solved for every point before points are compared. A bound is a bound of every step, and a
 //! parameter that ends at one is reported so.

@@ -64,29 +64,36 @@ impl Noise {
         let (lower, upper) = self.marginal.support();
         let lower = lower.max(LEAST_SHARE * self.marginal.sd());
         let within = |sd: f64| sd.max(lower).min(upper);
-        let wishes = [within((squares / count).sqrt()), within(self.mode(lower, upper))];
-        let (low, high) = (
-            libm::log(wishes[0].min(wishes[1])),
-            libm::log(wishes[0].max(wishes[1])),
-        );
+        let likely = within((squares / count).sqrt());
+        let usual = within(self.mode(lower, upper));
+        let (least, most) = (likely.min(usual), likely.max(usual));
+        let (low, high) = (libm::log(least), libm::log(most));
         let value = |v: f64| {
             let sd = libm::exp(v);
             count * v + 0.5 * squares / sd / sd - self.marginal.log_density(within(sd))
         };
+        let slope = |v: f64| self.slope(v, count, squares).0;
         let node = |k: u32| low + (high - low) * f64::from(k) / f64::from(CELLS);
         let best = (0..=CELLS).reduce(|a, b| if value(node(b)) < value(node(a)) { b } else { a });
         let best = best.unwrap_or(0);
         let (mut left, mut right) = (node(best.saturating_sub(1)), node((best + 1).min(CELLS)));
         for _ in 0..HALVINGS {
             let middle = 0.5 * (left + right);
-            if self.slope(middle, count, squares).0 > 0.0 {
+            if slope(middle) > 0.0 {
                 right = middle;
             } else {
                 left = middle;
             }
         }
         let v = 0.5 * (left + right);
-        let sd = within(libm::exp(v));
+        // The ends are not rounded through their logarithm, so that a bound is met exactly.
+        let sd = if best == 0 && slope(low) >= 0.0 {
+            least
+        } else if best == CELLS && slope(high) <= 0.0 {
+            most
+        } else {
+            within(libm::exp(v))
+        };
         let curvature = self.slope(v, count, squares).1;
         let at_bound = sd <= lower || sd >= upper;
         Profiled {

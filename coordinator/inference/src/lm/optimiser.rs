@@ -10,6 +10,9 @@ use crate::prior::Prior;
 use crate::rng::Stream;
 use crate::round::{Failure, Progress, Proposal, Round, TellError};
 
+/// A step so much longer is worth another Jacobian.
+const MUCH_LONGER: f64 = 1.5;
+
 /// Predicted values in the order of the data; `None` where the model rejected the parameters.
 type Answer = Option<Vec<f64>>;
 
@@ -30,6 +33,8 @@ pub struct Optimiser {
     stencil: Stencil,
     /// To which sides they were last asked for.
     sides: Sides,
+    /// Their steps along the axes.
+    lengths: Vec<f64>,
     damping: Damping,
     /// The last step gained too little to go on.
     settled: bool,
@@ -67,13 +72,14 @@ impl Optimiser {
         let objective = Objective::new(prior, likelihood);
         let mut optimiser = Self {
             columns: vec![None; objective.axes.len()],
-            stencil: Stencil::new(&[], &[], settings.difference_step),
+            stencil: Stencil::new(&[], &[], &[]),
             objective,
             settings,
             round: Round::default(),
             phase: Phase::Starts,
             best: None,
             sides: Sides::One,
+            lengths: Vec::new(),
             damping: Damping::default(),
             settled: false,
             steps: 0,
@@ -197,22 +203,50 @@ impl Optimiser {
     }
 
     fn go_on_from(&mut self, point: Point, sides: Sides) {
-        let step = self.settings.difference_step;
-        self.stencil = Stencil::new(&self.objective.axes, &point.position, step);
         self.best = Some(point);
         if self.objective.axes.is_empty() {
             // Noise sds alone: they are the most probable ones already.
             self.finish(Stop::Decrease);
-        } else if !self.ask_differences(sides) {
+        } else if !self.differentiate(sides) {
             self.finish(Stop::Budget);
         }
+    }
+
+    /// Begins a Jacobian at the best point; `false` where the budget has no room for it.
+    fn differentiate(&mut self, sides: Sides) -> bool {
+        let Some(point) = &self.best else { return false };
+        let steps = self.difference_steps(point, sides);
+        self.stencil = Stencil::new(&self.objective.axes, &point.position, &steps);
+        self.lengths = steps;
+        self.ask_differences(sides)
+    }
+
+    fn difference_steps(&self, point: &Point, sides: Sides) -> Vec<f64> {
+        let uncertainty = self.objective.quadratic(point, &self.columns).uncertainty();
+        uncertainty
+            .into_iter()
+            .map(|sd| self.settings.difference(sides, sd))
+            .collect()
+    }
+
+    /// Begins a better Jacobian at the best point: to both sides; then over longer steps, for as long as each shows the
+    /// parameters to be less certain than the last. `false` where there is none or the budget has no room for it.
+    ///
+    /// The noise of a model looks like information that it does not have, the more so the shorter the step.
+    fn refine(&mut self) -> bool {
+        let Some(point) = &self.best else { return false };
+        let mut steps = self
+            .difference_steps(point, Sides::Both)
+            .into_iter()
+            .zip(&self.lengths);
+        let better = self.sides == Sides::One || steps.any(|(new, old)| new > MUCH_LONGER * old);
+        better && self.differentiate(Sides::Both)
     }
 
     /// Asks for differences; `false` if nothing is missing or the budget has no room for them and, where the search is
     /// to go on, a trial.
     fn ask_differences(&mut self, sides: Sides) -> bool {
         let Some(point) = &self.best else { return false };
-        self.sides = sides;
         let differences = self.stencil.ask(sides);
         let trial = usize::from(sides == Sides::One);
         if differences.is_empty()
@@ -228,13 +262,14 @@ impl Optimiser {
                 self.objective.theta(point, &position)
             })
             .collect();
+        self.sides = sides;
         self.ask(Phase::Differences, thetas.into_iter());
         true
     }
 
     fn after_differences(&mut self, answers: Vec<Answer>) {
         self.stencil.accept(answers);
-        if self.stencil.is_incomplete() && self.ask_differences(Sides::One) {
+        if self.stencil.is_incomplete() && self.ask_differences(self.sides) {
             return;
         }
         let Some(point) = &self.best else { return };
@@ -251,8 +286,8 @@ impl Optimiser {
             .step(0.0)
             .map_or(f64::INFINITY, |step| parabola.decrease(&step));
         if self.settled || promised <= self.least_decrease(point) {
-            // The last word has differences to both sides; it may hold one more step.
-            if self.sides == Sides::Both || !self.ask_differences(Sides::Both) {
+            // A better Jacobian has the last word; it may hold one more step.
+            if !self.refine() {
                 self.finish(Stop::Decrease);
             }
         } else {
@@ -293,8 +328,8 @@ impl Optimiser {
             .collect();
         if !thetas.is_empty() {
             self.ask(Phase::Trials(trials), thetas.into_iter());
-        } else if self.sides == Sides::One && self.ask_differences(Sides::Both) {
-            // A better Jacobian may yet show the way down.
+        } else if self.refine() {
+            // It may yet show the way down.
             self.damping = Damping::default();
         } else {
             self.finish(Stop::Step);

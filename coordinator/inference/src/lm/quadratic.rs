@@ -87,6 +87,23 @@ impl Quadratic {
         solved.iter().all(|x| x.is_finite()).then_some(solved)
     }
 
+    /// Standard deviation along each axis that the curvature stands for, the others free; `None` for axes that do not
+    /// move, and where the parabola has no least.
+    pub(super) fn uncertainty(&self) -> Vec<Option<f64>> {
+        let moving: Vec<usize> = (0..self.held.len()).filter(|&k| !self.held[k]).collect();
+        let mut uncertainty = vec![None; self.held.len()];
+        let matrix = DMatrix::from_fn(moving.len(), moving.len(), |i, j| {
+            self.hessian[(moving[i], moving[j])]
+        });
+        if let Some(cholesky) = Cholesky::new(matrix) {
+            let inverse = cholesky.inverse();
+            for (i, &k) in moving.iter().enumerate() {
+                uncertainty[k] = Some(inverse[(i, i)].sqrt());
+            }
+        }
+        uncertainty
+    }
+
     /// How far the undamped parabola lies lower at a step.
     pub(super) fn decrease(&self, step: &[f64]) -> f64 {
         let mut decrease = 0.0;

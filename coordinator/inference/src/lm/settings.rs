@@ -1,5 +1,7 @@
 //! Hold the settings of a fit and refuse those that cannot work.
 
+use super::stencil::Sides;
+
 /// Settings of a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -7,14 +9,16 @@ pub struct Settings {
     pub starts: usize,
     /// Most evaluations, all rounds together.
     pub max_evaluations: usize,
-    /// Step of the differences, in units of the prior's width: its standard deviation, or that of a uniform density
-    /// between its bounds where these are closer.
+    /// Shortest step of the differences, in units of the prior's width: its standard deviation, or that of a uniform
+    /// density between its bounds where these are closer.
     ///
     /// A difference over h is wrong by the model's curvature times h/2 and by its noise times 2/h. A model on a grid has
     /// noise of some 0.3 % of a force; over a width of its prior a parameter that matters moves a force by a
-    /// third or more, so 2 % of a width moves it by twice the noise: each datum then says which way is down,
-    /// and a fit has dozens. A much smaller step would differentiate noise, a much larger one blurs a curved
-    /// model; the last Jacobian has differences to both sides, which cancels the curvature.
+    /// third or more, so 2 % of a width moves it by twice the noise: each datum says which way is down, and a
+    /// fit has dozens. Where parameters can stand in for each other that is not enough: there the noise looks
+    /// like information. So once the parabola says how uncertain a parameter is, steps grow to a quarter of that and,
+    /// for the last Jacobian, to all of it, taken to both sides; to at most ten times the setting.
+    /// Checked by `lm::a_model_with_the_noise_of_a_grid_is_fitted_within_its_uncertainty`.
     pub difference_step: f64,
     /// Seed of the prior draws.
     pub seed: u64,
@@ -42,6 +46,11 @@ impl Default for Settings {
 const MOST_EVALUATIONS: usize = 1_000_000;
 /// Longest difference: a step to one side always fits between the bounds.
 const LONGEST_DIFFERENCE: f64 = 0.5;
+
+/// A step grows with the uncertainty to so many times the setting.
+const LONGER: f64 = 10.0;
+/// Steps to one side are so much shorter than the uncertainty, because the model's curvature stays in them.
+const SHARE_TO_ONE_SIDE: f64 = 0.25;
 
 /// Settings that cannot work.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -89,6 +98,18 @@ pub enum SettingsError {
 }
 
 impl Settings {
+    /// Step of a difference in prior widths, along an axis of so much uncertainty in the same unit, if it is known.
+    pub(super) fn difference(&self, sides: Sides, uncertainty: Option<f64>) -> f64 {
+        let share = match sides {
+            Sides::One => SHARE_TO_ONE_SIDE,
+            Sides::Both => 1.0,
+        };
+        let longest = (LONGER * self.difference_step).min(LONGEST_DIFFERENCE);
+        uncertainty.map_or(self.difference_step, |sd| {
+            (share * sd).min(longest).max(self.difference_step)
+        })
+    }
+
     /// Checks the settings for a prior of `dimension` parameters.
     ///
     /// # Errors

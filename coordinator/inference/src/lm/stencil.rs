@@ -32,9 +32,9 @@ struct Differences {
 }
 
 impl Stencil {
-    /// A stencil of `step` widths around a position.
-    pub(super) fn new(axes: &[Axis], position: &[f64], step: f64) -> Self {
-        let differences = |(axis, &t): (&Axis, &f64)| {
+    /// A stencil around a position, with a step for each axis.
+    pub(super) fn new(axes: &[Axis], position: &[f64], steps: &[f64]) -> Self {
+        let differences = |((axis, &t), &step): ((&Axis, &f64), &f64)| {
             let inside = |offset: &f64| (axis.lower..=axis.upper).contains(&(t + offset));
             let untried = [step, -step, SHORTER * step, -SHORTER * step];
             Differences {
@@ -43,7 +43,7 @@ impl Stencil {
             }
         };
         Self {
-            axes: axes.iter().zip(position).map(differences).collect(),
+            axes: axes.iter().zip(position).zip(steps).map(differences).collect(),
             asked: Vec::new(),
         }
     }
