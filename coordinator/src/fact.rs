@@ -1,5 +1,6 @@
 //! What the store is told: facts, in the order in which they came about.
 
+use inference::lm::Estimate;
 use inference::{Posterior, StageRecord};
 use shared::api::CalibrationState;
 use shared::outcome::Observables;
@@ -40,6 +41,13 @@ pub enum Fact {
         calibration: i64,
         /// Evidence and counts; the draws are the last stage's population.
         posterior: Box<Posterior>,
+    },
+    /// The fit ended.
+    Estimate {
+        /// The calibration.
+        calibration: i64,
+        /// The most probable parameters.
+        estimate: Box<Estimate>,
     },
     /// A calibration changed its state.
     State {

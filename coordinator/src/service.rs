@@ -11,7 +11,7 @@ use shared::file::{FileError, FileSet};
 use crate::calibration::{Calibration, Identity};
 use crate::farm::dispatch::{Dispatcher, Stopped};
 use crate::farm::{Control, ControlError, Farm};
-use crate::spec::{Job, Spec};
+use crate::spec::{Job, Method, MethodError, Spec};
 use crate::store::{CalibrationRow, NewCalibrationRow, Store, StoreError};
 
 /// A lease lasts so long without renewal `[ms]`.
@@ -25,9 +25,9 @@ pub enum ServiceError {
     /// A file is malformed.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The sampler's settings do not fit the prior.
+    /// The settings do not fit the prior.
     #[error("[sampler] {0}")]
-    Settings(#[from] inference::SettingsError),
+    Settings(#[from] MethodError),
     /// No such thing.
     #[error("there is no {what} {id}")]
     NotFound {
@@ -107,7 +107,6 @@ impl Service {
         let reader = self.store.reader();
         for id in reader.unfinished().await? {
             let row = self.calibration_row(id).await?;
-            let stored = reader.stored(id).await?;
             // One calibration that this version cannot take up must not keep the others waiting.
             let spec = match self.spec_of(&row).await {
                 Ok(spec) => Arc::new(spec),
@@ -116,6 +115,8 @@ impl Service {
                     continue;
                 }
             };
+            let fitted = matches!(spec.method, Method::Fit(_));
+            let stored = reader.stored(id, fitted).await?;
             let evaluations = stored.evaluations.len();
             let identity = Identity {
                 id,

@@ -133,13 +133,15 @@ pub struct CalibrationStatus {
 /// How far a calibration has come.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Progress {
-    /// The present stage; 0 draws from the prior.
+    /// The algorithm, as the job names it.
+    pub algorithm: String,
+    /// The present stage; 0 draws from the prior. Of a fit: the steps taken so far.
     pub stage: u32,
-    /// The present tempering exponent.
+    /// The present tempering exponent; of a fit 1, the whole likelihood.
     pub tempering_exponent: f64,
-    /// Metropolis-Hastings step within the stage.
+    /// Metropolis-Hastings step within the stage; of a fit 0.
     pub step: u32,
-    /// Acceptance rate of the present stage.
+    /// Acceptance rate of the present stage; of a fit 0.
     pub acceptance: f64,
     /// Evaluations done, over all stages.
     pub evaluations: u64,

@@ -9,4 +9,5 @@ mod end_to_end;
 mod forward;
 mod leases;
 mod mesh;
+mod point_fit;
 mod summary_contract;

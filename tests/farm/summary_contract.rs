@@ -153,6 +153,20 @@ fn complaints(summary: &Value) -> Vec<String> {
     for calibration in summary["calibrations"].as_array().into_iter().flatten() {
         complaints.calibration(calibration);
     }
+    for estimate in summary["point_estimates"].as_array().into_iter().flatten() {
+        for (key, kind) in [
+            ("algorithm", Text),
+            ("parameters", Table),
+            ("log_posterior", Number),
+            ("error", Table),
+            ("evaluations", Count),
+        ] {
+            complaints.need(estimate, key, kind, true);
+        }
+        for part in ["fit", "holdout"] {
+            complaints.errors(&estimate["error"][part], &format!("error.{part}"));
+        }
+    }
     for flag in summary["flags"].as_array().into_iter().flatten() {
         complaints.one_of(flag, "kind", &FLAGS);
         complaints.need(flag, "text", Text, false);
@@ -234,6 +248,25 @@ fn a_summary_without_holdout_rows_and_with_unknown_noise_keeps_the_contract() {
             .as_f64()
             .is_some_and(|sd| sd > 0.0),
         "{calibration}"
+    );
+}
+
+#[test]
+fn a_summary_of_a_fit_keeps_the_contract_and_its_point_stands_apart() {
+    let job = super::point_fit::fit().in_experiment("torque_n_m = 0.15", "torque_n_m = \"unknown\"");
+    let summary = summary(&job);
+    assert_eq!(complaints(&summary), Vec::<String>::new());
+    assert_eq!(summary["calibrations"], serde_json::json!([]));
+    assert_eq!(summary["point_estimates"].as_array().map(Vec::len), Some(1));
+    let estimate = &summary["point_estimates"][0];
+    assert_eq!(estimate["algorithm"], "lm");
+    assert_eq!(estimate["error"]["fit"]["torque"]["runs"], 24);
+    assert_eq!(estimate["error"]["holdout"]["sinkage"]["runs"], 16);
+    assert_eq!(estimate["baseline"]["name"], "interpolation");
+    let sd = &estimate["sd"]["noise.torque_n_m"];
+    assert!(
+        estimate["parameters"]["noise.torque_n_m"].is_number() && sd.is_number(),
+        "{estimate}"
     );
 }
 

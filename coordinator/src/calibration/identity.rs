@@ -1,15 +1,17 @@
 //! The number that names an evaluation for ever.
 
 /// Numbers from here on are final draws: the fitted runs of draw k are number 2k, its holdout runs 2k + 1.
-/// Below, they are the sampler's.
+/// Below, they are the sampler's or the fit's.
 pub const PREDICTIONS_FROM: u64 = 1 << 40;
 
 /// What an evaluation is for. Its number depends on the job alone, so it is the same after a restart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EvaluationKey {
-    /// A proposal of the sampler: number = round x particles + particle.
+    /// A proposal of the sampler or the fit: number = round x width + particle, the width of [`Method::width`].
+    ///
+    /// [`Method::width`]: crate::spec::Method::width
     Sampling {
-        /// The sampler's round, counted from 0.
+        /// The round, counted from 0.
         round: u64,
         /// The particle.
         particle: usize,
@@ -25,10 +27,10 @@ pub enum EvaluationKey {
 }
 
 impl EvaluationKey {
-    /// The number of this evaluation in a calibration of so many particles.
-    pub fn number(self, particles: usize) -> u64 {
+    /// The number of this evaluation in a calibration of so wide rounds.
+    pub fn number(self, width: usize) -> u64 {
         match self {
-            EvaluationKey::Sampling { round, particle } => round * particles as u64 + particle as u64,
+            EvaluationKey::Sampling { round, particle } => round * width as u64 + particle as u64,
             EvaluationKey::Prediction { draw, holdout } => {
                 PREDICTIONS_FROM + 2 * draw as u64 + u64::from(holdout)
             }
@@ -36,15 +38,15 @@ impl EvaluationKey {
     }
 
     /// The evaluation of a number.
-    pub fn of(number: u64, particles: usize) -> Self {
+    pub fn of(number: u64, width: usize) -> Self {
         match number.checked_sub(PREDICTIONS_FROM) {
             Some(k) => EvaluationKey::Prediction {
                 draw: (k / 2) as usize,
                 holdout: k % 2 == 1,
             },
             None => EvaluationKey::Sampling {
-                round: number / particles as u64,
-                particle: (number % particles as u64) as usize,
+                round: number / width as u64,
+                particle: (number % width as u64) as usize,
             },
         }
     }

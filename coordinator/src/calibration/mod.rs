@@ -1,15 +1,16 @@
-//! A calibration in progress: the one place where sampler, likelihood and leases meet.
+//! A calibration in progress: the one place where sampler or fit, likelihood and leases meet.
 //!
 //! Pure: it is told outcomes and answers with facts to store. The same [`Calibration::complete`] serves a
 //! living worker and a replay from the store, so a restart cannot take another path.
 
+mod engine;
 mod identity;
 mod replay;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use inference::{LogLikelihood, Posterior, Sampler};
+use inference::{LogLikelihood, Posterior};
 use shared::api::CalibrationState;
 use shared::channel::Channel;
 use shared::model::ModelVariant;
@@ -17,8 +18,10 @@ use shared::outcome::{Observables, Outcome};
 
 use crate::fact::{EvaluationRow, Fact, Fingerprint, Kept};
 use crate::lease::{Completion, Queue};
-use crate::spec::Spec;
+use crate::spec::{MethodError, Spec};
 
+use engine::Scored;
+pub use engine::{Engine, Finding};
 pub use identity::{EvaluationKey, PREDICTIONS_FROM};
 pub use replay::{ReplayError, Stored, StoredEvaluation};
 
@@ -56,7 +59,7 @@ pub struct Calibration {
     pub evaluations: u64,
     /// Of these, refused by the model.
     pub rejected: u64,
-    sampler: Sampler,
+    engine: Engine,
     fit_hash: String,
     holdout_hash: Option<String>,
     /// The final draws, to simulate on fitted and holdout runs; `None` while sampling.
@@ -84,9 +87,9 @@ impl Calibration {
     /// A fresh calibration; its first evaluations are draws from the prior.
     ///
     /// # Errors
-    /// The sampler's settings do not fit the prior.
-    pub fn new(identity: Identity, spec: Arc<Spec>) -> Result<Self, inference::SettingsError> {
-        let sampler = Sampler::new(spec.prior(), spec.sampler)?;
+    /// The settings do not fit the prior.
+    pub fn new(identity: Identity, spec: Arc<Spec>) -> Result<Self, MethodError> {
+        let engine = Engine::new(spec.prior(), &spec.likelihood, spec.method)?;
         let mut calibration = Calibration {
             identity,
             fit_hash: spec.fit_variant.hash(),
@@ -99,7 +102,7 @@ impl Calibration {
             busy_ms: 0,
             evaluations: 0,
             rejected: 0,
-            sampler,
+            engine,
             draws: None,
             done: BTreeSet::new(),
             failed: BTreeMap::new(),
@@ -108,9 +111,9 @@ impl Calibration {
         Ok(calibration)
     }
 
-    /// The sampler, for progress.
-    pub fn sampler(&self) -> &Sampler {
-        &self.sampler
+    /// What asks for evaluations, for progress.
+    pub fn engine(&self) -> &Engine {
+        &self.engine
     }
 
     /// Whether evaluations may be leased.
@@ -131,7 +134,7 @@ impl Calibration {
 
     /// Whether an evaluation is of the holdout runs.
     fn is_holdout(&self, evaluation: u64) -> bool {
-        let key = EvaluationKey::of(evaluation, self.spec.sampler.particles);
+        let key = EvaluationKey::of(evaluation, self.spec.method.width());
         matches!(key, EvaluationKey::Prediction { holdout: true, .. })
     }
 
@@ -147,23 +150,23 @@ impl Calibration {
     /// The whole parameter vector of an evaluation that is asked for at present.
     fn theta(&self, evaluation: u64) -> Option<&[f64]> {
         match (
-            EvaluationKey::of(evaluation, self.spec.sampler.particles),
+            EvaluationKey::of(evaluation, self.spec.method.width()),
             &self.draws,
         ) {
             (EvaluationKey::Prediction { draw, .. }, Some(draws)) => draws.get(draw).map(Vec::as_slice),
-            (EvaluationKey::Sampling { round, particle }, None) if round == self.sampler.round() => self
-                .sampler
+            (EvaluationKey::Sampling { round, particle }, None) if round == self.engine.round() => self
+                .engine
                 .pending()
                 .binary_search_by_key(&particle, |p| p.particle)
                 .ok()
-                .map(|i| self.sampler.pending()[i].theta.as_slice()),
+                .map(|i| self.engine.pending()[i].theta.as_slice()),
             _ => None,
         }
     }
 
     /// Asks for the evaluations of the present round.
     fn ask(&mut self) {
-        let particles = self.spec.sampler.particles;
+        let particles = self.spec.method.width();
         self.done.clear();
         let failed = |evaluation| self.failed.get(&evaluation).copied().unwrap_or(0);
         match &self.draws {
@@ -176,8 +179,8 @@ impl Calibration {
                 self.queue.ask(keys, failed);
             }
             None => {
-                let round = self.sampler.round();
-                let keys = self.sampler.pending().iter().map(|p| {
+                let round = self.engine.round();
+                let keys = self.engine.pending().iter().map(|p| {
                     EvaluationKey::Sampling {
                         round,
                         particle: p.particle,
@@ -252,6 +255,16 @@ impl Calibration {
         let rejected = outcome.is_err();
         let fingerprint = Fingerprint::of(&outcome);
         let kept = self.kept(outcome);
+        let fitted = match &kept {
+            Kept::Fitted(values) => Some(values.as_slice()),
+            Kept::Whole(_) | Kept::Refused(_) => None,
+        };
+        let scored = scored.map(|log_likelihood| Scored {
+            log_likelihood,
+            fitted,
+        });
+        let mut consequences = Vec::new();
+        self.record(evaluation, rejected, scored, &mut consequences);
         let row = EvaluationRow {
             evaluation,
             theta,
@@ -264,7 +277,7 @@ impl Calibration {
             calibration: self.identity.id,
             row,
         }];
-        self.record(evaluation, rejected, scored, &mut facts);
+        facts.append(&mut consequences);
         Ok((facts, true))
     }
 
@@ -283,31 +296,25 @@ impl Calibration {
             .log_likelihood(|run, channel| channels[channel][run], theta)
     }
 
-    /// Lets a completed evaluation take effect on counts, sampler and phase.
-    fn record(
-        &mut self,
-        evaluation: u64,
-        rejected: bool,
-        scored: Option<LogLikelihood>,
-        facts: &mut Vec<Fact>,
-    ) {
+    /// Lets a completed evaluation take effect on counts, engine and phase.
+    fn record(&mut self, evaluation: u64, rejected: bool, scored: Option<Scored>, facts: &mut Vec<Fact>) {
         self.evaluations += 1;
         self.rejected += u64::from(rejected);
         self.done.insert(evaluation);
-        let Some(value) = scored else {
+        let Some(scored) = scored else {
             if self.done.len() == self.queue.len() {
                 self.finish(CalibrationState::Finished, None, facts);
             }
             return;
         };
         let EvaluationKey::Sampling { particle, .. } =
-            EvaluationKey::of(evaluation, self.spec.sampler.particles)
+            EvaluationKey::of(evaluation, self.spec.method.width())
         else {
             return;
         };
-        let stages = self.sampler.stages().len();
-        let progress = self.sampler.tell(particle, value);
-        for record in &self.sampler.stages()[stages..] {
+        let stages = self.engine.stages().len();
+        let progress = self.engine.tell(particle, scored);
+        for record in &self.engine.stages()[stages..] {
             facts.push(Fact::Stage {
                 calibration: self.identity.id,
                 record: Box::new(record.clone()),
@@ -318,12 +325,23 @@ impl Calibration {
             Ok(inference::Progress::Waiting) => {}
             Ok(inference::Progress::NextRound | inference::Progress::StageFinished) => self.ask(),
             Ok(inference::Progress::Finished) => {
-                if let Some(posterior) = self.sampler.posterior() {
-                    facts.push(Fact::Posterior {
-                        calibration: self.identity.id,
-                        posterior: Box::new(posterior.clone()),
-                    });
-                    self.draws = Some(final_draws(posterior));
+                let calibration = self.identity.id;
+                match self.engine.finding() {
+                    Some(Finding::Posterior(posterior)) => {
+                        self.draws = Some(final_draws(posterior));
+                        facts.push(Fact::Posterior {
+                            calibration,
+                            posterior: Box::new(posterior.clone()),
+                        });
+                    }
+                    Some(Finding::Estimate(estimate)) => {
+                        self.draws = Some(vec![estimate.theta.clone()]);
+                        facts.push(Fact::Estimate {
+                            calibration,
+                            estimate: Box::new(estimate.clone()),
+                        });
+                    }
+                    None => {}
                 }
                 self.ask();
             }

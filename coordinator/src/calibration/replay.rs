@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use inference::LogLikelihood;
 use shared::api::CalibrationState;
 
-use super::Calibration;
+use super::{Calibration, Scored};
 use crate::fact::Fact;
 
 /// What the store kept of a calibration that is not over.
@@ -34,12 +34,14 @@ pub struct StoredEvaluation {
     pub log_likelihood: Option<f64>,
     /// Whether the model refused.
     pub rejected: bool,
+    /// The model's values of the fitted measurements; read back for a fit alone, which is told them.
+    pub fitted: Option<Vec<f64>>,
 }
 
 /// Why a stored calibration cannot go on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ReplayError {
-    /// The parameter vector that the sampler proposes differs from the stored one.
+    /// The proposed parameter vector differs from the stored one.
     #[error(
         "evaluation {evaluation} was stored at {stored:?}, but this version proposes {proposed:?}: the stored calibration was begun by another version of the sampler"
     )]
@@ -48,7 +50,7 @@ pub enum ReplayError {
         evaluation: u64,
         /// What the store has.
         stored: Vec<f64>,
-        /// What the sampler proposes.
+        /// What is proposed.
         proposed: Vec<f64>,
     },
     /// The stored log-likelihood is no number.
@@ -65,7 +67,7 @@ impl Calibration {
     /// Returns facts that may have been lost between the last evaluation and its consequences.
     ///
     /// # Errors
-    /// [`ReplayError`] where the store and the sampler disagree.
+    /// [`ReplayError`] where the store and what is proposed disagree.
     pub fn replay(&mut self, stored: Stored) -> Result<Vec<Fact>, ReplayError> {
         self.model_version = stored.model_version;
         self.busy_ms = stored.busy_ms;
@@ -73,13 +75,13 @@ impl Calibration {
         self.ask();
         let mut facts = Vec::new();
         loop {
-            let (round, drawing) = (self.sampler.round(), self.draws.is_some());
+            let (round, drawing) = (self.engine.round(), self.draws.is_some());
             for evaluation in self.queue.asked() {
                 if let Some(row) = stored.evaluations.get(&evaluation) {
                     self.tell_again(evaluation, row, &mut facts)?;
                 }
             }
-            let moved = self.sampler.round() != round || self.draws.is_some() != drawing;
+            let moved = self.engine.round() != round || self.draws.is_some() != drawing;
             if !moved || self.state.is_final() {
                 break;
             }
@@ -122,6 +124,10 @@ impl Calibration {
             }
         };
         self.queue.complete(evaluation);
+        let scored = scored.map(|log_likelihood| Scored {
+            log_likelihood,
+            fitted: stored.fitted.as_deref(),
+        });
         self.record(evaluation, stored.rejected, scored, facts);
         Ok(())
     }
@@ -143,12 +149,22 @@ mod tests {
     const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 0.05\n";
     const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\na,w,s,0.2,100,0.008,5.0,fit\nb,w,s,0.4,100,0.008,5.1,holdout\n";
 
+    const FIT: &str = "algorithm = \"lm\"\nstarts = 3\nmax_evaluations = 60\n";
+
     fn fresh() -> Calibration {
+        calibration(JOB)
+    }
+
+    fn fresh_fit() -> Calibration {
+        calibration(&JOB.replace("particles = 20\nmoves = [2, 4]\n", FIT))
+    }
+
+    fn calibration(job: &str) -> Calibration {
         let files = FileSet {
             toml: EXPERIMENT.into(),
             files: [("runs.csv".into(), RUNS.into())].into(),
         };
-        let spec = Spec::new("job.toml", JOB, "experiment.toml", &files).unwrap();
+        let spec = Spec::new("job.toml", job, "experiment.toml", &files).unwrap();
         let identity = Identity {
             id: 1,
             name: "toy".into(),
@@ -224,6 +240,10 @@ mod tests {
                     theta: row.theta.clone(),
                     log_likelihood: row.log_likelihood,
                     rejected: matches!(row.kept, Kept::Refused(_)),
+                    fitted: match &row.kept {
+                        Kept::Fitted(values) => Some(values.clone()),
+                        _ => None,
+                    },
                 };
                 (row.evaluation, evaluation)
             })
@@ -260,6 +280,35 @@ mod tests {
             all.extend(work(&mut again, usize::MAX, true));
             assert_eq!(sorted(&all), whole, "cut after {cut}");
             assert_eq!(again.state, CalibrationState::Finished);
+        }
+    }
+
+    #[test]
+    fn a_fit_is_told_again_from_its_stored_values_and_ends_with_the_same_estimate() {
+        let estimates = |facts: &[Fact]| -> Vec<String> {
+            let estimate = |f: &Fact| match f {
+                Fact::Estimate { estimate, .. } => Some(format!("{estimate:?}")),
+                _ => None,
+            };
+            facts.iter().filter_map(estimate).collect()
+        };
+        let first = work(&mut fresh_fit(), usize::MAX, false);
+        let whole = sorted(&first);
+        assert_eq!(estimates(&first).len(), 1);
+        // The fitted runs of the estimate and its holdout runs come last.
+        let sampled = whole.iter().filter(|r| r.evaluation < PREDICTIONS_FROM).count();
+        assert_eq!(whole.len(), sampled + 2);
+        assert!(sampled <= 60);
+        for cut in 1..whole.len() {
+            let begun = work(&mut fresh_fit(), cut, true);
+            let mut again = fresh_fit();
+            let lost = again.replay(stored(&begun)).unwrap();
+            assert_eq!(again.evaluations, cut as u64);
+            let rest = work(&mut again, usize::MAX, false);
+            let all: Vec<Fact> = begun.iter().chain(&rest).cloned().collect();
+            assert_eq!(sorted(&all), whole, "cut after {cut}");
+            let told: Vec<String> = [lost, rest].iter().flat_map(|f| estimates(f)).collect();
+            assert_eq!(told, estimates(&first), "cut after {cut}");
         }
     }
 

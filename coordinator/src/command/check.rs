@@ -8,9 +8,10 @@ use shared::outcome::Outcome as Evaluated;
 
 use super::job;
 use super::output::say;
-use crate::calibration::{Calibration, Identity, result_of};
+use crate::calibration::{Calibration, Engine, Identity, result_of};
 use crate::embedded::Evaluate;
 use crate::result::terminal;
+use crate::spec::Method;
 
 /// Particles of the pilot: enough to find the number of stages, which hardly depends on them.
 const PILOT_PARTICLES: usize = 100;
@@ -24,22 +25,33 @@ pub(super) async fn check(path: &Path) -> anyhow::Result<()> {
         text += &format!("note: {note}\n");
     }
     say(&text)?;
-    let particles = job.spec.sampler.particles;
+    let method = job.spec.method;
     let pilot = tokio::task::spawn_blocking(move || pilot(job.spec)).await??;
-    let evaluations = pilot.evaluations as f64 * particles as f64 / pilot.particles as f64;
+    let evaluations = pilot.expected(method);
     let simulations = evaluations * pilot.runs as f64;
     let core_s = evaluations * pilot.seconds_per_evaluation;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let mut text = String::new();
-    text += &format!(
-        "\nA pilot of {} particles took {} evaluations.\n",
-        pilot.particles, pilot.evaluations
-    );
+    text += &match pilot.method {
+        Method::Sample(s) => {
+            format!(
+                "\nA pilot of {} particles took {} evaluations.\n",
+                s.particles, pilot.evaluations
+            )
+        }
+        Method::Fit(_) => format!("\nThe fit itself took {} evaluations.\n", pilot.evaluations),
+    };
     if !pilot.complete {
-        text += &format!(
-            "It was stopped at tempering exponent {:.2e}: what follows is a lower bound.\n",
-            pilot.exponent
-        );
+        text += &match pilot.method {
+            Method::Sample(_) => format!(
+                "It was stopped at tempering exponent {:.2e}: what follows is a lower bound.\n",
+                pilot.exponent
+            ),
+            Method::Fit(s) => format!(
+                "It was stopped before its end: what follows is its budget of {} evaluations.\n",
+                s.max_evaluations
+            ),
+        };
     }
     text += &format!(
         "expected evaluations   {evaluations:>12.0}   (one = {} runs)\n",
@@ -62,7 +74,8 @@ pub(super) async fn check(path: &Path) -> anyhow::Result<()> {
 }
 
 struct Pilot {
-    particles: usize,
+    /// What ran: a smaller sampler, or the fit itself.
+    method: Method,
     evaluations: u64,
     runs: usize,
     seconds_per_evaluation: f64,
@@ -71,13 +84,26 @@ struct Pilot {
     complete: bool,
 }
 
-/// The same calibration in small, in memory.
+impl Pilot {
+    /// Evaluations that the whole job will take: stages hardly depend on the particles; a fit is what it is.
+    fn expected(&self, method: Method) -> f64 {
+        match (method, self.method) {
+            (Method::Sample(whole), Method::Sample(small)) => {
+                self.evaluations as f64 * whole.particles as f64 / small.particles as f64
+            }
+            (Method::Fit(whole), _) if !self.complete => whole.max_evaluations as f64,
+            _ => self.evaluations as f64,
+        }
+    }
+}
+
+/// The same calibration in memory, a sampler in small.
 fn pilot(mut spec: crate::spec::Spec) -> anyhow::Result<Pilot> {
-    spec.sampler.particles = spec
-        .sampler
-        .particles
-        .min(PILOT_PARTICLES.max(2 * spec.parameters.len() + 2));
-    let particles = spec.sampler.particles;
+    let least = PILOT_PARTICLES.max(2 * spec.parameters.len() + 2);
+    if let Method::Sample(settings) = &mut spec.method {
+        settings.particles = settings.particles.min(least);
+    }
+    let method = spec.method;
     let runs = spec.fit_runs.len();
     let model = Evaluate::new(&spec.fit_variant).map_err(anyhow::Error::msg)?;
     let identity = Identity {
@@ -89,7 +115,7 @@ fn pilot(mut spec: crate::spec::Spec) -> anyhow::Result<Pilot> {
     let mut calibration = Calibration::new(identity, Arc::new(spec))?;
     let began = Instant::now();
     let mut simulated_s = 0.0;
-    while calibration.sampler().posterior().is_none() && !calibration.state.is_final() {
+    while calibration.engine().finding().is_none() && !calibration.state.is_final() {
         if began.elapsed().as_secs_f64() > PILOT_S {
             break;
         }
@@ -109,12 +135,15 @@ fn pilot(mut spec: crate::spec::Spec) -> anyhow::Result<Pilot> {
     }
     let evaluations = calibration.evaluations.max(1);
     Ok(Pilot {
-        particles,
+        method,
         evaluations,
         runs,
         seconds_per_evaluation: simulated_s / evaluations as f64,
         rejected_share: calibration.rejected as f64 / evaluations as f64,
-        exponent: calibration.sampler().current().tempering_exponent,
-        complete: calibration.sampler().posterior().is_some(),
+        exponent: match calibration.engine() {
+            Engine::Sampler(sampler) => sampler.current().tempering_exponent,
+            Engine::Fit(_) => 1.0,
+        },
+        complete: calibration.engine().finding().is_some(),
     })
 }

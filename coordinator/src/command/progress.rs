@@ -34,10 +34,17 @@ impl Display {
             Some(s) => format!("about {s:.0} s to go"),
             None => "time to go unknown yet".into(),
         };
-        let message = format!(
-            "stage {} exponent {:.3e} step {} acceptance {:.2} | {} evaluations, {:.0}/s | {time}",
-            p.stage, p.tempering_exponent, p.step, p.acceptance, p.evaluations, p.evaluations_per_s
-        );
+        let message = if p.algorithm == "lm" {
+            format!(
+                "{} steps taken | {} evaluations, {:.0}/s",
+                p.stage, p.evaluations, p.evaluations_per_s
+            )
+        } else {
+            format!(
+                "stage {} exponent {:.3e} step {} acceptance {:.2} | {} evaluations, {:.0}/s | {time}",
+                p.stage, p.tempering_exponent, p.step, p.acceptance, p.evaluations, p.evaluations_per_s
+            )
+        };
         match &self.bar {
             Some(bar) => {
                 bar.set_length(p.step_size.max(1));

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use shared::api::{CalibrationStatus, Progress};
 
-use crate::calibration::Calibration;
+use crate::calibration::{Calibration, Engine};
 
 /// The pace is an average over so much of the past `[ms]`.
 const WINDOW_MS: u64 = 10_000;
@@ -43,7 +43,13 @@ impl Pace {
 /// Where a calibration stands.
 pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> CalibrationStatus {
     let identity = &calibration.identity;
-    let current = calibration.sampler().current();
+    let (stage, tempering_exponent, step, acceptance) = match calibration.engine() {
+        Engine::Sampler(sampler) => {
+            let now = sampler.current();
+            (now.stage, now.tempering_exponent, now.step, now.acceptance)
+        }
+        Engine::Fit(fit) => (fit.current().steps, 1.0, 0, None),
+    };
     let queue = &calibration.queue;
     let per_second = pace.per_second(calibration.evaluations, now_ms);
     CalibrationStatus {
@@ -56,10 +62,11 @@ pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> Cal
         model_kind: Some(calibration.spec.model.kind.name().to_owned()),
         model_version: calibration.model_version.clone(),
         progress: Some(Progress {
-            stage: current.stage as u32,
-            tempering_exponent: current.tempering_exponent,
-            step: current.step as u32,
-            acceptance: current.acceptance.unwrap_or(0.0),
+            algorithm: calibration.spec.method.name().to_owned(),
+            stage: stage as u32,
+            tempering_exponent,
+            step: step as u32,
+            acceptance: acceptance.unwrap_or(0.0),
             evaluations: calibration.evaluations,
             rejected: calibration.rejected,
             step_done: (queue.len() - queue.unleased() - queue.leased()) as u64,
@@ -74,7 +81,7 @@ pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> Cal
 /// growth so far; each is taken to cost as much as the mean of the stages behind.
 fn remaining_s(calibration: &Calibration, per_second: f64) -> Option<f64> {
     let exponents: Vec<f64> = calibration
-        .sampler()
+        .engine()
         .stages()
         .iter()
         .map(|s| s.tempering_exponent)

@@ -7,7 +7,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{HttpError, Id};
-use crate::result::{CalibrationSummary, Outcome};
+use crate::result::{CalibrationSummary, Outcome, PointEstimate};
 use crate::service::Service;
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -32,6 +32,7 @@ struct Ledger {
     experiment: i64,
     calibrations: Vec<i64>,
     ledger: Vec<CalibrationSummary>,
+    point_estimates: Vec<PointEstimate>,
 }
 
 /// Every study, oldest first.
@@ -57,11 +58,13 @@ async fn ledger(State(service): State<Service>, Id(id): Id) -> Result<Json<Ledge
         .into_iter()
         .find(|study| study.0 == id)
         .ok_or_else(|| HttpError::new(ErrorKind::NotFound, format!("there is no study {id}")))?;
-    let mut ledger = Vec::new();
+    let (mut ledger, mut point_estimates) = (Vec::new(), Vec::new());
     for &calibration in &calibrations {
         let row = service.calibration_row(calibration).await?;
         if row.state == CalibrationState::Finished {
-            ledger.push(Outcome::load(&reader, &row).await?.calibration_summary());
+            let outcome = Outcome::load(&reader, &row).await?;
+            ledger.extend(outcome.calibration_summary());
+            point_estimates.extend(outcome.point_estimates());
         }
     }
     Ok(Json(Ledger {
@@ -69,6 +72,7 @@ async fn ledger(State(service): State<Service>, Id(id): Id) -> Result<Json<Ledge
         experiment,
         calibrations,
         ledger,
+        point_estimates,
     }))
 }
 

@@ -45,13 +45,13 @@ pub struct ComparisonRow {
     pub unit: String,
     /// Measured.
     pub measured: f64,
-    /// Posterior mean of the model; `None` where every draw was refused.
+    /// Posterior mean of the model, or its value at the point that a fit found; `None` where every draw was refused.
     pub predicted: Option<f64>,
-    /// 5 % quantile of a new measurement.
+    /// 5 % quantile of a new measurement; `None` of a fit, which has no distribution.
     pub q05: Option<f64>,
     /// 95 % quantile of a new measurement.
     pub q95: Option<f64>,
-    /// Noise standard deviation: declared, or its posterior mean.
+    /// Noise standard deviation: declared, its posterior mean, or fitted.
     pub noise_sd: Option<f64>,
     /// (measured - predicted) / noise sd.
     pub residual_sigma: Option<f64>,
@@ -90,8 +90,8 @@ impl Outcome {
                     unit: channel.unit().into(),
                     measured,
                     predicted: p.map(|p| p.mean),
-                    q05: p.map(|p| p.q05),
-                    q95: p.map(|p| p.q95),
+                    q05: p.and_then(|p| p.interval).map(|[q05, _]| q05),
+                    q95: p.and_then(|p| p.interval).map(|[_, q95]| q95),
                     noise_sd: p.and_then(|p| p.noise_sd),
                     residual_sigma: p.and_then(|p| p.noise_sd.map(|sd| (measured - p.mean) / sd)),
                     interpolated: if holdout {

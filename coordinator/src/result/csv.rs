@@ -7,7 +7,7 @@ use super::Outcome;
 pub struct PosteriorTable {
     /// `log_likelihood`, `log_prior`, then the parameters.
     pub columns: Vec<String>,
-    /// One row for each draw.
+    /// One row for each draw; none of a fit, whose point is no draw.
     pub rows: Vec<Vec<f64>>,
 }
 

@@ -1,5 +1,7 @@
 //! What deserves attention, each with a sentence a test engineer understands.
 
+use inference::lm::Stop;
+
 use super::Outcome;
 use super::summary::ParameterSummary;
 
@@ -65,6 +67,28 @@ impl Outcome {
                     parameter.sd
                 );
                 flag("no_information", text);
+            }
+        }
+        if let Some(estimate) = &self.estimate {
+            if estimate.stop == Stop::Budget {
+                let text = "the fit spent its budget before it settled: a better point may be near, and the standard deviations are rough; allow more max_evaluations".into();
+                flag("not_equilibrated", text);
+            }
+            for p in estimate.fitted(&self.spec.parameters) {
+                let (name, prior_sd) = (&p.free.name, p.free.marginal.sd());
+                if p.at_bound {
+                    let text = format!(
+                        "{name} lies at a bound of its prior, {:.4} {}: the data ask for a value that the prior excludes, or an effect is missing",
+                        p.value, p.free.unit
+                    );
+                    flag("bound", text);
+                } else if p.sd.is_none_or(|sd| sd > NO_CONTRACTION * prior_sd) {
+                    let sd = p.sd.map_or("unbounded".into(), |sd| format!("{sd:.3e}"));
+                    let text = format!(
+                        "the data say nothing about {name}: its standard deviation is {sd} after the fit and {prior_sd:.3e} before"
+                    );
+                    flag("no_information", text);
+                }
             }
         }
         let (evaluations, rejected) = (self.row.evaluations.unwrap_or(0), self.row.rejected.unwrap_or(0));

@@ -8,6 +8,7 @@ mod coverage;
 mod csv;
 mod errors;
 mod flags;
+mod point_estimate;
 mod predictive;
 pub mod report;
 mod summary;
@@ -18,13 +19,14 @@ use std::collections::BTreeMap;
 use shared::api::{CalibrationState, CalibrationStatus};
 
 use crate::service::ServiceError;
-use crate::spec::Spec;
-use crate::store::{CalibrationRow, Prediction, Reader, Sample, StageRow};
+use crate::spec::{Method, Spec};
+use crate::store::{CalibrationRow, EstimateRow, Prediction, Reader, Sample, StageRow};
 
 pub use comparison::{Comparison, ComparisonRow};
 pub use csv::PosteriorTable;
 pub use errors::{ChannelError, ErrorTable};
 pub use flags::Flag;
+pub use point_estimate::PointEstimate;
 pub use predictive::Predictive;
 pub use summary::{CalibrationSummary, ParameterSummary, Summary};
 
@@ -39,9 +41,11 @@ pub struct Outcome {
     pub experiment: String,
     /// Its stages.
     pub stages: Vec<StageRow>,
-    /// The equally weighted draws of the posterior.
+    /// What a fit found; `None` where the posterior was sampled.
+    pub estimate: Option<EstimateRow>,
+    /// The equally weighted draws of the posterior; none of a fit.
     pub posterior: Vec<Sample>,
-    /// The final draws, simulated on every run; the first is the most probable particle.
+    /// The final draws, simulated on every run; the first is the most probable particle, of a fit the only one.
     pub predictions: Vec<Prediction>,
     /// How often the model refused, by kind.
     pub rejections: BTreeMap<String, u64>,
@@ -61,8 +65,14 @@ impl Outcome {
             .into());
         }
         let stages = reader.stages(row.id).await?;
+        let spec = spec_of(reader, row).await?;
+        let estimate = match spec.method {
+            Method::Sample(_) => None,
+            Method::Fit(_) => reader.estimate(row.id).await?,
+        };
         Ok(Outcome {
-            spec: spec_of(reader, row).await?,
+            spec,
+            estimate,
             experiment: row.name.clone(),
             posterior: reader.samples(row.id, None).await?,
             predictions: reader.predictions(row.id).await?,
@@ -70,6 +80,13 @@ impl Outcome {
             stages,
             row: row.clone(),
         })
+    }
+
+    /// The predictions that results are made from: equally weighted draws, without the most probable particle, which is
+    /// no random draw; of a fit, its one point.
+    pub fn predictive_draws(&self) -> &[Prediction] {
+        let first = usize::from(self.estimate.is_none()).min(self.predictions.len());
+        &self.predictions[first..]
     }
 
     /// The most probable particle: highest likelihood times prior; the first of equals.

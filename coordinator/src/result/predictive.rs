@@ -11,13 +11,11 @@ use super::Outcome;
 /// What the calibrated model predicts for one run and channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Predictive {
-    /// Mean of the model over the posterior [channel's unit].
+    /// Mean of the model over the posterior, or its value at the point that a fit found [channel's unit].
     pub mean: f64,
-    /// 5 % quantile of a new measurement: model and noise.
-    pub q05: f64,
-    /// 95 % quantile of a new measurement.
-    pub q95: f64,
-    /// Noise standard deviation: declared, or its posterior mean.
+    /// 5 % and 95 % quantile of a new measurement: model and noise. `None` of a fit, which has no distribution.
+    pub interval: Option<[f64; 2]>,
+    /// Noise standard deviation: declared, its posterior mean, or fitted.
     pub noise_sd: Option<f64>,
 }
 
@@ -68,8 +66,10 @@ pub(super) fn predictive(outcome: &Outcome, run: usize, channel: Channel) -> Opt
     let sds: Vec<f64> = draws.iter().filter_map(|d| d.1).collect();
     Some(Predictive {
         mean,
-        q05: mixture_quantile(&draws, 0.05),
-        q95: mixture_quantile(&draws, 0.95),
+        interval: outcome
+            .estimate
+            .is_none()
+            .then(|| [0.05, 0.95].map(|p| mixture_quantile(&draws, p))),
         noise_sd: inference::diagnostics::mean(&sds),
     })
 }
@@ -81,11 +81,9 @@ enum Place {
     Holdout(usize),
 }
 
-/// The final draws that the model took. The first prediction, the most probable particle, is no random draw
-/// and stays out.
+/// The final draws that the model took.
 fn accepted(outcome: &Outcome, place: Place) -> impl Iterator<Item = (&[f64], &Observables, usize)> {
-    let draws = outcome.predictions.iter().skip(1);
-    draws.filter_map(move |p| {
+    outcome.predictive_draws().iter().filter_map(move |p| {
         let (result, position) = match place {
             Place::Fit(position) => (&p.fit, position),
             Place::Holdout(position) => (p.holdout.as_ref()?, position),

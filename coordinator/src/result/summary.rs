@@ -6,10 +6,11 @@ use inference::diagnostics;
 use shared::channel::Channel;
 
 use super::Outcome;
-use super::comparison::ComparisonRow;
+use super::comparison::{Comparison, ComparisonRow};
 use super::coverage::Coverage;
 use super::errors::ErrorTable;
 use super::flags::Flag;
+use super::point_estimate::PointEstimate;
 
 /// The summary of a study; what does not apply is null.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -24,11 +25,10 @@ pub struct Summary {
     pub model_kind: String,
     /// State of the study.
     pub status: String,
-    /// The error ledger: base first, then each extension.
+    /// The error ledger: base first, then each extension. Empty for a fit, which has no posterior.
     pub calibrations: Vec<CalibrationSummary>,
-    /// Deterministic fits. None in this version.
-    #[schema(value_type = Vec<Object>)]
-    pub point_estimates: Vec<serde_json::Value>,
+    /// Deterministic fits.
+    pub point_estimates: Vec<PointEstimate>,
     /// What deserves attention.
     pub flags: Vec<Flag>,
     /// Discovery. Null in this version.
@@ -123,6 +123,15 @@ pub struct BaselineSummary {
     pub holdout: Option<ErrorTable>,
 }
 
+impl BaselineSummary {
+    pub(super) fn of(comparison: &Comparison) -> Self {
+        BaselineSummary {
+            name: "interpolation".into(),
+            holdout: comparison.baseline_holdout.clone(),
+        }
+    }
+}
+
 /// Coverage on both kinds of runs.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct CoverageSummary {
@@ -137,19 +146,22 @@ impl Outcome {
     pub fn summary(&self) -> Summary {
         Summary {
             experiment: self.experiment.clone(),
-            seed: self.spec.sampler.seed,
+            seed: self.spec.method.seed(),
             model_version: self.row.model_version.clone().unwrap_or_default(),
             model_kind: self.spec.model.kind.name().to_owned(),
             status: self.row.state.name().to_owned(),
-            calibrations: vec![self.calibration_summary()],
-            point_estimates: Vec::new(),
+            calibrations: self.calibration_summary().into_iter().collect(),
+            point_estimates: self.point_estimates(),
             flags: self.flags(),
             discovery: None,
         }
     }
 
-    /// The calibration's line of the ledger.
-    pub fn calibration_summary(&self) -> CalibrationSummary {
+    /// The calibration's line of the ledger; `None` for a fit: point estimates stand apart.
+    pub fn calibration_summary(&self) -> Option<CalibrationSummary> {
+        if self.estimate.is_some() {
+            return None;
+        }
         let comparison = self.comparison();
         let noise_sd = Channel::ALL
             .iter()
@@ -162,9 +174,9 @@ impl Outcome {
                 Some((c.name().to_owned(), diagnostics::mean(&sds)?))
             })
             .collect();
-        CalibrationSummary {
+        Some(CalibrationSummary {
             effects: Vec::new(),
-            algorithm: algorithm_name(self.spec.sampler.algorithm).to_owned(),
+            algorithm: self.spec.method.name().to_owned(),
             log_evidence: self.row.log_evidence,
             log_evidence_se: self.row.log_evidence_se,
             equilibrated: self.row.equilibrated,
@@ -182,10 +194,7 @@ impl Outcome {
                 })
                 .collect(),
             parameters: self.parameter_summaries().into_iter().collect(),
-            baseline: BaselineSummary {
-                name: "interpolation".into(),
-                holdout: comparison.baseline_holdout.clone(),
-            },
+            baseline: BaselineSummary::of(&comparison),
             noise_sd,
             coverage90: CoverageSummary {
                 fit: coverage(&comparison.rows, "fit"),
@@ -195,7 +204,7 @@ impl Outcome {
                 fit: comparison.fit,
                 holdout: comparison.holdout,
             },
-        }
+        })
     }
 
     /// Every parameter after and before the data, in the order of the job.
@@ -222,14 +231,6 @@ impl Outcome {
                 Some((parameter.name.clone(), summary))
             })
             .collect()
-    }
-}
-
-/// The algorithm's name in files.
-pub(super) fn algorithm_name(algorithm: inference::Algorithm) -> &'static str {
-    match algorithm {
-        inference::Algorithm::Tmcmc => "tmcmc",
-        inference::Algorithm::ChingChen2007 => "ching-chen-2007",
     }
 }
 

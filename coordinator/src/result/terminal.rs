@@ -9,8 +9,8 @@ use super::Outcome;
 use super::comparison::{Comparison, ComparisonRow};
 use super::coverage::Coverage;
 use super::errors::ErrorTable;
-use super::summary::algorithm_name;
-use crate::spec::Spec;
+use crate::spec::{FreeParameter, Spec};
+use crate::store::EstimateRow;
 
 /// What a reader of the result should know of the model before it runs.
 pub fn notes(spec: &Spec) -> Vec<String> {
@@ -41,13 +41,12 @@ pub fn specification(spec: &Spec) -> String {
     let holdout = spec.experiment.runs.len() - spec.fit_runs.len();
     let _ = writeln!(
         text,
-        "{} fit runs with {} measurements, {holdout} holdout runs; model {}; {} with {} particles, seed {}\n",
+        "{} fit runs with {} measurements, {holdout} holdout runs; model {}; {}, seed {}\n",
         spec.fit_runs.len(),
         spec.likelihood.data().len(),
         spec.model.kind.name(),
-        algorithm_name(spec.sampler.algorithm),
-        spec.sampler.particles,
-        spec.sampler.seed
+        spec.method.words(),
+        spec.method.seed()
     );
     let _ = writeln!(
         text,
@@ -77,11 +76,18 @@ pub fn specification(spec: &Spec) -> String {
 pub fn summary(outcome: &Outcome) -> String {
     let mut text = String::new();
     let row = &outcome.row;
+    let how = match &outcome.estimate {
+        Some(estimate) => format!(
+            "{} stopped by {}",
+            outcome.spec.method.name(),
+            estimate.stop.name()
+        ),
+        None => format!("{} stages", outcome.stages.len()),
+    };
     let _ = writeln!(
         text,
-        "{}: {} stages, {} evaluations ({} refused by the model), {:.1} s",
+        "{}: {how}, {} evaluations ({} refused by the model), {:.1} s",
         outcome.experiment,
-        outcome.stages.len(),
         row.evaluations.unwrap_or(0),
         row.rejected.unwrap_or(0),
         row.busy_ms as f64 / 1000.0
@@ -89,19 +95,64 @@ pub fn summary(outcome: &Outcome) -> String {
     if let (Some(z), Some(se)) = (row.log_evidence, row.log_evidence_se) {
         let _ = writeln!(text, "log-evidence {z:.2} +- {se:.2}");
     }
+    if let Some(estimate) = &outcome.estimate {
+        let _ = writeln!(text, "log-posterior {:.2}", estimate.log_posterior());
+    }
     text.push('\n');
     text.push_str(&comparison(&outcome.comparison()));
+    text.push_str(&match &outcome.estimate {
+        Some(estimate) => point(outcome, estimate),
+        None => parameters(outcome),
+    });
+    let flags = outcome.flags();
+    if !flags.is_empty() {
+        text.push('\n');
+    }
+    for flag in flags {
+        let _ = writeln!(text, "flag {}: {}", flag.kind, flag.text);
+    }
+    text
+}
+
+/// The most probable parameters with their standard deviations after Laplace.
+fn point(outcome: &Outcome, estimate: &EstimateRow) -> String {
+    let mut text = format!(
+        "\n{:<28} {:>10} {:>10}  {:<12} prior\n",
+        "parameter", "best", "sd", "unit"
+    );
+    for p in estimate.fitted(&outcome.spec.parameters) {
+        let _ = writeln!(
+            text,
+            "{:<28} {:>10} {:>10}  {:<12} {}{}",
+            p.free.name,
+            number(p.value),
+            p.sd.map_or("-".into(), number),
+            p.free.unit,
+            prior(p.free),
+            if p.at_bound { "  AT BOUND" } else { "" }
+        );
+    }
+    text
+}
+
+fn prior(free: &FreeParameter) -> String {
+    format!(
+        "{} +- {}",
+        number(free.marginal.mean()),
+        number(free.marginal.sd())
+    )
+}
+
+/// The parameters after and before the data.
+fn parameters(outcome: &Outcome) -> String {
+    let mut text = String::new();
     let _ = writeln!(
         text,
         "\n{:<28} {:>10} {:>10} {:>10} {:>10} {:>10}  {:<12} prior",
         "parameter", "mean", "sd", "5 %", "95 %", "best", "unit"
     );
     for ((name, p), free) in outcome.parameter_summaries().iter().zip(&outcome.spec.parameters) {
-        let prior = format!(
-            "{} +- {}",
-            number(free.marginal.mean()),
-            number(free.marginal.sd())
-        );
+        let prior = prior(free);
         let bound = if p.at_bound { "  AT BOUND" } else { "" };
         let _ = writeln!(
             text,
@@ -113,13 +164,6 @@ pub fn summary(outcome: &Outcome) -> String {
             number(p.map),
             free.unit
         );
-    }
-    let flags = outcome.flags();
-    if !flags.is_empty() {
-        text.push('\n');
-    }
-    for flag in flags {
-        let _ = writeln!(text, "flag {}: {}", flag.kind, flag.text);
     }
     text
 }
@@ -135,7 +179,10 @@ pub fn comparison(comparison: &Comparison) -> String {
     for row in &comparison.rows {
         let (scale, _) = shown(row);
         let value = |v: Option<f64>| v.map_or("-".into(), |v| format!("{:.2}", v * scale));
-        let interval = format!("{} to {}", value(row.q05), value(row.q95));
+        let interval = match row.q05 {
+            Some(_) => format!("{} to {}", value(row.q05), value(row.q95)),
+            None => "-".into(),
+        };
         let _ = writeln!(
             text,
             "{:<22} {:<8} {:>7.3} {:>8.1} {:<13} {:>10} {:>10} {:>23} {:>7}",

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use inference::{Algorithm, Settings};
 use serde::Deserialize;
 use shared::file::{FileError, parse_toml, unknown_word};
 use shared::model::ModelSettings;
 
+use super::method::{Method, RawSampler};
 use super::priors::PriorEntry;
 
 /// A job as written, before it meets its experiment.
@@ -18,8 +18,8 @@ pub struct Job {
     pub model: ModelSettings,
     /// The priors in the order of the file.
     pub priors: Vec<PriorEntry>,
-    /// Settings of the sampler.
-    pub sampler: Settings,
+    /// The algorithm with its settings.
+    pub method: Method,
 }
 
 #[derive(Deserialize)]
@@ -35,26 +35,6 @@ struct RawJob {
     discovery: RawDiscovery,
     #[serde(default)]
     likelihood: RawLikelihood,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct RawSampler {
-    algorithm: String,
-    particles: usize,
-    moves: [usize; 2],
-    seed: u64,
-}
-
-impl Default for RawSampler {
-    fn default() -> Self {
-        RawSampler {
-            algorithm: "tmcmc".into(),
-            particles: 1000,
-            moves: [10, 60],
-            seed: 1,
-        }
-    }
 }
 
 #[derive(Deserialize)]
@@ -89,7 +69,7 @@ impl Default for RawLikelihood {
     }
 }
 
-const LATER: &str = "is not available in this version";
+pub(super) const LATER: &str = "is not available in this version";
 
 impl Job {
     /// Parses a job file; `name` is how messages call it.
@@ -106,10 +86,7 @@ impl Job {
             .check()
             .map_err(|e| fail(format!("[likelihood] {e}")))?;
         let model = ModelSettings::from_table(&raw.model).map_err(|e| fail(format!("[model] {e}")))?;
-        let sampler = raw
-            .sampler
-            .settings()
-            .map_err(|e| fail(format!("[sampler] {e}")))?;
+        let method = raw.sampler.method().map_err(|e| fail(format!("[sampler] {e}")))?;
         let mut priors: Vec<_> = raw.priors.into_iter().collect();
         priors.sort_by_key(|(_, value)| value.span().start);
         let priors = priors
@@ -127,27 +104,7 @@ impl Job {
             experiment: raw.experiment,
             model,
             priors,
-            sampler,
-        })
-    }
-}
-
-impl RawSampler {
-    fn settings(self) -> Result<Settings, String> {
-        let algorithm = match self.algorithm.as_str() {
-            "tmcmc" => Algorithm::Tmcmc,
-            "ching-chen-2007" => Algorithm::ChingChen2007,
-            later @ ("basis" | "ga" | "cma-es" | "lm") => {
-                return Err(format!("algorithm = \"{later}\" {LATER}"));
-            }
-            other => return Err(unknown_word("algorithm", other, ["tmcmc", "ching-chen-2007"])),
-        };
-        Ok(Settings {
-            algorithm,
-            particles: self.particles,
-            moves: self.moves,
-            seed: self.seed,
-            ..Settings::default()
+            method,
         })
     }
 }

@@ -1,16 +1,18 @@
 //! Turns the text of a job and its experiment into everything a calibration needs.
 
 mod job_file;
+mod method;
 mod noise;
 mod priors;
 
-use inference::{GaussianLikelihood, Prior, Settings};
+use inference::{GaussianLikelihood, Prior};
 use shared::experiment::{Experiment, RunUse};
 use shared::file::{FileError, FileSet};
 use shared::model::{ModelSettings, ModelVariant};
 use shared::parameters;
 
 pub use job_file::Job;
+pub use method::{Method, MethodError};
 pub(crate) use noise::repeat_scatter;
 pub use priors::FreeParameter;
 
@@ -23,8 +25,8 @@ pub struct Spec {
     pub model: ModelSettings,
     /// The free parameters with their priors, in the order of every parameter vector.
     pub parameters: Vec<FreeParameter>,
-    /// Settings of the sampler.
-    pub sampler: Settings,
+    /// The algorithm with its settings.
+    pub method: Method,
     /// The fitted runs, as positions in the experiment.
     pub fit_runs: Vec<usize>,
     /// The runs that are not fitted, as positions in the experiment.
@@ -103,7 +105,7 @@ impl Spec {
                 "[priors] leaves no parameter free: there is nothing to calibrate".into(),
             ));
         }
-        job.sampler
+        job.method
             .check(parameters.len())
             .map_err(|e| in_job(format!("[sampler] {e}")))?;
         let model_parameters: Vec<String> = parameters
@@ -124,7 +126,7 @@ impl Spec {
             experiment,
             model,
             parameters,
-            sampler: job.sampler,
+            method: job.method,
             fit_runs,
             holdout_runs,
             fit_variant,

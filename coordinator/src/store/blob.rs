@@ -33,6 +33,19 @@ pub(super) fn encode_whole(o: &Observables) -> Vec<u8> {
     bytes
 }
 
+/// The numbers of bytes.
+pub(super) fn decode_values(bytes: &[u8]) -> Result<Vec<f64>, StoreError> {
+    let (words, rest) = bytes.as_chunks::<8>();
+    if rest.is_empty() {
+        Ok(words.iter().map(|w| f64::from_le_bytes(*w)).collect())
+    } else {
+        Err(StoreError::Corrupt(format!(
+            "fitted values of {} bytes",
+            bytes.len()
+        )))
+    }
+}
+
 /// The observables of bytes.
 pub(super) fn decode(bytes: &[u8]) -> Result<Observables, StoreError> {
     let (words, rest) = bytes.as_chunks::<8>();

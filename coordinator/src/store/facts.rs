@@ -3,6 +3,7 @@
 use std::sync::atomic::Ordering;
 
 use inference::StageRecord;
+use inference::lm::Estimate;
 use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 
 use super::json;
@@ -50,6 +51,10 @@ pub(super) async fn write(
         .execute(connection)
         .await
         .map(drop),
+        Fact::Estimate {
+            calibration,
+            estimate,
+        } => self::estimate(connection, calibration, &estimate).await,
         Fact::State {
             calibration,
             state,
@@ -144,6 +149,33 @@ async fn stage(
         query.build().persistent(false).execute(&mut *connection).await?;
     }
     Ok(())
+}
+
+async fn estimate(
+    connection: &mut SqliteConnection,
+    calibration: i64,
+    e: &Estimate,
+) -> Result<(), sqlx::Error> {
+    sqlx::query(
+        "INSERT OR REPLACE INTO estimates (calibration, theta, log_likelihood, log_prior, sd, at_bound, stop)
+         VALUES (?, ?, ?, ?, ?, ?, ?)",
+    )
+    .bind(calibration)
+    .bind(json(&e.theta))
+    .bind(e.log_likelihood)
+    .bind(e.log_prior)
+    .bind(json(&e.sd))
+    .bind(json(&e.at_bound))
+    .bind(e.stop.name())
+    .execute(&mut *connection)
+    .await?;
+    sqlx::query("UPDATE calibrations SET evaluations = ?, rejected = ? WHERE id = ?")
+        .bind(e.evaluations as i64)
+        .bind(e.rejected as i64)
+        .bind(calibration)
+        .execute(connection)
+        .await
+        .map(drop)
 }
 
 /// Compares a late duplicate with what is stored: two machines must give the same bits.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use inference::lm::Stop;
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
@@ -91,6 +92,23 @@ pub struct Sample {
     pub log_likelihood: Option<f64>,
     /// Log-density of the prior.
     pub log_prior: f64,
+}
+
+/// The stored result of a fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EstimateRow {
+    /// The most probable parameters.
+    pub theta: Vec<f64>,
+    /// Log-likelihood there.
+    pub log_likelihood: f64,
+    /// Log-density of the prior there.
+    pub log_prior: f64,
+    /// Standard deviations after Laplace; `None` at a bound, and where nothing fixes a parameter.
+    pub sd: Vec<Option<f64>>,
+    /// Whether each parameter lies at a bound of its prior.
+    pub at_bound: Vec<bool>,
+    /// Why the fit ended.
+    pub stop: Stop,
 }
 
 /// A final draw.
@@ -226,7 +244,30 @@ impl Reader {
             .collect()
     }
 
-    /// The final draws of a calibration; the first is the most probable particle.
+    /// The result of a fit.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn estimate(&self, calibration: i64) -> Result<Option<EstimateRow>, StoreError> {
+        let row = sqlx::query("SELECT * FROM estimates WHERE calibration = ?")
+            .bind(calibration)
+            .fetch_optional(&self.pool)
+            .await?;
+        row.map(|row| {
+            let stop: &str = row.get("stop");
+            Ok(EstimateRow {
+                theta: numbers(row.get("theta"))?,
+                log_likelihood: row.get("log_likelihood"),
+                log_prior: row.get("log_prior"),
+                sd: array(row.get("sd"))?,
+                at_bound: array(row.get("at_bound"))?,
+                stop: Stop::from_name(stop).ok_or_else(|| StoreError::Corrupt(format!("stop {stop}")))?,
+            })
+        })
+        .transpose()
+    }
+
+    /// The final draws of a calibration; the first is the most probable particle, of a fit the only one.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -275,6 +316,10 @@ impl Reader {
             .map(|row| (row.get("kind"), row.get::<i64, _>("n").unsigned_abs()))
             .collect())
     }
+}
+
+fn array<T: serde::de::DeserializeOwned>(json: &str) -> Result<Vec<T>, StoreError> {
+    serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("array {json}: {e}")))
 }
 
 fn file_map(json: &str) -> Result<BTreeMap<String, String>, StoreError> {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use shared::api::CalibrationState;
 use sqlx::Row;
 
-use super::{Reader, StoreError, numbers};
+use super::{Reader, StoreError, blob, numbers};
 use crate::calibration::{Stored, StoredEvaluation};
 
 impl Reader {
@@ -22,20 +22,21 @@ impl Reader {
         Ok(ids)
     }
 
-    /// Everything a replay needs.
+    /// Everything a replay needs; with `fitted`, also the model's values, which a fit is told.
     ///
     /// # Errors
     /// [`StoreError`].
-    pub async fn stored(&self, calibration: i64) -> Result<Stored, StoreError> {
+    pub async fn stored(&self, calibration: i64, fitted: bool) -> Result<Stored, StoreError> {
         let row = sqlx::query("SELECT state, message, model_version, busy_ms FROM calibrations WHERE id = ?")
             .bind(calibration)
             .fetch_one(&self.pool)
             .await?;
         let evaluations = sqlx::query(
-            "SELECT evaluation, theta, log_likelihood, rejection IS NOT NULL AS rejected
-             FROM evaluations WHERE calibration = ?",
+            "SELECT evaluation, theta, log_likelihood, rejection IS NOT NULL AS rejected,
+             CASE WHEN ?2 THEN fitted END AS fitted FROM evaluations WHERE calibration = ?1",
         )
         .bind(calibration)
+        .bind(fitted)
         .fetch_all(&self.pool)
         .await?;
         let evaluations: Result<BTreeMap<_, _>, StoreError> = evaluations
@@ -46,6 +47,10 @@ impl Reader {
                     theta: numbers(row.get("theta"))?,
                     log_likelihood: row.get("log_likelihood"),
                     rejected: row.get("rejected"),
+                    fitted: row
+                        .get::<Option<&[u8]>, _>("fitted")
+                        .map(blob::decode_values)
+                        .transpose()?,
                 };
                 Ok((number, stored))
             })

@@ -212,7 +212,7 @@ fn what_a_later_version_brings_says_so() {
         ),
         "janosi_hanamoto.shear_modulus_m",
     );
-    for algorithm in ["basis", "ga", "cma-es", "lm"] {
+    for algorithm in ["basis", "ga", "cma-es"] {
         later(
             small().in_job("\"tmcmc\"", &format!("\"{algorithm}\"")),
             &format!("algorithm = \"{algorithm}\""),

@@ -7,8 +7,8 @@ use shared::file::FileSet;
 use shared::outcome::Observables;
 
 use crate::result::Outcome;
-use crate::spec::Spec;
-use crate::store::{CalibrationRow, Prediction, Sample, StageRow};
+use crate::spec::{Method, Spec};
+use crate::store::{CalibrationRow, EstimateRow, Prediction, Sample, StageRow};
 
 const JOB: &str = r#"
 # <i>bold & brave</i>
@@ -67,6 +67,31 @@ pub(super) fn all_refused() -> Outcome {
     }
     outcome.row.equilibrated = Some(false);
     outcome.row.log_evidence = None;
+    outcome
+}
+
+/// A fit of the same job, one parameter at a bound.
+pub(super) fn fit() -> Outcome {
+    let mut outcome = outcome();
+    outcome.spec.method = Method::Fit(inference::lm::Settings::default());
+    let first = outcome.predictions.remove(0);
+    let mut sd: Vec<Option<f64>> = first.theta.iter().map(|x| Some(0.1 * x)).collect();
+    let mut at_bound = vec![false; sd.len()];
+    (sd[1], at_bound[1]) = (None, true);
+    outcome.estimate = Some(EstimateRow {
+        theta: first.theta.clone(),
+        log_likelihood: -20.0,
+        log_prior: -1.0,
+        sd,
+        at_bound,
+        stop: inference::lm::Stop::Decrease,
+    });
+    outcome.predictions = vec![first];
+    outcome.posterior.clear();
+    outcome.stages.clear();
+    outcome.row.log_evidence = None;
+    outcome.row.log_evidence_se = None;
+    outcome.row.equilibrated = None;
     outcome
 }
 
@@ -147,6 +172,7 @@ fn build(last: &str) -> Outcome {
     Outcome {
         experiment: row.name.clone(),
         row,
+        estimate: None,
         stages: vec![stage(1, 0.001), stage(2, 0.1), stage(3, 1.0)],
         posterior,
         predictions,

@@ -25,15 +25,29 @@ const STYLE: &str = include_str!("style.css");
 /// The report as one HTML page.
 pub fn page(outcome: &Outcome) -> String {
     let comparison = outcome.comparison();
+    let (parameters, method) = match &outcome.estimate {
+        Some(estimate) => (
+            section::estimate(outcome, estimate),
+            ("fit", "Fit", section::fit(outcome, estimate)),
+        ),
+        None => (
+            section::parameters(outcome),
+            ("stages", "Sampler", section::stages(outcome)),
+        ),
+    };
     let sections: [(&str, &str, Markup); 5] = [
         (
             "comparison",
             "Model against measurement",
             section::comparison(outcome, &comparison),
         ),
-        ("errors", "Errors by channel", section::errors(&comparison)),
-        ("parameters", "Parameters", section::parameters(outcome)),
-        ("stages", "Sampler", section::stages(outcome)),
+        (
+            "errors",
+            "Errors by channel",
+            section::errors(outcome, &comparison),
+        ),
+        ("parameters", "Parameters", parameters),
+        method,
         ("provenance", "Provenance", section::provenance(outcome)),
     ];
     let markup = html! {
@@ -95,6 +109,7 @@ mod tests {
             fixture::outcome(),
             fixture::without_holdout(),
             fixture::all_refused(),
+            fixture::fit(),
         ] {
             let page = page(&outcome);
             for word in ["NaN", "inf ", "inf\"", "-inf"] {
@@ -106,6 +121,28 @@ mod tests {
     #[test]
     fn equal_outcomes_give_equal_pages() {
         assert_eq!(page(&fixture::outcome()), page(&fixture::outcome()));
+    }
+
+    #[test]
+    fn a_fit_shows_its_point_and_claims_no_distribution() {
+        let page = page(&fixture::fit());
+        for words in [
+            "AT BOUND",
+            "no step gains anything",
+            "lm with at most 200 evaluations",
+            "interpolation",
+        ] {
+            assert!(page.contains(words), "{words}");
+        }
+        for words in [
+            "posterior mean",
+            "posterior-mean",
+            "predictive intervals lie",
+            "equilibrium",
+            "log-evidence",
+        ] {
+            assert!(!page.contains(words), "{words}");
+        }
     }
 
     #[test]

@@ -121,8 +121,8 @@ impl<'a> ComparisonChart<'a> {
             }
             @if self.is_one_line() { (line("trend", &self.trend(&pixels, at))) }
             @for (row, place) in self.rows.iter().zip(&pixels) {
-                @if let (Some(mean), Some(q05), Some(q95)) = (row.predicted, row.q05, row.q95) {
-                    (interval(place.x, at(q05), at(mean), at(q95)))
+                @if let Some(mean) = row.predicted {
+                    (interval(place.x, at(row.q05.unwrap_or(mean)), at(mean), at(row.q95.unwrap_or(mean))))
                 }
             }
             @for (row, place) in self.rows.iter().zip(&pixels) {
@@ -141,9 +141,11 @@ impl<'a> ComparisonChart<'a> {
 
     /// Every value that must find room (SI).
     fn values(&self) -> impl Iterator<Item = f64> {
-        self.rows
-            .iter()
-            .flat_map(|r| [Some(r.measured), r.q05, r.q95].into_iter().flatten())
+        self.rows.iter().flat_map(|r| {
+            [Some(r.measured), r.predicted, r.q05, r.q95]
+                .into_iter()
+                .flatten()
+        })
     }
 
     /// Whether a line through the predictions compares like with like: one speed, one slip angle, about one load.
@@ -175,16 +177,23 @@ impl<'a> ComparisonChart<'a> {
     fn hint(&self, row: &ComparisonRow) -> String {
         let value =
             |v: Option<f64>| v.map_or(number::NONE.into(), |v| number::fixed(v * self.quantity.scale, 2));
+        let interval = match (row.q05, row.q95) {
+            (None, None) => String::new(),
+            (q05, q95) => format!(
+                ", 90 % interval {} to {} {}",
+                value(q05),
+                value(q95),
+                self.quantity.unit
+            ),
+        };
         format!(
-            "{} ({}): slip {}, load {} N; measured {} {unit}, model {} {unit}, 90 % interval {} to {} {unit}",
+            "{} ({}): slip {}, load {} N; measured {} {unit}, model {} {unit}{interval}",
             row.run,
             row.usage,
             number::fixed(row.slip, 3),
             number::fixed(row.wheel_load_n, 1),
             value(Some(row.measured)),
             value(row.predicted),
-            value(row.q05),
-            value(row.q95),
             unit = self.quantity.unit
         )
     }

@@ -15,16 +15,21 @@ pub(in crate::result::report) fn comparison(outcome: &Outcome, comparison: &Comp
     let wheels: BTreeSet<&str> = rows.iter().map(|r| r.wheel.as_str()).collect();
     let has_holdout = rows.iter().any(|r| r.usage == "holdout");
     let draws = outcome
-        .predictions
+        .predictive_draws()
         .iter()
-        .skip(1)
         .filter(|p| p.fit.is_ok())
         .count();
+    let sampled = outcome.estimate.is_none();
+    let model = if sampled {
+        "model: posterior mean and 90 % predictive interval"
+    } else {
+        "model at the most probable parameters"
+    };
     html! {
         div.legend {
             span { (glyph(Some(Marker::Fit))) "measured, fitted" }
             @if has_holdout { span { (glyph(Some(Marker::Holdout))) "measured, held out" } }
-            span { (glyph(None)) "model: posterior mean and 90 % predictive interval" }
+            span { (glyph(None)) (model) }
         }
         @if wheels.len() == 1 {
             div.charts { @for quantity in Quantity::measured(rows) { (panels(rows, &wheels, quantity)) } }
@@ -35,14 +40,18 @@ pub(in crate::result::report) fn comparison(outcome: &Outcome, comparison: &Comp
             }
         }
         p.note {
-            "Runs at one condition stand side by side. A dashed line joins mean predictions and only guides the eye. "
-            "An interval is where 90 % of new measurements should fall: spread of the parameters over "
-            (number::count(draws, "draw")) " of the posterior, plus the noise. "
+            "Runs at one condition stand side by side. A dashed line joins predictions and only guides the eye. "
+            @if sampled {
+                "An interval is where 90 % of new measurements should fall: spread of the parameters over "
+                (number::count(draws, "draw")) " of the posterior, plus the noise. "
+            } @else {
+                "A fit has no distribution, so there are no intervals. "
+            }
             "Slip < 0: the wheel is braked; > 0: it drives. Sinkage > 0: the rim lies below the undisturbed surface."
         }
         details {
             summary { "Table of all runs (" (number::count(rows.len(), "measurement")) ")" }
-            div.scroll { (table(rows)) }
+            div.scroll { (table(rows, sampled)) }
         }
     }
 }
@@ -61,7 +70,7 @@ fn panels(rows: &[ComparisonRow], wheels: &BTreeSet<&str>, quantity: Quantity) -
     }
 }
 
-fn table(rows: &[ComparisonRow]) -> Markup {
+fn table(rows: &[ComparisonRow], sampled: bool) -> Markup {
     let angles = rows.iter().any(|r| r.slip_angle_deg.abs() > 0.0);
     let holdout = rows.iter().any(|r| r.usage == "holdout");
     html! {
@@ -69,21 +78,21 @@ fn table(rows: &[ComparisonRow]) -> Markup {
             thead { tr {
                 th.text { "run" } th.text { "use" } th.text { "wheel" } th { "slip" } th { "load" br; "N" } th { "speed" br; "mm/s" }
                 @if angles { th { "slip angle" br; "deg" } }
-                th.text { "channel" } th { "measured" } th { "model" br; "mean" } th { "90 % predictive" br; "interval" }
+                th.text { "channel" } th { "measured" } th { "model" @if sampled { br; "mean" } } @if sampled { th { "90 % predictive" br; "interval" } }
                 th { "residual" br; "noise sd" }
                 @if holdout { th { "inter-" br; "polation" } }
             } }
             tbody {
                 @for (i, row) in rows.iter().enumerate() {
                     @let new_run = i == 0 || rows[i - 1].run != row.run;
-                    tr.first[new_run] { (cells(row, angles, holdout)) }
+                    tr.first[new_run] { (cells(row, angles, holdout, sampled)) }
                 }
             }
         }
     }
 }
 
-fn cells(row: &ComparisonRow, angles: bool, holdout: bool) -> Markup {
+fn cells(row: &ComparisonRow, angles: bool, holdout: bool, sampled: bool) -> Markup {
     let quantity = Quantity::measured(std::slice::from_ref(row)).into_iter().next();
     let (scale, unit) = quantity.map_or((1.0, row.unit.as_str()), |q| (q.scale, q.unit));
     let words = quantity.map_or(row.channel.as_str(), |q| q.channel.words());
@@ -104,7 +113,9 @@ fn cells(row: &ComparisonRow, angles: bool, holdout: bool) -> Markup {
         @if angles { td { (number::fixed(row.slip_angle_deg, 1)) } }
         td.text { (words) " [" (unit) "]" }
         td { (value(Some(row.measured))) } td { (value(row.predicted)) }
-        td { @if row.q05.is_some() { (value(row.q05)) " to " (value(row.q95)) } @else { (number::NONE) } }
+        @if sampled {
+            td { @if row.q05.is_some() { (value(row.q05)) " to " (value(row.q95)) } @else { (number::NONE) } }
+        }
         td {
             @if row.covered() == Some(false) { span.alarm { "outside " } }
             (row.residual_sigma.map_or(number::NONE.into(), |r| format!("{r:+.1}")))

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use crate::result::coverage::Coverage;
 use crate::result::report::number;
 use crate::result::report::quantity::Quantity;
-use crate::result::{ChannelError, Comparison, ComparisonRow, ErrorTable};
+use crate::result::{ChannelError, Comparison, ComparisonRow, ErrorTable, Outcome};
 
 /// A line of the table.
 struct Line {
@@ -16,7 +16,11 @@ struct Line {
 }
 
 /// The table, with what its uncertainty is.
-pub(in crate::result::report) fn errors(comparison: &Comparison) -> Markup {
+pub(in crate::result::report) fn errors(outcome: &Outcome, comparison: &Comparison) -> Markup {
+    let predicted = match outcome.estimate {
+        Some(_) => "the prediction at the most probable parameters",
+        None => "the posterior-mean prediction",
+    };
     html! {
         div.scroll { table {
             thead { tr {
@@ -36,7 +40,7 @@ pub(in crate::result::report) fn errors(comparison: &Comparison) -> Markup {
         } }
         @if comparison.holdout.is_none() { p.note { "No holdout rows: the errors of prediction are not known." } }
         p.note {
-            "Error: measured minus the posterior-mean prediction. \u{b1} is the sampling error of a root mean square over n rows "
+            "Error: measured minus " (predicted) ". \u{b1} is the sampling error of a root mean square over n rows "
             "(itself over \u{221a}(2n)); repeats of one condition share their misfit, so the true uncertainty is larger. "
             "In units of the noise sd a perfect model scores about 1; so does any model whose noise was inferred. "
             "Interpolation: monotone cubic in slip between the fitted measurements of the same wheel, where it need not extrapolate. "

@@ -2,6 +2,7 @@
 
 mod comparison;
 mod errors;
+mod estimate;
 mod parameters;
 mod provenance;
 mod stages;
@@ -9,6 +10,7 @@ mod verdict;
 
 pub(super) use comparison::comparison;
 pub(super) use errors::errors;
+pub(super) use estimate::{estimate, fit};
 pub(super) use parameters::parameters;
 pub(super) use provenance::{provenance, subtitle};
 pub(super) use stages::stages;

@@ -25,16 +25,7 @@ pub(in crate::result::report) fn parameters(outcome: &Outcome) -> Markup {
             "From " (number::count(outcome.posterior.len(), "equally weighted draw")) " of the posterior. Best: the draw with the highest likelihood times prior. "
             "AT BOUND: the 5 % or 95 % quantile lies within 2 % of the prior's range of one of its ends."
         }
-        @if !outcome.spec.fit_variant.fixed.is_empty() {
-            p.note {
-                "Fixed: "
-                @for (i, (name, value)) in outcome.spec.fit_variant.fixed.iter().enumerate() {
-                    @if i > 0 { ", " }
-                    (name) " = " (number::as_written(*value))
-                }
-                "."
-            }
-        }
+        (fixed(outcome))
         h3 { "Posterior over prior" }
         div.legend {
             span { svg.swatch viewBox="0 0 22 12" aria-hidden="true" { rect.bar x="1" y="1" width="20" height="10" {} } "posterior" }
@@ -54,6 +45,22 @@ pub(in crate::result::report) fn parameters(outcome: &Outcome) -> Markup {
             }
         }
         (entangled(free, &draws))
+    }
+}
+
+/// The parameters that the job fixes.
+pub(super) fn fixed(outcome: &Outcome) -> Markup {
+    html! {
+        @if !outcome.spec.fit_variant.fixed.is_empty() {
+            p.note {
+                "Fixed: "
+                @for (i, (name, value)) in outcome.spec.fit_variant.fixed.iter().enumerate() {
+                    @if i > 0 { ", " }
+                    (name) " = " (number::as_written(*value))
+                }
+                "."
+            }
+        }
     }
 }
 
@@ -82,7 +89,7 @@ fn table(free: &[FreeParameter], summaries: &[(String, ParameterSummary)]) -> Ma
 }
 
 /// `normal, mean 3.93, sd 0.15, between 3 and 5`.
-fn prior_words(parameter: &FreeParameter) -> String {
+pub(super) fn prior_words(parameter: &FreeParameter) -> String {
     let n = number::as_written;
     let (lower, upper) = parameter.marginal.support();
     let (words, own) = match parameter.marginal.distribution() {

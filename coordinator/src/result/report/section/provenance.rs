@@ -5,27 +5,25 @@ use shared::experiment::RunUse;
 
 use crate::result::Outcome;
 use crate::result::report::number;
-use crate::result::summary::algorithm_name;
+use crate::spec::Method;
 
 /// One line under the title: model, data, sampler.
 pub(in crate::result::report) fn subtitle(outcome: &Outcome) -> String {
     let spec = &outcome.spec;
     let held = spec.experiment.runs.len() - spec.fit_runs.len();
     format!(
-        "Model {} \u{b7} {}, {} \u{b7} {} with {} particles, seed {}",
+        "Model {} \u{b7} {}, {} \u{b7} {}, seed {}",
         spec.model.kind.name(),
         number::count(spec.fit_runs.len(), "fitted run"),
         number::count(held, "holdout run"),
-        algorithm_name(spec.sampler.algorithm),
-        spec.sampler.particles,
-        spec.sampler.seed
+        spec.method.words(),
+        spec.method.seed()
     )
 }
 
 /// Versions, settings and the job's own text.
 pub(in crate::result::report) fn provenance(outcome: &Outcome) -> Markup {
     let spec = &outcome.spec;
-    let [least, most] = spec.sampler.moves;
     let held = spec
         .experiment
         .runs
@@ -43,13 +41,20 @@ pub(in crate::result::report) fn provenance(outcome: &Outcome) -> Markup {
             }
             dt { "algorithm" }
             dd {
-                (algorithm_name(spec.sampler.algorithm)) ", " (spec.sampler.particles) " particles"
-                @if spec.sampler.algorithm == inference::Algorithm::Tmcmc { ", " (least) " to " (most) " moves per stage" }
+                (spec.method.words())
+                @match spec.method {
+                    Method::Sample(s) => {
+                        @if s.algorithm == inference::Algorithm::Tmcmc { ", " (s.moves[0]) " to " (s.moves[1]) " moves per stage" }
+                    }
+                    Method::Fit(s) => {
+                        ", " (number::count(s.starts, "start")) ", differences of at least " (number::as_written(s.difference_step)) " prior widths"
+                    }
+                }
             }
-            dt { "seed" } dd { (spec.sampler.seed) }
+            dt { "seed" } dd { (spec.method.seed()) }
             dt { "program" } dd { "Grouser " (env!("CARGO_PKG_VERSION")) }
         }
-        p.note { "The posterior is a function of job, seed and model version alone: the same three give the same draws, bit for bit." }
+        p.note { "The result is a function of job, seed and model version alone: the same three give the same numbers, bit for bit." }
         details { summary { "Text of the job" } pre { (outcome.row.toml) } }
     }
 }

@@ -10,12 +10,6 @@ use crate::store::StageRow;
 /// Evidence, pictures and table.
 pub(in crate::result::report) fn stages(outcome: &Outcome) -> Markup {
     let row = &outcome.row;
-    let refused = row.rejected.unwrap_or(0);
-    let kinds: Vec<String> = outcome
-        .rejections
-        .iter()
-        .map(|(kind, n)| format!("{kind} {n}"))
-        .collect();
     let evidence = match (row.log_evidence, row.log_evidence_se) {
         (Some(z), Some(se)) => number::with_spread(z, se),
         (Some(z), None) => number::significant(z, 4),
@@ -24,14 +18,7 @@ pub(in crate::result::report) fn stages(outcome: &Outcome) -> Markup {
     html! {
         dl {
             dt { "log-evidence" } dd { (evidence) " (natural logarithm; \u{b1} is its standard error within this run)" }
-            dt { "evaluations" } dd { (row.evaluations.map_or(number::NONE.into(), |n| n.to_string())) }
-            dt { "refused by the model" }
-            dd {
-                (refused)
-                @if let Some(n) = row.evaluations.filter(|n| *n > 0) { " (" (number::significant(100.0 * refused as f64 / n as f64, 2)) " %)" }
-                @if !kinds.is_empty() { ": " (kinds.join(", ")) }
-            }
-            dt { "wall time" } dd { (number::duration(row.busy_ms as f64 / 1000.0)) }
+            (cost(outcome))
         }
         @if !outcome.stages.is_empty() {
             div.legend {
@@ -51,6 +38,27 @@ pub(in crate::result::report) fn stages(outcome: &Outcome) -> Markup {
                 "ESS: effective number of particles after weighting. Stage 0, the draws from the prior, has no moves."
             }
         }
+    }
+}
+
+/// Evaluations, refusals and time.
+pub(super) fn cost(outcome: &Outcome) -> Markup {
+    let row = &outcome.row;
+    let refused = row.rejected.unwrap_or(0);
+    let kinds: Vec<String> = outcome
+        .rejections
+        .iter()
+        .map(|(kind, n)| format!("{kind} {n}"))
+        .collect();
+    html! {
+        dt { "evaluations" } dd { (row.evaluations.map_or(number::NONE.into(), |n| n.to_string())) }
+        dt { "refused by the model" }
+        dd {
+            (refused)
+            @if let Some(n) = row.evaluations.filter(|n| *n > 0) { " (" (number::significant(100.0 * refused as f64 / n as f64, 2)) " %)" }
+            @if !kinds.is_empty() { ": " (kinds.join(", ")) }
+        }
+        dt { "wall time" } dd { (number::duration(row.busy_ms as f64 / 1000.0)) }
     }
 }
 

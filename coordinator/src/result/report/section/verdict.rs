@@ -7,6 +7,7 @@ use shared::experiment::RunUse;
 use shared::model::ModelKind;
 use shared::parameters::noise_parameter;
 
+use super::estimate::reason;
 use crate::result::coverage::Coverage;
 use crate::result::report::number;
 use crate::result::report::quantity::Quantity;
@@ -32,7 +33,14 @@ pub(in crate::result::report) fn verdict(outcome: &Outcome, comparison: &Compari
 }
 
 fn sentences(outcome: &Outcome, comparison: &Comparison) -> Vec<String> {
-    let mut text = vec![equilibrium(outcome)];
+    let mut text = vec![match &outcome.estimate {
+        Some(estimate) => format!(
+            "A fit found the most probable parameters in {}; it stopped because {}. It says nothing of what else the data allow.",
+            number::count(outcome.row.evaluations.unwrap_or(0) as usize, "evaluation"),
+            reason(estimate.stop)
+        ),
+        None => equilibrium(outcome),
+    }];
     text.push(match &comparison.fit {
         Some(fit) => format!(
             "On the {} the calibrated model is off by {} (root mean square).",
@@ -194,14 +202,17 @@ fn inferred_noise(outcome: &Outcome) -> Option<String> {
             .parameters
             .iter()
             .position(|p| p.name == noise_parameter(channel))?;
-        let (mean, sd) = diagnostics::mean_and_sd(&outcome.draws(parameter))?;
+        let (value, sd) = match &outcome.estimate {
+            Some(estimate) => (estimate.theta[parameter], estimate.sd[parameter].unwrap_or(0.0)),
+            None => diagnostics::mean_and_sd(&outcome.draws(parameter))?,
+        };
         let q = Quantity::of(channel);
-        let mut text = format!(
-            "{}\u{a0}{} for {}",
-            number::with_spread(mean * q.scale, sd * q.scale),
-            q.unit,
-            channel.words()
-        );
+        let shown = if sd > 0.0 {
+            number::with_spread(value * q.scale, sd * q.scale)
+        } else {
+            number::significant(value * q.scale, 2)
+        };
+        let mut text = format!("{shown}\u{a0}{} for {}", q.unit, channel.words());
         if let Some((scatter, freedom)) =
             repeat_scatter(&outcome.spec.experiment, &outcome.spec.fit_runs, channel)
         {

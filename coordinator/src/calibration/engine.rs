@@ -1,0 +1,94 @@
+//! The sampler or the fit of a calibration: what asks for evaluations and is told their results.
+
+use inference::lm::{Estimate, Optimiser};
+use inference::{
+    GaussianLikelihood, LogLikelihood, Posterior, Prior, Progress, Proposal, Sampler, StageRecord, TellError,
+};
+
+use crate::spec::{Method, MethodError};
+
+/// What asks for evaluations and is told their results.
+#[derive(Debug)]
+pub enum Engine {
+    /// Samples the posterior; told log-likelihoods.
+    Sampler(Box<Sampler>),
+    /// Fits the most probable parameters; told predicted values.
+    Fit(Box<Optimiser>),
+}
+
+/// The result of an evaluation, scored.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scored<'a> {
+    /// ln p(data | theta) at the parameters that were asked for.
+    pub log_likelihood: LogLikelihood,
+    /// The model's values of the fitted measurements, in the order of the likelihood; `None` where it refused.
+    pub fitted: Option<&'a [f64]>,
+}
+
+/// What an engine ends with.
+#[derive(Debug, Clone, Copy)]
+pub enum Finding<'a> {
+    /// A sample of the posterior.
+    Posterior(&'a Posterior),
+    /// The most probable parameters.
+    Estimate(&'a Estimate),
+}
+
+impl Engine {
+    /// An engine whose first round is pending.
+    ///
+    /// # Errors
+    /// [`MethodError`] where the settings do not fit the prior.
+    pub(super) fn new(
+        prior: Prior,
+        likelihood: &GaussianLikelihood,
+        method: Method,
+    ) -> Result<Self, MethodError> {
+        Ok(match method {
+            Method::Sample(settings) => Engine::Sampler(Box::new(Sampler::new(prior, settings)?)),
+            Method::Fit(settings) => {
+                Engine::Fit(Box::new(Optimiser::new(prior, likelihood.clone(), settings)?))
+            }
+        })
+    }
+
+    /// Number of completed rounds.
+    pub(super) fn round(&self) -> u64 {
+        match self {
+            Engine::Sampler(sampler) => sampler.round(),
+            Engine::Fit(fit) => fit.round(),
+        }
+    }
+
+    /// This round's proposals, by ascending particle.
+    pub(super) fn pending(&self) -> &[Proposal] {
+        match self {
+            Engine::Sampler(sampler) => sampler.pending(),
+            Engine::Fit(fit) => fit.pending(),
+        }
+    }
+
+    /// Takes the result of a pending particle.
+    pub(super) fn tell(&mut self, particle: usize, scored: Scored) -> Result<Progress, TellError> {
+        match self {
+            Engine::Sampler(sampler) => sampler.tell(particle, scored.log_likelihood),
+            Engine::Fit(fit) => fit.tell(particle, scored.fitted),
+        }
+    }
+
+    /// The finished stages; a fit has none.
+    pub fn stages(&self) -> &[StageRecord] {
+        match self {
+            Engine::Sampler(sampler) => sampler.stages(),
+            Engine::Fit(_) => &[],
+        }
+    }
+
+    /// The result, once finished.
+    pub fn finding(&self) -> Option<Finding<'_>> {
+        match self {
+            Engine::Sampler(sampler) => sampler.posterior().map(Finding::Posterior),
+            Engine::Fit(fit) => fit.estimate().map(Finding::Estimate),
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! The result of a fit: the most probable parameters, beside no posterior.
+
+use std::collections::BTreeMap;
+
+use super::Outcome;
+use super::summary::{BaselineSummary, ErrorSummary};
+use crate::spec::FreeParameter;
+use crate::store::EstimateRow;
+
+/// A deterministic fit.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct PointEstimate {
+    /// Algorithm.
+    pub algorithm: String,
+    /// The most probable parameters by name.
+    pub parameters: BTreeMap<String, f64>,
+    /// Their standard deviations after Laplace; null at a bound, and where nothing fixes a parameter.
+    pub sd: BTreeMap<String, Option<f64>>,
+    /// The parameters that lie at a bound of their prior.
+    pub at_bound: Vec<String>,
+    /// Log-likelihood plus log-density of the prior, both normalised.
+    pub log_posterior: f64,
+    /// Errors of the model at these parameters.
+    pub error: ErrorSummary,
+    /// Interpolation without physics.
+    pub baseline: BaselineSummary,
+    /// Evaluations of the fit.
+    pub evaluations: u64,
+    /// Of these, refused by the model.
+    pub rejected: u64,
+    /// Wall time `[s]`.
+    pub wall_s: f64,
+    /// Why it ended: `decrease` (no step gains anything), `step` (none that is tried does), `budget`.
+    pub stop: String,
+}
+
+/// One fitted parameter.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FittedParameter<'a> {
+    pub(super) free: &'a FreeParameter,
+    pub(super) value: f64,
+    pub(super) sd: Option<f64>,
+    pub(super) at_bound: bool,
+}
+
+impl EstimateRow {
+    /// Log-likelihood plus log-density of the prior.
+    pub(super) fn log_posterior(&self) -> f64 {
+        self.log_likelihood + self.log_prior
+    }
+
+    /// Its parameters, in the order of the job.
+    pub(super) fn fitted<'a>(
+        &'a self,
+        parameters: &'a [FreeParameter],
+    ) -> impl Iterator<Item = FittedParameter<'a>> {
+        parameters.iter().enumerate().map(|(i, free)| FittedParameter {
+            free,
+            value: self.theta[i],
+            sd: self.sd[i],
+            at_bound: self.at_bound[i],
+        })
+    }
+}
+
+impl Outcome {
+    /// What a fit found; none of a sample.
+    pub fn point_estimates(&self) -> Vec<PointEstimate> {
+        let Some(estimate) = &self.estimate else {
+            return Vec::new();
+        };
+        let comparison = self.comparison();
+        let fitted = || estimate.fitted(&self.spec.parameters);
+        let name = |p: FittedParameter| p.free.name.clone();
+        vec![PointEstimate {
+            algorithm: self.spec.method.name().to_owned(),
+            parameters: fitted().map(|p| (name(p), p.value)).collect(),
+            sd: fitted().map(|p| (name(p), p.sd)).collect(),
+            at_bound: fitted().filter(|p| p.at_bound).map(name).collect(),
+            log_posterior: estimate.log_posterior(),
+            baseline: BaselineSummary::of(&comparison),
+            error: ErrorSummary {
+                fit: comparison.fit,
+                holdout: comparison.holdout,
+            },
+            evaluations: self.row.evaluations.unwrap_or(0),
+            rejected: self.row.rejected.unwrap_or(0),
+            wall_s: self.row.busy_ms as f64 / 1000.0,
+            stop: estimate.stop.name().to_owned(),
+        }]
+    }
+}

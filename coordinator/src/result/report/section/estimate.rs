@@ -1,0 +1,68 @@
+//! What a fit found, in place of a posterior's parameters and a sampler's stages.
+
+use inference::lm::Stop;
+use maud::{Markup, html};
+
+use super::parameters::{fixed, prior_words};
+use super::stages::cost;
+use crate::result::Outcome;
+use crate::result::report::number;
+use crate::store::EstimateRow;
+
+/// The most probable parameters.
+pub(in crate::result::report) fn estimate(outcome: &Outcome, estimate: &EstimateRow) -> Markup {
+    html! {
+        div.scroll { table {
+            thead { tr {
+                th.text { "parameter" } th.text { "unit" } th { "most" br; "probable" } th { "sd" } th { "prior" br; "sd" }
+                th { "sd over" br; "prior sd" } th.text { "prior" } th.text { "" }
+            } }
+            tbody {
+                @for p in estimate.fitted(&outcome.spec.parameters) {
+                    @let prior_sd = p.free.marginal.sd();
+                    tr {
+                        td.text { (p.free.name) } td.text { (p.free.unit) }
+                        td { (number::to_spread(p.value, p.sd.unwrap_or(0.0))) }
+                        td { (p.sd.map_or(number::NONE.into(), |sd| number::to_spread(sd, sd))) }
+                        td { (number::to_spread(prior_sd, prior_sd)) }
+                        td { (p.sd.map_or(number::NONE.into(), |sd| number::significant(sd / prior_sd, 2))) }
+                        td.text { (prior_words(p.free)) }
+                        td.text { @if p.at_bound { span.alarm { "AT BOUND" } } }
+                    }
+                }
+            }
+        } }
+        p.note {
+            "Most probable: the highest likelihood times prior density of the parameters as the job declares them. "
+            "Sd: from the curvature there (Laplace), the parameters at a bound held; right where the posterior is a normal distribution, and too small where the noise was inferred from repeats that share a misfit. "
+            "AT BOUND: exactly at a bound of the prior; there is no sd."
+        }
+        (fixed(outcome))
+    }
+}
+
+/// What the fit cost and why it ended.
+pub(in crate::result::report) fn fit(outcome: &Outcome, estimate: &EstimateRow) -> Markup {
+    html! {
+        dl {
+            dt { "log-posterior" }
+            dd {
+                (number::significant(estimate.log_posterior(), 5)) " (log-likelihood " (number::significant(estimate.log_likelihood, 5))
+                " plus log-density of the prior " (number::significant(estimate.log_prior, 5)) "; without the evidence, which a fit does not know)"
+            }
+            dt { "stopped because" } dd { (reason(estimate.stop)) }
+            (cost(outcome))
+        }
+    }
+}
+
+/// Why a fit ended, in words.
+pub(super) fn reason(stop: Stop) -> &'static str {
+    match stop {
+        Stop::Decrease => "no step gains anything any more",
+        Stop::Step => {
+            "no step that was tried gained anything: nearer to the optimum the noise of the model does not let one see"
+        }
+        Stop::Budget => "its budget of evaluations was spent; a better point may be near",
+    }
+}
