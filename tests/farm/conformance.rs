@@ -195,6 +195,7 @@ fn a_status_has_one_form() {
         model_kind: Some("quasi_static".into()),
         model_version: Some("1".into()),
         progress: Some(Progress {
+            algorithm: "tmcmc".into(),
             stage: 4,
             tempering_exponent: 0.25,
             step: 2,
@@ -212,7 +213,7 @@ fn a_status_has_one_form() {
         &json!({
             "id": 3, "name": "sand", "study": 2, "experiment": 1, "state": "running", "message": null,
             "model_kind": "quasi_static", "model_version": "1",
-            "progress": {"stage": 4, "tempering_exponent": 0.25, "step": 2, "acceptance": 0.5, "evaluations": 1000,
+            "progress": {"algorithm": "tmcmc", "stage": 4, "tempering_exponent": 0.25, "step": 2, "acceptance": 0.5, "evaluations": 1000,
                          "rejected": 10, "step_done": 30, "step_size": 60, "evaluations_per_s": 500.0, "remaining_s": null},
         }),
     );

@@ -19,7 +19,7 @@ const SHEAR: &str = "test,normal_stress_pa,shear_displacement_m,shear_stress_pa\
 
 /// The message of a job that must be refused, by `check` and by `run` alike; `run` leaves no folder.
 #[track_caller]
-fn refusal(job: &Job) -> String {
+pub(super) fn refusal(job: &Job) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     refusal_in(&job.write(folder.path()), folder.path())
 }
@@ -38,6 +38,6 @@ fn refusal_in(path: &Path, folder: &Path) -> String {
 
 /// Every case is a change of a good job and the whole message.
 #[track_caller]
-fn refused(job: Job, message: &str) {
+pub(super) fn refused(job: Job, message: &str) {
     assert_eq!(refusal(&job), message);
 }
