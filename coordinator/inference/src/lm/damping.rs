@@ -42,7 +42,7 @@ impl Damping {
     pub(super) fn accept(&mut self, damping: f64, ratio: f64) {
         let from = damping.max(self.least / SPREAD);
         let miss = 2.0 * ratio - 1.0;
-        let factor = (1.0 - miss * miss * miss).max(1.0 / SPREAD).min(SPREAD);
+        let factor = (1.0 - miss * miss * miss).clamp(1.0 / SPREAD, SPREAD);
         *self = Self {
             least: (from * factor).max(LEAST),
             ..Self::default()

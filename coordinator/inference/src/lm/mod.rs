@@ -6,7 +6,7 @@
 //! f(theta) = sum_i [ (y_i - m_i(theta))^2 / (2 sd_i^2) + ln(sqrt(2 pi) sd_i) ] - sum_k ln p_k(theta_k)
 //! ```
 //!
-//! with p_k the density of the parameter as the job declares it, not of the coordinate in which the fit moves:
+//! with `p_k` the density of the parameter as the job declares it, not of the coordinate in which the fit moves:
 //! another way to write down the same prior (a lognormal x, a normal ln x) has another maximum.
 //!
 //! [`Optimiser`] never runs the model. It lists [`Proposal`](crate::Proposal)s of a round, which can be evaluated
@@ -24,7 +24,7 @@
 //!
 //! # Layout
 //! - `settings`: starts, budget, step of the differences.
-//! - `optimiser`: the rounds; `view`: what the outside sees of them.
+//! - `optimiser`: the rounds; `descent`: what each leads to; `view`: what the outside sees of them.
 //! - `axis`: one parameter in units of its prior's width. `noise`: one noise sd.
 //! - `objective`: f at a point, and its parabola there. `quadratic`: the least of a damped parabola in a box.
 //! - `stencil`: the differences. `damping`: how far to trust the parabola.
@@ -35,6 +35,7 @@
 
 mod axis;
 mod damping;
+mod descent;
 mod estimate;
 mod noise;
 mod objective;
