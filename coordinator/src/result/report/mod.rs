@@ -140,6 +140,7 @@ mod tests {
             "predictive intervals lie",
             "equilibrium",
             "log-evidence",
+            "90 % ",
         ] {
             assert!(!page.contains(words), "{words}");
         }

@@ -17,6 +17,7 @@ struct Line {
 
 /// The table, with what its uncertainty is.
 pub(in crate::result::report) fn errors(outcome: &Outcome, comparison: &Comparison) -> Markup {
+    let intervals = outcome.estimate.is_none();
     let predicted = match outcome.estimate {
         Some(_) => "the prediction at the most probable parameters",
         None => "the posterior-mean prediction",
@@ -25,16 +26,16 @@ pub(in crate::result::report) fn errors(outcome: &Outcome, comparison: &Comparis
         div.scroll { table {
             thead { tr {
                 th.text { "channel" } th.text { "rows" } th.text { "predicted by" } th { "root mean square" br; "error" } th.text { "unit" }
-                th { "in units of" br; "the noise sd" } th { "number" br; "of rows" } th.text { "inside the 90 % interval" }
+                th { "in units of" br; "the noise sd" } th { "number" br; "of rows" } @if intervals { th.text { "inside the 90 % interval" } }
             } }
             tbody {
                 @for quantity in Quantity::measured(&comparison.rows) {
                     @for (i, line) in lines(comparison, quantity).iter().enumerate() {
-                        tr.first[i == 0] { (cells(quantity, i == 0, line)) }
+                        tr.first[i == 0] { (cells(quantity, i == 0, line, intervals)) }
                     }
                 }
                 @for (rows, table) in [("fit", &comparison.fit), ("holdout", &comparison.holdout)] {
-                    @if let Some(table) = table { tr.first[rows == "fit"] { (all(comparison, rows, table)) } }
+                    @if let Some(table) = table { tr.first[rows == "fit"] { (all(comparison, rows, table, intervals)) } }
                 }
             }
         } }
@@ -44,7 +45,7 @@ pub(in crate::result::report) fn errors(outcome: &Outcome, comparison: &Comparis
             "(itself over \u{221a}(2n)); repeats of one condition share their misfit, so the true uncertainty is larger. "
             "In units of the noise sd a perfect model scores about 1; so does any model whose noise was inferred. "
             "Interpolation: monotone cubic in slip between the fitted measurements of the same wheel, where it need not extrapolate. "
-            "Expected: 95 % range of the count if the intervals are right and the rows independent."
+            @if intervals { "Expected: 95 % range of the count if the intervals are right and the rows independent." }
         }
     }
 }
@@ -87,7 +88,7 @@ fn lines(comparison: &Comparison, quantity: Quantity) -> Vec<Line> {
     .collect()
 }
 
-fn cells(quantity: Quantity, first: bool, line: &Line) -> Markup {
+fn cells(quantity: Quantity, first: bool, line: &Line, intervals: bool) -> Markup {
     let ChannelError {
         rmse,
         rmse_sigma,
@@ -101,11 +102,11 @@ fn cells(quantity: Quantity, first: bool, line: &Line) -> Markup {
         td.text { (quantity.unit) }
         td { (rmse_sigma.map_or(number::NONE.into(), |s| sampled(s, runs))) }
         td { (runs) }
-        td.text { (line.coverage.map_or(number::NONE.into(), Coverage::words)) }
+        @if intervals { td.text { (line.coverage.map_or(number::NONE.into(), Coverage::words)) } }
     }
 }
 
-fn all(comparison: &Comparison, rows: &'static str, table: &ErrorTable) -> Markup {
+fn all(comparison: &Comparison, rows: &'static str, table: &ErrorTable, intervals: bool) -> Markup {
     let of = || comparison.rows.iter().filter(|r| r.usage == rows);
     let counted = of().filter(|r| r.residual_sigma.is_some()).count();
     html! {
@@ -116,7 +117,7 @@ fn all(comparison: &Comparison, rows: &'static str, table: &ErrorTable) -> Marku
         td {}
         td { (table.all.rmse_sigma.map_or(number::NONE.into(), |s| sampled(s, counted))) }
         td { (of().filter(|r| r.predicted.is_some()).count()) }
-        td.text { (Coverage::count(of()).map_or(number::NONE.into(), Coverage::words)) }
+        @if intervals { td.text { (Coverage::count(of()).map_or(number::NONE.into(), Coverage::words)) } }
     }
 }
 

@@ -228,8 +228,13 @@ fn inferred_noise(outcome: &Outcome) -> Option<String> {
     let inferred: Vec<String> = Channel::ALL.into_iter().filter_map(noise).collect();
     (!inferred.is_empty()).then(|| {
         format!(
-            "The noise sd was inferred from these very misfits: {}. What exceeds the scatter of repeats is the model's own misfit, so neither the width of the intervals nor an error of one noise sd speaks for the model.",
-            inferred.join("; ")
+            "The noise sd was inferred from these very misfits: {}. What exceeds the scatter of repeats is the model's own misfit, so {} for the model.",
+            inferred.join("; "),
+            if outcome.estimate.is_none() {
+                "neither the width of the intervals nor an error of one noise sd speaks"
+            } else {
+                "an error of one noise sd does not speak"
+            }
         )
     })
 }
