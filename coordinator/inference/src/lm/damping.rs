@@ -2,8 +2,8 @@
 
 /// Dampings of neighbouring trials differ by this factor.
 const SPREAD: f64 = 8.0;
-/// Damped trials of a round.
-const TRIALS: i32 = 3;
+/// The dampings of a round, in units of the least.
+const TRIALS: [f64; 3] = [1.0, SPREAD, SPREAD * SPREAD];
 /// The damping that a fit begins with: a tenth of the parabola's own curvature.
 const FIRST: f64 = 0.1;
 /// The least damping; less changes no digit that matters.
@@ -31,7 +31,7 @@ impl Damping {
     /// The dampings to try at the same time, most promising first: the whole step, then ever shorter ones.
     pub(super) fn trials(&self) -> Vec<f64> {
         let whole = self.undamped.then_some(0.0);
-        let damped = (0..TRIALS).map(|k| self.least * SPREAD.powi(k));
+        let damped = TRIALS.into_iter().map(|factor| self.least * factor);
         whole.into_iter().chain(damped).collect()
     }
 
@@ -51,7 +51,7 @@ impl Damping {
 
     /// After a round without gain: shorter than all that was tried, and ever faster.
     pub(super) fn reject(&mut self) {
-        self.least *= SPREAD.powi(TRIALS - 1) * self.growth;
+        self.least *= TRIALS[TRIALS.len() - 1] * self.growth;
         self.growth *= 2.0;
         self.undamped = false;
     }
