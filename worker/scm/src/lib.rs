@@ -15,6 +15,7 @@
 //!
 //! Models:
 //! - [`quasi_static`]: a smooth wheel in steady motion, integrated along the rim.
+//! - [`spatial`]: a wheel with grousers, or any surface, that rolls over a terrain it deforms.
 //! - [`bevameter`]: a plate pressed into the soil and a ring turned on it, by the same laws as the wheel.
 //!
 //! After a model:
@@ -41,6 +42,7 @@ pub mod rejection;
 pub mod shear;
 pub mod signal;
 pub mod soil;
+pub mod spatial;
 pub mod wheel;
 
 pub use averages::Averages;
@@ -50,4 +52,4 @@ pub use soil::{Soil, bekker_moduli};
 pub use wheel::Wheel;
 
 /// Identifies the equations and numerics; bumped when any number changes.
-pub const MODEL_VERSION: &str = "scm-1";
+pub const MODEL_VERSION: &str = "scm-2";

@@ -43,6 +43,17 @@ pub enum Rejection {
         /// Its value.
         value: f64,
     },
+    /// The soil seems to drive the wheel: the model breaks its own energy balance.
+    #[error("energy gained: the soil gives {power_w:e} W of the {throughput_w} W that go through the wheel")]
+    EnergyGained {
+        /// Mean power that goes into the soil, negative `[W]`.
+        power_w: f64,
+        /// Sum of the magnitudes of the powers of motor and sled `[W]`.
+        throughput_w: f64,
+    },
+    /// The protocol does not fit the run.
+    #[error("the protocol does not fit the run: {0}")]
+    Protocol(#[from] crate::signal::SignalError),
     /// A parameter lies outside the bounds within which the model is defined.
     #[error("invalid parameter: {name} = {value} {unit} must be {bound}")]
     InvalidParameter {
@@ -64,6 +75,8 @@ impl Rejection {
             Self::NoSupport { .. } => "no_support",
             Self::NoConvergence { .. } => "no_convergence",
             Self::NotFinite { .. } => "not_finite",
+            Self::EnergyGained { .. } => "energy_gained",
+            Self::Protocol(_) => "protocol",
             Self::InvalidParameter { .. } => "invalid_parameter",
         }
     }

@@ -9,5 +9,8 @@ mod nothing_hidden;
 mod quadrature;
 mod reference_table;
 mod rejections;
+mod scene;
 mod signal;
+mod spatial;
 mod support;
+mod validation;

@@ -1,0 +1,171 @@
+//! Time of one run in three dimensions: by case, by step, by node and trial, by spacing of the grid.
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use scm::spatial::{Displacement, Ground, Grousers, Protocol, Run, Scene, Settings, Shape, simulate};
+use scm::{Condition, Rejection, Soil, Wheel};
+
+fn main() {
+    divan::main();
+}
+
+/// One run: what the benches change of it.
+#[derive(Debug, Clone, Copy)]
+struct Case {
+    name: &'static str,
+    grousers: u32,
+    fifty_seconds: bool,
+    both_halves: bool,
+    slip_angle_deg: f64,
+    spacing_m: f64,
+    shear_modulus_m: f64,
+    displacement: Displacement,
+}
+
+impl std::fmt::Display for Case {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        out.write_str(self.name)
+    }
+}
+
+/// 50 s over 1 m of travel with 12 grousers.
+const FIFTY: Case = Case {
+    name: "50 s",
+    grousers: 12,
+    fifty_seconds: true,
+    both_halves: false,
+    slip_angle_deg: 0.0,
+    spacing_m: 0.004,
+    shear_modulus_m: 0.0,
+    displacement: Displacement::Rim,
+};
+
+impl Case {
+    fn run(&self) -> Result<Run, Rejection> {
+        let soil = Soil {
+            k_c: 0.0,
+            k_phi: 1e7,
+            n: 1.1,
+            cohesion_pa: 0.0,
+            friction_angle_rad: 30_f64.to_radians(),
+            shear_velocity_m_s: 1e-3,
+            gamma_exponent: 0.5,
+        };
+        let wheel = Wheel {
+            radius_m: 0.125,
+            width_m: 0.112,
+            rig_radius_m: 0.125,
+        };
+        let shape = Shape::Rim(Grousers {
+            count: self.grousers,
+            height_m: 0.009,
+            thickness_m: 0.002,
+        });
+        let condition = Condition {
+            slip: 0.2,
+            wheel_load_n: 100.0,
+            sled_speed_m_s: 0.02,
+            slip_angle_rad: self.slip_angle_deg.to_radians(),
+            pass: 1,
+        };
+        let ground = Ground {
+            shear_modulus_m: self.shear_modulus_m,
+            ..Ground::default()
+        };
+        let protocol = if self.fifty_seconds {
+            Protocol::Fixed {
+                duration_s: 50.0,
+                transient_force_s: 20.0,
+                transient_sinkage_s: 1.0,
+                lowpass_hz: 0.5,
+            }
+        } else {
+            Protocol::default()
+        };
+        let settings = Settings {
+            dem_spacing_m: self.spacing_m,
+            displacement: self.displacement,
+            protocol,
+            both_halves: self.both_halves,
+            ..Settings::default()
+        };
+        let scene = Scene {
+            soil: &soil,
+            ground: &ground,
+            wheel: &wheel,
+            shape: &shape,
+        };
+        simulate(&scene, &condition, &settings)
+    }
+}
+
+const CASES: [Case; 6] = [
+    FIFTY,
+    Case {
+        name: "50 s, smooth",
+        grousers: 0,
+        ..FIFTY
+    },
+    Case {
+        name: "50 s, both halves",
+        both_halves: true,
+        ..FIFTY
+    },
+    Case {
+        name: "50 s, slip angle 10 degrees",
+        slip_angle_deg: 10.0,
+        ..FIFTY
+    },
+    Case {
+        name: "steady",
+        fifty_seconds: false,
+        ..FIFTY
+    },
+    Case {
+        name: "steady, smooth",
+        fifty_seconds: false,
+        grousers: 0,
+        ..FIFTY
+    },
+];
+
+/// Time of a run, and steps per second.
+#[divan::bench(args = CASES)]
+fn steps(bencher: Bencher<'_, '_>, case: Case) {
+    let steps = case.run().map_or(0, |run| run.history.len() - 1);
+    bencher.counter(ItemsCount::new(steps)).bench(|| case.run());
+}
+
+/// Time of a run, and nodes in contact that were computed per second, over all trials.
+#[divan::bench(args = CASES)]
+fn node_trials(bencher: Bencher<'_, '_>, case: Case) {
+    let nodes = case.run().map_or(0, |run| run.node_trials);
+    bencher.counter(ItemsCount::new(nodes)).bench(|| case.run());
+}
+
+/// Time of a run by the spacing of the grid in millimetres, and nodes in contact per second.
+#[divan::bench(args = [8.0, 5.0, 4.0, 2.0])]
+fn spacing(bencher: Bencher<'_, '_>, spacing_mm: f64) {
+    let case = Case {
+        spacing_m: 1e-3 * spacing_mm,
+        ..FIFTY
+    };
+    let nodes = case.run().map_or(0, |run| run.node_trials);
+    bencher.counter(ItemsCount::new(nodes)).bench(|| case.run());
+}
+
+/// Time of a run with the displacement kept nowhere, on the rim and on the soil's nodes.
+#[divan::bench(args = ["none", "rim", "node"])]
+fn displacement(bencher: Bencher<'_, '_>, keeper: &str) {
+    let case = Case {
+        shear_modulus_m: if keeper == "none" { 0.0 } else { 0.01 },
+        displacement: if keeper == "node" {
+            Displacement::Node
+        } else {
+            Displacement::Rim
+        },
+        ..FIFTY
+    };
+    let steps = case.run().map_or(0, |run| run.history.len() - 1);
+    bencher.counter(ItemsCount::new(steps)).bench(|| case.run());
+}

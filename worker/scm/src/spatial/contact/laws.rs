@@ -1,0 +1,68 @@
+//! The constitutive laws, ready for many nodes.
+
+use super::super::pack::{PACK, Pack, greater, lesser, splat};
+use super::power::Power;
+use crate::Soil;
+use crate::pressure_distribution::PressureDistribution;
+use crate::shear::ShearVelocity;
+
+/// The laws of one soil.
+#[derive(Debug, Clone)]
+pub(crate) struct Laws {
+    pub(crate) soil: Soil,
+    pub(crate) tan_friction_angle: f64,
+    pub(crate) shear_velocity: ShearVelocity,
+    /// Stiffness of unloading and reloading `[Pa/m]`.
+    pub(crate) elastic_stiffness: f64,
+    /// How much of the loose soil bears like undisturbed soil `[–]`.
+    pub(crate) bearing_credit: f64,
+    sinkage_power: Power,
+    distribution: PressureDistribution,
+    distance_power: Option<Power>,
+}
+
+impl Laws {
+    pub(crate) fn new(soil: &Soil, elastic_stiffness: f64, bearing_credit: f64) -> Self {
+        let distribution = PressureDistribution::new(soil.gamma_exponent);
+        Self {
+            soil: *soil,
+            tan_friction_angle: libm::tan(soil.friction_angle_rad),
+            shear_velocity: ShearVelocity::new(soil.shear_velocity_m_s),
+            elastic_stiffness,
+            bearing_credit,
+            sinkage_power: Power::new(soil.n),
+            distribution,
+            distance_power: match distribution {
+                PressureDistribution::Power(m) => Some(Power::new(m)),
+                _ => None,
+            },
+        }
+    }
+
+    /// Turn distances from the border into shapes g of the pressure distribution, up to a constant factor.
+    #[inline]
+    pub(crate) fn shapes(&self, distances: &mut [[f64; PACK]]) {
+        let each = |distances: &mut [[f64; PACK]], of: &dyn Fn(Pack) -> Pack| {
+            for distance in distances {
+                *distance = of(Pack::new(*distance)).to_array();
+            }
+        };
+        match (self.distribution, &self.distance_power) {
+            (PressureDistribution::Root, _) => each(distances, &Pack::sqrt),
+            (PressureDistribution::Linear, _) => {}
+            (_, Some(power)) => each(distances, &|distance| power.of(distance)),
+            (_, None) => distances.fill([1.0; PACK]),
+        }
+    }
+
+    /// Normal pressure: Bekker's `gamma k* z^n`, but no more than the elastic line from the present surface allows.
+    ///
+    /// # Arguments
+    /// - `stiffness`: k* gamma `[N/m^(n+2)]`. `depth`: z below the reference. `penetration`: below the surface `[m]`.
+    #[inline]
+    pub(crate) fn pressure(&self, stiffness: Pack, depth: Pack, penetration: Pack) -> Pack {
+        let plastic = stiffness * self.sinkage_power.of(depth);
+        let elastic = splat(self.elastic_stiffness) * penetration;
+        greater(lesser(plastic, elastic), splat(0.0))
+    }
+}

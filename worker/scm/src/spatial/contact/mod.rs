@@ -1,0 +1,235 @@
+//! Press the wheel onto the terrain: which nodes it touches, and with what pressure.
+//!
+//! # Layout
+//! - `quad`: what is known of four neighbouring nodes.
+//! - `patch`: which nodes in contact hang together.
+//! - `distance`: ends of the contact between nodes, areas, distances from the border.
+//! - `contour`: contour lengths of the patches.
+//! - `laws`: pressure and its distribution; `power`: z^n for many nodes.
+//! - `reaction`: force and torque on the wheel.
+
+mod contour;
+mod distance;
+pub(super) mod laws;
+mod patch;
+mod power;
+mod quad;
+pub(super) mod reaction;
+#[cfg(test)]
+mod tests;
+
+use laws::Laws;
+use patch::{Patches, Run};
+use quad::{Quad, Under};
+
+use super::pack::{PACK, Pack, splat, sum};
+use super::terrain::Terrain;
+use super::wheel::across::Across;
+use super::wheel::envelope::{Envelope, NOWHERE, Strip};
+use super::wheel::motion::{Motion, Traction};
+use crate::footprint::effective_width;
+
+/// Most lanes under a wheel: one bit of a mask for each.
+pub(crate) const MOST_LANES: usize = 64;
+
+/// The wheel on the terrain at one place, to be tried at several heights.
+///
+/// The first and the last strip are guards that never touch, so that every strip in contact has neighbours.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Contact {
+    pub(crate) across: Across,
+    pub(crate) strips: Vec<Strip>,
+    /// Strips, each with all its packs of lanes.
+    pub(crate) quads: Vec<Quad>,
+    /// Hub height at which a strip begins to touch `[m]`.
+    highest: Vec<f64>,
+    /// Forces per unit of pressure and strength: of each strip, or of each lane of each strip.
+    pub(crate) tractions: Vec<Traction>,
+    pub(crate) lanes_differ: bool,
+    /// Strips `first..end` hold all nodes in contact. Bit j of a strip's mask: lane j is in contact.
+    pub(crate) first: usize,
+    pub(crate) end: usize,
+    pub(crate) masks: Vec<u64>,
+    pub(crate) patches: Patches,
+    /// Distances of one strip's lanes from the ends along the travel, and from the border `[m]`.
+    pub(crate) along: Vec<[f64; PACK]>,
+    pub(crate) distance: Vec<[f64; PACK]>,
+    /// Squares of distances of one strip, with room on both sides.
+    pub(crate) squares: Vec<f64>,
+    pub(crate) trials: u64,
+    pub(crate) node_trials: u64,
+}
+
+impl Contact {
+    /// Bring wheel and terrain together: what does not depend on the height of the hub.
+    ///
+    /// With `vertical` the pressure acts upwards whatever the slope of the wheel's surface.
+    pub(crate) fn prepare(
+        &mut self,
+        terrain: &Terrain,
+        envelope: &Envelope,
+        laws: &Laws,
+        motion: &Motion,
+        vertical: bool,
+    ) {
+        self.strips.clone_from(&envelope.strips);
+        let rows = self.strips.len();
+        let packs = self.across.packs();
+        self.quads.resize(rows * packs, Quad::blank());
+        self.squares.resize(3 * packs * PACK, f64::MAX);
+        self.along.resize(packs, [0.0; PACK]);
+        self.distance.resize(packs, [0.0; PACK]);
+        self.masks.resize(rows, 0);
+        self.lanes_differ = !envelope.facets.is_empty();
+        self.find_tractions(envelope, laws, motion, vertical);
+        self.highest.clear();
+        let credit = splat(laws.bearing_credit);
+        for (row, (quads, strip)) in self.quads.chunks_exact_mut(packs).zip(&self.strips).enumerate() {
+            let start = strip.column * terrain.lanes + self.across.first_lane;
+            let under = Under {
+                surface: terrain.surface[start..start + packs * PACK].as_chunks().0,
+                loose: terrain.loose[start..start + packs * PACK].as_chunks().0,
+                bias: &self.across.bias,
+                credit,
+            };
+            let guard = row == 0 || row + 1 == rows;
+            let highest = if guard || !self.lanes_differ {
+                let rise = splat(if guard { NOWHERE } else { strip.rise });
+                let (slope, shear_z) = (splat(strip.slope), splat(self.tractions[row].shear_z));
+                under.meet(quads, |_| (rise, slope, shear_z))
+            } else {
+                under.meet(quads, |pack| {
+                    let facet = envelope.facets[pack * rows + row];
+                    let t = &self.tractions[(row * packs + pack) * PACK..][..PACK];
+                    let shear = Pack::new([t[0].shear_z, t[1].shear_z, t[2].shear_z, t[3].shear_z]);
+                    (facet.rise, facet.slope_x, shear)
+                })
+            };
+            self.highest.push(highest);
+        }
+    }
+
+    fn find_tractions(&mut self, envelope: &Envelope, laws: &Laws, motion: &Motion, vertical: bool) {
+        let tilts = if vertical { 0.0 } else { 1.0 };
+        let law = &laws.shear_velocity;
+        self.tractions.clear();
+        if !self.lanes_differ {
+            let strips = self.strips.iter();
+            self.tractions
+                .extend(strips.map(|s| motion.traction(law, s.ahead, s.rise, [tilts * s.slope, 0.0])));
+            return;
+        }
+        let rows = self.strips.len();
+        for (row, strip) in self.strips.iter().enumerate() {
+            for facet in envelope.facets[row..].iter().step_by(rows) {
+                let (rise, x, y) = (
+                    facet.rise.to_array(),
+                    facet.slope_x.to_array(),
+                    facet.slope_y.to_array(),
+                );
+                self.tractions.extend(
+                    (0..PACK)
+                        .map(|i| motion.traction(law, strip.ahead, rise[i], [tilts * x[i], tilts * y[i]])),
+                );
+            }
+        }
+    }
+
+    /// Vertical force of the soil on the wheel with its hub at a height `[N]`.
+    pub(crate) fn press(&mut self, terrain: &Terrain, laws: &Laws, hub: f64) -> f64 {
+        self.touch(hub);
+        self.measure(terrain, laws, hub);
+        let cohesive = laws.soil.k_c.abs() > 0.0;
+        if cohesive {
+            self.add_contours(terrain);
+        }
+        for patch in &mut self.patches.patches {
+            let k_star = if cohesive {
+                laws.soil.k_phi + laws.soil.k_c / effective_width(patch.area, patch.contour)
+            } else {
+                laws.soil.k_phi
+            };
+            let shape = sum(patch.shapes);
+            let carries = k_star > 0.0 && shape > 0.0;
+            patch.stiffness = if carries { k_star * patch.area / shape } else { 0.0 };
+        }
+        let half = self.sum_pressures(laws);
+        self.trials += 1;
+        if terrain.mirrored { 2.0 * half } else { half }
+    }
+
+    /// Which nodes are in contact, in which patches, and how far from the rear end of their contact.
+    fn touch(&mut self, hub: f64) {
+        let rows = self.strips.len();
+        (self.first, self.end) = (rows, 0);
+        self.masks.fill(0);
+        for row in 1..rows.saturating_sub(1) {
+            if self.highest[row] <= hub {
+                continue;
+            }
+            self.find_rear_ends(row, hub);
+            self.first = self.first.min(row);
+            self.end = row + 1;
+            self.node_trials += u64::from(self.masks[row].count_ones());
+        }
+        self.end = self.end.max(self.first);
+        self.patches.label(self.first, &self.masks[self.first..self.end]);
+    }
+
+    /// Pressures, and the vertical force they and the shear stress exert.
+    fn sum_pressures(&mut self, laws: &Laws) -> f64 {
+        let packs = self.across.packs();
+        let (cohesion, tan_phi) = (splat(laws.soil.cohesion_pa), splat(laws.tan_friction_angle));
+        let mut force = splat(0.0);
+        let quads = self.quads[self.first * packs..self.end * packs].chunks_exact_mut(packs);
+        for (quads, runs) in quads.zip(&self.patches.of_strip) {
+            let runs = &self.patches.runs[runs.clone()];
+            if runs.is_empty() {
+                continue;
+            }
+            let stiffness = |run: &Run| splat(self.patches.patches[run.patch].stiffness);
+            let same = if let [run] = runs {
+                Some(stiffness(run))
+            } else {
+                None
+            };
+            for (pack, quad) in quads.iter_mut().enumerate() {
+                let stiffness = same.unwrap_or_else(|| {
+                    runs.iter().fold(splat(0.0), |others, run| {
+                        run.lanes_of(pack).select(stiffness(run), others)
+                    })
+                });
+                let p = laws.pressure(stiffness * quad.shape, quad.depth, quad.pressed);
+                quad.pressure = p;
+                force += quad.area * (p + (cohesion + p * tan_phi) * quad.shear_z);
+            }
+        }
+        sum(force)
+    }
+
+    /// Height of the hub above the wheel's surface over four lanes `[m]`, of the quad at `place` in strip `row`.
+    pub(crate) fn rise(&self, place: usize, row: usize) -> Pack {
+        if self.lanes_differ {
+            let t = &self.tractions[place * PACK..][..PACK];
+            Pack::new([t[0].rise, t[1].rise, t[2].rise, t[3].rise])
+        } else {
+            splat(self.strips[row].rise)
+        }
+    }
+
+    /// Slip velocity of four lanes `[m/s]`, of the quad at `place` in strip `row`.
+    pub(crate) fn slip_speed(&self, place: usize, row: usize) -> Pack {
+        if self.lanes_differ {
+            let t = &self.tractions[place * PACK..][..PACK];
+            Pack::new([t[0].slip_speed, t[1].slip_speed, t[2].slip_speed, t[3].slip_speed])
+        } else {
+            splat(self.tractions[row].slip_speed)
+        }
+    }
+
+    /// A quad by strip and lane.
+    #[inline]
+    pub(crate) fn quad(&self, row: usize, lane: usize) -> &Quad {
+        &self.quads[row * self.across.packs() + lane / PACK]
+    }
+}

@@ -1,0 +1,89 @@
+//! Hold what is known of four neighbouring lanes of a strip.
+
+use super::super::pack::{PACK, Pack, greater, most_of, splat};
+use super::super::wheel::envelope::NOWHERE;
+
+/// Four neighbouring nodes under the wheel: what a step knows of them, and what a trial height makes of them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Quad {
+    /// Hub height at which the wheel touches the present surface `[m]`.
+    pub(crate) surface: Pack,
+    /// Hub height at which the depth below the reference surface is zero `[m]`.
+    pub(crate) reference: Pack,
+    /// Slope dh/dx of the wheel's surface `[–]`.
+    pub(crate) slope: Pack,
+    /// Share of the strength that the shear displacement has mobilised `[–]`.
+    pub(crate) mobilised: Pack,
+    /// Vertical shear force per projected area and unit strength, with what is mobilised `[–]`.
+    pub(crate) shear_z: Pack,
+    /// How far the wheel reaches below the surface at the node `[m]`; > 0: in contact.
+    pub(crate) penetration: Pack,
+    /// From the middle of the strip to the rear and the front end of the contact `[m]`.
+    pub(crate) to_rear: Pack,
+    pub(crate) to_front: Pack,
+    /// What the node covers behind the middle of the strip `[m]`, and how its penetration rises there `[–]`.
+    pub(crate) left: Pack,
+    pub(crate) tilt: Pack,
+    /// Where the pressure is taken: penetration and depth `[m]`, and the shape g of the distribution.
+    pub(crate) pressed: Pack,
+    pub(crate) depth: Pack,
+    pub(crate) shape: Pack,
+    /// Area `[m²]` and pressure `[Pa]`.
+    pub(crate) area: Pack,
+    pub(crate) pressure: Pack,
+}
+
+impl Quad {
+    pub(crate) fn blank() -> Self {
+        let zero = Pack::splat(0.0);
+        Self {
+            surface: zero,
+            reference: zero,
+            slope: zero,
+            mobilised: zero,
+            shear_z: zero,
+            penetration: zero,
+            to_rear: zero,
+            to_front: zero,
+            left: zero,
+            tilt: zero,
+            pressed: zero,
+            depth: zero,
+            shape: zero,
+            area: zero,
+            pressure: zero,
+        }
+    }
+}
+
+/// The soil under a strip of the wheel.
+pub(crate) struct Under<'a> {
+    pub(crate) surface: &'a [[f64; PACK]],
+    pub(crate) loose: &'a [[f64; PACK]],
+    /// Added to the rise of the wheel.
+    pub(crate) bias: &'a [Pack],
+    /// Share of the loose soil that bears.
+    pub(crate) credit: Pack,
+}
+
+impl Under<'_> {
+    /// Let a strip of the wheel meet the soil; gives the height of the hub at which it begins to touch.
+    ///
+    /// `wheel` gives rise, slope and vertical shear force of a pack.
+    #[inline]
+    pub(crate) fn meet(&self, quads: &mut [Quad], wheel: impl Fn(usize) -> (Pack, Pack, Pack)) -> f64 {
+        let mut highest = splat(NOWHERE);
+        let soil = self.surface.iter().zip(self.loose).zip(self.bias);
+        for (pack, (quad, ((surface, loose), &bias))) in quads.iter_mut().zip(soil).enumerate() {
+            let (rise, slope, shear_z) = wheel(pack);
+            let rise = rise + bias;
+            quad.surface = Pack::new(*surface) + rise;
+            quad.reference = Pack::new(*loose) * self.credit + rise;
+            quad.slope = slope;
+            quad.mobilised = splat(1.0);
+            quad.shear_z = shear_z;
+            highest = greater(highest, quad.surface);
+        }
+        most_of(highest)
+    }
+}

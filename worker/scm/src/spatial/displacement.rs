@@ -1,0 +1,146 @@
+//! Follow how far wheel and soil have slid along each other (Janosi and Hanamoto).
+
+use super::contact::Contact;
+use super::pack::{PACK, Pack, load, splat, store};
+use super::settings::Displacement;
+use super::terrain::Terrain;
+use crate::shear::ShearDisplacement;
+
+/// An element of the rim that has met no soil for longer starts anew `[rad]`.
+const HALF_TURN: f64 = core::f64::consts::PI;
+
+/// Shear displacement j of the contact, and the share `1 − exp(−j/K)` of the strength that it mobilises.
+///
+/// On the rim, j belongs to elements of the wheel's surface, bins of its angle, and grows by `|v_t| dt` in contact:
+/// `j(θ) = R [(θ_1 − θ) − (1 − s)(sin θ_1 − sin θ)]` in steady motion (Wong and Reece). Between a grouser and
+/// the rim behind it an element loses contact without starting anew. On the soil, j belongs to the terrain's nodes.
+#[derive(Debug, Clone)]
+pub(super) struct ShearPath {
+    /// The law; none where the displacement does not matter.
+    law: Option<ShearDisplacement>,
+    /// Bins around the wheel; 0 where j belongs to the soil.
+    bins: usize,
+    /// Lanes of a bin's row.
+    lanes: usize,
+    slid: Vec<f64>,
+    /// Angle that the wheel had turned when a bin was last in contact `[rad]`.
+    last: Vec<f64>,
+}
+
+impl ShearPath {
+    /// Nothing has slid yet. `dx` is the spacing along travel `[m]`; a bin is half as long.
+    pub(super) fn new(modulus: f64, keeper: Displacement, radius: f64, dx: f64) -> Self {
+        let law = (modulus > 0.0).then(|| ShearDisplacement::new(modulus));
+        let on_rim = law.is_some() && keeper == Displacement::Rim;
+        let bins = libm::ceil(core::f64::consts::TAU * radius / (0.5 * dx)) as usize;
+        Self {
+            law,
+            bins: if on_rim { bins } else { 0 },
+            lanes: 0,
+            slid: Vec::new(),
+            last: Vec::new(),
+        }
+    }
+
+    /// Forget what has slid.
+    pub(super) fn clear(&mut self) {
+        self.slid.fill(0.0);
+        self.last.fill(f64::MIN);
+    }
+
+    fn on_rim(&self) -> bool {
+        self.bins > 0
+    }
+
+    /// Make room for the bins' lanes: with a slip angle the wheel covers one lane more or less now and then.
+    fn widen(&mut self, packs: usize) {
+        if self.lanes == 0 {
+            self.lanes = (packs + 1) * PACK;
+            self.slid = vec![0.0; self.bins * self.lanes];
+            self.last = vec![f64::MIN; self.bins];
+        }
+    }
+
+    /// The bins of the wheel's surface over a strip; the one at its front end is the next strip's.
+    fn bins_of(&self, contact: &Contact, row: usize, turned: f64) -> impl Iterator<Item = usize> + use<> {
+        let strip = &contact.strips[row];
+        let (bins, per_angle) = (self.bins as i64, self.bins as f64 / core::f64::consts::TAU);
+        let place = |ahead: f64| libm::floor((libm::atan2(ahead, strip.rise) + turned) * per_angle) as i64;
+        let (first, end) = (place(strip.rear), place(strip.front));
+        (first..end.max(first + 1)).map(move |bin| bin.rem_euclid(bins) as usize)
+    }
+
+    /// Scale the shear stresses of the contact by what has been mobilised so far.
+    pub(super) fn mobilise(&mut self, contact: &mut Contact, terrain: &Terrain, turned: f64) {
+        let Some(law) = self.law else { return };
+        let packs = contact.across.packs();
+        if self.on_rim() {
+            self.widen(packs);
+        }
+        for row in 0..contact.strips.len() {
+            if contact.strips[row].rise <= 0.0 {
+                continue;
+            }
+            for pack in 0..packs {
+                let slid = if self.on_rim() {
+                    self.mean_slid(contact, row, pack, turned)
+                } else {
+                    let start = contact.strips[row].column * terrain.lanes + contact.across.first_lane;
+                    load(&terrain.sheared, start + pack * PACK)
+                };
+                let quad = &mut contact.quads[row * packs + pack];
+                // most strips have not touched yet: spare them the exponentials
+                quad.mobilised = if slid.simd_gt(splat(0.0)).any() {
+                    Pack::new(slid.to_array().map(|j| law.mobilised(j)))
+                } else {
+                    splat(0.0)
+                };
+                quad.shear_z *= quad.mobilised;
+            }
+        }
+    }
+
+    fn mean_slid(&self, contact: &Contact, row: usize, pack: usize, turned: f64) -> Pack {
+        let (mut sum, mut bins) = (splat(0.0), 0.0);
+        for bin in self.bins_of(contact, row, turned) {
+            if turned - self.last[bin] < HALF_TURN {
+                sum += load(&self.slid, bin * self.lanes + pack * PACK);
+            }
+            bins += 1.0;
+        }
+        sum * splat(1.0 / bins)
+    }
+
+    /// Let wheel and soil slide along each other for a time.
+    pub(super) fn slide(&mut self, contact: &Contact, terrain: &mut Terrain, turned: f64, time: f64) {
+        if self.law.is_none() {
+            return;
+        }
+        let packs = contact.across.packs();
+        for row in (contact.first..contact.end).filter(|&row| contact.masks[row] != 0) {
+            let strip = &contact.strips[row];
+            for pack in 0..packs {
+                let place = row * packs + pack;
+                let touching = contact.quads[place].penetration.simd_gt(splat(0.0));
+                let path = touching.select(contact.slip_speed(place, row) * splat(time), splat(0.0));
+                if self.on_rim() {
+                    for bin in self.bins_of(contact, row, turned) {
+                        let at = bin * self.lanes + pack * PACK;
+                        let anew = turned - self.last[bin] >= HALF_TURN;
+                        let before = if anew { splat(0.0) } else { load(&self.slid, at) };
+                        store(&mut self.slid, at, before + path);
+                    }
+                } else if strip.holds_node {
+                    let at = strip.column * terrain.lanes + contact.across.first_lane + pack * PACK;
+                    let sheared = load(&terrain.sheared, at) + path;
+                    store(&mut terrain.sheared, at, sheared);
+                }
+            }
+            if self.on_rim() {
+                for bin in self.bins_of(contact, row, turned) {
+                    self.last[bin] = turned;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! Simulate a wheel that rolls over a deformable terrain, in three dimensions.
+//!
+//! # Layout
+//! - [`Scene`], [`Settings`], [`Ground`], [`Shape`], [`SurfaceMesh`]: what a run is made of.
+//! - `run`: the wheel along its track, and the averages of what it feels.
+//! - `wheel`: the underside that the soil meets, and its motion.
+//! - `contact`: which nodes the wheel touches at a height, their pressure, force and torque.
+//! - `displacement`: how far wheel and soil have slid along each other.
+//! - `terrain`: the soil as a height field, its flow and its slopes.
+//! - `pack`: four lanes at a time.
+
+mod contact;
+mod displacement;
+mod pack;
+mod run;
+mod settings;
+mod surface;
+mod terrain;
+mod wheel;
+
+pub use run::History;
+pub use settings::{Displacement, Ground, Grousers, PressureDirection, Protocol, Settings, Shape, Vertical};
+pub use surface::{Normals, SurfaceMesh};
+
+use crate::{Averages, Condition, Rejection, Soil, Wheel};
+
+/// What the wheel rolls on, and the wheel.
+#[derive(Debug, Clone, Copy)]
+pub struct Scene<'a> {
+    /// Pressure and shear of the soil.
+    pub soil: &'a Soil,
+    /// Deformation of the soil.
+    pub ground: &'a Ground,
+    /// Radius and width of the rim, or nominal ones of a mesh.
+    pub wheel: &'a Wheel,
+    /// The rest of the wheel's shape.
+    pub shape: &'a Shape,
+}
+
+/// What a run gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// Averages by the protocol, with the diagnostics of the contact.
+    pub averages: Averages,
+    /// Change from the last window but one to the last, by the measure of [`Protocol::Steady`]; above its tolerance
+    /// where the travel did not suffice, infinite where there was one window only. `None` for a fixed duration.
+    pub settled_to: Option<f64>,
+    /// Mean power that motor and rig put into the soil while averaging `[W]`, ≥ 0 but for rounding.
+    pub dissipated_power_w: f64,
+    /// Heights of the hub that were tried, and nodes in contact over all of them.
+    pub trials: u64,
+    /// Sum over all trials of the nodes in contact that were computed.
+    pub node_trials: u64,
+    /// Step by step.
+    pub history: History,
+}
+
+/// A rigid wheel rolls over deformable soil at prescribed speeds of sled and rim.
+///
+/// The soil is a height field of columns (spacing dx along the heading) and lanes (dy across). A step moves the wheel
+/// on, then finds the height of the hub at which the soil carries the load. At a trial height, for every node under the
+/// wheel with its surface h below the soil's surface `z_s`, per projected area dA:
+///
+/// - `p = min(gamma k* z^n, K_e (z_s − h))`, z below the reference `beta loose`, `k* = k_c / b_eff + k_phi`,
+///   `b_eff = 2 A / L` of the node's own patch of the footprint (area A, contour L)
+/// - `gamma = d^m / mean(d^m)` over the patch, d the Euclidean distance from its border
+/// - `tau = (c + p tan(phi)) (1 − exp(−|v_t| / v0)) (1 − exp(−j / K))` against the slip velocity `v_t` of the wheel's
+///   surface, which has three components; the last factor only where K > 0
+/// - `dF = (p n + tau t) dA / n_z` with the normal n of the wheel's surface (radial on rim *and* grousers, the facet's own on
+///   a mesh), torque about the hub
+///
+/// Then the nodes that yielded are left at `z_s = h + p / K_e`; a share `phi_f` of what was displaced flows to the borders of
+/// the footprint in front, behind and beside, in inverse proportion to their distances and by the direction in
+/// which the wheel's surface moves; slopes steeper than the angle of repose slide, never into the wheel.
+///
+/// # Arguments
+/// - `scene`, `condition`, `settings`: fields carry units and bounds. omega comes from the slip and the *rig's* radius.
+///   `condition.pass` = k: the wheel passes k times over the same track under this condition, the k-th is averaged.
+///
+/// # Returns
+/// [`Run`]: averages by the protocol, and histories step by step.
+///
+/// # Errors
+/// - [`Rejection::InvalidParameter`]: a field is outside its bounds. Nothing is clamped.
+/// - [`Rejection::NoSupport`]: no balance before the hub reaches the undisturbed surface; also where k* ≤ 0 everywhere.
+/// - [`Rejection::NoConvergence`]: the mean residual of the balance exceeds 2 % of the load: the load jumps as patches join.
+/// - [`Rejection::EnergyGained`]: motor and sled got work out of the soil, on average: `T omega − F v < 0`.
+/// - [`Rejection::NotFinite`]: forces overflow. [`Rejection::Protocol`]: the protocol does not fit the run.
+///
+/// # Validity
+/// Rigid wheel, dry granular soil, motion slow enough for the vertical balance (or [`Vertical::Dynamic`]). Stresses act on
+/// the wheel's surface. A height field cannot show the flanks of grousers: their thrust beyond the sheared tips is
+/// no part of this model. Wheels up to 126 lanes wide straight ahead, 62 at a slip angle.
+///
+/// # Numerics
+/// dx is refined until eight nodes lie in the contact of a smooth wheel, and the contact ends between nodes, so that
+/// areas and distances do not jump. A grouser bears by the width of it that covers a column. Balance to 2e-3 of the
+/// load, or to 1 µm where patches join. Where left and right are alike, half the wheel is modelled.
+///
+/// # Source
+/// Krenn & Hirzinger's soil contact model as the source paper describes it (section 4, Eq. 5–10); what it leaves open (gamma,
+/// flow, memory of compaction, grousers) is ours. Checked by `spatial::*`.
+///
+/// # Example
+/// ```
+/// use scm::spatial::{Ground, Grousers, Scene, Settings, Shape, simulate};
+/// use scm::{Condition, Soil, Wheel};
+/// let soil = Soil { k_c: 0.0, k_phi: 1e7, n: 1.1, cohesion_pa: 0.0, friction_angle_rad: 30f64.to_radians(),
+///     shear_velocity_m_s: 1e-3, gamma_exponent: 0.5 };
+/// let wheel = Wheel { radius_m: 0.125, width_m: 0.112, rig_radius_m: 0.125 };
+/// let shape = Shape::Rim(Grousers { count: 12, height_m: 0.009, thickness_m: 0.002 });
+/// let condition = Condition { slip: 0.2, wheel_load_n: 100.0, sled_speed_m_s: 0.008, slip_angle_rad: 0.0, pass: 1 };
+/// let scene = Scene { soil: &soil, ground: &Ground::default(), wheel: &wheel, shape: &shape };
+/// let run = simulate(&scene, &condition, &Settings::default())?;
+/// assert!((run.averages.drawbar_pull_n - 39.4).abs() < 0.5 && (run.averages.sinkage_m - 5.24e-3).abs() < 1e-4);
+/// # Ok::<(), scm::Rejection>(())
+/// ```
+pub fn simulate(scene: &Scene, condition: &Condition, settings: &Settings) -> Result<Run, Rejection> {
+    let (soil, ground, wheel) = (
+        scene.soil.checked()?,
+        scene.ground.checked()?,
+        scene.wheel.checked()?,
+    );
+    scene.shape.checked()?;
+    let scene = Scene {
+        soil: &soil,
+        ground: &ground,
+        wheel: &wheel,
+        shape: scene.shape,
+    };
+    run::roll(&scene, &condition.checked()?, settings.checked()?)
+}

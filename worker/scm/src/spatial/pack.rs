@@ -1,0 +1,84 @@
+//! Work on four lanes at a time, with the same bits on every machine.
+
+use wide::f64x4;
+
+/// Four neighbouring lanes of one strip or column.
+pub(crate) type Pack = f64x4;
+
+/// Lanes in a [`Pack`].
+pub(crate) const PACK: usize = 4;
+
+/// The lanes of one pack in a mask.
+pub(crate) const LANES: u64 = (1 << PACK) - 1;
+
+/// What selects the lanes whose bits are set among the last [`PACK`] of a mask.
+#[inline]
+pub(crate) fn lanes_of(mask: u64) -> Pack {
+    Pack::new(SELECTORS[(mask & LANES) as usize])
+}
+
+const SELECTORS: [[f64; PACK]; 1 << PACK] = {
+    let mut selectors = [[0.0; PACK]; 1 << PACK];
+    let mut place = 0;
+    while place < selectors.len() {
+        let mut lane = 0;
+        while lane < PACK {
+            selectors[place][lane] = f64::from_bits((place as u64 >> lane & 1).wrapping_neg());
+            lane += 1;
+        }
+        place += 1;
+    }
+    selectors
+};
+
+/// The same number in every lane.
+#[inline]
+pub(crate) fn splat(value: f64) -> Pack {
+    Pack::splat(value)
+}
+
+/// The greater of two, lane by lane; neither may be NaN.
+#[inline]
+pub(crate) fn greater(a: Pack, b: Pack) -> Pack {
+    a.fast_max(b)
+}
+
+/// The lesser of two, lane by lane; neither may be NaN.
+#[inline]
+pub(crate) fn lesser(a: Pack, b: Pack) -> Pack {
+    a.fast_min(b)
+}
+
+/// The sum of the lanes, in an order that does not depend on the machine's vector width.
+#[inline]
+pub(crate) fn sum(pack: Pack) -> f64 {
+    let [a, b, c, d] = pack.to_array();
+    (a + c) + (b + d)
+}
+
+/// The least lane; none may be NaN.
+#[inline]
+pub(crate) fn least_of(pack: Pack) -> f64 {
+    let [a, b, c, d] = pack.to_array();
+    let (low, high) = (if a < c { a } else { c }, if b < d { b } else { d });
+    if low < high { low } else { high }
+}
+
+/// The greatest lane; none may be NaN.
+#[inline]
+pub(crate) fn most_of(pack: Pack) -> f64 {
+    -least_of(-pack)
+}
+
+/// Four lanes of a row that begins at `first`.
+#[inline]
+pub(crate) fn load(row: &[f64], first: usize) -> Pack {
+    let lanes = &row[first..first + PACK];
+    Pack::new([lanes[0], lanes[1], lanes[2], lanes[3]])
+}
+
+/// Put four lanes into a row.
+#[inline]
+pub(crate) fn store(row: &mut [f64], first: usize, pack: Pack) {
+    row[first..first + PACK].copy_from_slice(&pack.to_array());
+}

@@ -1,0 +1,139 @@
+//! Find the height of the hub at which the soil carries the wheel load.
+
+/// Residual load, relative to the wheel load, at which a step is in balance.
+const TOLERANCE: f64 = 2e-3;
+/// Width of a bracket at which the search ends: the load may jump as patches join `[m]`.
+const NARROWEST: f64 = 1e-6;
+const MOST_TRIALS: u32 = 60;
+
+/// Search with the last step's slope; `load` falls as the hub rises.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Search {
+    /// Where to start `[m]`.
+    pub(crate) guess: f64,
+    /// d load / d height there `[N/m]`, < 0.
+    pub(crate) slope: f64,
+    /// The longest step without a bracket `[m]`.
+    pub(crate) longest: f64,
+}
+
+/// A height in balance, and the slope by which it was found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Balance {
+    pub(crate) height: f64,
+    pub(crate) slope: f64,
+    /// Carried load less wheel load `[N]`.
+    pub(crate) residual: f64,
+}
+
+/// The height at which `excess(height)`, the carried load less the wheel load, is zero; none if it is not met above `lowest`.
+pub(crate) fn balance(
+    search: Search,
+    wheel_load: f64,
+    lowest: f64,
+    mut excess: impl FnMut(f64) -> f64,
+) -> Option<Balance> {
+    let mut slope = search.slope;
+    // a guess from the trend may lie below: what is carried there is no support
+    let mut height = search.guess.max(lowest);
+    // heights and their excess: ≥ 0 at the low one, < 0 at the high one
+    let mut low: Option<(f64, f64)> = None;
+    let mut high: Option<(f64, f64)> = None;
+    let mut last: Option<(f64, f64)> = None;
+    for trial in 0..MOST_TRIALS {
+        let residual = excess(height);
+        let done = residual.abs() <= TOLERANCE * wheel_load;
+        let narrow = matches!((low, high), (Some((l, _)), Some((h, _))) if h - l < NARROWEST);
+        if let Some((before, its_residual)) = last {
+            let chord = (residual - its_residual) / (height - before);
+            if chord < -1e3 && chord.is_finite() {
+                slope = chord;
+            }
+        }
+        last = Some((height, residual));
+        if done || narrow || trial + 1 == MOST_TRIALS {
+            return Some(Balance {
+                height,
+                slope,
+                residual,
+            });
+        }
+        if residual >= 0.0 {
+            low = Some((height, residual));
+        } else {
+            high = Some((height, residual));
+        }
+        let newton = height - residual / slope;
+        height = match (low, high) {
+            (Some((l, fl)), Some((h, fh))) => {
+                let inside = newton > l && newton < h;
+                if inside && trial < 6 {
+                    newton
+                } else if trial % 3 == 2 {
+                    0.5 * (l + h)
+                } else {
+                    l + (h - l) * (fl / (fl - fh)).clamp(0.05, 0.95)
+                }
+            }
+            _ => {
+                let next = newton.clamp(height - search.longest, height + search.longest);
+                if next <= lowest {
+                    if height <= lowest {
+                        return None;
+                    }
+                    lowest
+                } else {
+                    next
+                }
+            }
+        };
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Soil of 1 kN/m that meets the wheel at 100 mm.
+    fn spring(height: f64) -> f64 {
+        1e3 * (0.1 - height)
+    }
+
+    fn search(guess: f64) -> Search {
+        Search {
+            guess,
+            slope: -2e3,
+            longest: 0.02,
+        }
+    }
+
+    #[test]
+    fn the_load_is_met_within_its_tolerance_from_above_and_below() {
+        for guess in [0.099, 0.05, 0.001, -0.01] {
+            let found = balance(search(guess), 30.0, 0.0, |height| spring(height) - 30.0).expect("support");
+            assert!((found.height - 0.07).abs() < 0.031e-3, "{found:?}");
+            assert!((spring(found.height) - 30.0 - found.residual).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_load_met_only_below_the_lowest_height_is_not_met_and_never_tried_there() {
+        let mut deepest = f64::MAX;
+        let found = balance(search(-0.03), 110.0, 0.0, |height| {
+            deepest = deepest.min(height);
+            spring(height) - 110.0
+        });
+        assert!(found.is_none(), "{found:?}");
+        assert!(deepest.abs() < f64::MIN_POSITIVE, "{deepest}");
+    }
+
+    #[test]
+    fn a_jump_past_the_load_ends_where_the_bracket_is_narrow() {
+        // 20 N above 50 mm, 60 N below
+        let jump = |height: f64| if height > 0.05 { 20.0 } else { 60.0 };
+        let found = balance(search(0.06), 30.0, 0.0, |height| jump(height) - 30.0).expect("a bracket");
+        assert!((found.height - 0.05).abs() < 2.0 * NARROWEST, "{found:?}");
+        assert!(found.residual.abs() > 5.0);
+    }
+}

@@ -1,0 +1,19 @@
+//! Roll the wheel along its track and average what it feels.
+//!
+//! # Layout
+//! - `balance`: the height of the hub at which the soil carries the load.
+//! - `track`: the terrain a run needs, and the size of its steps.
+//! - `rolling`: one step after the other.
+//! - `history`: what each step gave.
+//! - `record`: what the steps gave, its averages, and whether they can be.
+//! - `protocol`: when a run ends, and which steps are averaged.
+
+mod balance;
+mod history;
+mod protocol;
+mod record;
+mod rolling;
+mod track;
+
+pub use history::History;
+pub(crate) use protocol::roll;

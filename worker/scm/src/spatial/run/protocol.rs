@@ -1,0 +1,140 @@
+//! Decide when a run ends, and average it.
+
+use super::record::{Record, Windows};
+use super::rolling::Rolling;
+use crate::Condition;
+use crate::rejection::Rejection;
+use crate::signal::{self, INTERVAL_S, LowPass, Window, period_mean};
+use crate::spatial::settings::{Protocol, Settings};
+use crate::spatial::{Run, Scene};
+
+/// Roll the wheel by the settings' protocol, pass after pass; the last one counts.
+pub(crate) fn roll(scene: &Scene, condition: &Condition, settings: Settings) -> Result<Run, Rejection> {
+    let track = match settings.protocol {
+        Protocol::Steady { most_travel_m, .. } => most_travel_m,
+        Protocol::Fixed { duration_s, .. } => duration_s * condition.sled_speed_m_s,
+    };
+    let mut rolling = Rolling::new(scene, condition, settings, track)?;
+    let steps = libm::floor(track / rolling.steps.travel) as usize;
+    for _ in 1..condition.pass {
+        rolling.lower()?;
+        for _ in 0..steps {
+            rolling.step()?;
+        }
+        rolling.start_again();
+    }
+    let mut record = Record::new(rolling.steps.time);
+    let lowered = rolling.lower()?;
+    record.push(&mut rolling, &lowered);
+    let (windows, settled_to) = match settings.protocol {
+        Protocol::Steady { tolerance, .. } => steady(&mut rolling, &mut record, condition, tolerance, steps)?,
+        Protocol::Fixed {
+            transient_force_s,
+            transient_sinkage_s,
+            lowpass_hz,
+            ..
+        } => {
+            for _ in 0..steps {
+                let step = rolling.step()?;
+                record.push(&mut rolling, &step);
+            }
+            let cut = [transient_force_s, transient_sinkage_s];
+            (fixed(&rolling, &record, cut, lowpass_hz)?, None)
+        }
+    };
+    record.finish(&rolling, condition, windows, settled_to)
+}
+
+/// Roll until the means of two windows in a row agree. A window is a whole number of grouser periods no shorter than
+/// the contact, or a whole number of columns where there are none.
+fn steady(
+    rolling: &mut Rolling,
+    record: &mut Record,
+    condition: &Condition,
+    tolerance: f64,
+    most_steps: usize,
+) -> Result<(Windows, Option<f64>), Rejection> {
+    let (load, radius) = (condition.wheel_load_n, rolling.radius());
+    let period = rolling.grouser_period_s().map(|p| p / rolling.steps.time); // in steps
+    let mut last: Option<([f64; 4], f64)> = None;
+    let mut window = 0.0; // in steps
+    let mut end = 0.0;
+    for taken in 0..=most_steps {
+        if taken > 0 {
+            let step = rolling.step()?;
+            record.push(rolling, &step);
+        }
+        if (taken as f64) < end {
+            continue;
+        }
+        let means = (taken > 0).then(|| record.means(end - window, end)).transpose()?;
+        if let (Some(means), Some((before, _))) = (means, last) {
+            let scales = [load, load * radius, means[2].abs().max(1e-3 * radius), load];
+            let change = (0..4).fold(0.0_f64, |most, i| {
+                most.max((means[i] - before[i]).abs() / scales[i])
+            });
+            last = Some((means, change));
+            if change <= tolerance {
+                break;
+            }
+        } else if let Some(means) = means {
+            last = Some((means, f64::INFINITY));
+        }
+        // the next window: as long as the contact has become
+        let contact = record.contact_length_m.last().copied().unwrap_or(0.0) / rolling.steps.travel;
+        let wanted = match period {
+            Some(period) => period * libm::ceil(contact / period).max(1.0),
+            // the grid's own ripple drops out over whole columns
+            None => {
+                let column = rolling.steps.to_column as f64;
+                column * libm::ceil(contact / column).max(1.0)
+            }
+        };
+        let start = end;
+        end = (start + wanted.max(1.0).min(0.5 * most_steps as f64)).min(most_steps as f64);
+        window = end - start;
+    }
+    let settled = last.filter(|(_, change)| change.is_finite());
+    let (means, change) = settled.ok_or(Rejection::InvalidParameter {
+        name: "most_travel_m",
+        value: most_steps as f64 * rolling.steps.travel,
+        unit: "m",
+        bound: "long enough for two windows of averages",
+    })?;
+    let first_step = (record.history.len() as f64 - 1.0 - window).max(0.0) as usize;
+    Ok((Windows { means, first_step }, Some(change)))
+}
+
+/// Averages of histories at 10 Hz, filtered, with their transients cut.
+fn fixed(rolling: &Rolling, record: &Record, cut_s: [f64; 2], lowpass_hz: f64) -> Result<Windows, Rejection> {
+    let filter = if lowpass_hz > 0.0 {
+        Some(LowPass::new(lowpass_hz, 1.0 / INTERVAL_S)?)
+    } else {
+        None
+    };
+    let step = rolling.steps.time;
+    let edges: Vec<f64> = (0..record.history.len()).map(|i| i as f64 * step).collect();
+    let mut samples = vec![0.0; signal::intervals(&edges, INTERVAL_S)];
+    let mut means = [0.0; 4];
+    for (i, channel) in record.history.channels().into_iter().take(4).enumerate() {
+        signal::resample(&edges, &channel[1..], INTERVAL_S, &mut samples)?;
+        if let Some(filter) = &filter {
+            filter.apply(&mut samples);
+        }
+        let history = signal::History {
+            start_s: 0.0,
+            interval_s: INTERVAL_S,
+            samples: &samples,
+        };
+        let window = Window {
+            from_s: if i == 2 { cut_s[1] } else { cut_s[0] },
+            to_s: history.end_s(),
+            period_s: rolling.grouser_period_s(),
+        };
+        means[i] = period_mean(&history, &window)?.mean;
+    }
+    Ok(Windows {
+        means,
+        first_step: (cut_s[0] / step) as usize,
+    })
+}

@@ -1,0 +1,247 @@
+//! Keep what each step gives, and make a run of it.
+
+use super::history::History;
+use super::rolling::{Rolling, Step};
+use crate::rejection::Rejection;
+use crate::signal::{self, Window, period_mean};
+use crate::spatial::Run;
+use crate::{Averages, Condition};
+
+/// Steps from one look at the contour to the next: no multiple of which is a column's, whose phase the contour shows.
+const CONTOUR_EVERY: usize = 7;
+/// Power that the soil may seem to give, relative to that through the wheel and to load times speed: what the search for the
+/// balance leaves of the load, and, on hard ground, springs under grousers, whose force acts along the spoke while their depth
+/// is measured downwards (0.2 % of load times speed).
+const ENERGY_TOLERANCE: f64 = 5e-3;
+/// Largest mean residual of the vertical balance, relative to the wheel load.
+const MOST_RESIDUAL: f64 = 0.02;
+
+/// Means of drawbar pull, torque, sinkage and lateral force, and the steps over which the rest is averaged.
+pub(super) struct Windows {
+    pub(super) means: [f64; 4],
+    pub(super) first_step: usize,
+}
+
+/// What a run gives, step by step.
+pub(super) struct Record {
+    pub(super) history: History,
+    pub(super) contact_length_m: Vec<f64>,
+    b_eff_m: Vec<f64>,
+    nodes: Vec<f64>,
+    residual_n: Vec<f64>,
+    /// Power that motor and rig put into the soil `[W]`.
+    power_w: Vec<f64>,
+}
+
+impl Record {
+    pub(super) fn new(step_s: f64) -> Self {
+        Self {
+            history: History {
+                step_s,
+                ..History::default()
+            },
+            contact_length_m: Vec::new(),
+            b_eff_m: Vec::new(),
+            nodes: Vec::new(),
+            residual_n: Vec::new(),
+            power_w: Vec::new(),
+        }
+    }
+
+    pub(super) fn push(&mut self, rolling: &mut Rolling, step: &Step) {
+        let reaction = &step.reaction;
+        if self.history.len().is_multiple_of(CONTOUR_EVERY) {
+            self.b_eff_m.push(rolling.effective_width());
+        }
+        self.history.drawbar_pull_n.push(reaction.force_x);
+        self.history.torque_n_m.push(reaction.torque);
+        self.history.sinkage_m.push(rolling.sinkage(step.hub));
+        self.history.lateral_force_n.push(-reaction.force_y);
+        self.history.wheel_load_n.push(reaction.force_z);
+        self.contact_length_m.push(reaction.area / rolling.width());
+        self.nodes.push(f64::from(reaction.nodes));
+        self.residual_n.push(step.residual);
+        let motion = &rolling.motion;
+        self.power_w.push(
+            reaction.torque * motion.rotation
+                - reaction.force_x * motion.forward
+                - reaction.force_y * motion.lateral
+                - reaction.force_z * step.rising,
+        );
+    }
+
+    /// Means of the four channels between two places counted in steps of travel.
+    pub(super) fn means(&self, from: f64, to: f64) -> Result<[f64; 4], Rejection> {
+        let mut means = [0.0; 4];
+        for (mean, channel) in means.iter_mut().zip(self.history.channels()) {
+            let history = signal::History {
+                start_s: 0.0,
+                interval_s: 1.0,
+                samples: &channel[1..],
+            };
+            let window = Window {
+                from_s: from,
+                to_s: to,
+                period_s: None,
+            };
+            *mean = period_mean(&history, &window)?.mean;
+        }
+        Ok(means)
+    }
+
+    pub(super) fn finish(
+        self,
+        rolling: &Rolling,
+        condition: &Condition,
+        windows: Windows,
+        settled_to: Option<f64>,
+    ) -> Result<Run, Rejection> {
+        let mean = |values: &[f64], first: usize| {
+            let part = &values[first.min(values.len() - 1)..];
+            part.iter().sum::<f64>() / part.len() as f64
+        };
+        let [drawbar_pull_n, torque_n_m, sinkage_m, lateral_force_n] = windows.means;
+        for (quantity, value) in [
+            ("drawbar pull", drawbar_pull_n),
+            ("torque", torque_n_m),
+            ("sinkage", sinkage_m),
+            ("lateral force", lateral_force_n),
+        ] {
+            if !value.is_finite() {
+                return Err(Rejection::NotFinite { quantity, value });
+            }
+        }
+        let first = windows.first_step;
+        let residuals: Vec<f64> = self.residual_n.iter().map(|r| r.abs()).collect();
+        let residual_load_n = mean(&residuals, first);
+        if residual_load_n > MOST_RESIDUAL * condition.wheel_load_n {
+            return Err(Rejection::NoConvergence {
+                residual_load_n,
+                wheel_load_n: condition.wheel_load_n,
+                sinkage_m,
+                evaluations: rolling.contact.trials as u32,
+            });
+        }
+        let dissipated_power_w = mean(&self.power_w, first);
+        let throughput = (torque_n_m * rolling.motion.rotation).abs()
+            + (drawbar_pull_n * rolling.motion.forward).abs()
+            + (lateral_force_n * rolling.motion.lateral).abs();
+        // a wheel that hardly slips on hard ground has next to no throughput
+        let scale = throughput + condition.wheel_load_n * condition.sled_speed_m_s;
+        if dissipated_power_w < -ENERGY_TOLERANCE * scale {
+            return Err(Rejection::EnergyGained {
+                power_w: dissipated_power_w,
+                throughput_w: throughput,
+            });
+        }
+        let steps = self.history.len() - 1;
+        Ok(Run {
+            averages: Averages {
+                drawbar_pull_n,
+                torque_n_m,
+                sinkage_m,
+                lateral_force_n,
+                b_eff_m: mean(&self.b_eff_m, first.div_ceil(CONTOUR_EVERY)),
+                contact_length_m: mean(&self.contact_length_m, first),
+                residual_load_n,
+                nodes_in_contact: libm::round(mean(&self.nodes, first)) as u32,
+                simulated_travel_m: steps as f64 * rolling.steps.travel,
+            },
+            settled_to,
+            dissipated_power_w,
+            trials: rolling.contact.trials,
+            node_trials: rolling.contact.node_trials,
+            history: self.history,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spatial::{Ground, Grousers, Scene, Settings, Shape};
+    use crate::{Soil, Wheel};
+
+    /// What finishing a short run says, after its record was changed.
+    fn finished(change: fn(&mut Record)) -> Result<Run, Rejection> {
+        let soil = Soil {
+            k_c: 0.0,
+            k_phi: 1e7,
+            n: 1.1,
+            cohesion_pa: 0.0,
+            friction_angle_rad: 0.5,
+            shear_velocity_m_s: 1e-3,
+            gamma_exponent: 0.5,
+        };
+        let wheel = Wheel {
+            radius_m: 0.125,
+            width_m: 0.112,
+            rig_radius_m: 0.125,
+        };
+        let condition = Condition {
+            slip: 0.2,
+            wheel_load_n: 100.0,
+            sled_speed_m_s: 0.01,
+            slip_angle_rad: 0.0,
+            pass: 1,
+        };
+        let (ground, shape) = (Ground::default(), Shape::Rim(Grousers::default()));
+        let scene = Scene {
+            soil: &soil,
+            ground: &ground,
+            wheel: &wheel,
+            shape: &shape,
+        };
+        let mut rolling = Rolling::new(&scene, &condition, Settings::default(), 0.05)?;
+        let mut record = Record::new(rolling.steps.time);
+        let lowered = rolling.lower()?;
+        record.push(&mut rolling, &lowered);
+        for _ in 0..50 {
+            let step = rolling.step()?;
+            record.push(&mut rolling, &step);
+        }
+        change(&mut record);
+        let means = record.means(20.0, 50.0)?;
+        let windows = Windows {
+            means,
+            first_step: 20,
+        };
+        record.finish(&rolling, &condition, windows, None)
+    }
+
+    fn kind(change: fn(&mut Record)) -> &'static str {
+        finished(change).map_or_else(|rejection| rejection.kind(), |_| "none")
+    }
+
+    #[test]
+    fn a_run_that_gains_energy_is_rejected() {
+        assert_eq!(kind(|_| ()), "none");
+        assert_eq!(
+            kind(|record| record.power_w.iter_mut().for_each(|p| *p = -*p)),
+            "energy_gained"
+        );
+        // 2 % of 100 N that move at 10 mm/s
+        assert_eq!(
+            kind(|record| record.power_w.iter_mut().for_each(|p| *p = -2e-2)),
+            "energy_gained"
+        );
+    }
+
+    #[test]
+    fn a_run_out_of_balance_is_rejected() {
+        // one step in a hundred may miss by the whole load, not one in ten
+        assert_eq!(kind(|record| record.residual_n[40] = 50.0), "none");
+        assert_eq!(
+            kind(|record| record.residual_n.iter_mut().for_each(|r| *r = -3.0)),
+            "no_convergence"
+        );
+    }
+
+    #[test]
+    fn a_mean_that_is_no_number_is_rejected() {
+        assert_eq!(
+            kind(|record| record.history.torque_n_m[30] = f64::NAN),
+            "not_finite"
+        );
+    }
+}

@@ -1,0 +1,460 @@
+//! Roll the wheel over the terrain, one step after the other.
+
+use super::balance::{Search, balance};
+use super::track::{Steps, spacing_along, steps, terrain};
+use crate::rejection::Rejection;
+use crate::spatial::contact::Contact;
+use crate::spatial::contact::laws::Laws;
+use crate::spatial::contact::reaction::Reaction;
+use crate::spatial::displacement::ShearPath;
+use crate::spatial::settings::{PressureDirection, Settings, Vertical};
+use crate::spatial::terrain::Terrain;
+use crate::spatial::terrain::flow::Flow;
+use crate::spatial::terrain::relaxation::Relaxation;
+use crate::spatial::wheel::Underside;
+use crate::spatial::wheel::envelope::Envelope;
+use crate::spatial::wheel::motion::Motion;
+use crate::spatial::wheel::{Pose, Range};
+use crate::spatial::{Ground, Scene};
+use crate::{Condition, Wheel};
+
+/// How far below the highest soil the wheel may come within a step `[m]`; at the start it sinks from above.
+const SINKS_PER_STEP: f64 = 1e-3;
+/// Columns beyond the last contact over which the wheel is laid.
+const MARGIN: usize = 3;
+const WIDEST_MARGIN: usize = 48;
+/// Slopes of the load between which the search for a balance starts, relative to load / radius.
+const SLOPES: [f64; 2] = [-5e3, -2.0];
+
+/// What one step gave.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Step {
+    pub(crate) reaction: Reaction,
+    /// Height of the hub above the undisturbed surface `[m]`.
+    pub(crate) hub: f64,
+    /// Vertical velocity of the hub `[m/s]`.
+    pub(crate) rising: f64,
+    /// Carried load less wheel load, inertia and damping `[N]`.
+    pub(crate) residual: f64,
+}
+
+/// A wheel on its way.
+pub(crate) struct Rolling<'a> {
+    wheel: &'a Wheel,
+    condition: &'a Condition,
+    settings: Settings,
+    ground: Ground,
+    pub(crate) motion: Motion,
+    pub(crate) steps: Steps,
+    laws: Laws,
+    underside: Underside,
+    shear_path: ShearPath,
+    terrain: Terrain,
+    envelope: Envelope,
+    pub(crate) contact: Contact,
+    flow: Flow,
+    relaxation: Relaxation,
+    start: f64,
+    pose: Pose,
+    /// How far the wheel has gone sideways `[m]`; the pose is that to the nearest lane.
+    drifted: f64,
+    hub: f64,
+    rising: f64,
+    slope: f64,
+    touched: Option<Range>,
+    /// Heights of the hub after each step of this pass `[m]`.
+    heights: Vec<f64>,
+    repeats_after: usize,
+}
+
+impl<'a> Rolling<'a> {
+    /// The wheel above undisturbed soil, which it is to travel for a distance `[m]`.
+    pub(crate) fn new(
+        scene: &Scene<'a>,
+        condition: &'a Condition,
+        settings: Settings,
+        travel: f64,
+    ) -> Result<Self, Rejection> {
+        let Scene {
+            soil, ground, wheel, ..
+        } = scene;
+        let motion = Motion::new(wheel, condition);
+        let underside = Underside::new(wheel, scene.shape);
+        let mirrored = !settings.both_halves && motion.lateral.abs() == 0.0 && underside.is_symmetric();
+        let dx = spacing_along(soil, wheel, condition, &settings);
+        let steps = steps(wheel, condition, &motion, &settings, dx);
+        let width = underside.width(wheel);
+        let (terrain, start) = terrain(width, &motion, &settings, dx, underside.reach(), travel, mirrored)?;
+        let repeats_after = if underside.repeats_per_turn().is_none() {
+            steps.to_column
+        } else {
+            1
+        };
+        Ok(Self {
+            wheel,
+            condition,
+            settings,
+            ground: **ground,
+            motion,
+            steps,
+            laws: Laws::new(soil, ground.elastic_stiffness_pa_m, ground.bearing_credit),
+            shear_path: ShearPath::new(ground.shear_modulus_m, settings.displacement, wheel.radius_m, dx),
+            underside,
+            terrain,
+            envelope: Envelope::default(),
+            contact: Contact::default(),
+            flow: Flow::default(),
+            relaxation: Relaxation::new(ground.repose_angle_rad),
+            start,
+            pose: Pose {
+                x: start,
+                y: 0.0,
+                turned: 0.0,
+            },
+            drifted: 0.0,
+            hub: wheel.radius_m,
+            rising: 0.0,
+            slope: 0.0,
+            touched: None,
+            heights: Vec::new(),
+            repeats_after,
+        })
+    }
+
+    /// Put the wheel back to the start of its track, above the rut it left.
+    pub(crate) fn start_again(&mut self) {
+        self.relaxation.settle_everywhere(&mut self.terrain);
+        self.terrain.sheared.fill(0.0);
+        self.shear_path.clear();
+        self.pose = Pose {
+            x: self.start,
+            y: 0.0,
+            turned: 0.0,
+        };
+        self.drifted = 0.0;
+        self.hub = self.wheel.radius_m + self.terrain.top;
+        (self.rising, self.slope, self.touched) = (0.0, 0.0, None);
+        self.heights.clear();
+    }
+
+    /// Lower the wheel onto the soil where it stands.
+    pub(crate) fn lower(&mut self) -> Result<Step, Rejection> {
+        self.slope = -self.condition.wheel_load_n / (0.05 * self.wheel.radius_m);
+        self.advance(0.0)
+    }
+
+    /// Travel one step further.
+    pub(crate) fn step(&mut self) -> Result<Step, Rejection> {
+        let time = self.steps.time;
+        self.pose.x += self.motion.forward * time;
+        // Lanes fit the width, so a wheel that drifts sideways stands on the nearest whole lane: a lane covered by a sliver would
+        // never be pressed down, and its undisturbed soil would join patches and lengthen contours however thin it is.
+        self.drifted += self.motion.lateral * time;
+        self.pose.y = libm::round(self.drifted / self.terrain.dy) * self.terrain.dy;
+        self.pose.turned += self.motion.rotation * time;
+        self.advance(time)
+    }
+
+    fn advance(&mut self, time: f64) -> Result<Step, Rejection> {
+        self.contact
+            .across
+            .lay(&self.terrain, self.pose.y, self.underside.width(self.wheel));
+        let mut margin = MARGIN;
+        let found = loop {
+            self.bring_together(margin, time > 0.0);
+            let found = self.find_height(time)?;
+            let cramped = self.contact.first < 2 || self.contact.end + 2 > self.contact.strips.len();
+            if !cramped || margin >= WIDEST_MARGIN {
+                break found;
+            }
+            margin *= 2;
+        };
+        self.rising = if time > 0.0 {
+            (found.height - self.hub) / time
+        } else {
+            0.0
+        };
+        self.hub = found.height;
+        self.heights.push(found.height);
+        let stiffness = self.condition.wheel_load_n / self.wheel.radius_m;
+        self.slope = found.slope.max(SLOPES[0] * stiffness).min(SLOPES[1] * stiffness);
+        let reaction = self.contact.react(&self.terrain, &self.laws);
+        if self.contact.end > self.contact.first {
+            self.shear_path
+                .slide(&self.contact, &mut self.terrain, self.pose.turned, time);
+            let fraction = self.ground.flow_fraction;
+            self.flow.deform(
+                &self.contact,
+                &mut self.terrain,
+                &self.laws,
+                &self.motion,
+                fraction,
+            );
+            self.relaxation.settle(&mut self.terrain, &self.contact, self.hub);
+            let strips = &self.contact.strips;
+            self.touched = Some(Range {
+                start: strips[self.contact.first].column,
+                end: strips[self.contact.end - 1].column + 1,
+            });
+        }
+        Ok(Step {
+            reaction,
+            hub: self.hub,
+            rising: self.rising,
+            residual: found.residual,
+        })
+    }
+
+    /// Lay the wheel over the columns it may touch.
+    fn bring_together(&mut self, margin: usize, rolls: bool) {
+        let sinks = if rolls {
+            SINKS_PER_STEP
+        } else {
+            0.2 * self.wheel.radius_m
+        };
+        let least_rise = self.hub - self.terrain.top - sinks;
+        let range = match self.touched {
+            Some(touched) if margin < WIDEST_MARGIN => Range {
+                start: touched.start.saturating_sub(margin),
+                end: touched.end + margin,
+            },
+            _ => {
+                let reach = self.underside.reach();
+                let half = (reach * reach - least_rise * least_rise).max(0.0).sqrt();
+                let column = |x: f64| (x / self.terrain.dx) as usize;
+                Range {
+                    start: column(self.pose.x - half).saturating_sub(MARGIN),
+                    end: column(self.pose.x + half) + MARGIN + 1,
+                }
+            }
+        };
+        self.underside.lay(
+            &self.terrain,
+            self.pose,
+            range,
+            least_rise,
+            &self.contact.across,
+            &mut self.envelope,
+        );
+        let vertical = self.settings.pressure_direction == PressureDirection::Vertical;
+        self.contact
+            .prepare(&self.terrain, &self.envelope, &self.laws, &self.motion, vertical);
+        self.shear_path
+            .mobilise(&mut self.contact, &self.terrain, self.pose.turned);
+    }
+
+    /// The height of the hub in balance with load, inertia and damping.
+    fn find_height(&mut self, time: f64) -> Result<super::balance::Balance, Rejection> {
+        let load = self.condition.wheel_load_n;
+        let (hub, rising) = (self.hub, self.rising);
+        let (mass, damping) = match self.settings.vertical {
+            Vertical::Dynamic {
+                damping_n_s_m,
+                gravity_m_s2,
+            } if time > 0.0 => (load / gravity_m_s2, damping_n_s_m),
+            _ => (0.0, 0.0),
+        };
+        let trend = self
+            .heights
+            .len()
+            .checked_sub(self.repeats_after + 1)
+            .map_or(0.0, |i| self.heights[i + 1] - self.heights[i]);
+        let search = Search {
+            guess: hub + trend,
+            slope: self.slope,
+            longest: if time > 0.0 {
+                SINKS_PER_STEP
+            } else {
+                0.02 * self.wheel.radius_m
+            },
+        };
+        let (contact, terrain, laws) = (&mut self.contact, &self.terrain, &self.laws);
+        let per_time = if time > 0.0 { 1.0 / time } else { 0.0 };
+        let mut most_carried = 0.0_f64;
+        let found = balance(search, load, 0.0, |height| {
+            let carried = contact.press(terrain, laws, height);
+            most_carried = most_carried.max(carried);
+            let velocity = (height - hub) * per_time;
+            carried - load - damping * velocity - mass * (velocity - rising) * per_time
+        });
+        let found = found.ok_or(Rejection::NoSupport {
+            most_carried_n: most_carried,
+            wheel_load_n: load,
+            wheel_radius_m: self.wheel.radius_m,
+        })?;
+        if found.residual.is_finite() {
+            Ok(found)
+        } else {
+            Err(Rejection::NotFinite {
+                quantity: "load carried by the soil",
+                value: found.residual,
+            })
+        }
+    }
+
+    /// Time from one grouser to the next `[s]`; none if nothing repeats.
+    pub(crate) fn grouser_period_s(&self) -> Option<f64> {
+        let count = self.underside.repeats_per_turn()?;
+        let rotation = self.motion.rotation.abs();
+        (rotation > 0.0).then(|| core::f64::consts::TAU / (f64::from(count) * rotation))
+    }
+
+    pub(crate) fn radius(&self) -> f64 {
+        self.wheel.radius_m
+    }
+
+    pub(crate) fn width(&self) -> f64 {
+        self.underside.width(self.wheel)
+    }
+
+    /// Effective width 2 A / L of the footprint at the last height `[m]`.
+    pub(crate) fn effective_width(&mut self) -> f64 {
+        self.contact.effective_width(&self.terrain)
+    }
+
+    /// Sinkage of a hub height `[m]`.
+    pub(crate) fn sinkage(&self, hub: f64) -> f64 {
+        self.wheel.radius_m - hub
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Soil;
+    use crate::spatial::{Grousers, Shape};
+
+    const WHEEL: Wheel = Wheel {
+        radius_m: 0.125,
+        width_m: 0.112,
+        rig_radius_m: 0.125,
+    };
+    const SOIL: Soil = Soil {
+        k_c: 0.0,
+        k_phi: 1e7,
+        n: 1.1,
+        cohesion_pa: 0.0,
+        friction_angle_rad: 0.5,
+        shear_velocity_m_s: 1e-3,
+        gamma_exponent: 0.5,
+    };
+
+    fn condition(slip_angle_rad: f64) -> Condition {
+        Condition {
+            slip: 0.2,
+            wheel_load_n: 100.0,
+            sled_speed_m_s: 0.01,
+            slip_angle_rad,
+            pass: 1,
+        }
+    }
+
+    /// Roll a wheel with grousers for 300 steps, and look at it after each.
+    fn roll(flow_fraction: f64, slip_angle_rad: f64, both_halves: bool, mut look: impl FnMut(&Rolling)) {
+        let ground = Ground {
+            flow_fraction,
+            ..Ground::default()
+        };
+        let shape = Shape::Rim(Grousers {
+            count: 12,
+            height_m: 0.009,
+            thickness_m: 0.002,
+        });
+        let scene = Scene {
+            soil: &SOIL,
+            ground: &ground,
+            wheel: &WHEEL,
+            shape: &shape,
+        };
+        let settings = Settings {
+            both_halves,
+            ..Settings::default()
+        };
+        let condition = condition(slip_angle_rad);
+        let mut rolling = Rolling::new(&scene, &condition, settings, 0.2).expect("a track");
+        rolling.lower().expect("support");
+        look(&rolling);
+        for _ in 0..300 {
+            rolling.step().expect("support");
+            look(&rolling);
+        }
+    }
+
+    #[test]
+    fn the_soil_that_does_not_compact_is_all_there() {
+        for (fraction, slip_angle, both_halves) in [
+            (0.0, 0.0, false),
+            (0.25, 0.0, false),
+            (0.25, 0.0, true),
+            (1.0, 0.0, false),
+            (0.25, 0.2, true),
+        ] {
+            let mut pressed = 0.0;
+            roll(fraction, slip_angle, both_halves, |rolling| {
+                let (terrain, flow) = (&rolling.terrain, &rolling.flow);
+                let rounding = 1e-12 * flow.pressed;
+                let risen: f64 = terrain.surface.iter().sum();
+                let loose: f64 = terrain.loose.iter().sum();
+                assert!(
+                    (risen + (1.0 - fraction) * flow.pressed).abs() < rounding,
+                    "{risen}"
+                );
+                assert!((loose - fraction * flow.pressed).abs() < rounding, "{loose}");
+                assert!((flow.flowed - fraction * flow.pressed).abs() < rounding);
+                pressed = flow.pressed;
+            });
+            // 300 steps of 0.5 mm over 14 lanes of half the wheel, some 5 mm deep, on nodes of 4 mm by 4 mm
+            assert!(
+                pressed > 1.0,
+                "{pressed} m on all nodes: hardly anything was pressed"
+            );
+        }
+    }
+
+    #[test]
+    fn between_passes_the_rut_stays_and_its_slopes_slide() {
+        let (ground, shape) = (Ground::default(), Shape::Rim(Grousers::default()));
+        let scene = Scene {
+            soil: &SOIL,
+            ground: &ground,
+            wheel: &WHEEL,
+            shape: &shape,
+        };
+        let condition = condition(0.0);
+        let settings = Settings {
+            displacement: crate::spatial::Displacement::Node,
+            ..Settings::default()
+        };
+        let mut rolling = Rolling::new(&scene, &condition, settings, 0.1).expect("a track");
+        rolling.lower().expect("support");
+        for _ in 0..200 {
+            rolling.step().expect("support");
+        }
+        let steepest = |terrain: &Terrain| {
+            let across = terrain.surface.chunks_exact(terrain.lanes);
+            across
+                .flat_map(|column| column.windows(2))
+                .fold(0.0_f64, |most, pair| {
+                    most.max((pair[1] - pair[0]).abs() / terrain.dy)
+                })
+        };
+        let deepest = |terrain: &Terrain| terrain.surface.iter().fold(0.0_f64, |low, &z| low.min(z));
+        let repose = libm::tan(ground.repose_angle_rad);
+        let (slope, depth) = (steepest(&rolling.terrain), deepest(&rolling.terrain));
+        assert!(slope > 1.2 * repose, "{slope}: nothing to slide");
+        rolling.start_again();
+        assert!(
+            steepest(&rolling.terrain) < 1.02 * repose,
+            "{}",
+            steepest(&rolling.terrain)
+        );
+        assert!((deepest(&rolling.terrain) - depth).abs() < 1e-4, "{depth}");
+        assert!(
+            rolling
+                .terrain
+                .sheared
+                .iter()
+                .all(|j| j.abs() < f64::MIN_POSITIVE)
+        );
+    }
+}

@@ -1,0 +1,111 @@
+//! Lay out the terrain that a run needs, and the size of its steps.
+
+use super::super::contact::MOST_LANES;
+use super::super::settings::{Settings, Vertical};
+use super::super::terrain::{BERM_LANES, Terrain};
+use super::super::wheel::motion::Motion;
+use crate::rejection::{Rejection, require};
+use crate::{Condition, Soil, Wheel, quasi_static};
+
+/// Least number of nodes in a contact along travel.
+const NODES_ALONG: f64 = 8.0;
+/// Columns beyond the wheel's reach, at either end of the track.
+const SPARE_COLUMNS: usize = 12;
+/// Time of a step in which the hub moves freely `[s]`: a twentieth of the period of the stiffest spring to be expected.
+const DYNAMIC_STEP_S: f64 = 1e-3;
+/// Longest path of the rim in one step, relative to the travel step: a grouser must not jump over nodes.
+const RIM_PATH: f64 = 2.0;
+
+/// Steps of a run.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Steps {
+    /// `[s]`
+    pub(crate) time: f64,
+    /// Travel of the sled in one step `[m]`.
+    pub(crate) travel: f64,
+    /// Steps from column to column; forces repeat with this period where no grouser disturbs it.
+    pub(crate) to_column: usize,
+}
+
+/// Spacing along travel: the given one, or an eighth of a smooth wheel's contact where that is finer `[m]`.
+pub(crate) fn spacing_along(soil: &Soil, wheel: &Wheel, condition: &Condition, settings: &Settings) -> f64 {
+    let smooth = quasi_static::simulate(soil, wheel, condition);
+    smooth.map_or(settings.dem_spacing_m, |averages| {
+        settings
+            .dem_spacing_m
+            .min(averages.contact_length_m / NODES_ALONG)
+    })
+}
+
+/// The steps of a run on a terrain of some spacing.
+pub(crate) fn steps(
+    wheel: &Wheel,
+    condition: &Condition,
+    motion: &Motion,
+    settings: &Settings,
+    dx: f64,
+) -> Steps {
+    // a whole number of steps to a column, so that what the grid does repeats
+    let along = motion.forward.abs() / condition.sled_speed_m_s;
+    let wanted = settings.travel_step_m.min(dx);
+    let rim_per_travel = motion.rotation.abs() * wheel.radius_m / condition.sled_speed_m_s;
+    let wanted = wanted.min(RIM_PATH * settings.travel_step_m / rim_per_travel.max(f64::MIN_POSITIVE));
+    let wanted = match settings.vertical {
+        Vertical::Balance => wanted,
+        Vertical::Dynamic { .. } => wanted.min(DYNAMIC_STEP_S * condition.sled_speed_m_s),
+    };
+    let to_column = libm::ceil(dx / (wanted * along).max(1e-6 * dx)).max(1.0);
+    let travel = if along > 1e-3 {
+        dx / (to_column * along)
+    } else {
+        wanted
+    };
+    Steps {
+        time: travel / condition.sled_speed_m_s,
+        travel,
+        to_column: to_column as usize,
+    }
+}
+
+/// Undisturbed terrain for a wheel of a width that travels a distance, and the hub's place at the start.
+///
+/// # Errors
+/// The wheel covers more lanes than can be kept apart.
+pub(crate) fn terrain(
+    width: f64,
+    motion: &Motion,
+    settings: &Settings,
+    dx: f64,
+    reach: f64,
+    travel: f64,
+    mirrored: bool,
+) -> Result<(Terrain, f64), Rejection> {
+    // lanes that fit the width, an even number
+    let half_lanes = libm::round(0.5 * width / settings.dem_spacing_m).max(1.0);
+    let covered = if mirrored {
+        half_lanes
+    } else {
+        2.0 * half_lanes + 1.0
+    };
+    require(
+        covered <= MOST_LANES as f64,
+        "dem_spacing_m",
+        settings.dem_spacing_m,
+        "m",
+        "at least 1/62 of the wheel's width, 1/126 where the slip angle is 0",
+    )?;
+    let dy = 0.5 * width / half_lanes;
+    let speed = libm::hypot(motion.forward, motion.lateral);
+    let (ahead, aside) = (travel * motion.forward / speed, travel * motion.lateral / speed);
+    let columns = ((ahead.abs() + 2.0 * reach) / dx) as usize + 2 * SPARE_COLUMNS;
+    let beside = half_lanes as usize + BERM_LANES + 5; // a pack and a lane to spare
+    let (lanes, first_y) = if mirrored {
+        (beside + 3, 0.5 * dy)
+    } else {
+        let right = beside + ((-aside).max(0.0) / dy) as usize;
+        let left = beside + 3 + (aside.max(0.0) / dy) as usize;
+        (right + left, (0.5 - right as f64) * dy)
+    };
+    let start = reach + SPARE_COLUMNS as f64 * dx;
+    Ok((Terrain::new(dx, dy, first_y, columns, lanes, mirrored), start))
+}

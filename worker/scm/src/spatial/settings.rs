@@ -1,0 +1,302 @@
+//! Say what the model needs beyond soil, wheel and condition.
+
+use super::surface::{Normals, SurfaceMesh};
+use crate::rejection::{Rejection, require};
+
+/// How the soil deforms, beside the laws of [`Soil`](crate::Soil).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ground {
+    /// Stiffness of unloading and reloading `[Pa/m]`, > 0. The stiffer, the shorter the contact behind the axle.
+    pub elastic_stiffness_pa_m: f64,
+    /// Share of the displaced soil that flows to the border of the footprint `[–]`, in [0, 1]; the rest compacts.
+    pub flow_fraction: f64,
+    /// Share of the loose soil that bears like undisturbed soil `[–]`, in [0, 1].
+    pub bearing_credit: f64,
+    /// Angle of repose `[rad]`, in (0, π/2).
+    pub repose_angle_rad: f64,
+    /// Shear displacement at which 1 − 1/e of the strength is mobilised, K `[m]`, ≥ 0; 0: no displacement law.
+    pub shear_modulus_m: f64,
+}
+
+impl Default for Ground {
+    /// Nearly rigid-plastic sand of 32° of repose, a quarter of which flows.
+    fn default() -> Self {
+        Self {
+            elastic_stiffness_pa_m: 1e9,
+            flow_fraction: 0.25,
+            bearing_credit: 0.3,
+            repose_angle_rad: 32.0 * core::f64::consts::PI / 180.0,
+            shear_modulus_m: 0.0,
+        }
+    }
+}
+
+impl Ground {
+    /// The same ground, if the laws are defined for it.
+    ///
+    /// # Errors
+    /// [`Rejection::InvalidParameter`] for the first field outside its bounds.
+    pub fn checked(self) -> Result<Self, Rejection> {
+        let fraction = |name, value: f64| {
+            require(
+                (0.0..=1.0).contains(&value),
+                name,
+                value,
+                "(dimensionless)",
+                "between 0 and 1",
+            )
+        };
+        require(
+            self.elastic_stiffness_pa_m > 0.0,
+            "elastic_stiffness_pa_m",
+            self.elastic_stiffness_pa_m,
+            "Pa/m",
+            "above 0",
+        )?;
+        fraction("flow_fraction", self.flow_fraction)?;
+        fraction("bearing_credit", self.bearing_credit)?;
+        require(
+            self.repose_angle_rad > 0.0 && self.repose_angle_rad < core::f64::consts::FRAC_PI_2,
+            "repose_angle_rad",
+            self.repose_angle_rad,
+            "rad",
+            "above 0 and below pi/2",
+        )?;
+        require(
+            self.shear_modulus_m >= 0.0,
+            "shear_modulus_m",
+            self.shear_modulus_m,
+            "m",
+            "at least 0",
+        )?;
+        Ok(self)
+    }
+}
+
+/// Straight grousers on the rim: rectangles along its whole width, evenly spaced.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Grousers {
+    /// How many; 0: a smooth wheel.
+    pub count: u32,
+    /// Height above the rim `[m]`, > 0 if there are any.
+    pub height_m: f64,
+    /// Thickness along the rim `[m]`, > 0 if there are any.
+    pub thickness_m: f64,
+}
+
+/// The wheel's outer shape.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// A cylindrical rim, smooth or with grousers; radius and width are the [`Wheel`](crate::Wheel)'s.
+    Rim(Grousers),
+    /// Any surface, in its own size. The [`Wheel`](crate::Wheel)'s radius is only what sinkage is counted from and what
+    /// the grid is chosen by; its width counts for the latter only.
+    Mesh {
+        /// The surface.
+        surface: SurfaceMesh,
+        /// How often the surface looks the same in one turn, ≥ 1: grousers around it. Averages are taken over whole
+        /// periods. `None`: found from the vertices, up to 1e-5 of the wheel's size; a mesh on which no part repeats is
+        /// averaged over whole turns if the travel holds two. A faceted cylinder repeats with its facets.
+        /// Checked by `spatial::mesh::the_period_is_found_from_the_vertices`.
+        repeats_per_turn: Option<u32>,
+        /// Where pressure and shear act along.
+        normals: Normals,
+    },
+}
+
+impl From<SurfaceMesh> for Shape {
+    /// A mesh whose period is found from its vertices, with the normals of its triangles.
+    fn from(surface: SurfaceMesh) -> Self {
+        Self::Mesh {
+            surface,
+            repeats_per_turn: None,
+            normals: Normals::default(),
+        }
+    }
+}
+
+impl Shape {
+    /// The same shape, if it can be.
+    ///
+    /// # Errors
+    /// [`Rejection::InvalidParameter`] for the first field outside its bounds.
+    pub fn checked(&self) -> Result<(), Rejection> {
+        match self {
+            Self::Rim(grousers) if grousers.count == 0 => Ok(()),
+            Self::Rim(grousers) => {
+                for (name, value) in [
+                    ("grouser_height_m", grousers.height_m),
+                    ("grouser_thickness_m", grousers.thickness_m),
+                ] {
+                    require(value > 0.0, name, value, "m", "above 0 where there are grousers")?;
+                }
+                Ok(())
+            }
+            Self::Mesh {
+                surface,
+                repeats_per_turn,
+                ..
+            } => {
+                if let Some(repeats) = *repeats_per_turn {
+                    let value = f64::from(repeats);
+                    require(repeats > 0, "repeats_per_turn", value, "(count)", "at least 1")?;
+                }
+                surface.checked()
+            }
+        }
+    }
+}
+
+/// Where the shear displacement of the displacement law is kept.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Displacement {
+    /// On the rim: what an element of the wheel's surface has slid since it entered the soil.
+    #[default]
+    Rim,
+    /// On the soil: what a node of the terrain has been sheared while in contact.
+    Node,
+}
+
+/// Along which direction the pressure acts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum PressureDirection {
+    /// Along the normal of the wheel's surface.
+    #[default]
+    WheelNormal,
+    /// Along the normal of the undisturbed soil, vertically; shear acts horizontally. There is then no compaction
+    /// resistance, as in some other implementations.
+    Vertical,
+}
+
+/// How the hub finds its height.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum Vertical {
+    /// The soil carries the wheel load at every step.
+    #[default]
+    Balance,
+    /// The hub moves under its mass, load / gravity, and a damper; for transients.
+    Dynamic {
+        /// Damping of the vertical motion \[N s/m\], ≥ 0.
+        damping_n_s_m: f64,
+        /// Acceleration of gravity `[m/s²]`, > 0.
+        gravity_m_s2: f64,
+    },
+}
+
+/// When a run ends, and over what it is averaged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Protocol {
+    /// Until averages over whole grouser periods have settled.
+    Steady {
+        /// Change from one window to the next, relative to the wheel load, to load times radius and to the sinkage,
+        /// at which averages have settled.
+        tolerance: f64,
+        /// Travel at which the run ends anyhow `[m]`.
+        most_travel_m: f64,
+    },
+    /// A fixed time, transients cut.
+    Fixed {
+        /// Time simulated `[s]`.
+        duration_s: f64,
+        /// Time cut from the start of drawbar pull, torque and lateral force `[s]`.
+        transient_force_s: f64,
+        /// Time cut from the start of the sinkage `[s]`.
+        transient_sinkage_s: f64,
+        /// Cut-off of the zero-phase low-pass filter of the histories \[Hz\]; 0: no filter.
+        lowpass_hz: f64,
+    },
+}
+
+impl Default for Protocol {
+    fn default() -> Self {
+        Self::Steady {
+            tolerance: 0.005,
+            most_travel_m: 1.0,
+        }
+    }
+}
+
+/// Choices of the discretisation and of the laws' variants.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Spacing of the terrain's nodes `[m]`; along travel it is refined to an eighth of the contact.
+    pub dem_spacing_m: f64,
+    /// Travel of one step `[m]`; refined to the spacing along travel.
+    pub travel_step_m: f64,
+    /// Where the shear displacement is kept.
+    pub displacement: Displacement,
+    /// Along which direction the pressure acts.
+    pub pressure_direction: PressureDirection,
+    /// How the hub finds its height.
+    pub vertical: Vertical,
+    /// When the run ends.
+    pub protocol: Protocol,
+    /// Model both halves of the wheel even where one mirrors the other; for tests.
+    pub both_halves: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            dem_spacing_m: 0.004,
+            travel_step_m: 0.0005,
+            displacement: Displacement::default(),
+            pressure_direction: PressureDirection::default(),
+            vertical: Vertical::default(),
+            protocol: Protocol::default(),
+            both_halves: false,
+        }
+    }
+}
+
+impl Settings {
+    /// The same settings, if they can be followed.
+    ///
+    /// # Errors
+    /// [`Rejection::InvalidParameter`] for the first outside its bounds.
+    pub fn checked(self) -> Result<Self, Rejection> {
+        let positive = |name, value: f64, unit| require(value > 0.0, name, value, unit, "above 0");
+        let not_negative = |name, value: f64, unit| require(value >= 0.0, name, value, unit, "at least 0");
+        positive("dem_spacing_m", self.dem_spacing_m, "m")?;
+        positive("travel_step_m", self.travel_step_m, "m")?;
+        if let Vertical::Dynamic {
+            damping_n_s_m,
+            gravity_m_s2,
+        } = self.vertical
+        {
+            not_negative("damping_n_s_m", damping_n_s_m, "N s/m")?;
+            positive("gravity_m_s2", gravity_m_s2, "m/s^2")?;
+        }
+        match self.protocol {
+            Protocol::Steady {
+                tolerance,
+                most_travel_m,
+            } => {
+                positive("tolerance", tolerance, "(dimensionless)")?;
+                positive("most_travel_m", most_travel_m, "m")?;
+            }
+            Protocol::Fixed {
+                duration_s,
+                transient_force_s,
+                transient_sinkage_s,
+                lowpass_hz,
+            } => {
+                positive("duration_s", duration_s, "s")?;
+                for (name, value) in [
+                    ("transient_force_s", transient_force_s),
+                    ("transient_sinkage_s", transient_sinkage_s),
+                ] {
+                    require(
+                        (0.0..duration_s).contains(&value),
+                        name,
+                        value,
+                        "s",
+                        "at least 0 and less than the duration",
+                    )?;
+                }
+                not_negative("lowpass_hz", lowpass_hz, "Hz")?;
+            }
+        }
+        Ok(self)
+    }
+}

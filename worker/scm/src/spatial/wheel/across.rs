@@ -1,0 +1,81 @@
+//! Say which lanes of the terrain the wheel covers.
+
+use super::super::pack::{PACK, Pack};
+use super::super::terrain::Terrain;
+use super::envelope::NOWHERE;
+
+/// The lanes under the wheel, in packs; lanes that only fill the last pack have no width.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Across {
+    /// The terrain's lane at which the first pack begins.
+    pub(crate) first_lane: usize,
+    pub(crate) lanes: usize,
+    /// Covered width of each lane `[m]`.
+    pub(crate) width: Vec<Pack>,
+    /// 0 under the wheel, [`NOWHERE`] in the lanes that fill up `[m]`.
+    pub(crate) bias: Vec<Pack>,
+    /// Distance of the middle of the covered width from the wheel's side at greater y, and at lesser y `[m]`.
+    pub(crate) from_left: Vec<Pack>,
+    pub(crate) from_right: Vec<Pack>,
+    /// The lesser of the two.
+    pub(crate) from_side: Vec<Pack>,
+    /// y at which the wheel was laid `[m]`.
+    laid_at: Option<f64>,
+}
+
+impl Across {
+    pub(crate) fn packs(&self) -> usize {
+        self.width.len()
+    }
+
+    /// Lay a wheel of a width around y over the lanes, whose borders it meets. In a mirrored terrain the right side is the
+    /// left one's image.
+    pub(crate) fn lay(&mut self, terrain: &Terrain, y: f64, width: f64) {
+        if self.laid_at == Some(y) {
+            return;
+        }
+        self.laid_at = Some(y);
+        let (left, right) = (y + 0.5 * width, y - 0.5 * width);
+        let edge = |at: f64| libm::round((at - terrain.first_y) / terrain.dy + 0.5) as usize;
+        let low = if terrain.mirrored { 0 } else { edge(right) };
+        self.first_lane = low;
+        self.lanes = edge(left) - low;
+        for column in [
+            &mut self.width,
+            &mut self.bias,
+            &mut self.from_left,
+            &mut self.from_right,
+            &mut self.from_side,
+        ] {
+            column.clear();
+        }
+        for first in (0..self.lanes).step_by(PACK) {
+            let lane = |i: usize| {
+                let middle = terrain.y(low + first + i);
+                let top = (middle + 0.5 * terrain.dy).min(left);
+                let bottom = middle - 0.5 * terrain.dy;
+                let bottom = if terrain.mirrored {
+                    bottom
+                } else {
+                    bottom.max(right)
+                };
+                (top, bottom)
+            };
+            let covered = |i: usize| first + i < self.lanes;
+            let pack = |of: &dyn Fn(usize) -> f64| Pack::new([of(0), of(1), of(2), of(3)]);
+            let half = |i: usize| 0.5 * (lane(i).0 + lane(i).1);
+            let from_left = pack(&|i| if covered(i) { left - half(i) } else { 0.0 });
+            let from_right = pack(&|i| match (covered(i), terrain.mirrored) {
+                (false, _) => 0.0,
+                (true, true) => half(i) + 0.5 * width,
+                (true, false) => half(i) - right,
+            });
+            self.width
+                .push(pack(&|i| if covered(i) { lane(i).0 - lane(i).1 } else { 0.0 }));
+            self.bias.push(pack(&|i| if covered(i) { 0.0 } else { NOWHERE }));
+            self.from_left.push(from_left);
+            self.from_right.push(from_right);
+            self.from_side.push(from_left.fast_min(from_right));
+        }
+    }
+}

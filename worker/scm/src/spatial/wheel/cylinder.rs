@@ -1,0 +1,232 @@
+//! Lay an analytic wheel, a rim with straight grousers, over the columns of the terrain.
+
+use super::super::settings::Grousers;
+use super::super::terrain::Terrain;
+use super::across::Across;
+use super::envelope::{Envelope, NOWHERE, Strip};
+use super::{Pose, Range};
+
+/// A rim with straight grousers: rectangles that stand on the rim along its whole width.
+#[derive(Debug, Clone)]
+pub(crate) struct Cylinder {
+    radius: f64,
+    grouser_count: u32,
+    grouser_height: f64,
+    grouser_thickness: f64,
+    pieces: Vec<Piece>,
+}
+
+/// A straight piece of a grouser's underside: from one end to the other, heights below the hub.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    rear: f64,
+    front: f64,
+    rear_rise: f64,
+    front_rise: f64,
+}
+
+impl Cylinder {
+    pub(crate) fn new(radius: f64, grousers: &Grousers) -> Self {
+        Self {
+            radius,
+            grouser_count: grousers.count,
+            grouser_height: grousers.height_m,
+            grouser_thickness: grousers.thickness_m,
+            pieces: Vec::new(),
+        }
+    }
+
+    /// Number of grousers, if there are any.
+    pub(crate) fn grousers(&self) -> Option<u32> {
+        (self.grouser_count > 0).then_some(self.grouser_count)
+    }
+
+    /// Greatest distance of a point from the axle `[m]`.
+    pub(crate) fn reach(&self) -> f64 {
+        if self.grouser_count == 0 {
+            self.radius
+        } else {
+            libm::hypot(self.radius + self.grouser_height, 0.5 * self.grouser_thickness)
+        }
+    }
+
+    /// Fill the envelope over the columns of `range`, widened to hold every grouser whose rise exceeds `least_rise`.
+    pub(crate) fn lay(
+        &mut self,
+        terrain: &Terrain,
+        pose: Pose,
+        range: Range,
+        least_rise: f64,
+        across: &Across,
+        out: &mut Envelope,
+    ) {
+        self.collect_grousers(terrain, pose, least_rise, across);
+        let mut range = range;
+        if let (Some(first), Some(last)) = (self.pieces.first(), self.pieces.last()) {
+            let column = |ahead: f64| ((pose.x + ahead) / terrain.dx) as usize;
+            range.start = range.start.min(column(first.rear) - 1);
+            range.end = range.end.max(column(last.front) + 2);
+        }
+        let mut range = self.widen(terrain, pose, range, least_rise, across);
+        range.end = range.end.min(terrain.columns);
+        out.facets.clear();
+        out.strips.clear();
+        let mut next_piece = 0;
+        for column in range.start..range.end {
+            let node = terrain.x(column) - pose.x;
+            let (rear, front) = (node - 0.5 * terrain.dx, node + 0.5 * terrain.dx);
+            let mut at = rear;
+            let mut place = next_piece;
+            while let Some(piece) = self.pieces.get(place).filter(|p| p.rear < front) {
+                if piece.rear > at {
+                    push(out, column, node, at, piece.rear, false);
+                    at = piece.rear;
+                }
+                let end = piece.front.min(front);
+                if end > at {
+                    push(out, column, node, at, end, false);
+                    at = end;
+                }
+                if piece.front > front {
+                    break;
+                }
+                place += 1;
+            }
+            next_piece = place;
+            if front > at {
+                push(out, column, node, at, front, at <= rear);
+            }
+        }
+        self.fill(terrain, pose, out);
+    }
+
+    /// The columns of `range`, those where the rim may touch soil, and one more on either side: where the last contact
+    /// ended at a grouser, the rim beyond it may touch again.
+    fn widen(&self, terrain: &Terrain, pose: Pose, range: Range, least_rise: f64, across: &Across) -> Range {
+        let least = least_rise.max(0.0);
+        let half = (self.radius * self.radius - least * least).max(0.0).sqrt();
+        let column = |ahead: f64| (((pose.x + ahead) / terrain.dx) as usize).min(terrain.columns - 1);
+        let touches = |c: &usize| {
+            let ahead = ((terrain.x(*c) - pose.x).abs() - 0.5 * terrain.dx).max(0.0);
+            let rise = (self.radius * self.radius - ahead * ahead).max(0.0).sqrt();
+            rise + terrain.highest(*c, across) > least_rise + terrain.top
+        };
+        let rearmost = (column(-half)..range.start).find(touches);
+        let foremost = (range.end..column(half) + 1).rev().find(touches);
+        Range {
+            start: rearmost.map_or(range.start, |c| c.saturating_sub(1)),
+            end: foremost.map_or(range.end, |c| c + 2),
+        }
+    }
+
+    /// Rise and slope of every strip.
+    fn fill(&self, terrain: &Terrain, pose: Pose, out: &mut Envelope) {
+        let square = self.radius * self.radius;
+        let mut place = 0;
+        for strip in &mut out.strips {
+            while self.pieces.get(place).is_some_and(|p| p.front <= strip.rear) {
+                place += 1;
+            }
+            if let Some(piece) = self.pieces.get(place).filter(|p| p.rear < strip.middle) {
+                let share = (strip.middle - piece.rear) / (piece.front - piece.rear);
+                strip.ahead = strip.middle;
+                strip.rise = piece.rear_rise + share * (piece.front_rise - piece.rear_rise);
+            } else {
+                // the rim is taken where the node is, because it shaped the soil there
+                strip.ahead = terrain.x(strip.column) - pose.x;
+                let square_rise = square - strip.ahead * strip.ahead;
+                strip.rise = if square_rise > STEEPEST * square {
+                    square_rise.sqrt()
+                } else {
+                    NOWHERE
+                };
+            }
+            // the normal points to the hub, on grousers too: a height field cannot show their flanks
+            strip.slope = if strip.rise > 0.0 {
+                strip.ahead / strip.rise
+            } else {
+                0.0
+            };
+        }
+    }
+
+    /// The undersides of grousers that reach below `least_rise`, from rear to front.
+    fn collect_grousers(&mut self, terrain: &Terrain, pose: Pose, least_rise: f64, across: &Across) {
+        self.pieces.clear();
+        if self.grouser_count == 0 {
+            return;
+        }
+        let pitch = core::f64::consts::TAU / f64::from(self.grouser_count);
+        let reach = self.reach();
+        if least_rise >= reach {
+            return;
+        }
+        // angles from straight down, positive forward; the wheel turns them backwards
+        let widest = libm::acos((least_rise / reach).max(-1.0)).min(0.5 * core::f64::consts::PI);
+        let phase = pose.turned / pitch;
+        let phase = phase - libm::floor(phase); // of a pitch
+        let most = libm::floor(widest / pitch + phase) as i64;
+        let least = libm::ceil(-widest / pitch + phase) as i64;
+        for number in least..=most {
+            let angle = (number as f64 - phase) * pitch;
+            let deepest = reach * libm::cos(angle);
+            let tip = pose.x + reach * libm::sin(angle);
+            let extent = self.grouser_thickness + self.grouser_height * libm::sin(angle).abs();
+            let columns = ((tip - extent) / terrain.dx) as usize..=((tip + extent) / terrain.dx) as usize;
+            let highest = columns.fold(f64::MIN, |high, column| high.max(terrain.highest(column, across)));
+            if deepest + highest > least_rise + terrain.top {
+                self.push_grouser(angle);
+            }
+        }
+    }
+
+    fn push_grouser(&mut self, angle: f64) {
+        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+        let half = 0.5 * self.grouser_thickness;
+        let (foot, tip) = (self.radius, self.radius + self.grouser_height);
+        // The flank that looks down is the one towards the lowest point of the wheel.
+        let side = if angle >= 0.0 { -half } else { half };
+        let at = |radius: f64, offset: f64| (radius * sin + offset * cos, radius * cos - offset * sin);
+        let (foot_x, foot_rise) = at(foot, side);
+        let (near_x, near_rise) = at(tip, side);
+        let (far_x, far_rise) = at(tip, -side);
+        let pieces = if angle >= 0.0 {
+            [
+                (foot_x, foot_rise, near_x, near_rise),
+                (near_x, near_rise, far_x, far_rise),
+            ]
+        } else {
+            [
+                (far_x, far_rise, near_x, near_rise),
+                (near_x, near_rise, foot_x, foot_rise),
+            ]
+        };
+        for (rear, rear_rise, front, front_rise) in pieces {
+            if front > rear {
+                self.pieces.push(Piece {
+                    rear,
+                    front,
+                    rear_rise,
+                    front_rise,
+                });
+            }
+        }
+    }
+}
+
+/// Square of the least rise of the rim, relative to that of its radius, at which it is taken for an underside.
+const STEEPEST: f64 = 1e-4;
+
+fn push(out: &mut Envelope, column: usize, node: f64, rear: f64, front: f64, whole: bool) {
+    out.strips.push(Strip {
+        column,
+        rear,
+        middle: 0.5 * (rear + front),
+        front,
+        ahead: 0.0,
+        rise: NOWHERE,
+        slope: 0.0,
+        holds_node: rear <= node && node < front,
+        smooth: whole,
+    });
+}

@@ -1,0 +1,109 @@
+//! What the soil feels of the wheel: its underside, the lanes it covers, how it moves.
+//!
+//! # Layout
+//! - `envelope`: the underside over the columns of the terrain, strip by strip.
+//! - `cylinder`: lays an analytic rim with straight grousers.
+//! - `mesh`: lays any surface of triangles.
+//! - `across`: the lanes that the wheel covers.
+//! - `motion`: velocity of the surface over the soil, directions of pressure and shear.
+
+pub(super) mod across;
+pub(super) mod cylinder;
+pub(super) mod envelope;
+pub(super) mod mesh;
+pub(super) mod motion;
+
+use self::across::Across;
+use self::cylinder::Cylinder;
+use self::envelope::Envelope;
+use self::mesh::Mesh;
+use super::settings::Shape;
+use super::terrain::Terrain;
+use crate::Wheel;
+
+/// Where the wheel stands.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pose {
+    /// x and y of the hub `[m]`.
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    /// Angle by which the wheel has turned forwards `[rad]`.
+    pub(crate) turned: f64,
+}
+
+/// Columns that may touch soil: from the rearmost to beyond the foremost.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Range {
+    pub(crate) start: usize,
+    pub(crate) end: usize,
+}
+
+/// The wheel as the soil meets it.
+#[derive(Debug, Clone)]
+pub(crate) enum Underside {
+    Cylinder(Cylinder),
+    Mesh(Box<Mesh>),
+}
+
+impl Underside {
+    pub(crate) fn new(wheel: &Wheel, shape: &Shape) -> Self {
+        match shape {
+            Shape::Rim(grousers) => Self::Cylinder(Cylinder::new(wheel.radius_m, grousers)),
+            Shape::Mesh {
+                surface,
+                repeats_per_turn,
+                normals,
+            } => Self::Mesh(Box::new(Mesh::new(surface, *repeats_per_turn, *normals))),
+        }
+    }
+
+    /// Greatest distance of a point from the axle `[m]`.
+    pub(crate) fn reach(&self) -> f64 {
+        match self {
+            Self::Cylinder(cylinder) => cylinder.reach(),
+            Self::Mesh(mesh) => mesh.reach(),
+        }
+    }
+
+    /// Width about the middle plane that holds the whole wheel, nominally as wide as `wheel` `[m]`.
+    pub(crate) fn width(&self, wheel: &Wheel) -> f64 {
+        match self {
+            Self::Cylinder(_) => wheel.width_m,
+            Self::Mesh(mesh) => mesh.width(),
+        }
+    }
+
+    /// How often the wheel looks the same in one turn; none if turning changes nothing.
+    pub(crate) fn repeats_per_turn(&self) -> Option<u32> {
+        match self {
+            Self::Cylinder(cylinder) => cylinder.grousers(),
+            Self::Mesh(mesh) => Some(mesh.repeats_per_turn()),
+        }
+    }
+
+    /// Whether left and right are alike.
+    pub(crate) fn is_symmetric(&self) -> bool {
+        match self {
+            Self::Cylinder(_) => true,
+            Self::Mesh(mesh) => mesh.is_symmetric(),
+        }
+    }
+
+    /// Fill the envelope over the columns of `range` and whatever else may touch soil.
+    ///
+    /// `least_rise` is the height of the hub above the highest soil, less what the hub may sink in this step.
+    pub(crate) fn lay(
+        &mut self,
+        terrain: &Terrain,
+        pose: Pose,
+        range: Range,
+        least_rise: f64,
+        across: &Across,
+        out: &mut Envelope,
+    ) {
+        match self {
+            Self::Cylinder(cylinder) => cylinder.lay(terrain, pose, range, least_rise, across, out),
+            Self::Mesh(mesh) => mesh.lay(terrain, pose, range, least_rise, across, out),
+        }
+    }
+}

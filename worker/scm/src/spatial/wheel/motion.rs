@@ -1,0 +1,83 @@
+//! Give the velocity of the wheel's surface against the soil and the direction of the shear stress.
+
+use crate::shear::ShearVelocity;
+use crate::{Condition, Wheel};
+
+/// Motion of the hub over the soil and rotation of the wheel.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Motion {
+    /// Along the heading, v cos(beta) `[m/s]`.
+    pub(crate) forward: f64,
+    /// Across it, v sin(beta) `[m/s]`.
+    pub(crate) lateral: f64,
+    /// omega `[rad/s]`, from the rig's radius.
+    pub(crate) rotation: f64,
+}
+
+/// Force on the wheel per projected area: of unit pressure, and of unit mobilised strength.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Traction {
+    /// Height of the hub above the point `[m]`.
+    pub(crate) rise: f64,
+    pub(crate) pressure_x: f64,
+    pub(crate) pressure_y: f64,
+    pub(crate) shear_x: f64,
+    pub(crate) shear_y: f64,
+    pub(crate) shear_z: f64,
+    /// Slip velocity `|v_t|` `[m/s]`.
+    pub(crate) slip_speed: f64,
+}
+
+impl Motion {
+    pub(crate) fn new(wheel: &Wheel, condition: &Condition) -> Self {
+        let v = condition.sled_speed_m_s;
+        let slip = condition.slip;
+        let rig_rim_speed = if slip < 0.0 {
+            v * (1.0 + slip)
+        } else {
+            v / (1.0 - slip)
+        };
+        Self {
+            forward: v * libm::cos(condition.slip_angle_rad),
+            lateral: v * libm::sin(condition.slip_angle_rad),
+            rotation: rig_rim_speed / wheel.rig_radius_m,
+        }
+    }
+
+    /// Velocity of a point of the wheel's surface over the soil, hub at constant height `[m/s]`.
+    #[inline]
+    pub(crate) fn surface_velocity(&self, ahead: f64, rise: f64) -> [f64; 3] {
+        [
+            self.forward - self.rotation * rise,
+            self.lateral,
+            -self.rotation * ahead,
+        ]
+    }
+
+    /// Directions of pressure and shear at a point `ahead` of the hub and `rise` below it, where the
+    /// wheel's surface has slopes (dh/dx, dh/dy).
+    #[inline]
+    pub(crate) fn traction(&self, law: &ShearVelocity, ahead: f64, rise: f64, slope: [f64; 2]) -> Traction {
+        let [slope_x, slope_y] = slope;
+        let velocity = self.surface_velocity(ahead, rise);
+        let stretch_squared = 1.0 + slope_x * slope_x + slope_y * slope_y; // surface per projected area, squared
+        // velocity along the upward normal (−dh/dx, −dh/dy, 1), times the normal's length
+        let normal = (velocity[2] - slope_x * velocity[0] - slope_y * velocity[1]) / stretch_squared;
+        let along = [
+            velocity[0] + normal * slope_x,
+            velocity[1] + normal * slope_y,
+            velocity[2] - normal,
+        ];
+        let speed = (along[0] * along[0] + along[1] * along[1] + along[2] * along[2]).sqrt();
+        let against = -law.mobilised_per_velocity(speed) * stretch_squared.sqrt();
+        Traction {
+            rise,
+            pressure_x: -slope_x,
+            pressure_y: -slope_y,
+            shear_x: against * along[0],
+            shear_y: against * along[1],
+            shear_z: against * along[2],
+            slip_speed: speed,
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! A wheel in three dimensions, ready to roll: what tests and the validation table start from.
+
+use crate::support::{Case, base};
+use scm::spatial::{Ground, Grousers, Protocol, Run, Scene, Settings, Shape, simulate};
+use scm::{Averages, Rejection};
+
+/// A case with the choices of the three-dimensional model.
+#[derive(Debug, Clone)]
+pub(crate) struct Track {
+    pub(crate) case: Case,
+    pub(crate) ground: Ground,
+    pub(crate) shape: Shape,
+    pub(crate) settings: Settings,
+}
+
+impl Track {
+    /// A smooth wheel on soil that compacts and does not flow: what the quasi-static model describes.
+    pub(crate) fn smooth(case: Case) -> Self {
+        Self {
+            case,
+            ground: Ground {
+                flow_fraction: 0.0,
+                ..Ground::default()
+            },
+            shape: Shape::Rim(Grousers::default()),
+            settings: Settings::default(),
+        }
+    }
+
+    /// Twelve grousers of 9 mm by 2 mm, on soil a quarter of which flows.
+    pub(crate) fn with_grousers(case: Case) -> Self {
+        Self {
+            ground: Ground::default(),
+            shape: Shape::Rim(Grousers {
+                count: 12,
+                height_m: 0.009,
+                thickness_m: 0.002,
+            }),
+            ..Self::smooth(case)
+        }
+    }
+
+    /// Roll a distance whatever comes, and average over the last part of it.
+    pub(crate) fn for_a_travel_of(mut self, travel_m: f64, averaged_m: f64) -> Self {
+        let speed = self.case.condition.sled_speed_m_s;
+        let cut = (travel_m - averaged_m) / speed;
+        self.settings.protocol = Protocol::Fixed {
+            duration_s: travel_m / speed,
+            transient_force_s: cut,
+            transient_sinkage_s: cut,
+            lowpass_hz: 0.0,
+        };
+        self
+    }
+
+    pub(crate) fn try_roll(&self) -> Result<Run, Rejection> {
+        let Case {
+            soil,
+            wheel,
+            condition,
+        } = &self.case;
+        let scene = Scene {
+            soil,
+            ground: &self.ground,
+            wheel,
+            shape: &self.shape,
+        };
+        simulate(&scene, condition, &self.settings)
+    }
+
+    pub(crate) fn roll(&self) -> Run {
+        self.try_roll()
+            .unwrap_or_else(|rejection| panic!("{rejection}: {self:?}"))
+    }
+
+    pub(crate) fn averages(&self) -> Averages {
+        self.roll().averages
+    }
+}
+
+/// A smooth wheel at a slip, under a load `[N]`, on sand of an angle of friction `[°]`.
+pub(crate) fn smooth(slip: f64, wheel_load_n: f64, friction_angle_deg: f64) -> Track {
+    Track::smooth(base(slip, wheel_load_n, friction_angle_deg))
+}

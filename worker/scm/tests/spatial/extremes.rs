@@ -1,0 +1,162 @@
+//! Ends of the ranges: hard and soft ground, deep and slow, negative cohesive modulus.
+
+use crate::scene::{Track, smooth};
+use crate::support::base;
+
+#[test]
+fn hard_ground_is_resolved_by_eight_nodes_along_the_travel() {
+    let mut track = smooth(0.2, 100.0, 30.0);
+    track.case.soil.k_phi = 1e10;
+    let got = track.averages();
+    let paper = track.case.simulate();
+    let lanes = 28;
+    assert!(paper.contact_length_m < 0.0045, "{paper:?}");
+    assert!(got.nodes_in_contact >= 8 * lanes, "{got:?}");
+    // The soil unloads at 1e9 Pa/m: a contact as stiff as itself, longer than the rigid-plastic one, and little resistance.
+    assert!(got.contact_length_m > paper.contact_length_m, "{got:?}");
+    assert!(
+        (got.drawbar_pull_n - paper.drawbar_pull_n).abs() < 3.0,
+        "{got:?} {paper:?}"
+    );
+    assert!(
+        (got.torque_n_m - paper.torque_n_m).abs() < 0.1,
+        "{got:?} {paper:?}"
+    );
+}
+
+#[test]
+fn a_wheel_sunk_to_three_quarters_of_its_radius_agrees_with_the_quasi_static_one() {
+    for (k_phi, sinkage) in [(1e6, 0.023), (3e5, 0.048), (1e5, 0.0955)] {
+        let mut track = smooth(0.2, 100.0, 30.0);
+        track.case.soil.k_phi = k_phi;
+        let (got, paper) = (track.averages(), track.case.simulate());
+        // so soft a soil hardly rebounds: closer than at 1e7
+        assert!(
+            (got.drawbar_pull_n - paper.drawbar_pull_n).abs() < 0.5,
+            "{got:?} {paper:?}"
+        );
+        assert!(
+            (got.torque_n_m - paper.torque_n_m).abs() < 0.02,
+            "{got:?} {paper:?}"
+        );
+        assert!(
+            (got.sinkage_m / paper.sinkage_m - 1.0).abs() < 0.005,
+            "{got:?} {paper:?}"
+        );
+        assert!((got.sinkage_m - sinkage).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn cohesive_modulus_acts_through_the_contour() {
+    // k* = k_phi + k_c (l + b) / (l b); stiff ground shows its rebound, soft ground does not
+    for (share, sinkage) in [(-0.02, 0.01), (-0.01, 0.03), (0.02, 0.06), (0.05, 0.07)] {
+        let mut track = smooth(0.2, 100.0, 30.0);
+        track.case.soil.k_c = share * track.case.soil.k_phi;
+        let (got, paper) = (track.averages(), track.case.simulate());
+        assert!(
+            (got.drawbar_pull_n - paper.drawbar_pull_n).abs() < 2.0,
+            "{share}: {got:?} {paper:?}"
+        );
+        assert!(
+            (got.sinkage_m / paper.sinkage_m - 1.0).abs() < sinkage,
+            "{share}: {got:?} {paper:?}"
+        );
+        assert!(
+            (got.b_eff_m / paper.b_eff_m - 1.0).abs() < 0.04,
+            "{share}: {got:?} {paper:?}"
+        );
+    }
+}
+
+#[test]
+fn forces_depend_on_speed_by_the_slip_velocity_alone() {
+    // a hundred times slower over soil of a reference velocity a hundred times less
+    for track in [
+        smooth(0.2, 100.0, 30.0),
+        Track::with_grousers(base(0.2, 100.0, 30.0)),
+    ] {
+        let mut slow = track.clone();
+        slow.case.condition.sled_speed_m_s *= 0.01;
+        slow.case.soil.shear_velocity_m_s *= 0.01;
+        let (got, expected) = (slow.averages(), track.averages());
+        // rounding may end a search at another trial
+        assert!(
+            (got.drawbar_pull_n - expected.drawbar_pull_n).abs() < 0.2,
+            "{got:?} {expected:?}"
+        );
+        assert!(
+            (got.sinkage_m / expected.sinkage_m - 1.0).abs() < 0.01,
+            "{got:?} {expected:?}"
+        );
+    }
+}
+
+#[test]
+fn at_a_creep_the_strength_is_not_mobilised() {
+    let mut track = smooth(0.2, 100.0, 30.0);
+    track.case.condition.sled_speed_m_s = 1e-6;
+    let (got, paper) = (track.averages(), track.case.simulate());
+    assert!(got.torque_n_m > 0.0 && got.torque_n_m < 0.01, "{got:?}");
+    assert!(
+        (got.drawbar_pull_n - paper.drawbar_pull_n).abs() < 1.2,
+        "{got:?} {paper:?}"
+    );
+}
+
+#[test]
+fn a_locked_wheel_with_grousers_is_dragged() {
+    let mut track = Track::with_grousers(base(-1.0, 100.0, 30.0));
+    track.case.condition.sled_speed_m_s = 0.01;
+    let run = track.roll();
+    let got = run.averages;
+    assert!(got.drawbar_pull_n < -60.0 && got.torque_n_m < -7.0, "{got:?}");
+    // nothing turns, so nothing swings once the wheel is in its rut
+    let last = &run.history.sinkage_m[run.history.len() / 2..];
+    let (low, high) = last
+        .iter()
+        .fold((f64::MAX, 0.0_f64), |(l, h), &z| (l.min(z), h.max(z)));
+    assert!(high - low < 2e-4, "{low} {high}");
+}
+
+#[test]
+fn hard_ground_under_a_wheel_that_does_not_slip_takes_no_power_and_is_no_gain() {
+    // on tips of 9 mm a wheel of 125 mm rolls as one of 134 mm: no slip at 1 - 125/134 = 0.067 of skid
+    let mut track = Track::with_grousers(base(-0.067, 100.0, 22.0));
+    track.case.soil.k_phi = 1e11;
+    track.case.condition.sled_speed_m_s = 0.04;
+    let run = track.roll();
+    assert!(
+        run.dissipated_power_w.abs() < 0.02 * 100.0 * 0.04,
+        "{} W",
+        run.dissipated_power_w
+    );
+    // nor does soil that only unloads, under a wheel without friction
+    let mut track = smooth(0.2, 40.0, 0.0);
+    (track.case.soil.n, track.case.soil.gamma_exponent) = (0.5, 0.0);
+    let run = track.roll();
+    assert!(
+        run.dissipated_power_w.abs() < 1e-3 * 40.0 * 0.008,
+        "{} W",
+        run.dissipated_power_w
+    );
+}
+
+#[test]
+fn a_wheel_pushed_sideways_meets_new_soil() {
+    // Without its drift it would stay on what it pressed when it was lowered, at 3.7 mm.
+    let mut track = smooth(0.2, 100.0, 30.0);
+    track.case.condition.slip_angle_rad = 1.5;
+    let (got, paper) = (track.averages(), track.case.simulate());
+    assert!(
+        (got.sinkage_m / paper.sinkage_m - 1.0).abs() < 0.07,
+        "{got:?} {paper:?}"
+    );
+    assert!(
+        (got.lateral_force_n - paper.lateral_force_n).abs() < 1.0,
+        "{got:?} {paper:?}"
+    );
+    // the other way round the same
+    track.case.condition.slip_angle_rad = -1.5;
+    assert!((got.lateral_force_n + track.averages().lateral_force_n).abs() < 0.5);
+}

@@ -1,0 +1,75 @@
+//! What grousers change.
+
+use crate::scene::{Track, smooth};
+use crate::support::base;
+use scm::spatial::{Grousers, Shape};
+
+fn grousers(slip: f64) -> Track {
+    Track::with_grousers(base(slip, 100.0, 30.0))
+}
+
+#[test]
+fn means_with_grousers_are_near_those_of_the_smooth_wheel() {
+    let got = grousers(0.2).averages();
+    let mut bare = smooth(0.2, 100.0, 30.0);
+    bare.ground = grousers(0.2).ground;
+    let bare = bare.averages();
+    // 5 % of the load, 6 % of the torque, 10 % of the sinkage: 2.7 N, 0.25 N m, 0.3 mm are found
+    assert!(
+        (got.drawbar_pull_n - bare.drawbar_pull_n).abs() < 5.0,
+        "{got:?} {bare:?}"
+    );
+    assert!(
+        (got.torque_n_m / bare.torque_n_m - 1.0).abs() < 0.06,
+        "{got:?} {bare:?}"
+    );
+    assert!(
+        (got.sinkage_m / bare.sinkage_m - 1.0).abs() < 0.1,
+        "{got:?} {bare:?}"
+    );
+    // patches under single grousers are narrow
+    assert!(got.b_eff_m < 0.8 * bare.b_eff_m, "{got:?} {bare:?}");
+}
+
+#[test]
+fn grousers_sink_the_deeper_the_more_they_slip() {
+    let sinkages = [0.2, 0.4, 0.6].map(|slip| grousers(slip).averages().sinkage_m);
+    assert!(
+        sinkages[1] > 1.1 * sinkages[0] && sinkages[2] > 1.3 * sinkages[1],
+        "{sinkages:?}"
+    );
+    // the smooth wheel does not
+    let smooth = [0.2, 0.6].map(|slip| smooth(slip, 100.0, 30.0).averages().sinkage_m);
+    assert!((smooth[1] / smooth[0] - 1.0).abs() < 0.01, "{smooth:?}");
+}
+
+#[test]
+fn vanishing_grousers_leave_the_smooth_wheel() {
+    let mut track = grousers(0.2);
+    track.shape = Shape::Rim(Grousers {
+        count: 12,
+        height_m: 1e-5,
+        thickness_m: 0.002,
+    });
+    let low = track.averages();
+    track.shape = Shape::Rim(Grousers::default());
+    let none = track.averages();
+    // 0.01 mm of height press 0.01 mm deeper: 0.3 N of 28 N/mm
+    assert!(
+        (low.drawbar_pull_n - none.drawbar_pull_n).abs() < 0.5,
+        "{low:?} {none:?}"
+    );
+    assert!((low.sinkage_m - none.sinkage_m).abs() < 1e-4, "{low:?} {none:?}");
+}
+
+#[test]
+fn hard_ground_carries_the_wheel_on_its_grousers_tips() {
+    let mut track = grousers(0.2);
+    track.case.soil.k_phi = 1e10;
+    let got = track.averages();
+    // between two tips in contact, 30 degrees apart, the rim hangs R + h − (R + h) cos(15°) = 4.6 mm lower than over one
+    assert!(
+        got.sinkage_m > -0.0091 && got.sinkage_m < -0.009 + 0.0046,
+        "{got:?}"
+    );
+}

@@ -1,0 +1,24 @@
+//! Checks of the wheel in three dimensions.
+//!
+//! # Layout
+//! - `oracles`: every row of the validation table.
+//! - `invariants`: what must hold whatever the parameters.
+//! - `symmetry`: left and right, the mirrored half, the start on the grid.
+//! - `grousers`, `passes`, `extremes`: what memory and shape of the soil do.
+//! - `protocol`, `vertical`: ways to run and average.
+//! - `mesh`: triangles against the analytic wheel; `surfaces`: the triangles.
+//! - `comparison`: the choices behind the figures of another implementation.
+//! - `rejections`: parameters without an answer.
+
+mod comparison;
+mod extremes;
+mod grousers;
+mod invariants;
+mod mesh;
+mod oracles;
+mod passes;
+mod protocol;
+mod rejections;
+mod surfaces;
+mod symmetry;
+mod vertical;

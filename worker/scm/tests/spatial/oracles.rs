@@ -1,0 +1,79 @@
+//! Every row of the validation table holds, oracle by oracle.
+
+use crate::validation::{self, ORACLES, Rows};
+
+fn holds(add: fn(&mut Rows)) {
+    let rows = validation::rows(add);
+    let failed: Vec<String> = rows
+        .iter()
+        .filter(|row| !row.passes())
+        .map(|row| {
+            format!(
+                "{}: {} {} ± {}, not {}",
+                row.case, row.quantity, row.expected, row.tolerance, row.got
+            )
+        })
+        .collect();
+    assert!(!rows.is_empty() && failed.is_empty(), "{failed:#?}");
+}
+
+#[test]
+fn plate_and_lowered_wheel_carry_bekkers_pressure() {
+    holds(validation::plate::add);
+}
+
+#[test]
+fn frictionless_smooth_wheel_is_the_one_on_paper() {
+    holds(validation::smooth_wheel::add);
+}
+
+#[test]
+fn smooth_wheel_without_flow_is_the_quasi_static_one() {
+    holds(validation::quasi_static::add);
+}
+
+#[test]
+fn finer_grids_and_shorter_steps_change_little() {
+    holds(validation::convergence::add);
+}
+
+#[test]
+fn forces_scale_with_moduli_and_load_and_slip_is_the_rigs() {
+    holds(validation::scaling::add);
+}
+
+#[test]
+fn power_goes_where_it_should() {
+    holds(validation::power::add);
+}
+
+#[test]
+fn displacement_law_gives_the_prototypes_figures() {
+    holds(validation::displacement::add);
+}
+
+#[test]
+fn grousers_give_the_prototypes_figures() {
+    holds(validation::grousers::add);
+}
+
+#[test]
+fn deposits_lift_the_wheel_as_the_prototypes() {
+    holds(validation::flow::add);
+}
+
+#[test]
+fn another_implementation_is_reproduced() {
+    holds(validation::other_implementation::add);
+}
+
+#[test]
+fn no_oracle_is_left_out_and_a_wrong_figure_fails() {
+    assert_eq!(ORACLES.len(), 10, "one test above for each");
+    let mut rows = Rows::default();
+    rows.add("off by more than allowed", "F [N]", 1.0, 1.2, 0.1);
+    rows.add("not a number", "F [N]", 1.0, f64::NAN, 0.1);
+    rows.add("as expected", "F [N]", 1.0, 1.05, 0.1);
+    let verdicts: Vec<bool> = rows.into_rows().iter().map(validation::Row::passes).collect();
+    assert_eq!(verdicts, [false, false, true]);
+}

@@ -1,0 +1,109 @@
+//! When a run ends, and what it is averaged over.
+
+use crate::scene::{Track, smooth};
+use crate::support::base;
+use scm::spatial::Protocol;
+
+fn tracks() -> [Track; 2] {
+    [
+        smooth(0.2, 100.0, 30.0),
+        Track::with_grousers(base(0.2, 100.0, 30.0)),
+    ]
+}
+
+#[test]
+fn a_settled_run_has_the_means_of_a_long_one() {
+    for track in tracks() {
+        let steady = track.roll();
+        let settled_to = steady.settled_to.expect("a steady protocol");
+        let long = track.for_a_travel_of(1.0, 0.8).averages();
+        let got = steady.averages;
+        assert!(settled_to <= 0.005, "{settled_to}");
+        assert!(got.simulated_travel_m < 0.5, "{got:?}");
+        // windows that agree to 0.5 % may stand as far from where they tend to
+        assert!(
+            (got.drawbar_pull_n - long.drawbar_pull_n).abs() < 0.5,
+            "{got:?} {long:?}"
+        );
+        assert!(
+            (got.torque_n_m - long.torque_n_m).abs() < 0.05,
+            "{got:?} {long:?}"
+        );
+        assert!(
+            (got.sinkage_m / long.sinkage_m - 1.0).abs() < 0.01,
+            "{got:?} {long:?}"
+        );
+    }
+}
+
+#[test]
+fn a_run_that_cannot_settle_says_so() {
+    let mut track = Track::with_grousers(base(0.2, 100.0, 30.0));
+    track.settings.protocol = Protocol::Steady {
+        tolerance: 1e-9,
+        most_travel_m: 0.3,
+    };
+    let run = track.roll();
+    assert!(run.settled_to.expect("a steady protocol") > 1e-9);
+    assert!((run.averages.simulated_travel_m - 0.3).abs() < 1e-3);
+    // too short for two windows
+    track.settings.protocol = Protocol::Steady {
+        tolerance: 0.005,
+        most_travel_m: 0.002,
+    };
+    assert!(track.roll().settled_to.expect("a steady protocol") > 0.005);
+}
+
+#[test]
+fn a_low_pass_leaves_the_means_of_whole_periods_alone() {
+    let track = Track::with_grousers(base(0.2, 100.0, 30.0)).for_a_travel_of(0.8, 0.5);
+    let plain = track.averages();
+    let mut filtered = track;
+    if let Protocol::Fixed { lowpass_hz, .. } = &mut filtered.settings.protocol {
+        *lowpass_hz = 0.5; // three times the grousers' 0.153 Hz
+    }
+    let filtered = filtered.averages();
+    assert!(
+        (plain.drawbar_pull_n - filtered.drawbar_pull_n).abs() < 0.2,
+        "{plain:?} {filtered:?}"
+    );
+    assert!((plain.sinkage_m / filtered.sinkage_m - 1.0).abs() < 0.005);
+    assert!(plain != filtered, "the filter does something");
+}
+
+#[test]
+fn transients_are_cut() {
+    let track = smooth(0.2, 100.0, 30.0);
+    let cut = track.clone().for_a_travel_of(0.2, 0.1).averages();
+    let whole = track.for_a_travel_of(0.2, 0.2).averages();
+    // a lowered wheel bears on both halves of its contact and sinks to 3.7 mm only
+    assert!(whole.sinkage_m < 0.98 * cut.sinkage_m, "{whole:?} {cut:?}");
+}
+
+#[test]
+fn histories_hold_every_step_and_their_means_are_the_averages() {
+    let track = smooth(0.2, 100.0, 30.0).for_a_travel_of(0.2, 0.1);
+    let run = track.roll();
+    let steps = run.history.len() - 1;
+    let travelled = steps as f64 * run.history.step_s * track.case.condition.sled_speed_m_s;
+    assert!((travelled - 0.2).abs() < 5.1e-4, "{travelled}");
+    let last: Vec<f64> = run
+        .history
+        .drawbar_pull_n
+        .iter()
+        .rev()
+        .take(steps / 2)
+        .copied()
+        .collect();
+    let mean = last.iter().sum::<f64>() / last.len() as f64;
+    // averages are of samples at 10 Hz, whole ones
+    assert!(
+        (mean - run.averages.drawbar_pull_n).abs() < 0.05,
+        "{mean} {:?}",
+        run.averages
+    );
+    // every step carries the load: to the search's 0.2 %, or to 1 % where it jumps as nodes join the contact
+    let load = &run.history.wheel_load_n;
+    assert!(load.iter().all(|w| (w - 100.0).abs() < 1.0));
+    assert!(load.iter().filter(|w| (*w - 100.0).abs() > 0.2).count() < load.len() / 50);
+}

@@ -1,0 +1,141 @@
+//! Parameters without an answer, and those that no wheel, soil or grid can have.
+
+use crate::scene::{Track, smooth};
+use scm::spatial::{Grousers, Protocol, Shape, Vertical};
+
+fn rejection(track: &Track) -> scm::Rejection {
+    track.try_roll().expect_err("a rejection")
+}
+
+#[test]
+fn too_soft_a_soil_gives_no_support_and_names_the_most_it_carries() {
+    let mut track = smooth(0.2, 100.0, 30.0);
+    track.case.soil.k_phi = 1e4;
+    let scm::Rejection::NoSupport { most_carried_n, .. } = rejection(&track) else {
+        panic!("{}", rejection(&track))
+    };
+    // the number is true for the lowered wheel: a little less than that is carried
+    track.case.condition.wheel_load_n = 0.9 * most_carried_n;
+    let lowered = track.clone().for_a_travel_of(0.1, 0.05).try_roll();
+    assert!(
+        lowered.is_ok_and(|run| run.history.sinkage_m[0] > 0.08),
+        "{most_carried_n}"
+    );
+    // a negative cohesive modulus that no footprint on this width outgrows
+    let mut track = smooth(0.2, 100.0, 30.0);
+    track.case.soil.k_c = -0.113 * track.case.soil.k_phi;
+    assert_eq!(rejection(&track).kind(), "no_support");
+}
+
+#[test]
+fn every_choice_outside_its_bounds_is_named() {
+    type Change = fn(&mut Track);
+    let fixed = |duration_s, transient_force_s, transient_sinkage_s, lowpass_hz| Protocol::Fixed {
+        duration_s,
+        transient_force_s,
+        transient_sinkage_s,
+        lowpass_hz,
+    };
+    let changes: [(&str, Change); 14] = [
+        ("elastic_stiffness_pa_m", |t| {
+            t.ground.elastic_stiffness_pa_m = 0.0
+        }),
+        ("flow_fraction", |t| t.ground.flow_fraction = 1.01),
+        ("bearing_credit", |t| t.ground.bearing_credit = -0.01),
+        ("repose_angle_rad", |t| t.ground.repose_angle_rad = 32.0),
+        ("shear_modulus_m", |t| t.ground.shear_modulus_m = f64::NAN),
+        ("grouser_height_m", |t| {
+            t.shape = Shape::Rim(Grousers {
+                count: 12,
+                height_m: 0.0,
+                thickness_m: 0.002,
+            });
+        }),
+        ("grouser_thickness_m", |t| {
+            t.shape = Shape::Rim(Grousers {
+                count: 12,
+                height_m: 0.009,
+                thickness_m: -0.002,
+            });
+        }),
+        ("dem_spacing_m", |t| t.settings.dem_spacing_m = 0.0),
+        ("travel_step_m", |t| t.settings.travel_step_m = f64::INFINITY),
+        ("damping_n_s_m", |t| {
+            t.settings.vertical = Vertical::Dynamic {
+                damping_n_s_m: -1.0,
+                gravity_m_s2: 9.81,
+            };
+        }),
+        ("gravity_m_s2", |t| {
+            t.settings.vertical = Vertical::Dynamic {
+                damping_n_s_m: 1.0,
+                gravity_m_s2: 0.0,
+            };
+        }),
+        ("slip", |t| t.case.condition.slip = 1.0),
+        ("n", |t| t.case.soil.n = 0.0),
+        ("radius_m", |t| t.case.wheel.radius_m = 0.0),
+    ];
+    let named = |track: &Track, field: &str| {
+        let message = rejection(track).to_string();
+        assert!(
+            message.starts_with(&format!("invalid parameter: {field} = ")),
+            "{message}"
+        );
+    };
+    for (field, change) in changes {
+        let mut track = smooth(0.2, 100.0, 30.0);
+        change(&mut track);
+        named(&track, field);
+    }
+    for (field, protocol) in [
+        (
+            "tolerance",
+            Protocol::Steady {
+                tolerance: 0.0,
+                most_travel_m: 1.0,
+            },
+        ),
+        (
+            "most_travel_m",
+            Protocol::Steady {
+                tolerance: 0.01,
+                most_travel_m: -1.0,
+            },
+        ),
+        ("duration_s", fixed(0.0, 0.0, 0.0, 0.0)),
+        ("transient_force_s", fixed(50.0, 50.0, 0.0, 0.0)),
+        ("transient_sinkage_s", fixed(50.0, 20.0, -1.0, 0.0)),
+        ("lowpass_hz", fixed(50.0, 20.0, 1.0, -0.5)),
+    ] {
+        let mut track = smooth(0.2, 100.0, 30.0);
+        track.settings.protocol = protocol;
+        named(&track, field);
+    }
+}
+
+#[test]
+fn a_wheel_of_more_lanes_than_can_be_kept_apart_is_refused_and_the_bound_is_true() {
+    for (slip_angle, lanes) in [(0.0, 126.0), (0.1, 62.0)] {
+        let mut track = smooth(0.2, 100.0, 30.0).for_a_travel_of(0.01, 0.005);
+        track.case.condition.slip_angle_rad = slip_angle;
+        track.settings.dem_spacing_m = 0.112 / (lanes + 3.0);
+        let message = rejection(&track).to_string();
+        assert!(
+            message.starts_with("invalid parameter: dem_spacing_m = ")
+                && message.ends_with("1/62 of the wheel's width, 1/126 where the slip angle is 0"),
+            "{message}"
+        );
+        track.settings.dem_spacing_m = 0.112 / lanes;
+        assert!(track.try_roll().is_ok(), "{lanes} lanes");
+    }
+}
+
+#[test]
+fn a_filter_that_cannot_follow_the_samples_is_refused() {
+    let mut track = smooth(0.2, 100.0, 30.0).for_a_travel_of(0.1, 0.05);
+    if let Protocol::Fixed { lowpass_hz, .. } = &mut track.settings.protocol {
+        *lowpass_hz = 6.0; // beyond half of 10 Hz
+    }
+    assert_eq!(rejection(&track).kind(), "protocol");
+}

@@ -1,0 +1,60 @@
+//! Oracle 5: what a finer grid and shorter steps change.
+
+use super::Rows;
+use super::row::Bounds;
+use crate::scene::{Track, smooth};
+use crate::support::base;
+
+/// Against the finest: a smooth wheel moves by its ends of contact, grousers by the columns they shape.
+const GRID: Bounds = Bounds {
+    pull: 0.015,
+    torque: 0.01,
+    sinkage: 0.03,
+};
+/// Soil behind the axle must keep its height however often it is looked at: a wheel that dug into it at every step
+/// would sink by 7 % more in 50 times as many.
+const STEP: Bounds = Bounds {
+    pull: 0.01,
+    torque: 0.005,
+    sinkage: 0.03,
+};
+
+fn figures(track: &Track) -> [f64; 3] {
+    let got = track.averages();
+    [got.drawbar_pull_n, got.torque_n_m, got.sinkage_m]
+}
+
+pub(crate) fn add(rows: &mut Rows) {
+    let tracks = [
+        ("smooth", smooth(0.2, 100.0, 30.0), 1e-3, 1e-5),
+        (
+            "grousers",
+            Track::with_grousers(base(0.2, 100.0, 30.0)),
+            2e-3,
+            6.25e-5,
+        ),
+    ];
+    for (name, track, finest, shortest) in tracks {
+        let mut track = track.for_a_travel_of(0.3, 0.16);
+        let on_grid = |track: &Track, spacing: f64| {
+            let mut track = track.clone();
+            track.settings.dem_spacing_m = spacing;
+            track
+        };
+        let expected = figures(&on_grid(&track, finest));
+        for spacing in [8e-3, 4e-3, 2e-3] {
+            if spacing > finest {
+                let got = on_grid(&track, spacing).averages();
+                let case = format!("{name}, {} mm of {}", 1e3 * spacing, 1e3 * finest);
+                rows.add_run(&case, 100.0, expected, &got, GRID);
+            }
+        }
+        track.settings.travel_step_m = shortest;
+        let expected = figures(&track);
+        for step in [1e-3, 5e-4, 2.5e-4] {
+            track.settings.travel_step_m = step;
+            let case = format!("{name}, step {} mm of {}", 1e3 * step, 1e3 * shortest);
+            rows.add_run(&case, 100.0, expected, &track.averages(), STEP);
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! Every figure the three-dimensional model is expected to give, with what it gives.
+//!
+//! Tests assert the rows oracle by oracle; `cargo bench -p scm --bench validation` prints them. Volumes (oracle 4) need the
+//! terrain itself and stand beside it, in `spatial::run::rolling`.
+//!
+//! # Layout
+//! - `row`: one expected figure.
+//! - `profile`: pressure along a smooth wheel with uniform pressure across it, on paper.
+//! - `plate`, `smooth_wheel`, `quasi_static`, `convergence`, `scaling`, `power`, `displacement`, `grousers`,
+//!   `flow`, `other_implementation`: the oracles.
+
+pub(crate) mod convergence;
+pub(crate) mod displacement;
+pub(crate) mod flow;
+pub(crate) mod grousers;
+pub(crate) mod other_implementation;
+pub(crate) mod plate;
+pub(crate) mod power;
+mod profile;
+pub(crate) mod quasi_static;
+mod row;
+pub(crate) mod scaling;
+pub(crate) mod smooth_wheel;
+
+pub(crate) use row::{Row, Rows};
+
+/// An oracle: its name, and what adds its rows.
+pub(crate) type Oracle = (&'static str, fn(&mut Rows));
+
+/// All oracles, in the order of the table.
+pub(crate) const ORACLES: [Oracle; 10] = [
+    ("plate", plate::add),
+    ("smooth wheel", smooth_wheel::add),
+    ("quasi-static", quasi_static::add),
+    ("convergence", convergence::add),
+    ("scaling", scaling::add),
+    ("power", power::add),
+    ("displacement", displacement::add),
+    ("grousers", grousers::add),
+    ("flow", flow::add),
+    ("other implementation", other_implementation::add),
+];
+
+/// The rows of one oracle.
+pub(crate) fn rows(add: fn(&mut Rows)) -> Vec<Row> {
+    let mut rows = Rows::default();
+    add(&mut rows);
+    rows.into_rows()
+}

@@ -1,0 +1,86 @@
+//! One figure that is expected, and what the model gives.
+
+use scm::Averages;
+
+/// A figure, in the unit that its quantity names.
+#[derive(Debug, Clone)]
+pub(crate) struct Row {
+    pub(crate) case: String,
+    pub(crate) quantity: &'static str,
+    pub(crate) expected: f64,
+    pub(crate) got: f64,
+    /// Largest difference allowed.
+    pub(crate) tolerance: f64,
+}
+
+impl Row {
+    /// Whether the figure is met; a NaN never is.
+    pub(crate) fn passes(&self) -> bool {
+        (self.got - self.expected).abs() <= self.tolerance
+    }
+}
+
+/// Largest differences of drawbar pull, torque and sinkage: relative to load, to load times radius, to the sinkage.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bounds {
+    pub(crate) pull: f64,
+    pub(crate) torque: f64,
+    pub(crate) sinkage: f64,
+}
+
+/// Rows in the making.
+#[derive(Debug, Default)]
+pub(crate) struct Rows {
+    rows: Vec<Row>,
+}
+
+impl Rows {
+    /// A figure and the largest difference allowed.
+    pub(crate) fn add(
+        &mut self,
+        case: &str,
+        quantity: &'static str,
+        expected: f64,
+        got: f64,
+        tolerance: f64,
+    ) {
+        self.rows.push(Row {
+            case: case.to_owned(),
+            quantity,
+            expected,
+            got,
+            tolerance,
+        });
+    }
+
+    /// Drawbar pull `[N]`, torque \[N m\] and sinkage `[m]` of a wheel of 125 mm under a load `[N]`.
+    pub(crate) fn add_run(
+        &mut self,
+        case: &str,
+        load: f64,
+        expected: [f64; 3],
+        got: &Averages,
+        bounds: Bounds,
+    ) {
+        let [pull, torque, sinkage] = expected;
+        self.add(case, "F [N]", pull, got.drawbar_pull_n, bounds.pull * load);
+        self.add(
+            case,
+            "T [N m]",
+            torque,
+            got.torque_n_m,
+            bounds.torque * load * 0.125,
+        );
+        self.add(
+            case,
+            "z [mm]",
+            1e3 * sinkage,
+            1e3 * got.sinkage_m,
+            1e3 * bounds.sinkage * sinkage.abs(),
+        );
+    }
+
+    pub(crate) fn into_rows(self) -> Vec<Row> {
+        self.rows
+    }
+}
