@@ -11,6 +11,14 @@ use worker::pull::{Coordinator, ExchangeError, Settings, run};
 
 use crate::farm::dispatch::Dispatcher;
 
+/// Whether this machine can run what was built; asked before anything else.
+///
+/// # Errors
+/// A sentence that says how to build for this machine.
+pub fn check_processor() -> Result<(), String> {
+    worker::processor::check()
+}
+
 /// The farm as a worker in the same process sees it.
 ///
 /// It does not wait for the store: such a worker dies with the coordinator, so nobody could resend what was

@@ -3,8 +3,16 @@
 use clap::Parser;
 use coordinator::config::Config;
 
+fn main() -> std::process::ExitCode {
+    if let Err(error) = coordinator::embedded::check_processor() {
+        eprintln!("error: {error}");
+        return std::process::ExitCode::FAILURE;
+    }
+    run()
+}
+
 #[tokio::main]
-async fn main() -> std::process::ExitCode {
+async fn run() -> std::process::ExitCode {
     let config = Config::parse();
     tracing_subscriber::fmt()
         .with_env_filter(

@@ -41,9 +41,30 @@ pub struct Observables {
     pub nodes_in_contact: Vec<u32>,
     /// Travel that was simulated `[m]`.
     pub simulated_travel_m: Vec<f64>,
+    /// Change of the averages, relative to their scales, at which each run of a `steady` protocol ended; empty for
+    /// models and protocols that do not wait for averages to settle.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub settled_to: Vec<f64>,
 }
 
 impl Observables {
+    /// Room for a number of runs.
+    pub fn with_capacity(runs: usize) -> Self {
+        let room = || Vec::with_capacity(runs);
+        Observables {
+            drawbar_pull_n: room(),
+            torque_n_m: room(),
+            sinkage_m: room(),
+            lateral_force_n: room(),
+            b_eff_m: room(),
+            contact_length_m: room(),
+            residual_load_n: room(),
+            nodes_in_contact: Vec::with_capacity(runs),
+            simulated_travel_m: room(),
+            settled_to: Vec::new(),
+        }
+    }
+
     /// Values of a channel, by run.
     pub fn channel(&self, channel: Channel) -> &[f64] {
         match channel {
@@ -65,6 +86,7 @@ impl Observables {
             &self.contact_length_m,
             &self.residual_load_n,
             &self.simulated_travel_m,
+            &self.settled_to,
         ];
         let bits = vectors.into_iter().flatten().map(|v| v.to_bits());
         let counts = self.nodes_in_contact.iter().map(|&n| u64::from(n));
@@ -83,6 +105,7 @@ impl Observables {
             .iter()
             .all(|v| v.len() == runs)
             && self.nodes_in_contact.len() == runs
+            && (self.settled_to.is_empty() || self.settled_to.len() == runs)
     }
 }
 
@@ -90,7 +113,7 @@ impl Observables {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rejection {
-    /// Stable word: `no_support`, `no_convergence`, `not_finite`, `invalid_parameter`.
+    /// Stable word: `no_support`, `no_convergence`, `not_finite`, `energy_gained`, `protocol`, `invalid_parameter`.
     pub kind: String,
     /// Position of the condition that was refused.
     pub condition: u32,

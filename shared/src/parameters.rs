@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 
 use crate::channel::Channel;
 use crate::file::unknown_word;
+use crate::model::ModelKind;
 
 /// What is known of a base parameter of the wheel-soil models.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,6 +56,22 @@ pub const BASE: [BaseParameter; 10] = [
     base("gamma_exponent", "1", 0.0, 100.0, Some(0.5)),
 ];
 
+/// Parameters of the soil's deformation, which the three-dimensional model alone has.
+pub const SPATIAL: [BaseParameter; 3] = [
+    base("elastic_stiffness_pa_m", "Pa/m", 1e6, 1e13, Some(1e9)),
+    base("flow_fraction", "1", 0.0, 1.0, Some(0.25)),
+    base("bearing_credit", "1", 0.0, 1.0, Some(0.3)),
+];
+
+/// Every base parameter that a model of some kind has.
+pub fn of_kind(kind: ModelKind) -> impl Iterator<Item = &'static BaseParameter> {
+    let spatial: &[BaseParameter] = match kind {
+        ModelKind::QuasiStatic => &[],
+        ModelKind::Scm => &SPATIAL,
+    };
+    BASE.iter().chain(spatial)
+}
+
 /// Every known parameter of an effect, with the value at which the effect is absent. A variant that says
 /// nothing of one does not carry it, so its hash is that of a version without the effect.
 ///
@@ -77,8 +94,8 @@ pub fn noise_parameter(channel: Channel) -> String {
 /// # Errors
 /// A sentence that names the unknown name and the nearest known one.
 pub fn lookup(name: &str, wheels: &BTreeSet<&str>) -> Result<BaseParameter, String> {
-    if let Some(effect) = EFFECTS.iter().find(|p| p.name == name) {
-        return Ok(*effect);
+    if let Some(whole) = EFFECTS.iter().chain(&SPATIAL).find(|p| p.name == name) {
+        return Ok(*whole);
     }
     let (stem, wheel) = name
         .split_once('.')
@@ -100,7 +117,10 @@ pub fn lookup(name: &str, wheels: &BTreeSet<&str>) -> Result<BaseParameter, Stri
         (None, Some(_)) => Err(format!(
             "parameter \"{name}\" of an effect is not available in this version"
         )),
-        (None, None) => Err(unknown_word("parameter", name, BASE.iter().map(|p| p.name))),
+        (None, None) => {
+            let known = BASE.iter().chain(&SPATIAL).map(|p| p.name);
+            Err(unknown_word("parameter", name, known))
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use shared::api::{
 };
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
 use shared::experiment::Wheel;
-use shared::model::{Condition, ModelKind, ModelVariant};
+use shared::model::{Condition, ModelKind, ModelVariant, SpatialSettings};
 use shared::outcome::{Fault, Observables, Outcome, Rejection};
 
 /// A message has one form: it is written so, and read back to the same.
@@ -48,6 +48,7 @@ fn observables() -> Observables {
         residual_load_n: vec![1e-9],
         nodes_in_contact: vec![16],
         simulated_travel_m: vec![0.0],
+        settled_to: vec![0.004],
     }
 }
 
@@ -55,7 +56,7 @@ fn observables_json() -> Value {
     json!({
         "drawbar_pull_n": [12.5], "torque_n_m": [2.25], "sinkage_m": [0.006], "lateral_force_n": [0.0],
         "b_eff_m": [0.03], "contact_length_m": [0.05], "residual_load_n": [1e-9], "nodes_in_contact": [16],
-        "simulated_travel_m": [0.0],
+        "simulated_travel_m": [0.0], "settled_to": [0.004],
     })
 }
 
@@ -150,9 +151,11 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         sled_speed_m_s: 0.0095,
         slip_angle_deg: 0.0,
         pass: 1,
+        repose_angle_deg: None,
     };
     let variant = ModelVariant {
         kind: ModelKind::QuasiStatic,
+        spatial: None,
         effects: Vec::new(),
         parameters: vec!["n".into()],
         fixed: [("kappa".to_owned(), 0.0)].into(),
@@ -181,6 +184,20 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
     };
     assert_ne!(variant.hash(), other.hash());
     assert_eq!(variant.hash().len(), 32);
+
+    let spatial = SpatialSettings::default();
+    golden(
+        &spatial,
+        &json!({"dem_spacing_m": 0.004, "travel_step_m": 0.0005, "displacement": "rim",
+                "pressure_direction": "wheel_normal", "vertical": "balance", "damping_n_s_m": 2000.0,
+                "steady_tolerance": 0.005, "steady_travel_m": 1.0}),
+    );
+    let rolling = ModelVariant {
+        kind: ModelKind::Scm,
+        spatial: Some(spatial),
+        ..variant.clone()
+    };
+    assert_ne!(variant.hash(), rolling.hash());
 }
 
 #[test]

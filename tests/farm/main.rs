@@ -10,4 +10,5 @@ mod forward;
 mod leases;
 mod mesh;
 mod point_fit;
+mod spatial;
 mod summary_contract;

@@ -48,7 +48,7 @@ pub struct Simulate {
     /// readings get none, because none is declared for them.
     #[arg(long, requires = "out")]
     pub noise_seed: Option<u64>,
-    /// Where to write time histories (a model that has them: not in this version).
+    /// Folder for the time histories of each run, RUN.csv at 10 Hz (kind = "scm").
     #[arg(long, requires = "out")]
     pub histories: Option<PathBuf>,
     /// Where to write the averages of the wheel's runs, with the columns of runs.csv.

@@ -6,12 +6,14 @@
 //! - [`pull`]: the loop of a worker: exchange, evaluate, resend, renew, give back.
 //! - [`client`]: the coordinator over HTTP; the only place that knows HTTP.
 //! - [`simulate`]: forward runs of an experiment without a coordinator.
+//! - [`processor`]: whether this machine can run what was built.
 //! - [`config`]: command line and environment.
 
 pub mod client;
 pub mod config;
 pub mod evaluator;
 pub mod model;
+pub mod processor;
 pub mod pull;
 pub mod simulate;
 

@@ -10,6 +10,10 @@ use worker::evaluator::SimulationClock;
 use worker::pull::{Settings, run};
 
 fn main() -> std::process::ExitCode {
+    if let Err(error) = worker::processor::check() {
+        eprintln!("error: {error}");
+        return std::process::ExitCode::FAILURE;
+    }
     tracing_subscriber::fmt()
         .with_env_filter(
             tracing_subscriber::EnvFilter::try_from_default_env().unwrap_or_else(|_| "info".into()),

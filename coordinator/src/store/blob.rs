@@ -4,7 +4,8 @@ use shared::outcome::Observables;
 
 use super::StoreError;
 
-/// Vectors per run: four channels and five diagnostics.
+/// Vectors per run: four channels and five diagnostics. A tenth, `settled_to`, stands only where there is one; then a
+/// not-a-number ends the bytes, which no observable can be.
 const VECTORS: usize = 9;
 
 /// The bytes of numbers.
@@ -30,6 +31,10 @@ pub(super) fn encode_whole(o: &Observables) -> Vec<u8> {
             .collect::<Vec<_>>(),
     );
     push(&o.simulated_travel_m);
+    if !o.settled_to.is_empty() {
+        push(&o.settled_to);
+        push(&[f64::NAN]);
+    }
     bytes
 }
 
@@ -49,14 +54,18 @@ pub(super) fn decode_values(bytes: &[u8]) -> Result<Vec<f64>, StoreError> {
 /// The observables of bytes.
 pub(super) fn decode(bytes: &[u8]) -> Result<Observables, StoreError> {
     let (words, rest) = bytes.as_chunks::<8>();
-    if !rest.is_empty() || words.len() % VECTORS != 0 {
+    let (words, vectors) = match words {
+        [words @ .., last] if f64::from_le_bytes(*last).is_nan() => (words, VECTORS + 1),
+        words => (words, VECTORS),
+    };
+    if !rest.is_empty() || words.len() % vectors != 0 {
         return Err(StoreError::Corrupt(format!(
             "observables of {} bytes",
             bytes.len()
         )));
     }
     let values: Vec<f64> = words.iter().map(|w| f64::from_le_bytes(*w)).collect();
-    let runs = values.len() / VECTORS;
+    let runs = values.len() / vectors;
     let vector = |k: usize| values[k * runs..(k + 1) * runs].to_vec();
     Ok(Observables {
         drawbar_pull_n: vector(0),
@@ -69,6 +78,11 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Observables, StoreError> {
         // Written from u32, so the conversion back is exact.
         nodes_in_contact: vector(7).into_iter().map(|n| n as u32).collect(),
         simulated_travel_m: vector(8),
+        settled_to: if vectors > VECTORS {
+            vector(VECTORS)
+        } else {
+            Vec::new()
+        },
     })
 }
 
@@ -78,7 +92,7 @@ mod tests {
 
     #[test]
     fn decode_inverts_encode_to_the_bit() {
-        let observables = Observables {
+        let mut observables = Observables {
             drawbar_pull_n: vec![1.5, -0.0],
             torque_n_m: vec![0.1, 1e-300],
             sinkage_m: vec![0.3, 0.2],
@@ -88,7 +102,10 @@ mod tests {
             residual_load_n: vec![1e-12, 0.0],
             nodes_in_contact: vec![16, 24],
             simulated_travel_m: vec![0.0, 1.0],
+            settled_to: Vec::new(),
         };
+        assert_eq!(decode(&encode_whole(&observables)).unwrap(), observables);
+        observables.settled_to = vec![0.003, 0.004];
         assert_eq!(decode(&encode_whole(&observables)).unwrap(), observables);
         assert!(decode(&[0; 10]).is_err());
     }

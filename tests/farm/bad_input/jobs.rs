@@ -190,20 +190,12 @@ fn what_a_later_version_brings_says_so() {
     };
     let small = Job::small;
     later(
-        small().in_job("\"quasi_static\"", "\"scm\""),
-        "[model] kind = \"scm\"",
-    );
-    later(
         small().in_job("[priors]", "effects = [\"bulldozing\"]\n[priors]"),
         "[model] effects",
     );
     later(
         small().in_job("[priors]", "effect_files = [\"mine.toml\"]\n[priors]"),
         "[model] effect_files",
-    );
-    later(
-        small().in_job("[priors]", "dem_spacing_m = 0.004\n[priors]"),
-        "[model] dem_spacing_m",
     );
     later(
         small().in_job(

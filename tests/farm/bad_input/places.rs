@@ -259,8 +259,16 @@ fn forward_runs_refuse_wrong_models_and_parameters() {
         "model.toml: unknown kind \"quasi-static\"; the nearest known is \"quasi_static\""
     );
     assert_eq!(
-        simulate("kind = \"scm\"\n", &theta),
-        "model.toml: kind = \"scm\" is not available in this version"
+        simulate("kind = \"quasi_static\"\ndem_spacing_m = 0.004\n", &theta),
+        "model.toml: dem_spacing_m: quasi_static has no terrain of nodes; use kind = \"scm\""
+    );
+    assert_eq!(
+        simulate("kind = \"quasi_static\"\nflow_fraction = 0.5\n", &theta),
+        "theta.toml: flow_fraction: quasi_static has no terrain that deforms; use kind = \"scm\""
+    );
+    assert_eq!(
+        simulate("kind = \"scm\"\ntravel_step_m = -1\n", &theta),
+        "model.toml: travel_step_m -1 m must be > 0 m"
     );
     assert_eq!(
         simulate(model, &without("n =")),
@@ -309,7 +317,7 @@ fn noise_of_an_unknown_sd_and_histories_are_refused() {
     );
     let message = simulate(&["--histories", &text(folder.path())]);
     assert!(
-        message.contains("--histories") && message.contains("not available in this version"),
+        message.contains("--histories: quasi_static knows the steady state alone"),
         "{message}"
     );
     assert!(!folder.path().join("out.csv").exists());

@@ -1,16 +1,24 @@
 //! A variant made ready to evaluate: shared names become the physics' types.
+//!
+//! # Layout
+//! - here: [`CompiledVariant`] and the cache of them.
+//! - `parameters`: where each physical quantity comes from.
+//! - `spatial`: the three-dimensional model; `bevameter`: plates and rings.
 
 mod bevameter;
 mod parameters;
+mod spatial;
 
 use std::collections::BTreeMap;
 
+use scm::spatial::Run;
 use scm::{Averages, Condition, Soil, Wheel, quasi_static};
 use shared::model::{ModelKind, ModelVariant};
 use shared::outcome::{Observables, Outcome, Rejection};
 
 pub use bevameter::{Bevameter, Readings};
 use parameters::{Radius, SoilMap};
+use spatial::SpatialModel;
 
 /// A variant whose names are resolved, so that an evaluation looks up nothing.
 #[derive(Debug)]
@@ -19,6 +27,14 @@ pub struct CompiledVariant {
     soil: SoilMap,
     wheels: Vec<(Wheel, Radius)>,
     conditions: Vec<(usize, Condition)>,
+    /// The three-dimensional model; `None`: the quasi-static one.
+    spatial: Option<SpatialModel>,
+}
+
+/// What simulating one condition gives.
+enum Simulated {
+    Steady(Averages),
+    Rolled(Box<Run>),
 }
 
 impl CompiledVariant {
@@ -27,12 +43,6 @@ impl CompiledVariant {
     /// # Errors
     /// A sentence that names what this worker does not know or cannot express.
     pub fn new(variant: &ModelVariant) -> Result<Self, String> {
-        if variant.kind != ModelKind::QuasiStatic {
-            return Err(format!(
-                "kind = \"{}\" is not available in this version",
-                variant.kind.name()
-            ));
-        }
         if let Some(effect) = variant.effects.first() {
             return Err(format!("effect \"{effect}\" is not available in this version"));
         }
@@ -69,7 +79,12 @@ impl CompiledVariant {
                 Ok((wheel, condition))
             })
             .collect::<Result<_, String>>()?;
+        let spatial = match variant.kind {
+            ModelKind::QuasiStatic => None,
+            ModelKind::Scm => Some(SpatialModel::new(variant)?),
+        };
         Ok(CompiledVariant {
+            spatial,
             dimension: variant.parameters.len(),
             soil,
             wheels,
@@ -84,42 +99,63 @@ impl CompiledVariant {
 
     /// Simulates every condition at one parameter vector. The first refusal ends it.
     pub fn evaluate(&self, theta: &[f64]) -> Outcome {
+        let soil = match self.soil_of(theta) {
+            Ok(soil) => soil,
+            Err(rejection) => return Outcome::Rejected(rejection),
+        };
+        let mut observables = Observables::with_capacity(self.runs());
+        for position in 0..self.runs() {
+            match self.simulate(theta, &soil, position) {
+                Ok(Simulated::Steady(averages)) => push(&mut observables, &averages),
+                Ok(Simulated::Rolled(run)) => {
+                    push(&mut observables, &run.averages);
+                    observables.settled_to.extend(run.settled_to);
+                }
+                Err(rejection) => return rejected(rejection.kind(), position, rejection.to_string()),
+            }
+        }
+        Outcome::Evaluated(observables)
+    }
+
+    /// The run of one condition with its time histories; `None` for a model that has none.
+    ///
+    /// # Errors
+    /// The model refuses the parameters.
+    pub fn history(&self, theta: &[f64], position: usize) -> Result<Option<Run>, Rejection> {
+        let soil = self.soil_of(theta)?;
+        match self.simulate(theta, &soil, position) {
+            Ok(Simulated::Steady(_)) => Ok(None),
+            Ok(Simulated::Rolled(run)) => Ok(Some(*run)),
+            Err(rejection) => Err(refusal(rejection.kind(), position, rejection.to_string())),
+        }
+    }
+
+    fn soil_of(&self, theta: &[f64]) -> Result<Soil, Rejection> {
         if theta.len() != self.dimension {
             let message = format!(
                 "theta has {} entries, the variant has {}",
                 theta.len(),
                 self.dimension
             );
-            return rejected("invalid_parameter", 0, message);
+            return Err(refusal("invalid_parameter", 0, message));
         }
-        let soil: Soil = match self.soil.soil(theta).checked() {
-            Ok(soil) => soil,
-            Err(rejection) => return rejected(rejection.kind(), 0, rejection.to_string()),
+        let soil = self.soil.soil(theta).checked();
+        soil.map_err(|rejection| refusal(rejection.kind(), 0, rejection.to_string()))
+    }
+
+    fn simulate(&self, theta: &[f64], soil: &Soil, position: usize) -> Result<Simulated, scm::Rejection> {
+        let (place, condition) = &self.conditions[position];
+        let (wheel, radius) = &self.wheels[*place];
+        let wheel = Wheel {
+            radius_m: radius.value(theta).unwrap_or(wheel.radius_m),
+            ..*wheel
         };
-        let runs = self.conditions.len();
-        let mut observables = Observables {
-            drawbar_pull_n: Vec::with_capacity(runs),
-            torque_n_m: Vec::with_capacity(runs),
-            sinkage_m: Vec::with_capacity(runs),
-            lateral_force_n: Vec::with_capacity(runs),
-            b_eff_m: Vec::with_capacity(runs),
-            contact_length_m: Vec::with_capacity(runs),
-            residual_load_n: Vec::with_capacity(runs),
-            nodes_in_contact: Vec::with_capacity(runs),
-            simulated_travel_m: Vec::with_capacity(runs),
-        };
-        for (position, (wheel, condition)) in self.conditions.iter().enumerate() {
-            let (wheel, radius) = &self.wheels[*wheel];
-            let wheel = Wheel {
-                radius_m: radius.value(theta).unwrap_or(wheel.radius_m),
-                ..*wheel
-            };
-            match quasi_static::simulate(&soil, &wheel, condition) {
-                Ok(averages) => push(&mut observables, &averages),
-                Err(rejection) => return rejected(rejection.kind(), position, rejection.to_string()),
-            }
+        match &self.spatial {
+            None => quasi_static::simulate(soil, &wheel, condition).map(Simulated::Steady),
+            Some(model) => model
+                .run(theta, position, soil, (*place, &wheel), condition)
+                .map(|run| Simulated::Rolled(Box::new(run))),
         }
-        Outcome::Evaluated(observables)
     }
 }
 
@@ -135,12 +171,16 @@ fn push(o: &mut Observables, a: &Averages) {
     o.simulated_travel_m.push(a.simulated_travel_m);
 }
 
-fn rejected(kind: &str, condition: usize, message: String) -> Outcome {
-    Outcome::Rejected(Rejection {
+fn refusal(kind: &str, condition: usize, message: String) -> Rejection {
+    Rejection {
         kind: kind.to_owned(),
         condition: condition as u32,
         message,
-    })
+    }
+}
+
+fn rejected(kind: &str, condition: usize, message: String) -> Outcome {
+    Outcome::Rejected(refusal(kind, condition, message))
 }
 
 /// Variants by hash, each compiled once.

@@ -1,7 +1,9 @@
 //! Where each physical quantity comes from: a free parameter, or a fixed value.
 
+use scm::spatial::Ground;
 use scm::{Soil, bekker_moduli};
 use shared::model::ModelVariant;
+use shared::parameters::SHEAR_MODULUS;
 
 /// The source of one quantity.
 #[derive(Debug, Clone, Copy)]
@@ -87,6 +89,38 @@ impl SoilMap {
             friction_angle_rad: self.friction_angle_deg.value(theta).to_radians(),
             shear_velocity_m_s: self.shear_velocity_m_s.value(theta),
             gamma_exponent: self.gamma_exponent.value(theta),
+        }
+    }
+}
+
+/// The sources of what deforms the soil.
+#[derive(Debug)]
+pub(super) struct GroundMap {
+    elastic_stiffness_pa_m: Source,
+    flow_fraction: Source,
+    bearing_credit: Source,
+    shear_modulus_m: Option<Source>,
+}
+
+impl GroundMap {
+    pub(super) fn new(variant: &ModelVariant) -> Result<Self, String> {
+        Ok(GroundMap {
+            elastic_stiffness_pa_m: Source::required(variant, "elastic_stiffness_pa_m")?,
+            flow_fraction: Source::required(variant, "flow_fraction")?,
+            bearing_credit: Source::required(variant, "bearing_credit")?,
+            shear_modulus_m: Source::find(variant, SHEAR_MODULUS),
+        })
+    }
+
+    /// The ground under the condition's angle of repose; the model's default where none is stated.
+    pub(super) fn ground(&self, theta: &[f64], repose_angle_deg: Option<f64>) -> Ground {
+        let default = Ground::default();
+        Ground {
+            elastic_stiffness_pa_m: self.elastic_stiffness_pa_m.value(theta),
+            flow_fraction: self.flow_fraction.value(theta),
+            bearing_credit: self.bearing_credit.value(theta),
+            repose_angle_rad: repose_angle_deg.map_or(default.repose_angle_rad, f64::to_radians),
+            shear_modulus_m: self.shear_modulus_m.map_or(0.0, |source| source.value(theta)),
         }
     }
 }

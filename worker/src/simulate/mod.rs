@@ -3,8 +3,10 @@
 //! # Layout
 //! - here: the wheel's runs, and which table goes where.
 //! - `bevameter`: the tables of plates and rings.
+//! - `histories`: what each run felt over time.
 
 mod bevameter;
+mod histories;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -35,6 +37,9 @@ pub enum SimulateError {
         /// Quantity, value, unit, bound.
         message: String,
     },
+    /// A history cannot be brought to a regular interval.
+    #[error("history: {0}")]
+    History(#[from] scm::signal::SignalError),
     /// A table cannot be put together.
     #[error("table: {0}")]
     Table(#[from] csv::Error),
@@ -56,10 +61,6 @@ pub enum SimulateError {
 /// # Errors
 /// [`SimulateError`].
 pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
-    if command.histories.is_some() {
-        let message = "--histories: quasi_static has no time histories; a model that has them is not available in this version";
-        return Err(FileError::whole(&command.model.display().to_string(), message).into());
-    }
     let name = command.experiment.display().to_string();
     let experiment = Experiment::parse(&name, &Experiment::read_files(&command.experiment)?)?;
     for (flag, key, asked, rows) in [
@@ -75,23 +76,32 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
     // Where no table of runs is asked for, no wheel rolls, and a model need not be able to roll it.
     let runs: &[TestRun] = command.out.as_ref().map_or(&[], |_| &experiment.runs);
     let variant = variant(&experiment, runs, &command.model, &command.parameters)?;
-    let mut tables: Vec<(&PathBuf, Vec<u8>)> = Vec::new();
+    let mut tables: Vec<(PathBuf, Vec<u8>)> = Vec::new();
     if let Some(path) = &command.out {
-        tables.push((path, wheel_runs(&experiment, &variant, command)?));
+        let compiled = CompiledVariant::new(&variant)
+            .map_err(|e| FileError::whole(&command.model.display().to_string(), e))?;
+        tables.push((path.clone(), wheel_runs(&experiment, &compiled, command)?));
+        if let Some(folder) = &command.histories {
+            tables.extend(histories::histories(&experiment, &variant, &compiled, folder)?);
+            std::fs::create_dir_all(folder).map_err(|source| SimulateError::Write {
+                path: folder.display().to_string(),
+                source,
+            })?;
+        }
     }
     if command.plates.is_some() || command.shear.is_some() {
         let bevameter = Bevameter::new(&variant)
             .map_err(|e| FileError::whole(&command.model.display().to_string(), e))?
             .at(&[]);
         if let Some(path) = &command.plates {
-            tables.push((path, bevameter::plates(&experiment, &bevameter)?));
+            tables.push((path.clone(), bevameter::plates(&experiment, &bevameter)?));
         }
         if let Some(path) = &command.shear {
-            tables.push((path, bevameter::shear(&experiment, &bevameter)?));
+            tables.push((path.clone(), bevameter::shear(&experiment, &bevameter)?));
         }
     }
     for (path, table) in tables {
-        std::fs::write(path, table).map_err(|source| SimulateError::Write {
+        std::fs::write(&path, table).map_err(|source| SimulateError::Write {
             path: path.display().to_string(),
             source,
         })?;
@@ -102,11 +112,9 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
 /// The table of the wheel's runs.
 fn wheel_runs(
     experiment: &Experiment,
-    variant: &ModelVariant,
+    compiled: &CompiledVariant,
     command: &Simulate,
 ) -> Result<Vec<u8>, SimulateError> {
-    let compiled = CompiledVariant::new(variant)
-        .map_err(|e| FileError::whole(&command.model.display().to_string(), e))?;
     let refused = |run: &str, message: String| SimulateError::Rejected {
         what: "run",
         name: run.to_owned(),
@@ -119,6 +127,9 @@ fn wheel_runs(
         }
         Outcome::Fault(f) => return Err(refused("", f.message)),
     };
+    for (run, settled) in experiment.runs.iter().zip(&observables.settled_to) {
+        tracing::info!(run = run.name, settled_to = settled, "averages settled");
+    }
     let noise = noise(experiment, command.noise_seed)
         .map_err(|e| FileError::whole(&command.experiment.display().to_string(), e))?;
     Ok(table(experiment, &observables, &noise)?)

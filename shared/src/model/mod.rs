@@ -1,4 +1,15 @@
 //! Which forward model is meant, and the self-contained variant of it that a worker evaluates.
+//!
+//! # Layout
+//! - here: [`ModelKind`], [`Condition`] and [`ModelVariant`].
+//! - [`settings`]: the table `[model]` of a job.
+//! - [`spatial`]: what the three-dimensional model needs beside.
+
+pub mod settings;
+pub mod spatial;
+
+pub use settings::ModelSettings;
+pub use spatial::SpatialSettings;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +18,6 @@ use sha2::{Digest, Sha256};
 use utoipa::ToSchema;
 
 use crate::experiment::{Experiment, Protocol, TestRun, Wheel};
-use crate::file::unknown_word;
 use crate::parameters::{self, check_complete, check_value, lookup};
 
 /// The forward models by name.
@@ -16,7 +26,7 @@ use crate::parameters::{self, check_complete, check_value, lookup};
 pub enum ModelKind {
     /// The smooth-wheel quasi-static Soil Contact Model.
     QuasiStatic,
-    /// The three-dimensional Soil Contact Model. Not available in this version.
+    /// The three-dimensional Soil Contact Model: a wheel that rolls over deformable terrain.
     Scm,
 }
 
@@ -27,58 +37,6 @@ impl ModelKind {
             ModelKind::QuasiStatic => "quasi_static",
             ModelKind::Scm => "scm",
         }
-    }
-}
-
-/// The table `[model]` of a job, or a model file of `worker simulate`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ModelSettings {
-    /// Which forward model.
-    pub kind: ModelKind,
-    /// Base parameters that are fixed.
-    pub fixed: BTreeMap<String, f64>,
-}
-
-/// What a later version understands; here it is named, so that it is refused by name.
-const LATER: [&str; 3] = ["effect_files", "dem_spacing_m", "displacement"];
-
-impl ModelSettings {
-    /// Reads the table `[model]`.
-    ///
-    /// # Errors
-    /// A sentence that names the key, the value and what is allowed.
-    pub fn from_table(table: &toml::Table) -> Result<Self, String> {
-        let mut kind = None;
-        let mut fixed = BTreeMap::new();
-        for (key, value) in table {
-            match (key.as_str(), value) {
-                ("kind", toml::Value::String(name)) => {
-                    kind = Some(match name.as_str() {
-                        "quasi_static" => ModelKind::QuasiStatic,
-                        "scm" => return Err("kind = \"scm\" is not available in this version".into()),
-                        other => return Err(unknown_word("kind", other, ["quasi_static", "scm"])),
-                    });
-                }
-                ("effects", toml::Value::Array(names)) if names.is_empty() => {}
-                ("effects", _) => return Err("effects are not available in this version".into()),
-                (key, _) if LATER.contains(&key) => {
-                    return Err(format!("{key} is not available in this version"));
-                }
-                (key, value) => {
-                    let number = value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
-                    let mut parameters = parameters::BASE.iter().chain(&parameters::EFFECTS);
-                    let known = key.starts_with("wheel_radius_m.") || parameters.any(|p| p.name == key);
-                    if !known {
-                        let names = parameters::BASE.iter().map(|p| p.name).chain(["kind", "effects"]);
-                        return Err(unknown_word("key", key, names));
-                    }
-                    let number = number.ok_or_else(|| format!("{key} must be a number, not {value}"))?;
-                    fixed.insert(key.to_owned(), number);
-                }
-            }
-        }
-        let kind = kind.ok_or("kind is missing: \"quasi_static\" or \"scm\"")?;
-        Ok(ModelSettings { kind, fixed })
     }
 }
 
@@ -98,11 +56,15 @@ pub struct Condition {
     pub slip_angle_deg: f64,
     /// How often the wheel passes; the last pass counts.
     pub pass: u32,
+    /// Angle of repose of the run's soil `[deg]`, for a model whose soil slides; absent: the model's default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repose_angle_deg: Option<f64>,
 }
 
-impl From<&TestRun> for Condition {
-    fn from(run: &TestRun) -> Self {
+impl Condition {
+    fn new(run: &TestRun, repose_angle_deg: Option<f64>) -> Self {
         Condition {
+            repose_angle_deg,
             wheel: run.wheel.clone(),
             slip: run.slip,
             wheel_load_n: run.wheel_load_n,
@@ -119,6 +81,9 @@ impl From<&TestRun> for Condition {
 pub struct ModelVariant {
     /// Which forward model.
     pub kind: ModelKind,
+    /// What the three-dimensional model needs beside; absent for the others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spatial: Option<SpatialSettings>,
     /// Names of the effects switched on. Empty in this version.
     pub effects: Vec<String>,
     /// Names of the free parameters, in the order of every parameter vector.
@@ -151,7 +116,7 @@ impl ModelVariant {
     ) -> Result<Self, String> {
         let wheels = experiment.wheel_names();
         let mut fixed = settings.fixed.clone();
-        for parameter in parameters::BASE {
+        for parameter in parameters::of_kind(settings.kind) {
             let Some(default) = parameter.default else {
                 continue;
             };
@@ -171,14 +136,26 @@ impl ModelVariant {
             .map(String::as_str)
             .collect();
         check_complete(&names, &wheels)?;
+        let slides = settings.kind == ModelKind::Scm;
         let variant = ModelVariant {
             kind: settings.kind,
+            spatial: settings.spatial,
             effects: Vec::new(),
             parameters,
             fixed,
             wheels: experiment.wheels.clone(),
             gravity_m_s2: experiment.rig.gravity_m_s2,
-            conditions: runs.into_iter().map(Condition::from).collect(),
+            conditions: runs
+                .into_iter()
+                .map(|run| {
+                    Condition::new(
+                        run,
+                        slides
+                            .then(|| experiment.soils[&run.soil].repose_angle_deg)
+                            .flatten(),
+                    )
+                })
+                .collect(),
             protocol: experiment.protocol.clone(),
         };
         variant.check_expressible()?;
@@ -191,12 +168,28 @@ impl ModelVariant {
     /// # Errors
     /// A sentence that names what the model of this kind lacks.
     pub fn check_expressible(&self) -> Result<(), String> {
-        if self.kind != ModelKind::QuasiStatic || self.conditions.is_empty() {
+        if self.conditions.is_empty() {
             return Ok(());
+        }
+        let names = || self.parameters.iter().chain(self.fixed.keys());
+        if self.kind == ModelKind::Scm {
+            return match self.conditions.iter().find(|c| self.has_mesh(&c.wheel)) {
+                Some(Condition { wheel, .. }) if names().any(|n| n.starts_with("wheel_radius_m")) => {
+                    Err(format!(
+                        "wheel {wheel} is a surface mesh, which has its radius: wheel_radius_m cannot be a parameter"
+                    ))
+                }
+                _ => Ok(()),
+            };
+        }
+        if let Some(name) = names().find(|n| parameters::SPATIAL.iter().any(|p| p.name == *n)) {
+            return Err(format!(
+                "{name}: quasi_static has no terrain that deforms; use kind = \"scm\""
+            ));
         }
         for condition in &self.conditions {
             let name = &condition.wheel;
-            if self.wheels.get(name).is_some_and(|wheel| wheel.mesh.is_some()) {
+            if self.has_mesh(name) {
                 return Err(format!(
                     "wheel {name} is a surface mesh: quasi_static rolls a smooth cylinder; use kind = \"scm\""
                 ));
@@ -210,6 +203,10 @@ impl ModelVariant {
             ));
         }
         Ok(())
+    }
+
+    fn has_mesh(&self, wheel: &str) -> bool {
+        self.wheels.get(wheel).is_some_and(|wheel| wheel.mesh.is_some())
     }
 
     /// Name of the variant on the wire: the first 128 bits of the SHA-256 of its JSON, in hex.

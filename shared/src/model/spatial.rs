@@ -1,0 +1,143 @@
+//! What the three-dimensional model needs beside parameters: spacing, laws' variants, when a steady run ends.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// Choices for `kind = "scm"`, keys of the table `[model]`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct SpatialSettings {
+    /// Spacing of the terrain's nodes `[m]`; finer along travel where the contact is shorter than eight nodes.
+    pub dem_spacing_m: f64,
+    /// Travel of one step `[m]`.
+    pub travel_step_m: f64,
+    /// Where the displacement of `janosi_hanamoto` is kept.
+    pub displacement: Displacement,
+    /// Along which normal the pressure acts.
+    pub pressure_direction: PressureDirection,
+    /// How the hub finds its height.
+    pub vertical: Vertical,
+    /// Damping of the hub where it moves freely \[N s/m\].
+    pub damping_n_s_m: f64,
+    /// Change of the averages from one window to the next at which a steady run ends `[–]`.
+    pub steady_tolerance: f64,
+    /// Travel at which a steady run ends anyhow `[m]`.
+    pub steady_travel_m: f64,
+}
+
+/// Where the shear displacement is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Displacement {
+    /// On the wheel's rim, as in the published values of K.
+    Rim,
+    /// On the nodes of the soil.
+    Node,
+}
+
+/// Along which normal the pressure acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PressureDirection {
+    /// The wheel's surface.
+    WheelNormal,
+    /// The undisturbed soil: upwards, without compaction resistance.
+    Vertical,
+}
+
+/// How the hub finds its height.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Vertical {
+    /// In balance with the load at every step.
+    Balance,
+    /// Under the mass that the load stands for, and a damper.
+    Dynamic,
+}
+
+impl Default for SpatialSettings {
+    fn default() -> Self {
+        SpatialSettings {
+            dem_spacing_m: 0.004,
+            travel_step_m: 0.0005,
+            displacement: Displacement::Rim,
+            pressure_direction: PressureDirection::WheelNormal,
+            vertical: Vertical::Balance,
+            damping_n_s_m: 2000.0,
+            steady_tolerance: 0.005,
+            steady_travel_m: 1.0,
+        }
+    }
+}
+
+impl SpatialSettings {
+    /// The keys by name.
+    pub const KEYS: [&str; 8] = [
+        "dem_spacing_m",
+        "travel_step_m",
+        "displacement",
+        "pressure_direction",
+        "vertical",
+        "damping_n_s_m",
+        "steady_tolerance",
+        "steady_travel_m",
+    ];
+
+    /// Reads the keys that stand in `[model]`.
+    ///
+    /// # Errors
+    /// A sentence that names the key, the value and what is allowed.
+    pub fn from_table(table: toml::Table) -> Result<Self, String> {
+        let settings: SpatialSettings = table
+            .try_into()
+            .map_err(|e: toml::de::Error| e.to_string().trim().replace('`', "\"").replace('\n', " "))?;
+        for (key, value, unit) in [
+            ("dem_spacing_m", settings.dem_spacing_m, " m"),
+            ("travel_step_m", settings.travel_step_m, " m"),
+            ("steady_tolerance", settings.steady_tolerance, ""),
+            ("steady_travel_m", settings.steady_travel_m, " m"),
+        ] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(format!("{key} {value}{unit} must be > 0{unit}"));
+            }
+        }
+        let damping = settings.damping_n_s_m;
+        if !(damping.is_finite() && damping >= 0.0) {
+            return Err(format!("damping_n_s_m {damping} N s/m must be >= 0 N s/m"));
+        }
+        Ok(settings)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<SpatialSettings, String> {
+        SpatialSettings::from_table(toml::from_str(text).unwrap())
+    }
+
+    #[test]
+    fn every_key_is_a_field_and_every_field_a_key() {
+        let text = toml::to_string(&SpatialSettings::default()).unwrap();
+        let fields: Vec<&str> = text.lines().filter_map(|l| l.split(" =").next()).collect();
+        assert_eq!(fields, SpatialSettings::KEYS);
+    }
+
+    #[test]
+    fn values_out_of_bounds_and_unknown_words_are_named() {
+        assert_eq!(
+            read("dem_spacing_m = 0.0").unwrap_err(),
+            "dem_spacing_m 0 m must be > 0 m"
+        );
+        assert_eq!(
+            read("damping_n_s_m = -1.0").unwrap_err(),
+            "damping_n_s_m -1 N s/m must be >= 0 N s/m"
+        );
+        let error = read("displacement = \"soil\"").unwrap_err();
+        assert!(
+            error.contains("soil") && error.contains("rim") && error.contains("node"),
+            "{error}"
+        );
+    }
+}

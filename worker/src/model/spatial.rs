@@ -1,0 +1,106 @@
+//! The three-dimensional model of a variant: shared settings become the physics' types.
+
+use scm::spatial::{self, Grousers, Run, Scene, Settings, Shape, SurfaceMesh};
+use scm::{Condition, Rejection, Soil, Wheel};
+use shared::experiment::{self, ProtocolKind};
+use shared::model::ModelVariant;
+use shared::model::spatial::{Displacement, PressureDirection, Vertical};
+
+use super::parameters::GroundMap;
+
+/// Length of a simulated run of the `paper` protocol `[s]`.
+const PAPER_DURATION_S: f64 = 50.0;
+
+/// What a run needs beside soil, wheel and condition.
+#[derive(Debug)]
+pub(super) struct SpatialModel {
+    settings: Settings,
+    ground: GroundMap,
+    /// Of each wheel, in the variant's order.
+    shapes: Vec<Shape>,
+    /// Of each condition `[deg]`.
+    repose_angles: Vec<Option<f64>>,
+}
+
+impl SpatialModel {
+    /// Resolves the names of a variant of kind `scm`.
+    ///
+    /// # Errors
+    /// A sentence that names what is missing or cannot be expressed.
+    pub(super) fn new(variant: &ModelVariant) -> Result<Self, String> {
+        let choices = variant
+            .spatial
+            .ok_or("kind = \"scm\" comes without its settings")?;
+        let protocol = &variant.protocol;
+        let settings = Settings {
+            dem_spacing_m: choices.dem_spacing_m,
+            travel_step_m: choices.travel_step_m,
+            displacement: match choices.displacement {
+                Displacement::Rim => spatial::Displacement::Rim,
+                Displacement::Node => spatial::Displacement::Node,
+            },
+            pressure_direction: match choices.pressure_direction {
+                PressureDirection::WheelNormal => spatial::PressureDirection::WheelNormal,
+                PressureDirection::Vertical => spatial::PressureDirection::Vertical,
+            },
+            vertical: match choices.vertical {
+                Vertical::Balance => spatial::Vertical::Balance,
+                Vertical::Dynamic => spatial::Vertical::Dynamic {
+                    damping_n_s_m: choices.damping_n_s_m,
+                    gravity_m_s2: variant.gravity_m_s2,
+                },
+            },
+            protocol: match protocol.kind {
+                ProtocolKind::Steady => spatial::Protocol::Steady {
+                    tolerance: choices.steady_tolerance,
+                    most_travel_m: choices.steady_travel_m,
+                },
+                ProtocolKind::Paper => spatial::Protocol::Fixed {
+                    duration_s: PAPER_DURATION_S,
+                    transient_force_s: protocol.simulated_transient_force_s,
+                    transient_sinkage_s: protocol.simulated_transient_sinkage_s,
+                    lowpass_hz: protocol.lowpass_hz,
+                },
+            },
+            both_halves: false,
+        };
+        Ok(SpatialModel {
+            settings,
+            ground: GroundMap::new(variant)?,
+            shapes: variant.wheels.values().map(shape).collect(),
+            repose_angles: variant.conditions.iter().map(|c| c.repose_angle_deg).collect(),
+        })
+    }
+
+    /// Rolls a wheel under the condition at a position of the variant.
+    pub(super) fn run(
+        &self,
+        theta: &[f64],
+        position: usize,
+        soil: &Soil,
+        (place, wheel): (usize, &Wheel),
+        condition: &Condition,
+    ) -> Result<Run, Rejection> {
+        let scene = Scene {
+            soil,
+            ground: &self.ground.ground(theta, self.repose_angles[position]),
+            wheel,
+            shape: &self.shapes[place],
+        };
+        spatial::simulate(&scene, condition, &self.settings)
+    }
+}
+
+fn shape(wheel: &experiment::Wheel) -> Shape {
+    match &wheel.mesh {
+        Some(mesh) => Shape::from(SurfaceMesh {
+            vertices_m: mesh.vertices_m.clone(),
+            triangles: mesh.triangles.clone(),
+        }),
+        None => Shape::Rim(Grousers {
+            count: wheel.grouser_count,
+            height_m: wheel.grouser_height_m,
+            thickness_m: wheel.grouser_thickness_m,
+        }),
+    }
+}

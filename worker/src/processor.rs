@@ -1,0 +1,49 @@
+//! Say so, in words, if this program was built for a processor that this machine does not have.
+
+/// What the build asks of the processor, by the name Linux gives it.
+const NEEDED: &str = "avx2";
+
+/// Checks the processor; without, the first vector instruction would end the program without a word.
+///
+/// # Errors
+/// A sentence that says how to build for this machine.
+pub fn check() -> Result<(), String> {
+    if !cfg!(target_feature = "avx2") {
+        return Ok(());
+    }
+    // `is_x86_feature_detected!` answers what the build assumes, not what the machine has.
+    match std::fs::read_to_string("/proc/cpuinfo") {
+        Ok(text) => check_flags(&text),
+        Err(_) => Ok(()), // not Linux: nothing to ask
+    }
+}
+
+fn check_flags(cpuinfo: &str) -> Result<(), String> {
+    let flags = cpuinfo.lines().find_map(|line| line.strip_prefix("flags"));
+    match flags {
+        Some(flags) if !flags.split_whitespace().any(|flag| flag == NEEDED) => Err(format!(
+            "this program was built for processors with {NEEDED}, which this machine has not: build with \
+             RUSTFLAGS=\"-C target-cpu=x86-64\"; results are the same"
+        )),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::check_flags;
+
+    #[test]
+    fn a_processor_without_the_needed_flag_is_named() {
+        assert_eq!(
+            check_flags("model name\t: x\nflags\t\t: fpu avx avx2 bmi1\n"),
+            Ok(())
+        );
+        assert!(
+            check_flags("flags\t\t: fpu avx bmi1\n")
+                .unwrap_err()
+                .contains("avx2")
+        );
+        assert_eq!(check_flags("Features\t: neon\n"), Ok(()));
+    }
+}

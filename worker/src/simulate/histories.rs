@@ -1,0 +1,102 @@
+//! Time histories of the wheel's runs, one file for each.
+
+use std::path::{Path, PathBuf};
+
+use scm::signal::{INTERVAL_S, intervals, resample};
+use scm::spatial::History;
+use shared::experiment::Experiment;
+use shared::file::FileError;
+use shared::model::ModelVariant;
+
+use super::SimulateError;
+use crate::model::CompiledVariant;
+
+/// Columns of a history file: time at the end of an interval, and means over the interval.
+const COLUMNS: [&str; 6] = [
+    "t_s",
+    "drawbar_pull_n",
+    "torque_n_m",
+    "sinkage_m",
+    "lateral_force_n",
+    "wheel_load_n",
+];
+
+/// The file of each run in a folder, at 10 Hz, unfiltered, transients included.
+pub(super) fn histories(
+    experiment: &Experiment,
+    variant: &ModelVariant,
+    compiled: &CompiledVariant,
+    folder: &Path,
+) -> Result<Vec<(PathBuf, Vec<u8>)>, SimulateError> {
+    let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
+    for (position, run) in experiment.runs.iter().enumerate() {
+        let rolled = compiled.history(&[], position);
+        let rolled = rolled.map_err(|r| SimulateError::Rejected {
+            what: "run",
+            name: run.name.clone(),
+            message: r.message,
+        })?;
+        let Some(rolled) = rolled else {
+            let message = format!(
+                "--histories: {} knows the steady state alone; use kind = \"scm\"",
+                variant.kind.name()
+            );
+            return Err(FileError::whole(&folder.display().to_string(), message).into());
+        };
+        let path = folder.join(file_name(&run.name));
+        if files.iter().any(|(other, _)| *other == path) {
+            let message = format!("two runs would both be written to {}", path.display());
+            return Err(FileError::whole(&folder.display().to_string(), message).into());
+        }
+        files.push((path, table(&rolled.history)?));
+    }
+    Ok(files)
+}
+
+/// A run's name as a file name: what may not stand in one becomes an underscore.
+fn file_name(run: &str) -> String {
+    let plain = |c: char| {
+        if c.is_alphanumeric() || "-_.".contains(c) {
+            c
+        } else {
+            '_'
+        }
+    };
+    format!("{}.csv", run.chars().map(plain).collect::<String>())
+}
+
+fn table(history: &History) -> Result<Vec<u8>, SimulateError> {
+    // the first entry is of the wheel at rest
+    let edges: Vec<f64> = (0..history.len()).map(|i| i as f64 * history.step_s).collect();
+    let rows = intervals(&edges, INTERVAL_S);
+    let mut columns = vec![(1..=rows).map(|i| i as f64 * INTERVAL_S).collect::<Vec<f64>>()];
+    for channel in history.channels() {
+        let mut samples = vec![0.0; rows];
+        resample(&edges, &channel[1..], INTERVAL_S, &mut samples)?;
+        columns.push(samples);
+    }
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(COLUMNS)?;
+    for row in 0..rows {
+        writer.write_record(columns.iter().enumerate().map(|(i, column)| {
+            // one decimal says which tenth of a second it is
+            if i == 0 {
+                format!("{:.1}", column[row])
+            } else {
+                column[row].to_string()
+            }
+        }))?;
+    }
+    let written = writer.into_inner();
+    Ok(written.map_err(|e| csv::Error::from(e.into_error()))?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::file_name;
+
+    #[test]
+    fn a_run_cannot_leave_the_folder() {
+        assert_eq!(file_name("../s 0.2"), ".._s_0.2.csv");
+    }
+}
