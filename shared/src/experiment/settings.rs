@@ -198,6 +198,9 @@ fn check_numbers(rig: &Rig, soils: &BTreeMap<String, Soil>, protocol: &Protocol)
                 positive(key, value, unit).map_err(in_soil)?;
             }
         }
+        if let Some(angle) = soil.repose_angle_deg.filter(|&angle| angle >= 90.0) {
+            return Err(in_soil(format!("repose_angle_deg {angle} deg must be < 90 deg")));
+        }
     }
     for (key, value, unit) in [
         ("measured_transient_s", protocol.measured_transient_s, "s"),

@@ -9,6 +9,7 @@ pub mod settings;
 pub mod spatial;
 
 pub use settings::ModelSettings;
+use spatial::Displacement;
 pub use spatial::SpatialSettings;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -172,6 +173,15 @@ impl ModelVariant {
             return Ok(());
         }
         let names = || self.parameters.iter().chain(self.fixed.keys());
+        if let Some(spatial) = &self.spatial {
+            spatial.check_protocol(&self.protocol)?;
+            if spatial.displacement != Displacement::Rim && !names().any(|n| n == parameters::SHEAR_MODULUS) {
+                return Err(format!(
+                    "displacement has no effect without {}",
+                    parameters::SHEAR_MODULUS
+                ));
+            }
+        }
         if self.kind == ModelKind::Scm {
             return match self.conditions.iter().find(|c| self.has_mesh(&c.wheel)) {
                 Some(Condition { wheel, .. }) if names().any(|n| n.starts_with("wheel_radius_m")) => {

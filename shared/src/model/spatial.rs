@@ -3,6 +3,13 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::experiment::{Protocol, ProtocolKind};
+
+/// Length of a simulated run of the `paper` protocol `[s]`.
+pub const PAPER_DURATION_S: f64 = 50.0;
+/// Samples of a history in a second \[Hz\].
+const SAMPLES_HZ: f64 = 10.0;
+
 /// Choices for `kind = "scm"`, keys of the table `[model]`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -88,6 +95,7 @@ impl SpatialSettings {
     /// # Errors
     /// A sentence that names the key, the value and what is allowed.
     pub fn from_table(table: toml::Table) -> Result<Self, String> {
+        let damped = table.contains_key("damping_n_s_m");
         let settings: SpatialSettings = table
             .try_into()
             .map_err(|e: toml::de::Error| e.to_string().trim().replace('`', "\"").replace('\n', " "))?;
@@ -101,11 +109,61 @@ impl SpatialSettings {
                 return Err(format!("{key} {value}{unit} must be > 0{unit}"));
             }
         }
+        if damped && settings.vertical == Vertical::Balance {
+            return Err("damping_n_s_m has no effect without vertical = \"dynamic\"".into());
+        }
         let damping = settings.damping_n_s_m;
         if !(damping.is_finite() && damping >= 0.0) {
             return Err(format!("damping_n_s_m {damping} N s/m must be >= 0 N s/m"));
         }
         Ok(settings)
+    }
+
+    /// Checks that a protocol can be followed with these settings, and that each has an effect.
+    ///
+    /// # Errors
+    /// A sentence that names the key, the value and what is allowed.
+    pub fn check_protocol(&self, protocol: &Protocol) -> Result<(), String> {
+        if protocol.kind == ProtocolKind::Steady {
+            return Ok(());
+        }
+        let default = SpatialSettings::default();
+        for (key, value, default) in [
+            (
+                "steady_tolerance",
+                self.steady_tolerance,
+                default.steady_tolerance,
+            ),
+            ("steady_travel_m", self.steady_travel_m, default.steady_travel_m),
+        ] {
+            if value.to_bits() != default.to_bits() {
+                return Err(format!("{key} has no effect with [protocol] kind = \"paper\""));
+            }
+        }
+        for (key, value) in [
+            (
+                "simulated_transient_force_s",
+                protocol.simulated_transient_force_s,
+            ),
+            (
+                "simulated_transient_sinkage_s",
+                protocol.simulated_transient_sinkage_s,
+            ),
+        ] {
+            if value >= PAPER_DURATION_S {
+                return Err(format!(
+                    "[protocol] {key} {value} s must be < {PAPER_DURATION_S} s, the length of the simulated run"
+                ));
+            }
+        }
+        let lowpass = protocol.lowpass_hz;
+        if lowpass >= 0.5 * SAMPLES_HZ {
+            return Err(format!(
+                "[protocol] lowpass_hz {lowpass} Hz must be < {} Hz, half of the {SAMPLES_HZ} samples a second",
+                0.5 * SAMPLES_HZ
+            ));
+        }
+        Ok(())
     }
 }
 
@@ -131,13 +189,40 @@ mod tests {
             "dem_spacing_m 0 m must be > 0 m"
         );
         assert_eq!(
-            read("damping_n_s_m = -1.0").unwrap_err(),
+            read("vertical = \"dynamic\"\ndamping_n_s_m = -1.0").unwrap_err(),
             "damping_n_s_m -1 N s/m must be >= 0 N s/m"
+        );
+        assert_eq!(
+            read("damping_n_s_m = 1.0").unwrap_err(),
+            "damping_n_s_m has no effect without vertical = \"dynamic\""
         );
         let error = read("displacement = \"soil\"").unwrap_err();
         assert!(
             error.contains("soil") && error.contains("rim") && error.contains("node"),
             "{error}"
+        );
+    }
+
+    #[test]
+    fn a_protocol_that_no_run_can_follow_is_refused() {
+        let refused = |change: fn(&mut SpatialSettings, &mut Protocol)| {
+            let (mut settings, mut protocol) = (SpatialSettings::default(), Protocol::default());
+            protocol.kind = ProtocolKind::Paper;
+            settings.check_protocol(&protocol).unwrap();
+            change(&mut settings, &mut protocol);
+            settings.check_protocol(&protocol).unwrap_err()
+        };
+        assert_eq!(
+            refused(|_, protocol| protocol.simulated_transient_force_s = 50.0),
+            "[protocol] simulated_transient_force_s 50 s must be < 50 s, the length of the simulated run"
+        );
+        assert_eq!(
+            refused(|_, protocol| protocol.lowpass_hz = 5.0),
+            "[protocol] lowpass_hz 5 Hz must be < 5 Hz, half of the 10 samples a second"
+        );
+        assert_eq!(
+            refused(|settings, _| settings.steady_travel_m = 2.0),
+            "steady_travel_m has no effect with [protocol] kind = \"paper\""
         );
     }
 }

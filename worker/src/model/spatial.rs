@@ -4,12 +4,9 @@ use scm::spatial::{self, Grousers, Run, Scene, Settings, Shape, SurfaceMesh};
 use scm::{Condition, Rejection, Soil, Wheel};
 use shared::experiment::{self, ProtocolKind};
 use shared::model::ModelVariant;
-use shared::model::spatial::{Displacement, PressureDirection, Vertical};
+use shared::model::spatial::{Displacement, PAPER_DURATION_S, PressureDirection, Vertical};
 
 use super::parameters::GroundMap;
-
-/// Length of a simulated run of the `paper` protocol `[s]`.
-const PAPER_DURATION_S: f64 = 50.0;
 
 /// What a run needs beside soil, wheel and condition.
 #[derive(Debug)]

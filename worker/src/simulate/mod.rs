@@ -80,7 +80,10 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
     if let Some(path) = &command.out {
         let compiled = CompiledVariant::new(&variant)
             .map_err(|e| FileError::whole(&command.model.display().to_string(), e))?;
-        tables.push((path.clone(), wheel_runs(&experiment, &compiled, command)?));
+        tables.push((
+            path.clone(),
+            wheel_runs(&experiment, &variant, &compiled, command)?,
+        ));
         if let Some(folder) = &command.histories {
             tables.extend(histories::histories(&experiment, &variant, &compiled, folder)?);
             std::fs::create_dir_all(folder).map_err(|source| SimulateError::Write {
@@ -112,6 +115,7 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
 /// The table of the wheel's runs.
 fn wheel_runs(
     experiment: &Experiment,
+    variant: &ModelVariant,
     compiled: &CompiledVariant,
     command: &Simulate,
 ) -> Result<Vec<u8>, SimulateError> {
@@ -128,7 +132,17 @@ fn wheel_runs(
         Outcome::Fault(f) => return Err(refused("", f.message)),
     };
     for (run, settled) in experiment.runs.iter().zip(&observables.settled_to) {
-        tracing::info!(run = run.name, settled_to = settled, "averages settled");
+        let tolerance = variant.spatial.map_or(0.0, |spatial| spatial.steady_tolerance);
+        if *settled > tolerance {
+            tracing::warn!(
+                run = run.name,
+                settled_to = settled,
+                tolerance,
+                "averages have not settled"
+            );
+        } else {
+            tracing::info!(run = run.name, settled_to = settled, "averages settled");
+        }
     }
     let noise = noise(experiment, command.noise_seed)
         .map_err(|e| FileError::whole(&command.experiment.display().to_string(), e))?;

@@ -22,7 +22,11 @@ pub use run::History;
 pub use settings::{Displacement, Ground, Grousers, PressureDirection, Protocol, Settings, Shape, Vertical};
 pub use surface::{Normals, SurfaceMesh};
 
+use crate::rejection::require;
 use crate::{Averages, Condition, Rejection, Soil, Wheel};
+
+/// Speeds of the sled at which times and lengths of a step are numbers to compute with `[m/s]`.
+const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 
 /// What the wheel rolls on, and the wheel.
 #[derive(Debug, Clone, Copy)]
@@ -90,7 +94,9 @@ pub struct Run {
 /// # Validity
 /// Rigid wheel, dry granular soil, motion slow enough for the vertical balance (or [`Vertical::Dynamic`]). Stresses act on
 /// the wheel's surface. A height field cannot show the flanks of grousers: their thrust beyond the sheared tips is
-/// no part of this model. Wheels up to 126 lanes wide straight ahead, 62 at a slip angle.
+/// no part of this model. With a negative `k_c` a small patch of the footprint, such as a grouser's tip or a lip of a berm,
+/// carries nothing, and the load jumps as patches join: from about kappa = −0.5 on, wheels with grousers find no support and smooth
+/// ones on flowing soil no balance, where the quasi-static model, which knows one patch, still does. Wheels up to 126 lanes wide straight ahead, 62 at a slip angle.
 ///
 /// # Numerics
 /// dx is refined until eight nodes lie in the contact of a smooth wheel, and the contact ends between nodes, so that
@@ -121,7 +127,15 @@ pub fn simulate(scene: &Scene, condition: &Condition, settings: &Settings) -> Re
         scene.ground.checked()?,
         scene.wheel.checked()?,
     );
-    scene.shape.checked()?;
+    scene.shape.checked(&wheel)?;
+    let speed = condition.sled_speed_m_s;
+    require(
+        (SPEEDS_M_S[0]..=SPEEDS_M_S[1]).contains(&speed),
+        "sled_speed_m_s",
+        speed,
+        "m/s",
+        "between 1e-6 and 1000 for a wheel that rolls in time",
+    )?;
     let scene = Scene {
         soil: &soil,
         ground: &ground,

@@ -1,6 +1,7 @@
 //! Say what the model needs beyond soil, wheel and condition.
 
 use super::surface::{Normals, SurfaceMesh};
+use crate::Wheel;
 use crate::rejection::{Rejection, require};
 
 /// How the soil deforms, beside the laws of [`Soil`](crate::Soil).
@@ -120,7 +121,7 @@ impl Shape {
     ///
     /// # Errors
     /// [`Rejection::InvalidParameter`] for the first field outside its bounds.
-    pub fn checked(&self) -> Result<(), Rejection> {
+    pub fn checked(&self, wheel: &Wheel) -> Result<(), Rejection> {
         match self {
             Self::Rim(grousers) if grousers.count == 0 => Ok(()),
             Self::Rim(grousers) => {
@@ -130,7 +131,21 @@ impl Shape {
                 ] {
                     require(value > 0.0, name, value, "m", "above 0 where there are grousers")?;
                 }
-                Ok(())
+                require(
+                    grousers.height_m <= wheel.radius_m,
+                    "grouser_height_m",
+                    grousers.height_m,
+                    "m",
+                    "at most the wheel's radius",
+                )?;
+                let around = f64::from(grousers.count) * grousers.thickness_m;
+                require(
+                    around < core::f64::consts::TAU * wheel.radius_m,
+                    "grouser_thickness_m",
+                    grousers.thickness_m,
+                    "m",
+                    "so thin that all grousers stand beside each other on the rim",
+                )
             }
             Self::Mesh {
                 surface,

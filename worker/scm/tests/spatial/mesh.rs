@@ -269,7 +269,9 @@ fn invalid_meshes_are_rejected() {
     for (change, message) in changes {
         let mut surface = good();
         change(&mut surface);
-        let rejection = Shape::from(surface).checked().expect_err("a rejection");
+        let rejection = Shape::from(surface)
+            .checked(&case().wheel)
+            .expect_err("a rejection");
         assert_eq!(rejection.to_string(), format!("invalid parameter: {message}"));
     }
     let never = Shape::Mesh {
@@ -277,12 +279,12 @@ fn invalid_meshes_are_rejected() {
         repeats_per_turn: Some(0),
         normals: Normals::Surface,
     };
-    let rejection = never.checked().expect_err("a rejection").to_string();
+    let rejection = never.checked(&case().wheel).expect_err("a rejection").to_string();
     assert_eq!(
         rejection,
         "invalid parameter: repeats_per_turn = 0 (count) must be at least 1"
     );
-    assert!(Shape::from(good()).checked().is_ok());
+    assert!(Shape::from(good()).checked(&case().wheel).is_ok());
 }
 
 #[test]

@@ -45,13 +45,49 @@ fn a_run_that_cannot_settle_says_so() {
     };
     let run = track.roll();
     assert!(run.settled_to.expect("a steady protocol") > 1e-9);
-    assert!((run.averages.simulated_travel_m - 0.3).abs() < 1e-3);
-    // too short for two windows
+    // two windows of a period, 52 mm, and what is left of a whole one is not begun
+    let periods = run.averages.simulated_travel_m / 0.052_36;
+    assert!((periods - 5.0).abs() < 0.05, "{periods}");
+    // too short for two windows of a column each
+    track.shape = smooth(0.2, 100.0, 30.0).shape;
     track.settings.protocol = Protocol::Steady {
         tolerance: 0.005,
         most_travel_m: 0.002,
     };
-    assert!(track.roll().settled_to.expect("a steady protocol") > 0.005);
+    let rejection = track.try_roll().expect_err("a rejection").to_string();
+    assert!(
+        rejection.ends_with("must be long enough for two windows of averages"),
+        "{rejection}"
+    );
+}
+
+#[test]
+fn what_is_left_of_the_travel_does_not_move_the_averages() {
+    let sinkages = [0.30, 0.31, 0.32, 0.33, 0.34, 0.35, 0.36].map(|most_travel_m| {
+        let mut track = Track::with_grousers(base(0.2, 100.0, 30.0));
+        track.settings.protocol = Protocol::Steady {
+            tolerance: 1e-9,
+            most_travel_m,
+        };
+        track.averages().sinkage_m
+    });
+    // 1 %: means of one period after another differ by that
+    let least = sinkages.iter().copied().fold(f64::MAX, f64::min);
+    let most = sinkages.iter().copied().fold(0.0, f64::max);
+    assert!(most / least < 1.01, "{sinkages:?}");
+}
+
+#[test]
+fn a_wheel_that_hardly_turns_gets_room_for_two_periods_or_counts_as_locked() {
+    // 65 mm of rim between grousers take 0.65 m of travel at a slip of −0.9, and 6.5 m at −0.99
+    let travel = |slip: f64| {
+        let mut track = Track::with_grousers(base(-0.3, 100.0, 30.0));
+        track.case.condition.slip = slip;
+        track.settings.dem_spacing_m = 0.008;
+        track.roll().averages.simulated_travel_m
+    };
+    assert!((travel(-0.9) - 1.31).abs() < 0.01, "{}", travel(-0.9));
+    assert!(travel(-0.99) < 1.0);
 }
 
 #[test]

@@ -139,3 +139,71 @@ fn a_filter_that_cannot_follow_the_samples_is_refused() {
     }
     assert_eq!(rejection(&track).kind(), "protocol");
 }
+
+#[test]
+fn runs_too_large_to_compute_are_named_and_not_begun() {
+    type Change = fn(&mut Track);
+    let changes: [(&str, Change); 6] = [
+        // a millimetre of rim at a time, a hundred metres of it to a millimetre of travel
+        ("steps of the run", |t| t.case.condition.slip = 0.999_99),
+        ("steps of the run", |t| t.settings.travel_step_m = 1e-9),
+        ("steps of the run", |t| t.case.condition.pass = 1_000_000),
+        ("nodes of the terrain", |t| {
+            (t.case.soil.k_phi, t.settings.travel_step_m) = (1e17, 1.0);
+        }),
+        ("sled_speed_m_s", |t| t.case.condition.sled_speed_m_s = 1e308),
+        ("sled_speed_m_s", |t| t.case.condition.sled_speed_m_s = 5e-324),
+    ];
+    for (name, change) in changes {
+        let mut track = Track::with_grousers(smooth(0.2, 100.0, 30.0).case);
+        change(&mut track);
+        let message = rejection(&track).to_string();
+        assert!(
+            message.starts_with(&format!("invalid parameter: {name} =")),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn grousers_that_no_wheel_has_room_for_are_named() {
+    for (count, height_m, thickness_m, name) in [
+        (12, 0.13, 0.002, "grouser_height_m"),
+        (12, 0.009, 0.07, "grouser_thickness_m"),
+        (500, 0.009, 0.002, "grouser_thickness_m"),
+    ] {
+        let mut track = smooth(0.2, 100.0, 30.0);
+        track.shape = Shape::Rim(Grousers {
+            count,
+            height_m,
+            thickness_m,
+        });
+        let message = rejection(&track).to_string();
+        assert!(message.contains(name), "{message}");
+    }
+}
+
+#[test]
+fn strongly_negative_cohesive_moduli_give_an_answer_or_a_reason() {
+    // plates on sand say kappa = -0.7; small patches then carry nothing
+    for kappa in [-0.2, -0.5, -0.7] {
+        for grousers in [false, true] {
+            let mut track = smooth(0.2, 100.0, 30.0);
+            if grousers {
+                track = Track::with_grousers(track.case);
+            }
+            let (k_c, k_phi) = scm::bekker_moduli(4.56, kappa, 1.1);
+            (track.case.soil.k_c, track.case.soil.k_phi) = (k_c, k_phi);
+            match track.for_a_travel_of(0.2, 0.1).try_roll() {
+                Ok(run) => assert!((run.averages.sinkage_m - 0.01).abs() < 0.01, "{:?}", run.averages),
+                Err(rejection) => {
+                    assert!(
+                        ["no_support", "no_convergence"].contains(&rejection.kind()),
+                        "{rejection}"
+                    );
+                    assert!(kappa < -0.4, "{kappa}: {rejection}");
+                }
+            }
+        }
+    }
+}

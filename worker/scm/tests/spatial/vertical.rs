@@ -15,10 +15,10 @@ fn dynamic(mut track: Track, damping_n_s_m: f64) -> Track {
 #[test]
 fn means_of_a_hub_with_mass_are_those_of_the_balance() {
     // 1 % of load, of load times radius and of the sinkage for a smooth wheel; soil pressed by bounces stays pressed, which
-    // with grousers costs 2 %
+    // with grousers costs 2 to 3 %
     for (track, sinkage) in [
         (smooth(0.2, 100.0, 30.0), 0.01),
-        (Track::with_grousers(base(0.2, 100.0, 30.0)), 0.02),
+        (Track::with_grousers(base(0.2, 100.0, 30.0)), 0.03),
     ] {
         let track = track.for_a_travel_of(0.2, 0.105);
         let (got, expected) = (dynamic(track.clone(), 2000.0).averages(), track.averages());

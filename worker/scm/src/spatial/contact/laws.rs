@@ -50,7 +50,8 @@ impl Laws {
         match (self.distribution, &self.distance_power) {
             (PressureDistribution::Root, _) => each(distances, &Pack::sqrt),
             (PressureDistribution::Linear, _) => {}
-            (_, Some(power)) => each(distances, &|distance| power.of(distance)),
+            // in millimetres, so that high powers do not vanish
+            (_, Some(power)) => each(distances, &|distance| power.of(distance * splat(1e3))),
             (_, None) => distances.fill([1.0; PACK]),
         }
     }

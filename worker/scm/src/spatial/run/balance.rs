@@ -5,6 +5,8 @@ const TOLERANCE: f64 = 2e-3;
 /// Width of a bracket at which the search ends: the load may jump as patches join `[m]`.
 const NARROWEST: f64 = 1e-6;
 const MOST_TRIALS: u32 = 60;
+/// The least fall of the load with height that a chord must show, in wheel loads to a metre.
+const LEAST_SLOPE: f64 = -10.0;
 
 /// Search with the last step's slope; `load` falls as the hub rises.
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +15,7 @@ pub(crate) struct Search {
     pub(crate) guess: f64,
     /// d load / d height there `[N/m]`, < 0.
     pub(crate) slope: f64,
-    /// The longest step without a bracket `[m]`.
+    /// The longest first step `[m]`; it doubles until the load is bracketed.
     pub(crate) longest: f64,
 }
 
@@ -40,18 +42,20 @@ pub(crate) fn balance(
     let mut low: Option<(f64, f64)> = None;
     let mut high: Option<(f64, f64)> = None;
     let mut last: Option<(f64, f64)> = None;
+    let mut longest = search.longest;
     for trial in 0..MOST_TRIALS {
         let residual = excess(height);
         let done = residual.abs() <= TOLERANCE * wheel_load;
         let narrow = matches!((low, high), (Some((l, _)), Some((h, _))) if h - l < NARROWEST);
         if let Some((before, its_residual)) = last {
             let chord = (residual - its_residual) / (height - before);
-            if chord < -1e3 && chord.is_finite() {
+            if chord < LEAST_SLOPE * wheel_load && chord.is_finite() {
                 slope = chord;
             }
         }
         last = Some((height, residual));
-        if done || narrow || trial + 1 == MOST_TRIALS {
+        // a residual that is no number is the caller's to report
+        if done || narrow || trial + 1 == MOST_TRIALS || !residual.is_finite() {
             return Some(Balance {
                 height,
                 slope,
@@ -76,7 +80,8 @@ pub(crate) fn balance(
                 }
             }
             _ => {
-                let next = newton.clamp(height - search.longest, height + search.longest);
+                let next = newton.clamp(height - longest, height + longest);
+                longest *= 2.0;
                 if next <= lowest {
                     if height <= lowest {
                         return None;

@@ -2,6 +2,7 @@
 
 use super::record::{Record, Windows};
 use super::rolling::Rolling;
+use super::track::count;
 use crate::Condition;
 use crate::rejection::Rejection;
 use crate::signal::{self, INTERVAL_S, LowPass, Window, period_mean};
@@ -15,7 +16,7 @@ pub(crate) fn roll(scene: &Scene, condition: &Condition, settings: Settings) -> 
         Protocol::Fixed { duration_s, .. } => duration_s * condition.sled_speed_m_s,
     };
     let mut rolling = Rolling::new(scene, condition, settings, track)?;
-    let steps = libm::floor(track / rolling.steps.travel) as usize;
+    let steps = count(rolling.track, &rolling.steps, condition)?;
     for _ in 1..condition.pass {
         rolling.lower()?;
         for _ in 0..steps {
@@ -82,17 +83,15 @@ fn steady(
         }
         // the next window: as long as the contact has become
         let contact = record.contact_length_m.last().copied().unwrap_or(0.0) / rolling.steps.travel;
-        let wanted = match period {
-            Some(period) => period * libm::ceil(contact / period).max(1.0),
-            // the grid's own ripple drops out over whole columns
-            None => {
-                let column = rolling.steps.to_column as f64;
-                column * libm::ceil(contact / column).max(1.0)
-            }
-        };
-        let start = end;
-        end = (start + wanted.max(1.0).min(0.5 * most_steps as f64)).min(most_steps as f64);
-        window = end - start;
+        // in whole periods, or whole columns, over which the grid's own ripple drops out; so many that two windows fit
+        let whole = period.unwrap_or(rolling.steps.to_column as f64);
+        let most = libm::floor(0.5 * most_steps as f64 / whole).max(1.0);
+        let wanted = whole * libm::ceil(contact / whole).max(1.0).min(most);
+        // no window is cut: part of a period says nothing of the whole
+        if end + wanted > most_steps as f64 {
+            break;
+        }
+        (window, end) = (wanted, end + wanted);
     }
     let settled = last.filter(|(_, change)| change.is_finite());
     let (means, change) = settled.ok_or(Rejection::InvalidParameter {
@@ -101,7 +100,7 @@ fn steady(
         unit: "m",
         bound: "long enough for two windows of averages",
     })?;
-    let first_step = (record.history.len() as f64 - 1.0 - window).max(0.0) as usize;
+    let first_step = (end - window).max(0.0) as usize;
     Ok((Windows { means, first_step }, Some(change)))
 }
 

@@ -7,7 +7,7 @@ use crate::spatial::contact::Contact;
 use crate::spatial::contact::laws::Laws;
 use crate::spatial::contact::reaction::Reaction;
 use crate::spatial::displacement::ShearPath;
-use crate::spatial::settings::{PressureDirection, Settings, Vertical};
+use crate::spatial::settings::{PressureDirection, Protocol, Settings, Vertical};
 use crate::spatial::terrain::Terrain;
 use crate::spatial::terrain::flow::Flow;
 use crate::spatial::terrain::relaxation::Relaxation;
@@ -23,6 +23,8 @@ const SINKS_PER_STEP: f64 = 1e-3;
 /// Columns beyond the last contact over which the wheel is laid.
 const MARGIN: usize = 3;
 const WIDEST_MARGIN: usize = 48;
+/// Longest grouser period, relative to the travel asked for.
+const SLOWEST_TURN: f64 = 2.0;
 /// Slopes of the load between which the search for a balance starts, relative to load / radius.
 const SLOPES: [f64; 2] = [-5e3, -2.0];
 
@@ -65,10 +67,19 @@ pub(crate) struct Rolling<'a> {
     /// Heights of the hub after each step of this pass `[m]`.
     heights: Vec<f64>,
     repeats_after: usize,
+    /// Travel that the terrain has room for `[m]`.
+    pub(crate) track: f64,
+    /// Time from one grouser to the next, if one comes after another within the track `[s]`.
+    period: Option<f64>,
+    /// The most the soil has carried so far `[N]`.
+    most_carried: f64,
 }
 
 impl<'a> Rolling<'a> {
     /// The wheel above undisturbed soil, which it is to travel for a distance `[m]`.
+    ///
+    /// A steady run gets room for two grouser periods at least. A wheel that turns so slowly that they would take more than
+    /// [`SLOWEST_TURN`] times the travel counts as locked.
     pub(crate) fn new(
         scene: &Scene<'a>,
         condition: &'a Condition,
@@ -84,6 +95,21 @@ impl<'a> Rolling<'a> {
         let dx = spacing_along(soil, wheel, condition, &settings);
         let steps = steps(wheel, condition, &motion, &settings, dx);
         let width = underside.width(wheel);
+        let rotation = motion.rotation.abs();
+        let period = underside
+            .repeats_per_turn()
+            .filter(|_| rotation > 0.0)
+            .map(|count| core::f64::consts::TAU / (f64::from(count) * rotation))
+            .filter(|period| period * condition.sled_speed_m_s <= SLOWEST_TURN * travel);
+        let travel = match settings.protocol {
+            Protocol::Steady { .. } => {
+                let room = period.map_or(0.0, |period| {
+                    2.0 * period * condition.sled_speed_m_s + steps.travel
+                });
+                travel.max(room)
+            }
+            Protocol::Fixed { .. } => travel,
+        };
         let (terrain, start) = terrain(width, &motion, &settings, dx, underside.reach(), travel, mirrored)?;
         let repeats_after = if underside.repeats_per_turn().is_none() {
             steps.to_column
@@ -118,6 +144,9 @@ impl<'a> Rolling<'a> {
             touched: None,
             heights: Vec::new(),
             repeats_after,
+            track: travel,
+            period,
+            most_carried: 0.0,
         })
     }
 
@@ -212,7 +241,7 @@ impl<'a> Rolling<'a> {
         } else {
             0.2 * self.wheel.radius_m
         };
-        let least_rise = self.hub - self.terrain.top - sinks;
+        let least_rise = (self.hub - self.terrain.top - sinks * (margin / MARGIN) as f64).max(0.0);
         let range = match self.touched {
             Some(touched) if margin < WIDEST_MARGIN => Range {
                 start: touched.start.saturating_sub(margin),
@@ -270,15 +299,15 @@ impl<'a> Rolling<'a> {
         };
         let (contact, terrain, laws) = (&mut self.contact, &self.terrain, &self.laws);
         let per_time = if time > 0.0 { 1.0 / time } else { 0.0 };
-        let mut most_carried = 0.0_f64;
+        let most_carried = &mut self.most_carried;
         let found = balance(search, load, 0.0, |height| {
             let carried = contact.press(terrain, laws, height);
-            most_carried = most_carried.max(carried);
+            *most_carried = most_carried.max(carried);
             let velocity = (height - hub) * per_time;
             carried - load - damping * velocity - mass * (velocity - rising) * per_time
         });
         let found = found.ok_or(Rejection::NoSupport {
-            most_carried_n: most_carried,
+            most_carried_n: self.most_carried,
             wheel_load_n: load,
             wheel_radius_m: self.wheel.radius_m,
         })?;
@@ -294,9 +323,7 @@ impl<'a> Rolling<'a> {
 
     /// Time from one grouser to the next `[s]`; none if nothing repeats.
     pub(crate) fn grouser_period_s(&self) -> Option<f64> {
-        let count = self.underside.repeats_per_turn()?;
-        let rotation = self.motion.rotation.abs();
-        (rotation > 0.0).then(|| core::f64::consts::TAU / (f64::from(count) * rotation))
+        self.period
     }
 
     pub(crate) fn radius(&self) -> f64 {

@@ -9,8 +9,14 @@ use crate::{Condition, Soil, Wheel, quasi_static};
 
 /// Least number of nodes in a contact along travel.
 const NODES_ALONG: f64 = 8.0;
-/// Columns beyond the wheel's reach, at either end of the track.
-const SPARE_COLUMNS: usize = 12;
+/// Columns beyond the wheel's reach, at either end of the track, and length beyond it relative to the reach.
+const SPARE_COLUMNS: f64 = 12.0;
+const SPARE_REACH: f64 = 0.1;
+/// Most nodes of a terrain (a quarter of a gigabyte) and most steps of all passes of a run.
+const MOST_NODES: f64 = 1e7;
+const MOST_STEPS: f64 = 2e6;
+/// Share of the travel that must go along the heading for steps to meet columns; with less the wheel slides sideways.
+const LEAST_ALONG: f64 = 1e-3;
 /// Time of a step in which the hub moves freely `[s]`: a twentieth of the period of the stiffest spring to be expected.
 const DYNAMIC_STEP_S: f64 = 1e-3;
 /// Longest path of the rim in one step, relative to the travel step: a grouser must not jump over nodes.
@@ -28,6 +34,8 @@ pub(crate) struct Steps {
 }
 
 /// Spacing along travel: the given one, or an eighth of a smooth wheel's contact where that is finer `[m]`.
+///
+/// Where the quasi-static model knows no contact, because the soil does not carry a smooth wheel, it is the given one.
 pub(crate) fn spacing_along(soil: &Soil, wheel: &Wheel, condition: &Condition, settings: &Settings) -> f64 {
     let smooth = quasi_static::simulate(soil, wheel, condition);
     smooth.map_or(settings.dem_spacing_m, |averages| {
@@ -54,11 +62,11 @@ pub(crate) fn steps(
         Vertical::Balance => wanted,
         Vertical::Dynamic { .. } => wanted.min(DYNAMIC_STEP_S * condition.sled_speed_m_s),
     };
-    let to_column = libm::ceil(dx / (wanted * along).max(1e-6 * dx)).max(1.0);
-    let travel = if along > 1e-3 {
-        dx / (to_column * along)
+    let (travel, to_column) = if along > LEAST_ALONG {
+        let to_column = libm::ceil(dx / (wanted * along)).max(1.0);
+        (dx / (to_column * along), to_column)
     } else {
-        wanted
+        (wanted, 1.0)
     };
     Steps {
         time: travel / condition.sled_speed_m_s,
@@ -67,10 +75,27 @@ pub(crate) fn steps(
     }
 }
 
+/// Whole steps in a travel.
+///
+/// # Errors
+/// More than can be taken in reasonable time, over all passes.
+pub(crate) fn count(travel: f64, steps: &Steps, condition: &Condition) -> Result<usize, Rejection> {
+    let whole = libm::floor(travel / steps.travel);
+    let all = whole * f64::from(condition.pass);
+    require(
+        all <= MOST_STEPS,
+        "steps of the run",
+        all,
+        "(count)",
+        "at most 2000000: take longer steps, less travel, fewer passes, or less slip",
+    )?;
+    Ok(whole as usize)
+}
+
 /// Undisturbed terrain for a wheel of a width that travels a distance, and the hub's place at the start.
 ///
 /// # Errors
-/// The wheel covers more lanes than can be kept apart.
+/// The wheel covers more lanes than can be kept apart, or the terrain has too many nodes.
 pub(crate) fn terrain(
     width: f64,
     motion: &Motion,
@@ -97,8 +122,17 @@ pub(crate) fn terrain(
     let dy = 0.5 * width / half_lanes;
     let speed = libm::hypot(motion.forward, motion.lateral);
     let (ahead, aside) = (travel * motion.forward / speed, travel * motion.lateral / speed);
-    let columns = ((ahead.abs() + 2.0 * reach) / dx) as usize + 2 * SPARE_COLUMNS;
+    let start = (1.0 + SPARE_REACH) * reach + SPARE_COLUMNS * dx;
+    let columns = libm::ceil((ahead.abs() + 2.0 * start) / dx);
     let beside = half_lanes as usize + BERM_LANES + 5; // a pack and a lane to spare
+    let nodes = columns * (2.0 * beside as f64 + aside.abs() / dy);
+    require(
+        nodes <= MOST_NODES,
+        "nodes of the terrain",
+        nodes,
+        "(count)",
+        "at most 10000000: take a coarser spacing or less travel; a short contact on hard soil refines the spacing",
+    )?;
     let (lanes, first_y) = if mirrored {
         (beside + 3, 0.5 * dy)
     } else {
@@ -106,6 +140,6 @@ pub(crate) fn terrain(
         let left = beside + 3 + (aside.max(0.0) / dy) as usize;
         (right + left, (0.5 - right as f64) * dy)
     };
-    let start = reach + SPARE_COLUMNS as f64 * dx;
-    Ok((Terrain::new(dx, dy, first_y, columns, lanes, mirrored), start))
+    let terrain = Terrain::new(dx, dy, first_y, columns as usize, lanes, mirrored);
+    Ok((terrain, start))
 }

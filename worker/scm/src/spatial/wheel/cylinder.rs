@@ -173,7 +173,8 @@ impl Cylinder {
             let tip = pose.x + reach * libm::sin(angle);
             let extent = self.grouser_thickness + self.grouser_height * libm::sin(angle).abs();
             let columns = ((tip - extent) / terrain.dx) as usize..=((tip + extent) / terrain.dx) as usize;
-            let highest = columns.fold(f64::MIN, |high, column| high.max(terrain.highest(column, across)));
+            let on_track = columns.take_while(|&column| column < terrain.columns);
+            let highest = on_track.fold(f64::MIN, |high, column| high.max(terrain.highest(column, across)));
             if deepest + highest > least_rise + terrain.top {
                 self.push_grouser(angle);
             }
