@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use shared::api::CalibrationStatus;
 use shared::channel::Channel;
+use shared::model::ModelKind;
 
 use super::Outcome;
 use super::comparison::{Comparison, ComparisonRow};
@@ -22,15 +23,24 @@ pub fn notes(spec: &Spec) -> Vec<String> {
         .filter(|(_, w)| w.grouser_count > 0 || w.grouser_height_m > 0.0)
         .map(|(name, _)| name.as_str())
         .collect();
-    if !lugged.is_empty() {
-        notes.push(format!(
-            "quasi_static models the smooth rim: the grousers of {} enter only through a radius of their own (wheel_radius_m.NAME)",
-            lugged.join(", ")
-        ));
-    }
-    if spec.experiment.runs.iter().any(|r| r.pass > 1) {
-        notes
-            .push("quasi_static has no memory between passes: every pass is predicted like the first".into());
+    let lugged = lugged.join(", ");
+    match spec.fit_variant.kind {
+        ModelKind::QuasiStatic => {
+            if !lugged.is_empty() {
+                notes.push(format!(
+                    "quasi_static models the smooth rim: the grousers of {lugged} enter only through a radius of their own (wheel_radius_m.NAME)"
+                ));
+            }
+            if spec.experiment.runs.iter().any(|r| r.pass > 1) {
+                notes.push(
+                    "quasi_static has no memory between passes: every pass is predicted like the first".into(),
+                );
+            }
+        }
+        ModelKind::Scm if lugged.is_empty() => {}
+        ModelKind::Scm => notes.push(format!(
+            "scm rolls the grousers of {lugged}, but a height field cannot show their flanks: thrust beyond their sheared tips is left out"
+        )),
     }
     notes
 }

@@ -64,4 +64,13 @@ impl Condition {
         )?;
         Ok(self)
     }
+
+    /// Speed of the rim by the rig's reckoning, `omega R_s = v / (1 − s)` for s ≥ 0 and `v (1 + s)` for s < 0 `[m/s]`.
+    pub fn rig_rim_speed_m_s(&self) -> f64 {
+        if self.slip < 0.0 {
+            self.sled_speed_m_s * (1.0 + self.slip)
+        } else {
+            self.sled_speed_m_s / (1.0 - self.slip)
+        }
+    }
 }

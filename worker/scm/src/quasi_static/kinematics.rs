@@ -16,14 +16,8 @@ pub(super) struct RimMotion {
 impl RimMotion {
     pub(super) fn new(wheel: &Wheel, condition: &Condition) -> Self {
         let v = condition.sled_speed_m_s;
-        let slip = condition.slip;
-        let rig_rim_speed = if slip < 0.0 {
-            v * (1.0 + slip)
-        } else {
-            v / (1.0 - slip)
-        };
         Self {
-            rim_speed: rig_rim_speed * (wheel.radius_m / wheel.rig_radius_m),
+            rim_speed: condition.rig_rim_speed_m_s() * (wheel.radius_m / wheel.rig_radius_m),
             forward: v * libm::cos(condition.slip_angle_rad),
             lateral: v * libm::sin(condition.slip_angle_rad),
         }

@@ -31,16 +31,10 @@ pub(crate) struct Traction {
 impl Motion {
     pub(crate) fn new(wheel: &Wheel, condition: &Condition) -> Self {
         let v = condition.sled_speed_m_s;
-        let slip = condition.slip;
-        let rig_rim_speed = if slip < 0.0 {
-            v * (1.0 + slip)
-        } else {
-            v / (1.0 - slip)
-        };
         Self {
             forward: v * libm::cos(condition.slip_angle_rad),
             lateral: v * libm::sin(condition.slip_angle_rad),
-            rotation: rig_rim_speed / wheel.rig_radius_m,
+            rotation: condition.rig_rim_speed_m_s() / wheel.rig_radius_m,
         }
     }
 
