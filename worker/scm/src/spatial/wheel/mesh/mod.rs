@@ -49,6 +49,7 @@ pub(crate) struct Mesh {
     /// Triangles that may be lowest in this step.
     placed: Vec<Placed>,
     raster: Raster,
+    buffers: strips::Buffers,
 }
 
 impl Mesh {
@@ -75,6 +76,7 @@ impl Mesh {
             normals,
             placed: Vec::new(),
             raster: Raster::default(),
+            buffers: strips::Buffers::default(),
         }
     }
 
@@ -128,6 +130,7 @@ impl Mesh {
             pose,
             range,
             self.normals == Normals::Radial,
+            &mut self.buffers,
             out,
         );
     }

@@ -12,6 +12,15 @@ const KINK: f64 = 0.5;
 /// Difference of rises `[m]` or slopes that is only rounding.
 const ROUNDING: f64 = 1e-12;
 
+/// Memory that is kept from step to step.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Buffers {
+    /// The samples at which the surface of each strip is taken.
+    sources: Vec<[usize; 2]>,
+    /// Whether the surface breaks off between a sample and the one before.
+    breaks: Vec<bool>,
+}
+
 /// Turn the samples of a range of columns into strips and facets.
 ///
 /// Neighbouring samples of a column that lie on one smooth surface in every lane are one strip. A surface that also
@@ -24,14 +33,15 @@ pub(super) fn fill(
     pose: Pose,
     range: Range,
     radial: bool,
+    buffers: &mut Buffers,
     out: &mut Envelope,
 ) {
+    let Buffers { sources, breaks } = buffers;
+    sources.clear();
+    breaks.clear();
     out.strips.clear();
     let per_column = raster.per_column;
-    let mut sources: Vec<[usize; 2]> = Vec::new();
-    let breaks: Vec<bool> = (0..=raster.samples)
-        .map(|i| i > 0 && i < raster.samples && !goes_on(raster, i - 1, i))
-        .collect();
+    breaks.extend((0..=raster.samples).map(|i| i > 0 && i < raster.samples && !goes_on(raster, i - 1, i)));
     for column in range.start..range.end {
         let node = terrain.x(column) - pose.x;
         let rear = node - 0.5 * terrain.dx;
@@ -76,7 +86,7 @@ pub(super) fn fill(
         return;
     }
     for first_lane in (0..raster.stride).step_by(PACK) {
-        let strips = out.strips.iter().zip(&sources);
+        let strips = out.strips.iter().zip(sources.iter());
         out.facets.extend(strips.map(|(strip, &source)| {
             let facet = facet(raster, source, first_lane);
             if radial {
