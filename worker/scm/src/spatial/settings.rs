@@ -88,9 +88,9 @@ pub struct Grousers {
 /// The wheel's outer shape.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
-    /// A cylindrical rim, smooth or with grousers; radius and width are the [`Wheel`](crate::Wheel)'s.
+    /// A cylindrical rim, smooth or with grousers; radius and width are the [`Wheel`]'s.
     Rim(Grousers),
-    /// Any surface, in its own size. The [`Wheel`](crate::Wheel)'s radius is only what sinkage is counted from and what
+    /// Any surface, in its own size. The [`Wheel`]'s radius is only what sinkage is counted from and what
     /// the grid is chosen by; its width counts for the latter only.
     Mesh {
         /// The surface.
