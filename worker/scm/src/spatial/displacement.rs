@@ -25,6 +25,8 @@ pub(super) struct ShearPath {
     slid: Vec<f64>,
     /// Angle that the wheel had turned when a bin was last in contact `[rad]`.
     last: Vec<f64>,
+    /// The first bin of each strip, and the one after its last, counted on from turn to turn.
+    spans: Vec<[i64; 2]>,
 }
 
 impl ShearPath {
@@ -39,6 +41,7 @@ impl ShearPath {
             lanes: 0,
             slid: Vec::new(),
             last: Vec::new(),
+            spans: Vec::new(),
         }
     }
 
@@ -61,13 +64,22 @@ impl ShearPath {
         }
     }
 
-    /// The bins of the wheel's surface over a strip; the one at its front end is the next strip's.
-    fn bins_of(&self, contact: &Contact, row: usize, turned: f64) -> impl Iterator<Item = usize> + use<> {
-        let strip = &contact.strips[row];
-        let (bins, per_angle) = (self.bins as i64, self.bins as f64 / core::f64::consts::TAU);
-        let place = |ahead: f64| libm::floor((libm::atan2(ahead, strip.rise) + turned) * per_angle) as i64;
-        let (first, end) = (place(strip.rear), place(strip.front));
-        (first..end.max(first + 1)).map(move |bin| bin.rem_euclid(bins) as usize)
+    /// Find the bins of the wheel's surface over every strip; the one at a strip's front end is the next strip's.
+    fn find_spans(&mut self, contact: &Contact, turned: f64) {
+        let per_angle = self.bins as f64 / core::f64::consts::TAU;
+        self.spans.clear();
+        self.spans.extend(contact.strips.iter().map(|strip| {
+            let place =
+                |ahead: f64| libm::floor((libm::atan2(ahead, strip.rise) + turned) * per_angle) as i64;
+            let first = place(strip.rear);
+            [first, place(strip.front).max(first + 1)]
+        }));
+    }
+
+    /// The bins over a strip.
+    fn bins_of(&self, row: usize) -> impl Iterator<Item = usize> + use<> {
+        let ([first, end], bins) = (self.spans[row], self.bins as i64);
+        (first..end).map(move |bin| bin.rem_euclid(bins) as usize)
     }
 
     /// Scale the shear stresses of the contact by what has been mobilised so far.
@@ -76,6 +88,7 @@ impl ShearPath {
         let packs = contact.across.packs();
         if self.on_rim() {
             self.widen(packs);
+            self.find_spans(contact, turned);
         }
         for row in 0..contact.strips.len() {
             if contact.strips[row].rise <= 0.0 {
@@ -83,7 +96,7 @@ impl ShearPath {
             }
             for pack in 0..packs {
                 let slid = if self.on_rim() {
-                    self.mean_slid(contact, row, pack, turned)
+                    self.mean_slid(row, pack, turned)
                 } else {
                     let start = contact.strips[row].column * terrain.lanes + contact.across.first_lane;
                     load(&terrain.sheared, start + pack * PACK)
@@ -100,9 +113,9 @@ impl ShearPath {
         }
     }
 
-    fn mean_slid(&self, contact: &Contact, row: usize, pack: usize, turned: f64) -> Pack {
+    fn mean_slid(&self, row: usize, pack: usize, turned: f64) -> Pack {
         let (mut sum, mut bins) = (splat(0.0), 0.0);
-        for bin in self.bins_of(contact, row, turned) {
+        for bin in self.bins_of(row) {
             if turned - self.last[bin] < HALF_TURN {
                 sum += load(&self.slid, bin * self.lanes + pack * PACK);
             }
@@ -111,7 +124,7 @@ impl ShearPath {
         sum * splat(1.0 / bins)
     }
 
-    /// Let wheel and soil slide along each other for a time.
+    /// Let wheel and soil slide along each other for a time, where the contact was mobilised last.
     pub(super) fn slide(&mut self, contact: &Contact, terrain: &mut Terrain, turned: f64, time: f64) {
         if self.law.is_none() {
             return;
@@ -124,7 +137,7 @@ impl ShearPath {
                 let touching = contact.quads[place].penetration.simd_gt(splat(0.0));
                 let path = touching.select(contact.slip_speed(place, row) * splat(time), splat(0.0));
                 if self.on_rim() {
-                    for bin in self.bins_of(contact, row, turned) {
+                    for bin in self.bins_of(row) {
                         let at = bin * self.lanes + pack * PACK;
                         let anew = turned - self.last[bin] >= HALF_TURN;
                         let before = if anew { splat(0.0) } else { load(&self.slid, at) };
@@ -137,7 +150,7 @@ impl ShearPath {
                 }
             }
             if self.on_rim() {
-                for bin in self.bins_of(contact, row, turned) {
+                for bin in self.bins_of(row) {
                     self.last[bin] = turned;
                 }
             }
