@@ -11,6 +11,7 @@ mod flags;
 mod point_estimate;
 mod predictive;
 pub mod report;
+mod settling;
 mod summary;
 pub mod terminal;
 

@@ -10,6 +10,7 @@ use super::Outcome;
 use super::comparison::{Comparison, ComparisonRow};
 use super::coverage::Coverage;
 use super::errors::ErrorTable;
+use super::settling::unsettled;
 use crate::spec::{FreeParameter, Spec};
 use crate::store::EstimateRow;
 
@@ -120,6 +121,9 @@ pub fn summary(outcome: &Outcome) -> String {
     }
     for flag in flags {
         let _ = writeln!(text, "flag {}: {}", flag.kind, flag.text);
+    }
+    if let Some(note) = unsettled(outcome) {
+        let _ = writeln!(text, "\nnote: {note}");
     }
     text
 }

@@ -46,17 +46,17 @@ e,a,sand,0.4,25,0.01,1.2,0.022,LAST
 ";
 
 /// An outcome with a holdout run.
-pub(super) fn outcome() -> Outcome {
+pub(in crate::result) fn outcome() -> Outcome {
     build("holdout")
 }
 
 /// The same with every run fitted.
-pub(super) fn without_holdout() -> Outcome {
+pub(in crate::result) fn without_holdout() -> Outcome {
     build("fit")
 }
 
 /// The same where the model refused all final draws, drifted, and has no evidence.
-pub(super) fn all_refused() -> Outcome {
+pub(in crate::result) fn all_refused() -> Outcome {
     let mut outcome = outcome();
     for prediction in &mut outcome.predictions {
         prediction.fit = Err("no_support".into());
@@ -71,7 +71,7 @@ pub(super) fn all_refused() -> Outcome {
 }
 
 /// A fit of the same job, one parameter at a bound.
-pub(super) fn fit() -> Outcome {
+pub(in crate::result) fn fit() -> Outcome {
     let mut outcome = outcome();
     outcome.spec.method = Method::Fit(inference::lm::Settings::default());
     let first = outcome.predictions.remove(0);

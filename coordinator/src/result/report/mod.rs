@@ -10,7 +10,7 @@
 
 mod chart;
 #[cfg(test)]
-mod fixture;
+pub(super) mod fixture;
 mod number;
 mod quantity;
 mod section;

@@ -11,6 +11,7 @@ use super::estimate::reason;
 use crate::result::coverage::Coverage;
 use crate::result::report::number;
 use crate::result::report::quantity::Quantity;
+use crate::result::settling::unsettled;
 use crate::result::{Comparison, ErrorTable, Outcome, terminal};
 use crate::spec::repeat_scatter;
 
@@ -268,6 +269,7 @@ fn notes(outcome: &Outcome) -> Vec<String> {
             .into_iter()
             .map(|note| format!("{note}.")),
     );
+    notes.extend(unsettled(outcome).map(|note| format!("{note}.")));
     notes.push("Likelihood: normalised Gaussian; the source paper's Eq. 13-15 lack 1/sigma.".into());
     notes
 }
