@@ -3,7 +3,6 @@
 use super::surfaces::{Surface, across};
 use crate::support::{Case, base};
 use scm::spatial::{Ground, Grousers, Normals, Protocol, Run, Scene, Settings, Shape, SurfaceMesh, simulate};
-use std::time::Instant;
 
 const R: f64 = 0.125;
 const B: f64 = 0.112;
@@ -295,36 +294,4 @@ fn a_mesh_gives_the_same_bits_again() {
         roll(&case, &shape, fixed(&case)),
         roll(&case, &shape, fixed(&case))
     );
-}
-
-#[test]
-#[ignore = "prints what a mesh costs"]
-fn cost() {
-    let case = case();
-    let settings = fixed(&case);
-    let best = |shape: &Shape| {
-        let seconds = |_| {
-            let start = Instant::now();
-            roll(&case, shape, settings);
-            start.elapsed().as_secs_f64()
-        };
-        (0..5).map(seconds).fold(f64::INFINITY, f64::min)
-    };
-    let meshes = [
-        (0, cylinder(1250)),
-        (0, cylinder(200)),
-        (12, with_boxes(1250)),
-        (12, with_boxes(200)),
-        (12, barrel()),
-    ];
-    for (grousers, surface) in meshes {
-        let triangles = surface.triangles.len();
-        let (analytic, meshed) = (best(&rim(grousers)), best(&Shape::from(surface)));
-        println!(
-            "{triangles} triangles: {:.1} ms, analytic wheel with {grousers} grousers {:.1} ms, ratio {:.1}",
-            1e3 * meshed,
-            1e3 * analytic,
-            meshed / analytic
-        );
-    }
 }
