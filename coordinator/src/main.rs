@@ -2,6 +2,7 @@
 
 use clap::Parser;
 use coordinator::config::Config;
+use shared::sentence::of_causes;
 
 fn main() -> std::process::ExitCode {
     if let Err(error) = coordinator::embedded::check_processor() {
@@ -25,23 +26,8 @@ async fn run() -> std::process::ExitCode {
     match coordinator::command::execute(config.command).await {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {}", sentence(&error));
+            eprintln!("error: {}", of_causes(error.chain()));
             std::process::ExitCode::FAILURE
         }
     }
-}
-
-/// What went wrong with its causes, each said once.
-fn sentence(error: &anyhow::Error) -> String {
-    error
-        .chain()
-        .map(ToString::to_string)
-        .reduce(|text, cause| {
-            if text.contains(&cause) {
-                text
-            } else {
-                format!("{text}: {cause}")
-            }
-        })
-        .unwrap_or_default()
 }

@@ -9,6 +9,7 @@
 //! - [`outcome`]: what an evaluation gives: observables, a rejection of the parameters, or a fault.
 //! - [`exchange`]: the messages between worker and coordinator.
 //! - [`api`]: the messages between a user and the service.
+//! - [`sentence`]: what went wrong, with its causes.
 //! - [`mod@file`]: text files by name, and errors that name file, line and the nearest known word.
 //!
 //! No behaviour lives here but parsing and validation; no clock, no network, no database.
@@ -21,3 +22,4 @@ pub mod file;
 pub mod model;
 pub mod outcome;
 pub mod parameters;
+pub mod sentence;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use anyhow::Context;
 use clap::Parser;
+use shared::sentence::of_causes;
 use worker::client::HttpCoordinator;
 use worker::config::{Command, Config, Serve};
 use worker::evaluator::SimulationClock;
@@ -30,7 +31,7 @@ fn main() -> std::process::ExitCode {
     match done {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {}", sentence(&error));
+            eprintln!("error: {}", of_causes(error.chain()));
             std::process::ExitCode::FAILURE
         }
     }
@@ -84,19 +85,4 @@ fn stop_signal() -> anyhow::Result<impl Future<Output = ()>> {
             _ = tokio::signal::ctrl_c() => {}
         }
     })
-}
-
-/// What went wrong with its causes, each said once.
-fn sentence(error: &anyhow::Error) -> String {
-    error
-        .chain()
-        .map(ToString::to_string)
-        .reduce(|text, cause| {
-            if text.contains(&cause) {
-                text
-            } else {
-                format!("{text}: {cause}")
-            }
-        })
-        .unwrap_or_default()
 }

@@ -21,7 +21,7 @@ pub fn notes(spec: &Spec) -> Vec<String> {
         .experiment
         .wheels
         .iter()
-        .filter(|(_, w)| w.grouser_count > 0 || w.grouser_height_m > 0.0)
+        .filter(|(_, wheel)| wheel.has_grousers())
         .map(|(name, _)| name.as_str())
         .collect();
     let lugged = lugged.join(", ");

@@ -26,6 +26,13 @@ pub struct Wheel {
     pub mesh: Option<SurfaceMesh>,
 }
 
+impl Wheel {
+    /// Whether grousers are declared, be it only by a height.
+    pub fn has_grousers(&self) -> bool {
+        self.grouser_count > 0 || self.grouser_height_m > 0.0
+    }
+}
+
 /// The keys of `[wheel.NAME]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]

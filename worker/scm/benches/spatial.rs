@@ -1,9 +1,18 @@
 //! Time of one run in three dimensions: by case, by step, by node and trial, by spacing of the grid.
 
+#[path = "../tests/scene.rs"]
+#[expect(dead_code, reason = "tests ask more of a track")]
+mod scene;
+#[path = "../tests/support.rs"]
+#[expect(dead_code, reason = "tests draw random cases")]
+mod support;
+
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use scm::spatial::{Displacement, Ground, Grousers, Protocol, Run, Scene, Settings, Shape, simulate};
-use scm::{Condition, Rejection, Soil, Wheel};
+use scene::Track;
+use scm::Rejection;
+use scm::spatial::{Displacement, Grousers, Protocol, Run, Settings, Shape};
+use support::base;
 
 fn main() {
     divan::main();
@@ -13,7 +22,7 @@ fn main() {
 #[derive(Debug, Clone, Copy)]
 struct Case {
     name: &'static str,
-    grousers: u32,
+    smooth: bool,
     fifty_seconds: bool,
     both_halves: bool,
     slip_angle_deg: f64,
@@ -31,7 +40,7 @@ impl std::fmt::Display for Case {
 /// 50 s over 1 m of travel with 12 grousers.
 const FIFTY: Case = Case {
     name: "50 s",
-    grousers: 12,
+    smooth: false,
     fifty_seconds: true,
     both_halves: false,
     slip_angle_deg: 0.0,
@@ -42,36 +51,14 @@ const FIFTY: Case = Case {
 
 impl Case {
     fn run(&self) -> Result<Run, Rejection> {
-        let soil = Soil {
-            k_c: 0.0,
-            k_phi: 1e7,
-            n: 1.1,
-            cohesion_pa: 0.0,
-            friction_angle_rad: 30_f64.to_radians(),
-            shear_velocity_m_s: 1e-3,
-            gamma_exponent: 0.5,
-        };
-        let wheel = Wheel {
-            radius_m: 0.125,
-            width_m: 0.112,
-            rig_radius_m: 0.125,
-        };
-        let shape = Shape::Rim(Grousers {
-            count: self.grousers,
-            height_m: 0.009,
-            thickness_m: 0.002,
-        });
-        let condition = Condition {
-            slip: 0.2,
-            wheel_load_n: 100.0,
-            sled_speed_m_s: 0.02,
-            slip_angle_rad: self.slip_angle_deg.to_radians(),
-            pass: 1,
-        };
-        let ground = Ground {
-            shear_modulus_m: self.shear_modulus_m,
-            ..Ground::default()
-        };
+        let mut case = base(0.2, 100.0, 30.0);
+        case.condition.sled_speed_m_s = 0.02;
+        case.condition.slip_angle_rad = self.slip_angle_deg.to_radians();
+        let mut track = Track::with_grousers(case);
+        if self.smooth {
+            track.shape = Shape::Rim(Grousers::default());
+        }
+        track.ground.shear_modulus_m = self.shear_modulus_m;
         let protocol = if self.fifty_seconds {
             Protocol::Fixed {
                 duration_s: 50.0,
@@ -82,20 +69,14 @@ impl Case {
         } else {
             Protocol::default()
         };
-        let settings = Settings {
+        track.settings = Settings {
             dem_spacing_m: self.spacing_m,
             displacement: self.displacement,
             protocol,
             both_halves: self.both_halves,
             ..Settings::default()
         };
-        let scene = Scene {
-            soil: &soil,
-            ground: &ground,
-            wheel: &wheel,
-            shape: &shape,
-        };
-        simulate(&scene, &condition, &settings)
+        track.try_roll()
     }
 }
 
@@ -103,7 +84,7 @@ const CASES: [Case; 6] = [
     FIFTY,
     Case {
         name: "50 s, smooth",
-        grousers: 0,
+        smooth: true,
         ..FIFTY
     },
     Case {
@@ -124,7 +105,7 @@ const CASES: [Case; 6] = [
     Case {
         name: "steady, smooth",
         fifty_seconds: false,
-        grousers: 0,
+        smooth: true,
         ..FIFTY
     },
 ];

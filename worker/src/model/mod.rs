@@ -99,6 +99,11 @@ impl CompiledVariant {
 
     /// Simulates every condition at one parameter vector. The first refusal ends it.
     pub fn evaluate(&self, theta: &[f64]) -> Outcome {
+        self.evaluate_and_keep(theta, |_| {})
+    }
+
+    /// The same, handing over each run of a model that rolls in time, in the order of the conditions.
+    pub fn evaluate_and_keep(&self, theta: &[f64], mut keep: impl FnMut(Run)) -> Outcome {
         let soil = match self.soil_of(theta) {
             Ok(soil) => soil,
             Err(rejection) => return Outcome::Rejected(rejection),
@@ -110,24 +115,12 @@ impl CompiledVariant {
                 Ok(Simulated::Rolled(run)) => {
                     push(&mut observables, &run.averages);
                     observables.settled_to.extend(run.settled_to);
+                    keep(*run);
                 }
                 Err(rejection) => return rejected(rejection.kind(), position, rejection.to_string()),
             }
         }
         Outcome::Evaluated(observables)
-    }
-
-    /// The run of one condition with its time histories; `None` for a model that has none.
-    ///
-    /// # Errors
-    /// The model refuses the parameters.
-    pub fn history(&self, theta: &[f64], position: usize) -> Result<Option<Run>, Rejection> {
-        let soil = self.soil_of(theta)?;
-        match self.simulate(theta, &soil, position) {
-            Ok(Simulated::Steady(_)) => Ok(None),
-            Ok(Simulated::Rolled(run)) => Ok(Some(*run)),
-            Err(rejection) => Err(refusal(rejection.kind(), position, rejection.to_string())),
-        }
     }
 
     fn soil_of(&self, theta: &[f64]) -> Result<Soil, Rejection> {

@@ -9,7 +9,6 @@ use shared::file::FileError;
 use shared::model::ModelVariant;
 
 use super::SimulateError;
-use crate::model::CompiledVariant;
 
 /// Columns of a history file: time at the end of an interval, and means over the interval.
 const COLUMNS: [&str; 6] = [
@@ -25,30 +24,24 @@ const COLUMNS: [&str; 6] = [
 pub(super) fn histories(
     experiment: &Experiment,
     variant: &ModelVariant,
-    compiled: &CompiledVariant,
+    rolled: &[History],
     folder: &Path,
 ) -> Result<Vec<(PathBuf, Vec<u8>)>, SimulateError> {
+    if rolled.is_empty() {
+        let message = format!(
+            "--histories: {} knows the steady state alone; use kind = \"scm\"",
+            variant.kind.name()
+        );
+        return Err(FileError::whole(&folder.display().to_string(), message).into());
+    }
     let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
-    for (position, run) in experiment.runs.iter().enumerate() {
-        let rolled = compiled.history(&[], position);
-        let rolled = rolled.map_err(|r| SimulateError::Rejected {
-            what: "run",
-            name: run.name.clone(),
-            message: r.message,
-        })?;
-        let Some(rolled) = rolled else {
-            let message = format!(
-                "--histories: {} knows the steady state alone; use kind = \"scm\"",
-                variant.kind.name()
-            );
-            return Err(FileError::whole(&folder.display().to_string(), message).into());
-        };
+    for (run, history) in experiment.runs.iter().zip(rolled) {
         let path = folder.join(file_name(&run.name));
         if files.iter().any(|(other, _)| *other == path) {
             let message = format!("two runs would both be written to {}", path.display());
             return Err(FileError::whole(&folder.display().to_string(), message).into());
         }
-        files.push((path, table(&rolled.history)?));
+        files.push((path, table(history)?));
     }
     Ok(files)
 }

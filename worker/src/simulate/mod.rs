@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use rand::{RngExt, SeedableRng};
+use scm::spatial::History;
 use shared::channel::Channel;
 use shared::experiment::{CONDITION_COLUMNS, Experiment, NoiseSd, TestRun};
 use shared::file::{FileError, parse_toml, read_text};
@@ -80,12 +81,11 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
     if let Some(path) = &command.out {
         let compiled = CompiledVariant::new(&variant)
             .map_err(|e| FileError::whole(&command.model.display().to_string(), e))?;
-        tables.push((
-            path.clone(),
-            wheel_runs(&experiment, &variant, &compiled, command)?,
-        ));
+        let mut rolled = Vec::new();
+        let runs = wheel_runs(&experiment, &variant, &compiled, command, &mut rolled)?;
+        tables.push((path.clone(), runs));
         if let Some(folder) = &command.histories {
-            tables.extend(histories::histories(&experiment, &variant, &compiled, folder)?);
+            tables.extend(histories::histories(&experiment, &variant, &rolled, folder)?);
             std::fs::create_dir_all(folder).map_err(|source| SimulateError::Write {
                 path: folder.display().to_string(),
                 source,
@@ -112,19 +112,25 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
     Ok(())
 }
 
-/// The table of the wheel's runs.
+/// The table of the wheel's runs; their histories, if they are asked for and the model has any, go to `rolled`.
 fn wheel_runs(
     experiment: &Experiment,
     variant: &ModelVariant,
     compiled: &CompiledVariant,
     command: &Simulate,
+    rolled: &mut Vec<History>,
 ) -> Result<Vec<u8>, SimulateError> {
     let refused = |run: &str, message: String| SimulateError::Rejected {
         what: "run",
         name: run.to_owned(),
         message,
     };
-    let observables = match compiled.evaluate(&[]) {
+    let outcome = compiled.evaluate_and_keep(&[], |run| {
+        if command.histories.is_some() {
+            rolled.push(run.history);
+        }
+    });
+    let observables = match outcome {
         Outcome::Evaluated(observables) => observables,
         Outcome::Rejected(r) => {
             return Err(refused(&experiment.runs[r.condition as usize].name, r.message));

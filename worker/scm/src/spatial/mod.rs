@@ -11,6 +11,8 @@
 
 mod contact;
 mod displacement;
+#[cfg(test)]
+mod fixture;
 mod pack;
 mod run;
 mod settings;

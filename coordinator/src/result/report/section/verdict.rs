@@ -3,7 +3,7 @@
 use inference::diagnostics;
 use maud::{Markup, html};
 use shared::channel::Channel;
-use shared::experiment::RunUse;
+use shared::experiment::{RunUse, Wheel};
 use shared::model::ModelKind;
 use shared::parameters::noise_parameter;
 
@@ -261,7 +261,9 @@ fn runs(outcome: &Outcome, usage: RunUse) -> usize {
 
 fn notes(outcome: &Outcome) -> Vec<String> {
     let mut notes = Vec::new();
-    if outcome.spec.model.kind == ModelKind::QuasiStatic {
+    // where grousers are declared, the notes of the job name their wheels
+    let quasi_static = outcome.spec.model.kind == ModelKind::QuasiStatic;
+    if quasi_static && !outcome.spec.experiment.wheels.values().any(Wheel::has_grousers) {
         notes.push("Grousers are not modelled here: each wheel has its own wheel_radius_m.NAME.".to_owned());
     }
     notes.extend(

@@ -100,8 +100,8 @@ impl Contact {
             } else {
                 under.meet(quads, |pack| {
                     let facet = envelope.facets[pack * rows + row];
-                    let t = &self.tractions[(row * packs + pack) * PACK..][..PACK];
-                    let shear = Pack::new([t[0].shear_z, t[1].shear_z, t[2].shear_z, t[3].shear_z]);
+                    let lanes = &self.tractions[(row * packs + pack) * PACK..][..PACK];
+                    let shear = Traction::of_lanes(lanes, |t| t.shear_z);
                     (facet.rise, facet.slope_x, shear)
                 })
             };
@@ -210,8 +210,7 @@ impl Contact {
     /// Height of the hub above the wheel's surface over four lanes `[m]`, of the quad at `place` in strip `row`.
     pub(crate) fn rise(&self, place: usize, row: usize) -> Pack {
         if self.lanes_differ {
-            let t = &self.tractions[place * PACK..][..PACK];
-            Pack::new([t[0].rise, t[1].rise, t[2].rise, t[3].rise])
+            Traction::of_lanes(&self.tractions[place * PACK..][..PACK], |t| t.rise)
         } else {
             splat(self.strips[row].rise)
         }
@@ -220,8 +219,7 @@ impl Contact {
     /// Slip velocity of four lanes `[m/s]`, of the quad at `place` in strip `row`.
     pub(crate) fn slip_speed(&self, place: usize, row: usize) -> Pack {
         if self.lanes_differ {
-            let t = &self.tractions[place * PACK..][..PACK];
-            Pack::new([t[0].slip_speed, t[1].slip_speed, t[2].slip_speed, t[3].slip_speed])
+            Traction::of_lanes(&self.tractions[place * PACK..][..PACK], |t| t.slip_speed)
         } else {
             splat(self.tractions[row].slip_speed)
         }

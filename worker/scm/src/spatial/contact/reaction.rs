@@ -128,7 +128,7 @@ impl Along {
     }
 
     fn of_lanes(t: &[Traction]) -> Self {
-        let pack = |of: fn(&Traction) -> f64| Pack::new([of(&t[0]), of(&t[1]), of(&t[2]), of(&t[3])]);
+        let pack = |of| Traction::of_lanes(t, of);
         Self {
             rise: pack(|t| t.rise),
             pressure_x: pack(|t| t.pressure_x),

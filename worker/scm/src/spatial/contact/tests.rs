@@ -1,12 +1,13 @@
 //! A flat plate pressed onto flat soil: what a contact gives where everything is known.
 
 use super::*;
-use crate::{Condition, Soil, Wheel};
+use crate::Soil;
+use crate::spatial::fixture::{CONDITION, SOIL, WHEEL};
 
 const SPACING: f64 = 0.004;
 /// Strips in contact, between two guards.
 const STRIPS: usize = 10;
-const WIDTH: f64 = 0.112;
+const WIDTH: f64 = WHEEL.width_m;
 const LENGTH: f64 = STRIPS as f64 * SPACING;
 const DEPTH: f64 = 0.006;
 const RISE: f64 = 0.1;
@@ -37,22 +38,10 @@ fn flat() -> Envelope {
 fn pressed(soil: &Soil, mirrored: bool) -> (f64, Contact, Terrain) {
     let first_y = if mirrored { 0.5 * SPACING } else { -19.5 * SPACING };
     let terrain = Terrain::new(SPACING, SPACING, first_y, 24, 40, mirrored);
-    let wheel = Wheel {
-        radius_m: 0.125,
-        width_m: WIDTH,
-        rig_radius_m: 0.125,
-    };
-    let condition = Condition {
-        slip: 0.2,
-        wheel_load_n: 100.0,
-        sled_speed_m_s: 0.01,
-        slip_angle_rad: 0.0,
-        pass: 1,
-    };
     let laws = Laws::new(soil, 1e12, 0.0);
     let mut contact = Contact::default();
     contact.across.lay(&terrain, 0.0, WIDTH);
-    contact.prepare(&terrain, &flat(), &laws, &Motion::new(&wheel, &condition), false);
+    contact.prepare(&terrain, &flat(), &laws, &Motion::new(&WHEEL, &CONDITION), false);
     let load = contact.press(&terrain, &laws, RISE - DEPTH);
     (load, contact, terrain)
 }
@@ -60,12 +49,10 @@ fn pressed(soil: &Soil, mirrored: bool) -> (f64, Contact, Terrain) {
 fn soil(gamma_exponent: f64, k_c: f64) -> Soil {
     Soil {
         k_c,
-        k_phi: 1e7,
-        n: 1.1,
-        cohesion_pa: 0.0,
         friction_angle_rad: 0.0,
         shear_velocity_m_s: 0.0,
         gamma_exponent,
+        ..SOIL
     }
 }
 
@@ -128,19 +115,7 @@ fn distances_from_a_border_at_an_angle_are_euclidean() {
             terrain.surface[(row + 4) * terrain.lanes + first + lane] = -0.05;
         }
     }
-    let wheel = Wheel {
-        radius_m: 0.125,
-        width_m: WIDTH,
-        rig_radius_m: 0.125,
-    };
-    let condition = Condition {
-        slip: 0.2,
-        wheel_load_n: 100.0,
-        sled_speed_m_s: 0.01,
-        slip_angle_rad: 0.0,
-        pass: 1,
-    };
-    contact.prepare(&terrain, &flat(), &laws, &Motion::new(&wheel, &condition), false);
+    contact.prepare(&terrain, &flat(), &laws, &Motion::new(&WHEEL, &CONDITION), false);
     contact.press(&terrain, &laws, RISE - DEPTH);
     let mut nodes = 0;
     for row in 1..=STRIPS {

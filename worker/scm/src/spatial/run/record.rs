@@ -162,40 +162,19 @@ impl Record {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::spatial::fixture::{CONDITION, SOIL, WHEEL};
     use crate::spatial::{Ground, Grousers, Scene, Settings, Shape};
-    use crate::{Soil, Wheel};
 
     /// What finishing a short run says, after its record was changed.
     fn finished(change: fn(&mut Record)) -> Result<Run, Rejection> {
-        let soil = Soil {
-            k_c: 0.0,
-            k_phi: 1e7,
-            n: 1.1,
-            cohesion_pa: 0.0,
-            friction_angle_rad: 0.5,
-            shear_velocity_m_s: 1e-3,
-            gamma_exponent: 0.5,
-        };
-        let wheel = Wheel {
-            radius_m: 0.125,
-            width_m: 0.112,
-            rig_radius_m: 0.125,
-        };
-        let condition = Condition {
-            slip: 0.2,
-            wheel_load_n: 100.0,
-            sled_speed_m_s: 0.01,
-            slip_angle_rad: 0.0,
-            pass: 1,
-        };
         let (ground, shape) = (Ground::default(), Shape::Rim(Grousers::default()));
         let scene = Scene {
-            soil: &soil,
+            soil: &SOIL,
             ground: &ground,
-            wheel: &wheel,
+            wheel: &WHEEL,
             shape: &shape,
         };
-        let mut rolling = Rolling::new(&scene, &condition, Settings::default(), 0.05)?;
+        let mut rolling = Rolling::new(&scene, &CONDITION, Settings::default(), 0.05)?;
         let mut record = Record::new(rolling.steps.time);
         let lowered = rolling.lower()?;
         record.push(&mut rolling, &lowered);
@@ -209,7 +188,7 @@ mod tests {
             means,
             first_step: 20,
         };
-        record.finish(&rolling, &condition, windows, None)
+        record.finish(&rolling, &CONDITION, windows, None)
     }
 
     fn kind(change: fn(&mut Record)) -> &'static str {

@@ -348,31 +348,13 @@ impl<'a> Rolling<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Soil;
+    use crate::spatial::fixture::{CONDITION, SOIL, WHEEL};
     use crate::spatial::{Grousers, Shape};
-
-    const WHEEL: Wheel = Wheel {
-        radius_m: 0.125,
-        width_m: 0.112,
-        rig_radius_m: 0.125,
-    };
-    const SOIL: Soil = Soil {
-        k_c: 0.0,
-        k_phi: 1e7,
-        n: 1.1,
-        cohesion_pa: 0.0,
-        friction_angle_rad: 0.5,
-        shear_velocity_m_s: 1e-3,
-        gamma_exponent: 0.5,
-    };
 
     fn condition(slip_angle_rad: f64) -> Condition {
         Condition {
-            slip: 0.2,
-            wheel_load_n: 100.0,
-            sled_speed_m_s: 0.01,
             slip_angle_rad,
-            pass: 1,
+            ..CONDITION
         }
     }
 

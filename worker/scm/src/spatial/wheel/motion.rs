@@ -1,5 +1,6 @@
 //! Give the velocity of the wheel's surface against the soil and the direction of the shear stress.
 
+use super::super::pack::Pack;
 use crate::shear::ShearVelocity;
 use crate::{Condition, Wheel};
 
@@ -26,6 +27,14 @@ pub(crate) struct Traction {
     pub(crate) shear_z: f64,
     /// Slip velocity `|v_t|` `[m/s]`.
     pub(crate) slip_speed: f64,
+}
+
+impl Traction {
+    /// One of the numbers for four lanes.
+    #[inline]
+    pub(crate) fn of_lanes(lanes: &[Traction], of: fn(&Traction) -> f64) -> Pack {
+        Pack::new([of(&lanes[0]), of(&lanes[1]), of(&lanes[2]), of(&lanes[3])])
+    }
 }
 
 impl Motion {
