@@ -13,6 +13,9 @@
 //! - [`averages`]: what a run gives.
 //! - [`rejection`]: why a parameter vector has no answer.
 //!
+//! Between them and the models:
+//! - [`effects`]: formulas and mechanisms that replace quantities of the base.
+//!
 //! Models:
 //! - [`quasi_static`]: a smooth wheel in steady motion, integrated along the rim.
 //! - [`spatial`]: a wheel with grousers, or any surface, that rolls over a terrain it deforms.
@@ -22,7 +25,7 @@
 //! - [`signal`]: a time history to averages: resampling, zero-phase low-pass, means over whole periods.
 //!
 //! Numerics:
-//! - [`elementary`]: `exp`, `ln` and powers that vectorise and give the same bits on every machine.
+//! - [`elementary`], of the crate `formula`: `exp`, `ln` and powers that vectorise and give the same bits on every machine.
 //! - `quadrature`: the Gauss rule of the rim.
 //!
 //! Everything is pure: no clock, no random numbers, no input or output. Units are SI. Results depend on
@@ -32,7 +35,7 @@
 pub mod averages;
 pub mod bevameter;
 pub mod condition;
-pub mod elementary;
+pub mod effects;
 pub mod footprint;
 pub mod pressure_distribution;
 pub mod pressure_sinkage;
@@ -45,8 +48,11 @@ pub mod soil;
 pub mod spatial;
 pub mod wheel;
 
+pub use formula::elementary;
+
 pub use averages::Averages;
 pub use condition::Condition;
+pub use effects::Effects;
 pub use rejection::Rejection;
 pub use soil::{Soil, bekker_moduli};
 pub use wheel::Wheel;

@@ -5,7 +5,7 @@
 /// A rejection is an answer (likelihood zero), not a fault of the machine: the same arguments are
 /// rejected everywhere and always. Messages are fragments that complete "failed to simulate: …".
 #[non_exhaustive]
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Rejection {
     /// The soil cannot carry the wheel load at any sinkage below the wheel radius.
     #[error(
@@ -54,6 +54,9 @@ pub enum Rejection {
     /// The protocol does not fit the run.
     #[error("the protocol does not fit the run: {0}")]
     Protocol(#[from] crate::signal::SignalError),
+    /// A formula of an effect gave what the model cannot use.
+    #[error(transparent)]
+    Formula(Box<FormulaRefusal>),
     /// A parameter lies outside the bounds within which the model is defined.
     #[error("invalid parameter: {name} = {value} {unit} must be {bound}")]
     InvalidParameter {
@@ -68,6 +71,24 @@ pub enum Rejection {
     },
 }
 
+/// Which formula gave what, and from which values.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("effect {effect}: {hook} is {value} {unit}, which must be {bound} ({values})")]
+pub struct FormulaRefusal {
+    /// The effect.
+    pub effect: String,
+    /// The quantity that the formula replaces.
+    pub hook: &'static str,
+    /// What it gave.
+    pub value: f64,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The bound it breaks.
+    pub bound: &'static str,
+    /// The variables and parameters that the formula uses, with their values and units.
+    pub values: String,
+}
+
 impl Rejection {
     /// A stable word for counting rejections by kind; part of the wire format.
     pub fn kind(&self) -> &'static str {
@@ -77,6 +98,7 @@ impl Rejection {
             Self::NotFinite { .. } => "not_finite",
             Self::EnergyGained { .. } => "energy_gained",
             Self::Protocol(_) => "protocol",
+            Self::Formula(_) => "formula",
             Self::InvalidParameter { .. } => "invalid_parameter",
         }
     }

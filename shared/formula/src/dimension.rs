@@ -1,0 +1,92 @@
+//! Check that the units of a formula can be right.
+//!
+//! Only what units say for certain is an error. A number has whatever unit its neighbour needs, as in `v_t / 0.02` or
+//! `1.5 * p`; so has a quantity whose unit depends on a parameter, such as `k_star` or `z^n`.
+
+use crate::graph::{Binary, Graph, Id, Node, Unary};
+use crate::unit::Unit;
+
+/// A contradiction between units, in words.
+pub(crate) type Contradiction = String;
+
+/// The unit of a result, as far as units tell.
+///
+/// `parameters` are the units of the effect's parameters.
+pub(crate) fn unit_of(graph: &Graph, result: Id, parameters: &[Unit]) -> Result<Option<Unit>, Contradiction> {
+    let mut units: Vec<Option<Unit>> = vec![None; graph.len()];
+    for id in graph.behind(result) {
+        let of = |id: Id| units[usize::from(id.0)];
+        let unit = match graph.node(id) {
+            Node::Number(_) => None,
+            Node::Variable(variable) => variable.unit(),
+            Node::Parameter(place) => Some(parameters[usize::from(place)]),
+            Node::Unary(operation, a) => unary(operation, of(a))?,
+            Node::Binary(operation, a, b) => binary(graph, operation, (a, of(a)), (b, of(b)))?,
+            Node::If(_, a, b) => same("both branches of if", of(a), of(b))?,
+        };
+        units[usize::from(id.0)] = unit;
+    }
+    Ok(units[usize::from(result.0)])
+}
+
+fn unary(operation: Unary, of: Option<Unit>) -> Result<Option<Unit>, Contradiction> {
+    let name = match operation {
+        Unary::Negate | Unary::Abs => return Ok(of),
+        Unary::Sqrt => return Ok(of.and_then(|unit| unit.to_the(0.5))),
+        Unary::Exp => "exp",
+        Unary::Log => "log",
+        Unary::Tanh => "tanh",
+        Unary::Sin => "sin",
+        Unary::Cos => "cos",
+        Unary::Tan => "tan",
+    };
+    plain(name, of)?;
+    Ok(Some(Unit::ONE))
+}
+
+fn binary(
+    graph: &Graph,
+    operation: Binary,
+    (_, left): (Id, Option<Unit>),
+    (right_id, right): (Id, Option<Unit>),
+) -> Result<Option<Unit>, Contradiction> {
+    let both = |combine: fn(Unit, Unit) -> Option<Unit>| left.zip(right).and_then(|(a, b)| combine(a, b));
+    match operation {
+        Binary::Add => same("both sides of +", left, right),
+        Binary::Subtract => same("both sides of -", left, right),
+        Binary::Min => same("both arguments of min", left, right),
+        Binary::Max => same("both arguments of max", left, right),
+        Binary::Less | Binary::LessOrEqual | Binary::Equal | Binary::Unequal => {
+            same("both sides of a comparison", left, right)?;
+            Ok(None)
+        }
+        Binary::Multiply => Ok(both(Unit::times)),
+        Binary::Divide => Ok(both(Unit::over)),
+        Binary::Power => {
+            plain("an exponent", right)?;
+            Ok(match (left, graph.node(right_id)) {
+                (Some(Unit::ONE), _) => Some(Unit::ONE),
+                (Some(unit), Node::Number(bits)) => unit.to_the(f64::from_bits(bits)),
+                _ => None,
+            })
+        }
+    }
+}
+
+/// What must have no unit.
+fn plain(what: &str, unit: Option<Unit>) -> Result<(), Contradiction> {
+    match unit {
+        Some(unit) if unit != Unit::ONE => {
+            Err(format!("{what} needs a number without unit, not one in {unit}"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Two that must have the same unit, which is known from either.
+fn same(what: &str, left: Option<Unit>, right: Option<Unit>) -> Result<Option<Unit>, Contradiction> {
+    match (left, right) {
+        (Some(a), Some(b)) if a != b => Err(format!("{what} must have the same unit, not {a} and {b}")),
+        (a, b) => Ok(a.or(b)),
+    }
+}

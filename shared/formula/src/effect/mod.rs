@@ -1,0 +1,179 @@
+//! Read an effect file.
+
+mod file;
+mod names;
+
+use crate::dimension::unit_of;
+use crate::graph::{Graph, Id};
+use crate::hook::Hook;
+use crate::program::Program;
+use crate::unit::Unit;
+use crate::variable::{Variable, Variables};
+use crate::word::unknown_word;
+
+/// A mechanism that may be missing from the model: formulas for some of its quantities, with their parameters.
+///
+/// At the neutral value of its strengths an effect is not evaluated: the model is then without it, bit for bit.
+#[derive(Debug, Clone)]
+pub struct Effect {
+    /// Name in jobs and results.
+    pub name: String,
+    /// What it is, in a line.
+    pub summary: String,
+    /// Where it comes from.
+    pub source: String,
+    /// The part of a model that has this effect without formulas, where one has.
+    pub mechanism: Option<Mechanism>,
+    /// Its parameters, in the order of the file.
+    pub parameters: Vec<Parameter>,
+    /// The file itself.
+    pub text: String,
+    formulas: Vec<(Hook, Id)>,
+    graph: Graph,
+}
+
+/// A parameter of an effect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// Name within the effect; `EFFECT.NAME` elsewhere.
+    pub name: String,
+    /// Unit as the file says it.
+    pub unit: String,
+    /// The value at which the effect is absent; `None` for a parameter that only shapes it.
+    pub neutral: Option<f64>,
+    /// The value at which tables show the effect.
+    pub typical: Option<f64>,
+    /// A number, which fixes it, or a table with a distribution, as written.
+    pub prior: toml::Value,
+    /// Line in the file.
+    pub line: usize,
+}
+
+/// What a model may have of an effect in code of its own, because no formula at a point can say it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mechanism {
+    /// The soil springs back behind the axle.
+    Rebound,
+    /// The rim is flattened by its load.
+    FlatPatch,
+    /// The sliding wheel carries soil away from under itself.
+    Digging,
+    /// The soil is stiffer near the ends of its bin.
+    EndWall,
+}
+
+impl Mechanism {
+    /// Every mechanism.
+    pub const ALL: [Mechanism; 4] = [
+        Mechanism::Rebound,
+        Mechanism::FlatPatch,
+        Mechanism::Digging,
+        Mechanism::EndWall,
+    ];
+
+    /// Name in effect files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Mechanism::Rebound => "rebound",
+            Mechanism::FlatPatch => "flat_patch",
+            Mechanism::Digging => "digging",
+            Mechanism::EndWall => "end_wall",
+        }
+    }
+}
+
+/// Why an effect file cannot be used, and where.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}{message}", place(*line, *column))]
+pub struct EffectError {
+    /// Line, counted from 1, where one is to blame.
+    pub line: Option<usize>,
+    /// Column, counted from 1, where one is to blame.
+    pub column: Option<usize>,
+    /// What is wrong.
+    pub message: String,
+}
+
+fn place(line: Option<usize>, column: Option<usize>) -> String {
+    match (line, column) {
+        (Some(line), Some(column)) => format!("line {line}, column {column}: "),
+        (Some(line), None) => format!("line {line}: "),
+        _ => String::new(),
+    }
+}
+
+impl Effect {
+    /// Most bytes of a file.
+    pub const LONGEST: usize = 32_768;
+
+    /// Reads an effect file.
+    ///
+    /// # Errors
+    /// [`EffectError`] with the line, and within a formula the column, of the first thing that is wrong; with the nearest
+    /// known name, or with all that are expected. Checked by `gallery`.
+    pub fn read(text: &str) -> Result<Effect, EffectError> {
+        file::read(text)
+    }
+
+    /// The quantities that its formulas replace, in the order of evaluation.
+    pub fn hooks(&self) -> impl Iterator<Item = Hook> {
+        self.formulas.iter().map(|(hook, _)| *hook)
+    }
+
+    /// The formula for a quantity, ready where the variables `local` differ from point to point; none if it leaves it alone.
+    pub fn program(&self, hook: Hook, local: Variables) -> Option<Program> {
+        let result = self.formulas.iter().find(|(h, _)| *h == hook)?.1;
+        Some(Program::compile(&self.graph, result, local))
+    }
+
+    /// The variables that its formulas use.
+    pub fn uses(&self) -> Variables {
+        let uses = self
+            .formulas
+            .iter()
+            .map(|(_, result)| self.graph.variables(*result));
+        uses.fold(Variables::default(), Variables::union)
+    }
+
+    /// Position of a parameter.
+    pub fn parameter(&self, name: &str) -> Option<usize> {
+        self.parameters.iter().position(|p| p.name == name)
+    }
+
+    /// Whether it changes nothing at these values of its parameters: all of its strengths are neutral. An effect without
+    /// strengths is a law that always holds.
+    pub fn is_neutral(&self, values: &[f64]) -> bool {
+        let mut strengths = self.parameters.iter().zip(values);
+        let any = self.parameters.iter().any(|p| p.neutral.is_some());
+        any && strengths.all(|(p, value)| {
+            p.neutral
+                .is_none_or(|neutral| neutral.total_cmp(value).is_eq() || (neutral - value).abs() == 0.0)
+        })
+    }
+}
+
+/// What may be said of the units of a formula.
+fn check_units(graph: &Graph, hook: Hook, result: Id, units: &[Unit]) -> Result<(), String> {
+    let found = unit_of(graph, result, units)?;
+    match (found, hook.target().unit()) {
+        (Some(found), Some(expected)) if found != expected => Err(format!(
+            "{} must be in {}, not in {found}",
+            hook.name(),
+            hook.target().unit_name()
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Whether a formula uses only what its hook shows it.
+fn check_sight(graph: &Graph, hook: Hook, result: Id) -> Result<(), String> {
+    let seen = hook.sees();
+    match graph.variables(result).iter().find(|v| !seen.contains(*v)) {
+        Some(hidden) => {
+            let known = seen.iter().map(Variable::name);
+            let message = unknown_word("variable", hidden.name(), known);
+            Err(format!("in {}, through a definition: {message}", hook.name()))
+        }
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,151 @@
+//! Name the quantities that a formula may replace.
+
+use crate::variable::{Variable, Variables};
+
+/// A place in the model where effects enter: the quantity that a formula replaces.
+///
+/// A formula finds there what the effects before it have made of the quantity. The order of the hooks is that of their
+/// evaluation; at one hook, effects follow each other as the catalogue does, then as a job lists its files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Hook {
+    /// Slip, in [−1, 1), at the rim's speed: the sled moves as the new slip says.
+    Slip,
+    /// Radius of the rim, > 0.
+    Radius,
+    /// Width of the rim, > 0.
+    Width,
+    /// Sinkage exponent n, > 0.
+    SinkageExponent,
+    /// Load that the soil must carry, > 0; may depend on pull and torque, which depend on it.
+    WheelLoad,
+    /// Normal pressure at a node, ≥ 0.
+    Pressure,
+    /// Shear strength at a node, ≥ 0.
+    ShearLimit,
+    /// Shear stress at a node, ≥ 0.
+    Shear,
+    /// Drawbar pull as it is measured.
+    DrawbarPull,
+    /// Torque as it is measured.
+    Torque,
+    /// Sinkage as it is measured.
+    Sinkage,
+    /// Lateral force as it is measured.
+    LateralForce,
+}
+
+impl Hook {
+    /// How many hooks there are.
+    pub const COUNT: usize = 12;
+
+    /// Every hook, in the order of evaluation.
+    pub const ALL: [Hook; Hook::COUNT] = [
+        Hook::Slip,
+        Hook::Radius,
+        Hook::Width,
+        Hook::SinkageExponent,
+        Hook::WheelLoad,
+        Hook::Pressure,
+        Hook::ShearLimit,
+        Hook::Shear,
+        Hook::DrawbarPull,
+        Hook::Torque,
+        Hook::Sinkage,
+        Hook::LateralForce,
+    ];
+
+    /// The measured channels: each sees the others as they were before this effect.
+    pub const CHANNELS: [Hook; 4] = [Hook::DrawbarPull, Hook::Torque, Hook::Sinkage, Hook::LateralForce];
+
+    /// Key in effect files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Hook::Slip => "slip",
+            Hook::Radius => "radius",
+            Hook::Width => "width",
+            Hook::SinkageExponent => "sinkage_exponent",
+            Hook::WheelLoad => "wheel_load",
+            Hook::Pressure => "pressure",
+            Hook::ShearLimit => "shear_limit",
+            Hook::Shear => "shear",
+            Hook::DrawbarPull => "drawbar_pull",
+            Hook::Torque => "torque",
+            Hook::Sinkage => "sinkage",
+            Hook::LateralForce => "lateral_force",
+        }
+    }
+
+    /// The variable that the formula replaces.
+    pub fn target(self) -> Variable {
+        match self {
+            Hook::Slip => Variable::Slip,
+            Hook::Radius => Variable::Radius,
+            Hook::Width => Variable::Width,
+            Hook::SinkageExponent => Variable::N,
+            Hook::WheelLoad => Variable::WheelLoad,
+            Hook::Pressure => Variable::P,
+            Hook::ShearLimit => Variable::TauMax,
+            Hook::Shear => Variable::Tau,
+            Hook::DrawbarPull => Variable::DrawbarPull,
+            Hook::Torque => Variable::Torque,
+            Hook::Sinkage => Variable::Sinkage,
+            Hook::LateralForce => Variable::LateralForce,
+        }
+    }
+
+    /// What its formula may use.
+    pub fn sees(self) -> Variables {
+        use Variable::{
+            BEff, ContactLength, DrawbarPull, J, KStar, LateralForce, P, Position, Sinkage, Tau, TauMax,
+            Torque, Vn, Vt, Z,
+        };
+        let run = Variables::of(&Variable::OF_RUN);
+        let contact = run.union(Variables::of(&[ContactLength, BEff, KStar]));
+        let node = contact.union(Variables::of(&[P, Z, Vn, Vt, J, Position]));
+        match self {
+            Hook::Slip | Hook::Radius | Hook::Width | Hook::SinkageExponent => run,
+            Hook::WheelLoad => run.with(DrawbarPull).with(Torque),
+            Hook::Pressure => node,
+            Hook::ShearLimit => node.with(TauMax),
+            Hook::Shear => node.with(TauMax).with(Tau),
+            Hook::DrawbarPull | Hook::Torque | Hook::Sinkage | Hook::LateralForce => {
+                contact.union(Variables::of(&[DrawbarPull, Torque, Sinkage, LateralForce]))
+            }
+        }
+    }
+
+    /// What its value must be, in words, and whether a number is.
+    pub fn admits(self, value: f64) -> bool {
+        value.is_finite()
+            && match self {
+                Hook::Slip => (-1.0..1.0).contains(&value),
+                Hook::Radius | Hook::Width | Hook::SinkageExponent | Hook::WheelLoad => value > 0.0,
+                Hook::Pressure | Hook::ShearLimit | Hook::Shear => value >= 0.0,
+                Hook::DrawbarPull | Hook::Torque | Hook::Sinkage | Hook::LateralForce => true,
+            }
+    }
+
+    /// The bound that [`Hook::admits`] holds values to.
+    pub fn bound(self) -> &'static str {
+        match self {
+            Hook::Slip => "in [-1, 1)",
+            Hook::Radius | Hook::Width | Hook::SinkageExponent | Hook::WheelLoad => "finite and above 0",
+            Hook::Pressure | Hook::ShearLimit | Hook::Shear => "finite and at least 0",
+            Hook::DrawbarPull | Hook::Torque | Hook::Sinkage | Hook::LateralForce => "finite",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_formula_sees_what_it_replaces() {
+        for (place, hook) in Hook::ALL.into_iter().enumerate() {
+            assert_eq!(hook as usize, place);
+            assert!(hook.sees().contains(hook.target()), "{}", hook.name());
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! Read units, and say which dimension they have.
+
+/// Powers of kilogram, metre, second and degree, each counted in halves: a square root stays a dimension.
+///
+/// A degree has a dimension of its own, so that `sin` of one is noticed; a radian has none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Unit {
+    halves: [i16; 4],
+}
+
+/// The largest power that is kept track of, in halves.
+const MOST: i16 = 64;
+
+const KNOWN: [(&str, [i16; 4]); 11] = [
+    ("1", [0, 0, 0, 0]),
+    ("kg", [1, 0, 0, 0]),
+    ("m", [0, 1, 0, 0]),
+    ("s", [0, 0, 1, 0]),
+    ("deg", [0, 0, 0, 1]),
+    ("rad", [0, 0, 0, 0]),
+    ("N", [1, 1, -2, 0]),
+    ("Pa", [1, -1, -2, 0]),
+    ("J", [1, 2, -2, 0]),
+    ("W", [1, 2, -3, 0]),
+    ("Hz", [0, 0, -1, 0]),
+];
+
+impl Unit {
+    /// A number without unit.
+    pub const ONE: Unit = Unit { halves: [0; 4] };
+
+    /// Reads a unit: names of SI units, `^` with a whole power, products by spaces, quotients by `/` (which takes the next name
+    /// alone): `N s/m`, `1/m`, `kg/m^3`.
+    ///
+    /// # Errors
+    /// A sentence that names what is not known, and what is.
+    pub fn parse(text: &str) -> Result<Unit, String> {
+        let unknown = |word: &str| {
+            let known = KNOWN.map(|(name, _)| name).join(", ");
+            format!("unknown unit \"{word}\" in \"{text}\"; SI units are {known}, with ^, / and spaces")
+        };
+        let mut unit = Unit::ONE;
+        let mut any = false;
+        for product in text.split_whitespace() {
+            for (place, factor) in product.split('/').enumerate() {
+                let (name, power) = factor.split_once('^').unwrap_or((factor, "1"));
+                let known = KNOWN.iter().find(|(known, _)| *known == name);
+                let (_, dimension) = known.ok_or_else(|| unknown(factor))?;
+                let power: i16 = power.parse().map_err(|_| unknown(factor))?;
+                if power.abs() > 9 {
+                    return Err(unknown(factor));
+                }
+                let power = if place == 0 { power } else { -power };
+                let halves = dimension.map(|d| 2 * d * power);
+                unit = unit.times(Unit { halves }).ok_or_else(|| unknown(factor))?;
+                any = true;
+            }
+        }
+        if any { Ok(unit) } else { Err(unknown(text)) }
+    }
+
+    /// The unit of a product; none if its powers are out of hand.
+    pub(crate) fn times(self, other: Unit) -> Option<Unit> {
+        self.combine(other, |a, b| a + b)
+    }
+
+    /// The unit of a quotient.
+    pub(crate) fn over(self, other: Unit) -> Option<Unit> {
+        self.combine(other, |a, b| a - b)
+    }
+
+    fn combine(self, other: Unit, with: fn(i16, i16) -> i16) -> Option<Unit> {
+        let mut halves = self.halves;
+        for (mine, theirs) in halves.iter_mut().zip(other.halves) {
+            *mine = with(*mine, theirs);
+        }
+        Unit { halves }.within_reach()
+    }
+
+    /// The unit of a power, or none if it is no whole number of halves.
+    pub(crate) fn to_the(self, power: f64) -> Option<Unit> {
+        let mut halves = [0; 4];
+        for (new, old) in halves.iter_mut().zip(self.halves) {
+            let exact = f64::from(old) * power;
+            if (libm::rint(exact) - exact).abs() > 0.0 || exact.abs() > f64::from(MOST) {
+                return None;
+            }
+            *new = exact as i16;
+        }
+        Some(Unit { halves })
+    }
+
+    fn within_reach(self) -> Option<Unit> {
+        self.halves.iter().all(|h| h.abs() <= MOST).then_some(self)
+    }
+}
+
+impl core::fmt::Display for Unit {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        if let Some((name, _)) = KNOWN
+            .iter()
+            .find(|(name, d)| *name != "rad" && d.map(|d| 2 * d) == self.halves)
+        {
+            return f.write_str(name);
+        }
+        let mut first = true;
+        for (name, half) in ["kg", "m", "s", "deg"].into_iter().zip(self.halves) {
+            if half == 0 {
+                continue;
+            }
+            let gap = if first { "" } else { " " };
+            first = false;
+            match half {
+                2 => write!(f, "{gap}{name}")?,
+                _ if half % 2 == 0 => write!(f, "{gap}{name}^{}", half / 2)?,
+                _ => write!(f, "{gap}{name}^({half}/2)")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_read_and_written() {
+        for (text, shown) in [
+            ("1", "1"),
+            ("m", "m"),
+            ("Pa", "Pa"),
+            ("N/m^2", "Pa"),
+            ("N m", "J"),
+            ("1/m", "m^-1"),
+            ("kg/m^3", "kg m^-3"),
+            ("N s/m", "kg s^-1"),
+            ("rad", "1"),
+            ("deg", "deg"),
+        ] {
+            assert_eq!(Unit::parse(text).unwrap().to_string(), shown, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_si_unit_is_named() {
+        for text in ["mm", "", "N/", "m^x", "m^400", "lb"] {
+            let error = Unit::parse(text).unwrap_err();
+            assert!(
+                error.starts_with("unknown unit") && error.contains("Pa"),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn powers_that_are_no_dimension_are_none() {
+        let metre = Unit::parse("m").unwrap();
+        assert_eq!(metre.to_the(0.5).unwrap().to_string(), "m^(1/2)");
+        assert!(metre.to_the(0.3).is_none() && metre.to_the(1e9).is_none());
+    }
+}

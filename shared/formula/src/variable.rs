@@ -1,0 +1,244 @@
+//! Name what a formula can see.
+
+use crate::unit::Unit;
+
+/// A quantity of the model that formulas may use. SI units; magnitudes, ≥ 0, unless said.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Variable {
+    /// Normal pressure at a node of the contact.
+    P,
+    /// Sinkage of a node below the undisturbed surface.
+    Z,
+    /// Velocity of the wheel's surface into the soil, along its normal.
+    Vn,
+    /// Slip velocity: of the wheel's surface along the soil.
+    Vt,
+    /// Shear displacement: how far the wheel's surface has slid since it met the soil.
+    J,
+    /// Place of a node in the contact: 0 at the rear end, 1 at the front entry.
+    Position,
+    /// Modulus k* = `k_c` / `b_eff` + `k_phi` of the footprint that holds the node; its unit depends on n.
+    KStar,
+    /// Effective width 2 A / L of the footprint that holds the node.
+    BEff,
+    /// Shear strength at a node.
+    TauMax,
+    /// Shear stress at a node.
+    Tau,
+    /// Length of the contact along the ground.
+    ContactLength,
+    /// Slip, in [−1, 1): negative in skid.
+    Slip,
+    /// Speed of the sled.
+    SledSpeed,
+    /// Vertical load on the wheel.
+    WheelLoad,
+    /// Radius of the rim.
+    Radius,
+    /// Width of the rim.
+    Width,
+    /// Angle of internal friction.
+    FrictionAngle,
+    /// Cohesion.
+    Cohesion,
+    /// Sinkage exponent.
+    N,
+    /// Reference velocity v0 of the shear-velocity law.
+    ShearVelocity,
+    /// Density of the soil.
+    Density,
+    /// Acceleration of gravity.
+    Gravity,
+    /// Number of grousers.
+    GrouserCount,
+    /// Height of the grousers.
+    GrouserHeight,
+    /// Which pass over the track it is, from 1 on.
+    Pass,
+    /// Length of the soil bin.
+    BinLength,
+    /// Drawbar pull; negative when the wheel is towed.
+    DrawbarPull,
+    /// Torque; negative when the wheel is braked.
+    Torque,
+    /// Sinkage of the wheel; may be negative.
+    Sinkage,
+    /// Lateral force; negative at a negative slip angle.
+    LateralForce,
+}
+
+use Variable::{
+    BEff, BinLength, Cohesion, ContactLength, Density, DrawbarPull, FrictionAngle, Gravity, GrouserCount,
+    GrouserHeight, J, KStar, LateralForce, N, P, Pass, Position, Radius, ShearVelocity, Sinkage, SledSpeed,
+    Slip, Tau, TauMax, Torque, Vn, Vt, WheelLoad, Width, Z,
+};
+
+impl Variable {
+    /// How many variables there are; `variable as usize` is below it.
+    pub const COUNT: usize = 30;
+
+    /// How many may differ from node to node: they come first.
+    pub const LOCAL: usize = 10;
+
+    /// Every variable, in the order of their numbers.
+    pub const ALL: [Variable; Variable::COUNT] = [
+        P,
+        Z,
+        Vn,
+        Vt,
+        J,
+        Position,
+        KStar,
+        BEff,
+        TauMax,
+        Tau,
+        ContactLength,
+        Slip,
+        SledSpeed,
+        WheelLoad,
+        Radius,
+        Width,
+        FrictionAngle,
+        Cohesion,
+        N,
+        ShearVelocity,
+        Density,
+        Gravity,
+        GrouserCount,
+        GrouserHeight,
+        Pass,
+        BinLength,
+        DrawbarPull,
+        Torque,
+        Sinkage,
+        LateralForce,
+    ];
+
+    /// What no node has of its own: conditions, dimensions and parameters of soil and rig.
+    pub const OF_RUN: [Variable; 15] = [
+        Slip,
+        SledSpeed,
+        WheelLoad,
+        Radius,
+        Width,
+        FrictionAngle,
+        Cohesion,
+        N,
+        ShearVelocity,
+        Density,
+        Gravity,
+        GrouserCount,
+        GrouserHeight,
+        Pass,
+        BinLength,
+    ];
+
+    /// Name in formulas.
+    pub fn name(self) -> &'static str {
+        self.entry().0
+    }
+
+    /// Its unit; none where that depends on a parameter.
+    pub fn unit(self) -> Option<Unit> {
+        Unit::parse(self.entry().1).ok()
+    }
+
+    /// Its unit in words.
+    pub fn unit_name(self) -> &'static str {
+        self.entry().1
+    }
+
+    const fn entry(self) -> (&'static str, &'static str) {
+        match self {
+            P => ("p", "Pa"),
+            Z => ("z", "m"),
+            Vn => ("v_n", "m/s"),
+            Vt => ("v_t", "m/s"),
+            J => ("j", "m"),
+            Position => ("position", "1"),
+            KStar => ("k_star", "N/m^(n+2)"),
+            BEff => ("b_eff", "m"),
+            TauMax => ("tau_max", "Pa"),
+            Tau => ("tau", "Pa"),
+            ContactLength => ("contact_length", "m"),
+            Slip => ("slip", "1"),
+            SledSpeed => ("sled_speed", "m/s"),
+            WheelLoad => ("wheel_load", "N"),
+            Radius => ("radius", "m"),
+            Width => ("width", "m"),
+            FrictionAngle => ("friction_angle_rad", "rad"),
+            Cohesion => ("cohesion_pa", "Pa"),
+            N => ("n", "1"),
+            ShearVelocity => ("shear_velocity", "m/s"),
+            Density => ("density_kg_m3", "kg/m^3"),
+            Gravity => ("gravity", "m/s^2"),
+            GrouserCount => ("grouser_count", "1"),
+            GrouserHeight => ("grouser_height", "m"),
+            Pass => ("pass", "1"),
+            BinLength => ("bin_length", "m"),
+            DrawbarPull => ("drawbar_pull", "N"),
+            Torque => ("torque", "N m"),
+            Sinkage => ("sinkage", "m"),
+            LateralForce => ("lateral_force", "N"),
+        }
+    }
+}
+
+/// A set of variables.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Variables(u32);
+
+impl Variables {
+    /// The set of these.
+    pub fn of(variables: &[Variable]) -> Self {
+        variables.iter().fold(Self::default(), |set, &v| set.with(v))
+    }
+
+    /// The same set and one more.
+    #[must_use]
+    pub fn with(self, variable: Variable) -> Self {
+        Self(self.0 | 1 << variable as u8)
+    }
+
+    /// Whether a variable belongs to it.
+    pub fn contains(self, variable: Variable) -> bool {
+        self.0 >> variable as u8 & 1 == 1
+    }
+
+    /// What belongs to either.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Its members, in the order of their numbers.
+    pub fn iter(self) -> impl Iterator<Item = Variable> {
+        Variable::ALL.into_iter().filter(move |&v| self.contains(v))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variables_stand_in_the_order_of_their_numbers() {
+        for (place, variable) in Variable::ALL.into_iter().enumerate() {
+            assert_eq!(variable as usize, place);
+        }
+        assert_eq!(Variable::OF_RUN[0] as usize, Variable::ContactLength as usize + 1);
+    }
+
+    #[test]
+    fn units_are_known_but_where_they_depend_on_a_parameter() {
+        for variable in Variable::ALL {
+            assert_eq!(
+                variable.unit().is_none(),
+                variable == KStar,
+                "{}",
+                variable.name()
+            );
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! Name what was probably meant.
+
+/// `unknown key "radus_m"; the nearest known is "radius_m"`, or the list where nothing is near.
+pub fn unknown_word<'a>(what: &str, unknown: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let known: Vec<&str> = known.into_iter().collect();
+    let nearest = known
+        .iter()
+        .map(|&k| (strsim::damerau_levenshtein(unknown, k), k))
+        .filter(|&(distance, k)| distance <= 2.max(k.len() / 2))
+        .min();
+    match nearest {
+        Some((_, near)) => format!("unknown {what} \"{unknown}\"; the nearest known is \"{near}\""),
+        None if known.is_empty() => format!("unknown {what} \"{unknown}\"; none is expected here"),
+        None => format!("unknown {what} \"{unknown}\"; known are {}", known.join(", ")),
+    }
+}

@@ -1,0 +1,117 @@
+//! A run as effects on slip, dimensions, exponent and load leave it.
+
+use formula::{Hook, Variable};
+
+use super::{Active, Site};
+use crate::{Condition, Rejection, Soil, Wheel};
+
+/// Soil, wheel and condition that a model integrates, and the variables that formulas see of them.
+#[derive(Debug, Clone)]
+pub(crate) struct Case {
+    pub(crate) soil: Soil,
+    pub(crate) wheel: Wheel,
+    pub(crate) condition: Condition,
+    /// By [`Variable`]; those of nodes and channels are for the model to fill in.
+    pub(crate) variables: [f64; Variable::COUNT],
+}
+
+impl Active<'_> {
+    /// Apply the effects on slip, radius, width and sinkage exponent, and on the load where it depends on nothing else.
+    pub(crate) fn case(
+        &self,
+        soil: &Soil,
+        wheel: &Wheel,
+        condition: &Condition,
+        site: &Site,
+    ) -> Result<Case, Rejection> {
+        let mut variables = [0.0; Variable::COUNT];
+        for (variable, value) in [
+            (Variable::Slip, condition.slip),
+            (Variable::SledSpeed, condition.sled_speed_m_s),
+            (Variable::WheelLoad, condition.wheel_load_n),
+            (Variable::Radius, wheel.radius_m),
+            (Variable::Width, wheel.width_m),
+            (Variable::FrictionAngle, soil.friction_angle_rad),
+            (Variable::Cohesion, soil.cohesion_pa),
+            (Variable::N, soil.n),
+            (Variable::ShearVelocity, soil.shear_velocity_m_s),
+            (Variable::Density, site.density_kg_m3.unwrap_or(f64::NAN)),
+            (Variable::Gravity, site.gravity_m_s2),
+            (Variable::GrouserCount, f64::from(site.grouser_count)),
+            (Variable::GrouserHeight, site.grouser_height_m),
+            (Variable::Pass, f64::from(condition.pass)),
+            (Variable::BinLength, site.bin_length_m.unwrap_or(f64::NAN)),
+        ] {
+            variables[variable as usize] = value;
+        }
+        self.replace(Hook::Slip, &mut variables)?;
+        let slip = variables[Variable::Slip as usize];
+        if slip.to_bits() != condition.slip.to_bits() {
+            // the motor keeps its speed: another slip is another speed of the sled
+            let rim = condition.rig_rim_speed_m_s();
+            variables[Variable::SledSpeed as usize] = if slip < 0.0 {
+                rim / (1.0 + slip)
+            } else {
+                rim * (1.0 - slip)
+            };
+        }
+        for hook in [Hook::Radius, Hook::Width, Hook::SinkageExponent] {
+            self.replace(hook, &mut variables)?;
+        }
+        if !self.load_follows_reaction() {
+            self.replace(Hook::WheelLoad, &mut variables)?;
+        }
+        let of = |variable: Variable| variables[variable as usize];
+        Ok(Case {
+            soil: Soil {
+                n: of(Variable::N),
+                ..*soil
+            },
+            wheel: Wheel {
+                radius_m: of(Variable::Radius),
+                width_m: of(Variable::Width),
+                ..*wheel
+            },
+            condition: Condition {
+                slip: of(Variable::Slip),
+                sled_speed_m_s: of(Variable::SledSpeed),
+                wheel_load_n: of(Variable::WheelLoad),
+                ..*condition
+            },
+            variables,
+        })
+    }
+
+    /// Whether the load that the soil must carry depends on pull or torque.
+    pub(crate) fn load_follows_reaction(&self) -> bool {
+        self.at(Hook::WheelLoad).any(|(program, ..)| {
+            let uses = program.uses();
+            uses.contains(Variable::DrawbarPull) || uses.contains(Variable::Torque)
+        })
+    }
+
+    /// The load that the soil must carry while it exerts a pull and a torque.
+    pub(crate) fn wheel_load(&self, case: &Case, drawbar_pull: f64, torque: f64) -> Result<f64, Rejection> {
+        let mut variables = case.variables;
+        variables[Variable::DrawbarPull as usize] = drawbar_pull;
+        variables[Variable::Torque as usize] = torque;
+        self.replace(Hook::WheelLoad, &mut variables)?;
+        Ok(variables[Variable::WheelLoad as usize])
+    }
+
+    /// Replace a quantity of the run by what the formulas at its hook make of it.
+    fn replace(&self, hook: Hook, variables: &mut [f64; Variable::COUNT]) -> Result<(), Rejection> {
+        let mut scalars = Vec::new();
+        for (program, name, parameters) in self.at(hook) {
+            // without nodes nothing differs from point to point
+            let value = program
+                .settle(variables, parameters, &mut scalars)
+                .unwrap_or(f64::NAN);
+            if !hook.admits(value) {
+                return Err(self.refusal(hook, name, value, |v| variables[v as usize]));
+            }
+            variables[hook.target() as usize] = value;
+        }
+        Ok(())
+    }
+}

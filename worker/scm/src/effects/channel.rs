@@ -1,0 +1,37 @@
+//! What the rig measures of what the soil does.
+
+use formula::{Hook, Variable};
+
+use super::Active;
+use crate::Rejection;
+
+impl Active<'_> {
+    /// Whether any effect changes what is measured.
+    pub(crate) fn change_channels(&self) -> bool {
+        Hook::CHANNELS
+            .into_iter()
+            .any(|hook| self.at(hook).next().is_some())
+    }
+
+    /// Replace the channels by what is measured of them. The formulas of one effect all see the channels as the effects
+    /// before it left them.
+    pub(crate) fn measure(&self, variables: &mut [f64; Variable::COUNT]) -> Result<(), Rejection> {
+        let mut scalars = Vec::new();
+        for (law, parameters) in &self.laws {
+            let before = *variables;
+            for hook in Hook::CHANNELS {
+                let Some(program) = &law.programs[hook as usize] else {
+                    continue;
+                };
+                let value = program
+                    .settle(&before, parameters, &mut scalars)
+                    .unwrap_or(f64::NAN);
+                if !hook.admits(value) {
+                    return Err(self.refusal(hook, &law.effect.name, value, |v| before[v as usize]));
+                }
+                variables[hook.target() as usize] = value;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,209 @@
+//! Let effects enter the models: formulas and mechanisms that replace quantities of the base.
+//!
+//! # Layout
+//! - here: [`Effects`], compiled for one model, and [`Active`], those of them whose strength is not neutral.
+//! - `case`: the run as effects on slip, dimensions, exponent and load leave it.
+//! - `node`: pressure, strength and stress at many nodes.
+//! - `channel`: what the rig measures.
+//!
+//! Effects follow each other at a hook in the order in which they were compiled; hooks follow each other in the order of
+//! [`Hook::ALL`]. Without an active effect a model runs its base code, bit for bit.
+
+mod case;
+mod channel;
+mod node;
+
+pub(crate) use case::Case;
+pub(crate) use node::NodeLaws;
+
+use formula::effect::Mechanism;
+use formula::variable::Variables;
+use formula::{Effect, Hook, Program, Variable};
+
+use crate::Rejection;
+
+/// A forward model, as far as effects tell models apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Model {
+    /// [`quasi_static`](crate::quasi_static): the footprint is one, so its modulus and width are the same at all nodes.
+    QuasiStatic,
+    /// [`spatial`](crate::spatial): patches of the footprint have their own.
+    Spatial,
+}
+
+impl Model {
+    /// Name in messages.
+    fn name(self) -> &'static str {
+        match self {
+            Model::QuasiStatic => "quasi_static",
+            Model::Spatial => "scm",
+        }
+    }
+
+    /// What the model has in code of its own; it then leaves such an effect's formulas alone.
+    fn mechanisms(self) -> &'static [Mechanism] {
+        match self {
+            Model::QuasiStatic => &[Mechanism::Rebound, Mechanism::FlatPatch],
+            Model::Spatial => &Mechanism::ALL,
+        }
+    }
+
+    /// The variables that differ from node to node.
+    fn local(self) -> Variables {
+        use Variable::{BEff, J, KStar, P, Position, Tau, TauMax, Vn, Vt, Z};
+        let both = Variables::of(&[P, Z, Vn, Vt, J, Position, TauMax, Tau]);
+        match self {
+            Model::QuasiStatic => both,
+            Model::Spatial => both.with(KStar).with(BEff),
+        }
+    }
+}
+
+/// What effects may ask of a run beyond soil, wheel and condition.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Site {
+    /// Density of the soil `[kg/m³]`, where it is known.
+    pub density_kg_m3: Option<f64>,
+    /// Acceleration of gravity `[m/s²]`.
+    pub gravity_m_s2: f64,
+    /// Number of grousers on the wheel.
+    pub grouser_count: u32,
+    /// Their height `[m]`.
+    pub grouser_height_m: f64,
+    /// Length of the soil bin `[m]`, where it is known.
+    pub bin_length_m: Option<f64>,
+}
+
+impl Default for Site {
+    /// On Earth, a smooth wheel, nothing else known.
+    fn default() -> Self {
+        Self {
+            density_kg_m3: None,
+            gravity_m_s2: 9.81,
+            grouser_count: 0,
+            grouser_height_m: 0.0,
+            bin_length_m: None,
+        }
+    }
+}
+
+/// Effects compiled for one model.
+#[derive(Debug, Clone)]
+pub struct Effects {
+    laws: Vec<Law>,
+}
+
+/// An effect as one model knows it.
+#[derive(Debug, Clone)]
+struct Law {
+    effect: Effect,
+    /// By hook.
+    programs: [Option<Program>; Hook::COUNT],
+    /// What stands in place of the formulas.
+    mechanism: Option<Mechanism>,
+}
+
+impl Effects {
+    /// Compiles effects; they follow each other in this order.
+    ///
+    /// # Errors
+    /// A sentence that names the effect that the model cannot express.
+    pub fn compile<'a>(model: Model, effects: impl IntoIterator<Item = &'a Effect>) -> Result<Self, String> {
+        let law = |effect: &Effect| {
+            let mechanism = effect.mechanism.filter(|m| model.mechanisms().contains(m));
+            if mechanism.is_none() && effect.hooks().next().is_none() {
+                let (name, model) = (&effect.name, model.name());
+                return Err(format!("effect {name} has no form in {model}"));
+            }
+            let program = |hook: Hook| match mechanism {
+                Some(_) => None,
+                None => effect.program(hook, model.local()),
+            };
+            Ok(Law {
+                effect: effect.clone(),
+                programs: Hook::ALL.map(program),
+                mechanism,
+            })
+        };
+        let laws = effects.into_iter().map(law).collect::<Result<_, _>>()?;
+        Ok(Self { laws })
+    }
+
+    /// The effects, in their order.
+    pub fn effects(&self) -> impl Iterator<Item = &Effect> {
+        self.laws.iter().map(|law| &law.effect)
+    }
+
+    /// The effects that are active at these values of their parameters: those of each effect, in the order of its file.
+    pub fn activate(&self, values: impl IntoIterator<Item = Vec<f64>>) -> Active<'_> {
+        let laws = self.laws.iter().zip(values);
+        Active {
+            laws: laws
+                .filter(|(law, values)| !law.effect.is_neutral(values))
+                .collect(),
+        }
+    }
+}
+
+/// The effects of a run whose strength is not neutral, with the values of their parameters.
+#[derive(Debug, Clone, Default)]
+pub struct Active<'a> {
+    laws: Vec<(&'a Law, Vec<f64>)>,
+}
+
+impl<'a> Active<'a> {
+    /// Whether the model is the base.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.laws.is_empty()
+    }
+
+    /// The formulas at a hook, in order, each with its effect's name and parameters.
+    fn at(&self, hook: Hook) -> impl Iterator<Item = (&'a Program, &'a str, &[f64])> {
+        self.laws.iter().filter_map(move |(law, values)| {
+            let program = law.programs[hook as usize].as_ref()?;
+            Some((program, law.effect.name.as_str(), values.as_slice()))
+        })
+    }
+
+    /// The parameters of an effect that the model has in code, in the order of its file.
+    pub(crate) fn mechanism(&self, mechanism: Mechanism) -> Option<&[f64]> {
+        let law = self.laws.iter().find(|(law, _)| law.mechanism == Some(mechanism));
+        law.map(|(_, values)| values.as_slice())
+    }
+
+    /// Why a formula's value cannot be used, with the values that led to it.
+    fn refusal(&self, hook: Hook, name: &str, value: f64, of: impl Fn(Variable) -> f64) -> Rejection {
+        let law = self.laws.iter().find(|(law, _)| law.effect.name == name);
+        let mut values = String::new();
+        if let Some((law, parameters)) = law
+            && let Some(program) = &law.programs[hook as usize]
+        {
+            let variables = program.uses().iter().map(|v| (v.name(), of(v), v.unit_name()));
+            let own = program.parameters().iter().map(|&place| {
+                let place = usize::from(place);
+                let parameter = &law.effect.parameters[place];
+                (
+                    parameter.name.as_str(),
+                    parameters[place],
+                    parameter.unit.as_str(),
+                )
+            });
+            let shown: Vec<String> = variables
+                .chain(own)
+                .map(|(name, value, unit)| match unit {
+                    "1" => format!("{name} = {value}"),
+                    unit => format!("{name} = {value} {unit}"),
+                })
+                .collect();
+            values = shown.join(", ");
+        }
+        Rejection::Formula(Box::new(crate::rejection::FormulaRefusal {
+            effect: name.to_owned(),
+            hook: hook.name(),
+            value,
+            unit: hook.target().unit_name(),
+            bound: hook.bound(),
+            values,
+        }))
+    }
+}

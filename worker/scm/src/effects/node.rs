@@ -1,0 +1,123 @@
+//! Pressure, strength and shear stress at many nodes, as effects leave them.
+
+use formula::block::Block;
+use formula::variable::Variables;
+use formula::{Hook, Program, Variable};
+
+use super::Active;
+use crate::Rejection;
+
+/// The hooks at nodes, in the order of evaluation.
+const HOOKS: [Hook; 3] = [Hook::Pressure, Hook::ShearLimit, Hook::Shear];
+
+/// The formulas at the nodes of a contact, with the numbers that all nodes share.
+#[derive(Debug, Clone)]
+pub(crate) struct NodeLaws<'a> {
+    active: &'a Active<'a>,
+    laws: Vec<NodeLaw<'a>>,
+    uses: Variables,
+    kinked: bool,
+    /// The nodes at hand: write columns, apply, read columns.
+    pub(crate) block: Block,
+}
+
+#[derive(Debug, Clone)]
+struct NodeLaw<'a> {
+    hook: Hook,
+    name: &'a str,
+    program: &'a Program,
+    parameters: Vec<f64>,
+    scalars: Vec<f64>,
+}
+
+impl<'a> NodeLaws<'a> {
+    /// The formulas at nodes, or none if there are none.
+    pub(crate) fn new(active: &'a Active<'a>) -> Option<Self> {
+        let laws: Vec<NodeLaw> = HOOKS
+            .into_iter()
+            .flat_map(|hook| active.at(hook).map(move |law| (hook, law)))
+            .map(|(hook, (program, name, parameters))| NodeLaw {
+                hook,
+                name,
+                program,
+                parameters: parameters.to_vec(),
+                scalars: Vec::new(),
+            })
+            .collect();
+        let uses = laws
+            .iter()
+            .fold(Variables::default(), |set, law| set.union(law.program.uses()));
+        let kinked = laws.iter().any(|law| law.program.is_kinked());
+        (!laws.is_empty()).then(|| Self {
+            active,
+            laws,
+            uses,
+            kinked,
+            block: Block::default(),
+        })
+    }
+
+    /// Whether a formula at nodes uses a variable.
+    pub(crate) fn use_variable(&self, variable: Variable) -> bool {
+        self.uses.contains(variable)
+    }
+
+    /// Whether stresses may have kinks or jumps between nodes.
+    pub(crate) fn are_kinked(&self) -> bool {
+        self.kinked
+    }
+
+    /// Whether there is a formula at a hook.
+    pub(crate) fn enter(&self, hook: Hook) -> bool {
+        self.laws.iter().any(|law| law.hook == hook)
+    }
+
+    /// Compute what all nodes share; again whenever one of these variables has changed.
+    pub(crate) fn settle(&mut self, variables: &[f64; Variable::COUNT]) {
+        for law in &mut self.laws {
+            law.program.settle(variables, &law.parameters, &mut law.scalars);
+        }
+    }
+
+    /// Replace the hook's quantity at the block's first `points` nodes.
+    ///
+    /// # Arguments
+    /// - `counts`: whether a point is a node in contact; others may hold anything.
+    /// - `variables`: those that were settled, for messages.
+    pub(crate) fn apply(
+        &mut self,
+        hook: Hook,
+        points: usize,
+        counts: impl Fn(usize) -> bool,
+        variables: &[f64; Variable::COUNT],
+    ) -> Result<(), Rejection> {
+        let target = hook.target();
+        for place in 0..self.laws.len() {
+            let law = &self.laws[place];
+            if law.hook != hook {
+                continue;
+            }
+            self.block.replace(target, law.program, &law.scalars, points);
+            let values = &self.block.column(target)[..points];
+            // without a way out, so that it vectorises
+            let fine = values.iter().fold(true, |fine, &value| fine & hook.admits(value));
+            if fine {
+                continue;
+            }
+            let wrong = (0..points).find(|&point| counts(point) && !hook.admits(values[point]));
+            if let Some(point) = wrong {
+                let value = values[point];
+                let name = law.name;
+                let local = |block: &mut Block, variable: Variable| block.column(variable)[point];
+                let mut all = *variables;
+                for variable in Variable::ALL.into_iter().take(Variable::LOCAL) {
+                    if super::Model::QuasiStatic.local().contains(variable) {
+                        all[variable as usize] = local(&mut self.block, variable);
+                    }
+                }
+                return Err(self.active.refusal(hook, name, value, |v| all[v as usize]));
+            }
+        }
+        Ok(())
+    }
+}
