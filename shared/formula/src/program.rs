@@ -32,6 +32,7 @@ pub struct Program {
     pub(crate) registers: usize,
     pub(crate) result: Operand,
     uses: Variables,
+    local: Variables,
     parameters: Vec<u8>,
     kinked: bool,
 }
@@ -63,6 +64,7 @@ impl Program {
             operations: compiler.operations,
             registers: compiler.registers.most,
             uses: graph.variables(result),
+            local,
             parameters,
             kinked,
         }
@@ -71,6 +73,11 @@ impl Program {
     /// The variables that the formula uses.
     pub fn uses(&self) -> Variables {
         self.uses
+    }
+
+    /// The variables that differ from point to point.
+    pub fn local(&self) -> Variables {
+        self.local
     }
 
     /// The parameters that it uses, by their position in the effect.

@@ -1,4 +1,4 @@
-//! Prints every figure the three-dimensional model is expected to give, with what it gives.
+//! Prints every figure that effects and the three-dimensional model are expected to give, with what they give.
 //!
 //! `cargo bench -p scm --bench validation`; it fails if a row fails.
 
@@ -19,7 +19,7 @@ fn main() -> ExitCode {
         for row in validation::rows(add) {
             let verdict = if row.passes() { "pass" } else { "FAIL" };
             println!(
-                "{oracle:20} | {:28} | {:15} | {:10.4} | {:10.4} | {:9.2e} | {verdict}",
+                "{oracle:20} | {:38} | {:15} | {:10.4} | {:10.4} | {:9.2e} | {verdict}",
                 row.case, row.quantity, row.expected, row.got, row.tolerance
             );
             count += 1;

@@ -73,7 +73,10 @@ pub enum Rejection {
 
 /// Which formula gave what, and from which values.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("effect {effect}: {hook} is {value} {unit}, which must be {bound} ({values})")]
+#[error(
+    "effect {effect}: {hook} is {value}{}, which must be {bound} ({values})",
+    shown(unit)
+)]
 pub struct FormulaRefusal {
     /// The effect.
     pub effect: String,
@@ -87,6 +90,14 @@ pub struct FormulaRefusal {
     pub bound: &'static str,
     /// The variables and parameters that the formula uses, with their values and units.
     pub values: String,
+}
+
+/// A unit behind a number; nothing where there is none.
+pub(crate) fn shown(unit: &str) -> String {
+    match unit {
+        "1" => String::new(),
+        unit => format!(" {unit}"),
+    }
 }
 
 impl Rejection {

@@ -102,13 +102,13 @@ impl Active<'_> {
     /// Replace a quantity of the run by what the formulas at its hook make of it.
     fn replace(&self, hook: Hook, variables: &mut [f64; Variable::COUNT]) -> Result<(), Rejection> {
         let mut scalars = Vec::new();
-        for (program, name, parameters) in self.at(hook) {
+        for (program, law, parameters) in self.at(hook) {
             // without nodes nothing differs from point to point
             let value = program
                 .settle(variables, parameters, &mut scalars)
                 .unwrap_or(f64::NAN);
             if !hook.admits(value) {
-                return Err(self.refusal(hook, name, value, |v| variables[v as usize]));
+                return Err(law.refusal(hook, parameters, value, |v| variables[v as usize]));
             }
             variables[hook.target() as usize] = value;
         }

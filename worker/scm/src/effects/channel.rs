@@ -27,7 +27,7 @@ impl Active<'_> {
                     .settle(&before, parameters, &mut scalars)
                     .unwrap_or(f64::NAN);
                 if !hook.admits(value) {
-                    return Err(self.refusal(hook, &law.effect.name, value, |v| before[v as usize]));
+                    return Err(law.refusal(hook, parameters, value, |v| before[v as usize]));
                 }
                 variables[hook.target() as usize] = value;
             }

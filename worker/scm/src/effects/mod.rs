@@ -137,11 +137,14 @@ impl Effects {
     /// The effects that are active at these values of their parameters: those of each effect, in the order of its file.
     pub fn activate(&self, values: impl IntoIterator<Item = Vec<f64>>) -> Active<'_> {
         let laws = self.laws.iter().zip(values);
-        Active {
+        let mut active = Active {
             laws: laws
                 .filter(|(law, values)| !law.effect.is_neutral(values))
                 .collect(),
-        }
+            nodes: None,
+        };
+        active.nodes = NodeLaws::new(&active);
+        active
     }
 }
 
@@ -149,6 +152,8 @@ impl Effects {
 #[derive(Debug, Clone, Default)]
 pub struct Active<'a> {
     laws: Vec<(&'a Law, Vec<f64>)>,
+    /// The formulas at nodes, ready to be lent to a model; none if there are none.
+    pub(crate) nodes: Option<NodeLaws<'a>>,
 }
 
 impl<'a> Active<'a> {
@@ -157,11 +162,11 @@ impl<'a> Active<'a> {
         self.laws.is_empty()
     }
 
-    /// The formulas at a hook, in order, each with its effect's name and parameters.
-    fn at(&self, hook: Hook) -> impl Iterator<Item = (&'a Program, &'a str, &[f64])> {
+    /// The formulas at a hook, in order, each with its effect and parameters.
+    fn at(&self, hook: Hook) -> impl Iterator<Item = (&'a Program, &'a Law, &[f64])> {
         self.laws.iter().filter_map(move |(law, values)| {
             let program = law.programs[hook as usize].as_ref()?;
-            Some((program, law.effect.name.as_str(), values.as_slice()))
+            Some((program, *law, values.as_slice()))
         })
     }
 
@@ -170,40 +175,34 @@ impl<'a> Active<'a> {
         let law = self.laws.iter().find(|(law, _)| law.mechanism == Some(mechanism));
         law.map(|(_, values)| values.as_slice())
     }
+}
 
+impl Law {
     /// Why a formula's value cannot be used, with the values that led to it.
-    fn refusal(&self, hook: Hook, name: &str, value: f64, of: impl Fn(Variable) -> f64) -> Rejection {
-        let law = self.laws.iter().find(|(law, _)| law.effect.name == name);
-        let mut values = String::new();
-        if let Some((law, parameters)) = law
-            && let Some(program) = &law.programs[hook as usize]
-        {
+    fn refusal(&self, hook: Hook, parameters: &[f64], value: f64, of: impl Fn(Variable) -> f64) -> Rejection {
+        let program = self.programs[hook as usize].iter();
+        let values = program.flat_map(|program| {
             let variables = program.uses().iter().map(|v| (v.name(), of(v), v.unit_name()));
             let own = program.parameters().iter().map(|&place| {
-                let place = usize::from(place);
-                let parameter = &law.effect.parameters[place];
+                let parameter = &self.effect.parameters[usize::from(place)];
                 (
                     parameter.name.as_str(),
-                    parameters[place],
+                    parameters[usize::from(place)],
                     parameter.unit.as_str(),
                 )
             });
-            let shown: Vec<String> = variables
-                .chain(own)
-                .map(|(name, value, unit)| match unit {
-                    "1" => format!("{name} = {value}"),
-                    unit => format!("{name} = {value} {unit}"),
-                })
-                .collect();
-            values = shown.join(", ");
-        }
+            variables.chain(own).collect::<Vec<_>>()
+        });
+        let shown: Vec<String> = values
+            .map(|(name, value, unit)| format!("{name} = {value}{}", crate::rejection::shown(unit)))
+            .collect();
         Rejection::Formula(Box::new(crate::rejection::FormulaRefusal {
-            effect: name.to_owned(),
+            effect: self.effect.name.clone(),
             hook: hook.name(),
             value,
             unit: hook.target().unit_name(),
             bound: hook.bound(),
-            values,
+            values: shown.join(", "),
         }))
     }
 }

@@ -4,7 +4,7 @@ use formula::block::Block;
 use formula::variable::Variables;
 use formula::{Hook, Program, Variable};
 
-use super::Active;
+use super::{Active, Law};
 use crate::Rejection;
 
 /// The hooks at nodes, in the order of evaluation.
@@ -13,7 +13,6 @@ const HOOKS: [Hook; 3] = [Hook::Pressure, Hook::ShearLimit, Hook::Shear];
 /// The formulas at the nodes of a contact, with the numbers that all nodes share.
 #[derive(Debug, Clone)]
 pub(crate) struct NodeLaws<'a> {
-    active: &'a Active<'a>,
     laws: Vec<NodeLaw<'a>>,
     uses: Variables,
     kinked: bool,
@@ -24,7 +23,7 @@ pub(crate) struct NodeLaws<'a> {
 #[derive(Debug, Clone)]
 struct NodeLaw<'a> {
     hook: Hook,
-    name: &'a str,
+    law: &'a Law,
     program: &'a Program,
     parameters: Vec<f64>,
     scalars: Vec<f64>,
@@ -32,13 +31,13 @@ struct NodeLaw<'a> {
 
 impl<'a> NodeLaws<'a> {
     /// The formulas at nodes, or none if there are none.
-    pub(crate) fn new(active: &'a Active<'a>) -> Option<Self> {
+    pub(super) fn new(active: &Active<'a>) -> Option<Self> {
         let laws: Vec<NodeLaw> = HOOKS
             .into_iter()
             .flat_map(|hook| active.at(hook).map(move |law| (hook, law)))
-            .map(|(hook, (program, name, parameters))| NodeLaw {
+            .map(|(hook, (program, law, parameters))| NodeLaw {
                 hook,
-                name,
+                law,
                 program,
                 parameters: parameters.to_vec(),
                 scalars: Vec::new(),
@@ -49,7 +48,6 @@ impl<'a> NodeLaws<'a> {
             .fold(Variables::default(), |set, law| set.union(law.program.uses()));
         let kinked = laws.iter().any(|law| law.program.is_kinked());
         (!laws.is_empty()).then(|| Self {
-            active,
             laws,
             uses,
             kinked,
@@ -99,23 +97,21 @@ impl<'a> NodeLaws<'a> {
             }
             self.block.replace(target, law.program, &law.scalars, points);
             let values = &self.block.column(target)[..points];
-            // without a way out, so that it vectorises
-            let fine = values.iter().fold(true, |fine, &value| fine & hook.admits(value));
+            // what these hooks admit, without a way out, so that it vectorises
+            let fine = values
+                .iter()
+                .fold(true, |fine, &value| fine & (value >= 0.0) & (value <= f64::MAX));
             if fine {
                 continue;
             }
             let wrong = (0..points).find(|&point| counts(point) && !hook.admits(values[point]));
             if let Some(point) = wrong {
                 let value = values[point];
-                let name = law.name;
-                let local = |block: &mut Block, variable: Variable| block.column(variable)[point];
                 let mut all = *variables;
-                for variable in Variable::ALL.into_iter().take(Variable::LOCAL) {
-                    if super::Model::QuasiStatic.local().contains(variable) {
-                        all[variable as usize] = local(&mut self.block, variable);
-                    }
+                for variable in law.program.local().iter() {
+                    all[variable as usize] = self.block.column(variable)[point];
                 }
-                return Err(self.active.refusal(hook, name, value, |v| all[v as usize]));
+                return Err(law.law.refusal(hook, &law.parameters, value, |v| all[v as usize]));
             }
         }
         Ok(())

@@ -14,15 +14,18 @@ const PATIENCE: u32 = 8;
 const MOST_EVALUATIONS: u32 = 120;
 /// Evaluations spent on a search from the closed form where the load may have a peak.
 const EVALUATIONS_BEFORE_SCAN: u32 = 20;
+/// Width of a bracket in y at which a load that jumps is shared out between its sides.
+const NARROWEST: f64 = 1e-12;
 /// The longest step in y while the root is bracketed on one side only.
 const LONGEST_STEP: f64 = 2.0;
 
 /// The soil's reaction at the first balance met by the sinking wheel.
-pub(super) fn first_balance(rim: &Rim, load: f64) -> Result<Reaction, Rejection> {
+pub(super) fn first_balance(rim: &mut Rim, load: f64) -> Result<Reaction, Rejection> {
+    let radius = rim.radius;
     let no_support = |most_carried_n: f64| Rejection::NoSupport {
         most_carried_n,
         wheel_load_n: load,
-        wheel_radius_m: rim.radius,
+        wheel_radius_m: radius,
     };
     let coordinate = Coordinate::new(rim).ok_or_else(|| no_support(0.0))?;
     let start = coordinate.start(rim, load);
@@ -34,13 +37,13 @@ pub(super) fn first_balance(rim: &Rim, load: f64) -> Result<Reaction, Rejection>
     };
     match search(rim, load, &coordinate, Bracket::default(), start, patience) {
         Ok(Some(reaction)) if rises || rises_up_to(rim, reaction.contact_length) => return Ok(reaction),
-        Ok(None) if rises => return Err(no_support(rim.react(rim.radius).load())),
+        Ok(None) if rises => return Err(no_support(rim.react(rim.radius)?.load())),
         // A deeper balance may have been found, or the secant has wandered about a peak too low for the load.
         Ok(_) => {}
         Err(Rejection::NoConvergence { .. }) if !rises => {}
         Err(rejection) => return Err(rejection),
     }
-    match scan(rim, load) {
+    match scan(rim, load)? {
         Scan::Never(most) => Err(no_support(most)),
         Scan::Between(shorter, longer) => {
             let bracket = Bracket {
@@ -52,8 +55,10 @@ pub(super) fn first_balance(rim: &Rim, load: f64) -> Result<Reaction, Rejection>
             } else {
                 bracket.high - LONGEST_STEP
             };
-            search(rim, load, &coordinate, bracket, start, MOST_EVALUATIONS)?
-                .ok_or_else(|| no_support(rim.react(rim.radius).load()))
+            match search(rim, load, &coordinate, bracket, start, MOST_EVALUATIONS)? {
+                Some(reaction) => Ok(reaction),
+                None => Err(no_support(rim.react(radius)?.load())),
+            }
         }
     }
 }
@@ -93,7 +98,7 @@ struct Trial {
 
 /// Secant in (y, ln load), kept within the bracket; none if the load is not reached going down from `start`.
 fn search(
-    rim: &Rim,
+    rim: &mut Rim,
     load: f64,
     coordinate: &Coordinate,
     mut bracket: Bracket,
@@ -102,9 +107,15 @@ fn search(
 ) -> Result<Option<Reaction>, Rejection> {
     let mut y = start;
     let mut last: Option<Trial> = None;
+    let jumps = rim
+        .reshaping
+        .as_ref()
+        .is_some_and(|reshaping| reshaping.may_jump());
+    // the last reactions that carried less and more than the load
+    let mut sides = [None, None];
     let mut evaluations = 0;
     loop {
-        let reaction = rim.react(coordinate.contact_length(y));
+        let reaction = rim.react(coordinate.contact_length(y))?;
         evaluations += 1;
         let carried = reaction.load();
         if !carried.is_finite() {
@@ -129,10 +140,19 @@ fn search(
                 })
             };
         }
-        if residual < 0.0 {
+        let below = residual < 0.0;
+        if below {
             bracket.low = y;
         } else {
             bracket.high = y;
+        }
+        if jumps {
+            sides[usize::from(!below)] = Some(reaction);
+            if let [Some(less), Some(more)] = sides
+                && bracket.high - bracket.low < NARROWEST
+            {
+                return Ok(Some(less.shared_with(&more, load)));
+            }
         }
         if bracket.low >= coordinate.greatest {
             return Ok(None);

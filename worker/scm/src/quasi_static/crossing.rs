@@ -5,6 +5,7 @@
 //! again with depth.
 
 use super::rim::Rim;
+use crate::Rejection;
 
 /// Samples of a scan, evenly spaced in the root of the sinkage (nearly so in `theta_1`).
 const SAMPLES: u32 = 64;
@@ -16,7 +17,8 @@ const PEAK_STEPS: u32 = 40;
 /// At a fixed fraction of the contact each term is bounded by its slope in ln l: the pressure by at least
 /// `2n` from the sinkage, 1 from `k* l` unless `k_c` > 0, less `m/2` from the changing shape of gamma; the
 /// friction that pulls down, relative to the pressure, by at most `sec²(theta_1)`; so does the cohesion,
-/// which must grow more slowly than the rest. False means "not known".
+/// which must grow more slowly than the rest. False means "not known". Effects on pressure and shear are left out of account:
+/// with a law whose pressure falls with depth a balance may be found that is not the first.
 pub(super) fn rises_up_to(rim: &Rim, contact_length: f64) -> bool {
     let soil = &rim.soil;
     let pressure_slope = 2.0 * soil.n - 0.5 * soil.gamma_exponent + if soil.k_c > 0.0 { 0.0 } else { 1.0 };
@@ -44,35 +46,35 @@ pub(super) enum Scan {
 }
 
 /// Look for the first crossing by sampling from the surface down to z = R.
-pub(super) fn scan(rim: &Rim, load: f64) -> Scan {
+pub(super) fn scan(rim: &mut Rim, load: f64) -> Result<Scan, Rejection> {
     let (mut before, mut last) = ((0.0, 0.0), (0.0, 0.0)); // contact length, load carried
     let mut most: f64 = 0.0;
     for sample in 1..=SAMPLES {
         let root = f64::from(sample) / f64::from(SAMPLES);
         let length = rim.radius * root * (2.0 - root * root).sqrt();
-        let here = (length, rim.react(length).load());
+        let here = (length, rim.react(length)?.load());
         if here.1 >= load {
-            return Scan::Between(last.0, length);
+            return Ok(Scan::Between(last.0, length));
         }
         if last.1 > before.1 && last.1 > here.1 {
-            let peak = peak_between(rim, before.0, here.0, load);
+            let peak = peak_between(rim, before.0, here.0, load)?;
             if peak.1 >= load {
-                return Scan::Between(before.0, peak.0);
+                return Ok(Scan::Between(before.0, peak.0));
             }
             most = most.max(peak.1);
         }
         most = most.max(here.1);
         (before, last) = (last, here);
     }
-    Scan::Never(most)
+    Ok(Scan::Never(most))
 }
 
 /// Contact length and height of the peak between two lengths by golden sections; ends early above `enough`.
-fn peak_between(rim: &Rim, mut left: f64, mut right: f64, enough: f64) -> (f64, f64) {
+fn peak_between(rim: &mut Rim, mut left: f64, mut right: f64, enough: f64) -> Result<(f64, f64), Rejection> {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
-    let at = |length: f64| (length, rim.react(length).load());
-    let mut low = at(right - GOLDEN * (right - left));
-    let mut high = at(left + GOLDEN * (right - left));
+    let mut at = |length: f64| rim.react(length).map(|reaction| (length, reaction.load()));
+    let mut low = at(right - GOLDEN * (right - left))?;
+    let mut high = at(left + GOLDEN * (right - left))?;
     for _ in 0..PEAK_STEPS {
         if low.1 >= enough || high.1 >= enough {
             break;
@@ -80,17 +82,17 @@ fn peak_between(rim: &Rim, mut left: f64, mut right: f64, enough: f64) -> (f64, 
         if low.1 > high.1 {
             right = high.0;
             high = low;
-            low = at(right - GOLDEN * (right - left));
+            low = at(right - GOLDEN * (right - left))?;
         } else {
             left = low.0;
             low = high;
-            high = at(left + GOLDEN * (right - left));
+            high = at(left + GOLDEN * (right - left))?;
         }
     }
     // The nearer point first: beyond a peak that is high enough lies a second crossing.
-    if low.1 >= enough || low.1 > high.1 {
+    Ok(if low.1 >= enough || low.1 > high.1 {
         low
     } else {
         high
-    }
+    })
 }

@@ -3,16 +3,27 @@
 //! # Layout
 //! - `kinematics`: the slip velocity along the rim.
 //! - `rim`: the soil's force and torque on the rim for a given contact length.
+//! - `panel`: nodes of the quadrature on a piece of the rim.
+//! - `reshaped`: the rim where effects enter; `displacement`: how far the rim has slid.
 //! - `start`: a closed-form first guess of the contact length.
 //! - `balance`: the contact length at which the soil carries the wheel load.
 //! - `crossing`: which of several balances the wheel meets first as it sinks.
 
 mod balance;
 mod crossing;
+mod displacement;
 mod kinematics;
+mod panel;
+mod reshaped;
 mod rim;
 mod start;
 
+use formula::Variable;
+use reshaped::Reshaping;
+use rim::Rim;
+
+use crate::effects::{Active, Site};
+use crate::pressure_sinkage::k_star;
 use crate::{Averages, Condition, Rejection, Soil, Wheel};
 
 /// Steady forces, torque and sinkage of a smooth rigid wheel on plastic soil.
@@ -69,16 +80,103 @@ use crate::{Averages, Condition, Rejection, Soil, Wheel};
 /// # Ok::<(), scm::Rejection>(())
 /// ```
 pub fn simulate(soil: &Soil, wheel: &Wheel, condition: &Condition) -> Result<Averages, Rejection> {
-    let rim = rim::Rim::new(&soil.checked()?, &wheel.checked()?, &condition.checked()?);
-    let reaction = balance::first_balance(&rim, condition.wheel_load_n)?;
+    simulate_with(soil, wheel, condition, &mut Active::default(), &Site::default())
+}
+
+/// The same where effects enter.
+///
+/// In the order of [`Hook::ALL`](formula::Hook::ALL): slip, dimensions and sinkage exponent are replaced before anything else; at
+/// every node of the rim the pressure, the strength and the shear stress; the load where it depends on pull and torque at every
+/// trial of the balance; the channels at the end. Two mechanisms are in code:
+///
+/// - *rebound*, with the compliance a: the soil behind the axle springs back by `e = min(a p_0, z_0/2)`, `p_0 = k* z_0^n`, and
+///   carries `gamma p_0 (1 − h/e)` where it has risen by h; gamma spreads over the whole contact.
+/// - *flat patch*, with the deflection per load a: the rim is flat at the distance R − δ from the axle, `δ = a W`, over a length of
+///   `2 sqrt(δ (2R − δ))`; shear stress turns the wheel there at that distance, against the slip velocity
+///   `omega (R − δ) − v`. Sinkage is that of the flat, as a rig reads it that is zeroed under load on hard ground.
+///
+/// # Arguments
+/// - `effects`: compiled for [`Model::QuasiStatic`](crate::effects::Model::QuasiStatic), with room to compute in. With none active the result is that of
+///   [`simulate`], bit for bit.
+/// - `site`: what formulas may ask beyond soil, wheel and condition.
+///
+/// # Errors
+/// Those of [`simulate`], and [`Rejection::Formula`] where a formula gives what the model cannot use, at any trial of the balance.
+///
+/// # Validity
+/// As [`simulate`]. The displacement `j` is that of an element of the rim in steady motion; `pass` tells passes apart, the soil
+/// remembers nothing else of them. Where a law jumps between two nodes of the quadrature the jump is shared out, so that
+/// forces are continuous in the parameters.
+///
+/// # Source
+/// PHYSICS of each effect: its file in the catalogue. Checked by `effects::*`.
+pub fn simulate_with(
+    soil: &Soil,
+    wheel: &Wheel,
+    condition: &Condition,
+    effects: &mut Active,
+    site: &Site,
+) -> Result<Averages, Rejection> {
+    let (soil, wheel, condition) = (soil.checked()?, wheel.checked()?, condition.checked()?);
+    if effects.is_empty() {
+        return average(
+            &mut Rim::new(&soil, &wheel, &condition, None),
+            condition.wheel_load_n,
+        );
+    }
+    let case = effects.case(&soil, &wheel, &condition, site)?;
+    let (soil, wheel, condition) = (case.soil, case.wheel.checked()?, case.condition.checked()?);
+    let mut variables = case.variables;
+    // lent to the rim, for the next run to use again
+    let laws = effects.nodes.take();
+    let reshaping = Box::new(Reshaping::new(effects, case, laws)?);
+    let mut rim = Rim::new(&soil, &wheel, &condition, Some(reshaping));
+    let averages = average(&mut rim, condition.wheel_load_n);
+    effects.nodes = rim.reshaping.and_then(|reshaping| reshaping.laws);
+    let mut averages = averages?;
+    if effects.change_channels() {
+        measure(effects, &soil, &mut variables, &mut averages)?;
+    }
+    Ok(averages)
+}
+
+/// Replace the channels by what the rig measures of them.
+fn measure(
+    effects: &Active,
+    soil: &Soil,
+    variables: &mut [f64; Variable::COUNT],
+    averages: &mut Averages,
+) -> Result<(), Rejection> {
+    let channels = [
+        (Variable::DrawbarPull, &mut averages.drawbar_pull_n),
+        (Variable::Torque, &mut averages.torque_n_m),
+        (Variable::Sinkage, &mut averages.sinkage_m),
+        (Variable::LateralForce, &mut averages.lateral_force_n),
+    ];
+    variables[Variable::ContactLength as usize] = averages.contact_length_m;
+    variables[Variable::BEff as usize] = averages.b_eff_m;
+    variables[Variable::KStar as usize] = k_star(soil, averages.b_eff_m);
+    for (variable, channel) in &channels {
+        variables[*variable as usize] = **channel;
+    }
+    effects.measure(variables)?;
+    for (variable, channel) in channels {
+        *channel = variables[variable as usize];
+    }
+    Ok(())
+}
+
+/// Balance the wheel load.
+fn average(rim: &mut Rim, wheel_load: f64) -> Result<Averages, Rejection> {
+    let reaction = balance::first_balance(rim, wheel_load)?;
     let averages = Averages {
         drawbar_pull_n: reaction.drawbar_pull,
         torque_n_m: reaction.torque,
         sinkage_m: reaction.sinkage,
         lateral_force_n: reaction.lateral_force,
         b_eff_m: reaction.b_eff,
-        contact_length_m: reaction.contact_length,
-        residual_load_n: reaction.load() - condition.wheel_load_n,
+        contact_length_m: reaction.footprint_length,
+        residual_load_n: reaction.load() - wheel_load,
         nodes_in_contact: reaction.nodes,
         simulated_travel_m: 0.0,
     };

@@ -1,30 +1,33 @@
 //! Integrate the soil's stresses over the rim.
 
 use super::kinematics::RimMotion;
-use crate::elementary::fraction_pow;
+use super::panel::{Contact, Panel};
+use super::reshaped::Reshaping;
 use crate::footprint::rectangle_effective_width;
 use crate::pressure_distribution::{PressureDistribution, RectangleDistribution};
 use crate::pressure_sinkage::{k_star, pressure};
-use crate::quadrature::{NODES, PLACE, WEIGHT, place_from_end};
+use crate::quadrature::NODES;
 use crate::shear::{ShearVelocity, strength};
-use crate::{Condition, Soil, Wheel};
+use crate::{Condition, Rejection, Soil, Wheel};
 
 /// Everything about a run that does not depend on how deep the wheel stands.
 #[derive(Debug, Clone)]
-pub(super) struct Rim {
+pub(super) struct Rim<'r, 'e> {
     pub(super) soil: Soil,
     pub(super) radius: f64,
     pub(super) width: f64,
     pub(super) tan_friction_angle: f64,
     pub(super) motion: RimMotion,
-    law: PressureDistribution,
-    shear: ShearVelocity,
+    pub(super) law: PressureDistribution,
+    pub(super) shear: ShearVelocity,
     /// x at which the slip velocity changes sign; infinite if it does not.
-    sign_change: f64,
+    pub(super) sign_change: f64,
+    /// What effects make of the run; none: the base.
+    pub(super) reshaping: Option<Box<Reshaping<'r, 'e>>>,
 }
 
 /// Force and torque of the soil on the rim at one contact length, with the contact that caused them.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Reaction {
     pub(super) load_from_pressure: f64,
     pub(super) load_from_shear: f64,
@@ -32,31 +35,64 @@ pub(super) struct Reaction {
     pub(super) torque: f64,
     pub(super) lateral_force: f64,
     pub(super) sinkage: f64,
+    /// How far the contact reaches ahead of the axle, and its length with what lies behind.
     pub(super) contact_length: f64,
+    pub(super) footprint_length: f64,
     pub(super) b_eff: f64,
     pub(super) k_star: f64,
     pub(super) nodes: u32,
+    /// By how much the load that the soil must carry exceeds the nominal one, where it depends on the reaction.
+    pub(super) extra_load: f64,
 }
 
 impl Reaction {
-    /// Vertical force of the soil on the wheel `[N]`.
+    /// Vertical force of the soil on the wheel, less what it must carry beyond the nominal load `[N]`.
     pub(super) fn load(&self) -> f64 {
-        self.load_from_pressure + self.load_from_shear
+        self.load_from_pressure + self.load_from_shear - self.extra_load
     }
 }
 
-/// The contact at one length: what its panels share.
-struct Contact {
-    length: f64,
-    /// Height of the hub above the undisturbed surface, R − z.
-    hub_height: f64,
-    /// Pressure that gamma = 1 would give at the lowest point.
-    pressure_at_bottom: f64,
-    gamma: RectangleDistribution,
+impl Reaction {
+    /// Add the forces on one panel, from rear to front.
+    #[inline(always)]
+    pub(super) fn add(&mut self, rim: &Rim, panel: &Panel, along: &[f64; NODES], across: &[f64; NODES]) {
+        for i in 0..NODES {
+            let area = panel.area(rim, i);
+            let surface = area * panel.secant[i];
+            let pressure = panel.pressure[i];
+            self.load_from_pressure += pressure * area;
+            self.load_from_shear += along[i] * panel.tan_theta[i] * area;
+            self.drawbar_pull += (along[i] - pressure * panel.tan_theta[i]) * area;
+            self.torque += along[i] * panel.arm * surface;
+            self.lateral_force += across[i] * surface;
+        }
+        self.nodes += NODES as u32;
+    }
+
+    /// The reaction in balance between two that carry less and more than the load at the same contact: a law jumps at a
+    /// place that lies within what one node of the quadrature stands for.
+    pub(super) fn shared_with(&self, more: &Self, load: f64) -> Self {
+        let share = (load - self.load()) / (more.load() - self.load());
+        let between = |a: f64, b: f64| a + share * (b - a);
+        Self {
+            load_from_pressure: between(self.load_from_pressure, more.load_from_pressure),
+            load_from_shear: between(self.load_from_shear, more.load_from_shear),
+            drawbar_pull: between(self.drawbar_pull, more.drawbar_pull),
+            torque: between(self.torque, more.torque),
+            lateral_force: between(self.lateral_force, more.lateral_force),
+            extra_load: between(self.extra_load, more.extra_load),
+            ..*self
+        }
+    }
 }
 
-impl Rim {
-    pub(super) fn new(soil: &Soil, wheel: &Wheel, condition: &Condition) -> Self {
+impl<'r, 'e> Rim<'r, 'e> {
+    pub(super) fn new(
+        soil: &Soil,
+        wheel: &Wheel,
+        condition: &Condition,
+        reshaping: Option<Box<Reshaping<'r, 'e>>>,
+    ) -> Self {
         let motion = RimMotion::new(wheel, condition);
         Self {
             soil: *soil,
@@ -69,35 +105,59 @@ impl Rim {
             sign_change: motion
                 .sign_change()
                 .map_or(f64::INFINITY, |sin_theta| wheel.radius_m * sin_theta),
+            reshaping,
         }
     }
 
     /// The soil's force on the rim when the contact reaches a length of 0 < l ≤ R ahead of the axle.
     ///
     /// Where k* ≤ 0 there is no support: all forces are zero, and so can balance no load.
-    pub(super) fn react(&self, contact_length: f64) -> Reaction {
+    ///
+    /// # Errors
+    /// [`Rejection::Formula`]: a formula gives what the model cannot use.
+    pub(super) fn react(&mut self, contact_length: f64) -> Result<Reaction, Rejection> {
+        let Some(mut reshaping) = self.reshaping.take() else {
+            return Ok(self.react_smoothly(contact_length));
+        };
+        let reacted = if reshaping.changes_stresses() {
+            reshaping.react(self, contact_length)
+        } else {
+            Ok(self.react_smoothly(contact_length))
+        };
+        let reaction = reacted.and_then(|reaction| {
+            let extra_load = reshaping.extra_load(&reaction)?;
+            Ok(Reaction {
+                extra_load,
+                ..reaction
+            })
+        });
+        self.reshaping = Some(reshaping);
+        reaction
+    }
+
+    /// The base's reaction.
+    fn react_smoothly(&self, contact_length: f64) -> Reaction {
         let (radius, length) = (self.radius, contact_length);
         let hub_height = ((radius - length) * (radius + length)).sqrt();
         let sinkage = length * length / (radius + hub_height); // R − hub_height without cancellation
         let b_eff = rectangle_effective_width(length, self.width);
         let mut reaction = Reaction {
-            load_from_pressure: 0.0,
-            load_from_shear: 0.0,
-            drawbar_pull: 0.0,
-            torque: 0.0,
-            lateral_force: 0.0,
             sinkage,
             contact_length,
+            footprint_length: contact_length,
             b_eff,
             k_star: k_star(&self.soil, b_eff),
-            nodes: 0,
+            ..Reaction::default()
         };
         if reaction.k_star <= 0.0 {
             return reaction;
         }
         let contact = Contact {
-            length,
+            front: length,
+            rear: 0.0,
             hub_height,
+            sinkage,
+            round_to_lowest: 1.0,
             pressure_at_bottom: pressure(reaction.k_star, sinkage, self.soil.n),
             gamma: RectangleDistribution::new(self.law, length, 0.5 * self.width),
         };
@@ -109,7 +169,7 @@ impl Rim {
     }
 
     /// Ends of the panels from rear to front, and how many panels there are.
-    fn panel_ends(&self, length: f64) -> ([f64; 5], usize) {
+    pub(super) fn panel_ends(&self, length: f64) -> ([f64; 5], usize) {
         let mut ends = [0.0; 5];
         let mut panels = if length <= self.width {
             ends[1] = 0.5 * length; // gamma has a ridge halfway
@@ -132,62 +192,20 @@ impl Rim {
         (ends, panels)
     }
 
-    /// Add the forces on one panel. Stages are loops over the panel's nodes, so that each vectorises.
+    /// Add the forces on one panel.
     #[inline]
     fn add_panel(&self, contact: &Contact, start: f64, end: f64, sum: &mut Reaction) {
-        let (radius, extent, ahead) = (self.radius, end - start, contact.length - end);
-        let (per_length, per_radius) = (1.0 / contact.length, 1.0 / radius);
-
-        // Place on the rim, and sinkage there relative to that of the lowest point.
-        let mut cos_theta = [0.0; NODES];
-        let mut secant = [0.0; NODES];
-        let mut tan_theta = [0.0; NODES];
-        let mut relative_sinkage = [0.0; NODES];
-        let mut from_end = [0.0; NODES];
-        for i in 0..NODES {
-            let x = start + extent * PLACE[i];
-            let to_front = ahead + extent * place_from_end(i);
-            let height = ((radius - x) * (radius + x)).sqrt();
-            let per_height = 1.0 / height;
-            cos_theta[i] = height * per_radius;
-            secant[i] = radius * per_height;
-            tan_theta[i] = x * per_height;
-            from_end[i] = if x < to_front { x } else { to_front };
-            // (height − hub_height) / z as a product: exact where the sinkage goes to zero
-            let parabola = to_front * per_length * (1.0 + x * per_length);
-            relative_sinkage[i] = parabola * (radius + contact.hub_height) / (height + contact.hub_height);
-        }
-
-        // Normal pressure.
-        let mut pressure = contact.gamma.gamma(from_end);
-        for i in 0..NODES {
-            pressure[i] *= contact.pressure_at_bottom * fraction_pow(relative_sinkage[i], self.soil.n);
-        }
-
+        let mut panel = Panel::default();
+        panel.on_arc(self, contact, start, end);
         // Shear stress along and across the rim.
         let mut along = [0.0; NODES];
         let mut across = [0.0; NODES];
         for i in 0..NODES {
-            let tangential = self.motion.tangential(cos_theta[i]);
-            let lateral = self.motion.lateral;
-            let speed = (tangential * tangential + lateral * lateral).sqrt();
-            let limit = strength(self.soil.cohesion_pa, self.tan_friction_angle, pressure[i]);
-            let per_velocity = limit * self.shear.mobilised_per_velocity(speed);
-            along[i] = per_velocity * tangential;
-            across[i] = per_velocity * lateral;
+            let limit = strength(self.soil.cohesion_pa, self.tan_friction_angle, panel.pressure[i]);
+            let per_velocity = limit * self.shear.mobilised_per_velocity(panel.speed[i]);
+            along[i] = per_velocity * panel.tangential[i];
+            across[i] = per_velocity * self.motion.lateral;
         }
-
-        // Forces, from rear to front.
-        let scale = self.width * extent;
-        for i in 0..NODES {
-            let area = scale * WEIGHT[i];
-            let surface = area * secant[i];
-            sum.load_from_pressure += pressure[i] * area;
-            sum.load_from_shear += along[i] * tan_theta[i] * area;
-            sum.drawbar_pull += (along[i] - pressure[i] * tan_theta[i]) * area;
-            sum.torque += along[i] * radius * surface;
-            sum.lateral_force += across[i] * surface;
-        }
-        sum.nodes += NODES as u32;
+        sum.add(self, &panel, &along, &across);
     }
 }

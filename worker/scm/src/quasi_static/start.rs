@@ -4,7 +4,8 @@ use super::rim::Rim;
 
 /// Coordinate of the balance: y = ln(l − `l_0`), in which the load is nearly a power law of slope 2n to 2n + 1.
 ///
-/// `l_0` is the contact length at which a negative `k_c` lets k* pass through zero; 0 otherwise.
+/// `l_0` is the contact length at which a negative `k_c` lets k* pass through zero, or half of the flat of a rim that its load
+/// flattens, if that is longer; 0 otherwise.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Coordinate {
     unsupported: f64,
@@ -22,6 +23,11 @@ impl Coordinate {
         } else {
             0.0
         };
+        let flat = rim
+            .reshaping
+            .as_ref()
+            .map_or(0.0, |reshaping| reshaping.flat(rim.radius));
+        let unsupported = if flat > unsupported { flat } else { unsupported };
         // Written so that NaN and ∞ (k* of the longest contact not positive) are refused too.
         (long > 0.0 && unsupported < rim.radius).then(|| Self {
             unsupported,
@@ -58,6 +64,13 @@ impl Coordinate {
         let n = rim.soil.n;
         let long = long_contact_modulus(rim);
         let shape = (1.0 + n * (4.0 * core::f64::consts::FRAC_1_PI)).sqrt();
+        if self.unsupported > 0.0 && rim.soil.k_c.abs() <= 0.0 {
+            // the flat alone carries: W = 2 b l_0 k* z^n at l² = l_0² + 2 R z
+            let sinkage = libm::pow(load / (2.0 * rim.width * self.unsupported * long), 1.0 / n);
+            let length = (self.unsupported * self.unsupported + 2.0 * rim.radius * sinkage).sqrt();
+            let y = libm::log(length - self.unsupported);
+            return y.min(self.greatest - 0.1);
+        }
         let target = libm::log(load * shape / (rim.width * long)) + n * libm::log(2.0 * rim.radius);
         let mut y = target / (2.0 * n + 1.0);
         if rim.soil.k_c != 0.0 {

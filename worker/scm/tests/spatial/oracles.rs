@@ -69,7 +69,11 @@ fn another_implementation_is_reproduced() {
 
 #[test]
 fn no_oracle_is_left_out_and_a_wrong_figure_fails() {
-    assert_eq!(ORACLES.len(), 10, "one test above for each");
+    assert_eq!(
+        ORACLES.len(),
+        11,
+        "one test for each, above and in `effects::signatures`"
+    );
     let mut rows = Rows::default();
     rows.add("off by more than allowed", "F [N]", 1.0, 1.2, 0.1);
     rows.add("not a number", "F [N]", 1.0, f64::NAN, 0.1);

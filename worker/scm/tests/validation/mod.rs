@@ -1,4 +1,4 @@
-//! Every figure the three-dimensional model is expected to give, with what it gives.
+//! Every figure that effects and the three-dimensional model are expected to give, with what they give.
 //!
 //! Tests assert the rows oracle by oracle; `cargo bench -p scm --bench validation` prints them. Volumes (oracle 4) need the
 //! terrain itself and stand beside it, in `spatial::run::rolling`.
@@ -6,11 +6,12 @@
 //! # Layout
 //! - `row`: one expected figure.
 //! - `profile`: pressure along a smooth wheel with uniform pressure across it, on paper.
-//! - `plate`, `smooth_wheel`, `quasi_static`, `convergence`, `scaling`, `power`, `displacement`, `grousers`,
+//! - `plate`, `smooth_wheel`, `quasi_static`, `effects`, `convergence`, `scaling`, `power`, `displacement`, `grousers`,
 //!   `flow`, `other_implementation`: the oracles.
 
 pub(crate) mod convergence;
 pub(crate) mod displacement;
+pub(crate) mod effects;
 pub(crate) mod flow;
 pub(crate) mod grousers;
 pub(crate) mod other_implementation;
@@ -28,10 +29,11 @@ pub(crate) use row::{Row, Rows};
 pub(crate) type Oracle = (&'static str, fn(&mut Rows));
 
 /// All oracles, in the order of the table.
-pub(crate) const ORACLES: [Oracle; 10] = [
+pub(crate) const ORACLES: [Oracle; 11] = [
     ("plate", plate::add),
     ("smooth wheel", smooth_wheel::add),
     ("quasi-static", quasi_static::add),
+    ("effects", effects::add),
     ("convergence", convergence::add),
     ("scaling", scaling::add),
     ("power", power::add),

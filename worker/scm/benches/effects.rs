@@ -1,0 +1,94 @@
+//! What a formula costs: the base without its shear-velocity law, with that law as a formula, and with the law in code.
+//!
+//! `cargo bench -p scm --bench effects`. All three run in turn, and the fastest of many turns counts, so that the ratios
+//! hold on a machine that does other things. A base velocity of 0 mobilises the whole strength; the formula then does what the
+//! code does otherwise, and both give the same forces.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use formula::Effect;
+use formula::catalogue::find;
+use scm::effects::{Active, Effects, Model, Site};
+use scm::{Averages, Condition, Soil, Wheel, quasi_static};
+
+const TURNS: u32 = 2000;
+
+const WHEEL: Wheel = Wheel {
+    radius_m: 0.125,
+    width_m: 0.112,
+    rig_radius_m: 0.125,
+};
+
+fn soil(shear_velocity_m_s: f64) -> Soil {
+    Soil {
+        k_c: 0.0,
+        k_phi: 1e7,
+        n: 1.1,
+        cohesion_pa: 0.0,
+        friction_angle_rad: 30_f64.to_radians(),
+        shear_velocity_m_s,
+        gamma_exponent: 0.5,
+    }
+}
+
+fn condition(slip: f64) -> Condition {
+    Condition {
+        slip,
+        wheel_load_n: 100.0,
+        sled_speed_m_s: 0.01 * (1.0 - slip),
+        slip_angle_rad: 0.0,
+        pass: 1,
+    }
+}
+
+/// One of the ways to simulate: its name, and what it simulates.
+type Way<'a> = (&'a str, Box<dyn FnMut() -> Averages + 'a>);
+
+/// Prints the fastest time of each way, and its ratio to the last one's.
+fn compare(title: &str, turns: u32, ways: &mut [Way]) {
+    let mut fastest = vec![f64::INFINITY; ways.len()];
+    for _ in 0..turns {
+        for (fastest, (_, simulate)) in fastest.iter_mut().zip(ways.iter_mut()) {
+            let start = Instant::now();
+            black_box(simulate());
+            *fastest = fastest.min(start.elapsed().as_secs_f64());
+        }
+    }
+    let native = fastest.last().copied().unwrap_or(f64::NAN);
+    println!("{title}");
+    for ((name, simulate), fastest) in ways.iter_mut().zip(&fastest) {
+        let pull = simulate().drawbar_pull_n;
+        println!(
+            "  {name:44} {:10.2} us   x {:.2}   {pull:.6} N",
+            1e6 * fastest,
+            fastest / native
+        );
+    }
+}
+
+fn main() {
+    let law = "name = \"velocity\"\nsummary = \"the shear-velocity law\"\nsource = \"Krenn & Hirzinger\"\n\
+               shear = \"tau * (1 - exp(-v_t / reference_m_s))\"\n[parameters.reference_m_s]\nunit = \"m/s\"\nneutral = 0.0\nprior = 0.001\n";
+    let law = Effect::read(law).expect("a formula");
+    let janosi = find("janosi_hanamoto").expect("an effect of the catalogue");
+    let site = Site::default();
+    for slip in [0.2, -0.3] {
+        let effects = Effects::compile(Model::QuasiStatic, [&law]).expect("a form");
+        let jh = Effects::compile(Model::QuasiStatic, [janosi]).expect("a form");
+        let run = |velocity: f64, active: &mut Active| {
+            let (soil, condition) = (soil(black_box(velocity)), condition(slip));
+            quasi_static::simulate_with(&soil, &WHEEL, &condition, active, &site).expect("support")
+        };
+        // an evaluation activates its effects once for all of its runs
+        let (mut law, mut jh) = (effects.activate([vec![0.001]]), jh.activate([vec![0.01]]));
+        let (mut none, mut nothing) = (Active::default(), Active::default());
+        let mut ways: [Way; 4] = [
+            ("base, v0 = 0", Box::new(|| run(0.0, &mut none))),
+            ("janosi_hanamoto, K = 10 mm", Box::new(|| run(0.001, &mut jh))),
+            ("v0 = 0, law as a formula", Box::new(|| run(0.0, &mut law))),
+            ("law in code, v0 = 1 mm/s", Box::new(|| run(0.001, &mut nothing))),
+        ];
+        compare(&format!("quasi_static, slip {slip}"), TURNS, &mut ways);
+    }
+}

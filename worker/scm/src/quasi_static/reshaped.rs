@@ -1,0 +1,399 @@
+//! Integrate the soil's stresses over a rim that effects reshape: formulas at its nodes, a flat, soil that springs back.
+
+use formula::block::BLOCK;
+use formula::effect::Mechanism;
+use formula::{Hook, Variable};
+
+use super::displacement::Slide;
+use super::panel::{Contact, Panel};
+use super::rim::{Reaction, Rim};
+use crate::Rejection;
+use crate::effects::{Active, Case, NodeLaws};
+use crate::footprint::rectangle_effective_width;
+use crate::pressure_distribution::RectangleDistribution;
+use crate::pressure_sinkage::{k_star, pressure};
+use crate::quadrature::NODES;
+use crate::rejection::require;
+use crate::shear::strength;
+
+/// Parts of a panel where formulas have kinks or jumps between nodes.
+const PARTS: usize = 4;
+/// Most panels at a time.
+const PANELS: usize = BLOCK / NODES;
+/// Most ends of panels.
+const ENDS: usize = 10;
+/// Passes in which rebound and footprint find each other, where the modulus depends on the footprint's width.
+const PASSES: usize = 3;
+
+/// What effects make of a run.
+#[derive(Debug, Clone)]
+pub(super) struct Reshaping<'r, 'e> {
+    active: &'r Active<'e>,
+    pub(super) case: Case,
+    pub(super) laws: Option<NodeLaws<'e>>,
+    load_follows: bool,
+    /// Height by which the load flattens the rim, δ `[m]`.
+    deflection: f64,
+    /// Way by which the soil springs back under a unit of pressure `[m/Pa]`.
+    compliance: f64,
+    /// Panels of the contact, and how many of them are in use.
+    panels: Vec<Panel>,
+    used: usize,
+}
+
+/// The shape of the contact at one trial.
+#[derive(Debug, Clone, Copy)]
+struct Shape {
+    /// x of the front end, and of the rear end with its sign changed `[m]`.
+    front: f64,
+    rear: f64,
+    /// Half length of the flat, and its distance from the axle `[m]`.
+    flat: f64,
+    bottom_radius: f64,
+    hub_height: f64,
+    /// Sinkage of the lowest part of the rim `[m]`.
+    sinkage: f64,
+    /// Height by which the soil springs back behind `[m]`.
+    recovered: f64,
+    k_star: f64,
+    b_eff: f64,
+}
+
+impl<'r, 'e> Reshaping<'r, 'e> {
+    /// # Arguments
+    /// - `laws`: the formulas at nodes, with room to compute in.
+    ///
+    /// # Errors
+    /// [`Rejection::InvalidParameter`]: a deflection or a compliance that no wheel and no soil can have.
+    pub(super) fn new(
+        active: &'r Active<'e>,
+        case: Case,
+        mut laws: Option<NodeLaws<'e>>,
+    ) -> Result<Self, Rejection> {
+        let first = |mechanism| {
+            active
+                .mechanism(mechanism)
+                .and_then(|values| values.first().copied())
+        };
+        let deflection =
+            first(Mechanism::FlatPatch).map_or(0.0, |per_load| per_load * case.condition.wheel_load_n);
+        let compliance = first(Mechanism::Rebound).unwrap_or(0.0);
+        let radius = case.wheel.radius_m;
+        require(
+            (0.0..radius).contains(&deflection),
+            "deflection of the rim",
+            deflection,
+            "m",
+            "at least 0 and below the radius",
+        )?;
+        require(
+            compliance >= 0.0,
+            "compliance of the soil",
+            compliance,
+            "m/Pa",
+            "at least 0",
+        )?;
+        if let Some(laws) = &mut laws {
+            laws.settle(&case.variables);
+        }
+        Ok(Self {
+            laws,
+            load_follows: active.load_follows_reaction(),
+            deflection,
+            compliance,
+            panels: Vec::new(),
+            used: 0,
+            active,
+            case,
+        })
+    }
+
+    /// Whether stresses along the rim are other than the base's.
+    pub(super) fn changes_stresses(&self) -> bool {
+        self.laws.is_some() || self.deflection.abs() > 0.0 || self.compliance.abs() > 0.0
+    }
+
+    /// Half length of the flat `[m]`: a contact that reaches less far ahead of the axle carries nothing.
+    pub(super) fn flat(&self, radius: f64) -> f64 {
+        (self.deflection * (2.0 * radius - self.deflection))
+            .max(0.0)
+            .sqrt()
+    }
+
+    /// Whether the load may jump as places of a law's jumps pass nodes.
+    pub(super) fn may_jump(&self) -> bool {
+        self.laws.as_ref().is_some_and(NodeLaws::are_kinked)
+    }
+
+    /// By how much the load that the soil must carry exceeds the nominal one `[N]`.
+    pub(super) fn extra_load(&self, reaction: &Reaction) -> Result<f64, Rejection> {
+        if !self.load_follows {
+            return Ok(0.0);
+        }
+        let load = self
+            .active
+            .wheel_load(&self.case, reaction.drawbar_pull, reaction.torque)?;
+        Ok(load - self.case.condition.wheel_load_n)
+    }
+
+    /// The soil's force on the rim when the contact reaches a length ahead of the axle; see [`Rim::react`].
+    pub(super) fn react(&mut self, rim: &Rim, front: f64) -> Result<Reaction, Rejection> {
+        let shape = self.shape(rim, front);
+        let length = front + shape.rear;
+        let mut reaction = Reaction {
+            sinkage: shape.sinkage,
+            contact_length: front,
+            footprint_length: length,
+            b_eff: shape.b_eff,
+            k_star: shape.k_star,
+            ..Reaction::default()
+        };
+        if shape.sinkage <= 0.0 || shape.k_star <= 0.0 {
+            return Ok(reaction);
+        }
+        let of_contact = [
+            (Variable::ContactLength, length),
+            (Variable::BEff, shape.b_eff),
+            (Variable::KStar, shape.k_star),
+        ];
+        if let Some(laws) = &mut self.laws
+            && of_contact
+                .iter()
+                .any(|(variable, _)| laws.use_variable(*variable))
+        {
+            for (variable, value) in of_contact {
+                self.case.variables[variable as usize] = value;
+            }
+            laws.settle(&self.case.variables);
+        }
+        let contact = Contact {
+            front,
+            rear: shape.rear,
+            hub_height: shape.hub_height,
+            sinkage: shape.sinkage,
+            round_to_lowest: (shape.sinkage + self.deflection) / shape.sinkage,
+            pressure_at_bottom: pressure(shape.k_star, shape.sinkage, rim.soil.n),
+            gamma: RectangleDistribution::new(rim.law, length, 0.5 * rim.width),
+        };
+        let parts = if self.may_jump() { PARTS } else { 1 };
+        let mut ends = [0.0; ENDS];
+        let count = if shape.rear > 0.0 {
+            shape.panel_ends(rim, &mut ends)
+        } else {
+            let (plain, panels) = rim.panel_ends(front);
+            ends[..plain.len()].copy_from_slice(&plain);
+            panels + 1
+        };
+        for pair in ends[..count].windows(2) {
+            let at = |part: usize| pair[0] + (pair[1] - pair[0]) * (part as f64 / parts as f64);
+            for part in 0..parts {
+                if self.used == PANELS {
+                    self.sum(rim, &shape, &mut reaction)?;
+                }
+                if self.used == self.panels.len() {
+                    self.panels.push(Panel::default());
+                }
+                shape.lay(
+                    &mut self.panels[self.used],
+                    rim,
+                    &contact,
+                    [at(part), at(part + 1)],
+                );
+                self.used += 1;
+            }
+        }
+        self.sum(rim, &shape, &mut reaction)?;
+        Ok(reaction)
+    }
+
+    fn shape(&self, rim: &Rim, front: f64) -> Shape {
+        let radius = rim.radius;
+        let bottom_radius = radius - self.deflection;
+        let flat = self.flat(radius);
+        let hub_height = ((radius - front) * (radius + front)).sqrt();
+        let sinkage = (front - flat) * (front + flat) / (bottom_radius + hub_height);
+        let mut shape = Shape {
+            front,
+            rear: flat,
+            flat,
+            bottom_radius,
+            hub_height,
+            sinkage,
+            recovered: 0.0,
+            k_star: 0.0,
+            b_eff: 0.0,
+        };
+        let passes = if self.compliance.abs() > 0.0 && sinkage > 0.0 {
+            PASSES
+        } else {
+            0
+        };
+        for pass in 0..=passes {
+            shape.b_eff = rectangle_effective_width(front + shape.rear, rim.width);
+            shape.k_star = k_star(&rim.soil, shape.b_eff);
+            if pass < passes && shape.k_star > 0.0 {
+                let full = self.compliance * pressure(shape.k_star, sinkage, rim.soil.n);
+                shape.recovered = full.min(0.5 * sinkage);
+                let top = bottom_radius - shape.recovered;
+                shape.rear = ((radius - top) * (radius + top)).sqrt();
+            }
+        }
+        shape
+    }
+
+    /// Add the forces on the panels gathered so far, from rear to front, and forget them.
+    fn sum(&mut self, rim: &Rim, shape: &Shape, sum: &mut Reaction) -> Result<(), Rejection> {
+        let (panels, variables) = (&mut self.panels[..self.used], &self.case.variables);
+        if let Some(laws) = &mut self.laws {
+            shape.write(rim, panels, laws);
+            if laws.enter(Hook::Pressure) {
+                laws.apply(Hook::Pressure, panels.len() * NODES, |_| true, variables)?;
+                read(laws, Variable::P, panels, |panel| &mut panel.pressure);
+            }
+        }
+        let limited = self
+            .laws
+            .as_ref()
+            .is_some_and(|laws| laws.enter(Hook::ShearLimit) || laws.use_variable(Variable::TauMax));
+        for panel in panels.iter_mut() {
+            for i in 0..NODES {
+                panel.shear[i] = strength(rim.soil.cohesion_pa, rim.tan_friction_angle, panel.pressure[i]);
+            }
+        }
+        if let Some(laws) = &mut self.laws
+            && limited
+        {
+            write(laws, Variable::TauMax, panels, |panel| panel.shear);
+            laws.apply(Hook::ShearLimit, panels.len() * NODES, |_| true, variables)?;
+            read(laws, Variable::TauMax, panels, |panel| &mut panel.shear);
+        }
+        for panel in panels.iter_mut() {
+            for i in 0..NODES {
+                panel.shear[i] *= rim.shear.mobilised_per_velocity(panel.speed[i]) * panel.speed[i];
+            }
+        }
+        if let Some(laws) = &mut self.laws
+            && laws.enter(Hook::Shear)
+        {
+            write(laws, Variable::Tau, panels, |panel| panel.shear);
+            laws.apply(Hook::Shear, panels.len() * NODES, |_| true, variables)?;
+            read(laws, Variable::Tau, panels, |panel| &mut panel.shear);
+        }
+        for panel in panels.iter() {
+            let mut along = [0.0; NODES];
+            let mut across = [0.0; NODES];
+            for i in 0..NODES {
+                let speed = panel.speed[i];
+                // at rest the stress has no direction, and the velocities are 0
+                let per_speed = panel.shear[i]
+                    / if speed > f64::MIN_POSITIVE {
+                        speed
+                    } else {
+                        f64::MAX
+                    };
+                along[i] = per_speed * panel.tangential[i];
+                across[i] = per_speed * rim.motion.lateral;
+            }
+            sum.add(rim, panel, &along, &across);
+        }
+        self.used = 0;
+        Ok(())
+    }
+}
+
+/// Write a quantity of the panels' nodes into a block.
+fn write(laws: &mut NodeLaws, variable: Variable, panels: &[Panel], of: impl Fn(&Panel) -> [f64; NODES]) {
+    let column = laws.block.column_mut(variable).as_chunks_mut::<NODES>().0;
+    for (nodes, panel) in column.iter_mut().zip(panels) {
+        *nodes = of(panel);
+    }
+}
+
+/// Copy a quantity from a block to the panels' nodes.
+fn read(
+    laws: &mut NodeLaws,
+    variable: Variable,
+    panels: &mut [Panel],
+    of: impl Fn(&mut Panel) -> &mut [f64; NODES],
+) {
+    let column = laws.block.column(variable).as_chunks::<NODES>().0;
+    for (nodes, panel) in column.iter().zip(panels) {
+        *of(panel) = *nodes;
+    }
+}
+
+impl Shape {
+    /// Ends of the panels from rear to front; gives how many there are.
+    fn panel_ends(&self, rim: &Rim, ends: &mut [f64; ENDS]) -> usize {
+        // gamma has a ridge halfway, or a plateau where the sides are nearer than the ends
+        let inner = (0.5 * (self.front + self.rear)).min(0.5 * rim.width);
+        let candidates = [
+            -self.rear,
+            -self.flat, // where the soil begins to spring back
+            self.flat,
+            inner - self.rear,
+            self.front - inner,
+            -rim.sign_change,
+            rim.sign_change,
+            self.front,
+        ];
+        let mut count = 0;
+        for candidate in candidates {
+            if !(-self.rear..=self.front).contains(&candidate) {
+                continue;
+            }
+            let place = ends[..count].partition_point(|end| *end < candidate);
+            if place < count && ends[place] <= candidate {
+                continue; // there already
+            }
+            ends.copy_within(place..count, place + 1);
+            ends[place] = candidate;
+            count += 1;
+        }
+        count
+    }
+
+    fn lay(&self, panel: &mut Panel, rim: &Rim, contact: &Contact, [start, end]: [f64; 2]) {
+        let middle = 0.5 * (start + end);
+        if middle > self.flat {
+            panel.on_arc(rim, contact, start, end);
+        } else if middle < -self.flat {
+            panel.behind(rim, contact, start, end, self.recovered);
+        } else {
+            panel.on_flat(rim, contact, start, end, self.bottom_radius);
+        }
+    }
+
+    /// Write the variables that formulas use into their block.
+    fn write(&self, rim: &Rim, panels: &[Panel], laws: &mut NodeLaws) {
+        if laws.enter(Hook::Pressure) || laws.use_variable(Variable::P) {
+            write(laws, Variable::P, panels, |panel| panel.pressure);
+        }
+        if laws.use_variable(Variable::Vt) {
+            write(laws, Variable::Vt, panels, |panel| panel.speed);
+        }
+        if laws.use_variable(Variable::Z) {
+            write(laws, Variable::Z, panels, |panel| {
+                panel.relative_sinkage.map(|z| z.max(0.0) * self.sinkage)
+            });
+        }
+        if laws.use_variable(Variable::Vn) {
+            // the hub keeps its height: what moves into the soil is the front of the round rim
+            let per_radius = rim.motion.forward / rim.radius;
+            write(laws, Variable::Vn, panels, |panel| {
+                let moves = if panel.arm < rim.radius { 0.0 } else { per_radius };
+                panel.x.map(|x| (moves * x).max(0.0))
+            });
+        }
+        if laws.use_variable(Variable::Position) {
+            let per_length = 1.0 / (self.front + self.rear);
+            write(laws, Variable::Position, panels, |panel| {
+                panel.x.map(|x| (x + self.rear) * per_length)
+            });
+        }
+        if laws.use_variable(Variable::J) {
+            let slide = Slide::new(rim.radius, &rim.motion, self.flat, self.bottom_radius);
+            write(laws, Variable::J, panels, |panel| slide.slid(self.front, panel.x));
+        }
+    }
+}

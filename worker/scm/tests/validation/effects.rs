@@ -1,0 +1,148 @@
+//! What effects change: figures of another implementation, and equivalent changes of the base.
+//!
+//! Quasi-static; the three-dimensional model has its own rows.
+
+use formula::Effect;
+use formula::catalogue::find;
+use scm::effects::{Effects, Model, Site};
+use scm::{Averages, quasi_static};
+
+use super::Rows;
+use crate::support::{Case, base};
+
+const SIGNATURES: &str = include_str!("../reference/signatures.csv");
+
+/// Half of the last digit printed, in N, N m and mm; and what coarse strips of the other implementation may add.
+const ROUNDING: [f64; 3] = [0.05, 0.005, 0.05];
+const RELATIVE: f64 = 0.02;
+
+/// Slip, load and rim speed of each column of the table.
+const COLUMNS: [(&str, f64, f64, f64); 6] = [
+    ("s .05", 0.05, 100.0, 0.01),
+    ("s .2", 0.2, 100.0, 0.01),
+    ("s .6", 0.6, 100.0, 0.01),
+    ("60 N", 0.2, 60.0, 0.01),
+    ("150 N", 0.2, 150.0, 0.01),
+    ("50 mm/s", 0.2, 100.0, 0.05),
+];
+
+/// The site of the table: lug thrust is the only one to know of grousers.
+pub(crate) const SITE: Site = Site {
+    density_kg_m3: Some(1400.0),
+    gravity_m_s2: 9.81,
+    grouser_count: 12,
+    grouser_height_m: 0.009,
+    bin_length_m: Some(1.5),
+};
+
+/// The wheel of the table is larger than the rig takes it for.
+pub(crate) fn reference(slip: f64, load: f64, rim_speed: f64) -> Case {
+    let mut case = base(slip, load, 30.0);
+    case.wheel.radius_m = 0.13;
+    case.condition.sled_speed_m_s = rim_speed * (1.0 - slip);
+    case
+}
+
+/// Values of an effect's parameters: one strength as given, the others neutral, shapes as the file fixes them.
+pub(crate) fn values(effect: &Effect, strength: &str, value: f64) -> Vec<f64> {
+    let of = |p: &formula::Parameter| match p.neutral {
+        _ if p.name == strength => value,
+        Some(neutral) => neutral,
+        None => p.prior.as_float().expect("a shape parameter is a number"),
+    };
+    effect.parameters.iter().map(of).collect()
+}
+
+/// A run with one effect of the catalogue.
+pub(crate) fn with_effect(case: &Case, name: &str, strength: &str, value: f64, site: &Site) -> Averages {
+    let effect = find(name).expect("an effect of the catalogue");
+    assert!(effect.parameter(strength).is_some(), "{name} has no {strength}");
+    let effects = Effects::compile(Model::QuasiStatic, [effect]).expect("a form in this model");
+    let mut active = effects.activate([values(effect, strength, value)]);
+    quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, &mut active, site)
+        .unwrap_or_else(|rejection| panic!("{name}: {rejection}"))
+}
+
+fn channels(averages: &Averages) -> [f64; 3] {
+    [
+        averages.drawbar_pull_n,
+        averages.torque_n_m,
+        1e3 * averages.sinkage_m,
+    ]
+}
+
+pub(crate) fn add(rows: &mut Rows) {
+    for line in SIGNATURES.lines().filter(|line| !line.starts_with('#')).skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let number = |field: &str| -> f64 { field.parse().expect("a number") };
+        let (name, strength, value) = (fields[0], fields[1], number(fields[2]));
+        for (column, expected) in COLUMNS.iter().zip(fields[3..].chunks_exact(3)) {
+            let (column, slip, load, rim_speed) = *column;
+            let case = reference(slip, load, rim_speed);
+            let before = channels(&case.simulate());
+            let after = channels(&with_effect(&case, name, strength, value, &SITE));
+            for (i, quantity) in ["dF [N]", "dT [N m]", "dz [mm]"].into_iter().enumerate() {
+                let expected = number(expected[i]);
+                let exception = EXCEPTIONS.iter().find(|e| (e.0, e.1, e.2) == (name, column, i));
+                let slack = exception.map_or(0.0, |e| e.3);
+                let tolerance = 1.02 * ROUNDING[i] + RELATIVE * expected.abs() + slack;
+                rows.add(
+                    &format!("{name}, {column}"),
+                    quantity,
+                    expected,
+                    after[i] - before[i],
+                    tolerance,
+                );
+            }
+        }
+    }
+    add_equivalents(rows);
+}
+
+/// What the figures of the table may be off beyond rounding [N]. Side wall: there its shear stress carries no load. Flexible wheel:
+/// the ends of the flat lie within strips there.
+const EXCEPTIONS: [(&str, &str, usize, f64); 2] = [
+    ("side_wall_friction", "150 N", 0, 0.02),
+    ("wheel_flexibility", "s .05", 0, 0.005),
+];
+
+/// Effects without a figure of their own that the base can imitate by another soil.
+fn add_equivalents(rows: &mut Rows) {
+    let moon = Site {
+        gravity_m_s2: 1.62,
+        ..SITE
+    };
+    let mean = |stiffening: f64| 1.0 + 2.0 * stiffening * 0.1 / 1.5 * (1.0 - libm::exp(-15.0));
+    for (name, strength, value, site, factor) in [
+        (
+            "gravity_scaling",
+            "gravity_exponent",
+            0.7,
+            moon,
+            (1.62_f64 / 9.81).powf(0.7),
+        ),
+        ("end_wall", "wall_stiffening", 0.3, SITE, mean(0.3)),
+        (
+            "slip_softened_pressure",
+            "softening_per_slip",
+            0.5,
+            SITE,
+            libm::exp(-0.1),
+        ),
+    ] {
+        let case = reference(0.2, 100.0, 0.01);
+        let mut equivalent = case;
+        equivalent.soil.k_phi *= factor;
+        let expected = channels(&equivalent.simulate());
+        let got = channels(&with_effect(&case, name, strength, value, &site));
+        for (i, quantity) in ["F [N]", "T [N m]", "z [mm]"].into_iter().enumerate() {
+            rows.add(
+                &format!("{name}, other soil"),
+                quantity,
+                expected[i],
+                got[i],
+                1e-6 * expected[i].abs(),
+            );
+        }
+    }
+}
