@@ -1,5 +1,6 @@
 //! Effects in the quasi-static model.
 
+mod brute_force;
 mod hidden;
 mod neutral;
 mod refusals;
