@@ -7,7 +7,7 @@ use crate::elementary;
 use crate::graph::{Binary, Unary};
 
 /// Points are computed so many at a time: a multiple of the width of vector registers.
-pub(crate) const LANES: usize = 4;
+pub(crate) const LANES: usize = 8;
 
 /// A quantity at so many points.
 pub(crate) type Lanes = [f64; LANES];

@@ -2,7 +2,7 @@
 
 use crate::arithmetic::{LANES, Lanes, binary_lanes, choose_lanes, unary_lanes};
 use crate::graph::{Binary, Unary};
-use crate::program::{Operation, Program};
+use crate::program::{Operation, Program, Then};
 use crate::variable::Variable;
 
 /// Most points of a block.
@@ -137,12 +137,58 @@ impl Block {
             Operation::Binary(operation, a, b) => {
                 binary!(a, b, operation, Add Subtract Multiply Divide Power Min Max Less LessOrEqual Equal Unequal);
             }
+            Operation::Pair(first, a, b, then) => self.pair(first, a, b, then, out, groups),
             Operation::If(c, a, b) => {
                 for group in 0..groups {
                     let [c, a, b] = [c, a, b].map(|place| self.load(place, group));
                     self.store(out.at(group), &choose_lanes(&c, &a, &b));
                 }
             }
+        }
+    }
+
+    fn pair(&mut self, first: Binary, a: Place, b: Place, then: Then<Place>, out: Place, groups: usize) {
+        macro_rules! pair {
+            ($first:ident, $($second:ident)*) => {
+                match then {
+                    Then::Exp => self.both(a, b, out, groups, |a, b| {
+                        unary_lanes(Unary::Exp, &binary_lanes(Binary::$first, a, b))
+                    }),
+                    Then::Left(Binary::Power, c) => self.three(a, b, c, out, groups, |a, b, c| {
+                        binary_lanes(Binary::Power, &binary_lanes(Binary::$first, a, b), c)
+                    }),
+                    $(Then::Left(Binary::$second, c) => self.three(a, b, c, out, groups, |a, b, c| {
+                        binary_lanes(Binary::$second, &binary_lanes(Binary::$first, a, b), c)
+                    }),
+                    Then::Right(Binary::$second, c) => self.three(a, b, c, out, groups, |a, b, c| {
+                        binary_lanes(Binary::$second, c, &binary_lanes(Binary::$first, a, b))
+                    }),)*
+                    Then::Left(..) | Then::Right(..) => unreachable!("programs pair only operations of arithmetic"),
+                }
+            };
+        }
+        match first {
+            Binary::Add => pair!(Add, Add Subtract Multiply Divide),
+            Binary::Subtract => pair!(Subtract, Add Subtract Multiply Divide),
+            Binary::Multiply => pair!(Multiply, Add Subtract Multiply Divide),
+            Binary::Divide => pair!(Divide, Add Subtract Multiply Divide),
+            _ => unreachable!("programs pair only operations of arithmetic"),
+        }
+    }
+
+    #[inline(always)]
+    fn three(
+        &mut self,
+        a: Place,
+        b: Place,
+        c: Place,
+        out: Place,
+        groups: usize,
+        f: impl Fn(&Lanes, &Lanes, &Lanes) -> Lanes,
+    ) {
+        for group in 0..groups {
+            let [a, b, c] = [a, b, c].map(|place| self.load(place, group));
+            self.store(out.at(group), &f(&a, &b, &c));
         }
     }
 

@@ -22,6 +22,18 @@ pub(crate) enum Operation<T> {
     Unary(Unary, T),
     Binary(Binary, T, T),
     If(T, T, T),
+    /// One of the four operations of arithmetic, and what is made of its result at once.
+    Pair(Binary, T, T, Then<T>),
+}
+
+/// What is made of a result.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Then<T> {
+    Exp,
+    /// An operation of arithmetic, or a power, on the result and another.
+    Left(Binary, T),
+    /// An operation of arithmetic on another and the result.
+    Right(Binary, T),
 }
 
 impl<T> Operation<T> {
@@ -31,6 +43,15 @@ impl<T> Operation<T> {
             Operation::Unary(operation, a) => Operation::Unary(operation, f(a)),
             Operation::Binary(operation, a, b) => Operation::Binary(operation, f(a), f(b)),
             Operation::If(c, a, b) => Operation::If(f(c), f(a), f(b)),
+            Operation::Pair(operation, a, b, then) => {
+                let (a, b) = (f(a), f(b));
+                let then = match then {
+                    Then::Exp => Then::Exp,
+                    Then::Left(operation, other) => Then::Left(operation, f(other)),
+                    Then::Right(operation, other) => Then::Right(operation, f(other)),
+                };
+                Operation::Pair(operation, a, b, then)
+            }
         }
     }
 }
@@ -182,6 +203,14 @@ fn without_power(graph: &Graph, node: Node) -> Node {
     }
 }
 
+/// Whether an operation is one of the four of arithmetic.
+fn is_arithmetic(operation: Binary) -> bool {
+    matches!(
+        operation,
+        Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide
+    )
+}
+
 struct Compiler {
     scalars: Vec<Node>,
     operations: Vec<(Operation<Operand>, u16)>,
@@ -228,9 +257,60 @@ impl Compiler {
             Node::If(c, a, b) => Operation::If(self.of(c), self.of(a), self.of(b)),
             Node::Number(_) | Node::Variable(_) | Node::Parameter(_) => return Operand::Scalar(0),
         };
+        let operation = self.without_sign(node, operation);
+        let operation = self.paired(node, operation);
         let register = self.registers.take();
         self.operations.push((operation, register));
         Operand::Register(register)
+    }
+
+    /// (−x) s or (−x) / s with what is the same everywhere as x (−s) or x / (−s): the same bits, and no loop for the sign.
+    fn without_sign(&mut self, node: Node, operation: Operation<Operand>) -> Operation<Operand> {
+        if let Node::Binary(_, x, _) = node
+            && let Operation::Binary(
+                product @ (Binary::Multiply | Binary::Divide),
+                negated,
+                Operand::Scalar(s),
+            ) = operation
+            && let Some(&(Operation::Unary(Unary::Negate, positive), register)) = self.operations.last()
+            && negated == Operand::Register(register)
+            && self.registers.uses[usize::from(x.0)] == 1
+        {
+            self.operations.pop();
+            self.scalars.push(Node::Unary(Unary::Negate, Id(s)));
+            let negative = Operand::Scalar((self.scalars.len() - 1) as u16);
+            return Operation::Binary(product, positive, negative);
+        }
+        operation
+    }
+
+    /// The operation together with the one before it, where that gives an argument that nothing else needs: less to read and
+    /// write, and to dispatch.
+    fn paired(&mut self, node: Node, operation: Operation<Operand>) -> Operation<Operand> {
+        let Some(&(Operation::Binary(first, a, b), register)) = self.operations.last() else {
+            return operation;
+        };
+        let is_first = |operand: Operand| operand == Operand::Register(register);
+        let then = match operation {
+            Operation::Unary(Unary::Exp, x) if is_first(x) => Then::Exp,
+            Operation::Binary(second, x, y) if is_first(x) && !is_first(y) => {
+                if !(is_arithmetic(second) || second == Binary::Power) {
+                    return operation;
+                }
+                Then::Left(second, y)
+            }
+            Operation::Binary(second, x, y) if is_first(y) && !is_first(x) && is_arithmetic(second) => {
+                Then::Right(second, x)
+            }
+            _ => return operation,
+        };
+        let mut arguments = node.arguments();
+        let alone = arguments.any(|id| is_first(self.of(id)) && self.registers.uses[usize::from(id.0)] == 1);
+        if !(alone && is_arithmetic(first)) {
+            return operation;
+        }
+        self.operations.pop();
+        Operation::Pair(first, a, b, then)
     }
 }
 

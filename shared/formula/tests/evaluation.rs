@@ -51,8 +51,15 @@ fn operators_bind_as_in_mathematics() {
     ] {
         let found = at_one_point(formula, &variables);
         // a power is an exponential of a logarithm
-        let tolerance = if formula.contains(['^', 'w']) { 4e-15 * f64::abs(value) } else { 1e-15 };
-        assert!((found - value).abs() <= tolerance, "{formula} = {found}, not {value}");
+        let tolerance = if formula.contains(['^', 'w']) {
+            4e-15 * f64::abs(value)
+        } else {
+            1e-15
+        };
+        assert!(
+            (found - value).abs() <= tolerance,
+            "{formula} = {found}, not {value}"
+        );
     }
 }
 
