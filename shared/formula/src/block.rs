@@ -1,18 +1,53 @@
 //! Evaluate formulas at many points at a time.
 
-use crate::elementary;
+use crate::arithmetic::{LANES, Lanes, binary_lanes, choose_lanes, unary_lanes};
 use crate::graph::{Binary, Unary};
-use crate::program::{self, Operand, Operation, Program};
+use crate::program::{Operation, Program, Then};
 use crate::variable::Variable;
 
 /// Most points of a block.
 pub const BLOCK: usize = 128;
 
-/// Points are computed so many at a time: a multiple of the width of vector registers.
-const STRIDE: usize = 8;
+/// Numbers before those that programs keep.
+const COLUMNS: usize = Variable::LOCAL * BLOCK;
 
-/// The greatest argument of the exponential that vectorises.
-const GREATEST: f64 = 700.0;
+/// Where an argument or a result stands in the memory of a block: at the first of its points, then so much further for each
+/// group of points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Place {
+    first: usize,
+    step: usize,
+}
+
+impl Place {
+    /// The column of a variable.
+    pub(crate) fn column(variable: Variable) -> Self {
+        Self {
+            first: variable as usize * BLOCK,
+            step: LANES,
+        }
+    }
+
+    /// What a program keeps at every point.
+    pub(crate) fn register(register: usize) -> Self {
+        Self {
+            first: COLUMNS + register * BLOCK,
+            step: LANES,
+        }
+    }
+
+    /// What is the same at all points, after so many registers.
+    pub(crate) fn constant(registers: usize, constant: usize) -> Self {
+        Self {
+            first: Self::register(registers).first + constant * LANES,
+            step: 0,
+        }
+    }
+
+    fn at(self, group: usize) -> usize {
+        self.first + group * self.step
+    }
+}
 
 /// Variables at so many points, and room to compute with them.
 ///
@@ -31,209 +66,158 @@ const GREATEST: f64 = 700.0;
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct Block {
-    columns: Vec<Vec<f64>>,
-    registers: Vec<Vec<f64>>,
+    /// The columns of variables, one after the other; then what programs keep.
+    memory: Vec<f64>,
 }
 
 impl Block {
     /// A variable at all points; zero where nothing was written.
+    ///
+    /// # Panics
+    /// For a variable that is none of the first [`Variable::LOCAL`].
     pub fn column(&mut self, variable: Variable) -> &[f64] {
         self.column_mut(variable)
     }
 
     /// The same, to be written.
     pub fn column_mut(&mut self, variable: Variable) -> &mut [f64] {
-        if self.columns.is_empty() {
-            self.columns = vec![vec![0.0; BLOCK]; Variable::LOCAL];
+        self.reserve(COLUMNS);
+        let first = variable as usize * BLOCK;
+        &mut self.memory[..COLUMNS][first..first + BLOCK]
+    }
+
+    fn reserve(&mut self, needed: usize) {
+        if self.memory.len() < needed {
+            self.memory.resize(needed, 0.0);
         }
-        &mut self.columns[variable as usize]
     }
 
     /// Replaces a variable at the first `points` points, at most [`BLOCK`], by what a program makes of all of them.
     ///
-    /// `scalars` are those that [`Program::settle`] left. Values beyond the last point are unspecified. Checked by
-    /// `tests::every_operation_agrees_with_one_point_at_a_time`.
+    /// `scalars` are those that [`Program::settle`] left. Values beyond the last point are unspecified. Each value has the
+    /// bits that [`Program::settle`] gives where nothing differs from point to point. Checked by
+    /// `evaluation::every_operation_agrees_with_one_point_at_a_time` and `fuzz`.
     pub fn replace(&mut self, variable: Variable, program: &Program, scalars: &[f64], points: usize) {
-        let points = points.min(BLOCK).next_multiple_of(STRIDE);
-        self.column_mut(variable);
-        while self.registers.len() < program.registers {
-            self.registers.push(vec![0.0; BLOCK]);
+        let constants = |constant| Place::constant(program.registers, constant).first;
+        self.reserve(constants(program.constants.len()));
+        for (constant, &scalar) in program.constants.iter().enumerate() {
+            self.store(constants(constant), &[scalars[usize::from(scalar)]; LANES]);
         }
-        for &(operation, register) in &program.operations {
-            let mut out = core::mem::take(&mut self.registers[usize::from(register)]);
-            let find = |operand| self.find(operand, scalars, points);
-            match operation {
-                Operation::Unary(operation, a) => each(operation, find(a), &mut out[..points]),
-                Operation::Binary(operation, a, b) => both(operation, find(a), find(b), &mut out[..points]),
-                Operation::If(c, a, b) => choose(find(c), find(a), find(b), &mut out[..points]),
+        let groups = points.min(BLOCK).div_ceil(LANES);
+        for &(operation, out) in &program.operations {
+            self.compute(operation, out, groups);
+        }
+        let target = Place::column(variable);
+        match program.last {
+            Some(operation) => self.compute(operation, target, groups),
+            None => self.each(program.result, target, groups, |values| *values),
+        }
+    }
+
+    fn compute(&mut self, operation: Operation<Place>, out: Place, groups: usize) {
+        // each arm knows its operation while it is compiled
+        macro_rules! unary {
+            ($a:ident, $operation:ident, $($name:ident)*) => {
+                match $operation {
+                    $(Unary::$name => self.each($a, out, groups, |a| unary_lanes(Unary::$name, a)),)*
+                }
+            };
+        }
+        macro_rules! binary {
+            ($a:ident, $b:ident, $operation:ident, $($name:ident)*) => {
+                match $operation {
+                    $(Binary::$name => self.both($a, $b, out, groups, |a, b| binary_lanes(Binary::$name, a, b)),)*
+                }
+            };
+        }
+        match operation {
+            Operation::Unary(operation, a) => {
+                unary!(a, operation, Negate Exp Log Sqrt Tanh Abs Sin Cos Tan);
             }
-            self.registers[usize::from(register)] = out;
-        }
-        let target = variable as usize;
-        match program.result {
-            Operand::Scalar(place) => self.columns[target][..points].fill(scalars[usize::from(place)]),
-            Operand::Column(own) if own == variable => {}
-            Operand::Column(other) => {
-                let values = core::mem::take(&mut self.columns[other as usize]);
-                self.columns[target].copy_from_slice(&values);
-                self.columns[other as usize] = values;
+            Operation::Binary(operation, a, b) => {
+                binary!(a, b, operation, Add Subtract Multiply Divide Power Min Max Less LessOrEqual Equal Unequal);
             }
-            Operand::Register(register) => {
-                core::mem::swap(
-                    &mut self.columns[target],
-                    &mut self.registers[usize::from(register)],
-                );
-            }
-        }
-    }
-
-    fn find<'a>(&'a self, operand: Operand, scalars: &[f64], points: usize) -> Values<'a> {
-        match operand {
-            Operand::Scalar(place) => Values::Same(scalars[usize::from(place)]),
-            Operand::Column(variable) => Values::Each(&self.columns[variable as usize][..points]),
-            Operand::Register(register) => Values::Each(&self.registers[usize::from(register)][..points]),
-        }
-    }
-}
-
-/// An argument at all points.
-#[derive(Debug, Clone, Copy)]
-enum Values<'a> {
-    Same(f64),
-    Each(&'a [f64]),
-}
-
-impl Values<'_> {
-    fn at(self, point: usize) -> f64 {
-        match self {
-            Values::Same(value) => value,
-            Values::Each(values) => values[point],
-        }
-    }
-}
-
-fn map(a: Values, out: &mut [f64], f: impl Fn(f64) -> f64) {
-    match a {
-        Values::Same(a) => out.fill(f(a)),
-        Values::Each(a) => out.iter_mut().zip(a).for_each(|(out, &a)| *out = f(a)),
-    }
-}
-
-fn map_both(a: Values, b: Values, out: &mut [f64], f: impl Fn(f64, f64) -> f64) {
-    match (a, b) {
-        (Values::Same(a), Values::Same(b)) => out.fill(f(a, b)),
-        (Values::Same(a), Values::Each(b)) => out.iter_mut().zip(b).for_each(|(out, &b)| *out = f(a, b)),
-        (Values::Each(a), Values::Same(b)) => out.iter_mut().zip(a).for_each(|(out, &a)| *out = f(a, b)),
-        (Values::Each(a), Values::Each(b)) => {
-            let arguments = a.iter().zip(b);
-            out.iter_mut()
-                .zip(arguments)
-                .for_each(|(out, (&a, &b))| *out = f(a, b));
-        }
-    }
-}
-
-fn choose(condition: Values, a: Values, b: Values, out: &mut [f64]) {
-    for (point, out) in out.iter_mut().enumerate() {
-        *out = if condition.at(point).abs() > 0.0 {
-            a.at(point)
-        } else {
-            b.at(point)
-        };
-    }
-}
-
-fn each(operation: Unary, a: Values, out: &mut [f64]) {
-    match operation {
-        Unary::Negate => map(a, out, |a| -a),
-        Unary::Sqrt => map(a, out, f64::sqrt),
-        Unary::Abs => map(a, out, f64::abs),
-        Unary::Exp => {
-            map(a, out, |a| if a < -GREATEST { 0.0 } else { elementary::exp(a) });
-            let small = |a: f64| a <= GREATEST; // false for what is no number
-            if !holds(a, out, small) {
-                mend(out, |point| (!small(a.at(point))).then(|| libm::exp(a.at(point))));
-            }
-        }
-        Unary::Log => {
-            map(a, out, elementary::ln);
-            if !holds(a, out, has_logarithm) {
-                mend(out, |point| {
-                    (!has_logarithm(a.at(point))).then(|| libm::log(a.at(point)))
-                });
-            }
-        }
-        Unary::Tanh => map(a, out, tanh),
-        Unary::Sin | Unary::Cos | Unary::Tan => map(a, out, |a| program::unary(operation, a)),
-    }
-}
-
-fn both(operation: Binary, a: Values, b: Values, out: &mut [f64]) {
-    // one loop for each operation, so that it is known while the loop is compiled
-    match operation {
-        Binary::Add => map_both(a, b, out, |a, b| program::binary(Binary::Add, a, b)),
-        Binary::Subtract => map_both(a, b, out, |a, b| program::binary(Binary::Subtract, a, b)),
-        Binary::Multiply => map_both(a, b, out, |a, b| program::binary(Binary::Multiply, a, b)),
-        Binary::Divide => map_both(a, b, out, |a, b| program::binary(Binary::Divide, a, b)),
-        Binary::Min => map_both(a, b, out, |a, b| program::binary(Binary::Min, a, b)),
-        Binary::Max => map_both(a, b, out, |a, b| program::binary(Binary::Max, a, b)),
-        Binary::Less => map_both(a, b, out, |a, b| program::binary(Binary::Less, a, b)),
-        Binary::LessOrEqual => map_both(a, b, out, |a, b| program::binary(Binary::LessOrEqual, a, b)),
-        Binary::Equal => map_both(a, b, out, |a, b| program::binary(Binary::Equal, a, b)),
-        Binary::Unequal => map_both(a, b, out, |a, b| program::binary(Binary::Unequal, a, b)),
-        Binary::Power => {
-            map_both(a, b, out, |a, b| b * elementary::ln(a));
-            let small = |argument: f64| argument.abs() <= GREATEST;
-            let vectorises = holds(a, out, has_logarithm) & holds(Values::Each(out), out, small);
-            out.iter_mut().for_each(|value| *value = elementary::exp(*value));
-            if !vectorises {
-                mend(out, |point| {
-                    let vectorises =
-                        has_logarithm(a.at(point)) && small(b.at(point) * elementary::ln(a.at(point)));
-                    (!vectorises).then(|| libm::pow(a.at(point), b.at(point)))
-                });
+            Operation::Pair(first, a, b, then) => self.pair(first, a, b, then, out, groups),
+            Operation::If(c, a, b) => {
+                for group in 0..groups {
+                    let [c, a, b] = [c, a, b].map(|place| self.load(place, group));
+                    self.store(out.at(group), &choose_lanes(&c, &a, &b));
+                }
             }
         }
     }
-}
 
-/// Put exact values where a vectorised function is not defined.
-fn mend(out: &mut [f64], exact: impl Fn(usize) -> Option<f64>) {
-    for (point, value) in out.iter_mut().enumerate() {
-        if let Some(exact) = exact(point) {
-            *value = exact;
+    fn pair(&mut self, first: Binary, a: Place, b: Place, then: Then<Place>, out: Place, groups: usize) {
+        macro_rules! pair {
+            ($first:ident, $($second:ident)*) => {
+                match then {
+                    Then::Exp => self.both(a, b, out, groups, |a, b| {
+                        unary_lanes(Unary::Exp, &binary_lanes(Binary::$first, a, b))
+                    }),
+                    Then::Left(Binary::Power, c) => self.three(a, b, c, out, groups, |a, b, c| {
+                        binary_lanes(Binary::Power, &binary_lanes(Binary::$first, a, b), c)
+                    }),
+                    $(Then::Left(Binary::$second, c) => self.three(a, b, c, out, groups, |a, b, c| {
+                        binary_lanes(Binary::$second, &binary_lanes(Binary::$first, a, b), c)
+                    }),
+                    Then::Right(Binary::$second, c) => self.three(a, b, c, out, groups, |a, b, c| {
+                        binary_lanes(Binary::$second, c, &binary_lanes(Binary::$first, a, b))
+                    }),)*
+                    Then::Left(..) | Then::Right(..) => unreachable!("programs pair only operations of arithmetic"),
+                }
+            };
+        }
+        match first {
+            Binary::Add => pair!(Add, Add Subtract Multiply Divide),
+            Binary::Subtract => pair!(Subtract, Add Subtract Multiply Divide),
+            Binary::Multiply => pair!(Multiply, Add Subtract Multiply Divide),
+            Binary::Divide => pair!(Divide, Add Subtract Multiply Divide),
+            _ => unreachable!("programs pair only operations of arithmetic"),
         }
     }
-}
 
-/// Whether the vectorised logarithm is defined.
-#[inline(always)]
-fn has_logarithm(x: f64) -> bool {
-    (x >= f64::MIN_POSITIVE) & (x <= f64::MAX)
-}
-
-/// Whether something holds at all points; without a way out, so that it vectorises.
-fn holds(a: Values, out: &[f64], f: impl Fn(f64) -> bool) -> bool {
-    match a {
-        Values::Same(a) => out.is_empty() || f(a),
-        Values::Each(a) => a.iter().fold(true, |all, &a| all & f(a)),
+    #[inline(always)]
+    fn three(
+        &mut self,
+        a: Place,
+        b: Place,
+        c: Place,
+        out: Place,
+        groups: usize,
+        f: impl Fn(&Lanes, &Lanes, &Lanes) -> Lanes,
+    ) {
+        for group in 0..groups {
+            let [a, b, c] = [a, b, c].map(|place| self.load(place, group));
+            self.store(out.at(group), &f(&a, &b, &c));
+        }
     }
-}
 
-/// tanh without branches: by its series near 0, where 1 − e would cancel.
-fn tanh(x: f64) -> f64 {
-    let square = x * x;
-    let series = x
-        * (1.0
-            - square
-                * (1.0 / 3.0 - square * (2.0 / 15.0 - square * (17.0 / 315.0 - square * 62.0 / 2835.0))));
-    let e = elementary::exp(-2.0 * x.abs());
-    let far = f64::copysign((1.0 - e) / (1.0 + e), x);
-    if x.abs() < 0.02 {
-        series
-    } else if x.is_nan() {
-        x
-    } else {
-        far
+    #[inline(always)]
+    fn each(&mut self, a: Place, out: Place, groups: usize, f: impl Fn(&Lanes) -> Lanes) {
+        for group in 0..groups {
+            let values = f(&self.load(a, group));
+            self.store(out.at(group), &values);
+        }
+    }
+
+    #[inline(always)]
+    fn both(&mut self, a: Place, b: Place, out: Place, groups: usize, f: impl Fn(&Lanes, &Lanes) -> Lanes) {
+        for group in 0..groups {
+            let values = f(&self.load(a, group), &self.load(b, group));
+            self.store(out.at(group), &values);
+        }
+    }
+
+    #[inline(always)]
+    fn load(&self, place: Place, group: usize) -> Lanes {
+        let first = place.at(group);
+        let mut lanes = [0.0; LANES];
+        lanes.copy_from_slice(&self.memory[first..first + LANES]);
+        lanes
+    }
+
+    #[inline(always)]
+    fn store(&mut self, first: usize, values: &Lanes) {
+        self.memory[first..first + LANES].copy_from_slice(values);
     }
 }

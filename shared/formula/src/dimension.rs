@@ -9,24 +9,23 @@ use crate::unit::Unit;
 /// A contradiction between units, in words.
 pub(crate) type Contradiction = String;
 
-/// The unit of a result, as far as units tell.
+/// The unit of an operation on others of a graph, as far as units tell.
 ///
-/// `parameters` are the units of the effect's parameters.
-pub(crate) fn unit_of(graph: &Graph, result: Id, parameters: &[Unit]) -> Result<Option<Unit>, Contradiction> {
-    let mut units: Vec<Option<Unit>> = vec![None; graph.len()];
-    for id in graph.behind(result) {
-        let of = |id: Id| units[usize::from(id.0)];
-        let unit = match graph.node(id) {
-            Node::Number(_) => None,
-            Node::Variable(variable) => variable.unit(),
-            Node::Parameter(place) => Some(parameters[usize::from(place)]),
-            Node::Unary(operation, a) => unary(operation, of(a))?,
-            Node::Binary(operation, a, b) => binary(graph, operation, (a, of(a)), (b, of(b)))?,
-            Node::If(_, a, b) => same("both branches of if", of(a), of(b))?,
-        };
-        units[usize::from(id.0)] = unit;
+/// `parameters` are the units of the effect's parameters. Checked by `gallery::every_message_is_as_written`.
+pub(crate) fn unit_of(
+    graph: &Graph,
+    node: Node,
+    parameters: impl Fn(u8) -> Unit,
+) -> Result<Option<Unit>, Contradiction> {
+    let of = |id: Id| graph.unit(id);
+    match node {
+        Node::Number(_) => Ok(None),
+        Node::Variable(variable) => Ok(variable.unit()),
+        Node::Parameter(place) => Ok(Some(parameters(place))),
+        Node::Unary(operation, a) => unary(operation, of(a)),
+        Node::Binary(operation, a, b) => binary(operation, of(a), of(b), graph.node(b)),
+        Node::If(_, a, b) => same("both branches of if", of(a), of(b)),
     }
-    Ok(units[usize::from(result.0)])
 }
 
 fn unary(operation: Unary, of: Option<Unit>) -> Result<Option<Unit>, Contradiction> {
@@ -40,15 +39,19 @@ fn unary(operation: Unary, of: Option<Unit>) -> Result<Option<Unit>, Contradicti
         Unary::Cos => "cos",
         Unary::Tan => "tan",
     };
-    plain(name, of)?;
-    Ok(Some(Unit::ONE))
+    match (operation, of) {
+        (Unary::Sin | Unary::Cos | Unary::Tan, Some(Unit::DEGREE)) => Err(format!(
+            "{name} needs an angle in rad, not in deg: multiply it by pi / 180"
+        )),
+        _ => plain(name, of).map(|()| Some(Unit::ONE)),
+    }
 }
 
 fn binary(
-    graph: &Graph,
     operation: Binary,
-    (_, left): (Id, Option<Unit>),
-    (right_id, right): (Id, Option<Unit>),
+    left: Option<Unit>,
+    right: Option<Unit>,
+    right_node: Node,
 ) -> Result<Option<Unit>, Contradiction> {
     let both = |combine: fn(Unit, Unit) -> Option<Unit>| left.zip(right).and_then(|(a, b)| combine(a, b));
     match operation {
@@ -64,7 +67,7 @@ fn binary(
         Binary::Divide => Ok(both(Unit::over)),
         Binary::Power => {
             plain("an exponent", right)?;
-            Ok(match (left, graph.node(right_id)) {
+            Ok(match (left, right_node) {
                 (Some(Unit::ONE), _) => Some(Unit::ONE),
                 (Some(unit), Node::Number(bits)) => unit.to_the(f64::from_bits(bits)),
                 _ => None,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::unit::Unit;
 use crate::variable::{Variable, Variables};
 
 /// Operations of one argument.
@@ -69,6 +70,8 @@ impl Node {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Graph {
     nodes: Vec<Node>,
+    /// The unit of each, as far as units tell.
+    units: Vec<Option<Unit>>,
     known: BTreeMap<Node, Id>,
 }
 
@@ -76,8 +79,8 @@ impl Graph {
     /// Most operations of an effect.
     pub(crate) const MOST: usize = 1000;
 
-    /// An operation, new or known already; none if there are too many.
-    pub(crate) fn add(&mut self, node: Node) -> Option<Id> {
+    /// An operation, new or known already, and its unit; none if there are too many.
+    pub(crate) fn add(&mut self, node: Node, unit: Option<Unit>) -> Option<Id> {
         if let Some(&id) = self.known.get(&node) {
             return Some(id);
         }
@@ -86,6 +89,7 @@ impl Graph {
         }
         let id = Id(self.nodes.len() as u16);
         self.nodes.push(node);
+        self.units.push(unit);
         self.known.insert(node, id);
         Some(id)
     }
@@ -97,6 +101,11 @@ impl Graph {
 
     pub(crate) fn node(&self, id: Id) -> Node {
         self.nodes[usize::from(id.0)]
+    }
+
+    /// The unit of an operation, as far as units tell.
+    pub(crate) fn unit(&self, id: Id) -> Option<Unit> {
+        self.units[usize::from(id.0)]
     }
 
     pub(crate) fn len(&self) -> usize {

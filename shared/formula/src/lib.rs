@@ -11,13 +11,14 @@
 //! - `token`, `parse`: text to a graph of operations.
 //! - `graph`: the operations of one effect, each of them once.
 //! - `dimension`: whether the units of a formula can be right.
-//! - [`program`]: a formula made ready; [`block`]: its evaluation at many points.
+//! - [`program`]: a formula made ready; [`block`]: its evaluation at many points; `arithmetic`: one operation.
 //! - [`word`]: what was probably meant.
 //! - [`elementary`]: `exp`, `ln` and powers that vectorise and give the same bits on every machine.
 //!
 //! Everything is pure, and safe to feed with a stranger's text: no loops, no names but the declared ones, limits on every
 //! size. The crate knows neither the wheel-soil models nor probability: a prior is kept as it was written.
 
+mod arithmetic;
 pub mod block;
 pub mod catalogue;
 mod dimension;

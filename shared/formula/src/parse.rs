@@ -10,8 +10,11 @@
 
 use std::collections::BTreeMap;
 
+use crate::dimension::unit_of;
 use crate::graph::{Binary, Graph, Id, Node, Unary};
+use crate::hook::Hook;
 use crate::token::{Mistake, Token, Tokens};
+use crate::unit::Unit;
 use crate::variable::{Variable, Variables};
 use crate::word::unknown_word;
 
@@ -43,12 +46,19 @@ pub(crate) fn reserved() -> impl Iterator<Item = &'static str> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scope<'a> {
     pub(crate) variables: Variables,
-    /// Names of the parameters, in their order.
-    pub(crate) parameters: &'a [String],
-    /// The operations that stand behind the names of definitions.
-    pub(crate) definitions: &'a BTreeMap<String, Id>,
-    /// Where the formula stands, for messages: `in pressure`.
+    /// Names and units of the parameters, in their order.
+    pub(crate) parameters: &'a [(String, Unit)],
+    pub(crate) definitions: &'a BTreeMap<String, Definition>,
+    /// Where the formula stands, for messages: `pressure`.
     pub(crate) place: &'a str,
+}
+
+/// What stands behind the name of a definition.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Definition {
+    pub(crate) result: Id,
+    /// The variables that it uses.
+    pub(crate) uses: Variables,
 }
 
 /// Reads a formula into a graph; gives the operation of its result.
@@ -73,7 +83,15 @@ pub(crate) fn parse(text: &str, scope: &Scope, graph: &mut Graph) -> Result<Id, 
         Token::Sign("<" | "<=" | ">" | ">=" | "==" | "!=") => {
             Err(parser.wrong("a comparison stands only in if(condition, then, else)"))
         }
-        found => Err(parser.wrong(format!("expected an operator or the end, found {found}"))),
+        found => {
+            let hint = match found {
+                Token::Number(_) | Token::Name(_) | Token::Sign("(") => "; write * to multiply",
+                Token::Sign(",") => "; a decimal has a point, and a comma stands only between arguments",
+                Token::Sign(")") => "; nothing is open that it could close",
+                _ => "",
+            };
+            Err(parser.wrong(format!("expected an operator or the end, found {found}{hint}")))
+        }
     }
 }
 
@@ -98,11 +116,17 @@ impl Parser<'_, '_> {
         Mistake::new(self.at, message)
     }
 
-    fn add(&mut self, node: Node) -> Result<Id, Mistake> {
-        let too_many = format!("an effect must have at most {} operations", Graph::MOST);
-        self.graph
-            .add(node)
-            .ok_or_else(|| Mistake::new(self.at, too_many))
+    /// Adds an operation whose sign or name stands at a place.
+    fn add(&mut self, at: usize, node: Node) -> Result<Id, Mistake> {
+        let parameter = |place: u8| self.scope.parameters[usize::from(place)].1;
+        let unit = unit_of(self.graph, node, parameter).map_err(|message| Mistake::new(at, message))?;
+        self.graph.add(node, unit).ok_or_else(|| {
+            let most = Graph::MOST;
+            Mistake::new(
+                at,
+                format!("an effect must have at most {most} different operations"),
+            )
+        })
     }
 
     fn sum(&mut self) -> Result<Id, Mistake> {
@@ -113,9 +137,10 @@ impl Parser<'_, '_> {
                 Token::Sign("-") => Binary::Subtract,
                 _ => return Ok(left),
             };
+            let at = self.at;
             self.advance()?;
             let right = self.product()?;
-            left = self.add(Node::Binary(operation, left, right))?;
+            left = self.add(at, Node::Binary(operation, left, right))?;
         }
     }
 
@@ -127,27 +152,31 @@ impl Parser<'_, '_> {
                 Token::Sign("/") => Binary::Divide,
                 _ => return Ok(left),
             };
+            let at = self.at;
             self.advance()?;
             let right = self.power()?;
-            left = self.add(Node::Binary(operation, left, right))?;
+            left = self.add(at, Node::Binary(operation, left, right))?;
         }
     }
 
     fn power(&mut self) -> Result<Id, Mistake> {
         self.depth += 1;
         if self.depth > DEEPEST {
-            return Err(self.wrong(format!("nested deeper than {DEEPEST} levels")));
+            let message = format!("parentheses, signs and powers must be nested at most {DEEPEST} deep");
+            return Err(self.wrong(message));
         }
+        let mut at = self.at;
         let result = if self.token == Token::Sign("-") {
             self.advance()?;
             let positive = self.power()?;
-            self.add(Node::Unary(Unary::Negate, positive))?
+            self.add(at, Node::Unary(Unary::Negate, positive))?
         } else {
             let base = self.atom()?;
             if self.token == Token::Sign("^") {
+                at = self.at;
                 self.advance()?;
                 let exponent = self.power()?;
-                self.add(Node::Binary(Binary::Power, base, exponent))?
+                self.add(at, Node::Binary(Binary::Power, base, exponent))?
             } else {
                 base
             }
@@ -159,25 +188,34 @@ impl Parser<'_, '_> {
     fn atom(&mut self) -> Result<Id, Mistake> {
         match self.token {
             Token::Number(value) => {
+                let at = self.at;
                 self.advance()?;
-                self.add(Node::Number(value.to_bits()))
+                self.add(at, Node::Number(value.to_bits()))
             }
             Token::Name(name) => self.name(name),
             Token::Sign("(") => {
                 self.advance()?;
                 let inside = self.sum()?;
-                self.expect(")")?;
+                self.expect(")", "to close \"(\"")?;
                 Ok(inside)
             }
-            found => Err(self.wrong(format!("expected a number, a name or \"(\", found {found}"))),
+            found => {
+                let hint = match found {
+                    Token::Sign("*") => "; a power is written with ^",
+                    _ => "",
+                };
+                let message = format!("expected a number, a name or \"(\", found {found}{hint}");
+                Err(self.wrong(message))
+            }
         }
     }
 
-    fn expect(&mut self, sign: &str) -> Result<(), Mistake> {
+    /// Takes a sign that must stand here; `why` is for the message.
+    fn expect(&mut self, sign: &str, why: &str) -> Result<(), Mistake> {
         if self.token == Token::Sign(sign) {
             return self.advance();
         }
-        Err(self.wrong(format!("expected \"{sign}\", found {}", self.token)))
+        Err(self.wrong(format!("expected \"{sign}\" {why}, found {}", self.token)))
     }
 
     fn name(&mut self, name: &str) -> Result<Id, Mistake> {
@@ -187,19 +225,19 @@ impl Parser<'_, '_> {
         if let Some((_, operation)) = UNARY.iter().find(|f| f.0 == name && called) {
             self.advance()?;
             let argument = self.sum()?;
-            self.expect(")")?;
-            return self.add(Node::Unary(*operation, argument));
+            self.expect(")", &format!("after the argument of {name}"))?;
+            return self.add(at, Node::Unary(*operation, argument));
         }
         if let Some((_, operation)) = BINARY.iter().find(|f| f.0 == name && called) {
             self.advance()?;
             let first = self.sum()?;
-            self.expect(",")?;
+            self.expect(",", &format!("and a second argument of {name}"))?;
             let second = self.sum()?;
-            self.expect(")")?;
-            return self.add(Node::Binary(*operation, first, second));
+            self.expect(")", &format!("after both arguments of {name}"))?;
+            return self.add(at, Node::Binary(*operation, first, second));
         }
         if name == "if" && called {
-            return self.choice();
+            return self.choice(at);
         }
         let mistake = |message: String| Err(Mistake::new(at, message));
         if reserved().any(|word| word == name && word != "pi") {
@@ -214,51 +252,77 @@ impl Parser<'_, '_> {
             });
         }
         if name == "pi" {
-            return self.add(Node::Number(core::f64::consts::PI.to_bits()));
+            return self.add(at, Node::Number(core::f64::consts::PI.to_bits()));
         }
-        if let Some(&id) = self.scope.definitions.get(name) {
-            return Ok(id);
+        if let Some(definition) = self.scope.definitions.get(name) {
+            let hidden = definition
+                .uses
+                .iter()
+                .find(|&v| !self.scope.variables.contains(v));
+            return match hidden {
+                None => Ok(definition.result),
+                Some(variable) => mistake(format!(
+                    "definition {name} cannot stand here: {}",
+                    self.hidden(variable)
+                )),
+            };
         }
-        if let Some(place) = self.scope.parameters.iter().position(|p| p == name) {
-            return self.add(Node::Parameter(place as u8));
+        if let Some(place) = self.scope.parameters.iter().position(|(p, _)| p == name) {
+            return self.add(at, Node::Parameter(place as u8));
         }
         match Variable::ALL.into_iter().find(|v| v.name() == name) {
-            Some(variable) if self.scope.variables.contains(variable) => self.add(Node::Variable(variable)),
-            Some(_) => mistake(format!(
-                "{name} is not known {}; expected one of {}",
-                self.scope.place,
-                self.names().join(", ")
-            )),
+            Some(variable) if self.scope.variables.contains(variable) => {
+                self.add(at, Node::Variable(variable))
+            }
+            Some(variable) => mistake(self.hidden(variable)),
             None => mistake(unknown_word("name", name, self.names())),
         }
     }
 
+    /// That a variable is not seen here, but where.
+    fn hidden(&self, variable: Variable) -> String {
+        let hooks = Hook::ALL.iter().filter(|hook| hook.sees().contains(variable));
+        let hooks: Vec<&str> = hooks.map(|hook| hook.name()).collect();
+        format!(
+            "{} is not seen by {}, only by {}; known here are {}",
+            variable.name(),
+            self.scope.place,
+            hooks.join(", "),
+            self.names().join(", ")
+        )
+    }
+
     fn known(&self, name: &str) -> bool {
         self.scope.definitions.contains_key(name)
-            || self.scope.parameters.iter().any(|p| p == name)
+            || self.scope.parameters.iter().any(|(p, _)| p == name)
             || Variable::ALL.iter().any(|v| v.name() == name)
     }
 
     /// What a name may be.
     fn names(&self) -> Vec<&str> {
         let scope = self.scope;
-        let own = scope.parameters.iter().chain(scope.definitions.keys());
+        let own = scope
+            .parameters
+            .iter()
+            .map(|(p, _)| p)
+            .chain(scope.definitions.keys());
         let mut names: Vec<&str> = own.map(String::as_str).collect();
         names.extend(scope.variables.iter().map(|variable| variable.name()));
         names
     }
 
-    /// `(left < right, then, else)`
-    fn choice(&mut self) -> Result<Id, Mistake> {
+    /// `(left < right, then, else)` of an `if` that stands at a place.
+    fn choice(&mut self, at: usize) -> Result<Id, Mistake> {
         self.advance()?;
         let left = self.sum()?;
         let Token::Sign(sign @ ("<" | "<=" | ">" | ">=" | "==" | "!=")) = self.token else {
             let message = format!(
-                "expected a comparison (<, <=, >, >=, ==, !=), found {}",
+                "expected a comparison (<, <=, >, >=, == or !=) as the condition of if, found {}",
                 self.token
             );
             return Err(self.wrong(message));
         };
+        let at_sign = self.at;
         self.advance()?;
         let right = self.sum()?;
         let condition = match sign {
@@ -269,12 +333,12 @@ impl Parser<'_, '_> {
             "==" => Node::Binary(Binary::Equal, left, right),
             _ => Node::Binary(Binary::Unequal, left, right),
         };
-        let condition = self.add(condition)?;
-        self.expect(",")?;
+        let condition = self.add(at_sign, condition)?;
+        self.expect(",", "after the condition of if")?;
         let then = self.sum()?;
-        self.expect(",")?;
+        self.expect(",", "and the value of if where its condition does not hold")?;
         let otherwise = self.sum()?;
-        self.expect(")")?;
-        self.add(Node::If(condition, then, otherwise))
+        self.expect(")", "after the values of if")?;
+        self.add(at, Node::If(condition, then, otherwise))
     }
 }

@@ -1,5 +1,7 @@
 //! Make a formula ready: what is the same everywhere is computed once, the rest point by point.
 
+use crate::arithmetic::{binary, choose, unary};
+use crate::block::Place;
 use crate::graph::{Binary, Graph, Id, Node, Unary};
 use crate::variable::{Variable, Variables};
 
@@ -16,10 +18,42 @@ pub(crate) enum Operand {
 
 /// An operation at every point of a block.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Operation {
-    Unary(Unary, Operand),
-    Binary(Binary, Operand, Operand),
-    If(Operand, Operand, Operand),
+pub(crate) enum Operation<T> {
+    Unary(Unary, T),
+    Binary(Binary, T, T),
+    If(T, T, T),
+    /// One of the four operations of arithmetic, and what is made of its result at once.
+    Pair(Binary, T, T, Then<T>),
+}
+
+/// What is made of a result.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Then<T> {
+    Exp,
+    /// An operation of arithmetic, or a power, on the result and another.
+    Left(Binary, T),
+    /// An operation of arithmetic on another and the result.
+    Right(Binary, T),
+}
+
+impl<T> Operation<T> {
+    /// The same operation on what stands for its arguments.
+    fn map<U>(self, mut f: impl FnMut(T) -> U) -> Operation<U> {
+        match self {
+            Operation::Unary(operation, a) => Operation::Unary(operation, f(a)),
+            Operation::Binary(operation, a, b) => Operation::Binary(operation, f(a), f(b)),
+            Operation::If(c, a, b) => Operation::If(f(c), f(a), f(b)),
+            Operation::Pair(operation, a, b, then) => {
+                let (a, b) = (f(a), f(b));
+                let then = match then {
+                    Then::Exp => Then::Exp,
+                    Then::Left(operation, other) => Then::Left(operation, f(other)),
+                    Then::Right(operation, other) => Then::Right(operation, f(other)),
+                };
+                Operation::Pair(operation, a, b, then)
+            }
+        }
+    }
 }
 
 /// A formula ready to be evaluated, for one choice of what differs from point to point.
@@ -27,10 +61,17 @@ pub(crate) enum Operation {
 pub struct Program {
     /// What is the same at all points; arguments are positions among themselves.
     scalars: Vec<Node>,
-    /// What is computed at every point, with the register that takes the result.
-    pub(crate) operations: Vec<(Operation, u16)>,
+    /// What is computed at every point, with the register that takes it, but for the last.
+    pub(crate) operations: Vec<(Operation<Place>, Place)>,
+    /// The operation that gives the result, if one at every point does.
+    pub(crate) last: Option<Operation<Place>>,
+    /// How many registers there are.
     pub(crate) registers: usize,
-    pub(crate) result: Operand,
+    /// The scalars that operations at points work on.
+    pub(crate) constants: Vec<u16>,
+    pub(crate) result: Place,
+    /// The result among the scalars, where it is the same at all points.
+    scalar: Option<u16>,
     uses: Variables,
     local: Variables,
     parameters: Vec<u8>,
@@ -58,11 +99,41 @@ impl Program {
             compiler.places[usize::from(id.0)] = Some(place);
             compiler.registers.release(graph, id, &compiler.places);
         }
+        let result_operand = compiler.of(result);
+        let registers = compiler.registers.most;
+        let mut constants = Vec::new();
+        let mut place = |operand: Operand| match operand {
+            Operand::Column(variable) => Place::column(variable),
+            Operand::Register(register) => Place::register(usize::from(register)),
+            Operand::Scalar(scalar) => {
+                let known = constants.iter().position(|&s| s == scalar);
+                let constant = known.unwrap_or_else(|| {
+                    constants.push(scalar);
+                    constants.len() - 1
+                });
+                Place::constant(registers, constant)
+            }
+        };
+        let mut operations: Vec<(Operation<Place>, Place)> = Vec::with_capacity(compiler.operations.len());
+        for (operation, register) in compiler.operations {
+            operations.push((operation.map(&mut place), Place::register(usize::from(register))));
+        }
+        let last = match result_operand {
+            Operand::Register(_) => operations.pop().map(|(operation, _)| operation),
+            Operand::Scalar(_) | Operand::Column(_) => None,
+        };
+        let scalar = match result_operand {
+            Operand::Scalar(scalar) => Some(scalar),
+            Operand::Column(_) | Operand::Register(_) => None,
+        };
         Self {
-            result: compiler.places[usize::from(result.0)].unwrap_or(Operand::Scalar(0)),
+            result: place(result_operand),
+            last,
+            scalar,
+            constants,
             scalars: compiler.scalars,
-            operations: compiler.operations,
-            registers: compiler.registers.most,
+            operations,
+            registers,
             uses: graph.variables(result),
             local,
             parameters,
@@ -111,20 +182,11 @@ impl Program {
                 Node::Parameter(place) => parameters[usize::from(place)],
                 Node::Unary(operation, a) => unary(operation, of(a)),
                 Node::Binary(operation, a, b) => binary(operation, of(a), of(b)),
-                Node::If(condition, a, b) => {
-                    if of(condition).abs() > 0.0 {
-                        of(a)
-                    } else {
-                        of(b)
-                    }
-                }
+                Node::If(condition, a, b) => choose(of(condition), of(a), of(b)),
             };
             scalars.push(value);
         }
-        match self.result {
-            Operand::Scalar(place) => Some(scalars[usize::from(place)]),
-            Operand::Column(_) | Operand::Register(_) => None,
-        }
+        self.scalar.map(|place| scalars[usize::from(place)])
     }
 }
 
@@ -136,55 +198,29 @@ fn has_kink(node: Node) -> bool {
     )
 }
 
-/// The value of an operation at one point, exact to the last bits everywhere.
-pub(crate) fn unary(operation: Unary, a: f64) -> f64 {
-    match operation {
-        Unary::Negate => -a,
-        Unary::Exp => libm::exp(a),
-        Unary::Log => libm::log(a),
-        Unary::Sqrt => a.sqrt(),
-        Unary::Tanh => libm::tanh(a),
-        Unary::Abs => a.abs(),
-        Unary::Sin => libm::sin(a),
-        Unary::Cos => libm::cos(a),
-        Unary::Tan => libm::tan(a),
+/// The powers that formulas use most need no logarithm: x^2 is x x, and x^0.5 the square root.
+fn without_power(graph: &Graph, node: Node) -> Node {
+    let Node::Binary(Binary::Power, a, b) = node else {
+        return node;
+    };
+    match graph.node(b) {
+        Node::Number(bits) if bits == 2.0_f64.to_bits() => Node::Binary(Binary::Multiply, a, a),
+        Node::Number(bits) if bits == 0.5_f64.to_bits() => Node::Unary(Unary::Sqrt, a),
+        _ => node,
     }
 }
 
-/// The same for two arguments. A minimum or maximum of what is no number is no number.
-#[inline(always)]
-pub(crate) fn binary(operation: Binary, a: f64, b: f64) -> f64 {
-    let truth = |holds: bool| if holds { 1.0 } else { 0.0 };
-    match operation {
-        Binary::Add => a + b,
-        Binary::Subtract => a - b,
-        Binary::Multiply => a * b,
-        Binary::Divide => a / b,
-        Binary::Power => libm::pow(a, b),
-        Binary::Min => {
-            if a < b || a.is_nan() {
-                a
-            } else {
-                b
-            }
-        }
-        Binary::Max => {
-            if a > b || a.is_nan() {
-                a
-            } else {
-                b
-            }
-        }
-        Binary::Less => truth(a < b),
-        Binary::LessOrEqual => truth(a <= b),
-        Binary::Equal => truth(a >= b && a <= b),
-        Binary::Unequal => truth(!(a >= b && a <= b)),
-    }
+/// Whether an operation is one of the four of arithmetic.
+fn is_arithmetic(operation: Binary) -> bool {
+    matches!(
+        operation,
+        Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide
+    )
 }
 
 struct Compiler {
     scalars: Vec<Node>,
-    operations: Vec<(Operation, u16)>,
+    operations: Vec<(Operation<Operand>, u16)>,
     /// Where the value of each operation of the graph stands.
     places: Vec<Option<Operand>>,
     registers: Registers,
@@ -197,7 +233,7 @@ impl Compiler {
     }
 
     fn place(&mut self, graph: &Graph, id: Id, local: Variables) -> Operand {
-        let node = graph.node(id);
+        let node = without_power(graph, graph.node(id));
         if let Node::Variable(variable) = node
             && local.contains(variable)
         {
@@ -224,21 +260,64 @@ impl Compiler {
         }
         let operation = match node {
             Node::Unary(operation, a) => Operation::Unary(operation, self.of(a)),
-            Node::Binary(Binary::Power, a, b) => match graph.node(b) {
-                // the powers that formulas use most need no logarithm
-                Node::Number(bits) if bits == 2.0_f64.to_bits() => {
-                    Operation::Binary(Binary::Multiply, self.of(a), self.of(a))
-                }
-                Node::Number(bits) if bits == 0.5_f64.to_bits() => Operation::Unary(Unary::Sqrt, self.of(a)),
-                _ => Operation::Binary(Binary::Power, self.of(a), self.of(b)),
-            },
             Node::Binary(operation, a, b) => Operation::Binary(operation, self.of(a), self.of(b)),
             Node::If(c, a, b) => Operation::If(self.of(c), self.of(a), self.of(b)),
             Node::Number(_) | Node::Variable(_) | Node::Parameter(_) => return Operand::Scalar(0),
         };
+        let operation = self.without_sign(node, operation);
+        let operation = self.paired(node, operation);
         let register = self.registers.take();
         self.operations.push((operation, register));
         Operand::Register(register)
+    }
+
+    /// (−x) s or (−x) / s with what is the same everywhere as x (−s) or x / (−s): the same bits, and no loop for the sign.
+    fn without_sign(&mut self, node: Node, operation: Operation<Operand>) -> Operation<Operand> {
+        if let Node::Binary(_, x, _) = node
+            && let Operation::Binary(
+                product @ (Binary::Multiply | Binary::Divide),
+                negated,
+                Operand::Scalar(s),
+            ) = operation
+            && let Some(&(Operation::Unary(Unary::Negate, positive), register)) = self.operations.last()
+            && negated == Operand::Register(register)
+            && self.registers.uses[usize::from(x.0)] == 1
+        {
+            self.operations.pop();
+            self.scalars.push(Node::Unary(Unary::Negate, Id(s)));
+            let negative = Operand::Scalar((self.scalars.len() - 1) as u16);
+            return Operation::Binary(product, positive, negative);
+        }
+        operation
+    }
+
+    /// The operation together with the one before it, where that gives an argument that nothing else needs: less to read and
+    /// write, and to dispatch.
+    fn paired(&mut self, node: Node, operation: Operation<Operand>) -> Operation<Operand> {
+        let Some(&(Operation::Binary(first, a, b), register)) = self.operations.last() else {
+            return operation;
+        };
+        let is_first = |operand: Operand| operand == Operand::Register(register);
+        let then = match operation {
+            Operation::Unary(Unary::Exp, x) if is_first(x) => Then::Exp,
+            Operation::Binary(second, x, y) if is_first(x) && !is_first(y) => {
+                if !(is_arithmetic(second) || second == Binary::Power) {
+                    return operation;
+                }
+                Then::Left(second, y)
+            }
+            Operation::Binary(second, x, y) if is_first(y) && !is_first(x) && is_arithmetic(second) => {
+                Then::Right(second, x)
+            }
+            _ => return operation,
+        };
+        let mut arguments = node.arguments();
+        let alone = arguments.any(|id| is_first(self.of(id)) && self.registers.uses[usize::from(id.0)] == 1);
+        if !(alone && is_arithmetic(first)) {
+            return operation;
+        }
+        self.operations.pop();
+        Operation::Pair(first, a, b, then)
     }
 }
 

@@ -72,11 +72,19 @@ impl<'a> Tokens<'a> {
         let length_while = |accept: fn(char) -> bool| rest.find(|c| !accept(c)).unwrap_or(rest.len());
         let (token, length) = if first.is_ascii_digit() || first == '.' {
             let length = number_length(rest);
-            let value: f64 = rest[..length]
-                .parse()
-                .map_err(|_| self.wrong(format!("\"{}\" is no number", &rest[..length])))?;
+            let value: f64 = rest[..length].parse().map_err(|_| {
+                self.wrong(format!(
+                    "\"{}\" is no number: expected digits before or after the point",
+                    &rest[..length]
+                ))
+            })?;
             if !value.is_finite() {
-                return Err(self.wrong(format!("{} is too large a number", &rest[..length])));
+                return Err(self.wrong(format!("number {} must be at most 1.8e308", &rest[..length])));
+            }
+            let mantissa = rest[..length].split(['e', 'E']).next().unwrap_or_default();
+            if value <= 0.0 && mantissa.bytes().any(|digit| (b'1'..=b'9').contains(&digit)) {
+                let message = format!("number {} is nearer to 0 than 5e-324", &rest[..length]);
+                return Err(self.wrong(message));
             }
             (Token::Number(value), length)
         } else if first.is_ascii_alphabetic() || first == '_' {
@@ -94,7 +102,7 @@ impl<'a> Tokens<'a> {
             (Token::Sign(&rest[..1]), 1)
         } else {
             return Err(self.wrong(format!(
-                "{first:?} means nothing in a formula: expected numbers, names, + - * / ^ ( ) and comparisons"
+                "{first:?} means nothing in a formula: expected a number, a name, + - * / ^ ( ) , or a comparison"
             )));
         };
         self.read = self.begin + length;

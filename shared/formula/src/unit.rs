@@ -11,6 +11,9 @@ pub struct Unit {
 /// The largest power that is kept track of, in halves.
 const MOST: i16 = 64;
 
+/// The highest power that a text may ask for.
+const HIGHEST: i16 = 9;
+
 const KNOWN: [(&str, [i16; 4]); 11] = [
     ("1", [0, 0, 0, 0]),
     ("kg", [1, 0, 0, 0]),
@@ -29,6 +32,9 @@ impl Unit {
     /// A number without unit.
     pub const ONE: Unit = Unit { halves: [0; 4] };
 
+    /// A degree.
+    pub(crate) const DEGREE: Unit = Unit { halves: [0, 0, 0, 2] };
+
     /// Reads a unit: names of SI units, `^` with a whole power, products by spaces, quotients by `/` (which takes the next name
     /// alone): `N s/m`, `1/m`, `kg/m^3`.
     ///
@@ -37,7 +43,14 @@ impl Unit {
     pub fn parse(text: &str) -> Result<Unit, String> {
         let unknown = |word: &str| {
             let known = KNOWN.map(|(name, _)| name).join(", ");
-            format!("unknown unit \"{word}\" in \"{text}\"; SI units are {known}, with ^, / and spaces")
+            let within = if word == text {
+                String::new()
+            } else {
+                format!(" in \"{text}\"")
+            };
+            let known =
+                format!("SI units without prefixes are {known}, with / and spaces and ^ up to {HIGHEST}");
+            format!("unknown unit \"{word}\"{within}; {known}")
         };
         let mut unit = Unit::ONE;
         let mut any = false;
@@ -47,7 +60,7 @@ impl Unit {
                 let known = KNOWN.iter().find(|(known, _)| *known == name);
                 let (_, dimension) = known.ok_or_else(|| unknown(factor))?;
                 let power: i16 = power.parse().map_err(|_| unknown(factor))?;
-                if power.abs() > 9 {
+                if power.abs() > HIGHEST {
                     return Err(unknown(factor));
                 }
                 let power = if place == 0 { power } else { -power };

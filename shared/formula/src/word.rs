@@ -5,8 +5,13 @@ pub fn unknown_word<'a>(what: &str, unknown: &str, known: impl IntoIterator<Item
     let known: Vec<&str> = known.into_iter().collect();
     let nearest = known
         .iter()
-        .map(|&k| (strsim::damerau_levenshtein(unknown, k), k))
-        .filter(|&(distance, k)| distance <= 2.max(k.len() / 2))
+        .map(|&k| {
+            (
+                strsim::damerau_levenshtein(&unknown.to_lowercase(), &k.to_lowercase()),
+                k,
+            )
+        })
+        .filter(|&(distance, k)| distance <= unknown.len().min(k.len()) / 2)
         .min();
     match nearest {
         Some((_, near)) => format!("unknown {what} \"{unknown}\"; the nearest known is \"{near}\""),

@@ -3,3 +3,6 @@
 
 mod catalogue;
 mod evaluation;
+mod fuzzed;
+mod generate;
+mod messages;

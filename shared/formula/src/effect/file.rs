@@ -1,15 +1,15 @@
 //! The keys and tables of an effect file.
 
-use std::collections::BTreeMap;
-use std::ops::Range;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Deserialize;
 use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
-use super::{Effect, EffectError, Parameter, check_sight, check_units, names};
-use crate::graph::{Graph, Id};
+use super::{Effect, EffectError, Parameter, names, place};
+use crate::graph::{Graph, Node};
 use crate::hook::Hook;
-use crate::parse::{Scope, parse};
+use crate::parse::{Definition, Scope, parse};
 use crate::token::{Mistake, Token, Tokens};
 use crate::unit::Unit;
 use crate::variable::{Variable, Variables};
@@ -19,6 +19,9 @@ use crate::word::unknown_word;
 const MOST_PARAMETERS: usize = 16;
 /// Most definitions of an effect.
 const MOST_DEFINITIONS: usize = 32;
+/// Deepest nesting of tables and arrays: a prior's arguments need 5. What reads TOML recurses, and a stranger's file must
+/// not exhaust the stack.
+const DEEPEST: usize = 8;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -48,10 +51,10 @@ struct RawEffect {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawParameter {
-    unit: String,
-    neutral: Option<f64>,
-    typical: Option<f64>,
-    prior: toml::Value,
+    unit: Spanned<String>,
+    neutral: Option<Spanned<f64>>,
+    typical: Option<Spanned<f64>>,
+    prior: Spanned<toml::Value>,
 }
 
 impl RawEffect {
@@ -77,30 +80,35 @@ impl RawEffect {
 /// Reads an effect file.
 pub(super) fn read(text: &str) -> Result<Effect, EffectError> {
     if text.len() > Effect::LONGEST {
-        let message = format!(
-            "an effect file of {} bytes must have at most {}",
-            text.len(),
-            Effect::LONGEST
-        );
-        return Err(whole(message));
+        let (length, most) = (text.len(), Effect::LONGEST);
+        return Err(whole(format!(
+            "an effect file of {length} bytes must have at most {most}"
+        )));
     }
-    let raw: RawEffect = toml::from_str(text).map_err(|e| toml_error(text, &e))?;
-    let wrong = |span: Range<usize>, message: String| at(text, span.start, None, message);
-    names::check_form("name", raw.name.get_ref()).map_err(|e| wrong(raw.name.span(), e))?;
+    let junk = |c: char| c == '\u{fffd}' || c.is_control() && !matches!(c, '\t' | '\n' | '\r');
+    if let Some((byte, found)) = text.char_indices().find(|&(_, c)| junk(c)) {
+        return Err(at(
+            text,
+            byte,
+            format!("{found:?} must not stand in a text file in UTF-8"),
+        ));
+    }
+    let raw = tables(text)?;
+    let wrong = |byte: usize| move |message: String| at(text, byte, message);
+    names::check_form("name", raw.name.get_ref()).map_err(wrong(raw.name.span().start))?;
     let mechanism = match &raw.mechanism {
         None => None,
-        Some(name) => Some(names::mechanism(name.get_ref()).map_err(|e| wrong(name.span(), e))?),
+        Some(name) => Some(names::mechanism(name.get_ref()).map_err(wrong(name.span().start))?),
     };
     if mechanism.is_none() && Hook::ALL.iter().all(|&h| raw.formula(h).is_none()) {
         let hooks = Hook::ALL.map(Hook::name).join(", ");
         return Err(whole(format!(
-            "the effect has no formula; it may replace {hooks}"
+            "the effect has no formula: expected one for {hooks}"
         )));
     }
-    let (parameters, units) = parameters(text, &raw)?;
-    let parameter_names: Vec<String> = parameters.iter().map(|p| p.name.clone()).collect();
+    let parameters = parameters(text, &raw)?;
     let mut graph = Graph::default();
-    let definitions = define(text, &raw, &parameter_names, &mut graph)?;
+    let definitions = define(text, &raw, &parameters, &mut graph)?;
     let mut formulas = Vec::new();
     for hook in Hook::ALL {
         let Some(formula) = raw.formula(hook) else {
@@ -108,128 +116,212 @@ pub(super) fn read(text: &str) -> Result<Effect, EffectError> {
         };
         let scope = Scope {
             variables: hook.sees(),
-            parameters: &parameter_names,
+            parameters: &parameters,
             definitions: &definitions,
-            place: &format!("in {}", hook.name()),
+            place: hook.name(),
         };
-        let result =
-            parse(formula.get_ref(), &scope, &mut graph).map_err(|m| in_formula(text, formula, m))?;
-        let first = |message: String| in_formula(text, formula, Mistake::new(0, message));
-        check_sight(&graph, hook, result).map_err(first)?;
-        check_units(&graph, hook, result, &units).map_err(first)?;
+        let in_formula = |mistake: Mistake| in_formula(text, formula, mistake);
+        let result = parse(formula.get_ref(), &scope, &mut graph).map_err(in_formula)?;
+        let target = hook.target();
+        if let (Some(found), Some(expected)) = (graph.unit(result), target.unit())
+            && found != expected
+        {
+            let message = format!(
+                "{} must be in {}, not in {found}",
+                hook.name(),
+                target.unit_name()
+            );
+            return Err(in_formula(Mistake::new(0, message)));
+        }
         formulas.push((hook, result));
     }
-    let effect = Effect {
-        name: raw.name.get_ref().clone(),
-        summary: raw.summary,
-        source: raw.source,
-        mechanism,
-        parameters,
-        text: text.to_owned(),
-        formulas,
-        graph,
+    let used = |node: Node| {
+        let id = graph.find(node);
+        id.is_some_and(|id| {
+            formulas
+                .iter()
+                .any(|(_, result)| graph.behind(*result).contains(&id))
+        })
     };
-    check_used(text, &effect, &raw.definitions, &definitions)?;
-    Ok(effect)
-}
-
-fn parameters(text: &str, raw: &RawEffect) -> Result<(Vec<Parameter>, Vec<Unit>), EffectError> {
-    let count = raw.parameters.len();
-    if count > MOST_PARAMETERS {
-        return Err(whole(format!(
-            "{count} parameters must be at most {MOST_PARAMETERS}"
-        )));
+    check_definitions_used(text, &raw)?;
+    for (number, (name, _)) in parameters.iter().enumerate() {
+        if mechanism.is_none() && !used(Node::Parameter(number as u8)) {
+            let message = format!("parameter {name} is used by no formula");
+            return Err(at(text, raw.parameters[name].span().start, message));
+        }
     }
-    let mut entries: Vec<_> = raw.parameters.iter().collect();
-    entries.sort_by_key(|(_, entry)| entry.span().start);
-    let (mut parameters, mut units) = (Vec::new(), Vec::new());
-    for (name, entry) in entries {
-        let wrong = |message: String| at(text, entry.span().start, None, message);
-        names::check_free("parameter", name).map_err(wrong)?;
+    let finished = |(name, _): &(String, Unit)| {
+        let entry = &raw.parameters[name];
         let RawParameter {
             unit,
             neutral,
             typical,
             prior,
         } = entry.get_ref();
-        units.push(Unit::parse(unit).map_err(|e| wrong(format!("parameter {name}: {e}")))?);
-        for (key, value) in [("neutral", neutral), ("typical", typical)] {
-            if let Some(value) = value.filter(|v| !v.is_finite()) {
-                return Err(wrong(format!(
-                    "parameter {name}: {key} = {value} {unit} must be finite"
-                )));
-            }
-        }
-        if !(prior.is_table() || prior.is_float() || prior.is_integer()) {
-            let message =
-                format!("parameter {name}: prior = {prior} must be a number or a table with a distribution");
-            return Err(wrong(message));
-        }
-        parameters.push(Parameter {
+        Parameter {
             name: name.clone(),
-            unit: unit.clone(),
-            neutral: *neutral,
-            typical: *typical,
-            prior: prior.clone(),
-            line: line(text, entry.span().start),
-        });
-    }
-    if !parameters.is_empty() && parameters.iter().all(|p| p.neutral.is_none()) {
-        let message = "no parameter has a neutral value: one must be the strength, at whose neutral value the effect is absent";
-        return Err(whole(message.to_owned()));
-    }
-    Ok((parameters, units))
+            unit: unit.get_ref().clone(),
+            neutral: neutral.as_ref().map(|value| *value.get_ref()),
+            typical: typical.as_ref().map(|value| *value.get_ref()),
+            prior: prior.get_ref().clone(),
+            line: place::line_and_column(text, entry.span().start).0,
+        }
+    };
+    Ok(Effect {
+        parameters: parameters.iter().map(finished).collect(),
+        name: raw.name.into_inner(),
+        summary: raw.summary,
+        source: raw.source,
+        mechanism,
+        text: text.to_owned(),
+        formulas,
+        graph,
+    })
 }
 
-/// The operations behind the definitions, each after those it uses.
+/// The file's keys and tables.
+fn tables(text: &str) -> Result<RawEffect, EffectError> {
+    let table = DeTable::parse(text).map_err(|e| toml_error(text, &e))?;
+    let mut waiting: Vec<(&Spanned<DeValue>, usize)> = table.get_ref().values().map(|v| (v, 1)).collect();
+    while let Some((value, depth)) = waiting.pop() {
+        if depth > DEEPEST {
+            let message = format!("tables and arrays must be nested at most {DEEPEST} deep");
+            return Err(at(text, value.span().start, message));
+        }
+        match value.get_ref() {
+            DeValue::Table(table) => waiting.extend(table.values().map(|v| (v, depth + 1))),
+            DeValue::Array(array) => waiting.extend(array.iter().map(|v| (v, depth + 1))),
+            _ => {}
+        }
+    }
+    RawEffect::deserialize(toml::Deserializer::from(table)).map_err(|e| toml_error(text, &e))
+}
+
+/// Checks the parameters; gives their names and units in the order of the file.
+fn parameters(text: &str, raw: &RawEffect) -> Result<Vec<(String, Unit)>, EffectError> {
+    let mut entries: Vec<_> = raw.parameters.iter().collect();
+    entries.sort_by_key(|(_, entry)| entry.span().start);
+    if let Some((_, first_too_many)) = entries.get(MOST_PARAMETERS) {
+        let message = format!("{} parameters, must be at most {MOST_PARAMETERS}", entries.len());
+        return Err(at(text, first_too_many.span().start, message));
+    }
+    let mut parameters = Vec::new();
+    for &(name, entry) in &entries {
+        names::check_free("parameter", name).map_err(|m| at(text, entry.span().start, m))?;
+        let parameter = entry.get_ref();
+        let unit = Unit::parse(parameter.unit.get_ref()).map_err(|m| {
+            at(
+                text,
+                parameter.unit.span().start,
+                format!("parameter {name}: {m}"),
+            )
+        })?;
+        for (key, value) in [("neutral", &parameter.neutral), ("typical", &parameter.typical)] {
+            if let Some(value) = value.as_ref().filter(|v| !v.get_ref().is_finite()) {
+                let unit = Some(parameter.unit.get_ref().as_str()).filter(|&unit| unit != "1");
+                let number = format!("{} {}", value.get_ref(), unit.unwrap_or_default());
+                let message = format!("parameter {name}: {key} = {} must be finite", number.trim_end());
+                return Err(at(text, value.span().start, message));
+            }
+        }
+        let prior = parameter.prior.get_ref();
+        let wrong = match prior {
+            toml::Value::Table(_) | toml::Value::Integer(_) => None,
+            toml::Value::Float(value) if value.is_finite() => None,
+            toml::Value::Float(value) => Some(format!("{value}")),
+            other => Some(format!("a value of type {}", other.type_str())),
+        };
+        if let Some(wrong) = wrong {
+            let message = format!(
+                "parameter {name}: prior is {wrong}, must be a finite number or a table such as \
+                 {{ uniform = [0, 1] }}"
+            );
+            return Err(at(text, parameter.prior.span().start, message));
+        }
+        parameters.push((name.clone(), unit));
+    }
+    if let Some((_, first)) = entries.first()
+        && entries.iter().all(|(_, entry)| entry.get_ref().neutral.is_none())
+    {
+        let message = "no parameter has a key neutral: expected it for the effect's strength, with the value at which \
+                       the effect is absent";
+        return Err(at(text, first.span().start, message.to_owned()));
+    }
+    Ok(parameters)
+}
+
+/// The operations behind the definitions.
 fn define(
     text: &str,
     raw: &RawEffect,
-    parameters: &[String],
+    parameters: &[(String, Unit)],
     graph: &mut Graph,
-) -> Result<BTreeMap<String, Id>, EffectError> {
-    let count = raw.definitions.len();
-    if count > MOST_DEFINITIONS {
-        return Err(whole(format!(
-            "{count} definitions must be at most {MOST_DEFINITIONS}"
-        )));
+) -> Result<BTreeMap<String, Definition>, EffectError> {
+    let mut entries: Vec<_> = raw.definitions.iter().collect();
+    entries.sort_by_key(|(_, formula)| formula.span().start);
+    if let Some((_, first_too_many)) = entries.get(MOST_DEFINITIONS) {
+        let message = format!(
+            "{} definitions, must be at most {MOST_DEFINITIONS}",
+            entries.len()
+        );
+        return Err(at(text, first_too_many.span().start, message));
     }
-    let mut waiting: BTreeMap<&str, &Spanned<String>> = BTreeMap::new();
-    for (name, formula) in &raw.definitions {
-        let wrong = |message: String| at(text, formula.span().start, None, message);
+    for &(name, formula) in &entries {
+        let wrong = |message: String| at(text, formula.span().start, message);
         names::check_free("definition", name).map_err(wrong)?;
-        if parameters.contains(name) {
-            return Err(wrong(format!(
-                "definition \"{name}\" has the name of a parameter"
-            )));
+        if raw.parameters.contains_key(name) {
+            return Err(wrong(format!("definition {name} has the name of a parameter")));
         }
-        waiting.insert(name, formula);
     }
     let mut known = BTreeMap::new();
-    while let Some((&first, &its_formula)) = waiting.first_key_value() {
+    let mut waiting = entries;
+    while !waiting.is_empty() {
+        let is_waiting = |name: &str| waiting.iter().any(|(waiting, _)| *waiting == name);
+        let rests_on = |formula| names_in(formula).find(|name| is_waiting(name));
         let ready = waiting
             .iter()
-            .find(|(_, formula)| !names_in(formula.get_ref()).any(|name| waiting.contains_key(name)));
-        let Some((&name, &formula)) = ready else {
-            let message = format!("definition {first} rests on itself through other definitions");
-            return Err(at(text, its_formula.span().start, None, message));
+            .position(|(_, formula)| rests_on(formula).is_none());
+        let Some(ready) = ready else {
+            let circle = circle(waiting[0].0, |name| {
+                rests_on(&raw.definitions[name]).unwrap_or(name)
+            });
+            let message = format!(
+                "definition {} rests on itself: {}",
+                circle[0],
+                circle.join(" uses ")
+            );
+            return Err(at(text, raw.definitions[circle[0]].span().start, message));
         };
+        let (name, formula) = waiting.remove(ready);
         let scope = Scope {
             variables: Variables::of(&Variable::ALL),
             parameters,
             definitions: &known,
-            place: "in definitions",
+            place: "a definition",
         };
         let result = parse(formula.get_ref(), &scope, graph).map_err(|m| in_formula(text, formula, m))?;
-        known.insert(name.to_owned(), result);
-        waiting.remove(name);
+        let uses = graph.variables(result);
+        known.insert(name.clone(), Definition { result, uses });
     }
     Ok(known)
 }
 
+/// Goes from name to name until one comes again; gives those from its first to its second time.
+fn circle<'a>(first: &'a str, next: impl Fn(&'a str) -> &'a str) -> Vec<&'a str> {
+    let mut path = vec![first];
+    loop {
+        let name = next(path[path.len() - 1]);
+        let before = path.iter().position(|&n| n == name);
+        path.push(name);
+        if let Some(before) = before {
+            return path.split_off(before);
+        }
+    }
+}
+
 /// The names in a formula, as far as it can be cut into words.
-fn names_in(formula: &str) -> impl Iterator<Item = &str> {
-    let mut tokens = Tokens::new(formula);
+fn names_in(formula: &Spanned<String>) -> impl Iterator<Item = &str> {
+    let mut tokens = Tokens::new(formula.get_ref());
     std::iter::from_fn(move || match tokens.take() {
         Ok(Token::End) | Err(_) => None,
         Ok(token) => Some(token),
@@ -240,39 +332,26 @@ fn names_in(formula: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Whether all that is declared serves something.
-fn check_used(
-    text: &str,
-    effect: &Effect,
-    definitions: &BTreeMap<String, Spanned<String>>,
-    places: &BTreeMap<String, Id>,
-) -> Result<(), EffectError> {
-    let mut used = vec![false; effect.graph.len()];
-    for (_, result) in &effect.formulas {
-        for id in effect.graph.behind(*result) {
-            used[usize::from(id.0)] = true;
+/// Checks that every definition serves a formula, by itself or through others.
+fn check_definitions_used(text: &str, raw: &RawEffect) -> Result<(), EffectError> {
+    let formulas = Hook::ALL.iter().filter_map(|&hook| raw.formula(hook));
+    let mut waiting: Vec<&Spanned<String>> = formulas.collect();
+    let mut used = BTreeSet::new();
+    while let Some(formula) = waiting.pop() {
+        for (name, definition) in names_in(formula).filter_map(|name| raw.definitions.get_key_value(name)) {
+            if used.insert(name) {
+                waiting.push(definition);
+            }
         }
     }
-    for (name, formula) in definitions {
-        if !places.get(name).is_some_and(|id| used[usize::from(id.0)]) {
+    let unused = raw.definitions.iter().filter(|(name, _)| !used.contains(name));
+    match unused.min_by_key(|(_, formula)| formula.span().start) {
+        Some((name, formula)) => {
             let message = format!("definition {name} is used by no formula");
-            return Err(at(text, formula.span().start, None, message));
+            Err(at(text, formula.span().start, message))
         }
+        None => Ok(()),
     }
-    if effect.mechanism.is_some() {
-        return Ok(());
-    }
-    for (place, parameter) in effect.parameters.iter().enumerate() {
-        let node = crate::graph::Node::Parameter(place as u8);
-        if !effect.graph.find(node).is_some_and(|id| used[usize::from(id.0)]) {
-            return Err(EffectError {
-                line: Some(parameter.line),
-                column: None,
-                message: format!("parameter {} is used by no formula", parameter.name),
-            });
-        }
-    }
-    Ok(())
 }
 
 fn whole(message: String) -> EffectError {
@@ -283,32 +362,22 @@ fn whole(message: String) -> EffectError {
     }
 }
 
-/// An error at a byte of the file; with its column, if that is asked for.
-fn at(text: &str, byte: usize, column: Option<usize>, message: String) -> EffectError {
+/// An error at a byte of the file.
+fn at(text: &str, byte: usize, message: String) -> EffectError {
+    let (line, column) = place::line_and_column(text, byte);
     EffectError {
-        line: Some(line(text, byte)),
-        column,
+        line: Some(line),
+        column: Some(column),
         message,
     }
 }
 
-fn line(text: &str, byte: usize) -> usize {
-    text.bytes().take(byte).filter(|&b| b == b'\n').count() + 1
-}
-
-/// An error within a formula: at its own line and column, where the formula stands in the file as it is.
+/// An error within a formula.
 fn in_formula(text: &str, formula: &Spanned<String>, mistake: Mistake) -> EffectError {
     let span = formula.span();
-    let content = formula.get_ref();
-    let begin = text.get(span.clone()).and_then(|raw| raw.find(content.as_str()));
-    let Some(begin) = begin else {
-        return at(text, span.start, None, mistake.message);
-    };
-    let before: usize = content.chars().take(mistake.at).map(char::len_utf8).sum();
-    let byte = span.start + begin + before;
-    let start_of_line = text[..byte].rfind('\n').map_or(0, |newline| newline + 1);
-    let column = text[start_of_line..byte].chars().count() + 1;
-    at(text, byte, Some(column), mistake.message)
+    let raw = text.get(span.clone()).unwrap_or_default();
+    let byte = span.start + place::in_string(raw, formula.get_ref(), mistake.at);
+    at(text, byte, mistake.message)
 }
 
 /// What the TOML reader says, with the nearest known key.
@@ -317,11 +386,25 @@ fn toml_error(text: &str, error: &toml::de::Error) -> EffectError {
     let mut quoted = message.split('`').skip(1).step_by(2);
     let message = match (message.starts_with("unknown field"), quoted.next()) {
         (true, Some(unknown)) => unknown_word("key", unknown, quoted),
-        _ => message.trim_end().replace('`', "\"").replace('\n', " "),
+        _ => in_our_words(message),
     };
-    EffectError {
-        line: error.span().map(|span| line(text, span.start)),
-        column: None,
-        message,
+    match error.span() {
+        Some(span) => at(text, span.start, message),
+        None => whole(message),
     }
+}
+
+/// What the TOML reader says, in the words of these messages.
+fn in_our_words(message: &str) -> String {
+    let wrong_type = message.trim_end().strip_prefix("invalid type: ");
+    let message = match wrong_type.and_then(|rest| rest.rsplit_once(", expected ")) {
+        Some((found, "f64")) => format!("expected a number, found {found}"),
+        Some((found, "a string")) => format!("expected a text in quotes, found {found}"),
+        Some((found, expected)) => format!("expected {expected}, found {found}"),
+        None => message.trim_end().replace("missing field", "missing key"),
+    };
+    let message = message
+        .replace("`\"`", "a closing quote")
+        .replace("`\"\"\"`", "three closing quotes");
+    message.replace('`', "\"").replace('\n', " ")
 }

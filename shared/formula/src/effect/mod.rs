@@ -2,14 +2,12 @@
 
 mod file;
 mod names;
+mod place;
 
-use crate::dimension::unit_of;
 use crate::graph::{Graph, Id};
 use crate::hook::Hook;
 use crate::program::Program;
-use crate::unit::Unit;
-use crate::variable::{Variable, Variables};
-use crate::word::unknown_word;
+use crate::variable::Variables;
 
 /// A mechanism that may be missing from the model: formulas for some of its quantities, with their parameters.
 ///
@@ -84,7 +82,7 @@ impl Mechanism {
 
 /// Why an effect file cannot be used, and where.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{}{message}", place(*line, *column))]
+#[error("{}{message}", prefix(*line, *column))]
 pub struct EffectError {
     /// Line, counted from 1, where one is to blame.
     pub line: Option<usize>,
@@ -94,7 +92,7 @@ pub struct EffectError {
     pub message: String,
 }
 
-fn place(line: Option<usize>, column: Option<usize>) -> String {
+fn prefix(line: Option<usize>, column: Option<usize>) -> String {
     match (line, column) {
         (Some(line), Some(column)) => format!("line {line}, column {column}: "),
         (Some(line), None) => format!("line {line}: "),
@@ -146,34 +144,8 @@ impl Effect {
         let mut strengths = self.parameters.iter().zip(values);
         let any = self.parameters.iter().any(|p| p.neutral.is_some());
         any && strengths.all(|(p, value)| {
-            p.neutral
-                .is_none_or(|neutral| neutral.total_cmp(value).is_eq() || (neutral - value).abs() == 0.0)
+            // 0 and -0 are the same strength; what is no number is none
+            p.neutral.is_none_or(|neutral| value - neutral == 0.0)
         })
-    }
-}
-
-/// What may be said of the units of a formula.
-fn check_units(graph: &Graph, hook: Hook, result: Id, units: &[Unit]) -> Result<(), String> {
-    let found = unit_of(graph, result, units)?;
-    match (found, hook.target().unit()) {
-        (Some(found), Some(expected)) if found != expected => Err(format!(
-            "{} must be in {}, not in {found}",
-            hook.name(),
-            hook.target().unit_name()
-        )),
-        _ => Ok(()),
-    }
-}
-
-/// Whether a formula uses only what its hook shows it.
-fn check_sight(graph: &Graph, hook: Hook, result: Id) -> Result<(), String> {
-    let seen = hook.sees();
-    match graph.variables(result).iter().find(|v| !seen.contains(*v)) {
-        Some(hidden) => {
-            let known = seen.iter().map(Variable::name);
-            let message = unknown_word("variable", hidden.name(), known);
-            Err(format!("in {}, through a definition: {message}", hook.name()))
-        }
-        None => Ok(()),
     }
 }

@@ -28,7 +28,7 @@ pub(super) fn check_form(what: &str, name: &str) -> Result<(), String> {
 /// Checks that a parameter or definition does not take a name that means something already.
 pub(super) fn check_free(what: &str, name: &str) -> Result<(), String> {
     check_form(what, name)?;
-    let taken = |by: &str| Err(format!("{what} \"{name}\" has the name of a {by}"));
+    let taken = |by: &str| Err(format!("{what} {name} has the name of a {by}"));
     if reserved().any(|word| word == name) {
         taken("function or constant")
     } else if Variable::ALL.iter().any(|v| v.name() == name) {
