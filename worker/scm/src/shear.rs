@@ -46,7 +46,12 @@ impl ShearVelocity {
     /// Krenn & Hirzinger's soil contact model. Depends on speed, unlike a displacement law.
     #[inline]
     pub fn mobilised_per_velocity(&self, speed: f64) -> f64 {
-        let share = 1.0 - crate::elementary::exp(-speed * self.per_velocity);
+        // with v0 = 0 there is no exponential to compute; the test is the same for every point of a loop
+        let share = if self.per_velocity < f64::MAX {
+            1.0 - crate::elementary::exp(-speed * self.per_velocity)
+        } else {
+            1.0
+        };
         share
             / if speed > f64::MIN_POSITIVE {
                 speed

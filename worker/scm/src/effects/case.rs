@@ -84,10 +84,11 @@ impl Active<'_> {
 
     /// Whether the load that the soil must carry depends on pull or torque.
     pub(crate) fn load_follows_reaction(&self) -> bool {
-        self.at(Hook::WheelLoad).any(|(program, ..)| {
-            let uses = program.uses();
-            uses.contains(Variable::DrawbarPull) || uses.contains(Variable::Torque)
-        })
+        self.enter(Hook::WheelLoad)
+            && self.at(Hook::WheelLoad).any(|(program, ..)| {
+                let uses = program.uses();
+                uses.contains(Variable::DrawbarPull) || uses.contains(Variable::Torque)
+            })
     }
 
     /// The load that the soil must carry while it exerts a pull and a torque.
@@ -101,6 +102,9 @@ impl Active<'_> {
 
     /// Replace a quantity of the run by what the formulas at its hook make of it.
     fn replace(&self, hook: Hook, variables: &mut [f64; Variable::COUNT]) -> Result<(), Rejection> {
+        if !self.enter(hook) {
+            return Ok(());
+        }
         let mut scalars = Vec::new();
         for (program, law, parameters) in self.at(hook) {
             // without nodes nothing differs from point to point

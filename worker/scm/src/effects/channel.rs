@@ -8,9 +8,7 @@ use crate::Rejection;
 impl Active<'_> {
     /// Whether any effect changes what is measured.
     pub(crate) fn change_channels(&self) -> bool {
-        Hook::CHANNELS
-            .into_iter()
-            .any(|hook| self.at(hook).next().is_some())
+        Hook::CHANNELS.into_iter().any(|hook| self.enter(hook))
     }
 
     /// Replace the channels by what is measured of them. The formulas of one effect all see the channels as the effects

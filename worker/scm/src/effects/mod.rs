@@ -141,8 +141,10 @@ impl Effects {
             laws: laws
                 .filter(|(law, values)| !law.effect.is_neutral(values))
                 .collect(),
+            entered: [false; Hook::COUNT],
             nodes: None,
         };
+        active.entered = Hook::ALL.map(|hook| active.at(hook).next().is_some());
         active.nodes = NodeLaws::new(&active);
         active
     }
@@ -152,6 +154,8 @@ impl Effects {
 #[derive(Debug, Clone, Default)]
 pub struct Active<'a> {
     laws: Vec<(&'a Law, Vec<f64>)>,
+    /// By hook, whether a formula enters there.
+    entered: [bool; Hook::COUNT],
     /// The formulas at nodes, ready to be lent to a model; none if there are none.
     pub(crate) nodes: Option<NodeLaws<'a>>,
 }
@@ -160,6 +164,11 @@ impl<'a> Active<'a> {
     /// Whether the model is the base.
     pub(crate) fn is_empty(&self) -> bool {
         self.laws.is_empty()
+    }
+
+    /// Whether a formula enters at a hook.
+    pub(crate) fn enter(&self, hook: Hook) -> bool {
+        self.entered[hook as usize]
     }
 
     /// The formulas at a hook, in order, each with its effect and parameters.

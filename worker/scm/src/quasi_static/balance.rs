@@ -1,6 +1,7 @@
 //! Solve the vertical balance for the contact length.
 
 use super::crossing::{Scan, rises_up_to, scan};
+use super::footing::Footing;
 use super::rim::{Reaction, Rim};
 use super::start::Coordinate;
 use crate::Rejection;
@@ -20,30 +21,32 @@ const NARROWEST: f64 = 1e-12;
 const LONGEST_STEP: f64 = 2.0;
 
 /// The soil's reaction at the first balance met by the sinking wheel.
-pub(super) fn first_balance(rim: &mut Rim, load: f64) -> Result<Reaction, Rejection> {
-    let radius = rim.radius;
+pub(super) fn first_balance(footing: &mut Footing, load: f64) -> Result<Reaction, Rejection> {
+    let radius = footing.rim.radius;
     let no_support = |most_carried_n: f64| Rejection::NoSupport {
         most_carried_n,
         wheel_load_n: load,
         wheel_radius_m: radius,
     };
-    let coordinate = Coordinate::new(rim).ok_or_else(|| no_support(0.0))?;
-    let start = coordinate.start(rim, load);
-    let rises = rises_up_to(rim, rim.radius);
+    let coordinate = Coordinate::new(&footing.rim).ok_or_else(|| no_support(0.0))?;
+    let start = coordinate.start(&footing.rim, load);
+    let rises = rises_up_to(&footing.rim, radius);
     let patience = if rises {
         MOST_EVALUATIONS
     } else {
         EVALUATIONS_BEFORE_SCAN
     };
-    match search(rim, load, &coordinate, Bracket::default(), start, patience) {
-        Ok(Some(reaction)) if rises || rises_up_to(rim, reaction.contact_length) => return Ok(reaction),
-        Ok(None) if rises => return Err(no_support(rim.react(rim.radius)?.load())),
+    match search(footing, load, &coordinate, Bracket::default(), start, patience) {
+        Ok(Some(reaction)) if rises || rises_up_to(&footing.rim, reaction.contact_length) => {
+            return Ok(reaction);
+        }
+        Ok(None) if rises => return Err(no_support(footing.react(radius)?.load())),
         // A deeper balance may have been found, or the secant has wandered about a peak too low for the load.
         Ok(_) => {}
         Err(Rejection::NoConvergence { .. }) if !rises => {}
         Err(rejection) => return Err(rejection),
     }
-    match scan(rim, load)? {
+    match scan(footing, load)? {
         Scan::Never(most) => Err(no_support(most)),
         Scan::Between(shorter, longer) => {
             let bracket = Bracket {
@@ -55,9 +58,9 @@ pub(super) fn first_balance(rim: &mut Rim, load: f64) -> Result<Reaction, Reject
             } else {
                 bracket.high - LONGEST_STEP
             };
-            match search(rim, load, &coordinate, bracket, start, MOST_EVALUATIONS)? {
+            match search(footing, load, &coordinate, bracket, start, MOST_EVALUATIONS)? {
                 Some(reaction) => Ok(reaction),
-                None => Err(no_support(rim.react(radius)?.load())),
+                None => Err(no_support(footing.react(radius)?.load())),
             }
         }
     }
@@ -98,7 +101,7 @@ struct Trial {
 
 /// Secant in (y, ln load), kept within the bracket; none if the load is not reached going down from `start`.
 fn search(
-    rim: &mut Rim,
+    footing: &mut Footing,
     load: f64,
     coordinate: &Coordinate,
     mut bracket: Bracket,
@@ -107,15 +110,12 @@ fn search(
 ) -> Result<Option<Reaction>, Rejection> {
     let mut y = start;
     let mut last: Option<Trial> = None;
-    let jumps = rim
-        .reshaping
-        .as_ref()
-        .is_some_and(|reshaping| reshaping.may_jump());
+    let jumps = footing.may_jump();
     // the last reactions that carried less and more than the load
     let mut sides = [None, None];
     let mut evaluations = 0;
     loop {
-        let reaction = rim.react(coordinate.contact_length(y))?;
+        let reaction = footing.react(coordinate.contact_length(y))?;
         evaluations += 1;
         let carried = reaction.load();
         if !carried.is_finite() {
@@ -163,7 +163,7 @@ fn search(
             f64::NEG_INFINITY
         };
         let trial = Trial { y, log_ratio };
-        let slope = slope(rim, coordinate, &reaction, trial, last);
+        let slope = slope(&footing.rim, coordinate, &reaction, trial, last);
         last = Some(trial);
         y = next(bracket, trial, slope, evaluations).min(coordinate.greatest);
     }

@@ -4,6 +4,7 @@
 //! stress pulls the rim down where it slopes, and the load that the soil carries may rise, fall and rise
 //! again with depth.
 
+use super::footing::Footing;
 use super::rim::Rim;
 use crate::Rejection;
 
@@ -46,18 +47,18 @@ pub(super) enum Scan {
 }
 
 /// Look for the first crossing by sampling from the surface down to z = R.
-pub(super) fn scan(rim: &mut Rim, load: f64) -> Result<Scan, Rejection> {
+pub(super) fn scan(footing: &mut Footing, load: f64) -> Result<Scan, Rejection> {
     let (mut before, mut last) = ((0.0, 0.0), (0.0, 0.0)); // contact length, load carried
     let mut most: f64 = 0.0;
     for sample in 1..=SAMPLES {
         let root = f64::from(sample) / f64::from(SAMPLES);
-        let length = rim.radius * root * (2.0 - root * root).sqrt();
-        let here = (length, rim.react(length)?.load());
+        let length = footing.rim.radius * root * (2.0 - root * root).sqrt();
+        let here = (length, footing.react(length)?.load());
         if here.1 >= load {
             return Ok(Scan::Between(last.0, length));
         }
         if last.1 > before.1 && last.1 > here.1 {
-            let peak = peak_between(rim, before.0, here.0, load)?;
+            let peak = peak_between(footing, before.0, here.0, load)?;
             if peak.1 >= load {
                 return Ok(Scan::Between(before.0, peak.0));
             }
@@ -70,9 +71,14 @@ pub(super) fn scan(rim: &mut Rim, load: f64) -> Result<Scan, Rejection> {
 }
 
 /// Contact length and height of the peak between two lengths by golden sections; ends early above `enough`.
-fn peak_between(rim: &mut Rim, mut left: f64, mut right: f64, enough: f64) -> Result<(f64, f64), Rejection> {
+fn peak_between(
+    footing: &mut Footing,
+    mut left: f64,
+    mut right: f64,
+    enough: f64,
+) -> Result<(f64, f64), Rejection> {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
-    let mut at = |length: f64| rim.react(length).map(|reaction| (length, reaction.load()));
+    let mut at = |length: f64| footing.react(length).map(|reaction| (length, reaction.load()));
     let mut low = at(right - GOLDEN * (right - left))?;
     let mut high = at(left + GOLDEN * (right - left))?;
     for _ in 0..PEAK_STEPS {

@@ -3,6 +3,7 @@
 //! # Layout
 //! - `kinematics`: the slip velocity along the rim.
 //! - `rim`: the soil's force and torque on the rim for a given contact length.
+//! - `footing`: the rim with or without effects.
 //! - `panel`: nodes of the quadrature on a piece of the rim.
 //! - `reshaped`: the rim where effects enter; `displacement`: how far the rim has slid.
 //! - `start`: a closed-form first guess of the contact length.
@@ -12,14 +13,16 @@
 mod balance;
 mod crossing;
 mod displacement;
+mod footing;
 mod kinematics;
 mod panel;
 mod reshaped;
 mod rim;
 mod start;
 
+use footing::Footing;
 use formula::Variable;
-use reshaped::Reshaping;
+use reshaped::{Mechanics, Reshaping};
 use rim::Rim;
 
 use crate::effects::{Active, Site};
@@ -119,20 +122,27 @@ pub fn simulate_with(
 ) -> Result<Averages, Rejection> {
     let (soil, wheel, condition) = (soil.checked()?, wheel.checked()?, condition.checked()?);
     if effects.is_empty() {
-        return average(
-            &mut Rim::new(&soil, &wheel, &condition, None),
-            condition.wheel_load_n,
-        );
+        let mut base = Footing {
+            rim: Rim::new(&soil, &wheel, &condition),
+            reshaping: None,
+        };
+        return average(&mut base, condition.wheel_load_n);
     }
     let case = effects.case(&soil, &wheel, &condition, site)?;
     let (soil, wheel, condition) = (case.soil, case.wheel.checked()?, case.condition.checked()?);
     let mut variables = case.variables;
-    // lent to the rim, for the next run to use again
+    let mechanics = Mechanics::new(effects, &case)?;
+    // lent to the rim, for the next run to use again: nothing may fail between here and their return
     let laws = effects.nodes.take();
-    let reshaping = Box::new(Reshaping::new(effects, case, laws)?);
-    let mut rim = Rim::new(&soil, &wheel, &condition, Some(reshaping));
-    let averages = average(&mut rim, condition.wheel_load_n);
-    effects.nodes = rim.reshaping.and_then(|reshaping| reshaping.laws);
+    let reshaping = Reshaping::new(effects, case, mechanics, laws);
+    let mut rim = Rim::new(&soil, &wheel, &condition);
+    rim.flat = reshaping.flat();
+    let mut footing = Footing {
+        rim,
+        reshaping: Some(reshaping),
+    };
+    let averages = average(&mut footing, condition.wheel_load_n);
+    effects.nodes = footing.reshaping.and_then(|reshaping| reshaping.laws);
     let mut averages = averages?;
     if effects.change_channels() {
         measure(effects, &soil, &mut variables, &mut averages)?;
@@ -167,8 +177,8 @@ fn measure(
 }
 
 /// Balance the wheel load.
-fn average(rim: &mut Rim, wheel_load: f64) -> Result<Averages, Rejection> {
-    let reaction = balance::first_balance(rim, wheel_load)?;
+fn average(footing: &mut Footing, wheel_load: f64) -> Result<Averages, Rejection> {
+    let reaction = balance::first_balance(footing, wheel_load)?;
     let averages = Averages {
         drawbar_pull_n: reaction.drawbar_pull,
         torque_n_m: reaction.torque,

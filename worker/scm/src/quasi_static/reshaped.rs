@@ -59,28 +59,27 @@ struct Shape {
     b_eff: f64,
 }
 
-impl<'r, 'e> Reshaping<'r, 'e> {
-    /// # Arguments
-    /// - `laws`: the formulas at nodes, with room to compute in.
-    ///
+/// What the load does to the rim, and its pressure to the soil.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Mechanics {
+    /// Height by which the load flattens the rim, δ `[m]`.
+    deflection: f64,
+    /// Way by which the soil springs back under a unit of pressure `[m/Pa]`.
+    compliance: f64,
+}
+
+impl Mechanics {
     /// # Errors
     /// [`Rejection::InvalidParameter`]: a deflection or a compliance that no wheel and no soil can have.
-    pub(super) fn new(
-        active: &'r Active<'e>,
-        case: Case,
-        mut laws: Option<NodeLaws<'e>>,
-    ) -> Result<Self, Rejection> {
+    pub(super) fn new(active: &Active, case: &Case) -> Result<Self, Rejection> {
         let first = |mechanism| {
-            active
-                .mechanism(mechanism)
-                .and_then(|values| values.first().copied())
+            let values = active.mechanism(mechanism);
+            values.and_then(|values| values.first().copied()).unwrap_or(0.0)
         };
-        let deflection =
-            first(Mechanism::FlatPatch).map_or(0.0, |per_load| per_load * case.condition.wheel_load_n);
-        let compliance = first(Mechanism::Rebound).unwrap_or(0.0);
-        let radius = case.wheel.radius_m;
+        let deflection = first(Mechanism::FlatPatch) * case.condition.wheel_load_n;
+        let compliance = first(Mechanism::Rebound);
         require(
-            (0.0..radius).contains(&deflection),
+            (0.0..case.wheel.radius_m).contains(&deflection),
             "deflection of the rim",
             deflection,
             "m",
@@ -93,10 +92,30 @@ impl<'r, 'e> Reshaping<'r, 'e> {
             "m/Pa",
             "at least 0",
         )?;
+        Ok(Self {
+            deflection,
+            compliance,
+        })
+    }
+}
+
+impl<'r, 'e> Reshaping<'r, 'e> {
+    /// # Arguments
+    /// - `laws`: the formulas at nodes, with room to compute in.
+    pub(super) fn new(
+        active: &'r Active<'e>,
+        case: Case,
+        mechanics: Mechanics,
+        mut laws: Option<NodeLaws<'e>>,
+    ) -> Self {
+        let Mechanics {
+            deflection,
+            compliance,
+        } = mechanics;
         if let Some(laws) = &mut laws {
             laws.settle(&case.variables);
         }
-        Ok(Self {
+        Self {
             laws,
             load_follows: active.load_follows_reaction(),
             deflection,
@@ -105,7 +124,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
             used: 0,
             active,
             case,
-        })
+        }
     }
 
     /// Whether stresses along the rim are other than the base's.
@@ -114,7 +133,8 @@ impl<'r, 'e> Reshaping<'r, 'e> {
     }
 
     /// Half length of the flat `[m]`: a contact that reaches less far ahead of the axle carries nothing.
-    pub(super) fn flat(&self, radius: f64) -> f64 {
+    pub(super) fn flat(&self) -> f64 {
+        let radius = self.case.wheel.radius_m;
         (self.deflection * (2.0 * radius - self.deflection))
             .max(0.0)
             .sqrt()
@@ -209,7 +229,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
     fn shape(&self, rim: &Rim, front: f64) -> Shape {
         let radius = rim.radius;
         let bottom_radius = radius - self.deflection;
-        let flat = self.flat(radius);
+        let flat = rim.flat;
         let hub_height = ((radius - front) * (radius + front)).sqrt();
         let sinkage = (front - flat) * (front + flat) / (bottom_radius + hub_height);
         let mut shape = Shape {
@@ -251,25 +271,25 @@ impl<'r, 'e> Reshaping<'r, 'e> {
                 read(laws, Variable::P, panels, |panel| &mut panel.pressure);
             }
         }
-        let limited = self
-            .laws
-            .as_ref()
-            .is_some_and(|laws| laws.enter(Hook::ShearLimit) || laws.use_variable(Variable::TauMax));
-        for panel in panels.iter_mut() {
-            for i in 0..NODES {
-                panel.shear[i] = strength(rim.soil.cohesion_pa, rim.tan_friction_angle, panel.pressure[i]);
-            }
-        }
+        let strength = |panel: &Panel, i: usize| {
+            strength(rim.soil.cohesion_pa, rim.tan_friction_angle, panel.pressure[i])
+        };
+        let share =
+            |panel: &Panel, i: usize| rim.shear.mobilised_per_velocity(panel.speed[i]) * panel.speed[i];
         if let Some(laws) = &mut self.laws
-            && limited
+            && (laws.enter(Hook::ShearLimit) || laws.use_variable(Variable::TauMax))
         {
-            write(laws, Variable::TauMax, panels, |panel| panel.shear);
+            write(laws, Variable::TauMax, panels, |panel| {
+                core::array::from_fn(|i| strength(panel, i))
+            });
             laws.apply(Hook::ShearLimit, panels.len() * NODES, |_| true, variables)?;
             read(laws, Variable::TauMax, panels, |panel| &mut panel.shear);
-        }
-        for panel in panels.iter_mut() {
-            for i in 0..NODES {
-                panel.shear[i] *= rim.shear.mobilised_per_velocity(panel.speed[i]) * panel.speed[i];
+            for panel in panels.iter_mut() {
+                panel.shear = core::array::from_fn(|i| panel.shear[i] * share(panel, i));
+            }
+        } else {
+            for panel in panels.iter_mut() {
+                panel.shear = core::array::from_fn(|i| strength(panel, i) * share(panel, i));
             }
         }
         if let Some(laws) = &mut self.laws

@@ -2,17 +2,16 @@
 
 use super::kinematics::RimMotion;
 use super::panel::{Contact, Panel};
-use super::reshaped::Reshaping;
 use crate::footprint::rectangle_effective_width;
 use crate::pressure_distribution::{PressureDistribution, RectangleDistribution};
 use crate::pressure_sinkage::{k_star, pressure};
 use crate::quadrature::NODES;
 use crate::shear::{ShearVelocity, strength};
-use crate::{Condition, Rejection, Soil, Wheel};
+use crate::{Condition, Soil, Wheel};
 
 /// Everything about a run that does not depend on how deep the wheel stands.
 #[derive(Debug, Clone)]
-pub(super) struct Rim<'r, 'e> {
+pub(super) struct Rim {
     pub(super) soil: Soil,
     pub(super) radius: f64,
     pub(super) width: f64,
@@ -22,8 +21,8 @@ pub(super) struct Rim<'r, 'e> {
     pub(super) shear: ShearVelocity,
     /// x at which the slip velocity changes sign; infinite if it does not.
     pub(super) sign_change: f64,
-    /// What effects make of the run; none: the base.
-    pub(super) reshaping: Option<Box<Reshaping<'r, 'e>>>,
+    /// Half length of the flat of a rim that its load flattens `[m]`; else 0.
+    pub(super) flat: f64,
 }
 
 /// Force and torque of the soil on the rim at one contact length, with the contact that caused them.
@@ -86,13 +85,8 @@ impl Reaction {
     }
 }
 
-impl<'r, 'e> Rim<'r, 'e> {
-    pub(super) fn new(
-        soil: &Soil,
-        wheel: &Wheel,
-        condition: &Condition,
-        reshaping: Option<Box<Reshaping<'r, 'e>>>,
-    ) -> Self {
+impl Rim {
+    pub(super) fn new(soil: &Soil, wheel: &Wheel, condition: &Condition) -> Self {
         let motion = RimMotion::new(wheel, condition);
         Self {
             soil: *soil,
@@ -105,38 +99,14 @@ impl<'r, 'e> Rim<'r, 'e> {
             sign_change: motion
                 .sign_change()
                 .map_or(f64::INFINITY, |sin_theta| wheel.radius_m * sin_theta),
-            reshaping,
+            flat: 0.0,
         }
     }
 
-    /// The soil's force on the rim when the contact reaches a length of 0 < l ≤ R ahead of the axle.
+    /// The soil's force on the base's rim when the contact reaches a length of 0 < l ≤ R ahead of the axle.
     ///
     /// Where k* ≤ 0 there is no support: all forces are zero, and so can balance no load.
-    ///
-    /// # Errors
-    /// [`Rejection::Formula`]: a formula gives what the model cannot use.
-    pub(super) fn react(&mut self, contact_length: f64) -> Result<Reaction, Rejection> {
-        let Some(mut reshaping) = self.reshaping.take() else {
-            return Ok(self.react_smoothly(contact_length));
-        };
-        let reacted = if reshaping.changes_stresses() {
-            reshaping.react(self, contact_length)
-        } else {
-            Ok(self.react_smoothly(contact_length))
-        };
-        let reaction = reacted.and_then(|reaction| {
-            let extra_load = reshaping.extra_load(&reaction)?;
-            Ok(Reaction {
-                extra_load,
-                ..reaction
-            })
-        });
-        self.reshaping = Some(reshaping);
-        reaction
-    }
-
-    /// The base's reaction.
-    fn react_smoothly(&self, contact_length: f64) -> Reaction {
+    pub(super) fn react(&self, contact_length: f64) -> Reaction {
         let (radius, length) = (self.radius, contact_length);
         let hub_height = ((radius - length) * (radius + length)).sqrt();
         let sinkage = length * length / (radius + hub_height); // R − hub_height without cancellation

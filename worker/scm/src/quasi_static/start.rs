@@ -23,11 +23,11 @@ impl Coordinate {
         } else {
             0.0
         };
-        let flat = rim
-            .reshaping
-            .as_ref()
-            .map_or(0.0, |reshaping| reshaping.flat(rim.radius));
-        let unsupported = if flat > unsupported { flat } else { unsupported };
+        let unsupported = if rim.flat > unsupported {
+            rim.flat
+        } else {
+            unsupported
+        };
         // Written so that NaN and ∞ (k* of the longest contact not positive) are refused too.
         (long > 0.0 && unsupported < rim.radius).then(|| Self {
             unsupported,

@@ -1,0 +1,40 @@
+//! The wheel on the soil, with or without effects.
+
+use super::reshaped::Reshaping;
+use super::rim::{Reaction, Rim};
+use crate::Rejection;
+
+/// A rim, and what effects make of its run.
+#[derive(Debug, Clone)]
+pub(super) struct Footing<'r, 'e> {
+    pub(super) rim: Rim,
+    /// None: the base.
+    pub(super) reshaping: Option<Reshaping<'r, 'e>>,
+}
+
+impl Footing<'_, '_> {
+    /// The soil's force on the rim when the contact reaches a length of 0 < l ≤ R ahead of the axle.
+    ///
+    /// # Errors
+    /// [`Rejection::Formula`]: a formula gives what the model cannot use.
+    pub(super) fn react(&mut self, contact_length: f64) -> Result<Reaction, Rejection> {
+        let Some(reshaping) = &mut self.reshaping else {
+            return Ok(self.rim.react(contact_length));
+        };
+        let reaction = if reshaping.changes_stresses() {
+            reshaping.react(&self.rim, contact_length)?
+        } else {
+            self.rim.react(contact_length)
+        };
+        let extra_load = reshaping.extra_load(&reaction)?;
+        Ok(Reaction {
+            extra_load,
+            ..reaction
+        })
+    }
+
+    /// Whether the load may jump as places of a law's jumps pass nodes.
+    pub(super) fn may_jump(&self) -> bool {
+        self.reshaping.as_ref().is_some_and(Reshaping::may_jump)
+    }
+}
