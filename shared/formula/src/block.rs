@@ -2,7 +2,7 @@
 
 use crate::arithmetic::{LANES, Lanes, binary_lanes, choose_lanes, unary_lanes};
 use crate::graph::{Binary, Unary};
-use crate::program::{Operation, Program, Then};
+use crate::program::{Arithmetic, Operation, Program, Then};
 use crate::variable::Variable;
 
 /// Most points of a block.
@@ -147,32 +147,30 @@ impl Block {
         }
     }
 
-    fn pair(&mut self, first: Binary, a: Place, b: Place, then: Then<Place>, out: Place, groups: usize) {
+    fn pair(&mut self, first: Arithmetic, a: Place, b: Place, then: Then<Place>, out: Place, groups: usize) {
         macro_rules! pair {
             ($first:ident, $($second:ident)*) => {
                 match then {
                     Then::Exp => self.both(a, b, out, groups, |a, b| {
                         unary_lanes(Unary::Exp, &binary_lanes(Binary::$first, a, b))
                     }),
-                    Then::Left(Binary::Power, c) => self.three(a, b, c, out, groups, |a, b, c| {
+                    Then::Power(c) => self.three(a, b, c, out, groups, |a, b, c| {
                         binary_lanes(Binary::Power, &binary_lanes(Binary::$first, a, b), c)
                     }),
-                    $(Then::Left(Binary::$second, c) => self.three(a, b, c, out, groups, |a, b, c| {
+                    $(Then::Left(Arithmetic::$second, c) => self.three(a, b, c, out, groups, |a, b, c| {
                         binary_lanes(Binary::$second, &binary_lanes(Binary::$first, a, b), c)
                     }),
-                    Then::Right(Binary::$second, c) => self.three(a, b, c, out, groups, |a, b, c| {
+                    Then::Right(Arithmetic::$second, c) => self.three(a, b, c, out, groups, |a, b, c| {
                         binary_lanes(Binary::$second, c, &binary_lanes(Binary::$first, a, b))
                     }),)*
-                    Then::Left(..) | Then::Right(..) => unreachable!("programs pair only operations of arithmetic"),
                 }
             };
         }
         match first {
-            Binary::Add => pair!(Add, Add Subtract Multiply Divide),
-            Binary::Subtract => pair!(Subtract, Add Subtract Multiply Divide),
-            Binary::Multiply => pair!(Multiply, Add Subtract Multiply Divide),
-            Binary::Divide => pair!(Divide, Add Subtract Multiply Divide),
-            _ => unreachable!("programs pair only operations of arithmetic"),
+            Arithmetic::Add => pair!(Add, Add Subtract Multiply Divide),
+            Arithmetic::Subtract => pair!(Subtract, Add Subtract Multiply Divide),
+            Arithmetic::Multiply => pair!(Multiply, Add Subtract Multiply Divide),
+            Arithmetic::Divide => pair!(Divide, Add Subtract Multiply Divide),
         }
     }
 
