@@ -33,8 +33,7 @@ fn main() {
         for _ in 0..1000 {
             let length = random() % 1500;
             let bytes: Vec<u8> = (0..length).map(|_| random() as u8).collect();
-            let before = Instant::now();
-            let done = std::panic::catch_unwind(|| {
+            let case = || {
                 let mut dice = Dice(&bytes);
                 let text = if length % 2 == 0 {
                     anything(&mut dice)
@@ -45,12 +44,20 @@ fn main() {
                 let compared = effect.as_ref().map(|effect| check_evaluation(effect, &mut dice));
                 check_exact(&mut Dice(&bytes));
                 compared
-            });
-            let Ok(compared) = done else {
+            };
+            let before = Instant::now();
+            let Ok(compared) = std::panic::catch_unwind(case) else {
                 eprintln!("failed for the bytes {bytes:?}");
                 std::process::exit(1);
             };
-            slowest = slowest.max(before.elapsed());
+            let mut took = before.elapsed();
+            if took > slowest {
+                // again, as the machine may have been busy
+                let before = Instant::now();
+                case();
+                took = took.min(before.elapsed());
+            }
+            slowest = slowest.max(took);
             texts += 1;
             exact += 1;
             read += u64::from(compared.is_some());

@@ -149,7 +149,7 @@ fn exp(a: f64) -> f64 {
 /// Whether the vectorised logarithm is defined.
 #[inline(always)]
 fn has_logarithm(x: f64) -> bool {
-    (x >= f64::MIN_POSITIVE) & (x <= f64::MAX)
+    (x >= f64::MIN_POSITIVE) & x.is_finite()
 }
 
 fn log(a: f64) -> f64 {

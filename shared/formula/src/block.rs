@@ -2,7 +2,7 @@
 
 use crate::arithmetic::{LANES, Lanes, binary_lanes, choose_lanes, unary_lanes};
 use crate::graph::{Binary, Unary};
-use crate::program::{Operation, Program, Then};
+use crate::program::{Arithmetic, Operation, Program, Then};
 use crate::variable::Variable;
 
 /// Most points of a block.
@@ -15,37 +15,37 @@ const COLUMNS: usize = Variable::LOCAL * BLOCK;
 /// group of points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place {
-    first: usize,
-    step: usize,
+    first: u32,
+    step: u32,
 }
 
 impl Place {
     /// The column of a variable.
     pub(crate) fn column(variable: Variable) -> Self {
         Self {
-            first: variable as usize * BLOCK,
-            step: LANES,
+            first: (variable as usize * BLOCK) as u32,
+            step: LANES as u32,
         }
     }
 
     /// What a program keeps at every point.
     pub(crate) fn register(register: usize) -> Self {
         Self {
-            first: COLUMNS + register * BLOCK,
-            step: LANES,
+            first: (COLUMNS + register * BLOCK) as u32,
+            step: LANES as u32,
         }
     }
 
     /// What is the same at all points, after so many registers.
     pub(crate) fn constant(registers: usize, constant: usize) -> Self {
         Self {
-            first: Self::register(registers).first + constant * LANES,
+            first: Self::register(registers).first + (constant * LANES) as u32,
             step: 0,
         }
     }
 
     fn at(self, group: usize) -> usize {
-        self.first + group * self.step
+        self.first as usize + group * self.step as usize
     }
 }
 
@@ -98,7 +98,7 @@ impl Block {
     /// bits that [`Program::settle`] gives where nothing differs from point to point. Checked by
     /// `evaluation::every_operation_agrees_with_one_point_at_a_time` and `fuzz`.
     pub fn replace(&mut self, variable: Variable, program: &Program, scalars: &[f64], points: usize) {
-        let constants = |constant| Place::constant(program.registers, constant).first;
+        let constants = |constant| Place::constant(program.registers, constant).at(0);
         self.reserve(constants(program.constants.len()));
         for (constant, &scalar) in program.constants.iter().enumerate() {
             self.store(constants(constant), &[scalars[usize::from(scalar)]; LANES]);
@@ -147,32 +147,30 @@ impl Block {
         }
     }
 
-    fn pair(&mut self, first: Binary, a: Place, b: Place, then: Then<Place>, out: Place, groups: usize) {
+    fn pair(&mut self, first: Arithmetic, a: Place, b: Place, then: Then<Place>, out: Place, groups: usize) {
         macro_rules! pair {
             ($first:ident, $($second:ident)*) => {
                 match then {
                     Then::Exp => self.both(a, b, out, groups, |a, b| {
                         unary_lanes(Unary::Exp, &binary_lanes(Binary::$first, a, b))
                     }),
-                    Then::Left(Binary::Power, c) => self.three(a, b, c, out, groups, |a, b, c| {
+                    Then::Power(c) => self.three(a, b, c, out, groups, |a, b, c| {
                         binary_lanes(Binary::Power, &binary_lanes(Binary::$first, a, b), c)
                     }),
-                    $(Then::Left(Binary::$second, c) => self.three(a, b, c, out, groups, |a, b, c| {
+                    $(Then::Left(Arithmetic::$second, c) => self.three(a, b, c, out, groups, |a, b, c| {
                         binary_lanes(Binary::$second, &binary_lanes(Binary::$first, a, b), c)
                     }),
-                    Then::Right(Binary::$second, c) => self.three(a, b, c, out, groups, |a, b, c| {
+                    Then::Right(Arithmetic::$second, c) => self.three(a, b, c, out, groups, |a, b, c| {
                         binary_lanes(Binary::$second, c, &binary_lanes(Binary::$first, a, b))
                     }),)*
-                    Then::Left(..) | Then::Right(..) => unreachable!("programs pair only operations of arithmetic"),
                 }
             };
         }
         match first {
-            Binary::Add => pair!(Add, Add Subtract Multiply Divide),
-            Binary::Subtract => pair!(Subtract, Add Subtract Multiply Divide),
-            Binary::Multiply => pair!(Multiply, Add Subtract Multiply Divide),
-            Binary::Divide => pair!(Divide, Add Subtract Multiply Divide),
-            _ => unreachable!("programs pair only operations of arithmetic"),
+            Arithmetic::Add => pair!(Add, Add Subtract Multiply Divide),
+            Arithmetic::Subtract => pair!(Subtract, Add Subtract Multiply Divide),
+            Arithmetic::Multiply => pair!(Multiply, Add Subtract Multiply Divide),
+            Arithmetic::Divide => pair!(Divide, Add Subtract Multiply Divide),
         }
     }
 

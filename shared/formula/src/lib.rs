@@ -5,7 +5,7 @@
 //! - [`effect`]: an effect file, read and checked.
 //! - [`catalogue`]: the effect files that come with the program.
 //! - [`variable`], [`hook`]: what a formula sees, and which quantity of the model it replaces.
-//! - [`unit`]: units, and the dimensions behind them.
+//! - [`mod@unit`]: units, and the dimensions behind them.
 //!
 //! From text to numbers:
 //! - `token`, `parse`: text to a graph of operations.
@@ -17,6 +17,93 @@
 //!
 //! Everything is pure, and safe to feed with a stranger's text: no loops, no names but the declared ones, limits on every
 //! size. The crate knows neither the wheel-soil models nor probability: a prior is kept as it was written.
+//!
+//! # An effect file
+//! ```
+//! # let text = r#"
+//! name = "slip_softened_pressure"
+//! summary = "a slipping rim loosens the soil, which then carries less"
+//! source = "an observation in our own bin"
+//! pressure = "p * (1 - softening * share)"
+//!
+//! [definitions]                 # names for parts of formulas
+//! share = "tanh(abs(slip) / slip_scale)"
+//!
+//! [parameters.softening]        # a strength: it has a value at which the effect is absent
+//! unit = "1"
+//! neutral = 0.0
+//! typical = 0.2                 # tables show the effect at this value
+//! prior = { uniform = [0.0, 0.6] }
+//!
+//! [parameters.slip_scale]
+//! unit = "1"
+//! prior = 0.3                   # a number: known, not inferred
+//! # "#;
+//! # let effect = formula::Effect::read(text).unwrap();
+//! # assert!(effect.is_neutral(&[0.0, 0.3]) && !effect.is_neutral(&[0.2, 0.3]));
+//! ```
+//! A key for each quantity that the effect replaces; the formula sees what the effects before it have made of the quantity.
+//! At the neutral value of all its strengths an effect is not evaluated. An effect without parameters is a law that always
+//! holds. `mechanism` names a part of a model that has the effect in code of its own.
+//!
+//! # Formulas
+//! ```text
+//! sum     = product { ("+" | "-") product }
+//! product = power { ("*" | "/") power }
+//! power   = "-" power | atom [ "^" power ]
+//! atom    = number | name | function "(" sum { "," sum } ")" | "(" sum ")"
+//!         | "if" "(" sum comparison sum "," sum "," sum ")"
+//! ```
+//! - Numbers: `2`, `0.5`, `.5`, `1e-3`. Names: variables, parameters, definitions, `pi`.
+//! - `^` binds most tightly and from the right: `-a^2` is −(a²), `a^-b` is a^(−b), `a^b^c` is a^(b^c). A sign binds more
+//!   tightly than `*`; `*` and `/`, then `+` and `-`, go from left to right. There is no sign `+` in front.
+//! - Functions of one argument: `exp`, `log` (natural), `sqrt`, `tanh`, `abs`, `sin`, `cos`, `tan` (of rad). Of two: `min`,
+//!   `max`, `pow` (the same as `^`).
+//! - `if(a < b, then, otherwise)` with `<`, `<=`, `>`, `>=`, `==` or `!=`: the only place for a comparison. Both values are
+//!   computed and one is taken, so neither is protected from the other's condition, and none can do harm.
+//!
+//! # What formulas see
+//! | key of the formula | replaces | in | must be | sees, beside what every formula sees |
+//! |---|---|---|---|---|
+//! | `slip` | `slip` | 1 | in [−1, 1) | |
+//! | `radius`, `width` | the same | m | > 0 | |
+//! | `sinkage_exponent` | `n` | 1 | > 0 | |
+//! | `wheel_load` | `wheel_load` | N | > 0 | `drawbar_pull` (N), `torque` (N m) |
+//! | `pressure` | `p` | Pa | ≥ 0 | `p` (Pa), `z` (m), `v_n` (m/s), `v_t` (m/s), `j` (m), `position` (1), and those of the contact |
+//! | `shear_limit` | `tau_max` | Pa | ≥ 0 | as `pressure`, and `tau_max` (Pa) |
+//! | `shear` | `tau` | Pa | ≥ 0 | as `shear_limit`, and `tau` (Pa) |
+//! | `drawbar_pull`, `lateral_force` | the same | N | finite | all four channels, and those of the contact |
+//! | `torque` | the same | N m | finite | all four channels, and those of the contact |
+//! | `sinkage` | the same | m | finite | all four channels, and those of the contact |
+//!
+//! Every formula sees `slip` (1), `sled_speed` (m/s), `wheel_load` (N), `radius` (m), `width` (m), `friction_angle_rad` (rad),
+//! `cohesion_pa` (Pa), `n` (1), `shear_velocity` (m/s), `density_kg_m3` (kg/m^3), `gravity` (m/s^2), `grouser_count` (1),
+//! `grouser_height` (m), `pass` (1) and `bin_length` (m). Those of the contact are `contact_length` (m), `b_eff` (m) and
+//! `k_star` (N/m^(n+2)). [`Variable`] says what each is.
+//!
+//! # Units
+//! Parameters have a unit of `1 kg m s deg rad N Pa J W Hz`, with `^`, `/` and spaces, without prefixes. Units are checked as
+//! far as they say something for certain. A number takes the unit that its neighbour needs, as in `v_t / 0.02`, and so does
+//! what has a unit that depends on a parameter: `k_star`, or a power whose exponent is no number. A degree is no radian:
+//! `sin(tilt_deg * pi / 180)`.
+//!
+//! # Numbers
+//! IEEE double precision; no value is an error and none is clamped. What is undefined is NaN, and models reject a NaN that
+//! reaches a quantity of theirs.
+//! - `1/0` is infinite and `0/0` NaN; `log(0)` is −∞; `log` and `sqrt` of what is below 0 are NaN.
+//! - `exp` above 709.78 is infinite and below −700 (where it would be under 1e-304) it is 0.
+//! - `x^0` is 1, also for 0 and NaN, and so is `1^x`; `0^b` is 0 for b > 0 and infinite for b < 0. A negative base needs a whole exponent, else
+//!   the power is NaN. `x^2` is `x * x`, `x^0.5` is `sqrt(x)`; other powers are exp(b ln x), to a relative error of
+//!   1.1e-16 |b ln x| and a few units in the last place.
+//! - `tanh` to a relative error of 1e-14, ±1 at infinity.
+//! - `min` and `max` of NaN are NaN. Comparisons with NaN do not hold, but for `!=`: `if(x < 1, a, b)` is b where x is NaN. −0
+//!   equals 0.
+//!
+//! A formula gives the same bits on every machine, and whichever variables differ from point to point.
+//!
+//! # Limits
+//! A file of 32 768 bytes, 16 parameters, 32 definitions; a formula of 2000 characters, parentheses and signs 50 deep; names
+//! of 60 characters; 1000 different operations in an effect; tables nested 8 deep; powers of units up to 9.
 
 mod arithmetic;
 pub mod block;

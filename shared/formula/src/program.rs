@@ -23,17 +23,40 @@ pub(crate) enum Operation<T> {
     Binary(Binary, T, T),
     If(T, T, T),
     /// One of the four operations of arithmetic, and what is made of its result at once.
-    Pair(Binary, T, T, Then<T>),
+    Pair(Arithmetic, T, T, Then<T>),
+}
+
+/// The operations that are cheap enough to be done on the way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Arithmetic {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+}
+
+impl Arithmetic {
+    fn of(operation: Binary) -> Option<Self> {
+        match operation {
+            Binary::Add => Some(Self::Add),
+            Binary::Subtract => Some(Self::Subtract),
+            Binary::Multiply => Some(Self::Multiply),
+            Binary::Divide => Some(Self::Divide),
+            _ => None,
+        }
+    }
 }
 
 /// What is made of a result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Then<T> {
     Exp,
-    /// An operation of arithmetic, or a power, on the result and another.
-    Left(Binary, T),
-    /// An operation of arithmetic on another and the result.
-    Right(Binary, T),
+    /// The result to the power of another.
+    Power(T),
+    /// An operation on the result and another.
+    Left(Arithmetic, T),
+    /// An operation on another and the result.
+    Right(Arithmetic, T),
 }
 
 impl<T> Operation<T> {
@@ -47,6 +70,7 @@ impl<T> Operation<T> {
                 let (a, b) = (f(a), f(b));
                 let then = match then {
                     Then::Exp => Then::Exp,
+                    Then::Power(exponent) => Then::Power(f(exponent)),
                     Then::Left(operation, other) => Then::Left(operation, f(other)),
                     Then::Right(operation, other) => Then::Right(operation, f(other)),
                 };
@@ -161,12 +185,24 @@ impl Program {
         self.kinked
     }
 
-    /// Computes what is the same at all points, and the result where it is.
+    /// Computes what is the same at all points, and gives the result if it is.
     ///
     /// # Arguments
-    /// - `variables`: by [`Variable`]; those that differ from point to point are not read.
-    /// - `parameters`: of the effect, in its order.
-    /// - `scalars`: takes the numbers; its allocation is used again.
+    /// - `variables`: by [`Variable`], in their units; those that differ from point to point are not read.
+    /// - `parameters`: of the effect, in its order and its units.
+    /// - `scalars`: takes the numbers, for [`Block::replace`]; its allocation is used again.
+    ///
+    /// # Returns
+    /// The result in the unit of what the formula replaces, not held to [`Hook::admits`]; `None` where it differs from point to
+    /// point. Never an error: what is undefined is NaN, as the [crate](crate#numbers) says.
+    ///
+    /// # Panics
+    /// If there are fewer parameters than the effect has.
+    ///
+    /// Checked by `evaluation::operators_bind_as_in_mathematics` and `fuzzed::formulas_mean_what_their_signs_say`.
+    ///
+    /// [`Block::replace`]: crate::block::Block::replace
+    /// [`Hook::admits`]: crate::Hook::admits
     pub fn settle(
         &self,
         variables: &[f64; Variable::COUNT],
@@ -208,14 +244,6 @@ fn without_power(graph: &Graph, node: Node) -> Node {
         Node::Number(bits) if bits == 0.5_f64.to_bits() => Node::Unary(Unary::Sqrt, a),
         _ => node,
     }
-}
-
-/// Whether an operation is one of the four of arithmetic.
-fn is_arithmetic(operation: Binary) -> bool {
-    matches!(
-        operation,
-        Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide
-    )
 }
 
 struct Compiler {
@@ -299,21 +327,22 @@ impl Compiler {
         };
         let is_first = |operand: Operand| operand == Operand::Register(register);
         let then = match operation {
-            Operation::Unary(Unary::Exp, x) if is_first(x) => Then::Exp,
+            Operation::Unary(Unary::Exp, x) if is_first(x) => Some(Then::Exp),
+            Operation::Binary(Binary::Power, x, y) if is_first(x) && !is_first(y) => Some(Then::Power(y)),
             Operation::Binary(second, x, y) if is_first(x) && !is_first(y) => {
-                if !(is_arithmetic(second) || second == Binary::Power) {
-                    return operation;
-                }
-                Then::Left(second, y)
+                Arithmetic::of(second).map(|second| Then::Left(second, y))
             }
-            Operation::Binary(second, x, y) if is_first(y) && !is_first(x) && is_arithmetic(second) => {
-                Then::Right(second, x)
+            Operation::Binary(second, x, y) if is_first(y) && !is_first(x) => {
+                Arithmetic::of(second).map(|second| Then::Right(second, x))
             }
-            _ => return operation,
+            _ => None,
+        };
+        let Some((first, then)) = Arithmetic::of(first).zip(then) else {
+            return operation;
         };
         let mut arguments = node.arguments();
         let alone = arguments.any(|id| is_first(self.of(id)) && self.registers.uses[usize::from(id.0)] == 1);
-        if !(alone && is_arithmetic(first)) {
+        if !alone {
             return operation;
         }
         self.operations.pop();
@@ -361,6 +390,52 @@ impl Registers {
             {
                 self.free.push(register);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Effect;
+    use crate::hook::Hook;
+
+    /// A formula made ready where z differs from point to point.
+    fn program(formula: &str) -> Program {
+        let text = format!("name = \"a\"\nsummary = \"a\"\nsource = \"a\"\npressure = \"{formula}\"\n");
+        let effect = Effect::read(&text).unwrap();
+        effect
+            .program(Hook::Pressure, Variables::of(&[Variable::Z]))
+            .unwrap()
+    }
+
+    #[test]
+    fn a_value_used_twice_by_one_operation_frees_its_register_once() {
+        let mut graph = Graph::default();
+        let z = graph.add(Node::Variable(Variable::Z), None).unwrap();
+        let e = graph.add(Node::Unary(Unary::Exp, z), None).unwrap();
+        let square = graph.add(Node::Binary(Binary::Multiply, e, e), None).unwrap();
+        let behind = graph.behind(square);
+        let mut registers = Registers::new(&graph, &behind);
+        let mut places = vec![None; graph.len()];
+        places[usize::from(e.0)] = Some(Operand::Register(registers.take()));
+        places[usize::from(square.0)] = Some(Operand::Register(registers.take()));
+        registers.release(&graph, square, &places);
+        // freed twice, it would be given to two values at once
+        assert_eq!(registers.free, [0]);
+    }
+
+    #[test]
+    fn operations_of_arithmetic_run_with_what_follows() {
+        for (formula, loops) in [
+            ("z * (1 - exp(-z / 0.01)) * 1", 3), // exp(z / -0.01); z (1 - e); times 1
+            ("(z / 0.02)^1.1 * 1", 2),
+            ("(z + 1) * (z + 1) * 1", 2), // z + 1 is needed twice
+            ("-z * 1", 1),
+        ] {
+            let program = program(formula);
+            let found = program.operations.len() + usize::from(program.last.is_some());
+            assert_eq!(found, loops, "{formula}");
         }
     }
 }

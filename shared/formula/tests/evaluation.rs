@@ -184,3 +184,133 @@ fn kinks_are_those_between_points() {
         );
     }
 }
+
+#[test]
+fn what_is_undefined_is_as_documented() {
+    let mut variables = [0.0; Variable::COUNT];
+    variables[Variable::Z as usize] = f64::NAN;
+    variables[Variable::Vt as usize] = -0.0;
+    let (nan, infinite) = (f64::NAN, f64::INFINITY);
+    for (formula, value) in [
+        ("min(NAN, 1)", nan),
+        ("min(1, NAN)", nan),
+        ("max(NAN, 1)", nan),
+        ("max(1, NAN)", nan),
+        ("if(NAN < 1, 2, 3)", 3.0),
+        ("if(NAN >= 1, 2, 3)", 3.0),
+        ("if(NAN == NAN, 2, 3)", 3.0),
+        ("if(NAN != NAN, 2, 3)", 2.0),
+        ("if(1 < 2, 2, NAN)", 2.0),
+        ("if(ZERO == 0, 2, 3)", 2.0),
+        ("0 ^ 0", 1.0),
+        ("NAN ^ 0", 1.0),
+        ("1 ^ NAN", 1.0),
+        ("0 ^ 1.5", 0.0),
+        ("0 ^ -1.5", infinite),
+        ("(-2) ^ 3", -8.0),
+        ("(-2) ^ 1.5", nan),
+        ("(-4) ^ 0.5", nan),
+        ("exp(709) / exp(709) * 1", 1.0),
+        ("exp(710) * 1", infinite),
+        ("exp(-700.1) * 1", 0.0),
+        ("log(0) * 1", -infinite),
+        ("log(-1) * 1", nan),
+        ("sqrt(-1)", nan),
+        ("1 / 0", infinite),
+        ("1 / ZERO", -infinite),
+        ("0 / 0", nan),
+        ("tanh(1e9) * 1", 1.0),
+        ("tanh(-1 / 0) * 1", -1.0),
+        ("tanh(NAN) * 1", nan),
+        ("1e300 * 1e300", infinite),
+    ] {
+        let names = formula.replace("NAN", "(z / 1)").replace("ZERO", "(v_t / 1)");
+        let found = at_one_point(&names, &variables);
+        assert!(
+            found == value || found.is_nan() && value.is_nan(),
+            "{formula} = {found}, not {value}"
+        );
+    }
+}
+
+#[test]
+fn elementary_functions_agree_with_those_of_libm() {
+    type Function = fn(f64) -> f64;
+    let functions: [(&str, Function, f64); 4] = [
+        ("exp(z / 1) * 1", libm::exp, 1e-15),
+        ("log(abs(z / 1)) * 1", |x| libm::log(x.abs()), 1e-15),
+        ("tanh(z / 1) * 1", libm::tanh, 1e-14),
+        ("abs(z / 1)^1.7", |x| libm::pow(x.abs(), 1.7), 1e-14),
+    ];
+    let mut variables = [0.0; Variable::COUNT];
+    for (formula, exact, tolerance) in functions {
+        let effect = effect(formula);
+        let program = effect.program(Hook::Pressure, Variables::default()).unwrap();
+        for step in -2000..2000 {
+            let x = f64::from(step) * 0.0137 + 0.001;
+            variables[Variable::Z as usize] = x;
+            let (found, expected) = (
+                program.settle(&variables, &PARAMETERS, &mut Vec::new()).unwrap(),
+                exact(x),
+            );
+            let error = (found / expected - 1.0).abs();
+            assert!(
+                error <= tolerance,
+                "{formula} at {x}: {found:e}, not {expected:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn signs_bind_less_than_powers_and_more_than_products() {
+    let variables = [0.0; Variable::COUNT];
+    for (formula, same) in [
+        ("-a^2", "-(a^2)"),
+        ("a^-b", "a^(-b)"),
+        ("a^b^a", "a^(b^a)"),
+        ("-a * b", "(-a) * b"),
+        ("2 - -a", "2 + a"),
+        ("a / b * 3", "(a / b) * 3"),
+        ("-a^-b^-a", "-(a^(-(b^(-a))))"),
+    ] {
+        let [found, expected] =
+            [formula, same].map(|f| at_one_point(&format!("1 * ({f}) * b / b * a / a"), &variables));
+        assert!(
+            found.to_bits() == expected.to_bits() || found.is_nan(),
+            "{formula}: {found}, not {expected}"
+        );
+    }
+}
+
+#[test]
+fn zero_of_either_sign_is_neutral() {
+    let effect = effect("p * a * b");
+    for (values, neutral) in [
+        ([0.0, 0.0], true),
+        ([-0.0, 0.0], true),
+        ([0.0, 5e-324], false),
+        ([f64::NAN, 0.0], false),
+        ([0.0, f64::INFINITY], false),
+    ] {
+        assert_eq!(effect.is_neutral(&values), neutral, "{values:?}");
+    }
+}
+
+#[test]
+fn line_ends_of_windows_and_a_byte_order_mark_change_nothing() {
+    let text =
+        "name = \"toy\"\nsummary = \"a toy\"\nsource = \"none\"\npressure = \"\"\"\np\n  * 3\n\"\"\"\n";
+    for text in [
+        text.to_owned(),
+        text.replace('\n', "\r\n"),
+        format!("\u{feff}{text}"),
+    ] {
+        let effect = Effect::read(&text).unwrap_or_else(|e| panic!("{e}"));
+        let program = effect.program(Hook::Pressure, Variables::default()).unwrap();
+        let value = program
+            .settle(&[2.0; Variable::COUNT], &[], &mut Vec::new())
+            .unwrap();
+        assert_eq!(value, 6.0);
+    }
+}

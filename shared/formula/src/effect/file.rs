@@ -20,7 +20,7 @@ const MOST_PARAMETERS: usize = 16;
 /// Most definitions of an effect.
 const MOST_DEFINITIONS: usize = 32;
 /// Deepest nesting of tables and arrays: a prior's arguments need 5. What reads TOML recurses, and a stranger's file must
-/// not exhaust the stack.
+/// not exhaust the stack: it may go down 80 tables for each bracket, by a key with dots.
 const DEEPEST: usize = 8;
 
 #[derive(Deserialize)]
@@ -181,6 +181,10 @@ pub(super) fn read(text: &str) -> Result<Effect, EffectError> {
 
 /// The file's keys and tables.
 fn tables(text: &str) -> Result<RawEffect, EffectError> {
+    if let Some(byte) = place::too_deep(text, DEEPEST) {
+        let message = format!("brackets must be nested at most {DEEPEST} deep");
+        return Err(at(text, byte, message));
+    }
     let table = DeTable::parse(text).map_err(|e| toml_error(text, &e))?;
     let mut waiting: Vec<(&Spanned<DeValue>, usize)> = table.get_ref().values().map(|v| (v, 1)).collect();
     while let Some((value, depth)) = waiting.pop() {

@@ -7,7 +7,7 @@ mod place;
 use crate::graph::{Graph, Id};
 use crate::hook::Hook;
 use crate::program::Program;
-use crate::variable::Variables;
+use crate::variable::{Variable, Variables};
 
 /// A mechanism that may be missing from the model: formulas for some of its quantities, with their parameters.
 ///
@@ -107,8 +107,12 @@ impl Effect {
     /// Reads an effect file.
     ///
     /// # Errors
-    /// [`EffectError`] with the line, and within a formula the column, of the first thing that is wrong; with the nearest
-    /// known name, or with all that are expected. Checked by `gallery`.
+    /// [`EffectError`] with the line and the column of the first mistake found, and with the nearest known name or all that are
+    /// expected; without a place where the whole file is to blame. Checked by `messages::every_message_is_as_written` and, for
+    /// any text, by `fuzzed::any_text_is_read_or_refused_at_a_place_that_is_there`.
+    ///
+    /// # Validity
+    /// Time and memory are bounded by [`Effect::LONGEST`]; so is the depth of the stack, far below that of a thread.
     pub fn read(text: &str) -> Result<Effect, EffectError> {
         file::read(text)
     }
@@ -119,7 +123,18 @@ impl Effect {
     }
 
     /// The formula for a quantity, ready where the variables `local` differ from point to point; none if it leaves it alone.
+    ///
+    /// `local` may hold the first [`Variable::LOCAL`] variables: only they have columns in a [`Block`](crate::block::Block). The
+    /// choice changes no bit of a value. Checked by `fuzzed::any_formula_has_the_same_bits_at_one_point_and_in_blocks`.
+    ///
+    /// # Panics
+    /// If `local` holds another variable.
     pub fn program(&self, hook: Hook, local: Variables) -> Option<Program> {
+        let has_column = |variable: Variable| (variable as usize) < Variable::LOCAL;
+        assert!(
+            local.iter().all(has_column),
+            "only variables of nodes may differ from point to point"
+        );
         let result = self.formulas.iter().find(|(h, _)| *h == hook)?.1;
         Some(Program::compile(&self.graph, result, local))
     }
@@ -139,7 +154,8 @@ impl Effect {
     }
 
     /// Whether it changes nothing at these values of its parameters: all of its strengths are neutral. An effect without
-    /// strengths is a law that always holds.
+    /// strengths is a law that always holds. `values` are those of its parameters, in their order and units; −0 is 0, and NaN is
+    /// no neutral value. Checked by `evaluation::zero_of_either_sign_is_neutral`.
     pub fn is_neutral(&self, values: &[f64]) -> bool {
         let mut strengths = self.parameters.iter().zip(values);
         let any = self.parameters.iter().any(|p| p.neutral.is_some());
