@@ -101,6 +101,8 @@ struct Law {
     programs: [Option<Program>; Hook::COUNT],
     /// What stands in place of the formulas.
     mechanism: Option<Mechanism>,
+    /// The variables that differ from node to node.
+    local: Variables,
 }
 
 impl Effects {
@@ -123,6 +125,7 @@ impl Effects {
                 effect: effect.clone(),
                 programs: Hook::ALL.map(program),
                 mechanism,
+                local: model.local(),
             })
         };
         let laws = effects.into_iter().map(law).collect::<Result<_, _>>()?;
@@ -163,6 +166,11 @@ impl<'a> Active<'a> {
             let program = law.programs[hook as usize].as_ref()?;
             Some((program, law.effect.name.as_str(), values.as_slice()))
         })
+    }
+
+    /// The variables that differ from node to node, in the model for which the effects were compiled.
+    fn local(&self) -> Variables {
+        self.laws.first().map_or(Variables::default(), |(law, _)| law.local)
     }
 
     /// The parameters of an effect that the model has in code, in the order of its file.

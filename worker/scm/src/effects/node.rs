@@ -110,10 +110,8 @@ impl<'a> NodeLaws<'a> {
                 let name = law.name;
                 let local = |block: &mut Block, variable: Variable| block.column(variable)[point];
                 let mut all = *variables;
-                for variable in Variable::ALL.into_iter().take(Variable::LOCAL) {
-                    if super::Model::QuasiStatic.local().contains(variable) {
-                        all[variable as usize] = local(&mut self.block, variable);
-                    }
+                for variable in self.active.local().iter() {
+                    all[variable as usize] = local(&mut self.block, variable);
                 }
                 return Err(self.active.refusal(hook, name, value, |v| all[v as usize]));
             }
