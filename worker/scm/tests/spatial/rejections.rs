@@ -36,7 +36,7 @@ fn every_choice_outside_its_bounds_is_named() {
         transient_sinkage_s,
         lowpass_hz,
     };
-    let changes: [(&str, Change); 14] = [
+    let changes: [(&str, Change); 13] = [
         ("elastic_stiffness_pa_m", |t| {
             t.ground.elastic_stiffness_pa_m = 0.0
         }),
