@@ -168,6 +168,12 @@ impl<'a> Active<'a> {
         })
     }
 
+    /// Whether every formula at a hook is what it replaces times something that does not depend on it.
+    fn only_scale(&self, hook: Hook) -> bool {
+        let mut laws = self.laws.iter().map(|(law, _)| law);
+        laws.all(|law| law.programs[hook as usize].is_none() || law.effect.only_scales(hook))
+    }
+
     /// The variables that differ from node to node, in the model for which the effects were compiled.
     fn local(&self) -> Variables {
         self.laws.first().map_or(Variables::default(), |(law, _)| law.local)

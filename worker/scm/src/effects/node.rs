@@ -57,6 +57,11 @@ impl<'a> NodeLaws<'a> {
         })
     }
 
+    /// What formulas at nodes use.
+    pub(crate) fn uses(&self) -> Variables {
+        self.uses
+    }
+
     /// Whether a formula at nodes uses a variable.
     pub(crate) fn use_variable(&self, variable: Variable) -> bool {
         self.uses.contains(variable)
@@ -70,6 +75,15 @@ impl<'a> NodeLaws<'a> {
     /// Whether there is a formula at a hook.
     pub(crate) fn enter(&self, hook: Hook) -> bool {
         self.laws.iter().any(|law| law.hook == hook)
+    }
+
+    /// Whether formulas do nothing but scale the shear stress, by what they make of these variables.
+    pub(crate) fn only_scale_stress_by(&self, variables: Variables) -> bool {
+        let of_run = Variables::of(&Variable::OF_RUN);
+        let known = variables.union(of_run).with(Variable::Tau);
+        HOOKS.into_iter().all(|hook| self.enter(hook) == (hook == Hook::Shear))
+            && self.active.only_scale(Hook::Shear)
+            && self.uses.iter().all(|variable| known.contains(variable))
     }
 
     /// Compute what all nodes share; again whenever one of these variables has changed.
@@ -100,7 +114,9 @@ impl<'a> NodeLaws<'a> {
             self.block.replace(target, law.program, &law.scalars, points);
             let values = &self.block.column(target)[..points];
             // without a way out, so that it vectorises
-            let fine = values.iter().fold(true, |fine, &value| fine & hook.admits(value));
+            let fine = values
+                .iter()
+                .fold(true, |fine, value| fine & (0.0..=f64::MAX).contains(value));
             if fine {
                 continue;
             }

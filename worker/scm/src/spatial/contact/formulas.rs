@@ -1,9 +1,10 @@
 //! Give pressure and shear stress at the nodes of a contact as the formulas of effects leave them.
 
 use formula::block::BLOCK;
+use formula::variable::Variables;
 use formula::{Hook, Variable};
 
-use super::super::pack::{LANES, PACK, Pack, greater, lanes_of, load, most_of, splat, store, sum};
+use super::super::pack::{LANES, PACK, Pack, greater, lanes_of, lesser, load, most_of, splat, store, sum};
 use super::super::terrain::Terrain;
 use super::super::wheel::envelope::Envelope;
 use super::super::wheel::motion::Motion;
@@ -11,9 +12,9 @@ use super::Contact;
 use super::laws::Laws;
 use super::patch::Patch;
 use super::quad::Quad;
+use crate::Rejection;
 use crate::effects::NodeLaws;
 use crate::footprint::effective_width;
-use crate::Rejection;
 
 /// The least depth that formulas see `[m]`: that of the base's own powers.
 const LEAST_DEPTH: f64 = 1e-12;
@@ -31,21 +32,27 @@ const LEAST_DEPTH: f64 = 1e-12;
 ///
 /// Formulas see `z ≥ 1e-12 m`, the velocity `v_n ≥ 0` into the soil along the wheel's normal with the hub at constant height,
 /// `position` along the whole footprint at the place where the pressure is taken, and k* and `b_eff` of the node's patch.
-/// Checked by `spatial::effects`.
+///
+/// # Numerics
+/// Formulas are evaluated at every trial height. Those that only scale the shear stress, by what no height changes, are
+/// evaluated once in a step: the base then runs with its shear tractions scaled. Checked by `spatial::effects`.
 #[derive(Debug, Clone)]
 pub(crate) struct NodeFormulas<'a> {
     laws: NodeLaws<'a>,
     variables: [f64; Variable::COUNT],
     /// Whether `laws` know the present `variables`.
     settled: bool,
+    /// Whether formulas only scale the shear stress, and whether they do so in this step.
+    may_scale: bool,
+    scales: bool,
     /// Width of the wheel `[m]`.
     width: f64,
     /// By quad: what a step knows.
     nodes: Vec<Node>,
     /// By quad: shear displacement j `[m]`.
     pub(crate) slid: Vec<Pack>,
-    /// By quad: the strength that acts, at the height last tried `[Pa]`.
-    pub(crate) strengths: Vec<Pack>,
+    /// By quad, at the height last tried: the strength that acts `[Pa]`.
+    strengths: Vec<Pack>,
     /// Rear end and length of the footprint, ahead of the hub `[m]`.
     footprint: [f64; 2],
     /// The quads at hand.
@@ -63,6 +70,8 @@ struct Node {
     /// `1 − exp(−|v_t| / v0)`, and one over it; 0 where nothing slides.
     share: Pack,
     per_share: Pack,
+    /// What formulas that only scale the stress multiply it by.
+    scale: Pack,
 }
 
 /// Four nodes of a block.
@@ -75,7 +84,10 @@ struct Point {
 
 impl<'a> NodeFormulas<'a> {
     pub(crate) fn new(laws: NodeLaws<'a>, variables: [f64; Variable::COUNT], width: f64) -> Self {
+        let of_step = Variables::of(&[Variable::Vn, Variable::Vt, Variable::J]);
         Self {
+            may_scale: laws.only_scale_stress_by(of_step),
+            scales: false,
             laws,
             variables,
             settled: false,
@@ -97,55 +109,120 @@ impl<'a> NodeFormulas<'a> {
     /// Change what all nodes share.
     pub(crate) fn set(&mut self, variable: Variable, value: f64) {
         let known = core::mem::replace(&mut self.variables[variable as usize], value);
-        self.settled &= known == value || !self.laws.use_variable(variable);
+        self.settled &= known.to_bits() == value.to_bits() || !self.laws.use_variable(variable);
     }
 
-    /// Bring formulas and a prepared contact together: what does not depend on the height of the hub.
-    pub(crate) fn prepare(&mut self, contact: &Contact, envelope: &Envelope, laws: &Laws, motion: &Motion) {
-        let zero = splat(0.0);
-        let (rows, packs) = (contact.strips.len(), contact.across.packs());
-        let enter = self.laws.use_variable(Variable::Vn);
-        self.strengths.resize(rows * packs, zero);
-        self.nodes.clear();
-        let share_of = |speed: f64| laws.shear_velocity.mobilised_per_velocity(speed) * speed;
-        for (row, strip) in contact.strips.iter().enumerate() {
-            let slope = splat(strip.slope);
-            let enters = splat(motion.forward) * slope / (splat(1.0) + slope * slope).sqrt();
-            for pack in 0..packs {
-                let slips = contact.slip_speed(row * packs + pack, row);
-                let known = self.nodes.last().filter(|_| pack > 0 && !contact.lanes_differ);
-                self.nodes.push(known.copied().unwrap_or_else(|| {
-                    let share = if contact.lanes_differ {
-                        Pack::new(slips.to_array().map(share_of))
-                    } else {
-                        splat(share_of(slips.to_array()[0]))
-                    };
-                    let enters = if enter && contact.lanes_differ {
-                        let facet = &envelope.facets[pack * rows + row];
-                        motion.into_soil(strip.ahead, facet)
-                    } else {
-                        enters
-                    };
-                    Node {
-                        slips,
-                        enters: greater(enters, zero),
-                        share,
-                        per_share: share.simd_gt(zero).select(splat(1.0) / share, zero),
-                    }
-                }));
-            }
-        }
-    }
-
-    /// Vertical force of the soil on the wheel with its hub at a height `[N]`; no number where a formula is refused.
-    pub(crate) fn press(&mut self, contact: &mut Contact, terrain: &Terrain, laws: &Laws, hub: f64) -> f64 {
-        let contours = laws.soil.k_c.abs() > 0.0 || self.laws.use_variable(Variable::BEff);
-        contact.find_patches(terrain, laws, hub, contours);
-        self.set(Variable::ContactLength, contact.area(terrain) / self.width);
+    fn settle(&mut self) {
         if !self.settled {
             self.laws.settle(&self.variables);
             self.settled = true;
         }
+    }
+
+    /// Bring formulas and a prepared contact together: what does not depend on the height of the hub.
+    pub(crate) fn prepare(
+        &mut self,
+        contact: &mut Contact,
+        envelope: &Envelope,
+        laws: &Laws,
+        motion: &Motion,
+    ) {
+        let (zero, one) = (splat(0.0), splat(1.0));
+        let (rows, packs) = (contact.strips.len(), contact.across.packs());
+        self.strengths.resize(rows * packs, zero);
+        self.nodes.clear();
+        for (row, strip) in contact.strips.iter().enumerate() {
+            let slope = splat(strip.slope);
+            let enters = splat(motion.forward) * slope / (one + slope * slope).sqrt();
+            for pack in 0..packs {
+                let enters = if contact.lanes_differ {
+                    motion.into_soil(strip.ahead, &envelope.facets[pack * rows + row])
+                } else {
+                    enters
+                };
+                self.nodes.push(Node {
+                    slips: contact.slip_speed(row * packs + pack, row),
+                    enters: greater(enters, zero),
+                    share: zero,
+                    per_share: zero,
+                    scale: one,
+                });
+            }
+        }
+        self.scales = self.may_scale && self.find_scales(contact);
+        if self.scales {
+            for (quad, node) in contact.quads.iter_mut().zip(&self.nodes) {
+                quad.shear_z *= node.scale;
+            }
+        } else {
+            self.find_shares(laws, contact);
+        }
+    }
+
+    /// What the base mobilises of the strength.
+    fn find_shares(&mut self, laws: &Laws, contact: &Contact) {
+        let share_of = |speed: f64| laws.shear_velocity.mobilised_per_velocity(speed) * speed;
+        for nodes in self.nodes.chunks_exact_mut(contact.across.packs()) {
+            let alike = (!contact.lanes_differ).then(|| splat(share_of(nodes[0].slips.to_array()[0])));
+            for node in nodes {
+                node.share = alike.unwrap_or_else(|| Pack::new(node.slips.to_array().map(share_of)));
+                let slides = node.share.simd_gt(splat(0.0));
+                node.per_share = slides.select(splat(1.0) / node.share, splat(0.0));
+            }
+        }
+    }
+
+    /// What formulas scale the stress by; gives whether all of it can be used, wherever nodes may come to bear.
+    fn find_scales(&mut self, contact: &Contact) -> bool {
+        self.settle();
+        let packs = contact.across.packs();
+        // where lanes are alike, one pack stands for the strip
+        let each = contact.lanes_differ || self.laws.use_variable(Variable::J);
+        let mut fine = true;
+        for row in (0..contact.strips.len()).filter(|&row| contact.strips[row].rise > 0.0) {
+            for pack in 0..if each { packs } else { 1 } {
+                let quad = row * packs + pack;
+                let at = self.points.len() * PACK;
+                self.see_motion(quad, at);
+                store(self.laws.block.column_mut(Variable::Tau), at, splat(1.0));
+                self.points.push(Point { quad, bears: 0 });
+                if at + PACK == BLOCK {
+                    fine &= self.take_scales(each, packs);
+                }
+            }
+        }
+        fine & self.take_scales(each, packs)
+    }
+
+    fn take_scales(&mut self, each: bool, packs: usize) -> bool {
+        let points = core::mem::take(&mut self.points);
+        let applied = self.apply(Hook::Shear, &points); // refuses nothing, as no node is known to bear
+        let mut fine = applied.is_ok();
+        for (i, point) in points.iter().enumerate() {
+            let scale = load(self.laws.block.column(Variable::Tau), i * PACK);
+            fine &= scale
+                .to_array()
+                .into_iter()
+                .all(|scale| Hook::Shear.admits(scale));
+            let alike = if each { 1 } else { packs };
+            for node in &mut self.nodes[point.quad..point.quad + alike] {
+                node.scale = scale;
+            }
+        }
+        self.points = points;
+        self.points.clear();
+        fine
+    }
+
+    /// Vertical force of the soil on the wheel with its hub at a height `[N]`; no number where a formula is refused.
+    pub(crate) fn press(&mut self, contact: &mut Contact, terrain: &Terrain, laws: &Laws, hub: f64) -> f64 {
+        if self.scales {
+            return contact.press(terrain, laws, hub);
+        }
+        let contours = laws.soil.k_c.abs() > 0.0 || self.laws.use_variable(Variable::BEff);
+        contact.find_patches(terrain, laws, hub, contours);
+        self.set(Variable::ContactLength, contact.area(terrain) / self.width);
+        self.settle();
         if self.laws.use_variable(Variable::Position) {
             self.footprint = contact.extent();
         }
@@ -153,10 +230,22 @@ impl<'a> NodeFormulas<'a> {
             Ok(half) if terrain.mirrored => 2.0 * half,
             Ok(force) => force,
             Err(refused) => {
+                self.points.clear();
                 self.refused.get_or_insert(refused);
                 f64::NAN
             }
         }
+    }
+
+    /// By quad: the strengths that act at the height last tried `[Pa]`.
+    pub(crate) fn strengths(&mut self, contact: &Contact, laws: &Laws) -> &[Pack] {
+        if self.scales {
+            let packs = contact.across.packs();
+            for quad in contact.first * packs..contact.end * packs {
+                self.strengths[quad] = strength(laws, &contact.quads[quad]) * self.nodes[quad].scale;
+            }
+        }
+        &self.strengths
     }
 
     /// Pressures and strengths, and the vertical force they exert.
@@ -180,9 +269,25 @@ impl<'a> NodeFormulas<'a> {
         Ok(sum(force))
     }
 
+    /// Put what four nodes know of their motion into the block.
+    fn see_motion(&mut self, quad: usize, at: usize) {
+        let node = &self.nodes[quad];
+        if self.laws.use_variable(Variable::Vn) {
+            store(self.laws.block.column_mut(Variable::Vn), at, node.enters);
+        }
+        if self.laws.use_variable(Variable::Vt) {
+            store(self.laws.block.column_mut(Variable::Vt), at, node.slips);
+        }
+        if self.laws.use_variable(Variable::J) {
+            store(self.laws.block.column_mut(Variable::J), at, self.slid[quad]);
+        }
+    }
+
     /// Put four nodes into the block, with the base's pressure.
     fn see(&mut self, contact: &mut Contact, laws: &Laws, row: usize, pack: usize, lanes: u64) {
-        let quad = row * contact.across.packs() + pack;
+        let place = row * contact.across.packs() + pack;
+        let at = self.points.len() * PACK;
+        self.see_motion(place, at);
         let runs = &contact.patches.runs[contact.patches.of_strip[row - contact.first].clone()];
         let patches = &contact.patches.patches;
         let of_patch = |of: fn(&Patch) -> f64| match runs {
@@ -192,36 +297,36 @@ impl<'a> NodeFormulas<'a> {
                 run.lanes_of(pack).select(own, others)
             }),
         };
-        let node = &mut contact.quads[quad];
-        let plastic = laws.plastic(of_patch(|patch| patch.stiffness) * node.shape, node.depth);
-        node.pressure = laws.bounded(plastic, node.pressed);
-        let at = self.points.len() * PACK;
-        let mut see = |variable: Variable, values: &dyn Fn() -> Pack| {
-            if self.laws.use_variable(variable) {
-                store(self.laws.block.column_mut(variable), at, values());
-            }
-        };
-        let pressed_middle = || {
-            let width = greater(contact.across.width[pack], splat(f64::MIN_POSITIVE));
-            let middle = splat(contact.strips[row].middle) + splat(0.5) * node.area / width - node.left;
-            let [rear, length] = self.footprint;
-            let place = (middle - splat(rear)) / splat(length);
-            greater(place, splat(0.0)).fast_min(splat(1.0))
-        };
-        see(Variable::Z, &|| greater(node.depth, splat(LEAST_DEPTH)));
-        see(Variable::Vn, &|| self.nodes[quad].enters);
-        see(Variable::Vt, &|| self.nodes[quad].slips);
-        see(Variable::J, &|| self.slid[quad]);
-        see(Variable::Position, &pressed_middle);
-        see(Variable::KStar, &|| of_patch(|patch| patch.modulus));
-        see(Variable::BEff, &|| {
-            of_patch(|patch| effective_width(patch.area, patch.contour))
-        });
-        if self.laws.enter(Hook::Pressure) {
-            store(self.laws.block.column_mut(Variable::P), at, plastic);
+        let quad = &mut contact.quads[place];
+        let plastic = laws.plastic(of_patch(|patch| patch.stiffness) * quad.shape, quad.depth);
+        quad.pressure = laws.bounded(plastic, quad.pressed);
+        let bears = u64::from(quad.pressure.simd_gt(splat(0.0)).to_bitmask()) & lanes;
+        self.points.push(Point { quad: place, bears });
+        let uses = self.laws.uses();
+        let changes_pressure = self.laws.enter(Hook::Pressure);
+        let block = &mut self.laws.block;
+        if uses.contains(Variable::Z) {
+            let depth = greater(quad.depth, splat(LEAST_DEPTH));
+            store(block.column_mut(Variable::Z), at, depth);
         }
-        let bears = u64::from(node.pressure.simd_gt(splat(0.0)).to_bitmask()) & lanes;
-        self.points.push(Point { quad, bears });
+        if uses.contains(Variable::Position) {
+            let width = greater(contact.across.width[pack], splat(f64::MIN_POSITIVE));
+            let middle = splat(contact.strips[row].middle) + splat(0.5) * quad.area / width - quad.left;
+            let [rear, length] = self.footprint;
+            let position = (middle - splat(rear)) / splat(length);
+            let position = lesser(greater(position, splat(0.0)), splat(1.0));
+            store(block.column_mut(Variable::Position), at, position);
+        }
+        if uses.contains(Variable::KStar) {
+            store(block.column_mut(Variable::KStar), at, of_patch(|patch| patch.modulus));
+        }
+        if uses.contains(Variable::BEff) {
+            let width = of_patch(|patch| effective_width(patch.area, patch.contour));
+            store(block.column_mut(Variable::BEff), at, width);
+        }
+        if changes_pressure {
+            store(block.column_mut(Variable::P), at, plastic);
+        }
     }
 
     /// Apply the formulas to the nodes of the block, and give the vertical force upon them, lane by lane.
@@ -230,71 +335,67 @@ impl<'a> NodeFormulas<'a> {
         let mut points = core::mem::take(&mut self.points);
         if self.laws.enter(Hook::Pressure) {
             self.apply(Hook::Pressure, &points)?;
+            let column = self.laws.block.column(Variable::P);
             for (i, point) in points.iter_mut().enumerate() {
                 let quad = &mut quads[point.quad];
-                let plastic = load(self.laws.block.column(Variable::P), i * PACK);
-                let bounded = laws.bounded(plastic, quad.pressed);
+                let bounded = laws.bounded(load(column, i * PACK), quad.pressed);
                 quad.pressure = lanes_of(point.bears).select(bounded, zero);
                 point.bears &= u64::from(quad.pressure.simd_gt(zero).to_bitmask());
             }
         }
-        let (limits, stresses) = (self.laws.enter(Hook::ShearLimit), self.laws.enter(Hook::Shear));
-        if limits || stresses {
-            self.change_strengths(quads, laws, &points)?;
+        for point in &points {
+            self.strengths[point.quad] = strength(laws, &quads[point.quad]);
+        }
+        if self.laws.enter(Hook::ShearLimit) || self.laws.enter(Hook::Shear) {
+            self.change_strengths(quads, &points)?;
         }
         let mut force = zero;
         for point in &points {
             let quad = &quads[point.quad];
-            let base = strength(laws, quad);
-            let strength = &mut self.strengths[point.quad];
-            *strength = if limits || stresses {
-                lanes_of(point.bears).select(*strength, base)
-            } else {
-                base
-            };
-            force += quad.area * (quad.pressure + *strength * quad.shear_z);
+            force += quad.area * (quad.pressure + self.strengths[point.quad] * quad.shear_z);
         }
         points.clear();
         self.points = points;
         Ok(force)
     }
 
-    /// The strengths of the block's nodes as the formulas leave them; unspecified where a node does not bear.
-    fn change_strengths(&mut self, quads: &[Quad], laws: &Laws, points: &[Point]) -> Result<(), Rejection> {
-        let share = |nodes: &[Node], point: &Point| nodes[point.quad].share;
-        let stresses = self.laws.enter(Hook::Shear);
-        let see_pressure = self.laws.use_variable(Variable::P);
+    /// Make of the strengths of the block's nodes what the formulas do, where a node bears.
+    fn change_strengths(&mut self, quads: &[Quad], points: &[Point]) -> Result<(), Rejection> {
+        let sees_pressure = self.laws.use_variable(Variable::P);
         let limits = self.laws.enter(Hook::ShearLimit);
-        let see_limit = limits || self.laws.use_variable(Variable::TauMax);
-        for (i, point) in points.iter().enumerate() {
-            let quad = &quads[point.quad];
-            let limit = strength(laws, quad);
-            let block = &mut self.laws.block;
-            if see_pressure {
-                store(block.column_mut(Variable::P), i * PACK, quad.pressure);
+        let sees_limit = limits || self.laws.use_variable(Variable::TauMax);
+        if sees_pressure {
+            let column = self.laws.block.column_mut(Variable::P);
+            for (i, point) in points.iter().enumerate() {
+                store(column, i * PACK, quads[point.quad].pressure);
             }
-            if see_limit {
-                store(block.column_mut(Variable::TauMax), i * PACK, limit);
-            }
-            if !limits {
-                let stress = limit * share(&self.nodes, point);
-                store(block.column_mut(Variable::Tau), i * PACK, stress);
+        }
+        if sees_limit {
+            let column = self.laws.block.column_mut(Variable::TauMax);
+            for (i, point) in points.iter().enumerate() {
+                store(column, i * PACK, self.strengths[point.quad]);
             }
         }
         if limits {
             self.apply(Hook::ShearLimit, points)?;
+            let column = self.laws.block.column(Variable::TauMax);
             for (i, point) in points.iter().enumerate() {
-                let limit = load(self.laws.block.column(Variable::TauMax), i * PACK);
-                self.strengths[point.quad] = limit;
-                let stress = limit * share(&self.nodes, point);
-                store(self.laws.block.column_mut(Variable::Tau), i * PACK, stress);
+                let strength = &mut self.strengths[point.quad];
+                *strength = lanes_of(point.bears).select(load(column, i * PACK), *strength);
             }
         }
-        if stresses {
-            self.apply(Hook::Shear, points)?;
+        if self.laws.enter(Hook::Shear) {
+            let column = self.laws.block.column_mut(Variable::Tau);
             for (i, point) in points.iter().enumerate() {
-                let stress = load(self.laws.block.column(Variable::Tau), i * PACK);
-                self.strengths[point.quad] = stress * self.nodes[point.quad].per_share;
+                let stress = self.strengths[point.quad] * self.nodes[point.quad].share;
+                store(column, i * PACK, stress);
+            }
+            self.apply(Hook::Shear, points)?;
+            let column = self.laws.block.column(Variable::Tau);
+            for (i, point) in points.iter().enumerate() {
+                let strength = &mut self.strengths[point.quad];
+                let acts = load(column, i * PACK) * self.nodes[point.quad].per_share;
+                *strength = lanes_of(point.bears).select(acts, *strength);
             }
         }
         Ok(())

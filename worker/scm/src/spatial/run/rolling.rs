@@ -244,8 +244,8 @@ impl<'a> Rolling<'a> {
         self.heights.push(found.height);
         let stiffness = self.condition.wheel_load_n / self.wheel.radius_m;
         self.slope = found.slope.max(SLOPES[0] * stiffness).min(SLOPES[1] * stiffness);
-        let nodes = self.effects.as_ref().and_then(|effects| effects.nodes.as_ref());
-        let strengths = nodes.map(|nodes| nodes.strengths.as_slice());
+        let nodes = self.effects.as_mut().and_then(|effects| effects.nodes.as_mut());
+        let strengths = nodes.map(|nodes| nodes.strengths(&self.contact, &self.laws));
         let reaction = self.contact.react(&self.terrain, &self.laws, strengths);
         if self.contact.end > self.contact.first {
             if let Some(path) = &mut self.shear_path {
@@ -318,10 +318,10 @@ impl<'a> Rolling<'a> {
         self.contact
             .prepare(&self.terrain, &self.envelope, &self.laws, &self.motion, vertical);
         if let Some(nodes) = self.effects.as_mut().and_then(|effects| effects.nodes.as_mut()) {
-            nodes.prepare(&self.contact, &self.envelope, &self.laws, &self.motion);
             if let Some(path) = &mut self.shear_path {
                 path.measure(&self.contact, &self.terrain, self.pose.turned, &mut nodes.slid);
             }
+            nodes.prepare(&mut self.contact, &self.envelope, &self.laws, &self.motion);
         }
     }
 
