@@ -7,7 +7,7 @@ use formula::{Hook, Variable};
 use super::super::pack::{LANES, PACK, Pack, greater, lanes_of, lesser, load, most_of, splat, store, sum};
 use super::super::terrain::Terrain;
 use super::super::wheel::envelope::Envelope;
-use super::super::wheel::motion::Motion;
+use super::super::wheel::motion::{Motion, Traction};
 use super::Contact;
 use super::laws::Laws;
 use super::patch::Patch;
@@ -45,6 +45,8 @@ pub(crate) struct NodeFormulas<'a> {
     /// Whether formulas only scale the shear stress, and whether they do so in this step.
     may_scale: bool,
     scales: bool,
+    /// Strips that touch at this height of the hub have their tractions scaled `[m]`.
+    scaled_down_to: f64,
     /// Width of the wheel `[m]`.
     width: f64,
     /// By quad: what a step knows.
@@ -88,6 +90,7 @@ impl<'a> NodeFormulas<'a> {
         Self {
             may_scale: laws.only_scale_stress_by(of_step),
             scales: false,
+            scaled_down_to: f64::INFINITY,
             laws,
             variables,
             settled: false,
@@ -149,12 +152,8 @@ impl<'a> NodeFormulas<'a> {
                 });
             }
         }
-        self.scales = self.may_scale && self.find_scales(contact);
-        if self.scales {
-            for (quad, node) in contact.quads.iter_mut().zip(&self.nodes) {
-                quad.shear_z *= node.scale;
-            }
-        } else {
+        (self.scales, self.scaled_down_to) = (self.may_scale, f64::INFINITY);
+        if !self.scales {
             self.find_shares(laws, contact);
         }
     }
@@ -172,41 +171,45 @@ impl<'a> NodeFormulas<'a> {
         }
     }
 
-    /// What formulas scale the stress by; gives whether all of it can be used, wherever nodes may come to bear.
-    fn find_scales(&mut self, contact: &Contact) -> bool {
-        self.settle();
+    /// Scale the tractions of the strips that touch at a height and were not scaled yet; gives whether that can be done
+    /// wherever a node may come to bear.
+    fn scale_down_to(&mut self, contact: &mut Contact, hub: f64) -> bool {
         let packs = contact.across.packs();
         // where lanes are alike, one pack stands for the strip
-        let each = contact.lanes_differ || self.laws.use_variable(Variable::J);
+        let own = contact.lanes_differ || self.laws.use_variable(Variable::J);
+        let (each, alike) = if own { (packs, 1) } else { (1, packs) };
+        let above = self.scaled_down_to;
+        self.scaled_down_to = hub.min(above);
         let mut fine = true;
-        for row in (0..contact.strips.len()).filter(|&row| contact.strips[row].rise > 0.0) {
-            for pack in 0..if each { packs } else { 1 } {
-                let quad = row * packs + pack;
-                let at = self.points.len() * PACK;
+        for row in 0..contact.strips.len() {
+            if contact.highest[row] <= hub || contact.highest[row] > above {
+                continue;
+            }
+            for pack in 0..each {
+                let (quad, at) = (row * packs + pack, self.points.len() * PACK);
                 self.see_motion(quad, at);
                 store(self.laws.block.column_mut(Variable::Tau), at, splat(1.0));
                 self.points.push(Point { quad, bears: 0 });
                 if at + PACK == BLOCK {
-                    fine &= self.take_scales(each, packs);
+                    fine &= self.scale(contact, alike);
                 }
             }
         }
-        fine & self.take_scales(each, packs)
+        fine & self.scale(contact, alike)
     }
 
-    fn take_scales(&mut self, each: bool, packs: usize) -> bool {
+    /// Scale the tractions of the quads at hand, each of which stands for so many that are alike.
+    fn scale(&mut self, contact: &mut Contact, alike: usize) -> bool {
         let points = core::mem::take(&mut self.points);
-        let applied = self.apply(Hook::Shear, &points); // refuses nothing, as no node is known to bear
-        let mut fine = applied.is_ok();
+        let mut fine = self.apply(Hook::Shear, &points).is_ok(); // as no node is known to bear
+        let column = self.laws.block.column(Variable::Tau);
         for (i, point) in points.iter().enumerate() {
-            let scale = load(self.laws.block.column(Variable::Tau), i * PACK);
-            fine &= scale
-                .to_array()
-                .into_iter()
-                .all(|scale| Hook::Shear.admits(scale));
-            let alike = if each { 1 } else { packs };
-            for node in &mut self.nodes[point.quad..point.quad + alike] {
-                node.scale = scale;
+            let scales = &column[i * PACK..][..PACK];
+            fine &= scales.iter().all(|scale| (0.0..=f64::MAX).contains(scale));
+            let scale = load(scales, 0);
+            for quad in point.quad..point.quad + alike {
+                self.nodes[quad].scale = scale;
+                contact.quads[quad].shear_z *= scale;
             }
         }
         self.points = points;
@@ -216,8 +219,15 @@ impl<'a> NodeFormulas<'a> {
 
     /// Vertical force of the soil on the wheel with its hub at a height `[N]`; no number where a formula is refused.
     pub(crate) fn press(&mut self, contact: &mut Contact, terrain: &Terrain, laws: &Laws, hub: f64) -> f64 {
+        self.settle();
         if self.scales {
-            return contact.press(terrain, laws, hub);
+            if self.scale_down_to(contact, hub) {
+                return contact.press(terrain, laws, hub);
+            }
+            // node by node, with regard to which bear
+            self.scales = false;
+            contact.find_vertical_shears();
+            self.find_shares(laws, contact);
         }
         let contours = laws.soil.k_c.abs() > 0.0 || self.laws.use_variable(Variable::BEff);
         contact.find_patches(terrain, laws, hub, contours);
@@ -414,6 +424,18 @@ fn strength(laws: &Laws, quad: &Quad) -> Pack {
 }
 
 impl Contact {
+    /// Vertical shear forces as the base's tractions have them.
+    fn find_vertical_shears(&mut self) {
+        let packs = self.across.packs();
+        for (place, quad) in self.quads.iter_mut().enumerate() {
+            quad.shear_z = if self.lanes_differ {
+                Traction::of_lanes(&self.tractions[place * PACK..][..PACK], |t| t.shear_z)
+            } else {
+                splat(self.tractions[place / packs].shear_z)
+            };
+        }
+    }
+
     /// Rear end and length of the footprint, ahead of the hub `[m]`.
     fn extent(&self) -> [f64; 2] {
         if self.end == self.first {
