@@ -3,7 +3,7 @@
 //! `cargo build --release -p scm --example fifty_seconds`, then
 //! `valgrind --tool=callgrind target/release/examples/fifty_seconds`. Words on the command line change the case:
 //! `smooth`, `steady`, `both-halves`; `formula`: the base's shear-velocity law as a formula; `displacement`: Janosi and
-//! Hanamoto's law.
+//! Hanamoto's law; `pressure`: soil that grows denser with depth.
 
 #[path = "../tests/scene.rs"]
 #[expect(dead_code, reason = "tests ask more of a track")]
@@ -47,6 +47,10 @@ fn main() -> Result<(), scm::Rejection> {
     }
     if says("displacement") {
         track.enter_displacement_law(0.01);
+    }
+    if says("pressure") {
+        let denser = formula::catalogue::find("density_gradient").expect("in the catalogue");
+        track.enter(denser, &[20.0]);
     }
     let run = track.try_roll()?;
     let steps = run.history.len() - 1;
