@@ -176,7 +176,9 @@ impl<'a> Active<'a> {
 
     /// The variables that differ from node to node, in the model for which the effects were compiled.
     fn local(&self) -> Variables {
-        self.laws.first().map_or(Variables::default(), |(law, _)| law.local)
+        self.laws
+            .first()
+            .map_or(Variables::default(), |(law, _)| law.local)
     }
 
     /// The parameters of an effect that the model has in code, in the order of its file.

@@ -81,7 +81,9 @@ impl<'a> NodeLaws<'a> {
     pub(crate) fn only_scale_stress_by(&self, variables: Variables) -> bool {
         let of_run = Variables::of(&Variable::OF_RUN);
         let known = variables.union(of_run).with(Variable::Tau);
-        HOOKS.into_iter().all(|hook| self.enter(hook) == (hook == Hook::Shear))
+        HOOKS
+            .into_iter()
+            .all(|hook| self.enter(hook) == (hook == Hook::Shear))
             && self.active.only_scale(Hook::Shear)
             && self.uses.iter().all(|variable| known.contains(variable))
     }

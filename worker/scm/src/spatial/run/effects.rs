@@ -3,6 +3,7 @@
 use formula::Variable;
 use formula::effect::Mechanism;
 
+use crate::Rejection;
 use crate::effects::{Active, Case, NodeLaws};
 use crate::rejection::require;
 use crate::spatial::contact::Contact;
@@ -10,7 +11,6 @@ use crate::spatial::contact::formulas::NodeFormulas;
 use crate::spatial::contact::laws::Laws;
 use crate::spatial::contact::reaction::Reaction;
 use crate::spatial::{Ground, Scene, Shape};
-use crate::Rejection;
 
 /// The effects of one run.
 ///
@@ -181,7 +181,9 @@ impl EndWall {
 }
 
 fn digging(active: &Active) -> Result<f64, Rejection> {
-    let depth = active.mechanism(Mechanism::Digging).map_or(0.0, |values| values[0]);
+    let depth = active
+        .mechanism(Mechanism::Digging)
+        .map_or(0.0, |values| values[0]);
     require(depth >= 0.0, "depth_m", depth, "m", "at least 0")?;
     Ok(depth)
 }

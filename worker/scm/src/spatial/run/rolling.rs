@@ -125,7 +125,8 @@ impl<'a> Rolling<'a> {
             }
             Protocol::Fixed { .. } => travel,
         };
-        let (mut terrain, start) = terrain(width, &motion, &settings, dx, underside.reach(), travel, mirrored)?;
+        let (mut terrain, start) =
+            terrain(width, &motion, &settings, dx, underside.reach(), travel, mirrored)?;
         let repeats_after = if underside.repeats_per_turn().is_none() {
             steps.to_column
         } else {

@@ -60,7 +60,7 @@ impl Motion {
 
     /// Velocity into the soil along the normal of four lanes of the wheel's surface, hub at constant height; negative where
     /// the surface leaves the soil `[m/s]`.
-    pub(crate) fn into_soil(&self, ahead: f64, facet: &Facet) -> Pack {
+    pub(crate) fn entry_velocity(&self, ahead: f64, facet: &Facet) -> Pack {
         let (rise, one) = (facet.rise, splat(1.0));
         let x = splat(self.forward) - splat(self.rotation) * rise;
         let stretch = (one + facet.slope_x * facet.slope_x + facet.slope_y * facet.slope_y).sqrt();
