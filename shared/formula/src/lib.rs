@@ -10,7 +10,7 @@
 //! From text to numbers:
 //! - `token`, `parse`: text to a graph of operations.
 //! - `graph`: the operations of one effect, each of them once.
-//! - `dimension`: whether the units of a formula can be right.
+//! - `dimension`: whether the units of a formula can be right; `proportion`: whether it only scales what it replaces.
 //! - [`program`]: a formula made ready; [`block`]: its evaluation at many points; `arithmetic`: one operation.
 //! - [`word`]: what was probably meant.
 //! - [`elementary`]: `exp`, `ln` and powers that vectorise and give the same bits on every machine.
@@ -115,6 +115,7 @@ mod graph;
 pub mod hook;
 mod parse;
 pub mod program;
+mod proportion;
 mod token;
 pub mod unit;
 pub mod variable;

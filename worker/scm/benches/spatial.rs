@@ -27,6 +27,7 @@ struct Case {
     both_halves: bool,
     slip_angle_deg: f64,
     spacing_m: f64,
+    /// Of Janosi and Hanamoto's law, which enters where it is above 0.
     shear_modulus_m: f64,
     displacement: Displacement,
 }
@@ -58,7 +59,9 @@ impl Case {
         if self.smooth {
             track.shape = Shape::Rim(Grousers::default());
         }
-        track.ground.shear_modulus_m = self.shear_modulus_m;
+        if self.shear_modulus_m > 0.0 {
+            track.enter_displacement_law(self.shear_modulus_m);
+        }
         let protocol = if self.fifty_seconds {
             Protocol::Fixed {
                 duration_s: 50.0,

@@ -2,7 +2,8 @@
 //!
 //! `cargo build --release -p scm --example fifty_seconds`, then
 //! `valgrind --tool=callgrind target/release/examples/fifty_seconds`. Words on the command line change the case:
-//! `smooth`, `steady`, `both-halves`.
+//! `smooth`, `steady`, `both-halves`; `formula`: the base's shear-velocity law as a formula; `displacement`: Janosi and
+//! Hanamoto's law; `pressure`: soil that grows denser with depth.
 
 #[path = "../tests/scene.rs"]
 #[expect(dead_code, reason = "tests ask more of a track")]
@@ -38,6 +39,19 @@ fn main() -> Result<(), scm::Rejection> {
         both_halves: says("both-halves"),
         ..Settings::default()
     };
+    if says("formula") {
+        track.case.soil.shear_velocity_m_s = 0.0;
+        let text = "name = \"law\"\nsummary = \"law\"\nsource = \"base\"\nshear = \"tau * (1 - exp(-v_t / v_0))\"\n\
+            [parameters.v_0]\nunit = \"m/s\"\nneutral = 0\nprior = 0.001\n";
+        track.enter(&formula::Effect::read(text).expect("an effect"), &[0.001]);
+    }
+    if says("displacement") {
+        track.enter_displacement_law(0.01);
+    }
+    if says("pressure") {
+        let denser = formula::catalogue::find("density_gradient").expect("in the catalogue");
+        track.enter(denser, &[20.0]);
+    }
     let run = track.try_roll()?;
     let steps = run.history.len() - 1;
     println!("{:?}", run.averages);

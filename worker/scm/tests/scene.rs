@@ -1,6 +1,8 @@
 //! A wheel in three dimensions, ready to roll: what tests and the validation table start from.
 
 use crate::support::{Case, base};
+use formula::Effect;
+use scm::effects::{Effects, Model, Site};
 use scm::spatial::{Ground, Grousers, Protocol, Run, Scene, Settings, Shape, simulate};
 use scm::{Averages, Rejection};
 
@@ -11,6 +13,9 @@ pub(crate) struct Track {
     pub(crate) ground: Ground,
     pub(crate) shape: Shape,
     pub(crate) settings: Settings,
+    /// Effects with the values of their parameters.
+    pub(crate) effects: Vec<(Effect, Vec<f64>)>,
+    pub(crate) site: Site,
 }
 
 impl Track {
@@ -24,6 +29,8 @@ impl Track {
             },
             shape: Shape::Rim(Grousers::default()),
             settings: Settings::default(),
+            effects: Vec::new(),
+            site: Site::default(),
         }
     }
 
@@ -53,17 +60,33 @@ impl Track {
         self
     }
 
+    /// Let an effect enter, at these values of its parameters.
+    pub(crate) fn enter(&mut self, effect: &Effect, values: &[f64]) {
+        self.effects.push((effect.clone(), values.to_vec()));
+    }
+
+    /// Let Janosi and Hanamoto's law enter with a shear modulus `[m]`.
+    pub(crate) fn enter_displacement_law(&mut self, shear_modulus_m: f64) {
+        let law = formula::catalogue::find("janosi_hanamoto").expect("in the catalogue");
+        self.enter(law, &[shear_modulus_m]);
+    }
+
     pub(crate) fn try_roll(&self) -> Result<Run, Rejection> {
         let Case {
             soil,
             wheel,
             condition,
         } = &self.case;
+        let effects = self.effects.iter().map(|(effect, _)| effect);
+        let effects = Effects::compile(Model::Spatial, effects).expect("effects that the model can express");
+        let values = self.effects.iter().map(|(_, values)| values.clone());
         let scene = Scene {
             soil,
             ground: &self.ground,
             wheel,
             shape: &self.shape,
+            effects: &effects.activate(values),
+            site: self.site,
         };
         simulate(&scene, condition, &self.settings)
     }

@@ -99,7 +99,6 @@ pub(super) struct GroundMap {
     elastic_stiffness_pa_m: Source,
     flow_fraction: Source,
     bearing_credit: Source,
-    shear_modulus_m: Option<Source>,
 }
 
 impl GroundMap {
@@ -108,7 +107,6 @@ impl GroundMap {
             elastic_stiffness_pa_m: Source::required(variant, "elastic_stiffness_pa_m")?,
             flow_fraction: Source::required(variant, "flow_fraction")?,
             bearing_credit: Source::required(variant, "bearing_credit")?,
-            shear_modulus_m: Source::find(variant, SHEAR_MODULUS),
         })
     }
 
@@ -120,7 +118,6 @@ impl GroundMap {
             flow_fraction: self.flow_fraction.value(theta),
             bearing_credit: self.bearing_credit.value(theta),
             repose_angle_rad: repose_angle_deg.map_or(default.repose_angle_rad, f64::to_radians),
-            shear_modulus_m: self.shear_modulus_m.map_or(0.0, |source| source.value(theta)),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The three-dimensional model of a variant: shared settings become the physics' types.
 
+use scm::effects::{Active, Site};
 use scm::spatial::{self, Grousers, Run, Scene, Settings, Shape, SurfaceMesh};
 use scm::{Condition, Rejection, Soil, Wheel};
 use shared::experiment::{self, ProtocolKind};
@@ -83,6 +84,8 @@ impl SpatialModel {
             ground: &self.ground.ground(theta, self.repose_angles[position]),
             wheel,
             shape: &self.shapes[place],
+            effects: &Active::default(),
+            site: Site::default(),
         };
         spatial::simulate(&scene, condition, &self.settings)
     }

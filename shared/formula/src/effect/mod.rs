@@ -7,6 +7,7 @@ mod place;
 use crate::graph::{Graph, Id};
 use crate::hook::Hook;
 use crate::program::Program;
+use crate::proportion::is_proportional;
 use crate::variable::{Variable, Variables};
 
 /// A mechanism that may be missing from the model: formulas for some of its quantities, with their parameters.
@@ -137,6 +138,14 @@ impl Effect {
         );
         let result = self.formulas.iter().find(|(h, _)| *h == hook)?.1;
         Some(Program::compile(&self.graph, result, local))
+    }
+
+    /// Whether its formula at a hook is what it replaces times something that does not depend on it.
+    pub fn only_scales(&self, hook: Hook) -> bool {
+        self.formulas
+            .iter()
+            .find(|(own, _)| *own == hook)
+            .is_some_and(|(_, result)| is_proportional(&self.graph, *result, hook.target()))
     }
 
     /// The variables that its formulas use.

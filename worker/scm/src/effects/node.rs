@@ -55,6 +55,11 @@ impl<'a> NodeLaws<'a> {
         })
     }
 
+    /// What formulas at nodes use.
+    pub(crate) fn uses(&self) -> Variables {
+        self.uses
+    }
+
     /// Whether a formula at nodes uses a variable.
     pub(crate) fn use_variable(&self, variable: Variable) -> bool {
         self.uses.contains(variable)
@@ -68,6 +73,14 @@ impl<'a> NodeLaws<'a> {
     /// Whether there is a formula at a hook.
     pub(crate) fn enter(&self, hook: Hook) -> bool {
         self.laws.iter().any(|law| law.hook == hook)
+    }
+
+    /// Whether formulas do nothing but scale the shear stress, by what they make of these variables.
+    pub(crate) fn only_scale_stress_by(&self, variables: Variables) -> bool {
+        let of_run = Variables::of(&Variable::OF_RUN);
+        let known = variables.union(of_run).with(Variable::Tau);
+        let scales = |law: &NodeLaw| law.hook == Hook::Shear && law.law.effect.only_scales(Hook::Shear);
+        self.laws.iter().all(scales) && self.uses.iter().all(|variable| known.contains(variable))
     }
 
     /// Compute what all nodes share; again whenever one of these variables has changed.

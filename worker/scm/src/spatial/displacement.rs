@@ -1,23 +1,20 @@
-//! Follow how far wheel and soil have slid along each other (Janosi and Hanamoto).
+//! Follow how far wheel and soil have slid along each other.
 
 use super::contact::Contact;
 use super::pack::{PACK, Pack, load, splat, store};
 use super::settings::Displacement;
 use super::terrain::Terrain;
-use crate::shear::ShearDisplacement;
 
 /// An element of the rim that has met no soil for longer starts anew `[rad]`.
 const HALF_TURN: f64 = core::f64::consts::PI;
 
-/// Shear displacement j of the contact, and the share `1 − exp(−j/K)` of the strength that it mobilises.
+/// Shear displacement j of the contact, which formulas such as Janosi and Hanamoto's, `1 − exp(−j/K)`, use.
 ///
 /// On the rim, j belongs to elements of the wheel's surface, bins of its angle, and grows by `|v_t| dt` in contact:
 /// `j(θ) = R [(θ_1 − θ) − (1 − s)(sin θ_1 − sin θ)]` in steady motion (Wong and Reece). Between a grouser and
 /// the rim behind it an element loses contact without starting anew. On the soil, j belongs to the terrain's nodes.
 #[derive(Debug, Clone)]
 pub(super) struct ShearPath {
-    /// The law; none where the displacement does not matter.
-    law: Option<ShearDisplacement>,
     /// Bins around the wheel; 0 where j belongs to the soil.
     bins: usize,
     /// Lanes of a bin's row.
@@ -31,13 +28,10 @@ pub(super) struct ShearPath {
 
 impl ShearPath {
     /// Nothing has slid yet. `dx` is the spacing along travel `[m]`; a bin is half as long.
-    pub(super) fn new(modulus: f64, keeper: Displacement, radius: f64, dx: f64) -> Self {
-        let law = (modulus > 0.0).then(|| ShearDisplacement::new(modulus));
-        let on_rim = law.is_some() && keeper == Displacement::Rim;
+    pub(super) fn new(keeper: Displacement, radius: f64, dx: f64) -> Self {
         let bins = libm::ceil(core::f64::consts::TAU * radius / (0.5 * dx)) as usize;
         Self {
-            law,
-            bins: if on_rim { bins } else { 0 },
+            bins: if keeper == Displacement::Rim { bins } else { 0 },
             lanes: 0,
             slid: Vec::new(),
             last: Vec::new(),
@@ -82,33 +76,24 @@ impl ShearPath {
         (first..end).map(move |bin| bin.rem_euclid(bins) as usize)
     }
 
-    /// Scale the shear stresses of the contact by what has been mobilised so far.
-    pub(super) fn mobilise(&mut self, contact: &mut Contact, terrain: &Terrain, turned: f64) {
-        let Some(law) = self.law else { return };
+    /// Shear displacement of every quad so far `[m]`; 0 where there is no wheel.
+    pub(super) fn measure(&mut self, contact: &Contact, terrain: &Terrain, turned: f64, out: &mut Vec<Pack>) {
         let packs = contact.across.packs();
         if self.on_rim() {
             self.widen(packs);
             self.find_spans(contact, turned);
         }
-        for row in 0..contact.strips.len() {
-            if contact.strips[row].rise <= 0.0 {
-                continue;
-            }
+        out.clear();
+        for (row, strip) in contact.strips.iter().enumerate() {
             for pack in 0..packs {
-                let slid = if self.on_rim() {
+                out.push(if strip.rise <= 0.0 {
+                    splat(0.0)
+                } else if self.on_rim() {
                     self.mean_slid(row, pack, turned)
                 } else {
-                    let start = contact.strips[row].column * terrain.lanes + contact.across.first_lane;
+                    let start = strip.column * terrain.lanes + contact.across.first_lane;
                     load(&terrain.sheared, start + pack * PACK)
-                };
-                let quad = &mut contact.quads[row * packs + pack];
-                // most strips have not touched yet: spare them the exponentials
-                quad.mobilised = if slid.simd_gt(splat(0.0)).any() {
-                    Pack::new(slid.to_array().map(|j| law.mobilised(j)))
-                } else {
-                    splat(0.0)
-                };
-                quad.shear_z *= quad.mobilised;
+                });
             }
         }
     }
@@ -124,11 +109,8 @@ impl ShearPath {
         sum * splat(1.0 / bins)
     }
 
-    /// Let wheel and soil slide along each other for a time, where the contact was mobilised last.
+    /// Let wheel and soil slide along each other for a time, where they were measured last.
     pub(super) fn slide(&mut self, contact: &Contact, terrain: &mut Terrain, turned: f64, time: f64) {
-        if self.law.is_none() {
-            return;
-        }
         let packs = contact.across.packs();
         for row in (contact.first..contact.end).filter(|&row| contact.masks[row] != 0) {
             let strip = &contact.strips[row];

@@ -24,6 +24,7 @@ pub use run::History;
 pub use settings::{Displacement, Ground, Grousers, PressureDirection, Protocol, Settings, Shape, Vertical};
 pub use surface::{Normals, SurfaceMesh};
 
+use crate::effects::{Active, Site};
 use crate::rejection::require;
 use crate::{Averages, Condition, Rejection, Soil, Wheel};
 
@@ -41,6 +42,10 @@ pub struct Scene<'a> {
     pub wheel: &'a Wheel,
     /// The rest of the wheel's shape.
     pub shape: &'a Shape,
+    /// Effects that enter; `Active::default()` is none.
+    pub effects: &'a Active<'a>,
+    /// What effects may ask of the run beyond the rest.
+    pub site: Site,
 }
 
 /// What a run gives.
@@ -112,13 +117,15 @@ pub struct Run {
 /// # Example
 /// ```
 /// use scm::spatial::{Ground, Grousers, Scene, Settings, Shape, simulate};
+/// use scm::effects::{Active, Site};
 /// use scm::{Condition, Soil, Wheel};
 /// let soil = Soil { k_c: 0.0, k_phi: 1e7, n: 1.1, cohesion_pa: 0.0, friction_angle_rad: 30f64.to_radians(),
 ///     shear_velocity_m_s: 1e-3, gamma_exponent: 0.5 };
 /// let wheel = Wheel { radius_m: 0.125, width_m: 0.112, rig_radius_m: 0.125 };
 /// let shape = Shape::Rim(Grousers { count: 12, height_m: 0.009, thickness_m: 0.002 });
 /// let condition = Condition { slip: 0.2, wheel_load_n: 100.0, sled_speed_m_s: 0.008, slip_angle_rad: 0.0, pass: 1 };
-/// let scene = Scene { soil: &soil, ground: &Ground::default(), wheel: &wheel, shape: &shape };
+/// let (effects, site) = (Active::default(), Site::default()); // none; a smooth wheel on Earth
+/// let scene = Scene { soil: &soil, ground: &Ground::default(), wheel: &wheel, shape: &shape, effects: &effects, site };
 /// let run = simulate(&scene, &condition, &Settings::default())?;
 /// assert!((run.averages.drawbar_pull_n - 39.4).abs() < 0.5 && (run.averages.sinkage_m - 5.24e-3).abs() < 1e-4);
 /// # Ok::<(), scm::Rejection>(())
@@ -130,19 +137,54 @@ pub fn simulate(scene: &Scene, condition: &Condition, settings: &Settings) -> Re
         scene.wheel.checked()?,
     );
     scene.shape.checked(&wheel)?;
-    let speed = condition.sled_speed_m_s;
+    require_speed(condition.sled_speed_m_s)?;
+    let (condition, settings) = (condition.checked()?, settings.checked()?);
+    let scene = Scene {
+        soil: &soil,
+        ground: &ground,
+        wheel: &wheel,
+        ..*scene
+    };
+    if scene.effects.is_empty() {
+        run::roll(&scene, &condition, None, settings)
+    } else {
+        simulate_with_effects(&scene, &condition, settings)
+    }
+}
+
+/// The same run where effects are active: with the soil, wheel, sled speed and load that they leave.
+fn simulate_with_effects(scene: &Scene, condition: &Condition, settings: Settings) -> Result<Run, Rejection> {
+    let case = scene
+        .effects
+        .case(scene.soil, scene.wheel, condition, &scene.site)?;
+    let (soil, wheel) = (case.soil.checked()?, case.wheel.checked()?);
+    scene.shape.checked(&wheel)?;
+    if let Shape::Mesh { .. } = scene.shape {
+        let before = scene.wheel;
+        for (name, value, own) in [
+            ("radius_m", wheel.radius_m, before.radius_m),
+            ("width_m", wheel.width_m, before.width_m),
+        ] {
+            let bound = "left alone by effects: a wheel given as a mesh has its own size";
+            require(value.to_bits() == own.to_bits(), name, value, "m", bound)?;
+        }
+    }
+    let condition = case.condition.checked()?;
+    require_speed(condition.sled_speed_m_s)?;
+    let scene = Scene {
+        soil: &soil,
+        wheel: &wheel,
+        ..*scene
+    };
+    run::roll(&scene, &condition, Some(&case), settings)
+}
+
+fn require_speed(speed: f64) -> Result<(), Rejection> {
     require(
         (SPEEDS_M_S[0]..=SPEEDS_M_S[1]).contains(&speed),
         "sled_speed_m_s",
         speed,
         "m/s",
         "between 1e-6 and 1000 for a wheel that rolls in time",
-    )?;
-    let scene = Scene {
-        soil: &soil,
-        ground: &ground,
-        wheel: &wheel,
-        shape: scene.shape,
-    };
-    run::roll(&scene, &condition.checked()?, settings.checked()?)
+    )
 }

@@ -15,8 +15,6 @@ pub struct Ground {
     pub bearing_credit: f64,
     /// Angle of repose `[rad]`, in (0, π/2).
     pub repose_angle_rad: f64,
-    /// Shear displacement at which 1 − 1/e of the strength is mobilised, K `[m]`, ≥ 0; 0: no displacement law.
-    pub shear_modulus_m: f64,
 }
 
 impl Default for Ground {
@@ -27,7 +25,6 @@ impl Default for Ground {
             flow_fraction: 0.25,
             bearing_credit: 0.3,
             repose_angle_rad: 32.0 * core::f64::consts::PI / 180.0,
-            shear_modulus_m: 0.0,
         }
     }
 }
@@ -62,13 +59,6 @@ impl Ground {
             self.repose_angle_rad,
             "rad",
             "above 0 and below pi/2",
-        )?;
-        require(
-            self.shear_modulus_m >= 0.0,
-            "shear_modulus_m",
-            self.shear_modulus_m,
-            "m",
-            "at least 0",
         )?;
         Ok(self)
     }
@@ -162,7 +152,7 @@ impl Shape {
     }
 }
 
-/// Where the shear displacement of the displacement law is kept.
+/// Where the shear displacement j is kept, which formulas may use.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Displacement {
     /// On the rim: what an element of the wheel's surface has slid since it entered the soil.

@@ -35,7 +35,7 @@ fn displacement_of_the_rim_is_less_than_that_of_the_soil() {
 
 #[test]
 fn strength_is_half_mobilised_by_the_displacement() {
-    let [pull, _, _] = change(|track| track.ground.shear_modulus_m = 0.0);
+    let [pull, _, _] = change(|track| track.effects.clear());
     assert!(pull > 25.0, "{pull}"); // W tan(phi) = 57.7 N in all
 }
 

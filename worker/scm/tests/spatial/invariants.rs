@@ -24,7 +24,7 @@ fn random(seed: u64) -> Track {
     track.ground.bearing_credit = draws.uniform(0.0, 0.5);
     track.ground.elastic_stiffness_pa_m = draws.log_uniform(1e8, 1e10);
     if draws.uniform(0.0, 1.0) < 0.3 {
-        track.ground.shear_modulus_m = draws.log_uniform(1e-3, 3e-2);
+        track.enter_displacement_law(draws.log_uniform(1e-3, 3e-2));
         if draws.uniform(0.0, 1.0) < 0.5 {
             track.settings.displacement = Displacement::Node;
         }

@@ -2,6 +2,7 @@
 
 use super::surfaces::{Surface, across};
 use crate::support::{Case, base};
+use scm::effects::{Active, Site};
 use scm::spatial::{Ground, Grousers, Normals, Protocol, Run, Scene, Settings, Shape, SurfaceMesh, simulate};
 
 const R: f64 = 0.125;
@@ -17,6 +18,8 @@ fn roll(case: &Case, shape: &Shape, settings: Settings) -> Run {
         ground: &Ground::default(),
         wheel: &case.wheel,
         shape,
+        effects: &Active::default(),
+        site: Site::default(),
     };
     simulate(&scene, &case.condition, &settings).unwrap_or_else(|rejection| panic!("{rejection}"))
 }

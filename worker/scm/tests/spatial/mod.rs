@@ -9,8 +9,10 @@
 //! - `mesh`: triangles against the analytic wheel; `surfaces`: the triangles.
 //! - `comparison`: the choices behind the figures of another implementation.
 //! - `rejections`: parameters without an answer.
+//! - `effects`: how effects enter; `signatures`: what each of them changes.
 
 mod comparison;
+mod effects;
 mod extremes;
 mod grousers;
 mod invariants;
@@ -19,6 +21,7 @@ mod oracles;
 mod passes;
 mod protocol;
 mod rejections;
+mod signatures;
 mod surfaces;
 mod symmetry;
 mod vertical;

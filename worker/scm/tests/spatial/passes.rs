@@ -62,7 +62,7 @@ fn a_wheel_in_its_rut_pulls_more_for_it_compacts_less() {
 fn a_displacement_law_starts_anew_in_every_pass() {
     for keeper in [Displacement::Rim, Displacement::Node] {
         let mut track = smooth(0.2, 100.0, 30.0);
-        track.ground.shear_modulus_m = 0.01;
+        track.enter_displacement_law(0.01);
         track.settings.displacement = keeper;
         let passes = passes(track);
         // The contact is shorter, so less is mobilised. Without forgetting, a node's strength would be all there.
@@ -74,7 +74,7 @@ fn a_displacement_law_starts_anew_in_every_pass() {
 fn an_element_of_the_rim_starts_anew_after_a_turn() {
     // one turn is 0.63 m of travel at a slip of 0.2
     let mut track = smooth(0.2, 100.0, 30.0);
-    track.ground.shear_modulus_m = 0.01;
+    track.enter_displacement_law(0.01);
     let first_turn = track.clone().for_a_travel_of(0.4, 0.2).averages();
     let second_turn = track.for_a_travel_of(1.1, 0.2).averages();
     assert!(

@@ -28,7 +28,7 @@ pub(crate) fn add(rows: &mut Rows) {
     ];
     for (modulus_mm, keeper, [pull, torque, sinkage_mm]) in TABLE {
         let mut track = smooth(0.2, 100.0, 30.0);
-        track.ground.shear_modulus_m = 1e-3 * modulus_mm;
+        track.enter_displacement_law(1e-3 * modulus_mm);
         track.settings.displacement = keeper;
         let case = format!("K {modulus_mm} mm, {keeper:?}");
         let expected = [pull, torque, 1e-3 * sinkage_mm];

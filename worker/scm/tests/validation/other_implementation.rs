@@ -18,7 +18,7 @@ pub(crate) fn track(dem_spacing_m: f64) -> Track {
     track.case.soil.gamma_exponent = 0.0;
     track.case.soil.shear_velocity_m_s = 0.0;
     track.case.condition.sled_speed_m_s = 0.02;
-    track.ground.shear_modulus_m = SHEAR_MODULUS_M;
+    track.enter_displacement_law(SHEAR_MODULUS_M);
     track.ground.elastic_stiffness_pa_m = 2e8;
     track.settings.dem_spacing_m = dem_spacing_m;
     track.settings.displacement = Displacement::Node;

@@ -62,7 +62,18 @@ impl Laws {
     /// - `stiffness`: k* gamma `[N/m^(n+2)]`. `depth`: z below the reference. `penetration`: below the surface `[m]`.
     #[inline]
     pub(crate) fn pressure(&self, stiffness: Pack, depth: Pack, penetration: Pack) -> Pack {
-        let plastic = stiffness * self.sinkage_power.of(depth);
+        self.bounded(self.plastic(stiffness, depth), penetration)
+    }
+
+    /// Bekker's `gamma k* z^n`.
+    #[inline]
+    pub(crate) fn plastic(&self, stiffness: Pack, depth: Pack) -> Pack {
+        stiffness * self.sinkage_power.of(depth)
+    }
+
+    /// A plastic pressure, but no more than the elastic line from the present surface allows, and no suction.
+    #[inline]
+    pub(crate) fn bounded(&self, plastic: Pack, penetration: Pack) -> Pack {
         let elastic = splat(self.elastic_stiffness) * penetration;
         greater(lesser(plastic, elastic), splat(0.0))
     }

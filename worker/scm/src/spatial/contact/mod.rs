@@ -7,9 +7,11 @@
 //! - `contour`: contour lengths of the patches.
 //! - `laws`: pressure and its distribution; `power`: z^n for many nodes.
 //! - `reaction`: force and torque on the wheel.
+//! - `formulas`: pressure and shear stress as effects leave them.
 
 mod contour;
 mod distance;
+pub(super) mod formulas;
 pub(super) mod laws;
 mod patch;
 mod power;
@@ -107,6 +109,9 @@ impl Contact {
             };
             self.highest.push(highest);
         }
+        if terrain.is_dug() {
+            self.lower_references(terrain);
+        }
     }
 
     fn find_tractions(&mut self, envelope: &Envelope, laws: &Laws, motion: &Motion, vertical: bool) {
@@ -137,12 +142,20 @@ impl Contact {
 
     /// Vertical force of the soil on the wheel with its hub at a height `[N]`.
     pub(crate) fn press(&mut self, terrain: &Terrain, laws: &Laws, hub: f64) -> f64 {
+        let cohesive = laws.soil.k_c.abs() > 0.0;
+        self.find_patches(terrain, laws, hub, cohesive);
+        let half = self.sum_pressures(laws);
+        if terrain.mirrored { 2.0 * half } else { half }
+    }
+
+    /// Nodes in contact with the hub at a height, and the patches they form; `contours`: with their lengths.
+    fn find_patches(&mut self, terrain: &Terrain, laws: &Laws, hub: f64, contours: bool) {
         self.touch(hub);
         self.measure(terrain, laws, hub);
-        let cohesive = laws.soil.k_c.abs() > 0.0;
-        if cohesive {
+        if contours {
             self.add_contours(terrain);
         }
+        let cohesive = laws.soil.k_c.abs() > 0.0;
         for patch in &mut self.patches.patches {
             let k_star = if cohesive {
                 laws.soil.k_phi + laws.soil.k_c / effective_width(patch.area, patch.contour)
@@ -151,11 +164,10 @@ impl Contact {
             };
             let shape = sum(patch.shapes);
             let carries = k_star > 0.0 && shape > 0.0;
+            patch.modulus = k_star;
             patch.stiffness = if carries { k_star * patch.area / shape } else { 0.0 };
         }
-        let half = self.sum_pressures(laws);
         self.trials += 1;
-        if terrain.mirrored { 2.0 * half } else { half }
     }
 
     /// Which nodes are in contact, in which patches, and how far from the rear end of their contact.

@@ -32,7 +32,9 @@ pub(crate) struct Patch {
     /// Sums of area, and of area times the shape g of the pressure distribution, lane by lane.
     pub(crate) areas: Pack,
     pub(crate) shapes: Pack,
-    /// Modulus k* over the mean of g; 0 where there is no support.
+    /// Modulus k* `[N/m^(n+2)]`.
+    pub(crate) modulus: f64,
+    /// The same over the mean of g; 0 where there is no support.
     pub(crate) stiffness: f64,
 }
 
@@ -72,6 +74,7 @@ impl Patches {
             contour: 0.0,
             areas: zero,
             shapes: zero,
+            modulus: 0.0,
             stiffness: 0.0,
         };
         if self.first == first && self.masks == masks {

@@ -12,9 +12,7 @@ pub(crate) struct Quad {
     pub(crate) reference: Pack,
     /// Slope dh/dx of the wheel's surface `[–]`.
     pub(crate) slope: Pack,
-    /// Share of the strength that the shear displacement has mobilised `[–]`.
-    pub(crate) mobilised: Pack,
-    /// Vertical shear force per projected area and unit strength, with what is mobilised `[–]`.
+    /// Vertical shear force per projected area and unit strength `[–]`.
     pub(crate) shear_z: Pack,
     /// How far the wheel reaches below the surface at the node `[m]`; > 0: in contact.
     pub(crate) penetration: Pack,
@@ -40,7 +38,6 @@ impl Quad {
             surface: zero,
             reference: zero,
             slope: zero,
-            mobilised: zero,
             shear_z: zero,
             penetration: zero,
             to_rear: zero,
@@ -80,7 +77,6 @@ impl Under<'_> {
             quad.surface = Pack::new(*surface) + rise;
             quad.reference = Pack::new(*loose) * self.credit + rise;
             quad.slope = slope;
-            quad.mobilised = splat(1.0);
             quad.shear_z = shear_z;
             highest = greater(highest, quad.surface);
         }

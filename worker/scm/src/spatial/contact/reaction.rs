@@ -5,6 +5,7 @@ use super::super::terrain::Terrain;
 use super::super::wheel::motion::Traction;
 use super::Contact;
 use super::laws::Laws;
+use super::patch::Patch;
 
 /// Force and torque of the soil on the wheel about its hub, with the contact that caused them.
 #[derive(Debug, Clone, Copy, Default)]
@@ -22,7 +23,9 @@ pub(crate) struct Reaction {
 
 impl Contact {
     /// The soil's force and torque at the height last tried.
-    pub(crate) fn react(&mut self, terrain: &Terrain, laws: &Laws) -> Reaction {
+    ///
+    /// `strengths` are those of every quad where formulas have changed them `[Pa]`.
+    pub(crate) fn react(&mut self, terrain: &Terrain, laws: &Laws, strengths: Option<&[Pack]>) -> Reaction {
         let packs = self.across.packs();
         let (cohesion, tan_phi) = (splat(laws.soil.cohesion_pa), splat(laws.tan_friction_angle));
         let mut sums = Sums::default();
@@ -34,7 +37,10 @@ impl Contact {
             let (mut normal, mut shear) = (splat(0.0), splat(0.0));
             for (pack, quad) in self.quads[row * packs..(row + 1) * packs].iter().enumerate() {
                 let own_normal = quad.area * quad.pressure;
-                let own_shear = (quad.area * cohesion + own_normal * tan_phi) * quad.mobilised;
+                let own_shear = match strengths {
+                    None => quad.area * cohesion + own_normal * tan_phi,
+                    Some(strengths) => quad.area * strengths[row * packs + pack],
+                };
                 if self.lanes_differ {
                     let tractions = &self.tractions[(row * packs + pack) * PACK..][..PACK];
                     sums.add(strip.ahead, &Along::of_lanes(tractions), own_normal, own_shear);
@@ -68,19 +74,34 @@ impl Contact {
         if terrain.mirrored {
             reaction.nodes *= 2;
         }
-        reaction.area = double * self.patches.patches.iter().map(|p| p.area).sum::<f64>();
+        reaction.area = self.area(terrain);
         reaction
     }
 
     /// Effective width 2 A / L of the patches, weighted by their area `[m]`.
     pub(crate) fn effective_width(&mut self, terrain: &Terrain) -> f64 {
         self.add_contours(terrain);
+        self.mean_of(|patch| crate::footprint::effective_width(patch.area, patch.contour))
+    }
+
+    /// Modulus k* of the patches, weighted by their area `[N/m^(n+2)]`.
+    pub(crate) fn modulus(&self) -> f64 {
+        self.mean_of(|patch| patch.modulus)
+    }
+
+    fn mean_of(&self, of: impl Fn(&Patch) -> f64) -> f64 {
         let (mut area, mut weighted) = (0.0, 0.0);
         for patch in &self.patches.patches {
             area += patch.area;
-            weighted += patch.area * crate::footprint::effective_width(patch.area, patch.contour);
+            weighted += patch.area * of(patch);
         }
         if area > 0.0 { weighted / area } else { 0.0 }
+    }
+
+    /// Area of the footprint `[m²]`.
+    pub(crate) fn area(&self, terrain: &Terrain) -> f64 {
+        let double = if terrain.mirrored { 2.0 } else { 1.0 };
+        double * self.patches.patches.iter().map(|p| p.area).sum::<f64>()
     }
 }
 

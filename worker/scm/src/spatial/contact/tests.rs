@@ -96,7 +96,7 @@ fn pressure_grows_from_the_border_with_the_power_of_the_distance() {
 fn the_force_is_the_load_upwards_and_turns_nothing_under_the_middle() {
     let (load, mut contact, terrain) = pressed(&soil(0.5, 0.0), true);
     let laws = Laws::new(&soil(0.5, 0.0), 1e12, 0.0);
-    let reaction = contact.react(&terrain, &laws);
+    let reaction = contact.react(&terrain, &laws, None);
     assert!((reaction.force_z / load - 1.0).abs() < 1e-12);
     assert!(reaction.force_x.abs() < 1e-12 * load && reaction.torque.abs() < 1e-12 * load);
     assert!((reaction.area / (LENGTH * WIDTH) - 1.0).abs() < 1e-12);

@@ -4,18 +4,26 @@ use super::record::{Record, Windows};
 use super::rolling::Rolling;
 use super::track::count;
 use crate::Condition;
+use crate::effects::Case;
 use crate::rejection::Rejection;
 use crate::signal::{self, INTERVAL_S, LowPass, Window, period_mean};
 use crate::spatial::settings::{Protocol, Settings};
 use crate::spatial::{Run, Scene};
 
 /// Roll the wheel by the settings' protocol, pass after pass; the last one counts.
-pub(crate) fn roll(scene: &Scene, condition: &Condition, settings: Settings) -> Result<Run, Rejection> {
+///
+/// `case`: where effects are active, what they have made of soil, wheel and condition, which scene and condition then hold.
+pub(crate) fn roll(
+    scene: &Scene,
+    condition: &Condition,
+    case: Option<&Case>,
+    settings: Settings,
+) -> Result<Run, Rejection> {
     let track = match settings.protocol {
         Protocol::Steady { most_travel_m, .. } => most_travel_m,
         Protocol::Fixed { duration_s, .. } => duration_s * condition.sled_speed_m_s,
     };
-    let mut rolling = Rolling::new(scene, condition, settings, track)?;
+    let mut rolling = Rolling::new(scene, condition, case, settings, track)?;
     let steps = count(rolling.track, &rolling.steps, condition)?;
     for _ in 1..condition.pass {
         rolling.lower()?;
@@ -26,7 +34,7 @@ pub(crate) fn roll(scene: &Scene, condition: &Condition, settings: Settings) -> 
     }
     let mut record = Record::new(rolling.steps.time);
     let lowered = rolling.lower()?;
-    record.push(&mut rolling, &lowered);
+    record.push(&mut rolling, &lowered)?;
     let (windows, settled_to) = match settings.protocol {
         Protocol::Steady { tolerance, .. } => steady(&mut rolling, &mut record, condition, tolerance, steps)?,
         Protocol::Fixed {
@@ -37,7 +45,7 @@ pub(crate) fn roll(scene: &Scene, condition: &Condition, settings: Settings) -> 
         } => {
             for _ in 0..steps {
                 let step = rolling.step()?;
-                record.push(&mut rolling, &step);
+                record.push(&mut rolling, &step)?;
             }
             let cut = [transient_force_s, transient_sinkage_s];
             (fixed(&rolling, &record, cut, lowpass_hz)?, None)
@@ -63,7 +71,7 @@ fn steady(
     for taken in 0..=most_steps {
         if taken > 0 {
             let step = rolling.step()?;
-            record.push(rolling, &step);
+            record.push(rolling, &step)?;
         }
         if (taken as f64) < end {
             continue;

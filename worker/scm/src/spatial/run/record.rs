@@ -25,10 +25,14 @@ pub(super) struct Windows {
 /// What a run gives, step by step.
 pub(super) struct Record {
     pub(super) history: History,
+    /// Drawbar pull, torque and lateral force of the soil where something else is measured.
+    soils_own: Vec<[f64; 3]>,
     pub(super) contact_length_m: Vec<f64>,
     b_eff_m: Vec<f64>,
     nodes: Vec<f64>,
     residual_n: Vec<f64>,
+    /// Load that was to be carried, less the nominal one.
+    load_change_n: Vec<f64>,
     /// Power that motor and rig put into the soil `[W]`.
     power_w: Vec<f64>,
 }
@@ -40,25 +44,38 @@ impl Record {
                 step_s,
                 ..History::default()
             },
+            soils_own: Vec::new(),
             contact_length_m: Vec::new(),
             b_eff_m: Vec::new(),
             nodes: Vec::new(),
             residual_n: Vec::new(),
+            load_change_n: Vec::new(),
             power_w: Vec::new(),
         }
     }
 
-    pub(super) fn push(&mut self, rolling: &mut Rolling, step: &Step) {
+    /// Keep what a step gave, as it is measured; power and balance are the soil's own.
+    pub(super) fn push(&mut self, rolling: &mut Rolling, step: &Step) -> Result<(), Rejection> {
         let reaction = &step.reaction;
         if self.history.len().is_multiple_of(CONTOUR_EVERY) {
             self.b_eff_m.push(rolling.effective_width());
         }
-        self.history.drawbar_pull_n.push(reaction.force_x);
-        self.history.torque_n_m.push(reaction.torque);
-        self.history.sinkage_m.push(rolling.sinkage(step.hub));
-        self.history.lateral_force_n.push(-reaction.force_y);
+        let contact_length = reaction.area / rolling.width();
+        let (pull, torque, lateral) = (reaction.force_x, reaction.torque, -reaction.force_y);
+        let mut channels = [pull, torque, rolling.sinkage(step.hub), lateral];
+        let effects = rolling.effects.as_ref();
+        if let Some(effects) = effects.filter(|effects| effects.measure_otherwise()) {
+            self.soils_own.push([pull, torque, lateral]);
+            let b_eff = self.b_eff_m.last().copied().unwrap_or(0.0);
+            channels = effects.measure(channels, &rolling.contact, contact_length, b_eff)?;
+        }
+        self.history.drawbar_pull_n.push(channels[0]);
+        self.history.torque_n_m.push(channels[1]);
+        self.history.sinkage_m.push(channels[2]);
+        self.history.lateral_force_n.push(channels[3]);
         self.history.wheel_load_n.push(reaction.force_z);
-        self.contact_length_m.push(reaction.area / rolling.width());
+        self.contact_length_m.push(contact_length);
+        self.load_change_n.push(step.load - rolling.nominal_load());
         self.nodes.push(f64::from(reaction.nodes));
         self.residual_n.push(step.residual);
         let motion = &rolling.motion;
@@ -68,6 +85,16 @@ impl Record {
                 - reaction.force_y * motion.lateral
                 - reaction.force_z * step.rising,
         );
+        Ok(())
+    }
+
+    /// Drawbar pull, torque and lateral force of the soil, from a step on, where they are measured as `means`.
+    fn forces(&self, means: [f64; 4], first: usize) -> [f64; 3] {
+        let part = &self.soils_own[first.min(self.soils_own.len())..];
+        if part.is_empty() {
+            return [means[0], means[1], means[3]];
+        }
+        [0, 1, 2].map(|i| part.iter().map(|forces| forces[i]).sum::<f64>() / part.len() as f64)
     }
 
     /// Means of the four channels between two places counted in steps of travel.
@@ -116,21 +143,23 @@ impl Record {
         let residual_load_n = mean(&residuals, first);
         // a hub that moves freely is in balance with its damper at once, but has to come to rest on the soil
         let carried_n = mean(&self.history.wheel_load_n, first);
-        let off_load = residual_load_n.max((carried_n - condition.wheel_load_n).abs());
-        if off_load > MOST_RESIDUAL * condition.wheel_load_n {
+        let wheel_load_n = condition.wheel_load_n + mean(&self.load_change_n, first);
+        let off_load = residual_load_n.max((carried_n - wheel_load_n).abs());
+        if off_load > MOST_RESIDUAL * wheel_load_n {
             return Err(Rejection::NoConvergence {
                 residual_load_n: off_load,
-                wheel_load_n: condition.wheel_load_n,
+                wheel_load_n,
                 sinkage_m,
                 evaluations: rolling.contact.trials as u32,
             });
         }
         let dissipated_power_w = mean(&self.power_w, first);
-        let throughput = (torque_n_m * rolling.motion.rotation).abs()
-            + (drawbar_pull_n * rolling.motion.forward).abs()
-            + (lateral_force_n * rolling.motion.lateral).abs();
+        let [pull, torque, lateral] = self.forces(windows.means, first);
+        let throughput = (torque * rolling.motion.rotation).abs()
+            + (pull * rolling.motion.forward).abs()
+            + (lateral * rolling.motion.lateral).abs();
         // a wheel that hardly slips on hard ground has next to no throughput
-        let scale = throughput + condition.wheel_load_n * condition.sled_speed_m_s;
+        let scale = throughput + wheel_load_n * condition.sled_speed_m_s;
         if dissipated_power_w < -ENERGY_TOLERANCE * scale {
             return Err(Rejection::EnergyGained {
                 power_w: dissipated_power_w,
@@ -162,6 +191,7 @@ impl Record {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::{Active, Site};
     use crate::spatial::fixture::{CONDITION, SOIL, WHEEL};
     use crate::spatial::{Ground, Grousers, Scene, Settings, Shape};
 
@@ -173,14 +203,16 @@ mod tests {
             ground: &ground,
             wheel: &WHEEL,
             shape: &shape,
+            effects: &Active::default(),
+            site: Site::default(),
         };
-        let mut rolling = Rolling::new(&scene, &CONDITION, Settings::default(), 0.05)?;
+        let mut rolling = Rolling::new(&scene, &CONDITION, None, Settings::default(), 0.05)?;
         let mut record = Record::new(rolling.steps.time);
         let lowered = rolling.lower()?;
-        record.push(&mut rolling, &lowered);
+        record.push(&mut rolling, &lowered)?;
         for _ in 0..50 {
             let step = rolling.step()?;
-            record.push(&mut rolling, &step);
+            record.push(&mut rolling, &step)?;
         }
         change(&mut record);
         let means = record.means(20.0, 50.0)?;

@@ -1,7 +1,9 @@
 //! Roll the wheel over the terrain, one step after the other.
 
 use super::balance::{Search, balance};
+use super::effects::{RunEffects, deflection, elastic_stiffness};
 use super::track::{Steps, spacing_along, steps, terrain};
+use crate::effects::Case;
 use crate::rejection::Rejection;
 use crate::spatial::contact::Contact;
 use crate::spatial::contact::laws::Laws;
@@ -17,6 +19,7 @@ use crate::spatial::wheel::motion::Motion;
 use crate::spatial::wheel::{Pose, Range};
 use crate::spatial::{Ground, Scene};
 use crate::{Condition, Wheel};
+use formula::Variable;
 
 /// How far below the highest soil the wheel may come within a step `[m]`; at the start it sinks from above.
 const SINKS_PER_STEP: f64 = 1e-3;
@@ -36,6 +39,8 @@ pub(crate) struct Step {
     pub(crate) hub: f64,
     /// Vertical velocity of the hub `[m/s]`.
     pub(crate) rising: f64,
+    /// The load that was to be carried `[N]`.
+    pub(crate) load: f64,
     /// Carried load less wheel load, inertia and damping `[N]`.
     pub(crate) residual: f64,
 }
@@ -50,7 +55,11 @@ pub(crate) struct Rolling<'a> {
     pub(crate) steps: Steps,
     laws: Laws,
     underside: Underside,
-    shear_path: ShearPath,
+    /// None where no formula asks how far wheel and soil have slid.
+    shear_path: Option<ShearPath>,
+    /// None where no effect is active.
+    pub(super) effects: Option<RunEffects<'a>>,
+    pass: u32,
     terrain: Terrain,
     envelope: Envelope,
     pub(crate) contact: Contact,
@@ -60,6 +69,9 @@ pub(crate) struct Rolling<'a> {
     pose: Pose,
     /// How far the wheel has gone sideways `[m]`; the pose is that to the nearest lane.
     drifted: f64,
+    /// The load to be carried now, and the distance of hub and rim's bottom under it.
+    load: f64,
+    loaded_radius: f64,
     hub: f64,
     rising: f64,
     slope: f64,
@@ -79,10 +91,12 @@ impl<'a> Rolling<'a> {
     /// The wheel above undisturbed soil, which it is to travel for a distance `[m]`.
     ///
     /// A steady run gets room for two grouser periods at least. A wheel that turns so slowly that they would take more than
-    /// [`SLOWEST_TURN`] times the travel counts as locked.
+    /// [`SLOWEST_TURN`] times the travel counts as locked. `case`: where effects are active, what they have made of soil, wheel and
+    /// condition, which scene and condition then hold.
     pub(crate) fn new(
         scene: &Scene<'a>,
         condition: &'a Condition,
+        case: Option<&'a Case>,
         settings: Settings,
         travel: f64,
     ) -> Result<Self, Rejection> {
@@ -90,7 +104,8 @@ impl<'a> Rolling<'a> {
             soil, ground, wheel, ..
         } = scene;
         let motion = Motion::new(wheel, condition);
-        let underside = Underside::new(wheel, scene.shape);
+        let deflection = deflection(scene, condition.wheel_load_n)?;
+        let underside = Underside::new(wheel, scene.shape, deflection);
         let mirrored = !settings.both_halves && motion.lateral.abs() == 0.0 && underside.is_symmetric();
         let dx = spacing_along(soil, wheel, condition, &settings);
         let steps = steps(wheel, condition, &motion, &settings, dx);
@@ -110,12 +125,22 @@ impl<'a> Rolling<'a> {
             }
             Protocol::Fixed { .. } => travel,
         };
-        let (terrain, start) = terrain(width, &motion, &settings, dx, underside.reach(), travel, mirrored)?;
+        let (mut terrain, start) =
+            terrain(width, &motion, &settings, dx, underside.reach(), travel, mirrored)?;
         let repeats_after = if underside.repeats_per_turn().is_none() {
             steps.to_column
         } else {
             1
         };
+        let effects = case
+            .map(|case| RunEffects::new(scene.effects, case, width))
+            .transpose()?;
+        if effects.as_ref().and_then(RunEffects::digging_m).is_some() {
+            terrain.make_diggable();
+        }
+        let nodes = effects.as_ref().and_then(|effects| effects.nodes.as_ref());
+        let slides = nodes.is_some_and(|nodes| nodes.use_variable(Variable::J));
+        let elastic_stiffness = elastic_stiffness(scene.effects, ground)?;
         Ok(Self {
             wheel,
             condition,
@@ -123,8 +148,10 @@ impl<'a> Rolling<'a> {
             ground: **ground,
             motion,
             steps,
-            laws: Laws::new(soil, ground.elastic_stiffness_pa_m, ground.bearing_credit),
-            shear_path: ShearPath::new(ground.shear_modulus_m, settings.displacement, wheel.radius_m, dx),
+            laws: Laws::new(soil, elastic_stiffness, ground.bearing_credit),
+            shear_path: slides.then(|| ShearPath::new(settings.displacement, wheel.radius_m, dx)),
+            effects,
+            pass: 1,
             underside,
             terrain,
             envelope: Envelope::default(),
@@ -138,6 +165,8 @@ impl<'a> Rolling<'a> {
                 turned: 0.0,
             },
             drifted: 0.0,
+            load: condition.wheel_load_n,
+            loaded_radius: wheel.radius_m - deflection,
             hub: wheel.radius_m,
             rising: 0.0,
             slope: 0.0,
@@ -154,7 +183,11 @@ impl<'a> Rolling<'a> {
     pub(crate) fn start_again(&mut self) {
         self.relaxation.settle_everywhere(&mut self.terrain);
         self.terrain.sheared.fill(0.0);
-        self.shear_path.clear();
+        if let Some(path) = &mut self.shear_path {
+            path.clear();
+        }
+        self.pass += 1;
+        self.load = self.condition.wheel_load_n;
         self.pose = Pose {
             x: self.start,
             y: 0.0,
@@ -188,6 +221,11 @@ impl<'a> Rolling<'a> {
         self.contact
             .across
             .lay(&self.terrain, self.pose.y, self.underside.width(self.wheel));
+        if let Some(effects) = &mut self.effects {
+            effects.begin_step(self.pass, self.load);
+            let travelled = libm::hypot(self.pose.x - self.start, self.drifted);
+            effects.confine(&mut self.laws, travelled)?;
+        }
         let mut margin = MARGIN;
         let found = loop {
             self.bring_together(margin, time > 0.0);
@@ -207,10 +245,17 @@ impl<'a> Rolling<'a> {
         self.heights.push(found.height);
         let stiffness = self.condition.wheel_load_n / self.wheel.radius_m;
         self.slope = found.slope.max(SLOPES[0] * stiffness).min(SLOPES[1] * stiffness);
-        let reaction = self.contact.react(&self.terrain, &self.laws);
+        let nodes = self.effects.as_mut().and_then(|effects| effects.nodes.as_mut());
+        let strengths = nodes.map(|nodes| nodes.strengths(&self.contact, &self.laws));
+        let reaction = self.contact.react(&self.terrain, &self.laws, strengths);
         if self.contact.end > self.contact.first {
-            self.shear_path
-                .slide(&self.contact, &mut self.terrain, self.pose.turned, time);
+            if let Some(path) = &mut self.shear_path {
+                path.slide(&self.contact, &mut self.terrain, self.pose.turned, time);
+            }
+            if let Some(depth) = self.effects.as_ref().and_then(RunEffects::digging_m) {
+                let length = reaction.area / self.width();
+                self.contact.dig(&mut self.terrain, depth, length, time);
+            }
             let fraction = self.ground.flow_fraction;
             self.flow.deform(
                 &self.contact,
@@ -226,12 +271,17 @@ impl<'a> Rolling<'a> {
                 end: strips[self.contact.end - 1].column + 1,
             });
         }
-        Ok(Step {
+        let step = Step {
             reaction,
             hub: self.hub,
             rising: self.rising,
+            load: self.load,
             residual: found.residual,
-        })
+        };
+        if let Some(effects) = &self.effects {
+            self.load = effects.next_load(&reaction)?.unwrap_or(self.load);
+        }
+        Ok(step)
     }
 
     /// Lay the wheel over the columns it may touch.
@@ -268,19 +318,23 @@ impl<'a> Rolling<'a> {
         let vertical = self.settings.pressure_direction == PressureDirection::Vertical;
         self.contact
             .prepare(&self.terrain, &self.envelope, &self.laws, &self.motion, vertical);
-        self.shear_path
-            .mobilise(&mut self.contact, &self.terrain, self.pose.turned);
+        if let Some(nodes) = self.effects.as_mut().and_then(|effects| effects.nodes.as_mut()) {
+            if let Some(path) = &mut self.shear_path {
+                path.measure(&self.contact, &self.terrain, self.pose.turned, &mut nodes.slid);
+            }
+            nodes.prepare(&mut self.contact, &self.envelope, &self.laws, &self.motion);
+        }
     }
 
     /// The height of the hub in balance with load, inertia and damping.
     fn find_height(&mut self, time: f64) -> Result<super::balance::Balance, Rejection> {
-        let load = self.condition.wheel_load_n;
+        let load = self.load;
         let (hub, rising) = (self.hub, self.rising);
         let (mass, damping) = match self.settings.vertical {
             Vertical::Dynamic {
                 damping_n_s_m,
                 gravity_m_s2,
-            } if time > 0.0 => (load / gravity_m_s2, damping_n_s_m),
+            } if time > 0.0 => (self.condition.wheel_load_n / gravity_m_s2, damping_n_s_m),
             _ => (0.0, 0.0),
         };
         let trend = self
@@ -300,12 +354,19 @@ impl<'a> Rolling<'a> {
         let (contact, terrain, laws) = (&mut self.contact, &self.terrain, &self.laws);
         let per_time = if time > 0.0 { 1.0 / time } else { 0.0 };
         let most_carried = &mut self.most_carried;
+        let mut nodes = self.effects.as_mut().and_then(|effects| effects.nodes.as_mut());
         let found = balance(search, load, 0.0, |height| {
-            let carried = contact.press(terrain, laws, height);
+            let carried = match &mut nodes {
+                None => contact.press(terrain, laws, height),
+                Some(nodes) => nodes.press(contact, terrain, laws, height),
+            };
             *most_carried = most_carried.max(carried);
             let velocity = (height - hub) * per_time;
             carried - load - damping * velocity - mass * (velocity - rising) * per_time
         });
+        if let Some(refused) = nodes.and_then(|nodes| nodes.refused.take()) {
+            return Err(refused);
+        }
         let found = found.ok_or(Rejection::NoSupport {
             most_carried_n: self.most_carried,
             wheel_load_n: load,
@@ -326,6 +387,11 @@ impl<'a> Rolling<'a> {
         self.period
     }
 
+    /// The load that the condition says `[N]`.
+    pub(crate) fn nominal_load(&self) -> f64 {
+        self.condition.wheel_load_n
+    }
+
     pub(crate) fn radius(&self) -> f64 {
         self.wheel.radius_m
     }
@@ -339,15 +405,16 @@ impl<'a> Rolling<'a> {
         self.contact.effective_width(&self.terrain)
     }
 
-    /// Sinkage of a hub height `[m]`.
+    /// Sinkage of a hub height, of the rim as its load leaves it `[m]`.
     pub(crate) fn sinkage(&self, hub: f64) -> f64 {
-        self.wheel.radius_m - hub
+        self.loaded_radius - hub
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::{Active, Site};
     use crate::spatial::fixture::{CONDITION, SOIL, WHEEL};
     use crate::spatial::{Grousers, Shape};
 
@@ -374,13 +441,15 @@ mod tests {
             ground: &ground,
             wheel: &WHEEL,
             shape: &shape,
+            effects: &Active::default(),
+            site: Site::default(),
         };
         let settings = Settings {
             both_halves,
             ..Settings::default()
         };
         let condition = condition(slip_angle_rad);
-        let mut rolling = Rolling::new(&scene, &condition, settings, 0.2).expect("a track");
+        let mut rolling = Rolling::new(&scene, &condition, None, settings, 0.2).expect("a track");
         rolling.lower().expect("support");
         look(&rolling);
         for _ in 0..300 {
@@ -428,13 +497,15 @@ mod tests {
             ground: &ground,
             wheel: &WHEEL,
             shape: &shape,
+            effects: &Active::default(),
+            site: Site::default(),
         };
         let condition = condition(0.0);
         let settings = Settings {
             displacement: crate::spatial::Displacement::Node,
             ..Settings::default()
         };
-        let mut rolling = Rolling::new(&scene, &condition, settings, 0.1).expect("a track");
+        let mut rolling = Rolling::new(&scene, &condition, None, settings, 0.1).expect("a track");
         rolling.lower().expect("support");
         for _ in 0..200 {
             rolling.step().expect("support");

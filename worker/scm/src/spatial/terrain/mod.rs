@@ -2,8 +2,10 @@
 //!
 //! # Layout
 //! - `flow`: soil that yields is pressed down, and a share of it flows to the border of the footprint.
+//! - `digging`: soil that the sliding wheel carries away from under itself.
 //! - `relaxation`: slopes steeper than the angle of repose slide.
 
+pub(super) mod digging;
 pub(super) mod flow;
 pub(super) mod relaxation;
 
@@ -38,6 +40,8 @@ pub(crate) struct Terrain {
     pub(crate) loose: Vec<f64>,
     /// Accumulated shear displacement of each node `[m]`.
     pub(crate) sheared: Vec<f64>,
+    /// How far the reference surface of each node was dug down `[m]`; empty where nothing digs.
+    pub(crate) dug: Vec<f64>,
     /// The highest surface so far `[m]`.
     pub(crate) top: f64,
 }
@@ -57,6 +61,7 @@ impl Terrain {
             surface: vec![0.0; nodes],
             loose: vec![0.0; nodes],
             sheared: vec![0.0; nodes],
+            dug: Vec::new(),
             top: 0.0,
         }
     }

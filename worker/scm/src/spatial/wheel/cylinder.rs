@@ -7,9 +7,14 @@ use super::envelope::{Envelope, NOWHERE, Strip};
 use super::{Pose, Range};
 
 /// A rim with straight grousers: rectangles that stand on the rim along its whole width.
+///
+/// A load may flatten the rim by a deflection d: below `R − d` it is cut off, `h = R − d` wherever `√(R² − x²)` is more, and
+/// grousers there are pushed in with it. The flat is horizontal, and what it is made of moves with `omega (R − d)`.
 #[derive(Debug, Clone)]
 pub(crate) struct Cylinder {
     radius: f64,
+    /// Height of the hub above the flat part of the rim `[m]`; the radius where there is none.
+    loaded_radius: f64,
     grouser_count: u32,
     grouser_height: f64,
     grouser_thickness: f64,
@@ -26,9 +31,10 @@ struct Piece {
 }
 
 impl Cylinder {
-    pub(crate) fn new(radius: f64, grousers: &Grousers) -> Self {
+    pub(crate) fn new(radius: f64, grousers: &Grousers, deflection: f64) -> Self {
         Self {
             radius,
+            loaded_radius: radius - deflection,
             grouser_count: grousers.count,
             grouser_height: grousers.height_m,
             grouser_thickness: grousers.thickness_m,
@@ -147,6 +153,19 @@ impl Cylinder {
             } else {
                 0.0
             };
+            if self.loaded_radius < self.radius {
+                self.flatten(strip);
+            }
+        }
+    }
+
+    /// Push a strip in by what the load cuts off the rim there.
+    fn flatten(&self, strip: &mut Strip) {
+        let square_rise = self.radius * self.radius - strip.ahead * strip.ahead;
+        let cut = square_rise.max(0.0).sqrt() - self.loaded_radius;
+        if cut > 0.0 {
+            strip.rise -= cut;
+            strip.slope = 0.0;
         }
     }
 

@@ -46,9 +46,10 @@ pub(crate) enum Underside {
 }
 
 impl Underside {
-    pub(crate) fn new(wheel: &Wheel, shape: &Shape) -> Self {
+    /// A wheel whose rim is flattened by a deflection `[m]`; a mesh is as rigid as it was given.
+    pub(crate) fn new(wheel: &Wheel, shape: &Shape, deflection: f64) -> Self {
         match shape {
-            Shape::Rim(grousers) => Self::Cylinder(Cylinder::new(wheel.radius_m, grousers)),
+            Shape::Rim(grousers) => Self::Cylinder(Cylinder::new(wheel.radius_m, grousers, deflection)),
             Shape::Mesh {
                 surface,
                 repeats_per_turn,

@@ -1,6 +1,7 @@
 //! Give the velocity of the wheel's surface against the soil and the direction of the shear stress.
 
-use super::super::pack::Pack;
+use super::super::pack::{Pack, splat};
+use super::envelope::Facet;
 use crate::shear::ShearVelocity;
 use crate::{Condition, Wheel};
 
@@ -55,6 +56,16 @@ impl Motion {
             self.lateral,
             -self.rotation * ahead,
         ]
+    }
+
+    /// Velocity into the soil along the normal of four lanes of the wheel's surface, hub at constant height; negative where
+    /// the surface leaves the soil `[m/s]`.
+    pub(crate) fn entry_velocity(&self, ahead: f64, facet: &Facet) -> Pack {
+        let (rise, one) = (facet.rise, splat(1.0));
+        let x = splat(self.forward) - splat(self.rotation) * rise;
+        let stretch = (one + facet.slope_x * facet.slope_x + facet.slope_y * facet.slope_y).sqrt();
+        let out = splat(-self.rotation * ahead) - facet.slope_x * x - facet.slope_y * splat(self.lateral);
+        -out / stretch
     }
 
     /// Directions of pressure and shear at a point `ahead` of the hub and `rise` below it, where the

@@ -1,0 +1,221 @@
+//! Let effects enter a run: what they change of the wheel, the soil, the load and what is measured.
+
+use formula::Variable;
+use formula::effect::Mechanism;
+
+use crate::Rejection;
+use crate::effects::{Active, Case};
+use crate::rejection::require;
+use crate::spatial::contact::Contact;
+use crate::spatial::contact::formulas::NodeFormulas;
+use crate::spatial::contact::laws::Laws;
+use crate::spatial::contact::reaction::Reaction;
+use crate::spatial::{Ground, Scene, Shape};
+
+/// The effects of one run.
+///
+/// Mechanisms, with parameters a, d, w and l:
+/// - rebound: the soil unloads and reloads with `1 / (1 / K_e + a)`.
+/// - flat patch: the load W cuts the rim off at `R − a W`, see [`Cylinder`](crate::spatial::wheel::cylinder::Cylinder), and
+///   sinkage is counted from there.
+/// - digging: the reference surface sinks under the sliding wheel, see [`Contact::dig`].
+/// - end wall: k* is `1 + w (exp(−x/l) + exp(−(L − x)/l))` times as large, where x is how far the hub is from the rear wall
+///   of the bin and L the bin's length. A run, and every pass, starts with the rim at the rear wall, x = R.
+#[derive(Debug)]
+pub(super) struct RunEffects<'a> {
+    active: &'a Active<'a>,
+    case: &'a Case,
+    /// What formulas see and all nodes share, as far as it is known.
+    variables: [f64; Variable::COUNT],
+    pub(super) nodes: Option<NodeFormulas<'a>>,
+    wall: Option<EndWall>,
+    /// d `[m]`; 0 where nothing digs.
+    digging_m: f64,
+    load_follows: bool,
+    measures: bool,
+}
+
+/// The soil near the ends of its bin.
+#[derive(Debug, Clone, Copy)]
+struct EndWall {
+    stiffening: f64,
+    reach_m: f64,
+    bin_length_m: f64,
+}
+
+impl<'a> RunEffects<'a> {
+    /// The effects on a run over a scene that is the case's already.
+    ///
+    /// # Errors
+    /// [`Rejection::InvalidParameter`]: a mechanism's parameter is outside its bounds, or what it needs is not known.
+    pub(super) fn new(active: &'a Active<'a>, case: &'a Case, width: f64) -> Result<Self, Rejection> {
+        let nodes = active.nodes.clone();
+        Ok(Self {
+            active,
+            case,
+            variables: case.variables,
+            nodes: nodes.map(|laws| NodeFormulas::new(laws, case.variables, width)),
+            wall: EndWall::find(active, case)?,
+            digging_m: digging(active)?,
+            load_follows: active.load_follows_reaction(),
+            measures: active.change_channels(),
+        })
+    }
+
+    /// Change what formulas see.
+    fn set(&mut self, variable: Variable, value: f64) {
+        self.variables[variable as usize] = value;
+        if let Some(nodes) = &mut self.nodes {
+            nodes.set(variable, value);
+        }
+    }
+
+    /// Begin a step of a pass under a load `[N]`.
+    pub(super) fn begin_step(&mut self, pass: u32, load: f64) {
+        self.set(Variable::Pass, f64::from(pass));
+        self.set(Variable::WheelLoad, load);
+    }
+
+    /// Make the soil as stiff as it is after a travel `[m]` along the bin.
+    ///
+    /// # Errors
+    /// [`Rejection::InvalidParameter`]: the rim would be beyond the front wall.
+    pub(super) fn confine(&self, laws: &mut Laws, travelled: f64) -> Result<(), Rejection> {
+        let Some(wall) = self.wall else { return Ok(()) };
+        let factor = wall.factor(self.case.wheel.radius_m, travelled)?;
+        laws.soil.k_c = factor * self.case.soil.k_c;
+        laws.soil.k_phi = factor * self.case.soil.k_phi;
+        Ok(())
+    }
+
+    /// The load of the next step, where it depends on pull and torque of this one `[N]`.
+    pub(super) fn next_load(&self, reaction: &Reaction) -> Result<Option<f64>, Rejection> {
+        if !self.load_follows {
+            return Ok(None);
+        }
+        let (pull, torque) = (reaction.force_x, reaction.torque);
+        self.active.wheel_load(self.case, pull, torque).map(Some)
+    }
+
+    /// How deep the wheel digs per way that it slides over a whole contact `[m]`, if it does.
+    pub(super) fn digging_m(&self) -> Option<f64> {
+        (self.digging_m > 0.0).then_some(self.digging_m)
+    }
+
+    /// Whether what is measured differs from what the soil does.
+    pub(super) fn measure_otherwise(&self) -> bool {
+        self.measures
+    }
+
+    /// What the rig measures of drawbar pull, torque, sinkage and lateral force.
+    ///
+    /// `b_eff` is that of the last look at the contour `[m]`; formulas see k* as its mean over the footprint.
+    pub(super) fn measure(
+        &self,
+        channels: [f64; 4],
+        contact: &Contact,
+        contact_length: f64,
+        b_eff: f64,
+    ) -> Result<[f64; 4], Rejection> {
+        const CHANNELS: [Variable; 4] = [
+            Variable::DrawbarPull,
+            Variable::Torque,
+            Variable::Sinkage,
+            Variable::LateralForce,
+        ];
+        let mut variables = self.variables;
+        variables[Variable::ContactLength as usize] = contact_length;
+        variables[Variable::BEff as usize] = b_eff;
+        variables[Variable::KStar as usize] = contact.modulus();
+        for (variable, value) in CHANNELS.into_iter().zip(channels) {
+            variables[variable as usize] = value;
+        }
+        self.active.measure(&mut variables)?;
+        Ok(CHANNELS.map(|variable| variables[variable as usize]))
+    }
+}
+
+impl EndWall {
+    fn find(active: &Active, case: &Case) -> Result<Option<Self>, Rejection> {
+        let Some(&[stiffening, reach_m]) = active.mechanism(Mechanism::EndWall) else {
+            return Ok(None);
+        };
+        require(
+            stiffening >= 0.0,
+            "wall_stiffening",
+            stiffening,
+            "(dimensionless)",
+            "at least 0",
+        )?;
+        require(reach_m > 0.0, "reach_m", reach_m, "m", "above 0")?;
+        let bin_length_m = case.variables[Variable::BinLength as usize];
+        let least = 2.0 * case.wheel.radius_m;
+        require(
+            bin_length_m > least,
+            "bin_length_m",
+            bin_length_m,
+            "m",
+            "known where end_wall enters, and longer than the wheel",
+        )?;
+        Ok(Some(Self {
+            stiffening,
+            reach_m,
+            bin_length_m,
+        }))
+    }
+
+    /// How many times as stiff the soil is, for a wheel of a radius after a travel from the rear wall `[m]`.
+    fn factor(&self, radius: f64, travelled: f64) -> Result<f64, Rejection> {
+        let behind = radius + travelled;
+        let ahead = self.bin_length_m - behind;
+        require(
+            ahead >= radius,
+            "bin_length_m",
+            self.bin_length_m,
+            "m",
+            "long enough for the run where end_wall enters",
+        )?;
+        let near = |distance: f64| libm::exp(-distance / self.reach_m);
+        Ok(1.0 + self.stiffening * (near(behind) + near(ahead)))
+    }
+}
+
+fn digging(active: &Active) -> Result<f64, Rejection> {
+    let depth = active
+        .mechanism(Mechanism::Digging)
+        .map_or(0.0, |values| values[0]);
+    require(depth >= 0.0, "depth_m", depth, "m", "at least 0")?;
+    Ok(depth)
+}
+
+/// Stiffness of unloading and reloading where the soil springs back `[Pa/m]`.
+pub(super) fn elastic_stiffness(active: &Active, ground: &Ground) -> Result<f64, Rejection> {
+    let stiffness = ground.elastic_stiffness_pa_m;
+    let Some(&[compliance]) = active.mechanism(Mechanism::Rebound) else {
+        return Ok(stiffness);
+    };
+    require(
+        compliance >= 0.0,
+        "compliance_m_pa",
+        compliance,
+        "m/Pa",
+        "at least 0",
+    )?;
+    Ok(1.0 / (1.0 / stiffness + compliance))
+}
+
+/// How far the load flattens the rim `[m]`.
+pub(super) fn deflection(scene: &Scene, wheel_load_n: f64) -> Result<f64, Rejection> {
+    let Some(&[per_load]) = scene.effects.mechanism(Mechanism::FlatPatch) else {
+        return Ok(0.0);
+    };
+    let rigid = matches!(scene.shape, Shape::Mesh { .. });
+    let bound = if rigid {
+        "0 for a wheel given as a mesh, which is as rigid as it was given"
+    } else {
+        "at least 0, and the deflection less than the radius"
+    };
+    let fits = per_load >= 0.0 && per_load * wheel_load_n < scene.wheel.radius_m && !rigid;
+    require(fits, "deflection_m_n", per_load, "m/N", bound)?;
+    Ok(per_load * wheel_load_n)
+}

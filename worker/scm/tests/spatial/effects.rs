@@ -1,0 +1,370 @@
+//! Effects enter the wheel in three dimensions: none of them, formulas, mechanisms, what is measured, refusals.
+
+use super::surfaces::{Surface, across};
+use crate::scene::{Track, smooth};
+use crate::support::base;
+use formula::Effect;
+use scm::Rejection;
+use scm::spatial::{Displacement, Grousers, Protocol, Run, Shape};
+
+/// An effect of one parameter `a`, without a unit, with these formulas.
+fn effect(formulas: &str) -> Effect {
+    let text = format!(
+        "name = \"trial\"\nsummary = \"for a test\"\nsource = \"none\"\n{formulas}\n\
+         [parameters.a]\nunit = \"1\"\nneutral = 0\nprior = {{ half_normal = 1.0 }}\n"
+    );
+    Effect::read(&text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+fn catalogue(name: &str) -> &'static Effect {
+    formula::catalogue::find(name).unwrap_or_else(|| panic!("no effect {name}"))
+}
+
+/// A short run on a coarse grid.
+fn short(mut track: Track) -> Track {
+    track.settings.dem_spacing_m = 0.008;
+    track.settings.travel_step_m = 0.002;
+    track.for_a_travel_of(0.12, 0.04)
+}
+
+fn short_smooth() -> Track {
+    short(smooth(0.2, 100.0, 30.0))
+}
+
+fn short_with_grousers() -> Track {
+    short(Track::with_grousers(base(0.2, 100.0, 30.0)))
+}
+
+fn rejection(track: &Track) -> Rejection {
+    match track.try_roll() {
+        Ok(run) => panic!("{:?}: {track:?}", run.averages),
+        Err(rejection) => rejection,
+    }
+}
+
+/// Greatest relative difference of two runs, over all steps and channels.
+fn difference(a: &Run, b: &Run) -> f64 {
+    assert_eq!(a.history.len(), b.history.len());
+    let channels = a.history.channels().into_iter().zip(b.history.channels());
+    channels.fold(0.0_f64, |most, (a, b)| {
+        let scale = a.iter().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
+        let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs() / scale);
+        most.max(differences.fold(0.0, f64::max))
+    })
+}
+
+#[test]
+fn neutral_effects_are_none_bit_for_bit() {
+    for track in [short_smooth(), short_with_grousers()] {
+        let base = track.roll();
+        for effect in formula::catalogue::catalogue() {
+            let mut with = track.clone();
+            with.enter(effect, &neutral(effect));
+            assert_eq!(with.roll(), base, "{}", effect.name);
+        }
+    }
+}
+
+/// Strengths at their neutral values, the rest where it is typical.
+fn neutral(effect: &Effect) -> Vec<f64> {
+    let typical = typical(effect);
+    let values = effect.parameters.iter().zip(typical);
+    values
+        .map(|(parameter, typical)| parameter.neutral.unwrap_or(typical))
+        .collect()
+}
+
+/// The values at which tables show an effect.
+pub(super) fn typical(effect: &Effect) -> Vec<f64> {
+    let values = effect.parameters.iter().map(|parameter| {
+        let fixed = parameter.prior.as_float();
+        let value = parameter.typical.or(fixed).or(parameter.neutral);
+        value.unwrap_or_else(|| panic!("{}: no typical {}", effect.name, parameter.name))
+    });
+    values.collect()
+}
+
+#[test]
+fn formulas_of_the_bases_own_laws_give_the_base() {
+    // by the last formula alone the stress is only scaled; with the others it is computed at every trial height
+    let all = "pressure = \"p * (1 + a) / 2\"\nshear_limit = \"(cohesion_pa + p * tan(friction_angle_rad)) * a\"\n\
+               shear = \"tau_max * (1 - exp(-v_t / 0.001)) * a\"";
+    for formulas in ["shear = \"tau * (1 - exp(-v_t / 0.001)) * a\"", all] {
+        for k_c in [0.0, 1e5] {
+            for slip_angle_deg in [0.0_f64, 10.0] {
+                for track in [short_smooth(), short_with_grousers()] {
+                    let mut track = track;
+                    // so fine that the contact, which v0 lengthens a little, does not refine it
+                    track.settings.dem_spacing_m = 0.004;
+                    track.case.soil.k_c = k_c;
+                    track.case.soil.cohesion_pa = 200.0;
+                    track.case.condition.slip_angle_rad = slip_angle_deg.to_radians();
+                    let base = track.roll();
+                    track.case.soil.shear_velocity_m_s = 0.0;
+                    track.enter(&effect(formulas), &[1.0]);
+                    let got = track.roll();
+                    let off = difference(&base, &got);
+                    assert!(off < 1e-9, "{formulas}: {off:e}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_stress_scaled_once_is_the_stress_scaled_at_every_height() {
+    // min() hides that the formula only scales
+    for keeper in [Displacement::Rim, Displacement::Node] {
+        let mut once = short_with_grousers();
+        once.settings.displacement = keeper;
+        let mut always = once.clone();
+        once.enter(&effect("shear = \"tau * (1 - a * exp(-j / 0.01))\""), &[1.0]);
+        always.enter(
+            &effect("shear = \"min(tau, 1e9) * (1 - a * exp(-j / 0.01))\""),
+            &[1.0],
+        );
+        let off = difference(&once.roll(), &always.roll());
+        assert!(off < 1e-9, "{keeper:?}: {off:e}");
+    }
+}
+
+#[test]
+fn formulas_see_the_nodes_they_stand_for() {
+    // as rules that each variable must keep at every node that bears: what breaks one is no number, and refused
+    for rule in [
+        "position >= 0 and position <= 1",
+        "z > 0 and z < 0.05",
+        "v_n >= 0 and v_n < 0.02",
+        "v_t > 0 and v_t < 0.02",
+        "j >= 0 and j < 0.1",
+        "b_eff > 0.00001 and b_eff < 0.06",
+        "abs(k_star / 1e7 - 1) < 1e-9",
+        "contact_length > 0.001 and contact_length < 0.2",
+        "p > 0 and abs(tau_max / p / tan(friction_angle_rad) - 1) < 1e-9",
+        "tau > 0 and tau < tau_max",
+        "pass == 1",
+    ] {
+        let [first, second] = match rule.split_once(" and ") {
+            Some((first, second)) => [first, second],
+            None => [rule, rule],
+        };
+        for track in [short_smooth(), short_with_grousers()] {
+            let mut track = track;
+            let kept = format!("shear = \"tau * if({first}, if({second}, a, log(-1)), log(-1))\"");
+            track.enter(&effect(&kept), &[1.0]);
+            let run = track.try_roll();
+            assert!(run.is_ok(), "{rule}: {run:?}");
+        }
+    }
+}
+
+#[test]
+fn a_value_that_cannot_be_used_is_refused_by_name_and_with_what_led_to_it() {
+    for (formulas, quantity) in [
+        ("pressure = \"p * log(-a)\"", "pressure is NaN Pa"),
+        ("shear_limit = \"tau_max - a * 1e6\"", "shear_limit is -"),
+        ("shear = \"tau * log(-a)\"", "shear is NaN Pa"),
+        ("shear = \"tau_max * log(-a)\"", "shear is NaN Pa"),
+        ("slip = \"slip + a\"", "slip is 1.2"),
+        ("wheel_load = \"wheel_load * (1 - a)\"", "wheel_load is 0 N"),
+        (
+            "wheel_load = \"wheel_load - a * 100 * drawbar_pull\"",
+            "wheel_load is -",
+        ),
+        ("torque = \"torque * log(-a)\"", "torque is NaN N m"),
+    ] {
+        let mut track = short_smooth();
+        track.enter(&effect(formulas), &[1.0]);
+        let refused = rejection(&track);
+        assert_eq!(refused.kind(), "formula", "{refused}");
+        let message = refused.to_string();
+        assert!(
+            message.starts_with(&format!("effect trial: {quantity}")),
+            "{message}"
+        );
+        assert!(message.contains("a = 1"), "{message}");
+    }
+}
+
+#[test]
+fn a_load_that_follows_the_pull_is_the_one_that_is_carried() {
+    let mut track = smooth(0.2, 100.0, 30.0);
+    track.enter(catalogue("load_transfer"), &[0.15]);
+    let run = track.roll();
+    let (loads, pulls) = (&run.history.wheel_load_n, &run.history.drawbar_pull_n);
+    assert!(
+        (loads[0] - 100.0).abs() < 0.3,
+        "the nominal one at first: {}",
+        loads[0]
+    );
+    for step in 1..loads.len() {
+        let expected = 100.0 - 0.15 * pulls[step - 1];
+        // the balance's 2e-3, but where a patch joins
+        assert!((loads[step] - expected).abs() < 1.0, "{step}: {}", loads[step]);
+    }
+}
+
+#[test]
+fn what_is_measured_is_in_histories_and_averages_and_nowhere_else() {
+    let track = smooth(0.2, 100.0, 30.0);
+    let base = track.roll();
+    let mut measured = track.clone();
+    measured.enter(catalogue("sled_tare"), &[3.0]);
+    measured.enter(catalogue("torque_gain"), &[0.05]);
+    measured.enter(catalogue("sinkage_offset"), &[0.002]);
+    // a sensor so far off that the soil would seem to give power
+    measured.enter(catalogue("drawbar_pull_gain"), &[1.0]);
+    let run = measured.roll();
+    assert!((run.dissipated_power_w / base.dissipated_power_w - 1.0).abs() < 0.02);
+    assert_eq!(run.history.wheel_load_n[..50], base.history.wheel_load_n[..50]);
+    for step in 0..50 {
+        let (got, soil) = (&run.history, &base.history);
+        let pull = 2.0 * (soil.drawbar_pull_n[step] - 3.0);
+        assert!((got.drawbar_pull_n[step] - pull).abs() < 1e-9);
+        assert!((got.torque_n_m[step] - 1.05 * soil.torque_n_m[step]).abs() < 1e-9);
+        assert!((got.sinkage_m[step] - soil.sinkage_m[step] - 0.002).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn rebound_is_a_softer_elastic_line() {
+    let mut track = short_smooth();
+    let mut softer = track.clone();
+    softer.ground.elastic_stiffness_pa_m = 1.0 / (1.0 / 1e9 + 5e-8);
+    track.enter(catalogue("elastic_rebound"), &[5e-8]);
+    assert_eq!(track.roll(), softer.roll());
+}
+
+#[test]
+fn a_flattened_rim_is_as_long_as_its_chord_and_a_mesh_has_none() {
+    let mut track = smooth(0.2, 100.0, 30.0);
+    let rigid = track.averages();
+    track.enter(catalogue("wheel_flexibility"), &[5e-5]);
+    let flat = track.averages();
+    // half a chord of a circle of 125 mm cut off by 5 mm is 35 mm long
+    assert!(flat.contact_length_m > 0.035, "{flat:?}");
+    assert!(flat.sinkage_m < 0.5 * rigid.sinkage_m, "{flat:?}");
+    track.shape = Shape::from(Surface::default().rim(0.125, 45, &across(0.112, 14), |_| 1.0).0);
+    let message = rejection(&track).to_string();
+    assert!(
+        message.starts_with(
+            "invalid parameter: deflection_m_n = 0.00005 m/N must be 0 for a wheel given as a mesh"
+        ),
+        "{message}"
+    );
+    track.effects.clear();
+    track.enter(catalogue("edge_loss"), &[0.005]);
+    let message = rejection(&track).to_string();
+    assert!(
+        message.starts_with("invalid parameter: width_m = 0.102"),
+        "{message}"
+    );
+}
+
+#[test]
+fn grousers_on_a_flattened_rim_are_pushed_in_with_it() {
+    let mut track = short_with_grousers();
+    let rigid = track.averages();
+    track.enter(catalogue("wheel_flexibility"), &[5e-5]);
+    let flat = track.averages();
+    assert!(
+        flat.sinkage_m < rigid.sinkage_m && flat.sinkage_m > -0.009,
+        "{flat:?}"
+    );
+}
+
+#[test]
+fn digging_deepens_the_rut_with_slip_and_from_pass_to_pass() {
+    let deeper = |slip: f64, pass: u32| {
+        let mut track = smooth(slip, 100.0, 30.0);
+        track.case.condition.pass = pass;
+        track.settings.protocol = Protocol::Steady {
+            tolerance: 0.005,
+            most_travel_m: 0.3,
+        };
+        let base = track.averages().sinkage_m;
+        track.enter(catalogue("slip_digging"), &[0.01]);
+        track.averages().sinkage_m - base
+    };
+    let by_slip = [0.05, 0.2, 0.6].map(|slip| deeper(slip, 1));
+    assert!(
+        by_slip[0] > 0.0 && by_slip[1] > 3.0 * by_slip[0] && by_slip[2] > 3.0 * by_slip[1],
+        "{by_slip:?}"
+    );
+    assert!(deeper(0.2, 2) > 1.5 * by_slip[1], "what was dug stays dug");
+}
+
+#[test]
+fn soil_is_stiffer_near_the_ends_of_its_bin() {
+    let mut track = smooth(0.2, 100.0, 30.0).for_a_travel_of(0.7, 0.1);
+    let base = track.roll().history;
+    track.enter(catalogue("end_wall"), &[0.3, 0.1]);
+    let message = rejection(&track).to_string();
+    assert!(
+        message.starts_with("invalid parameter: bin_length_m = NaN m must be known"),
+        "{message}"
+    );
+    track.site.bin_length_m = Some(0.95);
+    let walls = track.roll().history;
+    // of the settled wheel: less sinkage at either end than in the middle
+    let lifted = |place: f64| {
+        let step = (place * (base.len() - 1) as f64) as usize;
+        base.sinkage_m[step] - walls.sinkage_m[step]
+    };
+    let [rear, middle, front] = [0.05, 0.5, 1.0].map(lifted);
+    assert!(
+        middle < 3e-5 && rear > 2.0 * middle && front > 4.0 * middle,
+        "{rear} {middle} {front}"
+    );
+    track.site.bin_length_m = Some(0.9);
+    let message = rejection(&track).to_string();
+    assert!(
+        message.contains("bin_length_m = 0.9 m must be long enough"),
+        "{message}"
+    );
+}
+
+#[test]
+fn every_pass_is_told_to_the_formulas() {
+    let mut track = smooth(0.2, 100.0, 30.0);
+    track.case.condition.pass = 2;
+    track.settings.protocol = Protocol::Steady {
+        tolerance: 0.005,
+        most_travel_m: 0.3,
+    };
+    let base = track.averages();
+    track.enter(catalogue("multipass_hardening"), &[0.3]);
+    let harder = track.averages();
+    assert!(harder.sinkage_m < base.sinkage_m - 1e-4, "{harder:?} {base:?}");
+    track.case.condition.pass = 1;
+    let mut first = track.clone();
+    first.effects.clear();
+    assert!((track.averages().sinkage_m - first.averages().sinkage_m).abs() < 1e-12);
+}
+
+#[test]
+fn all_effects_at_once_are_finite_and_repeat() {
+    for grousers in [false, true] {
+        let mut track = short_smooth();
+        if grousers {
+            track.shape = Shape::Rim(Grousers {
+                count: 12,
+                height_m: 0.009,
+                thickness_m: 0.002,
+            });
+        }
+        track.site.density_kg_m3 = Some(1400.0);
+        track.site.bin_length_m = Some(2.0);
+        for effect in formula::catalogue::catalogue() {
+            track.enter(effect, &typical(effect));
+        }
+        let run = track.roll();
+        assert_eq!(run, track.roll());
+        assert!(
+            run.history
+                .channels()
+                .iter()
+                .all(|c| c.iter().all(|x| x.is_finite()))
+        );
+    }
+}
