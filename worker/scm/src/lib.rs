@@ -46,6 +46,7 @@ pub mod shear;
 pub mod signal;
 pub mod soil;
 pub mod spatial;
+pub mod stub;
 pub mod wheel;
 
 pub use formula::elementary;

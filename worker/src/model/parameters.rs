@@ -3,10 +3,9 @@
 use scm::spatial::Ground;
 use scm::{Soil, bekker_moduli};
 use shared::model::ModelVariant;
-use shared::parameters::SHEAR_MODULUS;
 
 /// The source of one quantity.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Source {
     /// Position in the parameter vector.
     Free(usize),
@@ -99,7 +98,6 @@ pub(super) struct GroundMap {
     elastic_stiffness_pa_m: Source,
     flow_fraction: Source,
     bearing_credit: Source,
-    shear_modulus_m: Option<Source>,
 }
 
 impl GroundMap {
@@ -108,7 +106,6 @@ impl GroundMap {
             elastic_stiffness_pa_m: Source::required(variant, "elastic_stiffness_pa_m")?,
             flow_fraction: Source::required(variant, "flow_fraction")?,
             bearing_credit: Source::required(variant, "bearing_credit")?,
-            shear_modulus_m: Source::find(variant, SHEAR_MODULUS),
         })
     }
 
@@ -120,7 +117,7 @@ impl GroundMap {
             flow_fraction: self.flow_fraction.value(theta),
             bearing_credit: self.bearing_credit.value(theta),
             repose_angle_rad: repose_angle_deg.map_or(default.repose_angle_rad, f64::to_radians),
-            shear_modulus_m: self.shear_modulus_m.map_or(0.0, |source| source.value(theta)),
+            ..default
         }
     }
 }

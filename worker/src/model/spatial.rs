@@ -1,5 +1,6 @@
 //! The three-dimensional model of a variant: shared settings become the physics' types.
 
+use scm::effects::{Active, Site};
 use scm::spatial::{self, Grousers, Run, Scene, Settings, Shape, SurfaceMesh};
 use scm::{Condition, Rejection, Soil, Wheel};
 use shared::experiment::{self, ProtocolKind};
@@ -77,6 +78,7 @@ impl SpatialModel {
         soil: &Soil,
         (place, wheel): (usize, &Wheel),
         condition: &Condition,
+        (effects, site): (&Active, &Site),
     ) -> Result<Run, Rejection> {
         let scene = Scene {
             soil,
@@ -84,7 +86,7 @@ impl SpatialModel {
             wheel,
             shape: &self.shapes[place],
         };
-        spatial::simulate(&scene, condition, &self.settings)
+        scm::stub::roll_with(&scene, condition, &self.settings, effects, site)
     }
 }
 
