@@ -218,7 +218,12 @@ mod tests {
 
     #[test]
     fn a_radius_of_an_unknown_wheel_names_the_nearest() {
-        let error = lookup("wheel_radius_m.smoth", &BTreeSet::from(["smooth"]), &EffectSet::default()).unwrap_err();
+        let error = lookup(
+            "wheel_radius_m.smoth",
+            &BTreeSet::from(["smooth"]),
+            &EffectSet::default(),
+        )
+        .unwrap_err();
         assert_eq!(error, "unknown wheel \"smoth\"; the nearest known is \"smooth\"");
     }
 

@@ -85,10 +85,7 @@ impl EffectSet {
             .collect();
         for named in &settings.effect_files {
             let text = texts.get(named).ok_or_else(|| {
-                FileError::whole(
-                    file,
-                    format!("file \"{named}\" is named but was not sent along"),
-                )
+                FileError::whole(file, format!("file \"{named}\" is named but was not sent along"))
             })?;
             let effect = own(named, text)?;
             if let Some(other) = chosen.iter().find(|c| c.effect.name == effect.name) {
@@ -239,7 +236,9 @@ impl EffectSet {
             }
         }
         match self.unsaid(names, wheels).first() {
-            Some(Unsaid { name, .. }) => Err(format!("parameter {name} has neither a prior nor a fixed value")),
+            Some(Unsaid { name, .. }) => {
+                Err(format!("parameter {name} has neither a prior nor a fixed value"))
+            }
             None => Ok(()),
         }
     }
@@ -331,7 +330,10 @@ fn own(file: &str, text: &str) -> Result<Effect, FileError> {
         return Err(wrong("name", message));
     }
     if parameters::is_taken(name) {
-        return Err(wrong("name", format!("name \"{name}\" has another meaning in a job")));
+        return Err(wrong(
+            "name",
+            format!("name \"{name}\" has another meaning in a job"),
+        ));
     }
     Ok(effect)
 }
@@ -345,7 +347,8 @@ mod tests {
         [parameters.v_a]\nunit = \"m/s\"\nprior = 0.01\n";
 
     fn choose(effects: &[&str], names: &[&str], mine: &str) -> Result<EffectSet, String> {
-        let mut settings = ModelSettings::from_table(&toml::from_str("kind = \"quasi_static\"").unwrap()).unwrap();
+        let mut settings =
+            ModelSettings::from_table(&toml::from_str("kind = \"quasi_static\"").unwrap()).unwrap();
         settings.effects = effects.iter().map(|&e| e.to_owned()).collect();
         settings.effect_files = vec!["mine.toml".into()];
         let texts = BTreeMap::from([("mine.toml".to_owned(), mine.to_owned())]);
@@ -359,7 +362,12 @@ mod tests {
 
     #[test]
     fn effects_follow_each_other_as_the_catalogue_has_them_then_files() {
-        let set = choose(&["sled_tare", "hard_pan"], &["slip_sinkage.exponent_per_slip"], MINE).unwrap();
+        let set = choose(
+            &["sled_tare", "hard_pan"],
+            &["slip_sinkage.exponent_per_slip"],
+            MINE,
+        )
+        .unwrap();
         let names: Vec<&str> = set.iter().map(|e| e.name.as_str()).collect();
         assert_eq!(names, ["slip_sinkage", "hard_pan", "sled_tare", "mine"]);
     }
@@ -373,7 +381,10 @@ mod tests {
         assert_eq!(unsaid(&set, &["mine.a", "mine.v_a.w"]), ["mine.v_a"]);
         let two = choose(&["peak_pressure_angle"], &[], MINE).unwrap();
         let said = ["peak_pressure_angle.front_share.x", "mine.a", "mine.v_a"];
-        assert_eq!(unsaid(&two, &said), ["peak_pressure_angle.front_share_per_slip.x"]);
+        assert_eq!(
+            unsaid(&two, &said),
+            ["peak_pressure_angle.front_share_per_slip.x"]
+        );
     }
 
     #[test]
@@ -381,7 +392,8 @@ mod tests {
         let set = choose(&[], &[], MINE).unwrap();
         let check = |names: &[&str]| {
             let names = names.iter().copied().collect();
-            set.check_complete(&names, &BTreeSet::from(["w", "x"])).unwrap_err()
+            set.check_complete(&names, &BTreeSet::from(["w", "x"]))
+                .unwrap_err()
         };
         assert_eq!(
             check(&["mine.a", "mine.a.w", "mine.v_a"]),
@@ -391,15 +403,24 @@ mod tests {
             check(&["mine.a.w", "mine.v_a.x"]),
             "mine.v_a.x has no effect: effect mine does not act on wheel x"
         );
-        assert_eq!(check(&["mine.a.w"]), "parameter mine.v_a has neither a prior nor a fixed value");
+        assert_eq!(
+            check(&["mine.a.w"]),
+            "parameter mine.v_a has neither a prior nor a fixed value"
+        );
     }
 
     #[test]
     fn files_that_take_what_is_not_theirs_are_refused_by_line() {
         let named = |name: &str| MINE.replace("\"mine\"", &format!("\"{name}\""));
         for (text, message) in [
-            (named("bulldozing"), "mine.toml line 1: name \"bulldozing\" is an effect's of the catalogue"),
-            (named("noise"), "mine.toml line 1: name \"noise\" has another meaning in a job"),
+            (
+                named("bulldozing"),
+                "mine.toml line 1: name \"bulldozing\" is an effect's of the catalogue",
+            ),
+            (
+                named("noise"),
+                "mine.toml line 1: name \"noise\" has another meaning in a job",
+            ),
             (
                 MINE.replace("source = \"s\"", "source = \"s\"\nmechanism = \"rebound\""),
                 "mine.toml line 4: mechanism is for the effects of the catalogue: a file has formulas",

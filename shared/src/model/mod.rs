@@ -152,7 +152,10 @@ impl ModelVariant {
         check_complete(&names, &wheels, effects)?;
         check_grousers(effects, &names, experiment)?;
         let slides = settings.kind == ModelKind::Scm;
-        let (weighing, walled) = (effects.using(Variable::Density), effects.using(Variable::BinLength));
+        let (weighing, walled) = (
+            effects.using(Variable::Density),
+            effects.using(Variable::BinLength),
+        );
         let condition = |run: &TestRun| {
             let soil = &experiment.soils[&run.soil];
             if let (Some(effect), None) = (weighing, soil.density_kg_m3) {
@@ -198,7 +201,10 @@ impl ModelVariant {
         if let Some(spatial) = &self.spatial {
             spatial.check_protocol(&self.protocol)?;
             if spatial.displacement != Displacement::Rim && effects.using(Variable::J).is_none() {
-                return Err("displacement has no effect without an effect that uses j, such as janosi_hanamoto".into());
+                return Err(
+                    "displacement has no effect without an effect that uses j, such as janosi_hanamoto"
+                        .into(),
+                );
             }
         }
         let meshes: BTreeSet<&str> = self.conditions.iter().map(|c| c.wheel.as_str()).collect();
@@ -207,7 +213,10 @@ impl ModelVariant {
         match self.kind {
             ModelKind::Scm => self.check_meshes(effects, &names, &meshes),
             ModelKind::QuasiStatic => {
-                if let Some(name) = names.iter().find(|n| parameters::SPATIAL.iter().any(|p| p.name == **n)) {
+                if let Some(name) = names
+                    .iter()
+                    .find(|n| parameters::SPATIAL.iter().any(|p| p.name == **n))
+                {
                     return Err(format!(
                         "{name}: quasi_static has no terrain that deforms; use kind = \"scm\""
                     ));
@@ -254,7 +263,10 @@ impl ModelVariant {
 
     /// The names of all parameters, free and fixed.
     fn names(&self) -> impl Iterator<Item = &str> {
-        self.parameters.iter().chain(self.fixed.keys()).map(String::as_str)
+        self.parameters
+            .iter()
+            .chain(self.fixed.keys())
+            .map(String::as_str)
     }
 
     /// Version of the model that a worker with these equations computes: its own, and that of the effects.
@@ -290,7 +302,9 @@ fn check_grousers(
     };
     for effect in effects.iter().filter(of_grousers) {
         let reach = EffectSet::acts_on(effect, names, &wheels);
-        let mut smooth = reach.iter().filter(|wheel| !experiment.wheels[**wheel].has_grousers());
+        let mut smooth = reach
+            .iter()
+            .filter(|wheel| !experiment.wheels[**wheel].has_grousers());
         let all = reach.len() == wheels.len() && smooth.clone().count() < reach.len();
         if let Some(wheel) = smooth.next().filter(|_| !all) {
             return Err(format!(

@@ -114,7 +114,11 @@ fn words(key: &str, value: &toml::Value) -> Result<Vec<String>, String> {
 
 /// `unknown effect "bulldosing"; the nearest known is "bulldozing"`.
 pub fn unknown_effect(name: &str) -> String {
-    unknown_word("effect", name, catalogue::catalogue().iter().map(|e| e.name.as_str()))
+    unknown_word(
+        "effect",
+        name,
+        catalogue::catalogue().iter().map(|e| e.name.as_str()),
+    )
 }
 
 fn fixed_parameter(key: &str, value: &toml::Value) -> Result<f64, String> {
@@ -122,7 +126,10 @@ fn fixed_parameter(key: &str, value: &toml::Value) -> Result<f64, String> {
         return Err(format!("write the name in quotes: \"{key}.{within}\""));
     }
     // what stands before a dot may be an effect of a file that is still to be read
-    let base = parameters::BASE.iter().chain(&parameters::SPATIAL).map(|p| p.name);
+    let base = parameters::BASE
+        .iter()
+        .chain(&parameters::SPATIAL)
+        .map(|p| p.name);
     if !key.contains('.') && !base.clone().any(|name| name == key) {
         let names = base.chain(["kind", "effects", "effect_files"]);
         return Err(unknown_word("key", key, names.chain(SpatialSettings::KEYS)));

@@ -171,9 +171,7 @@ impl CompiledVariant {
         };
         let (active, site) = (effects.on_wheel(*place), self.effects.site(position));
         match &self.spatial {
-            None => {
-                scm::stub::simulate_with(soil, &wheel, condition, active, site).map(Simulated::Steady)
-            }
+            None => scm::stub::simulate_with(soil, &wheel, condition, active, site).map(Simulated::Steady),
             Some(model) => model
                 .run(theta, position, soil, (*place, &wheel), condition, (active, site))
                 .map(|run| Simulated::Rolled(Box::new(run))),
