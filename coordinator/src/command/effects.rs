@@ -13,7 +13,6 @@ use super::output::say;
 use crate::config::{Effects, Model};
 use crate::effect::signature::{ChannelSignature, Signature, signature};
 use crate::effect::{EffectCard, Group};
-use crate::result::terminal::number;
 
 /// Columns of a terminal that every line fits into.
 const COLUMNS: usize = 100;
@@ -52,10 +51,13 @@ pub(super) async fn effects(config: &Effects) -> anyhow::Result<()> {
 /// Every effect of the catalogue, by what of the model it concerns.
 fn list() -> String {
     let cards: Vec<EffectCard> = catalogue().iter().map(EffectCard::of).collect();
-    let mut text = format!(
-        "{} effects that a wheel-soil model may miss. A job takes them by [model] effects = [\"NAME\"], by a prior for\n\
-         \"NAME.PARAMETER\", or by --effect NAME; `coordinator effects NAME` shows a file and what it does.\n",
-        cards.len()
+    let mut text = wrapped(
+        &format!(
+            "{} effects that a wheel-soil model may miss. A job takes one by [model] effects = [\"NAME\"], by a prior for \
+             \"NAME.PARAMETER\", or by --effect NAME; `coordinator effects NAME` shows its file and what it does.",
+            cards.len()
+        ),
+        0,
     );
     for group in Group::ALL {
         let _ = writeln!(text, "\n{}\n{}", group.title(), "-".repeat(group.title().len()));
@@ -77,7 +79,7 @@ fn entry(card: &EffectCard) -> String {
             }
             _ => String::new(),
         };
-        let line = format!("    {:<26} {unit:<6} {:<34} {role}", p.name, prior(&p.prior));
+        let line = format!("    {:<26} {unit:<6} {:<32} {role}", p.name, prior(&p.prior));
         let _ = writeln!(text, "{}", line.trim_end());
     }
     text
@@ -104,7 +106,7 @@ fn prior(prior: &serde_json::Value) -> String {
     }
 }
 
-/// Words in lines that fit, the first indented by `indent`, the others by as much and four more.
+/// Words in lines that fit, the first indented by `indent`, the others of an indented one by four more.
 fn wrapped(words: &str, indent: usize) -> String {
     let mut text = String::new();
     let mut line = " ".repeat(indent);
@@ -112,7 +114,7 @@ fn wrapped(words: &str, indent: usize) -> String {
     for word in words.split_whitespace() {
         if !bare && line.chars().count() + 1 + word.chars().count() > COLUMNS {
             let _ = writeln!(text, "{line}");
-            line = " ".repeat(indent + 4);
+            line = " ".repeat(if indent == 0 { 0 } else { indent + 4 });
             bare = true;
         }
         if !bare {
@@ -126,11 +128,14 @@ fn wrapped(words: &str, indent: usize) -> String {
 
 /// What each strength does, in a table and in curves.
 fn deeds(signature: &Signature) -> String {
-    let mut text = format!(
-        "What it does in {}: a wheel of 0.130 m, b 0.112 m, 12 grousers of 9 mm, in sand (k_phi 1e7, n 1.1,\n\
-         30 deg, 1400 kg/m^3), 100 N, slip 0.2, rim speed 10 mm/s where nothing else is said{}.\n",
-        signature.model_kind,
-        if signature.pass > 1 { "; second pass" } else { "" }
+    let pass = if signature.pass > 1 { "; second pass" } else { "" };
+    let mut text = wrapped(
+        &format!(
+            "What it does in {}: a wheel of 0.130 m, 0.112 m wide, with 12 grousers of 9 mm, in sand (k_phi 1e7, n 1.1, \
+             30 deg, 1400 kg/m^3); 100 N, slip 0.2 and a rim speed of 10 mm/s where nothing else is said{pass}.",
+            signature.model_kind
+        ),
+        0,
     );
     for shown in &signature.strengths {
         let _ = match shown.value {
@@ -173,6 +178,16 @@ fn deeds(signature: &Signature) -> String {
     text
 }
 
+/// A number as a file would have it.
+fn number(x: f64) -> String {
+    if x.abs() < f64::MIN_POSITIVE || (1e-3..1e6).contains(&x.abs()) {
+        let rounded = format!("{x:.6}");
+        rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        format!("{x:e}")
+    }
+}
+
 fn unchanged(channels: &[ChannelSignature]) -> bool {
     let all = || channels.iter().flat_map(|c| c.change.iter().chain(&c.curve));
     all().all(|change| change.is_some_and(|x| x.abs() < 1e-12))
@@ -195,7 +210,7 @@ fn curve(channel: &ChannelSignature) -> String {
     });
     let bar = |value: &Option<f64>| match value {
         None => '·',
-        Some(x) if most > least => {
+        Some(x) if most - least > 1e-9 => {
             let share = (x - least) / (most - least) * BARS.len() as f64;
             BARS[(share as usize).min(BARS.len() - 1)]
         }
@@ -203,14 +218,11 @@ fn curve(channel: &ChannelSignature) -> String {
     };
     let bars: String = channel.curve.iter().map(bar).collect();
     let name = channel.channel.replace('_', " ");
+    let [low, high] = [least, most].map(|x| cell(Some(x), true));
     let range = match values().next() {
-        Some(_) => format!(
-            "{} to {} {}",
-            cell(Some(least), true),
-            cell(Some(most), true),
-            channel.unit
-        ),
         None => "refused".into(),
+        Some(_) if low == high => format!("{low} {} throughout", channel.unit),
+        Some(_) => format!("{low} to {high} {}", channel.unit),
     };
     format!("{name:<17}{bars}  {range}\n")
 }
