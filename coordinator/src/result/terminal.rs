@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use formula::Variable;
 use shared::api::CalibrationStatus;
 use shared::channel::Channel;
-use shared::model::ModelKind;
+use shared::model::{EffectSet, ModelKind};
 
 use super::Outcome;
 use super::comparison::{Comparison, ComparisonRow};
@@ -25,14 +26,17 @@ pub fn notes(spec: &Spec) -> Vec<String> {
         .map(|(name, _)| name.as_str())
         .collect();
     let lugged = lugged.join(", ");
+    // what was read once is read again
+    let effects = EffectSet::read(&spec.fit_variant.effects).unwrap_or_default();
+    let named = |variables: &[Variable]| variables.iter().any(|v| effects.using(*v).is_some());
     match spec.fit_variant.kind {
         ModelKind::QuasiStatic => {
-            if !lugged.is_empty() {
+            if !lugged.is_empty() && !named(&[Variable::GrouserCount, Variable::GrouserHeight]) {
                 notes.push(format!(
                     "quasi_static models the smooth rim: the grousers of {lugged} enter only through a radius of their own (wheel_radius_m.NAME)"
                 ));
             }
-            if spec.experiment.runs.iter().any(|r| r.pass > 1) {
+            if spec.experiment.runs.iter().any(|r| r.pass > 1) && !named(&[Variable::Pass]) {
                 notes.push(
                     "quasi_static has no memory between passes: every pass is predicted like the first".into(),
                 );

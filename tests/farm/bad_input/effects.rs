@@ -52,7 +52,7 @@ fn unknown_effects_and_parameters_name_the_nearest_known() {
     );
     refused(
         priors("\"sled_tare.tare_n.v\" = 0.0"),
-        "job.toml line 10: unknown wheel \"v\"; the nearest known is \"w\"",
+        "job.toml line 10: unknown wheel \"v\"; known are w",
     );
     refused(
         model("effects = \"sled_tare\""),

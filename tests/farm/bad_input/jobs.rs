@@ -128,7 +128,7 @@ fn parameters_that_do_not_determine_a_model_are_refused() {
     );
     refused(
         Job::small().in_job("wheel_radius_m =", "\"wheel_radius_m.v\" ="),
-        "job.toml line 12: unknown wheel \"v\"; the nearest known is \"w\"",
+        "job.toml line 12: unknown wheel \"v\"; known are w",
     );
     refused(
         Job::small().in_job(KAPPA, "kappa = 0.0\n\"noise.torque_n_m\" = { half_normal = 0.2 }"),

@@ -1,31 +1,12 @@
-//! Stand-ins until the models take effects themselves; delete this file, and call theirs.
+//! A stand-in until the three-dimensional model takes effects itself; delete this file, and call that.
 //!
-//! They apply effects on the run and on the channels, and leave out those at nodes.
+//! It applies effects on the run and on the channels, and leaves out those at nodes and mechanisms.
 
 use formula::Variable;
 
 use crate::effects::{Active, Site};
 use crate::spatial::{self, Run, Scene, Settings};
-use crate::{Averages, Condition, Rejection, Soil, Wheel, quasi_static};
-
-/// `quasi_static::simulate_with`.
-///
-/// # Errors
-/// As the model's own.
-pub fn simulate_with(
-    soil: &Soil,
-    wheel: &Wheel,
-    condition: &Condition,
-    effects: &Active,
-    site: &Site,
-) -> Result<Averages, Rejection> {
-    if effects.is_empty() {
-        return quasi_static::simulate(soil, wheel, condition);
-    }
-    let case = effects.case(soil, wheel, condition, site)?;
-    let averages = quasi_static::simulate(&case.soil, &case.wheel, &case.condition)?;
-    measured(effects, &case.soil, case.variables, averages)
-}
+use crate::{Averages, Condition, Rejection, Soil};
 
 /// `spatial::simulate` of a scene with effects.
 ///

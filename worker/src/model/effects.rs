@@ -28,10 +28,10 @@ pub(super) struct ActiveEffects<'a> {
     of_wheel: &'a [usize],
 }
 
-impl ActiveEffects<'_> {
-    /// The effects on a wheel, by its place in the variant.
-    pub(super) fn on_wheel(&self, place: usize) -> &Active<'_> {
-        &self.active[self.of_wheel[place]]
+impl<'a> ActiveEffects<'a> {
+    /// The effects on a wheel, by its place in the variant, with the room in which a model computes them.
+    pub(super) fn on_wheel(&mut self, place: usize) -> &mut Active<'a> {
+        &mut self.active[self.of_wheel[place]]
     }
 }
 

@@ -14,7 +14,7 @@ mod spatial;
 use std::collections::BTreeMap;
 
 use scm::spatial::Run;
-use scm::{Averages, Condition, Soil, Wheel};
+use scm::{Averages, Condition, Soil, Wheel, quasi_static};
 use shared::model::{EffectSet, ModelKind, ModelVariant};
 use shared::outcome::{Observables, Outcome, Rejection};
 
@@ -112,10 +112,10 @@ impl CompiledVariant {
             Ok(soil) => soil,
             Err(rejection) => return Outcome::Rejected(rejection),
         };
-        let effects = self.effects.at(theta);
+        let mut effects = self.effects.at(theta);
         let mut observables = Observables::with_capacity(self.runs());
         for position in 0..self.runs() {
-            match self.simulate(theta, &soil, &effects, position) {
+            match self.simulate(theta, &soil, &mut effects, position) {
                 Ok(Simulated::Steady(averages)) => push(&mut observables, &averages),
                 Ok(Simulated::Rolled(run)) => {
                     push(&mut observables, &run.averages);
@@ -134,8 +134,8 @@ impl CompiledVariant {
             Ok(soil) => soil,
             Err(rejection) => return vec![Err(rejection.message); self.runs()],
         };
-        let effects = self.effects.at(theta);
-        let averages = |position| match self.simulate(theta, &soil, &effects, position) {
+        let mut effects = self.effects.at(theta);
+        let averages = |position| match self.simulate(theta, &soil, &mut effects, position) {
             Ok(Simulated::Steady(averages)) => Ok(averages),
             Ok(Simulated::Rolled(run)) => Ok(run.averages),
             Err(rejection) => Err(rejection.to_string()),
@@ -160,7 +160,7 @@ impl CompiledVariant {
         &self,
         theta: &[f64],
         soil: &Soil,
-        effects: &ActiveEffects,
+        effects: &mut ActiveEffects,
         position: usize,
     ) -> Result<Simulated, scm::Rejection> {
         let (place, condition) = &self.conditions[position];
@@ -171,7 +171,7 @@ impl CompiledVariant {
         };
         let (active, site) = (effects.on_wheel(*place), self.effects.site(position));
         match &self.spatial {
-            None => scm::stub::simulate_with(soil, &wheel, condition, active, site).map(Simulated::Steady),
+            None => quasi_static::simulate_with(soil, &wheel, condition, active, site).map(Simulated::Steady),
             Some(model) => model
                 .run(theta, position, soil, (*place, &wheel), condition, (active, site))
                 .map(|run| Simulated::Rolled(Box::new(run))),
