@@ -48,22 +48,53 @@ pub enum Command {
     Extend(Later),
     /// Add measurements to a study (later).
     AddRuns(Later),
-    /// Show the catalogue of effects (later).
-    Effects(Later),
+    /// List the effects that a model may miss, or show one: its file, and what it does.
+    Effects(Effects),
 }
 
-/// A job file.
+/// A job file, and effects that it does not name itself.
 #[derive(Debug, Args)]
 pub struct JobFile {
     /// The job.
     pub job: PathBuf,
+    /// Adds an effect of the catalogue to the job; may be repeated.
+    #[arg(long, value_name = "NAME")]
+    pub effect: Vec<String>,
+    /// Adds the effect of a file to the job; may be repeated.
+    #[arg(long, value_name = "FILE")]
+    pub effect_file: Vec<PathBuf>,
+}
+
+/// List the effects, or show one.
+#[derive(Debug, Args)]
+pub struct Effects {
+    /// An effect of the catalogue; by default, all of them are listed.
+    #[arg(conflicts_with = "file")]
+    pub name: Option<String>,
+    /// Shows the effect of this file instead.
+    #[arg(long)]
+    pub file: Option<PathBuf>,
+    /// The model in which its deeds are shown.
+    #[arg(long, value_enum, default_value_t = Model::QuasiStatic)]
+    pub model: Model,
+}
+
+/// A forward model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Model {
+    /// The smooth rim in steady motion.
+    #[value(name = "quasi_static")]
+    QuasiStatic,
+    /// The wheel that rolls over deformable terrain.
+    Scm,
 }
 
 /// Calibrate in one process.
 #[derive(Debug, Args)]
 pub struct Run {
     /// The job.
-    pub job: PathBuf,
+    #[command(flatten)]
+    pub file: JobFile,
     /// Where results and store go; by default out/NAME, after the job file or its folder.
     #[arg(long)]
     pub out: Option<PathBuf>,
@@ -101,7 +132,8 @@ pub struct Serve {
 #[derive(Debug, Args)]
 pub struct Submit {
     /// The job.
-    pub job: PathBuf,
+    #[command(flatten)]
+    pub file: JobFile,
     /// The service.
     #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
     pub url: String,

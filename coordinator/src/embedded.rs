@@ -113,7 +113,7 @@ impl LocalWorkers {
     }
 }
 
-/// A variant evaluated in this thread, without a farm: for pilots.
+/// A variant evaluated in this thread, without a farm: for pilots and signatures.
 #[derive(Debug)]
 pub struct Evaluate(worker::model::CompiledVariant);
 
@@ -129,5 +129,13 @@ impl Evaluate {
     /// Simulates every condition at one parameter vector.
     pub fn evaluate(&self, theta: &[f64]) -> shared::outcome::Outcome {
         self.0.evaluate(theta)
+    }
+
+    /// Drawbar pull `[N]`, torque \[N m\] and sinkage `[m]` of every condition, each alone: a refusal leaves the others.
+    pub fn each(&self, theta: &[f64]) -> Vec<Result<[f64; 3], String>> {
+        let channels = self.0.each(theta).into_iter();
+        channels
+            .map(|a| a.map(|a| [a.drawbar_pull_n, a.torque_n_m, a.sinkage_m]))
+            .collect()
     }
 }

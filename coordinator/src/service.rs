@@ -11,7 +11,7 @@ use shared::file::{FileError, FileSet};
 use crate::calibration::{Calibration, Identity};
 use crate::farm::dispatch::{Dispatcher, Stopped};
 use crate::farm::{Control, ControlError, Farm};
-use crate::spec::{Job, Method, MethodError, Spec};
+use crate::spec::{Method, MethodError, Spec};
 use crate::store::{CalibrationRow, NewCalibrationRow, Store, StoreError};
 
 /// A lease lasts so long without renewal `[ms]`.
@@ -183,12 +183,11 @@ impl Service {
             what: "experiment",
             id: new.experiment.to_string(),
         })?;
-        let spec = Arc::new(Spec::new(
-            "job.toml",
-            &new.toml,
-            "experiment.toml",
-            &experiment.files,
-        )?);
+        let job = FileSet {
+            toml: new.toml,
+            files: new.files,
+        };
+        let spec = Arc::new(Spec::new("job.toml", &job, "experiment.toml", &experiment.files)?);
         // The sampler is built once before anything is stored: what it refuses leaves nothing half-written.
         let trial = Identity {
             id: 0,
@@ -203,8 +202,8 @@ impl Service {
         let row = NewCalibrationRow {
             experiment: new.experiment,
             name: name.clone(),
-            toml: new.toml,
-            files: file_json(&new.files),
+            files: file_json(&job.files),
+            toml: job.toml,
             now_ms: now_ms(),
         };
         let (id, study) = self.store.writer().add_calibration(row).await?;
@@ -306,16 +305,6 @@ impl Service {
         self.store.writer().durable(fact).await?;
         Ok(response)
     }
-}
-
-/// Checks that a job names its experiment, for those who read it from disk.
-///
-/// # Errors
-/// [`FileError`].
-pub fn experiment_of(job_name: &str, job_toml: &str) -> Result<String, FileError> {
-    let job = Job::parse(job_name, job_toml)?;
-    job.experiment
-        .ok_or_else(|| FileError::whole(job_name, "experiment = \"experiment.toml\" is missing"))
 }
 
 fn file_json(files: &BTreeMap<String, String>) -> String {

@@ -24,7 +24,7 @@ pub struct NewCalibration {
     pub experiment: i64,
     /// Text of `job.toml`.
     pub toml: String,
-    /// Texts of the files that it names (effect files: later).
+    /// Texts of the files that it names (its effect files).
     #[serde(default)]
     pub files: BTreeMap<String, String>,
     /// A name for lists.

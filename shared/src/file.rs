@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+pub use formula::word::unknown_word;
+
 /// A TOML file and the files it names, as text. The same value comes from disk and over REST.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct FileSet {
@@ -14,14 +16,24 @@ pub struct FileSet {
 
 /// Why a file cannot be used: which file, which line, what is wrong.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{file}{}: {message}", line.map(|l| format!(" line {l}")).unwrap_or_default())]
+#[error("{file}{}: {message}", place(*line, *column))]
 pub struct FileError {
     /// Name of the file as the user wrote it.
     pub file: String,
     /// Line, counted from 1, where one is to blame.
     pub line: Option<usize>,
+    /// Column, counted from 1, where one is to blame.
+    pub column: Option<usize>,
     /// What is wrong: quantity, value, unit, bound.
     pub message: String,
+}
+
+fn place(line: Option<usize>, column: Option<usize>) -> String {
+    match (line, column) {
+        (Some(line), Some(column)) => format!(" line {line}, column {column}"),
+        (Some(line), None) => format!(" line {line}"),
+        _ => String::new(),
+    }
 }
 
 impl FileError {
@@ -30,6 +42,7 @@ impl FileError {
         FileError {
             file: file.to_owned(),
             line: None,
+            column: None,
             message: message.into(),
         }
     }
@@ -39,6 +52,7 @@ impl FileError {
         FileError {
             file: file.to_owned(),
             line: Some(line),
+            column: None,
             message: message.into(),
         }
     }
@@ -57,6 +71,15 @@ pub fn sibling(beside: &Path, name: &str) -> PathBuf {
     beside.parent().unwrap_or(Path::new("")).join(name)
 }
 
+/// Reads the files that the file `beside` names, by their names in it.
+///
+/// # Errors
+/// Names the path and the operating system's reason.
+pub fn read_beside(beside: &Path, names: &[String]) -> Result<BTreeMap<String, String>, FileError> {
+    let read = |name: &String| Ok((name.clone(), read_text(&sibling(beside, name))?));
+    names.iter().map(read).collect()
+}
+
 /// Parses TOML into `T`; an unknown key is an error that names its line and the nearest known key.
 ///
 /// # Errors
@@ -67,6 +90,7 @@ pub fn parse_toml<T: serde::de::DeserializeOwned>(file: &str, text: &str) -> Res
         FileError {
             file: file.to_owned(),
             line,
+            column: None,
             message: with_nearest_key(e.message()),
         }
     })
@@ -83,21 +107,6 @@ fn with_nearest_key(message: &str) -> String {
     match (message.starts_with("unknown field"), quoted.next()) {
         (true, Some(unknown)) => unknown_word("key", unknown, quoted),
         _ => message.trim_end().to_owned(),
-    }
-}
-
-/// `unknown key "radus_m"; the nearest known is "radius_m"`, or the list where nothing is near.
-pub fn unknown_word<'a>(what: &str, unknown: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    let known: Vec<&str> = known.into_iter().collect();
-    let nearest = known
-        .iter()
-        .map(|&k| (strsim::damerau_levenshtein(unknown, k), k))
-        .filter(|&(distance, k)| distance <= 2.max(k.len() / 2))
-        .min();
-    match nearest {
-        Some((_, near)) => format!("unknown {what} \"{unknown}\"; the nearest known is \"{near}\""),
-        None if known.is_empty() => format!("unknown {what} \"{unknown}\"; none is expected here"),
-        None => format!("unknown {what} \"{unknown}\"; known are {}", known.join(", ")),
     }
 }
 
@@ -127,5 +136,12 @@ mod tests {
             unknown_word("column", "zzzzzz", ["run", "slip"]),
             "unknown column \"zzzzzz\"; known are run, slip"
         );
+    }
+
+    #[test]
+    fn a_place_is_a_line_and_perhaps_a_column() {
+        let mut error = FileError::at("mine.toml", 4, "wrong");
+        error.column = Some(17);
+        assert_eq!(error.to_string(), "mine.toml line 4, column 17: wrong");
     }
 }

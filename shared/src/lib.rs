@@ -2,7 +2,7 @@
 //!
 //! # Layout
 //! - [`channel`]: what a test rig measures: drawbar pull, torque, sinkage, lateral force.
-//! - [`parameters`]: the names, units and physical bounds of the base parameters.
+//! - [`parameters`]: the names, units and physical bounds of the parameters.
 //! - [`experiment`]: an experiment as its files describe it: wheels, rig, noise, protocol, test runs.
 //! - [`model`]: which forward model is meant ([`model::ModelSettings`]) and the self-contained
 //!   [`model::ModelVariant`] that a worker evaluates.

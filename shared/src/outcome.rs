@@ -113,7 +113,7 @@ impl Observables {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rejection {
-    /// Stable word: `no_support`, `no_convergence`, `not_finite`, `energy_gained`, `protocol`, `invalid_parameter`.
+    /// Stable word: `no_support`, `no_convergence`, `not_finite`, `energy_gained`, `protocol`, `formula`, `invalid_parameter`.
     pub kind: String,
     /// Position of the condition that was refused.
     pub condition: u32,

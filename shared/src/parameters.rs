@@ -1,15 +1,15 @@
-//! The names, units and physical bounds of the base parameters.
+//! The names, units and physical bounds of the parameters.
 //!
 //! A parameter of one wheel of several carries the wheel's name behind a dot (`wheel_radius_m.smooth`);
 //! a noise standard deviation that is inferred is `noise.` and the channel's column
-//! (`noise.drawbar_pull_n`). Of the effects' parameters (`EFFECT.PARAMETER`) this version knows those in
-//! [`EFFECTS`].
+//! (`noise.drawbar_pull_n`). An effect's parameter is `EFFECT.PARAMETER`, or `EFFECT.PARAMETER.WHEEL`: what is known of
+//! it stands in the effect's file ([`EffectSet`]).
 
 use std::collections::BTreeSet;
 
 use crate::channel::Channel;
 use crate::file::unknown_word;
-use crate::model::ModelKind;
+use crate::model::{EffectSet, ModelKind};
 
 /// What is known of a base parameter of the wheel-soil models.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,14 +72,32 @@ pub fn of_kind(kind: ModelKind) -> impl Iterator<Item = &'static BaseParameter> 
     BASE.iter().chain(spatial)
 }
 
-/// Every known parameter of an effect, with the value at which the effect is absent. A variant that says
-/// nothing of one does not carry it, so its hash is that of a version without the effect.
-///
-/// `janosi_hanamoto.shear_modulus_m`: K of `tau = tau_max (1 − exp(−j / K))`; 0: no displacement law.
-pub const EFFECTS: [BaseParameter; 1] = [base(SHEAR_MODULUS, "m", 0.0, f64::INFINITY, Some(0.0))];
+/// Unit and physical bounds of a parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quantity {
+    /// Unit for tables and axes.
+    pub unit: String,
+    /// Least admissible value.
+    pub lower: f64,
+    /// Largest admissible value.
+    pub upper: f64,
+}
 
-/// Name of the modulus of the shear-displacement law.
-pub const SHEAR_MODULUS: &str = "janosi_hanamoto.shear_modulus_m";
+impl From<&BaseParameter> for Quantity {
+    fn from(base: &BaseParameter) -> Self {
+        Quantity {
+            unit: base.unit.to_owned(),
+            lower: base.lower,
+            upper: base.upper,
+        }
+    }
+}
+
+/// Whether a name means something in jobs already, so that no effect may have it.
+pub(crate) fn is_taken(name: &str) -> bool {
+    // "none" is the absence of effects in results
+    ["none", "noise"].contains(&name) || BASE.iter().chain(&SPATIAL).any(|p| p.name == name)
+}
 
 /// Prefix of the inferred noise standard deviations.
 pub const NOISE_PREFIX: &str = "noise.";
@@ -89,23 +107,20 @@ pub fn noise_parameter(channel: Channel) -> String {
     format!("{NOISE_PREFIX}{}", channel.column())
 }
 
-/// The base parameter behind a name: the name itself, or the part before a wheel's name.
+/// What is known of the parameter behind a name: of the model, of one of its wheels, of an effect.
 ///
 /// # Errors
 /// A sentence that names the unknown name and the nearest known one.
-pub fn lookup(name: &str, wheels: &BTreeSet<&str>) -> Result<BaseParameter, String> {
-    if let Some(whole) = EFFECTS.iter().chain(&SPATIAL).find(|p| p.name == name) {
-        return Ok(*whole);
-    }
+pub fn lookup(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<Quantity, String> {
     let (stem, wheel) = name
         .split_once('.')
         .map_or((name, None), |(stem, wheel)| (stem, Some(wheel)));
-    let found = BASE.iter().find(|p| p.name == stem);
+    let found = BASE.iter().chain(&SPATIAL).find(|p| p.name == stem);
     match (found, wheel) {
-        (Some(p), None) => Ok(*p),
+        (Some(p), None) => Ok(p.into()),
         (Some(p), Some(w)) if p.name == "wheel_radius_m" => {
             if wheels.contains(w) {
-                Ok(*p)
+                Ok(p.into())
             } else {
                 Err(unknown_word("wheel", w, wheels.iter().copied()))
             }
@@ -114,13 +129,10 @@ pub fn lookup(name: &str, wheels: &BTreeSet<&str>) -> Result<BaseParameter, Stri
             "parameter {} belongs to the soil, not to one wheel: \"{name}\"",
             p.name
         )),
-        (None, Some(_)) => Err(format!(
-            "parameter \"{name}\" of an effect is not available in this version"
-        )),
-        (None, None) => {
+        (None, _) => effects.lookup(name, wheels).unwrap_or_else(|| {
             let known = BASE.iter().chain(&SPATIAL).map(|p| p.name);
             Err(unknown_word("parameter", name, known))
-        }
+        }),
     }
 }
 
@@ -128,14 +140,12 @@ pub fn lookup(name: &str, wheels: &BTreeSet<&str>) -> Result<BaseParameter, Stri
 ///
 /// # Errors
 /// A sentence with the name, the value, the unit and the bound.
-pub fn check_value(parameter: &BaseParameter, name: &str, value: f64) -> Result<(), String> {
-    let BaseParameter {
-        unit, lower, upper, ..
-    } = *parameter;
+pub fn check_value(quantity: &Quantity, name: &str, value: f64) -> Result<(), String> {
+    let Quantity { unit, lower, upper } = quantity;
     if !value.is_finite() {
         return Err(format!("{name} = {value} is not a finite number"));
     }
-    if value < lower || value > upper {
+    if value < *lower || value > *upper {
         return Err(format!(
             "{name} = {value} {unit} lies outside [{lower}, {upper}] {unit}"
         ));
@@ -144,13 +154,17 @@ pub fn check_value(parameter: &BaseParameter, name: &str, value: f64) -> Result<
 }
 
 /// Checks that a set of names determines a model: one way to state the stiffness, `n` and the friction
-/// angle present, no wheel radius given both for one wheel and for all.
+/// angle present, everything said of every effect, nothing given both for one wheel and for all.
 ///
 /// # Errors
 /// A sentence that names what is missing or said twice.
-pub fn check_complete(names: &BTreeSet<&str>, wheels: &BTreeSet<&str>) -> Result<(), String> {
+pub fn check_complete(
+    names: &BTreeSet<&str>,
+    wheels: &BTreeSet<&str>,
+    effects: &EffectSet,
+) -> Result<(), String> {
     for name in names {
-        lookup(name, wheels)?;
+        lookup(name, wheels, effects)?;
     }
     let has = |name| names.contains(name);
     match (has("k_c") && has("k_phi"), has("log10_p_ref") && has("kappa")) {
@@ -169,7 +183,7 @@ pub fn check_complete(names: &BTreeSet<&str>, wheels: &BTreeSet<&str>) -> Result
     if has("wheel_radius_m") && per_wheel {
         return Err("wheel_radius_m is given both for all wheels and for one wheel".into());
     }
-    Ok(())
+    effects.check_complete(names, wheels)
 }
 
 const BOTH_STIFFNESSES: &str = "the stiffness is given twice: k_c and k_phi exclude log10_p_ref and kappa";
@@ -179,7 +193,8 @@ mod tests {
     use super::*;
 
     fn check(names: &[&str]) -> Result<(), String> {
-        check_complete(&names.iter().copied().collect(), &BTreeSet::from(["smooth"]))
+        let (wheels, none) = (BTreeSet::from(["smooth"]), EffectSet::default());
+        check_complete(&names.iter().copied().collect(), &wheels, &none)
     }
 
     #[test]
@@ -203,25 +218,41 @@ mod tests {
 
     #[test]
     fn a_radius_of_an_unknown_wheel_names_the_nearest() {
-        let error = lookup("wheel_radius_m.smoth", &BTreeSet::from(["smooth"])).unwrap_err();
+        let error = lookup(
+            "wheel_radius_m.smoth",
+            &BTreeSet::from(["smooth"]),
+            &EffectSet::default(),
+        )
+        .unwrap_err();
         assert_eq!(error, "unknown wheel \"smoth\"; the nearest known is \"smooth\"");
     }
 
     #[test]
     fn a_parameter_of_an_effect_has_a_unit_and_a_bound() {
-        let modulus = lookup(SHEAR_MODULUS, &BTreeSet::new()).unwrap();
+        let name = "janosi_hanamoto.shear_modulus_m";
+        let settings = toml::from_str("kind = \"scm\"").unwrap();
+        let settings = crate::model::ModelSettings::from_table(&settings).unwrap();
+        let effects = EffectSet::choose("job.toml", &settings, [name], &Default::default()).unwrap();
+        let lookup = |name: &str| lookup(name, &BTreeSet::from(["w"]), &effects);
         assert_eq!(
-            check_value(&modulus, modulus.name, -0.01).unwrap_err(),
+            check_value(&lookup(name).unwrap(), name, -0.01).unwrap_err(),
             "janosi_hanamoto.shear_modulus_m = -0.01 m lies outside [0, inf] m"
         );
-        let error = lookup("bulldozing.share", &BTreeSet::new()).unwrap_err();
-        assert!(error.contains("not available in this version"), "{error}");
+        assert_eq!(lookup("janosi_hanamoto.shear_modulus_m.w").unwrap().unit, "m");
+        assert_eq!(
+            lookup("janosi_hanamoto.shear_modulus").unwrap_err(),
+            "unknown parameter of effect janosi_hanamoto \"shear_modulus\"; the nearest known is \"shear_modulus_m\""
+        );
+        assert_eq!(
+            lookup("buldozing.scale").unwrap_err(),
+            "unknown effect \"buldozing\"; the nearest known is \"bulldozing\""
+        );
     }
 
     #[test]
     fn a_value_outside_its_bounds_names_value_unit_and_bound() {
-        let phi = lookup("friction_angle_deg", &BTreeSet::new()).unwrap();
-        let error = check_value(&phi, phi.name, 95.0).unwrap_err();
+        let phi = lookup("friction_angle_deg", &BTreeSet::new(), &EffectSet::default()).unwrap();
+        let error = check_value(&phi, "friction_angle_deg", 95.0).unwrap_err();
         assert_eq!(error, "friction_angle_deg = 95 deg lies outside [0, 89] deg");
     }
 }

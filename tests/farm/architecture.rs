@@ -5,16 +5,18 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 6] = [
+const CRATES: [&str; 7] = [
     "shared",
+    "shared/formula",
     "coordinator",
     "coordinator/inference",
     "worker",
     "worker/scm",
     "tests",
 ];
-const OURS: [&str; 6] = [
+const OURS: [&str; 7] = [
     "shared",
+    "formula",
     "coordinator",
     "inference",
     "worker",
@@ -121,11 +123,15 @@ fn manifests_keep_the_direction_of_dependencies() {
             .filter(|d| OURS.contains(&d.as_str()))
             .collect()
     };
-    assert_eq!(ours("shared"), set(&[]));
-    assert_eq!(ours("worker/scm"), set(&[]));
+    assert_eq!(ours("shared/formula"), set(&[]));
+    assert_eq!(ours("shared"), set(&["formula"]));
+    assert_eq!(ours("worker/scm"), set(&["formula"]));
     assert_eq!(ours("coordinator/inference"), set(&[]));
-    assert_eq!(ours("worker"), set(&["scm", "shared"]));
-    assert_eq!(ours("coordinator"), set(&["inference", "shared", "worker"]));
+    assert_eq!(ours("worker"), set(&["formula", "scm", "shared"]));
+    assert_eq!(
+        ours("coordinator"),
+        set(&["formula", "inference", "shared", "worker"])
+    );
     for krate in CRATES {
         assert!(!ours(krate).contains("farm-tests"), "{krate} imports the tests");
     }
@@ -144,12 +150,12 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         "clap",
         "indicatif",
     ];
-    for krate in ["shared", "worker/scm", "coordinator/inference"] {
+    for krate in ["shared", "shared/formula", "worker/scm", "coordinator/inference"] {
         let dependencies = dependencies(krate);
         let found: Vec<&str> = impure.into_iter().filter(|d| dependencies.contains(*d)).collect();
         assert!(found.is_empty(), "{krate} imports {found:?}");
     }
-    for krate in ["shared", "worker/scm"] {
+    for krate in ["shared", "shared/formula", "worker/scm"] {
         let dependencies = dependencies(krate);
         assert!(
             !dependencies.iter().any(|d| d.starts_with("rand")),
@@ -162,7 +168,7 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         &["coordinator/inference/src/rng.rs"],
     );
     nowhere(
-        &["worker/scm/src"],
+        &["worker/scm/src", "shared/formula/src"],
         &["HashMap", "HashSet", "std::collections::HashMap"],
         &[],
     );
@@ -239,6 +245,7 @@ fn pure_rooms_read_no_clock() {
         "coordinator/src/calibration",
         "coordinator/src/spec",
         "coordinator/src/result",
+        "coordinator/src/effect",
     ];
     let clocks = [
         "Instant::now",

@@ -9,7 +9,7 @@ use shared::api::{
 };
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
 use shared::experiment::Wheel;
-use shared::model::{Condition, ModelKind, ModelVariant, SpatialSettings};
+use shared::model::{Condition, EffectText, ModelKind, ModelVariant, SpatialSettings};
 use shared::outcome::{Fault, Observables, Outcome, Rejection};
 
 /// A message has one form: it is written so, and read back to the same.
@@ -152,6 +152,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         slip_angle_deg: 0.0,
         pass: 1,
         repose_angle_deg: None,
+        density_kg_m3: None,
     };
     let variant = ModelVariant {
         kind: ModelKind::QuasiStatic,
@@ -161,6 +162,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         fixed: [("kappa".to_owned(), 0.0)].into(),
         wheels: [("w".to_owned(), wheel)].into(),
         gravity_m_s2: 9.81,
+        bin_length_m: None,
         conditions: vec![condition],
         protocol: Default::default(),
     };
@@ -184,6 +186,22 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
     };
     assert_ne!(variant.hash(), other.hash());
     assert_eq!(variant.hash().len(), 32);
+
+    let effect = EffectText {
+        name: "mine".into(),
+        text: "name = \"mine\"".into(),
+    };
+    golden(&effect, &json!({"name": "mine", "text": "name = \"mine\""}));
+    let with = ModelVariant {
+        effects: vec![effect],
+        bin_length_m: Some(1.5),
+        ..variant.clone()
+    };
+    assert_eq!(serde_json::to_value(&with).unwrap()["bin_length_m"], 1.5);
+    assert_ne!(variant.hash(), with.hash());
+    assert_eq!(variant.model_version("scm"), "scm");
+    // printf 'name = "mine"' | sha256sum
+    assert_eq!(with.model_version("scm"), "scm+effects.3fd69817");
 
     let spatial = SpatialSettings::default();
     golden(

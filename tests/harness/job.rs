@@ -13,7 +13,7 @@ pub struct Job {
     pub runs: String,
     /// `job.toml`.
     pub job: String,
-    /// Other files that the experiment names: name and content.
+    /// Other files that experiment or job name: name and content.
     pub others: Vec<(String, Vec<u8>)>,
 }
 
@@ -89,6 +89,17 @@ impl Job {
         let experiment = lines.map(|line| format!("{line}\n")).collect();
         Job { experiment, ..small }
             .in_experiment("width_m = 0.112", &format!("width_m = 0.112\nmesh = \"{file}\""))
+    }
+
+    /// The files that the job itself names: name and text of each.
+    pub fn effect_files(&self) -> Value {
+        let named = self
+            .others
+            .iter()
+            .filter(|(name, _)| self.job.contains(name.as_str()));
+        named
+            .map(|(name, content)| (name.clone(), Value::from(String::from_utf8_lossy(content))))
+            .collect()
     }
 
     /// Writes the files into a folder; the path of the job.

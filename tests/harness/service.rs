@@ -114,7 +114,8 @@ impl Service {
     pub fn submit(&self, job: &Job) -> i64 {
         let experiment = self.client.post("/v1/experiments", &job.experiment_json());
         assert_eq!(experiment.status, 201, "{}", experiment.body);
-        let new = json!({"experiment": experiment.json()["id"], "toml": job.job});
+        let new =
+            json!({"experiment": experiment.json()["id"], "toml": job.job, "files": job.effect_files()});
         let created = self.client.post("/v1/calibrations", &new);
         assert_eq!(created.status, 201, "{}", created.body);
         created.json()["id"].as_i64().expect("an id")

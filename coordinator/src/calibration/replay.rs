@@ -164,7 +164,11 @@ mod tests {
             toml: EXPERIMENT.into(),
             files: [("runs.csv".into(), RUNS.into())].into(),
         };
-        let spec = Spec::new("job.toml", job, "experiment.toml", &files).unwrap();
+        let job = FileSet {
+            toml: job.into(),
+            files: Default::default(),
+        };
+        let spec = Spec::new("job.toml", &job, "experiment.toml", &files).unwrap();
         let identity = Identity {
             id: 1,
             name: "toy".into(),

@@ -1,6 +1,5 @@
 //! `coordinator check`: validate a job and say what it will cost.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -9,6 +8,7 @@ use shared::outcome::Outcome as Evaluated;
 use super::job;
 use super::output::say;
 use crate::calibration::{Calibration, Engine, Identity, result_of};
+use crate::config::JobFile;
 use crate::embedded::Evaluate;
 use crate::result::terminal;
 use crate::spec::Method;
@@ -18,8 +18,8 @@ const PILOT_PARTICLES: usize = 100;
 /// The pilot ends after so long; what it has seen by then is extrapolated `[s]`.
 const PILOT_S: f64 = 30.0;
 
-pub(super) async fn check(path: &Path) -> anyhow::Result<()> {
-    let job = job::read(path)?;
+pub(super) async fn check(file: &JobFile) -> anyhow::Result<()> {
+    let job = job::read(file)?;
     let mut text = terminal::specification(&job.spec);
     for note in terminal::notes(&job.spec) {
         text += &format!("note: {note}\n");

@@ -1,19 +1,20 @@
-//! A job on disk with the files it names.
+//! A job on disk with the files it names, and the effects that the command line adds.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use shared::experiment::Experiment;
-use shared::file::{FileError, FileSet, read_text, sibling};
+use shared::file::{FileError, FileSet, read_beside, read_text, sibling};
 
-use crate::service::experiment_of;
-use crate::spec::Spec;
+use crate::config::JobFile;
+use crate::spec::{Job, Spec};
 
 /// A job with everything it names, read and validated.
 pub(super) struct JobOnDisk {
     /// Name for lists and folders.
     pub(super) name: String,
-    /// Text of the job.
-    pub(super) toml: String,
+    /// The job as it counts, the command line's effects included, and its effect files.
+    pub(super) job: FileSet,
     /// Its experiment.
     pub(super) experiment: FileSet,
     /// What they mean.
@@ -21,19 +22,88 @@ pub(super) struct JobOnDisk {
 }
 
 /// Reads and validates a job and its experiment.
-pub(super) fn read(path: &Path) -> Result<JobOnDisk, FileError> {
+pub(super) fn read(file: &JobFile) -> Result<JobOnDisk, FileError> {
+    let path = &file.job;
     let job_name = path.display().to_string();
     let toml = read_text(path)?;
-    let experiment_path = sibling(path, &experiment_of(&job_name, &toml)?);
+    let mut job = Job::parse(&job_name, &toml)?;
+    let named = job.experiment.as_deref();
+    let named =
+        named.ok_or_else(|| FileError::whole(&job_name, "experiment = \"experiment.toml\" is missing"))?;
+    let experiment_path = sibling(path, named);
     let experiment_name = experiment_path.display().to_string();
     let experiment = Experiment::read_files(&experiment_path)?;
-    let spec = Spec::new(&job_name, &toml, &experiment_name, &experiment)?;
+    let mut files = read_beside(path, &job.model.effect_files)?;
+    let added = added_files(&file.effect_file)?;
+    let names: Vec<String> = added.keys().cloned().collect();
+    job.model
+        .add_effects(&file.effect, &names)
+        .map_err(|e| FileError::whole(&job_name, e))?;
+    files.extend(added);
+    // Messages name the lines of the file as it is; what is kept has the additions.
+    let spec = Spec::of(&job_name, job, &files, &experiment_name, &experiment)?;
+    let toml = with_effects(toml, &file.effect, &names).map_err(|e| FileError::whole(&job_name, e))?;
+    // An extension has a folder of its own beside its base's.
+    let mut name = name(path);
+    for more in file
+        .effect
+        .iter()
+        .map(String::as_str)
+        .chain(names.iter().map(|n| stem(n)))
+    {
+        name = format!("{name}+{more}");
+    }
     Ok(JobOnDisk {
-        name: name(path),
-        toml,
+        name,
+        job: FileSet { toml, files },
         experiment,
         spec,
     })
+}
+
+/// The effect files of the command line, each by its name without folders.
+fn added_files(paths: &[PathBuf]) -> Result<BTreeMap<String, String>, FileError> {
+    let mut files = BTreeMap::new();
+    for path in paths {
+        let name = path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        if files.insert(name.clone(), read_text(path)?).is_some() {
+            return Err(FileError::whole(
+                &name,
+                "two files of --effect-file have this name",
+            ));
+        }
+    }
+    Ok(files)
+}
+
+/// The text of a job with further effects under `[model]`; everything else stays as it is written.
+fn with_effects(toml: String, effects: &[String], files: &[String]) -> Result<String, String> {
+    if effects.is_empty() && files.is_empty() {
+        return Ok(toml);
+    }
+    let mut document: toml_edit::DocumentMut =
+        toml.parse().map_err(|e: toml_edit::TomlError| e.to_string())?;
+    let model = document
+        .get_mut("model")
+        .and_then(toml_edit::Item::as_table_like_mut);
+    let model = model.ok_or("[model] is missing")?;
+    for (key, names) in [("effects", effects), ("effect_files", files)] {
+        if names.is_empty() {
+            continue;
+        }
+        let list = model
+            .entry(key)
+            .or_insert(toml_edit::value(toml_edit::Array::new()));
+        let list = list
+            .as_array_mut()
+            .ok_or_else(|| format!("{key} must be a list"))?;
+        list.extend(names.iter().map(String::as_str));
+    }
+    Ok(document.to_string())
 }
 
 /// The job's name: its file's, or its folder's where the file is just `job.toml`.
@@ -45,4 +115,26 @@ fn name(path: &Path) -> String {
     }
     let absolute: PathBuf = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     text(absolute.parent().and_then(Path::file_name)).unwrap_or(stem)
+}
+
+/// The name of a file without its ending.
+fn stem(file: &str) -> &str {
+    file.strip_suffix(".toml").unwrap_or(file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn effects_of_the_command_line_join_those_of_the_job_and_leave_the_rest_as_it_is() {
+        let job = "# why\n[model]\nkind = \"scm\" # here\neffects = [\"hard_pan\"]\n\n[priors]\nn = 1.1\n";
+        let added = with_effects(job.into(), &["adhesion".into()], &["mine.toml".into()]).unwrap();
+        let expected = job.replace(
+            "[\"hard_pan\"]",
+            "[\"hard_pan\", \"adhesion\"]\neffect_files = [\"mine.toml\"]",
+        );
+        assert_eq!(added, expected);
+        assert_eq!(with_effects(job.into(), &[], &[]).unwrap(), job);
+    }
 }

@@ -1,6 +1,7 @@
 //! The verbs of the command line.
 
 mod check;
+mod effects;
 mod job;
 mod output;
 mod progress;
@@ -21,7 +22,7 @@ use crate::config::Command;
 pub async fn execute(command: Command) -> anyhow::Result<()> {
     match command {
         Command::Run(run) => run::run(run).await,
-        Command::Check(file) => check::check(&file.job).await,
+        Command::Check(file) => check::check(&file).await,
         Command::Serve(serve) => serve::serve(serve).await,
         Command::Submit(submit) => verbs::submit(&submit).await,
         Command::List(source) => verbs::list(&source).await,
@@ -36,7 +37,7 @@ pub async fn execute(command: Command) -> anyhow::Result<()> {
         Command::Discover(_) => bail!("discover is not available in this version"),
         Command::Extend(_) => bail!("extend is not available in this version"),
         Command::AddRuns(_) => bail!("add-runs is not available in this version"),
-        Command::Effects(_) => bail!("effects are not available in this version"),
+        Command::Effects(config) => effects::effects(&config).await,
     }
 }
 

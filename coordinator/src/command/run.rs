@@ -27,7 +27,7 @@ enum End {
 }
 
 pub(super) async fn run(config: Run) -> anyhow::Result<()> {
-    let job = job::read(&config.job)?;
+    let job = job::read(&config.file)?;
     for text in terminal::notes(&job.spec) {
         note(&format!("note: {text}"));
     }
@@ -99,8 +99,8 @@ async fn take_up(job: &JobOnDisk, out: &Path, service: &Service) -> anyhow::Resu
         let experiment = service.add_experiment(experiment).await?;
         let new = NewCalibration {
             experiment,
-            toml: job.toml.clone(),
-            files: Default::default(),
+            toml: job.job.toml.clone(),
+            files: job.job.files.clone(),
             name: Some(job.name.clone()),
         };
         return Ok(service.add_calibration(new).await?.id);

@@ -13,7 +13,7 @@ use crate::config::{Export, Format, Report, Source, Submit, Target};
 use crate::result::terminal;
 
 pub(super) async fn submit(config: &Submit) -> anyhow::Result<()> {
-    let job = job::read(&config.job)?;
+    let job = job::read(&config.file)?;
     let client = Client::new(&config.url)?;
     let experiment = NewExperiment {
         toml: job.experiment.toml,
@@ -22,8 +22,8 @@ pub(super) async fn submit(config: &Submit) -> anyhow::Result<()> {
     let experiment: ExperimentCreated = client.post("/v1/experiments", &experiment).await?;
     let new = NewCalibration {
         experiment: experiment.id,
-        toml: job.toml,
-        files: Default::default(),
+        toml: job.job.toml,
+        files: job.job.files,
         name: Some(job.name),
     };
     let created: CalibrationCreated = client.post("/v1/calibrations", &new).await?;

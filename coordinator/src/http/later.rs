@@ -9,21 +9,8 @@ use crate::service::Service;
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new()
-        .routes(routes!(effects, add_effect))
         .routes(routes!(discovery, start_discovery))
         .routes(routes!(extend))
-}
-
-/// The catalogue of effects. Not available in this version.
-#[utoipa::path(get, path = "/effects", responses((status = 501, body = ErrorBody)))]
-async fn effects() -> HttpError {
-    HttpError::not_available("the catalogue of effects")
-}
-
-/// Adds an effect. Not available in this version.
-#[utoipa::path(post, path = "/effects", responses((status = 501, body = ErrorBody)))]
-async fn add_effect() -> HttpError {
-    HttpError::not_available("adding an effect")
 }
 
 /// Which effect is missing. Not available in this version.

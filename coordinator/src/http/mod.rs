@@ -3,6 +3,7 @@
 //! One file per resource; each exports `routes()`. The OpenAPI document is made from the handlers.
 
 mod calibrations;
+mod effects;
 mod error;
 mod events;
 mod experiments;
@@ -42,6 +43,7 @@ pub fn router(service: Service) -> Router {
             "/v1",
             OpenApiRouter::new()
                 .merge(experiments::routes())
+                .merge(effects::routes())
                 .merge(calibrations::routes())
                 .merge(events::routes())
                 .merge(studies::routes())

@@ -98,6 +98,12 @@ impl Outcome {
             .reduce(|best, s| if score(s) > score(best) { s } else { best })
     }
 
+    /// Version of the model: of the equations, and of the effects.
+    pub fn model_version(&self) -> Option<String> {
+        let equations = self.row.model_version.as_deref()?;
+        Some(self.spec.fit_variant.model_version(equations))
+    }
+
     /// The draws of one parameter.
     pub fn draws(&self, parameter: usize) -> Vec<f64> {
         self.posterior.iter().map(|s| s.theta[parameter]).collect()
@@ -118,7 +124,7 @@ pub async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, Serv
         })?;
     Ok(Spec::new(
         "job.toml",
-        &row.toml,
+        &row.job,
         "experiment.toml",
         &experiment.files,
     )?)
@@ -127,7 +133,7 @@ pub async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, Serv
 /// Where a calibration stands that nobody has in hand.
 pub fn stored_status(row: &CalibrationRow) -> CalibrationStatus {
     // A job that this version does not understand still has a line in every list.
-    let model = crate::spec::Job::parse("job.toml", &row.toml).map(|job| job.model);
+    let model = crate::spec::Job::parse("job.toml", &row.job.toml).map(|job| job.model);
     CalibrationStatus {
         id: row.id,
         name: row.name.clone(),

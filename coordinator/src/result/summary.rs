@@ -147,7 +147,7 @@ impl Outcome {
         Summary {
             experiment: self.experiment.clone(),
             seed: self.spec.method.seed(),
-            model_version: self.row.model_version.clone().unwrap_or_default(),
+            model_version: self.model_version().unwrap_or_default(),
             model_kind: self.spec.model.kind.name().to_owned(),
             status: self.row.state.name().to_owned(),
             calibrations: self.calibration_summary().into_iter().collect(),
@@ -175,7 +175,13 @@ impl Outcome {
             })
             .collect();
         Some(CalibrationSummary {
-            effects: Vec::new(),
+            effects: self
+                .spec
+                .fit_variant
+                .effects
+                .iter()
+                .map(|e| e.name.clone())
+                .collect(),
             algorithm: self.spec.method.name().to_owned(),
             log_evidence: self.row.log_evidence,
             log_evidence_se: self.row.log_evidence_se,

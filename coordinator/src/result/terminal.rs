@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use formula::Variable;
 use shared::api::CalibrationStatus;
 use shared::channel::Channel;
-use shared::model::ModelKind;
+use shared::model::{EffectSet, ModelKind};
 
 use super::Outcome;
 use super::comparison::{Comparison, ComparisonRow};
@@ -25,14 +26,17 @@ pub fn notes(spec: &Spec) -> Vec<String> {
         .map(|(name, _)| name.as_str())
         .collect();
     let lugged = lugged.join(", ");
+    // what was read once is read again
+    let effects = EffectSet::read(&spec.fit_variant.effects).unwrap_or_default();
+    let named = |variables: &[Variable]| variables.iter().any(|v| effects.using(*v).is_some());
     match spec.fit_variant.kind {
         ModelKind::QuasiStatic => {
-            if !lugged.is_empty() {
+            if !lugged.is_empty() && !named(&[Variable::GrouserCount, Variable::GrouserHeight]) {
                 notes.push(format!(
                     "quasi_static models the smooth rim: the grousers of {lugged} enter only through a radius of their own (wheel_radius_m.NAME)"
                 ));
             }
-            if spec.experiment.runs.iter().any(|r| r.pass > 1) {
+            if spec.experiment.runs.iter().any(|r| r.pass > 1) && !named(&[Variable::Pass]) {
                 notes.push(
                     "quasi_static has no memory between passes: every pass is predicted like the first".into(),
                 );
@@ -55,20 +59,22 @@ pub fn specification(spec: &Spec) -> String {
         "{} fit runs with {} measurements, {holdout} holdout runs; model {}; {}, seed {}\n",
         spec.fit_runs.len(),
         spec.likelihood.data().len(),
-        spec.model.kind.name(),
+        spec.model_words(),
         spec.method.words(),
         spec.method.seed()
     );
+    let fixed = &spec.fit_variant.fixed;
+    let width = width(spec.parameters.iter().map(|p| &p.name).chain(fixed.keys()));
     let _ = writeln!(
         text,
-        "{:<28} {:>12} {:>12} {:>12} {:>12}  unit",
+        "{:<width$} {:>12} {:>12} {:>12} {:>12}  unit",
         "parameter", "prior mean", "prior sd", "lower", "upper"
     );
     for p in &spec.parameters {
         let (lower, upper) = p.marginal.support();
         let _ = writeln!(
             text,
-            "{:<28} {:>12} {:>12} {:>12} {:>12}  {}",
+            "{:<width$} {:>12} {:>12} {:>12} {:>12}  {}",
             p.name,
             number(p.marginal.mean()),
             number(p.marginal.sd()),
@@ -77,10 +83,15 @@ pub fn specification(spec: &Spec) -> String {
             p.unit
         );
     }
-    for (name, value) in &spec.fit_variant.fixed {
-        let _ = writeln!(text, "{name:<28} {:>12} {:>12}", number(*value), "fixed");
+    for (name, value) in fixed {
+        let _ = writeln!(text, "{name:<width$} {:>12} {:>12}", number(*value), "fixed");
     }
     text
+}
+
+/// The width of a column of names.
+fn width<'a>(names: impl Iterator<Item = &'a String>) -> usize {
+    names.map(String::len).fold(28, usize::max)
 }
 
 /// The result of a run: parameters, errors, table of model against measurement, flags.
@@ -106,6 +117,9 @@ pub fn summary(outcome: &Outcome) -> String {
     if let (Some(z), Some(se)) = (row.log_evidence, row.log_evidence_se) {
         let _ = writeln!(text, "log-evidence {z:.2} +- {se:.2}");
     }
+    if !outcome.spec.fit_variant.effects.is_empty() {
+        let _ = writeln!(text, "model {}", outcome.spec.model_words());
+    }
     if let Some(estimate) = &outcome.estimate {
         let _ = writeln!(text, "log-posterior {:.2}", estimate.log_posterior());
     }
@@ -130,14 +144,15 @@ pub fn summary(outcome: &Outcome) -> String {
 
 /// The most probable parameters with their standard deviations after Laplace.
 fn point(outcome: &Outcome, estimate: &EstimateRow) -> String {
+    let width = width(outcome.spec.parameters.iter().map(|p| &p.name));
     let mut text = format!(
-        "\n{:<28} {:>10} {:>10}  {:<12} prior\n",
+        "\n{:<width$} {:>10} {:>10}  {:<12} prior\n",
         "parameter", "best", "sd", "unit"
     );
     for p in estimate.fitted(&outcome.spec.parameters) {
         let _ = writeln!(
             text,
-            "{:<28} {:>10} {:>10}  {:<12} {}{}",
+            "{:<width$} {:>10} {:>10}  {:<12} {}{}",
             p.free.name,
             number(p.value),
             p.sd.map_or("-".into(), number),
@@ -160,9 +175,10 @@ fn prior(free: &FreeParameter) -> String {
 /// The parameters after and before the data.
 fn parameters(outcome: &Outcome) -> String {
     let mut text = String::new();
+    let width = width(outcome.spec.parameters.iter().map(|p| &p.name));
     let _ = writeln!(
         text,
-        "\n{:<28} {:>10} {:>10} {:>10} {:>10} {:>10}  {:<12} prior",
+        "\n{:<width$} {:>10} {:>10} {:>10} {:>10} {:>10}  {:<12} prior",
         "parameter", "mean", "sd", "5 %", "95 %", "best", "unit"
     );
     for ((name, p), free) in outcome.parameter_summaries().iter().zip(&outcome.spec.parameters) {
@@ -170,7 +186,7 @@ fn parameters(outcome: &Outcome) -> String {
         let bound = if p.at_bound { "  AT BOUND" } else { "" };
         let _ = writeln!(
             text,
-            "{name:<28} {:>10} {:>10} {:>10} {:>10} {:>10}  {:<12} {prior}{bound}",
+            "{name:<width$} {:>10} {:>10} {:>10} {:>10} {:>10}  {:<12} {prior}{bound}",
             number(p.mean),
             number(p.sd),
             number(p.q05),
@@ -298,7 +314,7 @@ fn short(channel: &str) -> &str {
 }
 
 /// Four significant digits.
-pub(super) fn number(x: f64) -> String {
+pub(crate) fn number(x: f64) -> String {
     if x.abs() < f64::MIN_POSITIVE {
         "0".into()
     } else if (1e-3..1e5).contains(&x.abs()) {

@@ -5,10 +5,12 @@ mod method;
 mod noise;
 mod priors;
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use inference::{GaussianLikelihood, Prior};
 use shared::experiment::{Experiment, RunUse};
 use shared::file::{FileError, FileSet};
-use shared::model::{ModelSettings, ModelVariant};
+use shared::model::{EffectSet, ModelSettings, ModelVariant};
 use shared::parameters;
 
 pub use job_file::Job;
@@ -49,11 +51,25 @@ impl Spec {
     /// [`FileError`] names the file, the line or field, the value, the unit and the bound.
     pub fn new(
         job_name: &str,
-        job_toml: &str,
+        job: &FileSet,
         experiment_name: &str,
         files: &FileSet,
     ) -> Result<Spec, FileError> {
-        let job = Job::parse(job_name, job_toml)?;
+        let parsed = Job::parse(job_name, &job.toml)?;
+        Spec::of(job_name, parsed, &job.files, experiment_name, files)
+    }
+
+    /// The same of a job that is parsed, with the texts of its effect files.
+    ///
+    /// # Errors
+    /// As those of [`Spec::new`].
+    pub fn of(
+        job_name: &str,
+        job: Job,
+        texts: &BTreeMap<String, String>,
+        experiment_name: &str,
+        files: &FileSet,
+    ) -> Result<Spec, FileError> {
         let experiment = Experiment::parse(experiment_name, files)?;
         let in_job = |message: String| FileError::whole(job_name, message);
         for (key, readings) in [
@@ -70,10 +86,14 @@ impl Spec {
 
         let wheels = experiment.wheel_names();
         let mut model = job.model;
+        let named = job.priors.iter().map(|entry| entry.name.as_str());
+        let named = named.filter(|name| !name.starts_with(parameters::NOISE_PREFIX));
+        let fixed = model.fixed.keys().map(String::as_str);
+        let effects = EffectSet::choose(job_name, &model, named.chain(fixed), texts)?;
         let mut parameters = Vec::new();
         for entry in job.priors {
             match entry
-                .parse(&wheels)
+                .parse(&wheels, &effects)
                 .map_err(|e| FileError::at(job_name, entry.line, e))?
             {
                 priors::Parsed::Fixed(value) => {
@@ -88,6 +108,7 @@ impl Spec {
                 priors::Parsed::Free(parameter) => parameters.push(parameter),
             }
         }
+        add_unsaid(job_name, &effects, &wheels, &mut model, &mut parameters)?;
         let (fit_runs, holdout_runs): (Vec<usize>, Vec<usize>) =
             (0..experiment.runs.len()).partition(|&i| experiment.runs[i].usage == RunUse::Fit);
         noise::add_unknown_sds(&experiment, &mut parameters);
@@ -115,7 +136,7 @@ impl Spec {
             .collect();
         let variant = |runs: &[usize]| {
             let runs = runs.iter().map(|&i| &experiment.runs[i]);
-            ModelVariant::new(&experiment, &model, model_parameters.clone(), runs).map_err(in_job)
+            ModelVariant::new(&experiment, &model, &effects, model_parameters.clone(), runs).map_err(in_job)
         };
         let fit_variant = variant(&fit_runs)?;
         let holdout_variant = match holdout_runs.as_slice() {
@@ -141,6 +162,16 @@ impl Spec {
         format!("{self:?}") == format!("{other:?}")
     }
 
+    /// The model with its effects: `quasi_static with janosi_hanamoto, mine`.
+    pub fn model_words(&self) -> String {
+        let kind = self.model.kind.name();
+        let effects: Vec<&str> = self.fit_variant.effects.iter().map(|e| e.name.as_str()).collect();
+        match effects.as_slice() {
+            [] => kind.to_owned(),
+            effects => format!("{kind} with {}", effects.join(", ")),
+        }
+    }
+
     /// The joint prior, in parameter order.
     pub fn prior(&self) -> Prior {
         Prior::new(self.parameters.iter().map(|p| p.marginal.clone()).collect())
@@ -152,4 +183,30 @@ impl Spec {
     pub fn model_theta<'a>(&self, theta: &'a [f64]) -> &'a [f64] {
         &theta[..self.fit_variant.parameters.len()]
     }
+}
+
+/// Adds what a job does not say of its effects: the number or the prior that the effect's file has.
+fn add_unsaid(
+    job_name: &str,
+    effects: &EffectSet,
+    wheels: &BTreeSet<&str>,
+    model: &mut ModelSettings,
+    parameters: &mut Vec<FreeParameter>,
+) -> Result<(), FileError> {
+    let free = parameters.iter().map(|p| p.name.clone());
+    let said: Vec<String> = free.chain(model.fixed.keys().cloned()).collect();
+    let said = said.iter().map(String::as_str).collect();
+    for unsaid in effects.unsaid(&said, wheels) {
+        let parsed = priors::Parsed::of_effect(&unsaid).map_err(|e| match &unsaid.chosen.file {
+            Some(file) => FileError::at(file, unsaid.parameter.line, e),
+            None => FileError::whole(job_name, format!("effect {}: {e}", unsaid.chosen.effect.name)),
+        })?;
+        match parsed {
+            priors::Parsed::Fixed(value) => {
+                model.fixed.insert(unsaid.name.clone(), value);
+            }
+            priors::Parsed::Free(parameter) => parameters.push(parameter),
+        }
+    }
+    Ok(())
 }

@@ -24,7 +24,7 @@ pub(super) fn add_unknown_sds(experiment: &Experiment, parameters: &mut Vec<Free
                 .expect("the usual scales are positive and finite");
             parameters.push(FreeParameter {
                 name,
-                unit: channel.unit(),
+                unit: channel.unit().to_owned(),
                 marginal,
             });
         }

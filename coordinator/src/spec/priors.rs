@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use inference::{Distribution, Marginal};
 use shared::channel::Channel;
 use shared::file::unknown_word;
-use shared::parameters::{self, NOISE_PREFIX};
+use shared::model::EffectSet;
+use shared::model::effects::Unsaid;
+use shared::parameters::{self, NOISE_PREFIX, Quantity};
 
 /// A parameter with a prior.
 #[derive(Debug, Clone)]
@@ -13,7 +15,7 @@ pub struct FreeParameter {
     /// Name, with its unit where it has one.
     pub name: String,
     /// Unit for tables and axes.
-    pub unit: &'static str,
+    pub unit: String,
     /// Prior density.
     pub marginal: Marginal,
 }
@@ -39,9 +41,9 @@ const DISTRIBUTIONS: [&str; 5] = ["uniform", "loguniform", "normal", "lognormal"
 
 impl PriorEntry {
     /// Reads the entry and checks it against the parameter's physical bounds.
-    pub(super) fn parse(&self, wheels: &BTreeSet<&str>) -> Result<Parsed, String> {
-        self.check_quotes(wheels)?;
-        let (unit, lower, upper) = bounds(&self.name, wheels)?;
+    pub(super) fn parse(&self, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<Parsed, String> {
+        self.check_quotes(wheels, effects)?;
+        let quantity = quantity(&self.name, wheels, effects)?;
         if let Some(value) = number(&self.value) {
             if self.name.starts_with(NOISE_PREFIX) {
                 return Err(format!(
@@ -51,57 +53,26 @@ impl PriorEntry {
             }
             return Ok(Parsed::Fixed(value));
         }
-        let table = self
-            .value
-            .as_table()
-            .ok_or_else(|| format!("{}: a number or a table is expected", self.name))?;
-        let prefix = |e: String| format!("{}: {e}", self.name);
-        let distribution = distribution(table).map_err(prefix)?;
-        let stated = match table.get("bounds") {
-            None => None,
-            Some(value) => Some(pair("bounds", value).map_err(prefix)?),
-        };
-        if let Distribution::Uniform { lower: a, upper: b } | Distribution::Loguniform { lower: a, upper: b } =
-            distribution
-            && (a < lower || b > upper)
-        {
-            let what = format!("[{a}, {b}] {unit} leaves the admissible range [{lower}, {upper}] {unit}");
-            return Err(prefix(what));
-        }
-        if let Some([a, b]) = stated
-            && (a < lower || b > upper)
-        {
-            let what =
-                format!("bounds [{a}, {b}] {unit} leave the admissible range [{lower}, {upper}] {unit}");
-            return Err(prefix(what));
-        }
-        // A prior without bounds of its own ends where the quantity does.
-        let bounds = stated.or(match distribution {
-            Distribution::Uniform { .. } | Distribution::Loguniform { .. } => None,
-            Distribution::Normal { .. } => Some([lower, upper]),
-            Distribution::Lognormal { .. } | Distribution::HalfNormal { .. } => Some([lower.max(0.0), upper]),
-        });
-        let marginal = Marginal::new(distribution, bounds).map_err(|e| prefix(e.to_string()))?;
+        let marginal = marginal(&self.value, &quantity).map_err(|e| format!("{}: {e}", self.name))?;
         Ok(Parsed::Free(FreeParameter {
             name: self.name.clone(),
-            unit,
+            unit: quantity.unit,
             marginal,
         }))
     }
-}
 
-impl PriorEntry {
     /// A dotted name without quotes is a table of tables to TOML; says so where one was probably meant.
-    fn check_quotes(&self, wheels: &BTreeSet<&str>) -> Result<(), String> {
+    fn check_quotes(&self, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<(), String> {
         let Some(table) = self.value.as_table() else {
             return Ok(());
         };
+        let of_effect = |key: &str| {
+            let own = effects.iter().chain(formula::catalogue::catalogue());
+            own.filter(|e| e.name == self.name)
+                .any(|e| e.parameter(key).is_some())
+        };
         let dotted = |key: &&String| {
-            wheels.contains(key.as_str())
-                || Channel::ALL.iter().any(|c| c.column() == *key)
-                || parameters::EFFECTS
-                    .iter()
-                    .any(|p| p.name.split_once('.') == Some((&self.name, key)))
+            wheels.contains(key.as_str()) || Channel::ALL.iter().any(|c| c.column() == *key) || of_effect(key)
         };
         match table.keys().find(dotted) {
             None => Ok(()),
@@ -110,17 +81,75 @@ impl PriorEntry {
     }
 }
 
-/// Unit and physical bounds of a parameter.
-fn bounds(name: &str, wheels: &BTreeSet<&str>) -> Result<(&'static str, f64, f64), String> {
-    if let Some(column) = name.strip_prefix(NOISE_PREFIX) {
-        let channel = Channel::ALL.into_iter().find(|c| c.column() == column);
-        return match channel {
-            Some(channel) => Ok((channel.unit(), 0.0, f64::INFINITY)),
-            None => Err(unknown_word("noise", column, Channel::ALL.map(Channel::column))),
+impl Parsed {
+    /// What the file of an effect says of a parameter that the job does not mention.
+    pub(super) fn of_effect(unsaid: &Unsaid) -> Result<Parsed, String> {
+        let parameter = unsaid.parameter;
+        if let Some(value) = number(&parameter.prior) {
+            return Ok(Parsed::Fixed(value));
+        }
+        let quantity = Quantity {
+            unit: parameter.unit.clone(),
+            lower: f64::NEG_INFINITY,
+            upper: f64::INFINITY,
         };
+        let marginal = marginal(&parameter.prior, &quantity)
+            .map_err(|e| format!("prior of parameter {}: {e}", parameter.name))?;
+        Ok(Parsed::Free(FreeParameter {
+            name: unsaid.name.clone(),
+            unit: quantity.unit,
+            marginal,
+        }))
     }
-    let base = parameters::lookup(name, wheels)?;
-    Ok((base.unit, base.lower, base.upper))
+}
+
+/// The prior density that a table describes, within the quantity's physical bounds.
+fn marginal(value: &toml::Value, quantity: &Quantity) -> Result<Marginal, String> {
+    let Quantity { unit, lower, upper } = quantity;
+    let (lower, upper) = (*lower, *upper);
+    let table = value.as_table().ok_or("a number or a table is expected")?;
+    let distribution = distribution(table)?;
+    let stated = table
+        .get("bounds")
+        .map(|value| pair("bounds", value))
+        .transpose()?;
+    if let Distribution::Uniform { lower: a, upper: b } | Distribution::Loguniform { lower: a, upper: b } =
+        distribution
+        && (a < lower || b > upper)
+    {
+        return Err(format!(
+            "[{a}, {b}] {unit} leaves the admissible range [{lower}, {upper}] {unit}"
+        ));
+    }
+    if let Some([a, b]) = stated
+        && (a < lower || b > upper)
+    {
+        return Err(format!(
+            "bounds [{a}, {b}] {unit} leave the admissible range [{lower}, {upper}] {unit}"
+        ));
+    }
+    // A prior without bounds of its own ends where the quantity does.
+    let bounds = stated.or(match distribution {
+        Distribution::Uniform { .. } | Distribution::Loguniform { .. } => None,
+        Distribution::Normal { .. } => Some([lower, upper]),
+        Distribution::Lognormal { .. } | Distribution::HalfNormal { .. } => Some([lower.max(0.0), upper]),
+    });
+    Marginal::new(distribution, bounds).map_err(|e| e.to_string())
+}
+
+/// Unit and physical bounds of a parameter.
+fn quantity(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<Quantity, String> {
+    let Some(column) = name.strip_prefix(NOISE_PREFIX) else {
+        return parameters::lookup(name, wheels, effects);
+    };
+    match Channel::ALL.into_iter().find(|c| c.column() == column) {
+        Some(channel) => Ok(Quantity {
+            unit: channel.unit().to_owned(),
+            lower: 0.0,
+            upper: f64::INFINITY,
+        }),
+        None => Err(unknown_word("noise", column, Channel::ALL.map(Channel::column))),
+    }
 }
 
 fn distribution(table: &toml::Table) -> Result<Distribution, String> {
@@ -162,4 +191,25 @@ fn pair(key: &str, value: &toml::Value) -> Result<[f64; 2], String> {
 
 fn number(value: &toml::Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_prior_of_the_catalogue_is_a_number_or_a_density() {
+        for effect in formula::catalogue::catalogue() {
+            for parameter in &effect.parameters {
+                let quantity = Quantity {
+                    unit: parameter.unit.clone(),
+                    lower: f64::NEG_INFINITY,
+                    upper: f64::INFINITY,
+                };
+                let read =
+                    number(&parameter.prior).is_some() || marginal(&parameter.prior, &quantity).is_ok();
+                assert!(read, "{}.{}", effect.name, parameter.name);
+            }
+        }
+    }
 }

@@ -32,8 +32,8 @@ pub struct CalibrationRow {
     pub experiment: i64,
     /// Name for lists.
     pub name: String,
-    /// Text of `job.toml`.
-    pub toml: String,
+    /// Its job, with the effect files that it names.
+    pub job: FileSet,
     /// Where it stands.
     pub state: CalibrationState,
     /// Why it is paused or failed.
@@ -333,7 +333,10 @@ fn calibration_row(row: &SqliteRow) -> Result<CalibrationRow, StoreError> {
         study: row.get("study"),
         experiment: row.get("experiment"),
         name: row.get("name"),
-        toml: row.get("toml"),
+        job: FileSet {
+            toml: row.get("toml"),
+            files: file_map(row.get("files"))?,
+        },
         state: CalibrationState::from_name(&state).ok_or(StoreError::Corrupt(format!("state {state}")))?,
         message: row.get("message"),
         model_version: row.get("model_version"),

@@ -179,7 +179,7 @@ mod tests {
             ),
             (
                 "a,v,s,0.2,100,0.01,1,,fit",
-                "runs.csv line 2: unknown wheel \"v\"; the nearest known is \"w\"",
+                "runs.csv line 2: unknown wheel \"v\"; known are w",
             ),
             (
                 "a,w,s,zero,100,0.01,1,,fit",

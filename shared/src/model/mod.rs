@@ -2,12 +2,17 @@
 //!
 //! # Layout
 //! - here: [`ModelKind`], [`Condition`] and [`ModelVariant`].
+//! - [`effects`]: which effects, in which order, and where the values of their parameters stand.
 //! - [`settings`]: the table `[model]` of a job.
 //! - [`spatial`]: what the three-dimensional model needs beside.
 
+pub mod effects;
 pub mod settings;
 pub mod spatial;
 
+pub use effects::{EffectSet, EffectText};
+use formula::effect::Mechanism;
+use formula::{Effect, Hook, Variable};
 pub use settings::ModelSettings;
 use spatial::Displacement;
 pub use spatial::SpatialSettings;
@@ -60,12 +65,16 @@ pub struct Condition {
     /// Angle of repose of the run's soil `[deg]`, for a model whose soil slides; absent: the model's default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repose_angle_deg: Option<f64>,
+    /// Density of the run's soil `[kg/m^3]`; absent where no effect asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density_kg_m3: Option<f64>,
 }
 
 impl Condition {
-    fn new(run: &TestRun, repose_angle_deg: Option<f64>) -> Self {
+    fn new(run: &TestRun, repose_angle_deg: Option<f64>, density_kg_m3: Option<f64>) -> Self {
         Condition {
             repose_angle_deg,
+            density_kg_m3,
             wheel: run.wheel.clone(),
             slip: run.slip,
             wheel_load_n: run.wheel_load_n,
@@ -85,8 +94,8 @@ pub struct ModelVariant {
     /// What the three-dimensional model needs beside; absent for the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spatial: Option<SpatialSettings>,
-    /// Names of the effects switched on. Empty in this version.
-    pub effects: Vec<String>,
+    /// The effects, in the order of their evaluation.
+    pub effects: Vec<EffectText>,
     /// Names of the free parameters, in the order of every parameter vector.
     pub parameters: Vec<String>,
     /// Values of the fixed parameters.
@@ -96,6 +105,9 @@ pub struct ModelVariant {
     pub wheels: BTreeMap<String, Wheel>,
     /// Acceleration of gravity `[m/s^2]`.
     pub gravity_m_s2: f64,
+    /// Length of the soil bin `[m]`; absent where no effect asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bin_length_m: Option<f64>,
     /// The conditions to simulate, in the order of the observables.
     pub conditions: Vec<Condition>,
     /// How histories become averages.
@@ -112,6 +124,7 @@ impl ModelVariant {
     pub fn new<'a>(
         experiment: &Experiment,
         settings: &ModelSettings,
+        effects: &EffectSet,
         parameters: Vec<String>,
         runs: impl IntoIterator<Item = &'a TestRun>,
     ) -> Result<Self, String> {
@@ -126,7 +139,7 @@ impl ModelVariant {
             }
         }
         for (name, &value) in &fixed {
-            check_value(&lookup(name, &wheels)?, name, value)?;
+            check_value(&lookup(name, &wheels, effects)?, name, value)?;
         }
         if let Some(twice) = parameters.iter().find(|p| fixed.contains_key(*p)) {
             return Err(format!("parameter {twice} is both fixed and free"));
@@ -136,83 +149,129 @@ impl ModelVariant {
             .chain(fixed.keys())
             .map(String::as_str)
             .collect();
-        check_complete(&names, &wheels)?;
+        check_complete(&names, &wheels, effects)?;
+        check_grousers(effects, &names, experiment)?;
         let slides = settings.kind == ModelKind::Scm;
+        let (weighing, walled) = (
+            effects.using(Variable::Density),
+            effects.using(Variable::BinLength),
+        );
+        let condition = |run: &TestRun| {
+            let soil = &experiment.soils[&run.soil];
+            if let (Some(effect), None) = (weighing, soil.density_kg_m3) {
+                return Err(format!(
+                    "effect {} needs density_kg_m3 of soil {}",
+                    effect.name, run.soil
+                ));
+            }
+            let repose_angle_deg = soil.repose_angle_deg.filter(|_| slides);
+            let density_kg_m3 = soil.density_kg_m3.filter(|_| weighing.is_some());
+            Ok(Condition::new(run, repose_angle_deg, density_kg_m3))
+        };
+        let conditions = runs.into_iter().map(condition).collect::<Result<Vec<_>, _>>()?;
+        let bin_length_m = experiment.rig.bin_length_m.filter(|_| walled.is_some());
+        if let (Some(effect), None, false) = (walled, bin_length_m, conditions.is_empty()) {
+            return Err(format!("effect {} needs bin_length_m under [rig]", effect.name));
+        }
         let variant = ModelVariant {
             kind: settings.kind,
             spatial: settings.spatial,
-            effects: Vec::new(),
+            effects: effects.texts(),
             parameters,
             fixed,
             wheels: experiment.wheels.clone(),
             gravity_m_s2: experiment.rig.gravity_m_s2,
-            conditions: runs
-                .into_iter()
-                .map(|run| {
-                    Condition::new(
-                        run,
-                        slides
-                            .then(|| experiment.soils[&run.soil].repose_angle_deg)
-                            .flatten(),
-                    )
-                })
-                .collect(),
+            bin_length_m,
+            conditions,
             protocol: experiment.protocol.clone(),
         };
-        variant.check_expressible()?;
+        variant.check_expressible(effects)?;
         Ok(variant)
     }
 
-    /// Checks that the forward model can express what the variant asks of a wheel. Without conditions no wheel
-    /// rolls, and nothing is asked of it.
+    /// Checks that the forward model can express what the variant and its effects ask of a wheel. Without conditions no
+    /// wheel rolls, and nothing is asked of it.
     ///
     /// # Errors
     /// A sentence that names what the model of this kind lacks.
-    pub fn check_expressible(&self) -> Result<(), String> {
+    pub fn check_expressible(&self, effects: &EffectSet) -> Result<(), String> {
         if self.conditions.is_empty() {
             return Ok(());
         }
-        let names = || self.parameters.iter().chain(self.fixed.keys());
         if let Some(spatial) = &self.spatial {
             spatial.check_protocol(&self.protocol)?;
-            if spatial.displacement != Displacement::Rim && !names().any(|n| n == parameters::SHEAR_MODULUS) {
-                return Err(format!(
-                    "displacement has no effect without {}",
-                    parameters::SHEAR_MODULUS
-                ));
+            if spatial.displacement != Displacement::Rim && effects.using(Variable::J).is_none() {
+                return Err(
+                    "displacement has no effect without an effect that uses j, such as janosi_hanamoto"
+                        .into(),
+                );
             }
         }
-        if self.kind == ModelKind::Scm {
-            return match self.conditions.iter().find(|c| self.has_mesh(&c.wheel)) {
-                Some(Condition { wheel, .. }) if names().any(|n| n.starts_with("wheel_radius_m")) => {
-                    Err(format!(
-                        "wheel {wheel} is a surface mesh, which has its radius: wheel_radius_m cannot be a parameter"
-                    ))
+        let meshes: BTreeSet<&str> = self.conditions.iter().map(|c| c.wheel.as_str()).collect();
+        let meshes: BTreeSet<&str> = meshes.into_iter().filter(|wheel| self.has_mesh(wheel)).collect();
+        let names: BTreeSet<&str> = self.names().collect();
+        match self.kind {
+            ModelKind::Scm => self.check_meshes(effects, &names, &meshes),
+            ModelKind::QuasiStatic => {
+                if let Some(name) = names
+                    .iter()
+                    .find(|n| parameters::SPATIAL.iter().any(|p| p.name == **n))
+                {
+                    return Err(format!(
+                        "{name}: quasi_static has no terrain that deforms; use kind = \"scm\""
+                    ));
                 }
-                _ => Ok(()),
-            };
-        }
-        if let Some(name) = names().find(|n| parameters::SPATIAL.iter().any(|p| p.name == *n)) {
-            return Err(format!(
-                "{name}: quasi_static has no terrain that deforms; use kind = \"scm\""
-            ));
-        }
-        for condition in &self.conditions {
-            let name = &condition.wheel;
-            if self.has_mesh(name) {
-                return Err(format!(
-                    "wheel {name} is a surface mesh: quasi_static rolls a smooth cylinder; use kind = \"scm\""
-                ));
+                match meshes.first() {
+                    Some(wheel) => Err(format!(
+                        "wheel {wheel} is a surface mesh: quasi_static rolls a smooth cylinder; use kind = \"scm\""
+                    )),
+                    None => Ok(()),
+                }
             }
         }
-        let modulus = parameters::SHEAR_MODULUS;
-        let fixed = self.fixed.get(modulus).is_some_and(|k| k.abs() > 0.0);
-        if fixed || self.parameters.iter().any(|p| p == modulus) {
+    }
+
+    /// Checks that nothing asks of a surface mesh what only a rim can do.
+    fn check_meshes(
+        &self,
+        effects: &EffectSet,
+        names: &BTreeSet<&str>,
+        meshes: &BTreeSet<&str>,
+    ) -> Result<(), String> {
+        let Some(wheel) = meshes.first() else {
+            return Ok(());
+        };
+        if names.iter().any(|n| n.starts_with("wheel_radius_m")) {
             return Err(format!(
-                "{modulus}: janosi_hanamoto is not available in this version for quasi_static; 0 m is without it"
+                "wheel {wheel} is a surface mesh, which has its radius: wheel_radius_m cannot be a parameter"
             ));
+        }
+        for effect in effects.iter() {
+            let wheels: BTreeSet<&str> = self.wheels.keys().map(String::as_str).collect();
+            let reach = EffectSet::acts_on(effect, names, &wheels);
+            let dimension = effect.hooks().find(|h| [Hook::Radius, Hook::Width].contains(h));
+            let shapes = effect.mechanism == Some(Mechanism::FlatPatch) || dimension.is_some();
+            if let Some(wheel) = meshes.intersection(&reach).next().filter(|_| shapes) {
+                return Err(format!(
+                    "effect {} reshapes the rim: wheel {wheel} is a surface mesh, which has its shape",
+                    effect.name
+                ));
+            }
         }
         Ok(())
+    }
+
+    /// The names of all parameters, free and fixed.
+    fn names(&self) -> impl Iterator<Item = &str> {
+        self.parameters
+            .iter()
+            .chain(self.fixed.keys())
+            .map(String::as_str)
+    }
+
+    /// Version of the model that a worker with these equations computes: its own, and that of the effects.
+    pub fn model_version(&self, equations: &str) -> String {
+        format!("{equations}{}", EffectSet::version(&self.effects))
     }
 
     fn has_mesh(&self, wheel: &str) -> bool {
@@ -228,4 +287,31 @@ impl ModelVariant {
             .map(|byte| format!("{byte:02x}"))
             .collect()
     }
+}
+
+/// Checks that effects of grousers act on a wheel that has some.
+fn check_grousers(
+    effects: &EffectSet,
+    names: &BTreeSet<&str>,
+    experiment: &Experiment,
+) -> Result<(), String> {
+    let wheels = experiment.wheel_names();
+    let of_grousers = |effect: &&Effect| {
+        let uses = effect.uses();
+        uses.contains(Variable::GrouserCount) || uses.contains(Variable::GrouserHeight)
+    };
+    for effect in effects.iter().filter(of_grousers) {
+        let reach = EffectSet::acts_on(effect, names, &wheels);
+        let mut smooth = reach
+            .iter()
+            .filter(|wheel| !experiment.wheels[**wheel].has_grousers());
+        let all = reach.len() == wheels.len() && smooth.clone().count() < reach.len();
+        if let Some(wheel) = smooth.next().filter(|_| !all) {
+            return Err(format!(
+                "effect {} needs a wheel with grousers: {wheel} has none",
+                effect.name
+            ));
+        }
+    }
+    Ok(())
 }

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{ModelKind, SpatialSettings};
+use formula::catalogue;
+
 use crate::file::unknown_word;
 use crate::parameters;
 
@@ -15,10 +17,11 @@ pub struct ModelSettings {
     pub spatial: Option<SpatialSettings>,
     /// Parameters that are fixed.
     pub fixed: BTreeMap<String, f64>,
+    /// Effects of the catalogue that are listed.
+    pub effects: Vec<String>,
+    /// Files of further effects.
+    pub effect_files: Vec<String>,
 }
-
-/// What a later version understands; here it is named, so that it is refused by name.
-const LATER: [&str; 1] = ["effect_files"];
 
 impl ModelSettings {
     /// Reads the table `[model]`.
@@ -29,6 +32,7 @@ impl ModelSettings {
         let mut kind = None;
         let mut fixed = BTreeMap::new();
         let mut spatial = toml::Table::new();
+        let (mut effects, mut effect_files) = (Vec::new(), Vec::new());
         for (key, value) in table {
             match (key.as_str(), value) {
                 ("kind", toml::Value::String(name)) => {
@@ -38,11 +42,8 @@ impl ModelSettings {
                         other => return Err(unknown_word("kind", other, ["quasi_static", "scm"])),
                     });
                 }
-                ("effects", toml::Value::Array(names)) if names.is_empty() => {}
-                ("effects", _) => return Err("effects are not available in this version".into()),
-                (key, _) if LATER.contains(&key) => {
-                    return Err(format!("{key} is not available in this version"));
-                }
+                ("effects", names) => effects = words("effects", names)?,
+                ("effect_files", names) => effect_files = words("effect_files", names)?,
                 (key, value) if SpatialSettings::KEYS.contains(&key) => {
                     spatial.insert(key.to_owned(), value.clone());
                 }
@@ -63,18 +64,76 @@ impl ModelSettings {
                 None => None,
             },
         };
-        Ok(ModelSettings { kind, spatial, fixed })
+        let mut settings = ModelSettings {
+            kind,
+            spatial,
+            fixed,
+            effects: Vec::new(),
+            effect_files: Vec::new(),
+        };
+        settings.add_effects(&effects, &effect_files)?;
+        Ok(settings)
+    }
+
+    /// Adds effects of the catalogue by name, and files of others.
+    ///
+    /// # Errors
+    /// A sentence that names the effect that is unknown or stands there already.
+    pub fn add_effects(&mut self, effects: &[String], files: &[String]) -> Result<(), String> {
+        for name in effects {
+            if name.ends_with(".toml") {
+                return Err(format!(
+                    "effects: \"{name}\" looks like a file, which stands under effect_files"
+                ));
+            }
+            if catalogue::find(name).is_none() {
+                return Err(unknown_effect(name));
+            }
+        }
+        for (key, list, more) in [
+            ("effects", &mut self.effects, effects),
+            ("effect_files", &mut self.effect_files, files),
+        ] {
+            for name in more {
+                if list.contains(name) {
+                    return Err(format!("{key}: \"{name}\" stands twice"));
+                }
+                list.push(name.clone());
+            }
+        }
+        Ok(())
     }
 }
 
+/// A list of words.
+fn words(key: &str, value: &toml::Value) -> Result<Vec<String>, String> {
+    let word = |v: &toml::Value| v.as_str().map(str::to_owned);
+    let words: Option<Vec<String>> = value.as_array().and_then(|list| list.iter().map(word).collect());
+    words.ok_or_else(|| format!("{key} = {value} must be a list of names in quotes"))
+}
+
+/// `unknown effect "bulldosing"; the nearest known is "bulldozing"`.
+pub fn unknown_effect(name: &str) -> String {
+    unknown_word(
+        "effect",
+        name,
+        catalogue::catalogue().iter().map(|e| e.name.as_str()),
+    )
+}
+
 fn fixed_parameter(key: &str, value: &toml::Value) -> Result<f64, String> {
-    let number = value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
-    let base = parameters::BASE.iter().chain(&parameters::SPATIAL);
-    let known =
-        key.starts_with("wheel_radius_m.") || base.clone().chain(&parameters::EFFECTS).any(|p| p.name == key);
-    if !known {
-        let names = base.map(|p| p.name).chain(["kind", "effects"]);
+    if let Some(within) = value.as_table().and_then(|table| table.keys().next()) {
+        return Err(format!("write the name in quotes: \"{key}.{within}\""));
+    }
+    // what stands before a dot may be an effect of a file that is still to be read
+    let base = parameters::BASE
+        .iter()
+        .chain(&parameters::SPATIAL)
+        .map(|p| p.name);
+    if !key.contains('.') && !base.clone().any(|name| name == key) {
+        let names = base.chain(["kind", "effects", "effect_files"]);
         return Err(unknown_word("key", key, names.chain(SpatialSettings::KEYS)));
     }
+    let number = value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
     number.ok_or_else(|| format!("{key} must be a number, not {value}"))
 }

@@ -1,6 +1,7 @@
 //! A gallery of wrong inputs: each gives one clear message, another exit code than 0, and leaves nothing behind.
 
 mod bevameter;
+mod effects;
 mod experiments;
 mod jobs;
 mod meshes;

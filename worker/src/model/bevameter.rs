@@ -4,9 +4,11 @@ use scm::bevameter::{Plate, plate, ring};
 use scm::shear::ShearDisplacement;
 use scm::{Rejection, Soil};
 use shared::model::ModelVariant;
-use shared::parameters::SHEAR_MODULUS;
 
 use super::parameters::{SoilMap, Source};
+
+/// K of the shear-displacement law, the one parameter of an effect that a ring feels.
+const SHEAR_MODULUS: &str = "janosi_hanamoto.shear_modulus_m";
 
 /// The soil and the shear-displacement law of a variant, ready to be asked what a bevameter reads.
 #[derive(Debug)]

@@ -2,10 +2,12 @@
 //!
 //! # Layout
 //! - here: [`CompiledVariant`] and the cache of them.
+//! - `effects`: the effects, compiled, with the sources of their parameters.
 //! - `parameters`: where each physical quantity comes from.
 //! - `spatial`: the three-dimensional model; `bevameter`: plates and rings.
 
 mod bevameter;
+mod effects;
 mod parameters;
 mod spatial;
 
@@ -13,10 +15,11 @@ use std::collections::BTreeMap;
 
 use scm::spatial::Run;
 use scm::{Averages, Condition, Soil, Wheel, quasi_static};
-use shared::model::{ModelKind, ModelVariant};
+use shared::model::{EffectSet, ModelKind, ModelVariant};
 use shared::outcome::{Observables, Outcome, Rejection};
 
 pub use bevameter::{Bevameter, Readings};
+use effects::{ActiveEffects, EffectMap};
 use parameters::{Radius, SoilMap};
 use spatial::SpatialModel;
 
@@ -27,6 +30,7 @@ pub struct CompiledVariant {
     soil: SoilMap,
     wheels: Vec<(Wheel, Radius)>,
     conditions: Vec<(usize, Condition)>,
+    effects: EffectMap,
     /// The three-dimensional model; `None`: the quasi-static one.
     spatial: Option<SpatialModel>,
 }
@@ -43,10 +47,9 @@ impl CompiledVariant {
     /// # Errors
     /// A sentence that names what this worker does not know or cannot express.
     pub fn new(variant: &ModelVariant) -> Result<Self, String> {
-        if let Some(effect) = variant.effects.first() {
-            return Err(format!("effect \"{effect}\" is not available in this version"));
-        }
-        variant.check_expressible()?;
+        let set = EffectSet::read(&variant.effects)?;
+        variant.check_expressible(&set)?;
+        let effects = EffectMap::new(variant, &set)?;
         let names: Vec<&str> = variant.wheels.keys().map(String::as_str).collect();
         let soil = SoilMap::new(variant)?;
         let wheels = variant
@@ -89,6 +92,7 @@ impl CompiledVariant {
             soil,
             wheels,
             conditions,
+            effects,
         })
     }
 
@@ -108,9 +112,10 @@ impl CompiledVariant {
             Ok(soil) => soil,
             Err(rejection) => return Outcome::Rejected(rejection),
         };
+        let mut effects = self.effects.at(theta);
         let mut observables = Observables::with_capacity(self.runs());
         for position in 0..self.runs() {
-            match self.simulate(theta, &soil, position) {
+            match self.simulate(theta, &soil, &mut effects, position) {
                 Ok(Simulated::Steady(averages)) => push(&mut observables, &averages),
                 Ok(Simulated::Rolled(run)) => {
                     push(&mut observables, &run.averages);
@@ -121,6 +126,21 @@ impl CompiledVariant {
             }
         }
         Outcome::Evaluated(observables)
+    }
+
+    /// Simulates every condition at one parameter vector; a refusal of one leaves the others.
+    pub fn each(&self, theta: &[f64]) -> Vec<Result<Averages, String>> {
+        let soil = match self.soil_of(theta) {
+            Ok(soil) => soil,
+            Err(rejection) => return vec![Err(rejection.message); self.runs()],
+        };
+        let mut effects = self.effects.at(theta);
+        let averages = |position| match self.simulate(theta, &soil, &mut effects, position) {
+            Ok(Simulated::Steady(averages)) => Ok(averages),
+            Ok(Simulated::Rolled(run)) => Ok(run.averages),
+            Err(rejection) => Err(rejection.to_string()),
+        };
+        (0..self.runs()).map(averages).collect()
     }
 
     fn soil_of(&self, theta: &[f64]) -> Result<Soil, Rejection> {
@@ -136,17 +156,24 @@ impl CompiledVariant {
         soil.map_err(|rejection| refusal(rejection.kind(), 0, rejection.to_string()))
     }
 
-    fn simulate(&self, theta: &[f64], soil: &Soil, position: usize) -> Result<Simulated, scm::Rejection> {
+    fn simulate(
+        &self,
+        theta: &[f64],
+        soil: &Soil,
+        effects: &mut ActiveEffects,
+        position: usize,
+    ) -> Result<Simulated, scm::Rejection> {
         let (place, condition) = &self.conditions[position];
         let (wheel, radius) = &self.wheels[*place];
         let wheel = Wheel {
             radius_m: radius.value(theta).unwrap_or(wheel.radius_m),
             ..*wheel
         };
+        let (active, site) = (effects.on_wheel(*place), self.effects.site(position));
         match &self.spatial {
-            None => quasi_static::simulate(soil, &wheel, condition).map(Simulated::Steady),
+            None => quasi_static::simulate_with(soil, &wheel, condition, active, site).map(Simulated::Steady),
             Some(model) => model
-                .run(theta, position, soil, (*place, &wheel), condition)
+                .run(theta, position, soil, (*place, &wheel), condition, (active, site))
                 .map(|run| Simulated::Rolled(Box::new(run))),
         }
     }

@@ -3,10 +3,9 @@
 use scm::spatial::Ground;
 use scm::{Soil, bekker_moduli};
 use shared::model::ModelVariant;
-use shared::parameters::SHEAR_MODULUS;
 
 /// The source of one quantity.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Source {
     /// Position in the parameter vector.
     Free(usize),

@@ -78,14 +78,15 @@ impl SpatialModel {
         soil: &Soil,
         (place, wheel): (usize, &Wheel),
         condition: &Condition,
+        (effects, site): (&Active, &Site),
     ) -> Result<Run, Rejection> {
         let scene = Scene {
             soil,
             ground: &self.ground.ground(theta, self.repose_angles[position]),
             wheel,
             shape: &self.shapes[place],
-            effects: &Active::default(),
-            site: Site::default(),
+            effects,
+            site: *site,
         };
         spatial::simulate(&scene, condition, &self.settings)
     }

@@ -15,8 +15,8 @@ use rand::{RngExt, SeedableRng};
 use scm::spatial::History;
 use shared::channel::Channel;
 use shared::experiment::{CONDITION_COLUMNS, Experiment, NoiseSd, TestRun};
-use shared::file::{FileError, parse_toml, read_text};
-use shared::model::{ModelSettings, ModelVariant};
+use shared::file::{FileError, parse_toml, read_beside, read_text};
+use shared::model::{EffectSet, ModelSettings, ModelVariant};
 use shared::outcome::{Observables, Outcome};
 
 use crate::config::Simulate;
@@ -172,8 +172,36 @@ fn variant(
     check_quotes(&text).map_err(|e| FileError::whole(&parameters_name, e))?;
     let theta: BTreeMap<String, f64> = parse_toml(&parameters_name, &text)?;
     settings.fixed.extend(theta);
-    ModelVariant::new(experiment, &settings, Vec::new(), runs)
-        .map_err(|e| FileError::whole(&parameters_name, e))
+    let texts = read_beside(model, &settings.effect_files)?;
+    let names = settings.fixed.keys().map(String::as_str);
+    let effects = EffectSet::choose(&model_name, &settings, names, &texts)?;
+    let in_parameters = |e: String| FileError::whole(&parameters_name, e);
+    state_shapes(experiment, &effects, &mut settings.fixed).map_err(in_parameters)?;
+    ModelVariant::new(experiment, &settings, &effects, Vec::new(), runs).map_err(in_parameters)
+}
+
+/// Takes what the files of effects fix; the rest must be stated.
+fn state_shapes(
+    experiment: &Experiment,
+    effects: &EffectSet,
+    fixed: &mut BTreeMap<String, f64>,
+) -> Result<(), String> {
+    let names = fixed.keys().map(String::as_str).collect();
+    let mut more = Vec::new();
+    for unsaid in effects.unsaid(&names, &experiment.wheel_names()) {
+        let prior = &unsaid.parameter.prior;
+        let number = prior.as_float().or_else(|| prior.as_integer().map(|i| i as f64));
+        let Some(number) = number else {
+            let (name, unit) = (unsaid.name, &unsaid.parameter.unit);
+            return Err(format!(
+                "{name} [{unit}] has no value: effect {} has it",
+                unsaid.chosen.effect.name
+            ));
+        };
+        more.push((unsaid.name, number));
+    }
+    fixed.extend(more);
+    Ok(())
 }
 
 /// A dotted name without quotes is a table to TOML; says so.

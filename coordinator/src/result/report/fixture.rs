@@ -101,7 +101,11 @@ fn build(last: &str) -> Outcome {
         toml: EXPERIMENT.into(),
         files: BTreeMap::from([("runs.csv".into(), runs)]),
     };
-    let spec = Spec::new("job.toml", JOB, "experiment.toml", &files).expect("the fixture's files are valid");
+    let job = FileSet {
+        toml: JOB.into(),
+        files: BTreeMap::new(),
+    };
+    let spec = Spec::new("job.toml", &job, "experiment.toml", &files).expect("the fixture's files are valid");
     // The golden ratio's multiples spread evenly.
     let share = |k: usize, i: usize| (0.5 + 0.618_033_988_75 * (k * (i + 1)) as f64) % 1.0;
     let theta = |k: usize| -> Vec<f64> {
@@ -158,7 +162,7 @@ fn build(last: &str) -> Outcome {
         study: 1,
         experiment: 1,
         name: "<script>sand".into(),
-        toml: JOB.into(),
+        job,
         state: CalibrationState::Finished,
         message: None,
         model_version: Some("1".into()),

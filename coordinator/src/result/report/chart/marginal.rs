@@ -174,7 +174,7 @@ mod tests {
     fn parameter(distribution: Distribution, bounds: Option<[f64; 2]>) -> FreeParameter {
         FreeParameter {
             name: "n".into(),
-            unit: "1",
+            unit: "1".into(),
             marginal: Marginal::new(distribution, bounds).unwrap(),
         }
     }

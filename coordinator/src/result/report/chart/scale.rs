@@ -29,7 +29,7 @@ mod tests {
     fn only_wide_draws_of_a_prior_in_ratios_are_drawn_as_ratios() {
         let parameter = |distribution| FreeParameter {
             name: "k_phi".into(),
-            unit: "1",
+            unit: "1".into(),
             marginal: Marginal::new(distribution, None).unwrap(),
         };
         let ratios = parameter(Distribution::Loguniform {

@@ -182,7 +182,7 @@ mod tests {
             let marginal = Marginal::new(d, bounds).unwrap();
             prior_words(&FreeParameter {
                 name: "n".into(),
-                unit: "1",
+                unit: "1".into(),
                 marginal,
             })
         };

@@ -13,7 +13,7 @@ pub(in crate::result::report) fn subtitle(outcome: &Outcome) -> String {
     let held = spec.experiment.runs.len() - spec.fit_runs.len();
     format!(
         "Model {} \u{b7} {}, {} \u{b7} {}, seed {}",
-        spec.model.kind.name(),
+        spec.model_words(),
         number::count(spec.fit_runs.len(), "fitted run"),
         number::count(held, "holdout run"),
         spec.method.words(),
@@ -33,7 +33,7 @@ pub(in crate::result::report) fn provenance(outcome: &Outcome) -> Markup {
     html! {
         dl {
             dt { "calibration" } dd { (outcome.experiment) }
-            dt { "model" } dd { (spec.model.kind.name()) ", version " (outcome.row.model_version.as_deref().unwrap_or("unknown")) }
+            dt { "model" } dd { (spec.model_words()) ", version " (outcome.model_version().as_deref().unwrap_or("unknown")) }
             dt { "data" }
             dd {
                 (number::count(spec.fit_runs.len(), "fitted run")) " with "
@@ -55,6 +55,9 @@ pub(in crate::result::report) fn provenance(outcome: &Outcome) -> Markup {
             dt { "program" } dd { "Grouser " (env!("CARGO_PKG_VERSION")) }
         }
         p.note { "The result is a function of job, seed and model version alone: the same three give the same numbers, bit for bit." }
-        details { summary { "Text of the job" } pre { (outcome.row.toml) } }
+        details { summary { "Text of the job" } pre { (outcome.row.job.toml) } }
+        @for effect in &spec.fit_variant.effects {
+            details { summary { "Effect " (effect.name) } pre { (effect.text) } }
+        }
     }
 }

@@ -1,0 +1,185 @@
+//! The effects as users meet them: what the catalogue has of each, and what each does.
+//!
+//! # Layout
+//! - here: [`EffectCard`], an effect in words and numbers.
+//! - [`signature`]: what it changes in what a rig measures, as a worker computes it.
+
+pub mod signature;
+
+use formula::effect::Mechanism;
+use formula::{Effect, Hook, Parameter};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// An effect in words and numbers.
+#[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
+pub struct EffectCard {
+    /// Name in jobs and results.
+    pub name: String,
+    /// What it is, in a line.
+    pub summary: String,
+    /// Where it comes from.
+    pub source: String,
+    /// What of the model it concerns: `pressure`, `shear`, `wheel` or `rig`.
+    pub group: Group,
+    /// Quantities that its formulas replace, in the order of evaluation.
+    pub hooks: Vec<String>,
+    /// What a model may have of it in code, in place of the formulas.
+    pub mechanism: Option<String>,
+    /// Its parameters, in the order of the file.
+    pub parameters: Vec<ParameterCard>,
+}
+
+/// A parameter of an effect.
+#[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
+pub struct ParameterCard {
+    /// Name within the effect; `EFFECT.NAME` in jobs.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// The value at which the effect is absent; null for a parameter that only shapes it.
+    pub neutral: Option<f64>,
+    /// The value at which tables show the effect; null for a shape.
+    pub typical: Option<f64>,
+    /// A number, which fixes it, or a distribution, as in `[priors]`.
+    #[schema(value_type = Object)]
+    pub prior: serde_json::Value,
+}
+
+/// What of the model an effect concerns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Group {
+    /// How the soil carries the wheel.
+    Pressure,
+    /// How it resists the wheel's sliding.
+    Shear,
+    /// Shape, motion and load of the wheel.
+    Wheel,
+    /// What is added to what the rig measures.
+    Rig,
+}
+
+impl Group {
+    /// Every group.
+    pub const ALL: [Group; 4] = [Group::Pressure, Group::Shear, Group::Wheel, Group::Rig];
+
+    /// Title in lists.
+    pub fn title(self) -> &'static str {
+        match self {
+            Group::Pressure => "How the soil carries the wheel",
+            Group::Shear => "How the soil resists sliding",
+            Group::Wheel => "Shape, motion and load of the wheel",
+            Group::Rig => "Forces and readings beside the contact",
+        }
+    }
+
+    fn of(effect: &Effect) -> Group {
+        if let Some(mechanism) = effect.mechanism {
+            return match mechanism {
+                Mechanism::FlatPatch => Group::Wheel,
+                Mechanism::Rebound | Mechanism::Digging | Mechanism::EndWall => Group::Pressure,
+            };
+        }
+        match effect.hooks().max_by_key(|hook| match hook {
+            Hook::SinkageExponent | Hook::Pressure => 3,
+            Hook::ShearLimit | Hook::Shear => 2,
+            Hook::Slip | Hook::Radius | Hook::Width | Hook::WheelLoad => 1,
+            Hook::DrawbarPull | Hook::Torque | Hook::Sinkage | Hook::LateralForce => 0,
+        }) {
+            Some(Hook::SinkageExponent | Hook::Pressure) => Group::Pressure,
+            Some(Hook::ShearLimit | Hook::Shear) => Group::Shear,
+            Some(Hook::Slip | Hook::Radius | Hook::Width | Hook::WheelLoad) => Group::Wheel,
+            Some(Hook::DrawbarPull | Hook::Torque | Hook::Sinkage | Hook::LateralForce) | None => Group::Rig,
+        }
+    }
+}
+
+impl EffectCard {
+    /// The card of an effect.
+    pub fn of(effect: &Effect) -> Self {
+        EffectCard {
+            name: effect.name.clone(),
+            summary: effect.summary.clone(),
+            source: effect.source.clone(),
+            group: Group::of(effect),
+            hooks: effect.hooks().map(|hook| hook.name().to_owned()).collect(),
+            mechanism: effect.mechanism.map(|m| m.name().to_owned()),
+            parameters: effect.parameters.iter().map(ParameterCard::of).collect(),
+        }
+    }
+
+    /// Where it enters, in words.
+    pub fn enters(&self) -> String {
+        let hooks = self.hooks.join(", ");
+        match (&self.mechanism, hooks.as_str()) {
+            (None, hooks) => hooks.to_owned(),
+            (Some(mechanism), "") => format!("mechanism {mechanism}"),
+            (Some(mechanism), hooks) => format!("mechanism {mechanism} of a model that has it, or {hooks}"),
+        }
+    }
+}
+
+impl ParameterCard {
+    fn of(parameter: &Parameter) -> Self {
+        ParameterCard {
+            name: parameter.name.clone(),
+            unit: parameter.unit.clone(),
+            neutral: parameter.neutral,
+            typical: parameter.neutral.and(shown_at(parameter)),
+            prior: serde_json::to_value(&parameter.prior).unwrap_or_default(),
+        }
+    }
+}
+
+/// The value at which a strength is shown: the file's, or else one scale of its prior.
+fn shown_at(parameter: &Parameter) -> Option<f64> {
+    let prior = &parameter.prior;
+    let number = |v: &toml::Value| v.as_float().or_else(|| v.as_integer().map(|i| i as f64));
+    let pair = |key: &str| -> Option<[f64; 2]> {
+        let [a, b] = prior.get(key)?.as_array()?.as_slice() else {
+            return None;
+        };
+        Some([number(a)?, number(b)?])
+    };
+    let of_prior = || {
+        let uniform = || pair("uniform").map(|[a, b]| f64::midpoint(a, b));
+        let loguniform = || pair("loguniform").map(|[a, b]| (a * b).sqrt());
+        let normal = || pair("normal").map(|[mean, sd]| mean + sd);
+        let lognormal = || pair("lognormal").map(|[median, _]| median);
+        let half = || number(prior.get("half_normal")?);
+        let table = uniform().or_else(loguniform).or_else(normal);
+        table.or_else(lognormal).or_else(half)
+    };
+    parameter.typical.or_else(|| number(prior)).or_else(of_prior)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use formula::catalogue::catalogue;
+
+    #[test]
+    fn every_strength_of_the_catalogue_is_shown_at_a_value_that_is_not_neutral() {
+        for effect in catalogue() {
+            for parameter in effect.parameters.iter().filter(|p| p.neutral.is_some()) {
+                let shown = shown_at(parameter).unwrap();
+                let neutral = parameter.neutral.unwrap();
+                assert!(
+                    (shown - neutral).abs() > 0.0,
+                    "{}.{}",
+                    effect.name,
+                    parameter.name
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn every_group_has_effects() {
+        let cards: Vec<EffectCard> = catalogue().iter().map(EffectCard::of).collect();
+        for group in Group::ALL {
+            assert!(cards.iter().any(|card| card.group == group), "{group:?}");
+        }
+    }
+}

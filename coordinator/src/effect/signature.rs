@@ -1,0 +1,277 @@
+//! What an effect changes in drawbar pull, torque and sinkage, on one wheel in one sand.
+
+use formula::{Effect, Variable};
+use serde::{Deserialize, Serialize};
+use shared::experiment::{Experiment, Noise, Protocol, Rig, RunUse, Soil, TestRun, Wheel};
+use shared::model::effects::parameter_name;
+use shared::model::{EffectSet, EffectText, ModelKind, ModelSettings, ModelVariant};
+use utoipa::ToSchema;
+
+use super::shown_at;
+use crate::embedded::Evaluate;
+
+/// What is shown, in the units of [`CHANNELS`].
+pub const CHANNELS: [(&str, &str); 3] = [("drawbar_pull", "N"), ("torque", "N m"), ("sinkage", "mm")];
+/// Factors from SI units to those of [`CHANNELS`].
+const FACTORS: [f64; 3] = [1.0, 1.0, 1000.0];
+
+/// Speed of the rim by the rig's radius `[m/s]`.
+const RIM_M_S: f64 = 0.01;
+/// Radius with which the rig turns slip into rim speed `[m]`.
+const RIG_RADIUS_M: f64 = 0.125;
+
+/// Columns of the table: name, slip, wheel load `[N]`, speed of the rim `[m/s]`.
+const COLUMNS: [(&str, f64, f64, f64); 6] = [
+    ("slip 0.05", 0.05, 100.0, RIM_M_S),
+    ("slip 0.2", 0.2, 100.0, RIM_M_S),
+    ("slip 0.6", 0.6, 100.0, RIM_M_S),
+    ("60 N", 0.2, 60.0, RIM_M_S),
+    ("150 N", 0.2, 150.0, RIM_M_S),
+    ("50 mm/s", 0.2, 100.0, 0.05),
+];
+
+/// Points of the curves over slip: from −0.4 in steps of 0.05 to 0.8.
+const POINTS: usize = 25;
+
+/// What each strength of an effect does.
+#[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
+pub struct Signature {
+    /// The model.
+    pub model_kind: String,
+    /// Which pass over the track is shown.
+    pub pass: u32,
+    /// Names of the conditions in the tables; slip 0.2, 100 N and 10 mm/s of rim speed where nothing else is said.
+    pub conditions: Vec<String>,
+    /// Slips of the curves.
+    pub slips: Vec<f64>,
+    /// Each strength alone, at its typical value.
+    pub strengths: Vec<StrengthSignature>,
+}
+
+/// What one strength does.
+#[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
+pub struct StrengthSignature {
+    /// The parameter; empty for an effect without parameters.
+    pub parameter: String,
+    /// Its value; null for an effect without parameters.
+    pub value: Option<f64>,
+    /// Its unit.
+    pub unit: String,
+    /// Pull \[N\], torque \[N m\] and sinkage \[mm\].
+    pub channels: Vec<ChannelSignature>,
+    /// Why the model refuses, where it does.
+    pub refusal: Option<String>,
+}
+
+/// What changes in one channel; null where the model refuses.
+#[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
+pub struct ChannelSignature {
+    /// The channel.
+    pub channel: String,
+    /// Its unit.
+    pub unit: String,
+    /// Without the effect, by condition.
+    pub base: Vec<Option<f64>>,
+    /// With it less without it, by condition.
+    pub change: Vec<Option<f64>>,
+    /// The same over slip, at 100 N and 10 mm/s.
+    pub curve: Vec<Option<f64>>,
+}
+
+/// Computes the signature of an effect.
+///
+/// # Errors
+/// A sentence: the model cannot express it.
+pub fn signature(effect: &Effect, kind: ModelKind) -> Result<Signature, String> {
+    let pass = if effect.uses().contains(Variable::Pass) {
+        2
+    } else {
+        1
+    };
+    let slips: Vec<f64> = (0..POINTS).map(|i| (i as f64 - 8.0) / 20.0).collect();
+    let curve = slips.iter().map(|&slip| ("", slip, 100.0, RIM_M_S));
+    let runs: Vec<TestRun> = COLUMNS.into_iter().chain(curve).map(|c| run(c, pass)).collect();
+    let reference = Reference::new(effect, kind, runs)?;
+    let base = reference.simulate(None)?;
+    let strengths = || effect.parameters.iter().filter(|p| p.neutral.is_some());
+    let mut shown: Vec<StrengthSignature> = Vec::new();
+    for parameter in strengths() {
+        let Some(value) = shown_at(parameter) else {
+            continue;
+        };
+        let with = reference.simulate(Some((&parameter.name, value)))?;
+        shown.push(compare(
+            &base,
+            &with,
+            &parameter.name,
+            Some(value),
+            &parameter.unit,
+        ));
+    }
+    if effect.parameters.is_empty() {
+        let without = Reference {
+            set: EffectSet::default(),
+            effect: None,
+            ..reference.clone()
+        };
+        shown.push(compare(&without.simulate(None)?, &base, "", None, "1"));
+    }
+    Ok(Signature {
+        model_kind: kind.name().to_owned(),
+        pass,
+        conditions: COLUMNS.iter().map(|c| c.0.to_owned()).collect(),
+        slips,
+        strengths: shown,
+    })
+}
+
+type Averages = Vec<Result<[f64; 3], String>>;
+
+fn compare(
+    base: &Averages,
+    with: &Averages,
+    name: &str,
+    value: Option<f64>,
+    unit: &str,
+) -> StrengthSignature {
+    let channel = |c: usize| {
+        let of = |averages: &Result<[f64; 3], String>| averages.as_ref().ok().map(|a| a[c] * FACTORS[c]);
+        let change = |i: usize| Some(of(&with[i])? - of(&base[i])?);
+        ChannelSignature {
+            channel: CHANNELS[c].0.to_owned(),
+            unit: CHANNELS[c].1.to_owned(),
+            base: base[..COLUMNS.len()].iter().map(of).collect(),
+            change: (0..COLUMNS.len()).map(change).collect(),
+            curve: (COLUMNS.len()..base.len()).map(change).collect(),
+        }
+    };
+    StrengthSignature {
+        parameter: name.to_owned(),
+        value,
+        unit: unit.to_owned(),
+        channels: (0..CHANNELS.len()).map(channel).collect(),
+        refusal: base.iter().chain(with).find_map(|a| a.as_ref().err().cloned()),
+    }
+}
+
+/// One wheel in one sand, and an effect.
+#[derive(Clone)]
+struct Reference<'a> {
+    experiment: Experiment,
+    settings: ModelSettings,
+    set: EffectSet,
+    effect: Option<&'a Effect>,
+}
+
+impl<'a> Reference<'a> {
+    fn new(effect: &'a Effect, kind: ModelKind, runs: Vec<TestRun>) -> Result<Self, String> {
+        let wheel = Wheel {
+            radius_m: 0.130,
+            width_m: 0.112,
+            grouser_count: 12,
+            grouser_height_m: 0.009,
+            grouser_thickness_m: 0.002,
+            rig_radius_m: RIG_RADIUS_M,
+            mesh: None,
+        };
+        let soil = Soil {
+            density_kg_m3: Some(1400.0),
+            repose_angle_deg: None,
+        };
+        let experiment = Experiment {
+            wheels: [("w".to_owned(), wheel)].into(),
+            soils: [("s".to_owned(), soil)].into(),
+            rig: Rig {
+                bin_length_m: Some(1.5),
+                ..Rig::default()
+            },
+            noise: Noise::default(),
+            protocol: Protocol::default(),
+            runs,
+            plates: Vec::new(),
+            shear: Vec::new(),
+        };
+        let mut settings =
+            ModelSettings::from_table(&[("kind".to_owned(), kind.name().into())].into_iter().collect())?;
+        for (name, value) in [
+            ("k_c", 0.0),
+            ("k_phi", 1e7),
+            ("n", 1.1),
+            ("friction_angle_deg", 30.0),
+            ("shear_velocity_m_s", 0.001),
+        ] {
+            settings.fixed.insert(name.to_owned(), value);
+        }
+        let text = EffectText {
+            name: effect.name.clone(),
+            text: effect.text.clone(),
+        };
+        Ok(Reference {
+            experiment,
+            settings,
+            set: EffectSet::read(&[text])?,
+            effect: Some(effect),
+        })
+    }
+
+    /// Every run, with one strength that is not neutral, or none.
+    fn simulate(&self, strength: Option<(&str, f64)>) -> Result<Averages, String> {
+        let mut settings = self.settings.clone();
+        for parameter in self.effect.iter().flat_map(|e| &e.parameters) {
+            let value = match (strength, parameter.neutral) {
+                (Some((name, value)), Some(_)) if name == parameter.name => Some(value),
+                (_, Some(neutral)) => Some(neutral),
+                (_, None) => shown_at(parameter),
+            };
+            let name = self.effect.map(|e| parameter_name(e, parameter, None));
+            if let (Some(name), Some(value)) = (name, value) {
+                settings.fixed.insert(name, value);
+            }
+        }
+        let runs = &self.experiment.runs;
+        let variant = ModelVariant::new(&self.experiment, &settings, &self.set, Vec::new(), runs)?;
+        Ok(Evaluate::new(&variant)?.each(&[]))
+    }
+}
+
+fn run((_, slip, wheel_load_n, rim_m_s): (&str, f64, f64, f64), pass: u32) -> TestRun {
+    // slip = (omega R - v) / max(omega R, v)
+    let sled_speed_m_s = if slip < 0.0 {
+        rim_m_s / (1.0 + slip)
+    } else {
+        rim_m_s * (1.0 - slip)
+    };
+    TestRun {
+        name: String::new(),
+        wheel: "w".into(),
+        soil: "s".into(),
+        slip,
+        wheel_load_n,
+        sled_speed_m_s,
+        slip_angle_deg: 0.0,
+        pass,
+        measured: [None; 4],
+        sd: [None; 4],
+        usage: RunUse::Fit,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use formula::catalogue::find;
+
+    #[test]
+    fn a_tare_takes_itself_from_the_pull_and_leaves_the_rest() {
+        let shown = signature(find("sled_tare").unwrap(), ModelKind::QuasiStatic).unwrap();
+        let [tare] = shown.strengths.as_slice() else {
+            panic!("{shown:?}")
+        };
+        for (channel, expected) in tare.channels.iter().zip([-3.0, 0.0, 0.0]) {
+            for change in channel.change.iter().chain(&channel.curve) {
+                assert!((change.unwrap() - expected).abs() < 1e-9, "{channel:?}");
+            }
+        }
+        assert!((shown.slips[0] + 0.4).abs() < 1e-12 && (shown.slips[POINTS - 1] - 0.8).abs() < 1e-12);
+    }
+}

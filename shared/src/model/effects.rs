@@ -1,0 +1,436 @@
+//! The effects of a job: which, in which order, and where the values of their parameters stand.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use formula::catalogue::{catalogue, find};
+use formula::{Effect, Parameter, Variable};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use utoipa::ToSchema;
+
+use super::ModelSettings;
+use crate::file::{FileError, unknown_word};
+use crate::parameters::{self, Quantity};
+
+/// An effect as it travels: a worker may come from another version of the catalogue, or have never seen the file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EffectText {
+    /// Name of the effect.
+    pub name: String,
+    /// Its file, as written.
+    pub text: String,
+}
+
+/// The effects of a job, read, in the order in which they follow each other at a hook: those of the catalogue as the
+/// catalogue has them, then those of files as the job lists them.
+#[derive(Debug, Clone, Default)]
+pub struct EffectSet(Vec<Chosen>);
+
+/// An effect of a job.
+#[derive(Debug, Clone)]
+pub struct Chosen {
+    /// The effect.
+    pub effect: Effect,
+    /// The user's file that it stands in; `None` for one of the catalogue.
+    pub file: Option<String>,
+}
+
+/// A parameter of an effect that a job says nothing of.
+#[derive(Debug, Clone)]
+pub struct Unsaid<'a> {
+    /// Its name in the job: `EFFECT.PARAMETER`, or `EFFECT.PARAMETER.WHEEL`.
+    pub name: String,
+    /// The effect, with its file.
+    pub chosen: &'a Chosen,
+    /// The parameter, with the prior that its file gives it.
+    pub parameter: &'a Parameter,
+}
+
+/// The parts of a parameter's name: effect, parameter, wheel.
+fn parts(name: &str) -> Option<(&str, &str, Option<&str>)> {
+    let (effect, rest) = name.split_once('.')?;
+    let (parameter, wheel) = rest.split_once('.').map_or((rest, None), |(p, w)| (p, Some(w)));
+    Some((effect, parameter, wheel))
+}
+
+impl EffectSet {
+    /// Most effects of a job.
+    pub const MOST: usize = 10;
+
+    /// Reads the effects that a model lists and, from the catalogue, those whose parameters are named.
+    ///
+    /// # Arguments
+    /// - `file`: how messages call the job.
+    /// - `names`: every parameter that the job names.
+    /// - `texts`: the files that the job names.
+    ///
+    /// # Errors
+    /// [`FileError`]: of the effect's file with line and column, or of the job.
+    pub fn choose<'a>(
+        file: &str,
+        settings: &ModelSettings,
+        names: impl IntoIterator<Item = &'a str>,
+        texts: &BTreeMap<String, String>,
+    ) -> Result<Self, FileError> {
+        let listed = settings.effects.iter().map(String::as_str);
+        let named = names.into_iter().filter_map(|name| Some(parts(name)?.0));
+        let wanted: BTreeSet<&str> = listed.chain(named).collect();
+        let known = catalogue().iter().filter(|e| wanted.contains(e.name.as_str()));
+        let mut chosen: Vec<Chosen> = known
+            .map(|effect| Chosen {
+                effect: effect.clone(),
+                file: None,
+            })
+            .collect();
+        for named in &settings.effect_files {
+            let text = texts.get(named).ok_or_else(|| {
+                FileError::whole(file, format!("file \"{named}\" is named but was not sent along"))
+            })?;
+            let effect = own(named, text)?;
+            if let Some(other) = chosen.iter().find(|c| c.effect.name == effect.name) {
+                let message = format!(
+                    "effect {} stands in {} already",
+                    effect.name,
+                    other.file.as_deref().unwrap_or("the catalogue")
+                );
+                return Err(FileError::whole(named, message));
+            }
+            chosen.push(Chosen {
+                effect,
+                file: Some(named.clone()),
+            });
+        }
+        if chosen.len() > Self::MOST {
+            let message = format!("{} effects must be at most {}", chosen.len(), Self::MOST);
+            return Err(FileError::whole(file, message));
+        }
+        Ok(EffectSet(chosen))
+    }
+
+    /// Reads effects that have travelled.
+    ///
+    /// # Errors
+    /// A sentence that names the effect and what is wrong with its file.
+    pub fn read(texts: &[EffectText]) -> Result<Self, String> {
+        let read = |sent: &EffectText| {
+            let effect = Effect::read(&sent.text).map_err(|e| format!("effect {}: {e}", sent.name))?;
+            if effect.name != sent.name {
+                return Err(format!("effect {} came as {}", effect.name, sent.name));
+            }
+            Ok(Chosen { effect, file: None })
+        };
+        texts.iter().map(read).collect::<Result<_, _>>().map(EffectSet)
+    }
+
+    /// Their files, in order.
+    pub fn texts(&self) -> Vec<EffectText> {
+        let text = |effect: &Effect| EffectText {
+            name: effect.name.clone(),
+            text: effect.text.clone(),
+        };
+        self.iter().map(text).collect()
+    }
+
+    /// The effects, in order.
+    pub fn iter(&self) -> impl Iterator<Item = &Effect> {
+        self.0.iter().map(|chosen| &chosen.effect)
+    }
+
+    /// An effect that uses a variable, if there is one.
+    pub fn using(&self, variable: Variable) -> Option<&Effect> {
+        self.iter().find(|effect| effect.uses().contains(variable))
+    }
+
+    /// The parameter of an effect behind a name, `None` where the name is none of an effect.
+    ///
+    /// # Errors
+    /// A sentence that names what is unknown, and the nearest known.
+    pub fn lookup(&self, name: &str, wheels: &BTreeSet<&str>) -> Option<Result<Quantity, String>> {
+        let (effect, parameter, wheel) = parts(name)?;
+        Some(self.find(effect).and_then(|effect| {
+            let known = effect.parameters.iter().map(|p| p.name.as_str());
+            let Some(place) = effect.parameter(parameter) else {
+                let what = format!("parameter of effect {}", effect.name);
+                return Err(unknown_word(&what, parameter, known));
+            };
+            if let Some(unknown) = wheel.filter(|w| !wheels.contains(w)) {
+                return Err(unknown_word("wheel", unknown, wheels.iter().copied()));
+            }
+            let parameter = &effect.parameters[place];
+            // the prior of the file says whether it is a magnitude; nothing else is known of it
+            let magnitude = ["half_normal", "lognormal", "loguniform"];
+            let positive = magnitude.iter().any(|d| parameter.prior.get(d).is_some());
+            Ok(Quantity {
+                unit: parameter.unit.clone(),
+                lower: if positive { 0.0 } else { f64::NEG_INFINITY },
+                upper: f64::INFINITY,
+            })
+        }))
+    }
+
+    fn find(&self, name: &str) -> Result<&Effect, String> {
+        let names = || self.iter().map(|effect| effect.name.as_str());
+        self.iter().find(|effect| effect.name == name).ok_or_else(|| {
+            let catalogue = catalogue().iter().map(|effect| effect.name.as_str());
+            unknown_word("effect", name, names().chain(catalogue))
+        })
+    }
+
+    /// What must still be said of effects once these names are: the parameters of effects on all wheels, and of
+    /// effects with a strength for one wheel on that wheel.
+    pub fn unsaid<'a>(&'a self, names: &BTreeSet<&str>, wheels: &BTreeSet<&str>) -> Vec<Unsaid<'a>> {
+        let mut unsaid = Vec::new();
+        for chosen in &self.0 {
+            let reach = Reach::of(&chosen.effect, names, wheels);
+            for parameter in &chosen.effect.parameters {
+                let strength = parameter.neutral.is_some();
+                let said = |wheel: Option<&str>| reach.says(parameter, wheel);
+                let missing: Vec<Option<&str>> = if said(None) {
+                    Vec::new()
+                } else if strength && wheels.iter().any(|w| said(Some(w))) {
+                    // neutral on the other wheels
+                    Vec::new()
+                } else if strength && reach.on_some {
+                    reach.wheels.iter().map(|&w| Some(w)).collect()
+                } else if !reach.wheels.is_empty() && reach.wheels.iter().all(|w| said(Some(w))) {
+                    Vec::new()
+                } else {
+                    vec![None]
+                };
+                unsaid.extend(missing.into_iter().map(|wheel| Unsaid {
+                    name: parameter_name(&chosen.effect, parameter, wheel),
+                    chosen,
+                    parameter,
+                }));
+            }
+        }
+        unsaid
+    }
+
+    /// Checks the names of effects' parameters against each other, and that nothing is missing.
+    ///
+    /// # Errors
+    /// A sentence that names the parameter.
+    pub(crate) fn check_complete(
+        &self,
+        names: &BTreeSet<&str>,
+        wheels: &BTreeSet<&str>,
+    ) -> Result<(), String> {
+        for chosen in &self.0 {
+            let effect = &chosen.effect;
+            let reach = Reach::of(effect, names, wheels);
+            for parameter in &effect.parameters {
+                let one = wheels.iter().find(|w| reach.says(parameter, Some(w)));
+                let Some(wheel) = one else { continue };
+                let name = parameter_name(effect, parameter, None);
+                if reach.says(parameter, None) {
+                    return Err(format!("{name} is given both for all wheels and for one wheel"));
+                }
+                if !reach.wheels.contains(wheel) {
+                    return Err(format!(
+                        "{name}.{wheel} has no effect: effect {} does not act on wheel {wheel}",
+                        effect.name
+                    ));
+                }
+            }
+        }
+        match self.unsaid(names, wheels).first() {
+            Some(Unsaid { name, .. }) => {
+                Err(format!("parameter {name} has neither a prior nor a fixed value"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The wheels that an effect acts on, of these, by the names of a complete job.
+    pub fn acts_on<'a>(
+        effect: &Effect,
+        names: &BTreeSet<&str>,
+        wheels: &BTreeSet<&'a str>,
+    ) -> BTreeSet<&'a str> {
+        Reach::of(effect, names, wheels).wheels
+    }
+
+    /// What names the effects in a model's version: nothing without effects, otherwise the beginning of the SHA-256 of
+    /// their files in order.
+    pub fn version(texts: &[EffectText]) -> String {
+        if texts.is_empty() {
+            return String::new();
+        }
+        let mut hash = Sha256::new();
+        for effect in texts {
+            hash.update(effect.text.as_bytes());
+        }
+        let hex: String = hash.finalize()[..4].iter().map(|b| format!("{b:02x}")).collect();
+        format!("+effects.{hex}")
+    }
+}
+
+/// `EFFECT.PARAMETER`, or `EFFECT.PARAMETER.WHEEL`.
+pub fn parameter_name(effect: &Effect, parameter: &Parameter, wheel: Option<&str>) -> String {
+    let wheel = wheel.map(|w| format!(".{w}")).unwrap_or_default();
+    format!("{}.{}{wheel}", effect.name, parameter.name)
+}
+
+/// The wheels that an effect acts on.
+struct Reach<'a, 'n> {
+    effect: &'n Effect,
+    names: &'n BTreeSet<&'n str>,
+    wheels: BTreeSet<&'a str>,
+    /// Whether strengths are given for single wheels alone.
+    on_some: bool,
+}
+
+impl<'a, 'n> Reach<'a, 'n> {
+    fn of(effect: &'n Effect, names: &'n BTreeSet<&'n str>, wheels: &BTreeSet<&'a str>) -> Self {
+        let mut reach = Reach {
+            effect,
+            names,
+            wheels: BTreeSet::new(),
+            on_some: false,
+        };
+        let strengths = || effect.parameters.iter().filter(|p| p.neutral.is_some());
+        let single = |wheel: &&&str| strengths().any(|p| reach.says(p, Some(wheel)));
+        let some: BTreeSet<&str> = wheels.iter().filter(single).copied().collect();
+        let on_all = some.is_empty() || strengths().any(|p| reach.says(p, None));
+        reach.wheels = if on_all { wheels.clone() } else { some };
+        reach.on_some = !on_all;
+        reach
+    }
+
+    fn says(&self, parameter: &Parameter, wheel: Option<&str>) -> bool {
+        let name = parameter_name(self.effect, parameter, wheel);
+        self.names.contains(name.as_str())
+    }
+}
+
+/// Reads a user's effect file.
+fn own(file: &str, text: &str) -> Result<Effect, FileError> {
+    let effect = Effect::read(text).map_err(|e| FileError {
+        file: file.to_owned(),
+        line: e.line,
+        column: e.column,
+        message: e.message,
+    })?;
+    let name = effect.name.as_str();
+    let line = |key: &str| text.lines().position(|line| line.trim_start().starts_with(key));
+    let wrong = |key: &str, message: String| FileError {
+        file: file.to_owned(),
+        line: line(key).map(|l| l + 1),
+        column: None,
+        message,
+    };
+    if effect.mechanism.is_some() {
+        let message = "mechanism is for the effects of the catalogue: a file has formulas".to_owned();
+        return Err(wrong("mechanism", message));
+    }
+    if find(name).is_some() {
+        let message = format!("name \"{name}\" is an effect's of the catalogue");
+        return Err(wrong("name", message));
+    }
+    if parameters::is_taken(name) {
+        return Err(wrong(
+            "name",
+            format!("name \"{name}\" has another meaning in a job"),
+        ));
+    }
+    Ok(effect)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MINE: &str = "name = \"mine\"\nsummary = \"s\"\nsource = \"s\"\nshear = \"tau * (1 - a * exp(-v_t / v_a))\"\n\
+        [parameters.a]\nunit = \"1\"\nneutral = 0.0\nprior = { uniform = [0.0, 0.8] }\n\
+        [parameters.v_a]\nunit = \"m/s\"\nprior = 0.01\n";
+
+    fn choose(effects: &[&str], names: &[&str], mine: &str) -> Result<EffectSet, String> {
+        let mut settings =
+            ModelSettings::from_table(&toml::from_str("kind = \"quasi_static\"").unwrap()).unwrap();
+        settings.effects = effects.iter().map(|&e| e.to_owned()).collect();
+        settings.effect_files = vec!["mine.toml".into()];
+        let texts = BTreeMap::from([("mine.toml".to_owned(), mine.to_owned())]);
+        EffectSet::choose("job.toml", &settings, names.iter().copied(), &texts).map_err(|e| e.to_string())
+    }
+
+    fn unsaid(set: &EffectSet, names: &[&str]) -> Vec<String> {
+        let (names, wheels) = (names.iter().copied().collect(), BTreeSet::from(["w", "x"]));
+        set.unsaid(&names, &wheels).into_iter().map(|u| u.name).collect()
+    }
+
+    #[test]
+    fn effects_follow_each_other_as_the_catalogue_has_them_then_files() {
+        let set = choose(
+            &["sled_tare", "hard_pan"],
+            &["slip_sinkage.exponent_per_slip"],
+            MINE,
+        )
+        .unwrap();
+        let names: Vec<&str> = set.iter().map(|e| e.name.as_str()).collect();
+        assert_eq!(names, ["slip_sinkage", "hard_pan", "sled_tare", "mine"]);
+    }
+
+    #[test]
+    fn a_strength_for_one_wheel_leaves_the_others_alone_and_shapes_are_shared() {
+        let set = choose(&[], &[], MINE).unwrap();
+        assert_eq!(unsaid(&set, &[]), ["mine.a", "mine.v_a"]);
+        assert_eq!(unsaid(&set, &["mine.a.w"]), ["mine.v_a"]);
+        assert_eq!(unsaid(&set, &["mine.a.w", "mine.v_a.w"]), Vec::<String>::new());
+        assert_eq!(unsaid(&set, &["mine.a", "mine.v_a.w"]), ["mine.v_a"]);
+        let two = choose(&["peak_pressure_angle"], &[], MINE).unwrap();
+        let said = ["peak_pressure_angle.front_share.x", "mine.a", "mine.v_a"];
+        assert_eq!(
+            unsaid(&two, &said),
+            ["peak_pressure_angle.front_share_per_slip.x"]
+        );
+    }
+
+    #[test]
+    fn what_contradicts_itself_or_acts_nowhere_is_refused() {
+        let set = choose(&[], &[], MINE).unwrap();
+        let check = |names: &[&str]| {
+            let names = names.iter().copied().collect();
+            set.check_complete(&names, &BTreeSet::from(["w", "x"]))
+                .unwrap_err()
+        };
+        assert_eq!(
+            check(&["mine.a", "mine.a.w", "mine.v_a"]),
+            "mine.a is given both for all wheels and for one wheel"
+        );
+        assert_eq!(
+            check(&["mine.a.w", "mine.v_a.x"]),
+            "mine.v_a.x has no effect: effect mine does not act on wheel x"
+        );
+        assert_eq!(
+            check(&["mine.a.w"]),
+            "parameter mine.v_a has neither a prior nor a fixed value"
+        );
+    }
+
+    #[test]
+    fn files_that_take_what_is_not_theirs_are_refused_by_line() {
+        let named = |name: &str| MINE.replace("\"mine\"", &format!("\"{name}\""));
+        for (text, message) in [
+            (
+                named("bulldozing"),
+                "mine.toml line 1: name \"bulldozing\" is an effect's of the catalogue",
+            ),
+            (
+                named("noise"),
+                "mine.toml line 1: name \"noise\" has another meaning in a job",
+            ),
+            (
+                MINE.replace("source = \"s\"", "source = \"s\"\nmechanism = \"rebound\""),
+                "mine.toml line 4: mechanism is for the effects of the catalogue: a file has formulas",
+            ),
+            (
+                MINE.replace("exp(-v_t", "exp(-vt"),
+                "mine.toml line 4, column 30: unknown name \"vt\"; the nearest known is \"v_t\"",
+            ),
+        ] {
+            assert_eq!(choose(&[], &[], &text).unwrap_err(), message);
+        }
+    }
+}

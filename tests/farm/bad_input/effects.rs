@@ -1,0 +1,149 @@
+//! Wrong effects, through `check` and `run`.
+
+use farm_tests::job::Job;
+
+use super::{refusal, refused};
+
+const MODEL: &str = "shear_velocity_m_s = 0.001";
+const KAPPA: &str = "kappa = 0.0";
+
+/// An effect file that is right.
+const MINE: &str = r#"name = "mine"
+summary = "what I think is missing"
+source = "a guess"
+shear = "tau * (1 - a * exp(-v_t / v_a))"
+[parameters.a]
+unit = "1"
+neutral = 0.0
+prior = { uniform = [0.0, 0.8] }
+[parameters.v_a]
+unit = "m/s"
+prior = 0.01
+"#;
+
+fn model(line: &str) -> Job {
+    Job::small().in_job(MODEL, &format!("{MODEL}\n{line}"))
+}
+
+fn priors(line: &str) -> Job {
+    Job::small().in_job(KAPPA, &format!("{KAPPA}\n{line}"))
+}
+
+/// The small job with an effect file, changed in one place.
+#[track_caller]
+fn mine(old: &str, new: &str) -> Job {
+    assert_eq!(MINE.matches(old).count(), 1, "{old:?} in\n{MINE}");
+    model("effect_files = [\"mine.toml\"]").beside("mine.toml", MINE.replacen(old, new, 1))
+}
+
+#[test]
+fn unknown_effects_and_parameters_name_the_nearest_known() {
+    refused(
+        model("effects = [\"buldozing\"]"),
+        "job.toml: [model] unknown effect \"buldozing\"; the nearest known is \"bulldozing\"",
+    );
+    refused(
+        priors("\"sled_tar.tare_n\" = 0.0"),
+        "job.toml line 10: unknown effect \"sled_tar\"; the nearest known is \"sled_tare\"",
+    );
+    refused(
+        priors("\"sled_tare.tare\" = 0.0"),
+        "job.toml line 10: unknown parameter of effect sled_tare \"tare\"; the nearest known is \"tare_n\"",
+    );
+    refused(
+        priors("\"sled_tare.tare_n.v\" = 0.0"),
+        "job.toml line 10: unknown wheel \"v\"; known are w",
+    );
+    refused(
+        model("effects = \"sled_tare\""),
+        "job.toml: [model] effects = \"sled_tare\" must be a list of names in quotes",
+    );
+    refused(
+        model("effects = [\"sled_tare\", \"sled_tare\"]"),
+        "job.toml: [model] effects: \"sled_tare\" stands twice",
+    );
+    refused(
+        model("effects = [\"mine.toml\"]"),
+        "job.toml: [model] effects: \"mine.toml\" looks like a file, which stands under effect_files",
+    );
+    refused(
+        priors("sled_tare.tare_n = 0.0"),
+        "job.toml line 10: write the name in quotes: \"sled_tare.tare_n\"",
+    );
+    refused(
+        model("sled_tare.tare_n = 0.0"),
+        "job.toml: [model] write the name in quotes: \"sled_tare.tare_n\"",
+    );
+}
+
+#[test]
+fn what_an_effect_needs_of_the_experiment_is_named() {
+    refused(
+        model("effects = [\"bulldozing\"]"),
+        "job.toml: effect bulldozing needs density_kg_m3 of soil s",
+    );
+    refused(
+        model("effects = [\"end_wall\"]"),
+        "job.toml: effect end_wall needs bin_length_m under [rig]",
+    );
+    refused(
+        model("effects = [\"lug_thrust\"]").in_experiment("[soil.s]", "[soil.s]\ndensity_kg_m3 = 1400.0"),
+        "job.toml: effect lug_thrust needs a wheel with grousers: w has none",
+    );
+}
+
+#[test]
+fn strengths_that_contradict_each_other_are_refused() {
+    refused(
+        priors("\"sled_tare.tare_n\" = { normal = [0.0, 1.0] }\n\"sled_tare.tare_n.w\" = 0.0"),
+        "job.toml: sled_tare.tare_n is given both for all wheels and for one wheel",
+    );
+    refused(
+        priors("\"bearing_torque.friction_torque_n_m\" = -0.1"),
+        "job.toml: bearing_torque.friction_torque_n_m = -0.1 N m lies outside [0, inf] N m",
+    );
+    let many: Vec<String> = formula::catalogue::catalogue()[..11]
+        .iter()
+        .map(|effect| format!("{:?}", effect.name))
+        .collect();
+    refused(
+        model(&format!("effects = [{}]", many.join(", "))),
+        "job.toml: 11 effects must be at most 10",
+    );
+}
+
+#[test]
+fn malformed_effect_files_name_file_line_and_column() {
+    refused(
+        mine("-v_t", "-vt"),
+        "mine.toml line 4, column 30: unknown name \"vt\"; the nearest known is \"v_t\"",
+    );
+    refused(
+        mine("neutral", "neutrl"),
+        "mine.toml line 7: unknown key \"neutrl\"; the nearest known is \"neutral\"",
+    );
+    refused(
+        mine("uniform = [0.0, 0.8]", "unifrm = [0.0, 0.8]"),
+        "mine.toml line 5: prior of parameter a: unknown distribution \"unifrm\"; the nearest known is \"uniform\"",
+    );
+    refused(
+        mine("[0.0, 0.8]", "[0.8, 0.0]"),
+        "mine.toml line 5: prior of parameter a: lower bound 0.8 is not below upper bound 0",
+    );
+    refused(
+        mine("\"mine\"", "\"hard_pan\""),
+        "mine.toml line 1: name \"hard_pan\" is an effect's of the catalogue",
+    );
+    refused(
+        mine("shear = ", "mechanism = \"rebound\"\nshear = "),
+        "mine.toml line 4: mechanism is for the effects of the catalogue: a file has formulas",
+    );
+    refused(
+        model("effect_files = [\"mine.toml\", \"copy.toml\"]")
+            .beside("mine.toml", MINE)
+            .beside("copy.toml", MINE),
+        "copy.toml: effect mine stands in mine.toml already",
+    );
+    let message = refusal(&model("effect_files = [\"mine.toml\"]"));
+    assert!(message.starts_with("mine.toml: No such file"), "{message}");
+}

@@ -1,0 +1,119 @@
+//! The effects of a variant: compiled once, and for each evaluation given the values of their parameters.
+
+use scm::effects::{Active, Effects, Model, Site};
+use shared::model::effects::parameter_name;
+use shared::model::{EffectSet, ModelKind, ModelVariant};
+
+use super::parameters::Source;
+
+/// The sources of every parameter of every effect, for wheels that share them.
+type Sources = Vec<Vec<Source>>;
+
+/// The effects of a variant with the sources of their parameters.
+#[derive(Debug)]
+pub(super) struct EffectMap {
+    effects: Effects,
+    /// Each different set of sources once: effects are activated as often as wheels differ in them.
+    sources: Vec<Sources>,
+    /// Of each wheel, in the variant's order: its set of sources.
+    of_wheel: Vec<usize>,
+    /// Of each condition.
+    sites: Vec<Site>,
+}
+
+/// The effects at one parameter vector, as every wheel meets them.
+#[derive(Debug)]
+pub(super) struct ActiveEffects<'a> {
+    active: Vec<Active<'a>>,
+    of_wheel: &'a [usize],
+}
+
+impl<'a> ActiveEffects<'a> {
+    /// The effects on a wheel, by its place in the variant, with the room in which a model computes them.
+    pub(super) fn on_wheel(&mut self, place: usize) -> &mut Active<'a> {
+        &mut self.active[self.of_wheel[place]]
+    }
+}
+
+impl EffectMap {
+    /// Compiles the effects of a variant for its model.
+    ///
+    /// # Errors
+    /// A sentence that names the effect that the model cannot express, or the parameter that is missing.
+    pub(super) fn new(variant: &ModelVariant, set: &EffectSet) -> Result<Self, String> {
+        let model = match variant.kind {
+            ModelKind::QuasiStatic => Model::QuasiStatic,
+            ModelKind::Scm => Model::Spatial,
+        };
+        let effects = Effects::compile(model, set.iter())?;
+        let mut sources: Vec<Sources> = Vec::new();
+        let mut of_wheel = Vec::new();
+        for wheel in variant.wheels.keys() {
+            let own = sources_of(variant, set, wheel)?;
+            let place = sources.iter().position(|other| *other == own);
+            of_wheel.push(place.unwrap_or(sources.len()));
+            if place.is_none() {
+                sources.push(own);
+            }
+        }
+        Ok(EffectMap {
+            effects,
+            sources,
+            of_wheel,
+            sites: sites(variant),
+        })
+    }
+
+    /// The effects at one parameter vector.
+    pub(super) fn at(&self, theta: &[f64]) -> ActiveEffects<'_> {
+        let values = |sources: &Vec<Source>| sources.iter().map(|s| s.value(theta)).collect();
+        let active = |sources: &Sources| self.effects.activate(sources.iter().map(values));
+        ActiveEffects {
+            active: self.sources.iter().map(active).collect(),
+            of_wheel: &self.of_wheel,
+        }
+    }
+
+    /// Where the condition at a position of the variant is run.
+    pub(super) fn site(&self, position: usize) -> &Site {
+        &self.sites[position]
+    }
+}
+
+/// Where a wheel's values stand: its own, those of all wheels, or the neutral value of a strength that acts elsewhere.
+fn sources_of(variant: &ModelVariant, set: &EffectSet, wheel: &str) -> Result<Sources, String> {
+    let of_effect = |effect: &formula::Effect| {
+        let strengths = effect.parameters.iter().filter(|p| p.neutral.is_some());
+        let find = |p: &formula::Parameter| {
+            let own = Source::find(variant, &parameter_name(effect, p, Some(wheel)));
+            own.or_else(|| Source::find(variant, &parameter_name(effect, p, None)))
+        };
+        let acts = strengths.clone().count() == 0 || strengths.clone().any(|p| find(p).is_some());
+        let source = |p: &formula::Parameter| match (find(p), p.neutral) {
+            (Some(source), _) => Ok(source),
+            (None, Some(neutral)) => Ok(Source::Fixed(neutral)),
+            // the shape of what is absent
+            (None, None) if !acts => Ok(Source::Fixed(0.0)),
+            (None, None) => {
+                let name = parameter_name(effect, p, None);
+                Err(format!("parameter {name} has neither a prior nor a fixed value"))
+            }
+        };
+        effect.parameters.iter().map(source).collect()
+    };
+    set.iter().map(of_effect).collect()
+}
+
+fn sites(variant: &ModelVariant) -> Vec<Site> {
+    let site = |condition: &shared::model::Condition| {
+        let wheel = variant.wheels.get(&condition.wheel);
+        Site {
+            density_kg_m3: condition.density_kg_m3,
+            gravity_m_s2: variant.gravity_m_s2,
+            grouser_count: wheel.map_or(0, |w| w.grouser_count),
+            grouser_height_m: wheel.map_or(0.0, |w| w.grouser_height_m),
+            bin_length_m: variant.bin_length_m,
+        }
+    };
+    variant.conditions.iter().map(site).collect()
+}
