@@ -3,7 +3,6 @@
 use scm::spatial::Ground;
 use scm::{Soil, bekker_moduli};
 use shared::model::ModelVariant;
-use shared::parameters::SHEAR_MODULUS;
 
 /// The source of one quantity.
 #[derive(Debug, Clone, Copy)]
