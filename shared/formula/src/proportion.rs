@@ -3,19 +3,39 @@
 use crate::graph::{Binary, Graph, Id, Node, Unary};
 use crate::variable::Variable;
 
+/// How a value depends on a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Free,
+    Proportional,
+    Other,
+}
+
 /// Whether a result is a variable times something that does not depend on it, as far as its form shows.
+///
+/// Each operation is looked at once, however often it is used.
 pub(crate) fn is_proportional(graph: &Graph, result: Id, variable: Variable) -> bool {
-    let free = |id: Id| !graph.variables(id).contains(variable);
-    let scales = |id: Id| is_proportional(graph, id, variable);
-    match graph.node(result) {
-        Node::Variable(own) => own == variable,
-        Node::Unary(Unary::Negate, a) => scales(a),
-        Node::Binary(Binary::Multiply, a, b) => (scales(a) && free(b)) || (free(a) && scales(b)),
-        Node::Binary(Binary::Divide, a, b) => scales(a) && free(b),
-        Node::Binary(Binary::Add | Binary::Subtract, a, b) => scales(a) && scales(b),
-        Node::If(condition, a, b) => free(condition) && scales(a) && scales(b),
-        Node::Number(_) | Node::Parameter(_) | Node::Unary(..) | Node::Binary(..) => false,
+    use Kind::{Free, Other, Proportional};
+    let mut kinds = vec![Other; graph.len()];
+    for id in graph.behind(result) {
+        let node = graph.node(id);
+        let of = |id: Id| kinds[usize::from(id.0)];
+        let kind = match node {
+            Node::Variable(own) if own == variable => Proportional,
+            _ if node.arguments().all(|argument| of(argument) == Free) => Free,
+            Node::Unary(Unary::Negate, a) => of(a),
+            Node::Binary(Binary::Multiply, a, b) => match (of(a), of(b)) {
+                (Proportional, Free) | (Free, Proportional) => Proportional,
+                _ => Other,
+            },
+            Node::Binary(Binary::Divide, a, b) if of(b) == Free => of(a),
+            Node::Binary(Binary::Add | Binary::Subtract, a, b) if of(a) == of(b) => of(a),
+            Node::If(condition, a, b) if of(condition) == Free && of(a) == of(b) => of(a),
+            _ => Other,
+        };
+        kinds[usize::from(id.0)] = kind;
     }
+    kinds[usize::from(result.0)] == Proportional
 }
 
 #[cfg(test)]
@@ -25,6 +45,7 @@ mod tests {
     fn scales(formula: &str) -> bool {
         let text = format!(
             "name = \"e\"\nsummary = \"s\"\nsource = \"t\"\nshear = \"{formula}\"\n\
+             torque = \"torque * (1 + a)\"\n\
              [parameters.a]\nunit = \"1\"\nneutral = 0\nprior = {{ half_normal = 0.1 }}\n"
         );
         Effect::read(&text).expect("an effect").only_scales(Hook::Shear)
