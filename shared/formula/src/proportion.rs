@@ -5,37 +5,36 @@ use crate::variable::Variable;
 
 /// How a value depends on a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum Dependence {
     Free,
+    /// The variable times something free of it.
     Proportional,
     Other,
 }
 
 /// Whether a result is a variable times something that does not depend on it, as far as its form shows.
-///
-/// Each operation is looked at once, however often it is used.
 pub(crate) fn is_proportional(graph: &Graph, result: Id, variable: Variable) -> bool {
-    use Kind::{Free, Other, Proportional};
-    let mut kinds = vec![Other; graph.len()];
+    use Dependence::{Free, Other, Proportional};
+    let mut known = vec![Other; graph.len()];
     for id in graph.behind(result) {
-        let node = graph.node(id);
-        let of = |id: Id| kinds[usize::from(id.0)];
-        let kind = match node {
+        let of = |id: Id| known[usize::from(id.0)];
+        let dependence = match graph.node(id) {
             Node::Variable(own) if own == variable => Proportional,
-            _ if node.arguments().all(|argument| of(argument) == Free) => Free,
+            Node::Number(_) | Node::Parameter(_) | Node::Variable(_) => Free,
             Node::Unary(Unary::Negate, a) => of(a),
+            node if node.arguments().all(|argument| of(argument) == Free) => Free,
             Node::Binary(Binary::Multiply, a, b) => match (of(a), of(b)) {
                 (Proportional, Free) | (Free, Proportional) => Proportional,
                 _ => Other,
             },
-            Node::Binary(Binary::Divide, a, b) if of(b) == Free => of(a),
+            Node::Binary(Binary::Divide, a, b) if (of(a), of(b)) == (Proportional, Free) => Proportional,
             Node::Binary(Binary::Add | Binary::Subtract, a, b) if of(a) == of(b) => of(a),
             Node::If(condition, a, b) if of(condition) == Free && of(a) == of(b) => of(a),
-            _ => Other,
+            Node::Unary(..) | Node::Binary(..) | Node::If(..) => Other,
         };
-        kinds[usize::from(id.0)] = kind;
+        known[usize::from(id.0)] = dependence;
     }
-    kinds[usize::from(result.0)] == Proportional
+    known[usize::from(result.0)] == Proportional
 }
 
 #[cfg(test)]
