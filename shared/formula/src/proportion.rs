@@ -44,6 +44,7 @@ mod tests {
     fn scales(formula: &str) -> bool {
         let text = format!(
             "name = \"e\"\nsummary = \"s\"\nsource = \"t\"\nshear = \"{formula}\"\n\
+             torque = \"torque * (1 + a)\"\n\
              [parameters.a]\nunit = \"1\"\nneutral = 0\nprior = {{ half_normal = 0.1 }}\n"
         );
         Effect::read(&text).expect("an effect").only_scales(Hook::Shear)

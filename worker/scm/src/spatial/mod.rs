@@ -5,7 +5,7 @@
 //! - `run`: the wheel along its track, and the averages of what it feels.
 //! - `wheel`: the underside that the soil meets, and its motion.
 //! - `contact`: which nodes the wheel touches at a height, their pressure, force and torque.
-//! - `displacement`: how far wheel and soil have slid along each other.
+//! - `displacement`: how far wheel and soil have slid along each other, where a formula asks for it.
 //! - `terrain`: the soil as a height field, its flow and its slopes.
 //! - `pack`: four lanes at a time.
 
@@ -75,14 +75,31 @@ pub struct Run {
 /// - `p = min(gamma k* z^n, K_e (z_s − h))`, z below the reference `beta loose`, `k* = k_c / b_eff + k_phi`,
 ///   `b_eff = 2 A / L` of the node's own patch of the footprint (area A, contour L)
 /// - `gamma = d^m / mean(d^m)` over the patch, d the Euclidean distance from its border
-/// - `tau = (c + p tan(phi)) (1 − exp(−|v_t| / v0)) (1 − exp(−j / K))` against the slip velocity `v_t` of the wheel's
-///   surface, which has three components; the last factor only where K > 0
+/// - `tau = (c + p tan(phi)) (1 − exp(−|v_t| / v0))` against the slip velocity `v_t` of the wheel's surface, which has three
+///   components
 /// - `dF = (p n + tau t) dA / n_z` with the normal n of the wheel's surface (radial on rim *and* grousers, the facet's own on
 ///   a mesh), torque about the hub
 ///
 /// Then the nodes that yielded are left at `z_s = h + p / K_e`; a share `phi_f` of what was displaced flows to the borders of
 /// the footprint in front, behind and beside, in inverse proportion to their distances and by the direction in
 /// which the wheel's surface moves; slopes steeper than the angle of repose slide, never into the wheel.
+///
+/// # Effects
+/// Where effects are active, the run has the slip, radius, width, exponent and load that their formulas leave: a wheel given
+/// as a mesh keeps its size, and a formula that would change it is refused. At the nodes formulas replace the plastic
+/// pressure before the elastic line bounds it, then the strength, then the size of the shear stress, whose direction stays.
+/// The shear displacement j is followed where a formula uses it. `pass` counts from pass to pass at nodes and channels; for
+/// dimensions it is the one averaged.
+///
+/// - A load that depends on pull or torque is that of the step before, the nominal one at first.
+/// - What is measured enters histories and averages, and what settles is the measured. Balance, power and the check of
+///   energy are the soil's own. Channels see the contact length of their step, k* weighted by area over the footprint's patches,
+///   and the effective width of the last look at the contour.
+/// - Mechanisms: rebound `1 / K_e' = 1 / K_e + a`; a flat patch cuts the rim off at `R − a W`, from where sinkage is then counted;
+///   digging lowers the reference surface by `(d / l) |v_t| dt` under the sliding wheel; end walls make k*
+///   `1 + w (exp(−x / l) + exp(−(L − x) / l))` times as large, x from the rear wall to the hub, x = R at the start of each pass.
+///
+/// Without effects nothing of this is evaluated. Checked by `spatial::effects`, `spatial::signatures`.
 ///
 /// # Arguments
 /// - `scene`, `condition`, `settings`: fields carry units and bounds. omega comes from the slip and the *rig's* radius.
@@ -96,6 +113,7 @@ pub struct Run {
 /// - [`Rejection::NoSupport`]: no balance before the hub reaches the undisturbed surface; also where k* ≤ 0 everywhere.
 /// - [`Rejection::NoConvergence`]: the mean residual of the balance exceeds 2 % of the load: the load jumps as patches join.
 /// - [`Rejection::EnergyGained`]: motor and sled got work out of the soil, on average: `T omega − F v < 0`.
+/// - [`Rejection::Formula`]: a formula gives what cannot be used, at a node that bears or of the run.
 /// - [`Rejection::NotFinite`]: forces overflow. [`Rejection::Protocol`]: the protocol does not fit the run.
 ///
 /// # Validity

@@ -149,6 +149,7 @@ impl Contact {
     }
 
     /// Nodes in contact with the hub at a height, and the patches they form; `contours`: with their lengths.
+    #[inline]
     fn find_patches(&mut self, terrain: &Terrain, laws: &Laws, hub: f64, contours: bool) {
         self.touch(hub);
         self.measure(terrain, laws, hub);

@@ -414,7 +414,7 @@ impl<'a> Rolling<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::{Active, Site};
+    use crate::effects::{Active, Effects, Model, Site};
     use crate::spatial::fixture::{CONDITION, SOIL, WHEEL};
     use crate::spatial::{Grousers, Shape};
 
@@ -426,7 +426,13 @@ mod tests {
     }
 
     /// Roll a wheel with grousers for 300 steps, and look at it after each.
-    fn roll(flow_fraction: f64, slip_angle_rad: f64, both_halves: bool, mut look: impl FnMut(&Rolling)) {
+    fn roll(
+        flow_fraction: f64,
+        slip_angle_rad: f64,
+        both_halves: bool,
+        effects: &Active,
+        mut look: impl FnMut(&Rolling),
+    ) {
         let ground = Ground {
             flow_fraction,
             ..Ground::default()
@@ -441,7 +447,7 @@ mod tests {
             ground: &ground,
             wheel: &WHEEL,
             shape: &shape,
-            effects: &Active::default(),
+            effects,
             site: Site::default(),
         };
         let settings = Settings {
@@ -449,7 +455,10 @@ mod tests {
             ..Settings::default()
         };
         let condition = condition(slip_angle_rad);
-        let mut rolling = Rolling::new(&scene, &condition, None, settings, 0.2).expect("a track");
+        let case = effects.case(&SOIL, &WHEEL, &condition, &scene.site);
+        let case = case.expect("admissible formulas");
+        let case = (!effects.is_empty()).then_some(&case);
+        let mut rolling = Rolling::new(&scene, &condition, case, settings, 0.2).expect("a track");
         rolling.lower().expect("support");
         look(&rolling);
         for _ in 0..300 {
@@ -460,15 +469,20 @@ mod tests {
 
     #[test]
     fn the_soil_that_does_not_compact_is_all_there() {
-        for (fraction, slip_angle, both_halves) in [
-            (0.0, 0.0, false),
-            (0.25, 0.0, false),
-            (0.25, 0.0, true),
-            (1.0, 0.0, false),
-            (0.25, 0.2, true),
+        let digging = formula::catalogue::find("slip_digging").expect("in the catalogue");
+        let digging = Effects::compile(Model::Spatial, [digging]).expect("a mechanism");
+        let (none, digging) = (Active::default(), digging.activate([vec![0.01]]));
+        for (fraction, slip_angle, both_halves, effects) in [
+            (0.0, 0.0, false, &none),
+            (0.25, 0.0, false, &none),
+            (0.25, 0.0, true, &none),
+            (1.0, 0.0, false, &none),
+            (0.25, 0.2, true, &none),
+            (0.25, 0.0, false, &digging),
+            (1.0, 0.2, true, &digging),
         ] {
             let mut pressed = 0.0;
-            roll(fraction, slip_angle, both_halves, |rolling| {
+            roll(fraction, slip_angle, both_halves, effects, |rolling| {
                 let (terrain, flow) = (&rolling.terrain, &rolling.flow);
                 let rounding = 1e-12 * flow.pressed;
                 let risen: f64 = terrain.surface.iter().sum();

@@ -23,7 +23,8 @@ impl Contact {
     /// `dz_ref = (d / l) |v_t| dt`: over one passage of a contact of length l at the sled's speed v that is `d |v_t| / v`, the
     /// quasi-static model's added sinkage `d s / (1 − s)`, which so builds up from the front of the contact to its rear.
     /// Only the depth that Bekker's law reads is changed here. The surface follows because softer soil yields: it is lowered,
-    /// and a share flows away, as all soil that yields, so that the balance of volumes stays.
+    /// and a share flows away, as all soil that yields, so that the balance of volumes stays. Checked by
+    /// `rolling::tests::the_soil_that_does_not_compact_is_all_there` and `spatial::effects::digging_deepens_…`.
     ///
     /// # Arguments
     /// - `depth`: d `[m]`, ≥ 0; `contact_length`: l `[m]`, > 0; `time` `[s]`.
