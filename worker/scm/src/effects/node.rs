@@ -113,7 +113,7 @@ impl<'a> NodeLaws<'a> {
             // what these hooks admit, without a way out, so that it vectorises
             let fine = values
                 .iter()
-                .fold(true, |fine, &value| fine & (value >= 0.0) & (value <= f64::MAX));
+                .fold(true, |fine, value| fine & (0.0..=f64::MAX).contains(value));
             if fine {
                 continue;
             }

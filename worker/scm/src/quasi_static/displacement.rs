@@ -72,7 +72,7 @@ impl Slide {
         slid.map(|way| if way < FARTHEST { way } else { FARTHEST }) // also where the wheel is locked: NaN or ∞
     }
 
-    /// ∫ |v_t| dt from the lowest point to x, where the rim stands at an angle.
+    /// `∫ |v_t| dt` from the lowest point to x, where the rim stands at an angle.
     fn way(&self, x: f64, angle: f64) -> f64 {
         let far = x.abs();
         let on_flat = (1.0 - self.forward * self.radius / self.bottom_radius).abs();
@@ -84,7 +84,7 @@ impl Slide {
         way.copysign(x)
     }
 
-    /// ∫ |v_t| dt along the arc from the lowest point to x ≥ 0.
+    /// `∫ |v_t| dt` along the arc from the lowest point to x ≥ 0.
     fn on_arc(&self, x: f64, angle: f64) -> f64 {
         let signed = |x: f64, angle: f64| self.radius * angle - self.forward * x;
         if !self.skids {
@@ -147,7 +147,7 @@ mod tests {
         }
     }
 
-    /// Sum of |v_t| dt over small steps of the angle.
+    /// Sum of `|v_t| dt` over small steps of the angle.
     fn summed(motion: &RimMotion, front: f64, x: f64) -> f64 {
         const STEPS: u32 = 20_000;
         let (from, to) = (libm::asin(x / RADIUS), libm::asin(front / RADIUS));

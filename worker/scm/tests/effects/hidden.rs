@@ -10,19 +10,22 @@ use crate::support::base;
 /// Noise of the experiments: drawbar pull 1.2 N, torque 0.15 N m, sinkage 0.4 mm.
 const NOISE_SD: [f64; 3] = [1.2, 0.15, 4e-4];
 
-/// k_phi, n, friction angle [deg] and radius [m] behind an experiment.
+/// `k_phi`, n, friction angle `[deg]` and radius `[m]` behind an experiment.
 type Truth = [f64; 4];
 
 /// The largest difference from another implementation's runs, in units of the noise, by channel.
 fn check(reference: &str, truth: Truth, effect: Option<(&Effect, Vec<f64>)>) {
     let (effect, values): (Option<&Effect>, Vec<_>) =
         effect.map_or((None, vec![]), |(e, v)| (Some(e), vec![v]));
-    let effects = Effects::compile(Model::QuasiStatic, effect).unwrap();
+    let effects = Effects::compile(Model::QuasiStatic, effect).expect("a form");
     let mut active = effects.activate(values);
     let mut worst = [0.0_f64; 3];
     let mut runs = 0;
     for line in reference.lines().filter(|line| !line.starts_with('#')).skip(1) {
-        let row: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
+        let row: Vec<f64> = line
+            .split(',')
+            .map(|field| field.parse().expect("a number"))
+            .collect();
         let mut case = base(row[0], row[1], truth[2]);
         (case.soil.k_phi, case.soil.n, case.wheel.radius_m) = (truth[0], truth[1], truth[3]);
         case.condition.sled_speed_m_s = row[2];
@@ -33,7 +36,7 @@ fn check(reference: &str, truth: Truth, effect: Option<(&Effect, Vec<f64>)>) {
             &mut active,
             &Site::default(),
         )
-        .unwrap();
+        .expect("support");
         for (i, value) in [got.drawbar_pull_n, got.torque_n_m, got.sinkage_m]
             .into_iter()
             .enumerate()
@@ -51,7 +54,7 @@ fn check(reference: &str, truth: Truth, effect: Option<(&Effect, Vec<f64>)>) {
 fn law(hook: &str, formula: &str) -> Effect {
     let text =
         format!("name = \"hidden\"\nsummary = \"a hidden law\"\nsource = \"none\"\n{hook} = \"{formula}\"\n");
-    Effect::read(&text).unwrap()
+    Effect::read(&text).expect("a formula")
 }
 
 #[test]

@@ -11,8 +11,8 @@ use crate::validation::effects::{SITE, with_effect};
 fn with_law(hook: &str, formula: &str, slip: f64) -> Result<Averages, Rejection> {
     let text =
         format!("name = \"odd\"\nsummary = \"an odd law\"\nsource = \"none\"\n{hook} = \"{formula}\"\n");
-    let effect = Effect::read(&text).unwrap();
-    let effects = Effects::compile(Model::QuasiStatic, [&effect]).unwrap();
+    let effect = Effect::read(&text).expect("a formula");
+    let effects = Effects::compile(Model::QuasiStatic, [&effect]).expect("a form");
     let case = base(slip, 100.0, 30.0);
     let mut active = effects.activate([vec![]]);
     quasi_static::simulate_with(
