@@ -120,7 +120,7 @@ fn malformed_effect_files_name_file_line_and_column() {
     );
     refused(
         mine("neutral", "neutrl"),
-        "mine.toml line 7: unknown key \"neutrl\"; the nearest known is \"neutral\"",
+        "mine.toml line 7, column 1: unknown key \"neutrl\"; the nearest known is \"neutral\"",
     );
     refused(
         mine("uniform = [0.0, 0.8]", "unifrm = [0.0, 0.8]"),

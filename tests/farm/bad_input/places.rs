@@ -284,8 +284,8 @@ fn forward_runs_refuse_wrong_models_and_parameters() {
         "theta.toml: n = -1 1 lies outside [0.01, 10] 1"
     );
     assert_eq!(
-        simulate(model, &(theta.clone() + "m = 1.0\n")),
-        "theta.toml: unknown parameter \"m\"; the nearest known is \"n\""
+        simulate(model, &(theta.clone() + "cohesion = 1.0\n")),
+        "theta.toml: unknown parameter \"cohesion\"; the nearest known is \"cohesion_pa\""
     );
     let said = simulate(model, &with("n = \"one\""));
     assert!(said.starts_with("theta.toml line 8: "), "{said}");
