@@ -137,20 +137,16 @@ fn deeds(signature: &Signature) -> String {
         ),
         0,
     );
+    if !signature.shapes.is_empty() {
+        let shapes = signature.shapes.iter();
+        let shapes: Vec<String> = shapes
+            .map(|(name, value, unit)| set(name, *value, unit))
+            .collect();
+        text += &format!("with {}\n", shapes.join(", "));
+    }
     for shown in &signature.strengths {
-        let _ = match shown.value {
-            Some(value) if shown.unit == "1" => {
-                writeln!(text, "\nat {} = {}", shown.parameter, number(value))
-            }
-            Some(value) => writeln!(
-                text,
-                "\nat {} = {} {}",
-                shown.parameter,
-                number(value),
-                shown.unit
-            ),
-            None => writeln!(text),
-        };
+        let at = shown.value.map(|value| set(&shown.parameter, value, &shown.unit));
+        let _ = writeln!(text, "\n{}", at.map_or("always".into(), |at| format!("at {at}")));
         let heads: String = signature.conditions.iter().map(|c| format!(" {c:>11}")).collect();
         let _ = writeln!(text, "{:<24}{heads}", "");
         for channel in &shown.channels {
@@ -176,6 +172,16 @@ fn deeds(signature: &Signature) -> String {
         }
     }
     text
+}
+
+/// `v_a = 0.01 m/s`.
+fn set(name: &str, value: f64, unit: &str) -> String {
+    let unit = if unit == "1" {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
+    format!("{name} = {}{unit}", number(value))
 }
 
 /// A number as a file would have it.

@@ -42,6 +42,8 @@ pub struct Signature {
     pub pass: u32,
     /// Names of the conditions in the tables; slip 0.2, 100 N and 10 mm/s of rim speed where nothing else is said.
     pub conditions: Vec<String>,
+    /// Values at which the other parameters, which only shape the effect, are held: name, value, unit.
+    pub shapes: Vec<(String, f64, String)>,
     /// Slips of the curves.
     pub slips: Vec<f64>,
     /// Each strength alone, at its typical value.
@@ -120,6 +122,12 @@ pub fn signature(effect: &Effect, kind: ModelKind) -> Result<Signature, String> 
         model_kind: kind.name().to_owned(),
         pass,
         conditions: COLUMNS.iter().map(|c| c.0.to_owned()).collect(),
+        shapes: effect
+            .parameters
+            .iter()
+            .filter(|p| p.neutral.is_none())
+            .filter_map(|p| Some((p.name.clone(), shown_at(p)?, p.unit.clone())))
+            .collect(),
         slips,
         strengths: shown,
     })
