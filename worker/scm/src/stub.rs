@@ -29,7 +29,7 @@ pub fn roll_with(
         ..*scene
     };
     let run = spatial::simulate(&changed, &case.condition, settings)?;
-    let averages = measured(effects, &case.soil, case.variables, run.averages.clone())?;
+    let averages = measured(effects, &case.soil, case.variables, run.averages)?;
     Ok(Run { averages, ..run })
 }
 
