@@ -80,11 +80,18 @@ pub fn read_beside(beside: &Path, names: &[String]) -> Result<BTreeMap<String, S
     names.iter().map(read).collect()
 }
 
+/// Deepest nesting of brackets in a file of ours; a job needs three.
+const DEEPEST: usize = 16;
+
 /// Parses TOML into `T`; an unknown key is an error that names its line and the nearest known key.
 ///
 /// # Errors
 /// [`FileError`] with the line where the parser stopped.
 pub fn parse_toml<T: serde::de::DeserializeOwned>(file: &str, text: &str) -> Result<T, FileError> {
+    if let Some(byte) = formula::nesting::too_deep(text, DEEPEST) {
+        let message = format!("brackets must be nested at most {DEEPEST} deep");
+        return Err(FileError::at(file, line_of(text, byte), message));
+    }
     toml::from_str(text).map_err(|e| {
         let line = e.span().map(|span| line_of(text, span.start));
         FileError {
@@ -143,5 +150,17 @@ mod tests {
         let mut error = FileError::at("mine.toml", 4, "wrong");
         error.column = Some(17);
         assert_eq!(error.to_string(), "mine.toml line 4, column 17: wrong");
+    }
+
+    #[test]
+    fn a_file_made_to_exhaust_the_stack_is_refused() {
+        // 79 inline tables of 79 dotted names each
+        let names = ["a"; 79].join(".");
+        let text = format!("x = {}1{}", format!("{{ {names} = ").repeat(79), " }".repeat(79));
+        let error = parse_toml::<toml::Table>("job.toml", &text).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "job.toml line 1: brackets must be nested at most 16 deep"
+        );
     }
 }

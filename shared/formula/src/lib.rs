@@ -12,6 +12,7 @@
 //! - `graph`: the operations of one effect, each of them once.
 //! - `dimension`: whether the units of a formula can be right; `proportion`: whether it only scales what it replaces.
 //! - [`program`]: a formula made ready; [`block`]: its evaluation at many points; `arithmetic`: one operation.
+//! - [`nesting`]: whether a file is too deep to be parsed.
 //! - [`word`]: what was probably meant.
 //! - [`elementary`]: `exp`, `ln` and powers that vectorise and give the same bits on every machine.
 //!
@@ -113,6 +114,7 @@ pub mod effect;
 pub mod elementary;
 mod graph;
 pub mod hook;
+pub mod nesting;
 mod parse;
 pub mod program;
 mod proportion;

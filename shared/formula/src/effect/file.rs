@@ -9,6 +9,7 @@ use toml::de::{DeTable, DeValue};
 use super::{Effect, EffectError, Parameter, names, place};
 use crate::graph::{Graph, Node};
 use crate::hook::Hook;
+use crate::nesting::too_deep;
 use crate::parse::{Definition, Scope, parse};
 use crate::token::{Mistake, Token, Tokens};
 use crate::unit::Unit;
@@ -19,8 +20,7 @@ use crate::word::unknown_word;
 const MOST_PARAMETERS: usize = 16;
 /// Most definitions of an effect.
 const MOST_DEFINITIONS: usize = 32;
-/// Deepest nesting of tables and arrays: a prior's arguments need 5. What reads TOML recurses, and a stranger's file must
-/// not exhaust the stack: it may go down 80 tables for each bracket, by a key with dots.
+/// Deepest nesting of tables and arrays: a prior's arguments need 5.
 const DEEPEST: usize = 8;
 
 #[derive(Deserialize)]
@@ -181,7 +181,7 @@ pub(super) fn read(text: &str) -> Result<Effect, EffectError> {
 
 /// The file's keys and tables.
 fn tables(text: &str) -> Result<RawEffect, EffectError> {
-    if let Some(byte) = place::too_deep(text, DEEPEST) {
+    if let Some(byte) = too_deep(text, DEEPEST) {
         let message = format!("brackets must be nested at most {DEEPEST} deep");
         return Err(at(text, byte, message));
     }

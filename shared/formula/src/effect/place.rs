@@ -1,8 +1,5 @@
 //! Find where in a file a mistake stands.
 
-use toml_parser::Source;
-use toml_parser::lexer::TokenKind;
-
 /// Line and column of a byte, each counted from 1; columns in characters.
 pub(super) fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     let before = text.get(..byte).unwrap_or(text);
@@ -43,29 +40,6 @@ pub(super) fn in_string(raw: &str, content: &str, character: usize) -> usize {
         at = past_joint(at);
     }
     at.min(raw.len())
-}
-
-/// The byte of the first bracket that stands in more than so many others.
-///
-/// A bracket that closes another kind than was opened counts for nothing, so that no malformed file seems flatter than it is.
-pub(super) fn too_deep(text: &str, most: usize) -> Option<usize> {
-    let mut open = Vec::new();
-    for token in Source::new(text).lex() {
-        match token.kind() {
-            kind @ (TokenKind::LeftSquareBracket | TokenKind::LeftCurlyBracket) => open.push(kind),
-            TokenKind::RightSquareBracket if open.last() == Some(&TokenKind::LeftSquareBracket) => {
-                open.pop();
-            }
-            TokenKind::RightCurlyBracket if open.last() == Some(&TokenKind::LeftCurlyBracket) => {
-                open.pop();
-            }
-            _ => {}
-        }
-        if open.len() > most {
-            return Some(token.span().start());
-        }
-    }
-    None
 }
 
 #[cfg(test)]
@@ -109,13 +83,6 @@ mod tests {
                 "{raw:?}: {found:?}"
             );
         }
-    }
-
-    #[test]
-    fn brackets_count_outside_texts_and_comments() {
-        assert_eq!(too_deep("[a]\nb = [[{ c = 1 }]] # [[[[\nd = \"[[[[\"\n", 3), None);
-        assert_eq!(too_deep("b = [[{ c = [] }]]", 3), Some(12));
-        assert_eq!(too_deep("b = [}[}[}[", 3), Some(10));
     }
 
     #[test]

@@ -1,0 +1,42 @@
+//! Tell how deep the brackets of a TOML file go, before it is parsed.
+//!
+//! What reads TOML recurses, and a stranger's file must not exhaust the stack: the parser itself limits brackets to 80, but goes
+//! down 80 tables more for each of them, by a key with dots.
+
+use toml_parser::Source;
+use toml_parser::lexer::TokenKind;
+
+/// The byte of the first bracket that stands in more than so many others.
+///
+/// A bracket that closes another kind than was opened counts for nothing, so that no malformed file seems flatter than it is.
+pub fn too_deep(text: &str, most: usize) -> Option<usize> {
+    let mut open = Vec::new();
+    for token in Source::new(text).lex() {
+        match token.kind() {
+            kind @ (TokenKind::LeftSquareBracket | TokenKind::LeftCurlyBracket) => open.push(kind),
+            TokenKind::RightSquareBracket if open.last() == Some(&TokenKind::LeftSquareBracket) => {
+                open.pop();
+            }
+            TokenKind::RightCurlyBracket if open.last() == Some(&TokenKind::LeftCurlyBracket) => {
+                open.pop();
+            }
+            _ => {}
+        }
+        if open.len() > most {
+            return Some(token.span().start());
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn brackets_count_outside_texts_and_comments() {
+        assert_eq!(too_deep("[a]\nb = [[{ c = 1 }]] # [[[[\nd = \"[[[[\"\n", 3), None);
+        assert_eq!(too_deep("b = [[{ c = [] }]]", 3), Some(12));
+        assert_eq!(too_deep("b = [}[}[}[", 3), Some(10));
+    }
+}
