@@ -15,7 +15,7 @@ pub enum Hook {
     Radius,
     /// Width of the rim, > 0.
     Width,
-    /// Sinkage exponent n, > 0.
+    /// Sinkage exponent n, in (0, 10].
     SinkageExponent,
     /// Load that the soil must carry, > 0; may depend on pull and torque, which depend on it.
     WheelLoad,
@@ -120,7 +120,8 @@ impl Hook {
         value.is_finite()
             && match self {
                 Hook::Slip => (-1.0..1.0).contains(&value),
-                Hook::Radius | Hook::Width | Hook::SinkageExponent | Hook::WheelLoad => value > 0.0,
+                Hook::Radius | Hook::Width | Hook::WheelLoad => value > 0.0,
+                Hook::SinkageExponent => value > 0.0 && value <= 10.0,
                 Hook::Pressure | Hook::ShearLimit | Hook::Shear => value >= 0.0,
                 Hook::DrawbarPull | Hook::Torque | Hook::Sinkage | Hook::LateralForce => true,
             }
@@ -130,7 +131,8 @@ impl Hook {
     pub fn bound(self) -> &'static str {
         match self {
             Hook::Slip => "in [-1, 1)",
-            Hook::Radius | Hook::Width | Hook::SinkageExponent | Hook::WheelLoad => "finite and above 0",
+            Hook::Radius | Hook::Width | Hook::WheelLoad => "finite and above 0",
+            Hook::SinkageExponent => "above 0 and at most 10",
             Hook::Pressure | Hook::ShearLimit | Hook::Shear => "finite and at least 0",
             Hook::DrawbarPull | Hook::Torque | Hook::Sinkage | Hook::LateralForce => "finite",
         }

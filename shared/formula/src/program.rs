@@ -99,7 +99,7 @@ pub struct Program {
     uses: Variables,
     local: Variables,
     parameters: Vec<u8>,
-    kinked: bool,
+    kinks: Variables,
 }
 
 impl Program {
@@ -113,13 +113,13 @@ impl Program {
             registers: Registers::new(graph, &behind),
         };
         let mut parameters = Vec::new();
-        let mut kinked = false;
+        let mut kinks = Variables::default();
         for &id in &behind {
             if let Node::Parameter(place) = graph.node(id) {
                 parameters.push(place);
             }
             let place = compiler.place(graph, id, local);
-            kinked |= matches!(place, Operand::Register(_)) && has_kink(graph.node(id));
+            kinks = kinks.union(kinks_by(graph, id));
             compiler.places[usize::from(id.0)] = Some(place);
             compiler.registers.release(graph, id, &compiler.places);
         }
@@ -161,7 +161,7 @@ impl Program {
             uses: graph.variables(result),
             local,
             parameters,
-            kinked,
+            kinks,
         }
     }
 
@@ -180,9 +180,9 @@ impl Program {
         &self.parameters
     }
 
-    /// Whether the result has a kink or a jump somewhere between the points of a block.
-    pub fn is_kinked(&self) -> bool {
-        self.kinked
+    /// The variables on which it depends where the result has a kink or a jump.
+    pub fn kinks(&self) -> Variables {
+        self.kinks
     }
 
     /// Computes what is the same at all points, and gives the result if it is.
@@ -226,12 +226,17 @@ impl Program {
     }
 }
 
-/// Whether an operation is smooth in its arguments but for kinks or jumps.
-fn has_kink(node: Node) -> bool {
-    matches!(
-        node,
-        Node::If(..) | Node::Unary(Unary::Abs, _) | Node::Binary(Binary::Min | Binary::Max, ..)
-    )
+/// The variables whose change takes an operation through a kink or a jump.
+fn kinks_by(graph: &Graph, id: Id) -> Variables {
+    match graph.node(id) {
+        Node::If(condition, ..) => graph.variables(condition),
+        node @ (Node::Unary(Unary::Abs, _) | Node::Binary(Binary::Min | Binary::Max, ..)) => {
+            node.arguments().fold(Variables::default(), |set, argument| {
+                set.union(graph.variables(argument))
+            })
+        }
+        _ => Variables::default(),
+    }
 }
 
 /// The powers that formulas use most need no logarithm: x^2 is x x, and x^0.5 the square root.

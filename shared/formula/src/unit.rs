@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn what_is_no_si_unit_is_named() {
-        for text in ["mm", "", "N/", "m^x", "m^400", "lb"] {
+        for text in ["mm", "", "N/", "m^x", "m^400", "m^-32768", "lb"] {
             let error = Unit::parse(text).unwrap_err();
             assert!(
                 error.starts_with("unknown unit") && error.contains("Pa"),

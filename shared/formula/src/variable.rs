@@ -212,6 +212,11 @@ impl Variables {
         Self(self.0 | other.0)
     }
 
+    /// Whether the two have a member in common.
+    pub fn meets(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
     /// Its members, in the order of their numbers.
     pub fn iter(self) -> impl Iterator<Item = Variable> {
         Variable::ALL.into_iter().filter(move |&v| self.contains(v))

@@ -79,6 +79,16 @@ impl Mechanism {
             Mechanism::EndWall => "end_wall",
         }
     }
+
+    /// The parameters that it takes, in their order.
+    pub fn parameters(self) -> &'static [&'static str] {
+        match self {
+            Mechanism::Rebound => &["compliance_m_pa"],
+            Mechanism::FlatPatch => &["deflection_m_n"],
+            Mechanism::Digging => &["depth_m"],
+            Mechanism::EndWall => &["wall_stiffening", "reach_m"],
+        }
+    }
 }
 
 /// Why an effect file cannot be used, and where.

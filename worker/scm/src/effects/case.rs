@@ -1,8 +1,9 @@
 //! A run as effects on slip, dimensions, exponent and load leave it.
 
-use formula::{Hook, Variable};
+use formula::variable::Variables;
+use formula::{Hook, Program, Variable};
 
-use super::{Active, Site};
+use super::{Active, Law, Site};
 use crate::{Condition, Rejection, Soil, Wheel};
 
 /// Soil, wheel and condition that a model integrates, and the variables that formulas see of them.
@@ -16,7 +17,7 @@ pub(crate) struct Case {
 }
 
 impl Active<'_> {
-    /// Apply the effects on slip, radius, width and sinkage exponent, and on the load where it depends on nothing else.
+    /// Apply the effects on slip, radius, width and sinkage exponent, and on the load up to the first one that asks for pull or torque.
     pub(crate) fn case(
         &self,
         soil: &Soil,
@@ -44,7 +45,7 @@ impl Active<'_> {
         ] {
             variables[variable as usize] = value;
         }
-        self.replace(Hook::Slip, &mut variables)?;
+        replace(Hook::Slip, self.at(Hook::Slip), &mut variables)?;
         let slip = variables[Variable::Slip as usize];
         if slip.to_bits() != condition.slip.to_bits() {
             // the motor keeps its speed: another slip is another speed of the sled
@@ -56,11 +57,12 @@ impl Active<'_> {
             };
         }
         for hook in [Hook::Radius, Hook::Width, Hook::SinkageExponent] {
-            self.replace(hook, &mut variables)?;
+            replace(hook, self.at(hook), &mut variables)?;
         }
-        if !self.load_follows_reaction() {
-            self.replace(Hook::WheelLoad, &mut variables)?;
-        }
+        let own = self
+            .at(Hook::WheelLoad)
+            .take_while(|law| !follows_reaction(law.0));
+        replace(Hook::WheelLoad, own, &mut variables)?;
         let of = |variable: Variable| variables[variable as usize];
         Ok(Case {
             soil: Soil {
@@ -84,38 +86,52 @@ impl Active<'_> {
 
     /// Whether the load that the soil must carry depends on pull or torque.
     pub(crate) fn load_follows_reaction(&self) -> bool {
-        self.enter(Hook::WheelLoad)
-            && self.at(Hook::WheelLoad).any(|(program, ..)| {
-                let uses = program.uses();
-                uses.contains(Variable::DrawbarPull) || uses.contains(Variable::Torque)
-            })
+        self.at(Hook::WheelLoad).any(|law| follows_reaction(law.0))
     }
 
-    /// The load that the soil must carry while it exerts a pull and a torque.
+    /// Whether the load that follows pull and torque may jump with them.
+    pub(crate) fn load_jumps(&self) -> bool {
+        let reaction = Variables::of(&REACTION);
+        self.at(Hook::WheelLoad).any(|law| law.0.kinks().meets(reaction))
+    }
+
+    /// The load that the soil must carry while it exerts a pull and a torque: what the formulas from the first one on that
+    /// asks for them make of the case's load.
     pub(crate) fn wheel_load(&self, case: &Case, drawbar_pull: f64, torque: f64) -> Result<f64, Rejection> {
         let mut variables = case.variables;
         variables[Variable::DrawbarPull as usize] = drawbar_pull;
         variables[Variable::Torque as usize] = torque;
-        self.replace(Hook::WheelLoad, &mut variables)?;
+        let following = self
+            .at(Hook::WheelLoad)
+            .skip_while(|law| !follows_reaction(law.0));
+        replace(Hook::WheelLoad, following, &mut variables)?;
         Ok(variables[Variable::WheelLoad as usize])
     }
+}
 
-    /// Replace a quantity of the run by what the formulas at its hook make of it.
-    fn replace(&self, hook: Hook, variables: &mut [f64; Variable::COUNT]) -> Result<(), Rejection> {
-        if !self.enter(hook) {
-            return Ok(());
+/// What the soil answers to a load.
+const REACTION: [Variable; 2] = [Variable::DrawbarPull, Variable::Torque];
+
+fn follows_reaction(program: &Program) -> bool {
+    program.uses().meets(Variables::of(&REACTION))
+}
+
+/// Replace a quantity of the run by what formulas at its hook make of it.
+fn replace<'a, 'b>(
+    hook: Hook,
+    laws: impl Iterator<Item = (&'a Program, &'a Law, &'b [f64])>,
+    variables: &mut [f64; Variable::COUNT],
+) -> Result<(), Rejection> {
+    let mut scalars = Vec::new();
+    for (program, law, parameters) in laws {
+        // without nodes nothing differs from point to point
+        let value = program
+            .settle(variables, parameters, &mut scalars)
+            .unwrap_or(f64::NAN);
+        if !hook.admits(value) {
+            return Err(law.refusal(hook, parameters, value, |v| variables[v as usize]));
         }
-        let mut scalars = Vec::new();
-        for (program, law, parameters) in self.at(hook) {
-            // without nodes nothing differs from point to point
-            let value = program
-                .settle(variables, parameters, &mut scalars)
-                .unwrap_or(f64::NAN);
-            if !hook.admits(value) {
-                return Err(law.refusal(hook, parameters, value, |v| variables[v as usize]));
-            }
-            variables[hook.target() as usize] = value;
-        }
-        Ok(())
+        variables[hook.target() as usize] = value;
     }
+    Ok(())
 }

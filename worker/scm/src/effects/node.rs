@@ -15,7 +15,9 @@ const HOOKS: [Hook; 3] = [Hook::Pressure, Hook::ShearLimit, Hook::Shear];
 pub(crate) struct NodeLaws<'a> {
     laws: Vec<NodeLaw<'a>>,
     uses: Variables,
-    kinked: bool,
+    kinks: Variables,
+    /// What a formula last replaced, for messages.
+    before: Vec<f64>,
     /// The nodes at hand: write columns, apply, read columns.
     pub(crate) block: Block,
 }
@@ -46,11 +48,14 @@ impl<'a> NodeLaws<'a> {
         let uses = laws
             .iter()
             .fold(Variables::default(), |set, law| set.union(law.program.uses()));
-        let kinked = laws.iter().any(|law| law.program.is_kinked());
+        let kinks = laws
+            .iter()
+            .fold(Variables::default(), |set, law| set.union(law.program.kinks()));
         (!laws.is_empty()).then(|| Self {
             laws,
             uses,
-            kinked,
+            kinks,
+            before: Vec::new(),
             block: Block::default(),
         })
     }
@@ -67,7 +72,14 @@ impl<'a> NodeLaws<'a> {
 
     /// Whether stresses may have kinks or jumps between nodes.
     pub(crate) fn are_kinked(&self) -> bool {
-        self.kinked
+        let local = self.laws.first().map(|law| law.program.local());
+        local.is_some_and(|local| self.kinks.meets(local))
+    }
+
+    /// Whether stresses may jump as the contact changes.
+    pub(crate) fn may_jump(&self) -> bool {
+        let of_contact = [Variable::ContactLength, Variable::BEff, Variable::KStar];
+        self.are_kinked() || self.kinks.meets(Variables::of(&of_contact))
     }
 
     /// Whether there is a formula at a hook.
@@ -108,6 +120,9 @@ impl<'a> NodeLaws<'a> {
             if law.hook != hook {
                 continue;
             }
+            self.before.clear();
+            self.before
+                .extend_from_slice(&self.block.column(target)[..points]);
             self.block.replace(target, law.program, &law.scalars, points);
             let values = &self.block.column(target)[..points];
             // what these hooks admit, without a way out, so that it vectorises
@@ -124,6 +139,7 @@ impl<'a> NodeLaws<'a> {
                 for variable in law.program.local().iter() {
                     all[variable as usize] = self.block.column(variable)[point];
                 }
+                all[target as usize] = self.before[point];
                 return Err(law.law.refusal(hook, &law.parameters, value, |v| all[v as usize]));
             }
         }

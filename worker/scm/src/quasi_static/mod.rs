@@ -27,6 +27,7 @@ use rim::Rim;
 
 use crate::effects::{Active, Site};
 use crate::pressure_sinkage::k_star;
+use crate::rejection::require;
 use crate::{Averages, Condition, Rejection, Soil, Wheel};
 
 /// Steady forces, torque and sinkage of a smooth rigid wheel on plastic soil.
@@ -90,7 +91,8 @@ pub fn simulate(soil: &Soil, wheel: &Wheel, condition: &Condition) -> Result<Ave
 ///
 /// In the order of [`Hook::ALL`](formula::Hook::ALL): slip, dimensions and sinkage exponent are replaced before anything else; at
 /// every node of the rim the pressure, the strength and the shear stress; the load where it depends on pull and torque at every
-/// trial of the balance; the channels at the end. Two mechanisms are in code:
+/// trial of the balance; the channels at the end. Formulas at nodes and the flat see the load without what follows pull and
+/// torque, channels the load that is carried. Two mechanisms are in code:
 ///
 /// - *rebound*, with the compliance a: the soil behind the axle springs back by `e = min(a p_0, z_0/2)`, `p_0 = k* z_0^n`, and
 ///   carries `gamma p_0 (1 − h/e)` where it has risen by h; gamma spreads over the whole contact.
@@ -112,7 +114,7 @@ pub fn simulate(soil: &Soil, wheel: &Wheel, condition: &Condition) -> Result<Ave
 /// forces are continuous in the parameters.
 ///
 /// # Source
-/// PHYSICS of each effect: its file in the catalogue. Checked by `effects::*`.
+/// Each effect names its own in the catalogue. Checked by `effects::*`.
 pub fn simulate_with(
     soil: &Soil,
     wheel: &Wheel,
@@ -126,7 +128,7 @@ pub fn simulate_with(
             rim: Rim::new(&soil, &wheel, &condition),
             reshaping: None,
         };
-        return average(&mut base, condition.wheel_load_n);
+        return average(&mut base, condition.wheel_load_n).map(|(averages, _)| averages);
     }
     let case = effects.case(&soil, &wheel, &condition, site)?;
     let (soil, wheel, condition) = (case.soil, case.wheel.checked()?, case.condition.checked()?);
@@ -143,9 +145,18 @@ pub fn simulate_with(
     };
     let averages = average(&mut footing, condition.wheel_load_n);
     effects.nodes = footing.reshaping.and_then(|reshaping| reshaping.laws);
-    let mut averages = averages?;
+    let (mut averages, load_n) = averages?;
     if effects.change_channels() {
+        variables[Variable::WheelLoad as usize] = load_n;
         measure(effects, &soil, &mut variables, &mut averages)?;
+        // a channel that reports the wheel in the soil up to its hub describes no test
+        require(
+            averages.sinkage_m < wheel.radius_m,
+            "sinkage_m",
+            averages.sinkage_m,
+            "m",
+            "below the wheel's radius, with the effects on it",
+        )?;
     }
     Ok(averages)
 }
@@ -176,8 +187,8 @@ fn measure(
     Ok(())
 }
 
-/// Balance the wheel load.
-fn average(footing: &mut Footing, wheel_load: f64) -> Result<Averages, Rejection> {
+/// Balance the wheel load; gives the load carried, too.
+fn average(footing: &mut Footing, wheel_load: f64) -> Result<(Averages, f64), Rejection> {
     let reaction = balance::first_balance(footing, wheel_load)?;
     let averages = Averages {
         drawbar_pull_n: reaction.drawbar_pull,
@@ -199,5 +210,5 @@ fn average(footing: &mut Footing, wheel_load: f64) -> Result<Averages, Rejection
             return Err(Rejection::NotFinite { quantity, value });
         }
     }
-    Ok(averages)
+    Ok((averages, wheel_load + reaction.extra_load))
 }

@@ -32,6 +32,7 @@ pub(super) struct Reshaping<'r, 'e> {
     pub(super) case: Case,
     pub(super) laws: Option<NodeLaws<'e>>,
     load_follows: bool,
+    load_jumps: bool,
     /// Height by which the load flattens the rim, δ `[m]`.
     deflection: f64,
     /// Way by which the soil springs back under a unit of pressure `[m/Pa]`.
@@ -118,6 +119,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         Self {
             laws,
             load_follows: active.load_follows_reaction(),
+            load_jumps: active.load_jumps(),
             deflection,
             compliance,
             panels: Vec::new(),
@@ -140,9 +142,9 @@ impl<'r, 'e> Reshaping<'r, 'e> {
             .sqrt()
     }
 
-    /// Whether the load may jump as places of a law's jumps pass nodes.
+    /// Whether the load may jump: as places of a law's jumps pass nodes, with the contact, or with the reaction that it follows.
     pub(super) fn may_jump(&self) -> bool {
-        self.laws.as_ref().is_some_and(NodeLaws::are_kinked)
+        self.laws.as_ref().is_some_and(NodeLaws::may_jump) || self.load_jumps
     }
 
     /// By how much the load that the soil must carry exceeds the nominal one `[N]`.
@@ -195,7 +197,8 @@ impl<'r, 'e> Reshaping<'r, 'e> {
             pressure_at_bottom: pressure(shape.k_star, shape.sinkage, rim.soil.n),
             gamma: RectangleDistribution::new(rim.law, length, 0.5 * rim.width),
         };
-        let parts = if self.may_jump() { PARTS } else { 1 };
+        let kinked = self.laws.as_ref().is_some_and(NodeLaws::are_kinked);
+        let parts = if kinked { PARTS } else { 1 };
         let mut ends = [0.0; ENDS];
         let count = if shape.rear > 0.0 {
             shape.panel_ends(rim, &mut ends)

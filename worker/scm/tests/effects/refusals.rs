@@ -6,7 +6,7 @@ use scm::effects::{Effects, Model, Site};
 use scm::{Averages, Rejection, quasi_static};
 
 use crate::support::base;
-use crate::validation::effects::{SITE, with_effect};
+use crate::validation::effects::{SITE, values, with_effect};
 
 fn with_law(hook: &str, formula: &str, slip: f64) -> Result<Averages, Rejection> {
     let text =
@@ -34,6 +34,8 @@ fn what_is_no_number_names_the_effect_and_the_values() {
             && message.contains("z = "),
         "{message}"
     );
+    // what is shown is what went in
+    assert!(!message.contains("p = NaN"), "{message}");
 }
 
 #[test]
@@ -52,6 +54,11 @@ fn every_hook_has_its_bound() {
             "wheel_load is -",
         ),
         ("sinkage_exponent", "n - 2", "sinkage_exponent is -"),
+        (
+            "sinkage_exponent",
+            "n + 20",
+            "which must be above 0 and at most 10",
+        ),
         ("pressure", "-p", "pressure is -"),
         ("shear_limit", "tau_max / 0", "shear_limit is inf Pa"),
         ("shear", "-tau", "shear is -"),
@@ -114,4 +121,74 @@ fn the_load_that_follows_the_pull_is_met() {
     let mut lighter = case;
     lighter.condition.wheel_load_n = 100.0 - 0.15 * run.drawbar_pull_n;
     assert!((lighter.simulate().drawbar_pull_n - run.drawbar_pull_n).abs() < 1e-6);
+}
+
+#[test]
+fn channels_see_the_load_that_is_carried() {
+    let bearing = |others: &[(&str, &str, f64)]| {
+        let named = others
+            .iter()
+            .chain(&[("bearing_friction", "friction_arm_m", 0.01)]);
+        let (effects, given): (Vec<&Effect>, Vec<Vec<f64>>) = named
+            .map(|(name, strength, value)| {
+                let effect = find(name).expect("in the catalogue");
+                (effect, values(effect, strength, *value))
+            })
+            .unzip();
+        let compiled = Effects::compile(Model::QuasiStatic, effects).expect("a form");
+        let case = base(0.2, 100.0, 30.0);
+        let run = |values: Vec<Vec<f64>>| {
+            let mut active = compiled.activate(values);
+            quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, &mut active, &SITE)
+                .expect("support")
+        };
+        let mut idle = given.clone();
+        *idle.last_mut().expect("bearing friction") = vec![0.0];
+        let (with, without) = (run(given), run(idle));
+        (with.torque_n_m - without.torque_n_m, without.drawbar_pull_n)
+    };
+    let (scaled, _) = bearing(&[("load_scale", "load_error", 0.2)]);
+    assert!((scaled - 1.2).abs() < 1e-9, "{scaled}");
+    // the same where another effect asks for the pull, however little
+    let (both, _) = bearing(&[
+        ("load_scale", "load_error", 0.2),
+        ("load_transfer", "transferred_share", 1e-9),
+    ]);
+    assert!((both - 1.2).abs() < 1e-6, "{both}");
+    let (transferred, pull) = bearing(&[("load_transfer", "transferred_share", 0.3)]);
+    assert!(
+        (transferred - 0.01 * (100.0 - 0.3 * pull)).abs() < 1e-9,
+        "{transferred}"
+    );
+}
+
+#[test]
+fn laws_that_jump_with_the_contact_or_the_reaction_have_a_balance() {
+    for (hook, formula) in [
+        ("pressure", "p * if(contact_length > 0.0365, 1.5, 1)"),
+        (
+            "wheel_load",
+            "if(drawbar_pull > 36, 0.7 * wheel_load, wheel_load)",
+        ),
+        ("wheel_load", "wheel_load - 0.1 * max(drawbar_pull - 30, 0)"),
+    ] {
+        let run = with_law(hook, &format!("1 * ({formula})"), 0.2).unwrap();
+        assert!(
+            run.drawbar_pull_n.is_finite() && run.sinkage_m > 0.0,
+            "{hook}: {run:?}"
+        );
+    }
+}
+
+#[test]
+fn a_wheel_that_reads_as_sunk_to_its_hub_is_refused() {
+    let effects = Effects::compile(Model::QuasiStatic, find("slip_digging")).unwrap();
+    let case = base(0.97, 100.0, 30.0);
+    let mut active = effects.activate([vec![0.01]]);
+    let refused = quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, &mut active, &SITE);
+    let message = refused.unwrap_err().to_string();
+    assert!(
+        message.contains("sinkage_m = 0.32") && message.contains("below the wheel's radius"),
+        "{message}"
+    );
 }

@@ -375,3 +375,37 @@ fn all_effects_at_once_are_finite_and_repeat() {
         );
     }
 }
+
+#[test]
+fn an_offset_of_what_is_measured_moves_no_soil() {
+    // 10 degrees of slip angle, a light load: settles late
+    let mut track = crate::scene::smooth(0.4, 60.0, 30.0);
+    track.case.condition.slip_angle_rad = 10_f64.to_radians();
+    let without = track.roll().averages;
+    for offset in [1e-3, -without.sinkage_m] {
+        let mut with = track.clone();
+        with.enter(catalogue("sinkage_offset"), &[offset]);
+        let with = with.roll().averages;
+        assert_eq!(with.drawbar_pull_n.to_bits(), without.drawbar_pull_n.to_bits());
+        assert_eq!(
+            with.simulated_travel_m.to_bits(),
+            without.simulated_travel_m.to_bits()
+        );
+    }
+}
+
+#[test]
+fn a_sinkage_exponent_beyond_its_bound_is_refused() {
+    let mut track = short_smooth();
+    track.enter(catalogue("slip_sinkage"), &[1e6]);
+    assert_eq!(rejection(&track).kind(), "formula");
+}
+
+#[test]
+fn a_hardened_track_stiffens_from_the_second_pass_on() {
+    let mut track = short_smooth();
+    track.case.condition.pass = 2;
+    let without = track.roll().averages;
+    track.enter(catalogue("multipass_hardening"), &[0.3]);
+    assert!(track.roll().averages.sinkage_m < without.sinkage_m);
+}

@@ -73,7 +73,8 @@ impl<'a> RunEffects<'a> {
     /// Begin a step of a pass under a load `[N]`.
     pub(super) fn begin_step(&mut self, pass: u32, load: f64) {
         self.set(Variable::Pass, f64::from(pass));
-        self.set(Variable::WheelLoad, load);
+        // nodes go on seeing the load without what follows the reaction
+        self.variables[Variable::WheelLoad as usize] = load;
     }
 
     /// Make the soil as stiff as it is after a travel `[m]` along the bin.
@@ -181,9 +182,8 @@ impl EndWall {
 }
 
 fn digging(active: &Active) -> Result<f64, Rejection> {
-    let depth = active
-        .mechanism(Mechanism::Digging)
-        .map_or(0.0, |values| values[0]);
+    let values = active.mechanism(Mechanism::Digging);
+    let depth = values.and_then(|values| values.first().copied()).unwrap_or(0.0);
     require(depth >= 0.0, "depth_m", depth, "m", "at least 0")?;
     Ok(depth)
 }

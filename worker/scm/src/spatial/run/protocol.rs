@@ -76,7 +76,9 @@ fn steady(
         if (taken as f64) < end {
             continue;
         }
-        let means = (taken > 0).then(|| record.means(end - window, end)).transpose()?;
+        let means = (taken > 0)
+            .then(|| record.own_means(end - window, end))
+            .transpose()?;
         if let (Some(means), Some((before, _))) = (means, last) {
             let scales = [load, load * radius, means[2].abs().max(1e-3 * radius), load];
             let change = (0..4).fold(0.0_f64, |most, i| {
@@ -102,12 +104,13 @@ fn steady(
         (window, end) = (wanted, end + wanted);
     }
     let settled = last.filter(|(_, change)| change.is_finite());
-    let (means, change) = settled.ok_or(Rejection::InvalidParameter {
+    let (_, change) = settled.ok_or(Rejection::InvalidParameter {
         name: "most_travel_m",
         value: most_steps as f64 * rolling.steps.travel,
         unit: "m",
         bound: "long enough for two windows of averages",
     })?;
+    let means = record.means(end - window, end)?;
     let first_step = (end - window).max(0.0) as usize;
     Ok((Windows { means, first_step }, Some(change)))
 }

@@ -25,8 +25,8 @@ pub(super) struct Windows {
 /// What a run gives, step by step.
 pub(super) struct Record {
     pub(super) history: History,
-    /// Drawbar pull, torque and lateral force of the soil where something else is measured.
-    soils_own: Vec<[f64; 3]>,
+    /// Drawbar pull, torque, sinkage and lateral force as the soil has them, where something else is measured.
+    soils_own: [Vec<f64>; 4],
     pub(super) contact_length_m: Vec<f64>,
     b_eff_m: Vec<f64>,
     nodes: Vec<f64>,
@@ -44,7 +44,7 @@ impl Record {
                 step_s,
                 ..History::default()
             },
-            soils_own: Vec::new(),
+            soils_own: Default::default(),
             contact_length_m: Vec::new(),
             b_eff_m: Vec::new(),
             nodes: Vec::new(),
@@ -65,7 +65,9 @@ impl Record {
         let mut channels = [pull, torque, rolling.sinkage(step.hub), lateral];
         let effects = rolling.effects.as_ref();
         if let Some(effects) = effects.filter(|effects| effects.measure_otherwise()) {
-            self.soils_own.push([pull, torque, lateral]);
+            for (own, value) in self.soils_own.iter_mut().zip(channels) {
+                own.push(value);
+            }
             let b_eff = self.b_eff_m.last().copied().unwrap_or(0.0);
             channels = effects.measure(channels, &rolling.contact, contact_length, b_eff)?;
         }
@@ -88,32 +90,36 @@ impl Record {
         Ok(())
     }
 
-    /// Drawbar pull, torque and lateral force of the soil, from a step on, where they are measured as `means`.
-    fn forces(&self, means: [f64; 4], first: usize) -> [f64; 3] {
-        let part = &self.soils_own[first.min(self.soils_own.len())..];
-        if part.is_empty() {
-            return [means[0], means[1], means[3]];
-        }
-        [0, 1, 2].map(|i| part.iter().map(|forces| forces[i]).sum::<f64>() / part.len() as f64)
+    /// Whether the soil has other channels than those measured.
+    fn measured_otherwise(&self) -> bool {
+        !self.soils_own[0].is_empty()
     }
 
-    /// Means of the four channels between two places counted in steps of travel.
+    /// Drawbar pull, torque and lateral force of the soil, from a step on, where they are measured as `means`.
+    fn forces(&self, means: [f64; 4], first: usize) -> [f64; 3] {
+        [0, 1, 3].map(|i| {
+            let own = &self.soils_own[i];
+            let part = &own[first.min(own.len())..];
+            if part.is_empty() {
+                means[i]
+            } else {
+                part.iter().sum::<f64>() / part.len() as f64
+            }
+        })
+    }
+
+    /// Means of the four channels as they are measured, between two places counted in steps of travel.
     pub(super) fn means(&self, from: f64, to: f64) -> Result<[f64; 4], Rejection> {
-        let mut means = [0.0; 4];
-        for (mean, channel) in means.iter_mut().zip(self.history.channels()) {
-            let history = signal::History {
-                start_s: 0.0,
-                interval_s: 1.0,
-                samples: &channel[1..],
-            };
-            let window = Window {
-                from_s: from,
-                to_s: to,
-                period_s: None,
-            };
-            *mean = period_mean(&history, &window)?.mean;
+        let [pull, torque, sinkage, lateral, _] = self.history.channels();
+        means([pull, torque, sinkage, lateral], from, to)
+    }
+
+    /// The same as the soil has them: an offset of what is measured must not decide when a run has settled.
+    pub(super) fn own_means(&self, from: f64, to: f64) -> Result<[f64; 4], Rejection> {
+        if !self.measured_otherwise() {
+            return self.means(from, to);
         }
-        Ok(means)
+        means(self.soils_own.each_ref().map(Vec::as_slice), from, to)
     }
 
     pub(super) fn finish(
@@ -186,6 +192,24 @@ impl Record {
             history: self.history,
         })
     }
+}
+
+fn means(channels: [&[f64]; 4], from: f64, to: f64) -> Result<[f64; 4], Rejection> {
+    let mut means = [0.0; 4];
+    for (mean, channel) in means.iter_mut().zip(channels) {
+        let history = signal::History {
+            start_s: 0.0,
+            interval_s: 1.0,
+            samples: &channel[1..],
+        };
+        let window = Window {
+            from_s: from,
+            to_s: to,
+            period_s: None,
+        };
+        *mean = period_mean(&history, &window)?.mean;
+    }
+    Ok(means)
 }
 
 #[cfg(test)]
