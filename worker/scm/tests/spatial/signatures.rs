@@ -220,7 +220,8 @@ fn every_effect_changes_what_it_should() {
         for (column, slip) in SLIPS.into_iter().enumerate() {
             let got = channels(&roll(slip, Some(row)));
             // an effect that is small must not be absent; the first pass is not hardened
-            if got == base[column] && row.effect != "multipass_hardening" {
+            let idle = (0..3).all(|i| got[i].to_bits() == base[column][i].to_bits());
+            if idle && row.effect != "multipass_hardening" {
                 verdict = "FAIL";
             }
             for i in 0..3 {
