@@ -11,7 +11,7 @@ use shared::file::{FileError, FileSet};
 use crate::calibration::{Calibration, Identity};
 use crate::farm::dispatch::{Dispatcher, Stopped};
 use crate::farm::{Control, ControlError, Farm};
-use crate::spec::{Method, MethodError, Spec};
+use crate::spec::{EffectsChanged, Job, Method, MethodError, Spec};
 use crate::store::{CalibrationRow, NewCalibrationRow, Store, StoreError};
 
 /// A lease lasts so long without renewal `[ms]`.
@@ -28,6 +28,9 @@ pub enum ServiceError {
     /// The settings do not fit the prior.
     #[error("[sampler] {0}")]
     Settings(#[from] MethodError),
+    /// The effects are not those that the calibration was computed with.
+    #[error(transparent)]
+    Effects(#[from] EffectsChanged),
     /// No such thing.
     #[error("there is no {what} {id}")]
     NotFound {
@@ -187,7 +190,6 @@ impl Service {
             toml: new.toml,
             files: new.files,
         };
-        let spec = Arc::new(Spec::new("job.toml", &job, "experiment.toml", &experiment.files)?);
         // The sampler is built once before anything is stored: what it refuses leaves nothing half-written.
         let trial = Identity {
             id: 0,
@@ -195,9 +197,16 @@ impl Service {
             study: 0,
             experiment: new.experiment,
         };
-        // Drawing a large population from the prior is CPU work: not on the async runtime.
-        let drawn = tokio::task::spawn_blocking(move || Calibration::new(trial, spec));
-        let mut calibration = drawn.await.map_err(|_| Stopped)??;
+        // Reading a stranger's files and drawing a large population from the prior is CPU work: not on the async
+        // runtime.
+        let drawn = tokio::task::spawn_blocking(move || {
+            let (name, files) = ("job.toml", &job.files);
+            let parsed = Job::parse(name, &job.toml)?;
+            parsed.check_files(name, files)?;
+            let spec = Spec::of(name, parsed, files, "experiment.toml", &experiment.files)?;
+            Ok::<_, ServiceError>((Calibration::new(trial, Arc::new(spec))?, job))
+        });
+        let (mut calibration, job) = drawn.await.map_err(|_| Stopped)??;
         let name = new.name.unwrap_or_else(|| "calibration".into());
         let row = NewCalibrationRow {
             experiment: new.experiment,

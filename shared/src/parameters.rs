@@ -136,6 +136,15 @@ pub fn lookup(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Resul
     }
 }
 
+/// A unit behind a number in a sentence: ` m`, and nothing for a number without unit.
+pub fn behind(unit: &str) -> String {
+    if unit == "1" {
+        String::new()
+    } else {
+        format!(" {unit}")
+    }
+}
+
 /// Checks one value against the physical bounds of its parameter.
 ///
 /// # Errors
@@ -146,8 +155,9 @@ pub fn check_value(quantity: &Quantity, name: &str, value: f64) -> Result<(), St
         return Err(format!("{name} = {value} is not a finite number"));
     }
     if value < *lower || value > *upper {
+        let unit = behind(unit);
         return Err(format!(
-            "{name} = {value} {unit} lies outside [{lower}, {upper}] {unit}"
+            "{name} = {value}{unit} lies outside [{lower}, {upper}]{unit}"
         ));
     }
     Ok(())
@@ -254,5 +264,8 @@ mod tests {
         let phi = lookup("friction_angle_deg", &BTreeSet::new(), &EffectSet::default()).unwrap();
         let error = check_value(&phi, "friction_angle_deg", 95.0).unwrap_err();
         assert_eq!(error, "friction_angle_deg = 95 deg lies outside [0, 89] deg");
+        let n = lookup("n", &BTreeSet::new(), &EffectSet::default()).unwrap();
+        let error = check_value(&n, "n", -1.0).unwrap_err();
+        assert_eq!(error, "n = -1 lies outside [0.01, 10]");
     }
 }

@@ -122,3 +122,20 @@ fn one_table_may_be_asked_for_and_its_conditions_read_back() {
     run(again).success();
     assert_eq!(text(&out), predicted);
 }
+
+#[test]
+fn effects_that_plates_and_rings_do_not_feel_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = command(folder.path(), EXPERIMENT);
+    let more = format!("{THETA}\"sled_tare.tare_n\" = 3.0\n");
+    std::fs::write(folder.path().join("theta.toml"), more).unwrap();
+    command.arg("--shear").arg(folder.path().join("s.csv"));
+    let ended = run(command);
+    let notes: Vec<&str> = ended.stderr.lines().collect();
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    assert!(
+        notes[0].contains("does not act on plates and rings effect=\"sled_tare\""),
+        "{notes:?}"
+    );
+    ended.success();
+}

@@ -2,26 +2,12 @@
 
 use std::path::Path;
 
-use farm_tests::job::Job;
+use farm_tests::job::{GAIN, Job};
 use farm_tests::programs::{Ended, coordinator, run, worker};
 use farm_tests::service::Service;
 use farm_tests::text::same;
 use farm_tests::workspace::{data, text};
 use serde_json::Value;
-
-/// A gain of the pull that the data do not have.
-const GAIN: &str = r#"name = "my_gain"
-summary = "the sensor reads too much"
-source = "a guess"
-drawbar_pull = "drawbar_pull * (1 + gain) + shift_n"
-[parameters.gain]
-unit = "1"
-neutral = 0.0
-prior = { normal = [0.0, 0.2] }
-[parameters.shift_n]
-unit = "N"
-prior = 0.25
-"#;
 
 fn path(path: &Path) -> String {
     path.display().to_string()
@@ -106,8 +92,8 @@ fn local_and_remote_workers_fit_effects_to_the_same_bytes() {
         serde_json::json!(["sled_tare", "torque_gain", "my_gain"])
     );
     let version = summary["model_version"].as_str().unwrap();
-    let (equations, effects) = version.split_once("+effects.").unwrap();
-    assert_eq!(equations, service.status(id)["model_version"]);
+    let (_, effects) = version.split_once("+effects.").unwrap();
+    assert_eq!(version, service.status(id)["model_version"]);
     assert!(
         effects.len() == 8 && effects.bytes().all(|b| b.is_ascii_hexdigit()),
         "{version}"
@@ -159,7 +145,10 @@ fn a_file_of_the_command_line_is_fitted_and_belongs_to_the_job() {
     }
     std::fs::write(at("gain.toml"), GAIN.replace("0.2]", "0.3]")).unwrap();
     let message = command(&["--effect-file", &gain]).refusal();
-    assert!(message.contains("the calibration of another job"), "{message}");
+    assert!(
+        message.contains("the calibration of another job: the effect file gain.toml has changed since"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -223,7 +212,7 @@ fn forward_runs_need_a_value_for_every_strength_and_take_shapes_from_the_file() 
     assert_eq!(
         message,
         format!(
-            "{}: torque_gain.gain_error [1] has no value: effect torque_gain has it",
+            "{}: torque_gain.gain_error has no value: effect torque_gain has it",
             folder.path().join("theta.toml").display()
         )
     );
@@ -266,14 +255,49 @@ fn the_catalogue_is_listed_and_shown() {
         shown.starts_with(GAIN) && shown.contains("at gain = 0.2\n"),
         "{shown}"
     );
-    std::fs::write(&file, GAIN.replace("(1 + gain)", "(1 + gian)")).unwrap();
-    assert_eq!(
-        run(coordinator(["effects", "--file", &path(&file)])).refusal(),
-        format!(
-            "{} line 4, column 37: unknown name \"gian\"; the nearest known is \"gain\"",
-            file.display()
-        )
-    );
+    // what a job refuses is refused here, in the same words
+    for (old, new, message) in [
+        (
+            "(1 + gain)",
+            "(1 + gian)",
+            " line 4, column 37: unknown name \"gian\"; the nearest known is \"gain\"",
+        ),
+        (
+            "\"my_gain\"",
+            "\"hard_pan\"",
+            " line 1: name \"hard_pan\" is an effect's of the catalogue",
+        ),
+        (
+            "\"my_gain\"",
+            "\"noise\"",
+            " line 1: name \"noise\" has another meaning in a job",
+        ),
+        (
+            "drawbar_pull = ",
+            "mechanism = \"rebound\"\ndrawbar_pull = ",
+            " line 4: mechanism is for the effects of the catalogue: a file has formulas",
+        ),
+        (
+            "[0.0, 0.2]",
+            "[0.0, -0.2]",
+            " line 5: prior of parameter gain: sd -0.2 is not above 0",
+        ),
+    ] {
+        std::fs::write(&file, GAIN.replace(old, new)).unwrap();
+        let shown = run(coordinator(["effects", "--file", &path(&file)])).refusal();
+        assert_eq!(shown, format!("{}{message}", file.display()));
+        let job = Job::small()
+            .in_job(
+                "kind = \"quasi_static\"",
+                "kind = \"quasi_static\"\neffect_files = [\"gain.toml\"]",
+            )
+            .beside("gain.toml", GAIN.replace(old, new))
+            .write(&folder.path().join("job"));
+        assert_eq!(
+            run(coordinator(["check", &path(&job)])).refusal(),
+            format!("gain.toml{message}")
+        );
+    }
 }
 
 #[test]

@@ -155,3 +155,17 @@ particles = 60
 moves = [2, 4]
 seed = 1
 "#;
+
+/// An effect file: a gain of the pull that the data do not have.
+pub const GAIN: &str = r#"name = "my_gain"
+summary = "the sensor reads too much"
+source = "a guess"
+drawbar_pull = "drawbar_pull * (1 + gain) + shift_n"
+[parameters.gain]
+unit = "1"
+neutral = 0.0
+prior = { normal = [0.0, 0.2] }
+[parameters.shift_n]
+unit = "N"
+prior = 0.25
+"#;

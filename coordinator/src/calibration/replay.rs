@@ -7,6 +7,7 @@ use shared::api::CalibrationState;
 
 use super::{Calibration, Scored};
 use crate::fact::Fact;
+use crate::spec::EffectsChanged;
 
 /// What the store kept of a calibration that is not over.
 #[derive(Debug, Default)]
@@ -15,7 +16,7 @@ pub struct Stored {
     pub state: Option<CalibrationState>,
     /// Why it was paused.
     pub message: Option<String>,
-    /// The pinned version of the equations.
+    /// The pinned version of the model.
     pub model_version: Option<String>,
     /// Wall time spent before `[ms]`.
     pub busy_ms: u64,
@@ -53,6 +54,9 @@ pub enum ReplayError {
         /// What is proposed.
         proposed: Vec<f64>,
     },
+    /// The effects of the catalogue are others.
+    #[error(transparent)]
+    Effects(#[from] EffectsChanged),
     /// The stored log-likelihood is no number.
     #[error("evaluation {evaluation} was stored with a log-likelihood that is no number")]
     NotANumber {
@@ -69,6 +73,9 @@ impl Calibration {
     /// # Errors
     /// [`ReplayError`] where the store and what is proposed disagree.
     pub fn replay(&mut self, stored: Stored) -> Result<Vec<Fact>, ReplayError> {
+        if let Some(pinned) = &stored.model_version {
+            self.spec.check_effects(pinned)?;
+        }
         self.model_version = stored.model_version;
         self.busy_ms = stored.busy_ms;
         self.failed = stored.failed;
@@ -176,6 +183,27 @@ mod tests {
             experiment: 1,
         };
         Calibration::new(identity, Arc::new(spec)).unwrap()
+    }
+
+    #[test]
+    fn a_calibration_begun_with_other_files_of_its_effects_does_not_go_on() {
+        let job = JOB.replace("[priors]", "effects = [\"sled_tare\"]\n[priors]");
+        let begun = |version: String| Stored {
+            model_version: Some(version),
+            ..Stored::default()
+        };
+        let now = calibration(&job).spec.fit_variant.model_version("scm-3");
+        assert!(calibration(&job).replay(begun(now.clone())).is_ok());
+        assert!(fresh().replay(begun("scm-3".into())).is_ok());
+        let error = calibration(&job)
+            .replay(begun("scm-3+effects.00000000".into()))
+            .unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "the effects' files have changed since: it was begun with model version scm-3+effects.00000000, this program has {now}"
+            )
+        );
     }
 
     /// A model of one line, refusing a corner of the prior.

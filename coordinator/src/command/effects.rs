@@ -4,15 +4,17 @@ use std::fmt::Write;
 
 use anyhow::Context;
 use formula::catalogue::{catalogue, find};
-use formula::{Effect, EffectError};
-use shared::file::{FileError, read_text};
+use shared::file::read_text;
 use shared::model::ModelKind;
+use shared::model::effects::own;
 use shared::model::settings::unknown_effect;
+use shared::parameters::behind;
 
 use super::output::say;
 use crate::config::{Effects, Model};
 use crate::effect::signature::{ChannelSignature, Signature, signature};
 use crate::effect::{EffectCard, Group};
+use crate::spec::check_own;
 
 /// Columns of a terminal that every line fits into.
 const COLUMNS: usize = 100;
@@ -26,18 +28,11 @@ pub(super) async fn effects(config: &Effects) -> anyhow::Result<()> {
     };
     let effect = match (&config.file, &config.name) {
         (Some(path), _) => {
-            let text = read_text(path)?;
-            let place = |EffectError {
-                             line,
-                             column,
-                             message,
-                         }| FileError {
-                file: path.display().to_string(),
-                line,
-                column,
-                message,
-            };
-            Effect::read(&text).map_err(place)?
+            // what a job would refuse is refused here
+            let file = path.display().to_string();
+            let effect = own(&file, &read_text(path)?)?;
+            check_own(&file, &effect)?;
+            effect
         }
         (None, Some(name)) => find(name).with_context(|| unknown_effect(name))?.clone(),
         (None, None) => return Ok(say(&list())?),
@@ -176,12 +171,7 @@ fn deeds(signature: &Signature) -> String {
 
 /// `v_a = 0.01 m/s`.
 fn set(name: &str, value: f64, unit: &str) -> String {
-    let unit = if unit == "1" {
-        String::new()
-    } else {
-        format!(" {unit}")
-    };
-    format!("{name} = {}{unit}", number(value))
+    format!("{name} = {}{}", number(value), behind(unit))
 }
 
 /// A number as a file would have it.

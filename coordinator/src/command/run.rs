@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use shared::api::{CalibrationState, NewCalibration, NewExperiment};
+use shared::model::equations_of;
 use tokio::net::TcpListener;
 
 use super::Stop;
@@ -107,8 +108,15 @@ async fn take_up(job: &JobOnDisk, out: &Path, service: &Service) -> anyhow::Resu
     };
     let stored = service.spec_of(row).await?;
     if !stored.same_as(&job.spec) {
+        let differs =
+            |(name, text): (&String, &String)| job.job.files.get(name).is_some_and(|now| now != text);
+        let changed = row.job.files.iter().find(|&file| differs(file));
+        let what = match changed {
+            Some((name, _)) => format!("the effect file {name}"),
+            None => "the job or its experiment".to_owned(),
+        };
         bail!(
-            "{} holds the calibration of another job: the job or its experiment has changed since; give another --out, or delete the folder",
+            "{} holds the calibration of another job: {what} has changed since; give another --out, or delete the folder",
             out.display()
         );
     }
@@ -121,6 +129,7 @@ async fn take_up(job: &JobOnDisk, out: &Path, service: &Service) -> anyhow::Resu
     if let Some(pinned) = row
         .model_version
         .as_deref()
+        .map(equations_of)
         .filter(|v| *v != model_version() && !row.state.is_final())
     {
         bail!(

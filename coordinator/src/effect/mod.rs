@@ -9,6 +9,7 @@ pub mod signature;
 use formula::effect::Mechanism;
 use formula::{Effect, Hook, Parameter};
 use serde::{Deserialize, Serialize};
+use shared::file::number;
 use utoipa::ToSchema;
 
 /// An effect in words and numbers.
@@ -135,7 +136,6 @@ impl ParameterCard {
 /// The value at which a strength is shown: the file's, or else one scale of its prior.
 fn shown_at(parameter: &Parameter) -> Option<f64> {
     let prior = &parameter.prior;
-    let number = |v: &toml::Value| v.as_float().or_else(|| v.as_integer().map(|i| i as f64));
     let pair = |key: &str| -> Option<[f64; 2]> {
         let [a, b] = prior.get(key)?.as_array()?.as_slice() else {
             return None;

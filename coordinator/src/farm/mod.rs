@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use shared::api::{CalibrationState, CalibrationStatus};
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease};
 use shared::model::ModelVariant;
+use shared::model::equations_of;
 
 use crate::calibration::{Calibration, result_of};
 use crate::fact::Fact;
@@ -284,7 +285,9 @@ impl Farm {
                 continue;
             }
             match &calibration.model_version {
-                Some(pinned) if pinned != version => {
+                // The files of effects travel with the variant: a worker need not know them.
+                Some(pinned) if equations_of(pinned) != equations_of(version) => {
+                    let pinned = equations_of(pinned);
                     refused = Some(format!(
                         "calibration {id} was begun with model version {pinned}, worker {worker} computes {version}"
                     ));
@@ -292,10 +295,12 @@ impl Farm {
                 }
                 Some(_) => {}
                 None => {
-                    calibration.model_version = Some(version.to_owned());
+                    let variant = &calibration.spec.fit_variant;
+                    let version = variant.model_version(equations_of(version));
+                    calibration.model_version = Some(version.clone());
                     self.facts.push(Fact::ModelVersion {
                         calibration: id,
-                        version: version.to_owned(),
+                        version,
                     });
                 }
             }

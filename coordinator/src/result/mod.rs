@@ -17,6 +17,7 @@ pub mod terminal;
 
 use std::collections::BTreeMap;
 
+use inference::Marginal;
 use shared::api::{CalibrationState, CalibrationStatus};
 
 use crate::service::ServiceError;
@@ -56,7 +57,8 @@ impl Outcome {
     /// Loads a finished calibration.
     ///
     /// # Errors
-    /// [`ServiceError::Control`] where it is not finished; others where the store cannot be read.
+    /// [`ServiceError::Control`] where it is not finished; [`ServiceError::Effects`] where this program has other
+    /// effects; others where the store cannot be read.
     pub async fn load(reader: &Reader, row: &CalibrationRow) -> Result<Outcome, ServiceError> {
         if row.state != CalibrationState::Finished {
             return Err(crate::farm::ControlError::NotFinished {
@@ -67,6 +69,10 @@ impl Outcome {
         }
         let stages = reader.stages(row.id).await?;
         let spec = spec_of(reader, row).await?;
+        // Parameters and texts would be shown that the result was not computed with.
+        if let Some(pinned) = &row.model_version {
+            spec.check_effects(pinned)?;
+        }
         let estimate = match spec.method {
             Method::Sample(_) => None,
             Method::Fit(_) => reader.estimate(row.id).await?,
@@ -98,15 +104,19 @@ impl Outcome {
             .reduce(|best, s| if score(s) > score(best) { s } else { best })
     }
 
-    /// Version of the model: of the equations, and of the effects.
-    pub fn model_version(&self) -> Option<String> {
-        let equations = self.row.model_version.as_deref()?;
-        Some(self.spec.fit_variant.model_version(equations))
-    }
-
     /// The draws of one parameter.
     pub fn draws(&self, parameter: usize) -> Vec<f64> {
         self.posterior.iter().map(|s| s.theta[parameter]).collect()
+    }
+}
+
+/// The mean of a prior; that of a symmetric one is integrated to zero but for rounding, which is not shown.
+fn prior_mean(marginal: &Marginal) -> f64 {
+    let mean = marginal.mean();
+    if mean.abs() < 1e-12 * marginal.sd() {
+        0.0
+    } else {
+        mean
     }
 }
 
@@ -144,5 +154,19 @@ pub fn stored_status(row: &CalibrationRow) -> CalibrationStatus {
         model_kind: model.ok().map(|m| m.kind.name().to_owned()),
         model_version: row.model_version.clone(),
         progress: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use inference::Distribution;
+
+    use super::*;
+
+    #[test]
+    fn a_prior_about_zero_has_the_mean_zero() {
+        let of = |mean| prior_mean(&Marginal::new(Distribution::Normal { mean, sd: 0.2 }, None).unwrap());
+        assert_eq!(of(0.0).to_bits(), 0.0_f64.to_bits());
+        assert!((of(1e-6) - 1e-6).abs() < 1e-15);
     }
 }

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use inference::diagnostics;
 use shared::channel::Channel;
 
-use super::Outcome;
 use super::comparison::{Comparison, ComparisonRow};
 use super::coverage::Coverage;
 use super::errors::ErrorTable;
 use super::flags::Flag;
 use super::point_estimate::PointEstimate;
+use super::{Outcome, prior_mean};
 
 /// The summary of a study; what does not apply is null.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -19,7 +19,7 @@ pub struct Summary {
     pub experiment: String,
     /// Seed of the job.
     pub seed: u64,
-    /// Version of the equations.
+    /// Version of the equations and the effects.
     pub model_version: String,
     /// `quasi_static` or `scm`.
     pub model_kind: String,
@@ -147,7 +147,7 @@ impl Outcome {
         Summary {
             experiment: self.experiment.clone(),
             seed: self.spec.method.seed(),
-            model_version: self.model_version().unwrap_or_default(),
+            model_version: self.row.model_version.clone().unwrap_or_default(),
             model_kind: self.spec.model.kind.name().to_owned(),
             status: self.row.state.name().to_owned(),
             calibrations: self.calibration_summary().into_iter().collect(),
@@ -230,7 +230,7 @@ impl Outcome {
                     q50: draws.q50,
                     q95: draws.q95,
                     map: best?.theta[i],
-                    prior_mean: finite(parameter.marginal.mean()),
+                    prior_mean: finite(prior_mean(&parameter.marginal)),
                     prior_sd: finite(parameter.marginal.sd()),
                     at_bound: parameter.marginal.at_bound(draws.q05, draws.q95),
                 };

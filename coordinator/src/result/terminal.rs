@@ -7,11 +7,11 @@ use shared::api::CalibrationStatus;
 use shared::channel::Channel;
 use shared::model::{EffectSet, ModelKind};
 
-use super::Outcome;
 use super::comparison::{Comparison, ComparisonRow};
 use super::coverage::Coverage;
 use super::errors::ErrorTable;
 use super::settling::unsettled;
+use super::{Outcome, prior_mean};
 use crate::spec::{FreeParameter, Spec};
 use crate::store::EstimateRow;
 
@@ -76,7 +76,7 @@ pub fn specification(spec: &Spec) -> String {
             text,
             "{:<width$} {:>12} {:>12} {:>12} {:>12}  {}",
             p.name,
-            number(p.marginal.mean()),
+            number(prior_mean(&p.marginal)),
             number(p.marginal.sd()),
             number(lower),
             number(upper),
@@ -167,7 +167,7 @@ fn point(outcome: &Outcome, estimate: &EstimateRow) -> String {
 fn prior(free: &FreeParameter) -> String {
     format!(
         "{} +- {}",
-        number(free.marginal.mean()),
+        number(prior_mean(&free.marginal)),
         number(free.marginal.sd())
     )
 }

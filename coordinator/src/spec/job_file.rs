@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use shared::file::{FileError, parse_toml, unknown_word};
+use shared::file::{FileError, number, parse_toml, unknown_word};
 use shared::model::ModelSettings;
 
 use super::method::{Method, RawSampler};
@@ -107,6 +107,21 @@ impl Job {
             method,
         })
     }
+
+    /// Checks that no file came along that the job does not name; `name` is how messages call it.
+    ///
+    /// # Errors
+    /// [`FileError`] with the file that is not named, and the nearest that is.
+    pub fn check_files(&self, name: &str, texts: &BTreeMap<String, String>) -> Result<(), FileError> {
+        let named = &self.model.effect_files;
+        match texts.keys().find(|file| !named.contains(file)) {
+            None => Ok(()),
+            Some(file) => {
+                let message = unknown_word("file", file, named.iter().map(String::as_str));
+                Err(FileError::whole(name, message))
+            }
+        }
+    }
 }
 
 impl RawDiscovery {
@@ -127,11 +142,7 @@ impl RawLikelihood {
             "student_t" => return Err(format!("kind = \"student_t\" {LATER}")),
             other => return Err(unknown_word("kind", other, ["gaussian", "student_t"])),
         }
-        let none = self
-            .discrepancy
-            .as_float()
-            .or(self.discrepancy.as_integer().map(|i| i as f64));
-        match none {
+        match number(&self.discrepancy) {
             Some(zero) if zero.abs() == 0.0 => Ok(()),
             _ => Err(format!("discrepancy = {} {LATER}; 0.0 is", self.discrepancy)),
         }

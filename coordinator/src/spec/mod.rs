@@ -10,13 +10,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use inference::{GaussianLikelihood, Prior};
 use shared::experiment::{Experiment, RunUse};
 use shared::file::{FileError, FileSet};
-use shared::model::{EffectSet, ModelSettings, ModelVariant};
+use shared::model::{EffectSet, ModelSettings, ModelVariant, equations_of};
 use shared::parameters;
 
 pub use job_file::Job;
 pub use method::{Method, MethodError};
 pub(crate) use noise::repeat_scatter;
-pub use priors::FreeParameter;
+pub use priors::{FreeParameter, check_own};
 
 /// A calibration as its files determine it; equal files give an equal specification.
 #[derive(Debug, Clone)]
@@ -39,6 +39,18 @@ pub struct Spec {
     pub holdout_variant: Option<ModelVariant>,
     /// The likelihood of the measurements that are fitted; runs count within [`Spec::fit_runs`].
     pub likelihood: GaussianLikelihood,
+}
+
+/// A calibration was begun with other files of its effects than this program has.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the effects' files have changed since: it was begun with model version {begun}, this program has {now}"
+)]
+pub struct EffectsChanged {
+    /// The version that it is pinned to.
+    pub begun: String,
+    /// The same equations with the effects as they are now.
+    pub now: String,
 }
 
 /// At most so many final draws are simulated on every run, holdout included.
@@ -162,6 +174,20 @@ impl Spec {
         format!("{self:?}") == format!("{other:?}")
     }
 
+    /// Checks that the effects are those of the version that a calibration is pinned to; its equations are the
+    /// workers' concern.
+    ///
+    /// # Errors
+    /// [`EffectsChanged`].
+    pub fn check_effects(&self, pinned: &str) -> Result<(), EffectsChanged> {
+        let now = self.fit_variant.model_version(equations_of(pinned));
+        if now == pinned {
+            return Ok(());
+        }
+        let begun = pinned.to_owned();
+        Err(EffectsChanged { begun, now })
+    }
+
     /// The model with its effects: `quasi_static with janosi_hanamoto, mine`.
     pub fn model_words(&self) -> String {
         let kind = self.model.kind.name();
@@ -197,7 +223,10 @@ fn add_unsaid(
     let said: Vec<String> = free.chain(model.fixed.keys().cloned()).collect();
     let said = said.iter().map(String::as_str).collect();
     for unsaid in effects.unsaid(&said, wheels) {
-        let parsed = priors::Parsed::of_effect(&unsaid).map_err(|e| match &unsaid.chosen.file {
+        let parsed = priors::Parsed::of_effect(&unsaid.name, unsaid.parameter).map_err(|e| match &unsaid
+            .chosen
+            .file
+        {
             Some(file) => FileError::at(file, unsaid.parameter.line, e),
             None => FileError::whole(job_name, format!("effect {}: {e}", unsaid.chosen.effect.name)),
         })?;

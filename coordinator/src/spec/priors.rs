@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
+use formula::{Effect, Parameter};
 use inference::{Distribution, Marginal};
 use shared::channel::Channel;
-use shared::file::unknown_word;
+use shared::file::{FileError, number, unknown_word};
 use shared::model::EffectSet;
-use shared::model::effects::Unsaid;
-use shared::parameters::{self, NOISE_PREFIX, Quantity};
+use shared::parameters::{self, NOISE_PREFIX, Quantity, behind};
 
 /// A parameter with a prior.
 #[derive(Debug, Clone)]
@@ -82,9 +82,8 @@ impl PriorEntry {
 }
 
 impl Parsed {
-    /// What the file of an effect says of a parameter that the job does not mention.
-    pub(super) fn of_effect(unsaid: &Unsaid) -> Result<Parsed, String> {
-        let parameter = unsaid.parameter;
+    /// What the file of an effect says of a parameter that the job does not mention, but for its name there.
+    pub(super) fn of_effect(name: &str, parameter: &Parameter) -> Result<Parsed, String> {
         if let Some(value) = number(&parameter.prior) {
             return Ok(Parsed::Fixed(value));
         }
@@ -96,17 +95,28 @@ impl Parsed {
         let marginal = marginal(&parameter.prior, &quantity)
             .map_err(|e| format!("prior of parameter {}: {e}", parameter.name))?;
         Ok(Parsed::Free(FreeParameter {
-            name: unsaid.name.clone(),
+            name: name.to_owned(),
             unit: quantity.unit,
             marginal,
         }))
     }
 }
 
+/// Checks what a user's effect file says of its parameters.
+///
+/// # Errors
+/// [`FileError`] with the line of the parameter.
+pub fn check_own(file: &str, effect: &Effect) -> Result<(), FileError> {
+    for parameter in &effect.parameters {
+        Parsed::of_effect(&parameter.name, parameter).map_err(|e| FileError::at(file, parameter.line, e))?;
+    }
+    Ok(())
+}
+
 /// The prior density that a table describes, within the quantity's physical bounds.
 fn marginal(value: &toml::Value, quantity: &Quantity) -> Result<Marginal, String> {
     let Quantity { unit, lower, upper } = quantity;
-    let (lower, upper) = (*lower, *upper);
+    let (lower, upper, unit) = (*lower, *upper, behind(unit));
     let table = value.as_table().ok_or("a number or a table is expected")?;
     let distribution = distribution(table)?;
     let stated = table
@@ -118,14 +128,14 @@ fn marginal(value: &toml::Value, quantity: &Quantity) -> Result<Marginal, String
         && (a < lower || b > upper)
     {
         return Err(format!(
-            "[{a}, {b}] {unit} leaves the admissible range [{lower}, {upper}] {unit}"
+            "[{a}, {b}]{unit} leaves the admissible range [{lower}, {upper}]{unit}"
         ));
     }
     if let Some([a, b]) = stated
         && (a < lower || b > upper)
     {
         return Err(format!(
-            "bounds [{a}, {b}] {unit} leave the admissible range [{lower}, {upper}] {unit}"
+            "bounds [{a}, {b}]{unit} leave the admissible range [{lower}, {upper}]{unit}"
         ));
     }
     // A prior without bounds of its own ends where the quantity does.
@@ -187,10 +197,6 @@ fn pair(key: &str, value: &toml::Value) -> Result<[f64; 2], String> {
         Some(&[a, b]) => Ok([a, b]),
         _ => Err(format!("{key} = {value}: two numbers are expected")),
     }
-}
-
-fn number(value: &toml::Value) -> Option<f64> {
-    value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
 }
 
 #[cfg(test)]

@@ -101,11 +101,16 @@ impl EffectSet {
                 file: Some(named.clone()),
             });
         }
-        if chosen.len() > Self::MOST {
-            let message = format!("{} effects must be at most {}", chosen.len(), Self::MOST);
-            return Err(FileError::whole(file, message));
-        }
+        Self::check_count(chosen.len()).map_err(|e| FileError::whole(file, e))?;
         Ok(EffectSet(chosen))
+    }
+
+    /// Refuses more effects than a job may have.
+    pub(super) fn check_count(count: usize) -> Result<(), String> {
+        if count > Self::MOST {
+            return Err(format!("{count} effects must be at most {}", Self::MOST));
+        }
+        Ok(())
     }
 
     /// Reads effects that have travelled.
@@ -305,8 +310,11 @@ impl<'a, 'n> Reach<'a, 'n> {
     }
 }
 
-/// Reads a user's effect file.
-fn own(file: &str, text: &str) -> Result<Effect, FileError> {
+/// Reads a user's effect file, which may take nothing that is the catalogue's.
+///
+/// # Errors
+/// [`FileError`] with the line, and the column where one is to blame.
+pub fn own(file: &str, text: &str) -> Result<Effect, FileError> {
     let effect = Effect::read(text).map_err(|e| FileError {
         file: file.to_owned(),
         line: e.line,

@@ -269,7 +269,8 @@ impl ModelVariant {
             .map(String::as_str)
     }
 
-    /// Version of the model that a worker with these equations computes: its own, and that of the effects.
+    /// Version of the model that a worker with these equations computes: its own, and that of the effects. A
+    /// calibration is pinned to both; [`equations_of`] is the part that a worker can know.
     pub fn model_version(&self, equations: &str) -> String {
         format!("{equations}{}", EffectSet::version(&self.effects))
     }
@@ -287,6 +288,13 @@ impl ModelVariant {
             .map(|byte| format!("{byte:02x}"))
             .collect()
     }
+}
+
+/// The part of a model's version that names the equations: what stands before the effects.
+pub fn equations_of(version: &str) -> &str {
+    version
+        .split_once('+')
+        .map_or(version, |(equations, _)| equations)
 }
 
 /// Checks that effects of grousers act on a wheel that has some.

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::{ModelKind, SpatialSettings};
+use super::{EffectSet, ModelKind, SpatialSettings};
 use formula::catalogue;
 
-use crate::file::unknown_word;
+use crate::file::{number, unknown_word};
 use crate::parameters;
 
 /// The table `[model]`, read.
@@ -78,8 +78,10 @@ impl ModelSettings {
     /// Adds effects of the catalogue by name, and files of others.
     ///
     /// # Errors
-    /// A sentence that names the effect that is unknown or stands there already.
+    /// A sentence that names the effect that is unknown or stands there already, or how many are too many.
     pub fn add_effects(&mut self, effects: &[String], files: &[String]) -> Result<(), String> {
+        // First of all: what follows takes each name against every other.
+        EffectSet::check_count(self.effects.len() + self.effect_files.len() + effects.len() + files.len())?;
         for name in effects {
             if name.ends_with(".toml") {
                 return Err(format!(
@@ -134,6 +136,24 @@ fn fixed_parameter(key: &str, value: &toml::Value) -> Result<f64, String> {
         let names = base.chain(["kind", "effects", "effect_files"]);
         return Err(unknown_word("key", key, names.chain(SpatialSettings::KEYS)));
     }
-    let number = value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
-    number.ok_or_else(|| format!("{key} must be a number, not {value}"))
+    number(value).ok_or_else(|| format!("{key} must be a number, not {value}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_that_is_too_long_is_refused_for_its_length_alone() {
+        for (key, end) in [("effects", ""), ("effect_files", ".toml")] {
+            // none of them is known, and the last stands twice
+            let mut names: Vec<String> = (0..60_000).map(|i| format!("\"e{i}{end}\"")).collect();
+            names[59_999] = names[0].clone();
+            let table = format!("kind = \"scm\"\n{key} = [{}]", names.join(", "));
+            assert_eq!(
+                ModelSettings::from_table(&toml::from_str(&table).unwrap()),
+                Err("60000 effects must be at most 10".to_owned())
+            );
+        }
+    }
 }

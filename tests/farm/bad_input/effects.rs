@@ -1,25 +1,11 @@
 //! Wrong effects, through `check` and `run`.
 
-use farm_tests::job::Job;
+use farm_tests::job::{GAIN, Job};
 
 use super::{refusal, refused};
 
 const MODEL: &str = "shear_velocity_m_s = 0.001";
 const KAPPA: &str = "kappa = 0.0";
-
-/// An effect file that is right.
-const MINE: &str = r#"name = "mine"
-summary = "what I think is missing"
-source = "a guess"
-shear = "tau * (1 - a * exp(-v_t / v_a))"
-[parameters.a]
-unit = "1"
-neutral = 0.0
-prior = { uniform = [0.0, 0.8] }
-[parameters.v_a]
-unit = "m/s"
-prior = 0.01
-"#;
 
 fn model(line: &str) -> Job {
     Job::small().in_job(MODEL, &format!("{MODEL}\n{line}"))
@@ -32,8 +18,8 @@ fn priors(line: &str) -> Job {
 /// The small job with an effect file, changed in one place.
 #[track_caller]
 fn mine(old: &str, new: &str) -> Job {
-    assert_eq!(MINE.matches(old).count(), 1, "{old:?} in\n{MINE}");
-    model("effect_files = [\"mine.toml\"]").beside("mine.toml", MINE.replacen(old, new, 1))
+    assert_eq!(GAIN.matches(old).count(), 1, "{old:?} in\n{GAIN}");
+    model("effect_files = [\"mine.toml\"]").beside("mine.toml", GAIN.replacen(old, new, 1))
 }
 
 #[test]
@@ -108,41 +94,41 @@ fn strengths_that_contradict_each_other_are_refused() {
         .collect();
     refused(
         model(&format!("effects = [{}]", many.join(", "))),
-        "job.toml: 11 effects must be at most 10",
+        "job.toml: [model] 11 effects must be at most 10",
     );
 }
 
 #[test]
 fn malformed_effect_files_name_file_line_and_column() {
     refused(
-        mine("-v_t", "-vt"),
-        "mine.toml line 4, column 30: unknown name \"vt\"; the nearest known is \"v_t\"",
+        mine("gain)", "gian)"),
+        "mine.toml line 4, column 37: unknown name \"gian\"; the nearest known is \"gain\"",
     );
     refused(
         mine("neutral", "neutrl"),
         "mine.toml line 7, column 1: unknown key \"neutrl\"; the nearest known is \"neutral\"",
     );
     refused(
-        mine("uniform = [0.0, 0.8]", "unifrm = [0.0, 0.8]"),
-        "mine.toml line 5: prior of parameter a: unknown distribution \"unifrm\"; the nearest known is \"uniform\"",
+        mine("normal", "nromal"),
+        "mine.toml line 5: prior of parameter gain: unknown distribution \"nromal\"; the nearest known is \"normal\"",
     );
     refused(
-        mine("[0.0, 0.8]", "[0.8, 0.0]"),
-        "mine.toml line 5: prior of parameter a: lower bound 0.8 is not below upper bound 0",
+        mine("normal = [0.0, 0.2]", "uniform = [0.8, 0.0]"),
+        "mine.toml line 5: prior of parameter gain: lower bound 0.8 is not below upper bound 0",
     );
     refused(
-        mine("\"mine\"", "\"hard_pan\""),
+        mine("\"my_gain\"", "\"hard_pan\""),
         "mine.toml line 1: name \"hard_pan\" is an effect's of the catalogue",
     );
     refused(
-        mine("shear = ", "mechanism = \"rebound\"\nshear = "),
+        mine("drawbar_pull = ", "mechanism = \"rebound\"\ndrawbar_pull = "),
         "mine.toml line 4: mechanism is for the effects of the catalogue: a file has formulas",
     );
     refused(
         model("effect_files = [\"mine.toml\", \"copy.toml\"]")
-            .beside("mine.toml", MINE)
-            .beside("copy.toml", MINE),
-        "copy.toml: effect mine stands in mine.toml already",
+            .beside("mine.toml", GAIN)
+            .beside("copy.toml", GAIN),
+        "copy.toml: effect my_gain stands in mine.toml already",
     );
     let message = refusal(&model("effect_files = [\"mine.toml\"]"));
     assert!(message.starts_with("mine.toml: No such file"), "{message}");

@@ -68,7 +68,7 @@ fn impossible_priors_are_refused() {
     );
     refused(
         n("n = { uniform = [-1.0, 2.0] }"),
-        "job.toml line 10: n: [-1, 2] 1 leaves the admissible range [0.01, 10] 1",
+        "job.toml line 10: n: [-1, 2] leaves the admissible range [0.01, 10]",
     );
     refused(
         Job::small().in_job("[11.5, 37.3]", "[11.5, 137.3]"),

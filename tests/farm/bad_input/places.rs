@@ -281,7 +281,7 @@ fn forward_runs_refuse_wrong_models_and_parameters() {
     let with = |line: &str| format!("{}{line}\n", without("n ="));
     assert_eq!(
         simulate(model, &with("n = -1.0")),
-        "theta.toml: n = -1 1 lies outside [0.01, 10] 1"
+        "theta.toml: n = -1 lies outside [0.01, 10]"
     );
     assert_eq!(
         simulate(model, &(theta.clone() + "kapa = 1.0\n")),

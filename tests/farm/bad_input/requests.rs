@@ -1,7 +1,7 @@
 //! Wrong requests to the service: 4xx with a type and a message, and nothing is stored.
 
 use farm_tests::http::Response;
-use farm_tests::job::Job;
+use farm_tests::job::{GAIN, Job};
 use farm_tests::service::Service;
 use serde_json::{Value, json};
 
@@ -52,6 +52,21 @@ fn malformed_files_over_http_are_422_and_leave_nothing() {
         422,
         "invalid_file",
         "job.toml line 9: unknown parameter \"kapa\"; the nearest known is \"kappa\"",
+    );
+    let astray = json!({"experiment": 1, "toml": Job::small().job, "files": {"gain.toml": GAIN}});
+    is(
+        &service.client.post("/v1/calibrations", &astray),
+        422,
+        "invalid_file",
+        "job.toml: unknown file \"gain.toml\"; none is expected here",
+    );
+    let names: Vec<String> = (0..60_000).map(|i| format!("\"e{i}\"")).collect();
+    let effects = format!("kind = \"quasi_static\"\neffects = [{}]", names.join(", "));
+    is(
+        &post(&Job::small().in_job("kind = \"quasi_static\"", &effects)),
+        422,
+        "invalid_file",
+        "job.toml: [model] 60000 effects must be at most 10",
     );
     is(
         &post(&Job::small().sampler(9, [2, 4], 1)),

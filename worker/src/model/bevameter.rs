@@ -7,8 +7,17 @@ use shared::model::ModelVariant;
 
 use super::parameters::{SoilMap, Source};
 
-/// K of the shear-displacement law, the one parameter of an effect that a ring feels.
+/// The one effect that a ring feels.
+const SHEAR_DISPLACEMENT: &str = "janosi_hanamoto";
+/// Its K, of all wheels: a ring is none of them.
 const SHEAR_MODULUS: &str = "janosi_hanamoto.shear_modulus_m";
+
+/// The effects of a variant that plates and rings do not feel.
+pub fn without_action(variant: &ModelVariant) -> impl Iterator<Item = &str> {
+    let felt = Source::find(variant, SHEAR_MODULUS).map(|_| SHEAR_DISPLACEMENT);
+    let names = variant.effects.iter().map(|effect| effect.name.as_str());
+    names.filter(move |&name| Some(name) != felt)
+}
 
 /// The soil and the shear-displacement law of a variant, ready to be asked what a bevameter reads.
 #[derive(Debug)]

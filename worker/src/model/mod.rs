@@ -18,7 +18,7 @@ use scm::{Averages, Condition, Soil, Wheel, quasi_static};
 use shared::model::{EffectSet, ModelKind, ModelVariant};
 use shared::outcome::{Observables, Outcome, Rejection};
 
-pub use bevameter::{Bevameter, Readings};
+pub use bevameter::{Bevameter, Readings, without_action};
 use effects::{ActiveEffects, EffectMap};
 use parameters::{Radius, SoilMap};
 use spatial::SpatialModel;

@@ -15,12 +15,12 @@ use rand::{RngExt, SeedableRng};
 use scm::spatial::History;
 use shared::channel::Channel;
 use shared::experiment::{CONDITION_COLUMNS, Experiment, NoiseSd, TestRun};
-use shared::file::{FileError, parse_toml, read_beside, read_text};
+use shared::file::{FileError, number, parse_toml, read_beside, read_text};
 use shared::model::{EffectSet, ModelSettings, ModelVariant};
 use shared::outcome::{Observables, Outcome};
 
 use crate::config::Simulate;
-use crate::model::{Bevameter, CompiledVariant};
+use crate::model::{Bevameter, CompiledVariant, without_action};
 
 /// Why there are no forward runs.
 #[derive(Debug, thiserror::Error)]
@@ -93,6 +93,9 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
         }
     }
     if command.plates.is_some() || command.shear.is_some() {
+        for effect in without_action(&variant) {
+            tracing::warn!(effect, "does not act on plates and rings");
+        }
         let bevameter = Bevameter::new(&variant)
             .map_err(|e| FileError::whole(&command.model.display().to_string(), e))?
             .at(&[]);
@@ -190,12 +193,14 @@ fn state_shapes(
     let mut more = Vec::new();
     for unsaid in effects.unsaid(&names, &experiment.wheel_names()) {
         let prior = &unsaid.parameter.prior;
-        let number = prior.as_float().or_else(|| prior.as_integer().map(|i| i as f64));
-        let Some(number) = number else {
-            let (name, unit) = (unsaid.name, &unsaid.parameter.unit);
+        let Some(number) = number(prior) else {
+            let unit = match unsaid.parameter.unit.as_str() {
+                "1" => String::new(),
+                unit => format!(" [{unit}]"),
+            };
             return Err(format!(
-                "{name} [{unit}] has no value: effect {} has it",
-                unsaid.chosen.effect.name
+                "{}{unit} has no value: effect {} has it",
+                unsaid.name, unsaid.chosen.effect.name
             ));
         };
         more.push((unsaid.name, number));

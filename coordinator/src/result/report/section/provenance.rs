@@ -33,7 +33,7 @@ pub(in crate::result::report) fn provenance(outcome: &Outcome) -> Markup {
     html! {
         dl {
             dt { "calibration" } dd { (outcome.experiment) }
-            dt { "model" } dd { (spec.model_words()) ", version " (outcome.model_version().as_deref().unwrap_or("unknown")) }
+            dt { "model" } dd { (spec.model_words()) ", version " (outcome.row.model_version.as_deref().unwrap_or("unknown")) }
             dt { "data" }
             dd {
                 (number::count(spec.fit_runs.len(), "fitted run")) " with "
