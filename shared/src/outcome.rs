@@ -9,6 +9,10 @@ use crate::model::ModelVariant;
 /// The result of simulating every condition of a variant at one parameter vector.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "nearly every outcome is the large variant: a box would cost an allocation and save nothing"
+)]
 pub enum Outcome {
     /// The model gave observables.
     Evaluated(Observables),

@@ -99,7 +99,7 @@ impl Extent {
     fn split(words: &[f64]) -> Option<(Extent, &[f64])> {
         let of_runs = |words: &[f64], settled: bool| {
             let vectors = VECTORS + usize::from(settled);
-            (words.len() % vectors == 0).then(|| Extent {
+            words.len().is_multiple_of(vectors).then(|| Extent {
                 runs: words.len() / vectors,
                 settled,
                 derivatives: false,
