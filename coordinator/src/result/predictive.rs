@@ -8,6 +8,7 @@ use shared::parameters::noise_parameter;
 
 use super::Outcome;
 use crate::spec::Spec;
+use crate::store::Prediction;
 
 /// What the calibrated model predicts for one run and channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,7 +47,12 @@ fn noise_source(outcome: &Outcome, run: usize, channel: Channel) -> Option<Sd> {
 }
 
 /// The predictive distribution of a run and channel; `None` where every draw was refused.
-pub(super) fn predictive(outcome: &Outcome, run: usize, channel: Channel) -> Option<Predictive> {
+pub(super) fn predictive(
+    outcome: &Outcome,
+    levels: &Levels,
+    run: usize,
+    channel: Channel,
+) -> Option<Predictive> {
     let source = noise_source(outcome, run, channel);
     let spec = &outcome.spec;
     let position = |runs: &[usize]| runs.iter().position(|&r| r == run);
@@ -57,7 +63,7 @@ pub(super) fn predictive(outcome: &Outcome, run: usize, channel: Channel) -> Opt
     let scatter = Scatter::of(spec);
     let mut draws = Vec::new();
     let mut sds = Vec::new();
-    for (theta, observables, fitted, position) in accepted(outcome, place) {
+    for (draw, theta, observables, position) in accepted(outcome, place) {
         let sd = source.map(|s| match s {
             Sd::Known(sd) => sd,
             Sd::Inferred { parameter } => theta[parameter],
@@ -65,7 +71,7 @@ pub(super) fn predictive(outcome: &Outcome, run: usize, channel: Channel) -> Opt
         sds.extend(sd);
         let mean = observables.channel(channel)[position];
         let soil = scatter.sd(theta) * observables.sensitivity(channel).get(position).unwrap_or(&0.0);
-        for (m, weight) in levels(spec, fitted, theta) {
+        for &(m, weight) in &levels.0[draw] {
             let scale = sd.map(|sd| widened(sd, [m * sd, soil]));
             draws.push(Component { mean, scale, weight });
         }
@@ -112,19 +118,28 @@ impl Scatter {
     }
 }
 
-/// The values of the discrepancy with their probabilities after the fitted data at this draw; m = 0 without one.
-fn levels(spec: &Spec, fitted: Option<&Observables>, theta: &[f64]) -> Vec<(f64, f64)> {
-    match (spec.likelihood.discrepancy(), fitted) {
-        (Discrepancy::None, _) => vec![(0.0, 1.0)],
-        (Discrepancy::Known(m), _) => vec![(m, 1.0)],
-        (Discrepancy::Unknown, fitted) => {
-            let values = fitted.map(|o| spec.predicted_values(o));
-            let weights = values.and_then(|v| spec.likelihood.discrepancy_weights(&v, theta).ok());
-            weights.unwrap_or_else(|| {
-                let levels = Discrepancy::Unknown.levels();
-                let share = 1.0 / levels.len() as f64;
-                levels.into_iter().map(|m| (m, share)).collect()
-            })
+/// Of each final draw, the values of the discrepancy with their probabilities after the fitted data; m = 0 without one.
+pub(super) struct Levels(Vec<Vec<(f64, f64)>>);
+
+impl Levels {
+    pub(super) fn of(outcome: &Outcome) -> Self {
+        let draws = outcome.predictive_draws().iter();
+        Levels(draws.map(|draw| Self::at(&outcome.spec, draw)).collect())
+    }
+
+    fn at(spec: &Spec, draw: &Prediction) -> Vec<(f64, f64)> {
+        match spec.likelihood.discrepancy() {
+            Discrepancy::None => vec![(0.0, 1.0)],
+            Discrepancy::Known(m) => vec![(m, 1.0)],
+            Discrepancy::Unknown => {
+                let values = draw.fit.as_ref().ok().map(|o| spec.predicted_values(o));
+                let weights = values.and_then(|v| spec.likelihood.discrepancy_weights(&v, &draw.theta).ok());
+                weights.unwrap_or_else(|| {
+                    let levels = Discrepancy::Unknown.levels();
+                    let share = 1.0 / levels.len() as f64;
+                    levels.into_iter().map(|m| (m, share)).collect()
+                })
+            }
         }
     }
 }
@@ -137,23 +152,15 @@ fn widened(sd: f64, others: [f64; 2]) -> f64 {
 
 /// The probabilities of the discrepancy's values after the data, averaged over the final draws; empty where m is known.
 pub(super) fn discrepancy_posterior(outcome: &Outcome) -> Vec<(f64, f64)> {
-    let spec = &outcome.spec;
-    if spec.likelihood.discrepancy() != Discrepancy::Unknown {
+    if outcome.spec.likelihood.discrepancy() != Discrepancy::Unknown {
         return Vec::new();
     }
-    let mut sum: Vec<(f64, f64)> = Discrepancy::Unknown
-        .levels()
-        .into_iter()
-        .map(|m| (m, 0.0))
-        .collect();
-    let fitted: Vec<_> = outcome
-        .predictive_draws()
-        .iter()
-        .filter_map(|p| Some((p.fit.as_ref().ok()?, &p.theta)))
-        .collect();
-    for (observables, theta) in &fitted {
-        for (total, (_, weight)) in sum.iter_mut().zip(levels(spec, Some(observables), theta)) {
-            total.1 += weight / fitted.len() as f64;
+    let levels = Discrepancy::Unknown.levels();
+    let mut sum: Vec<(f64, f64)> = levels.into_iter().map(|m| (m, 0.0)).collect();
+    let draws = Levels::of(outcome).0;
+    for levels in &draws {
+        for (total, (_, weight)) in sum.iter_mut().zip(levels) {
+            total.1 += weight / draws.len() as f64;
         }
     }
     sum
@@ -177,18 +184,16 @@ enum Place {
     Holdout(usize),
 }
 
-/// The final draws that the model took: parameters, observables of the place, those of the fitted runs, position.
-fn accepted(
-    outcome: &Outcome,
-    place: Place,
-) -> impl Iterator<Item = (&[f64], &Observables, Option<&Observables>, usize)> {
-    outcome.predictive_draws().iter().filter_map(move |p| {
+/// The final draws that the model took: number, parameters, observables, position of the run in them.
+fn accepted(outcome: &Outcome, place: Place) -> impl Iterator<Item = (usize, &[f64], &Observables, usize)> {
+    let draws = outcome.predictive_draws().iter().enumerate();
+    draws.filter_map(move |(number, p)| {
         let (result, position) = match place {
             Place::Fit(position) => (&p.fit, position),
             Place::Holdout(position) => (p.holdout.as_ref()?, position),
         };
         let observables = result.as_ref().ok()?;
-        Some((p.theta.as_slice(), observables, p.fit.as_ref().ok(), position))
+        Some((number, p.theta.as_slice(), observables, position))
     })
 }
 
