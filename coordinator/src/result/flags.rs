@@ -94,7 +94,7 @@ impl Outcome {
         }
         if let Some((m, probability)) = discrepancy_posterior(self).last().filter(|(_, p)| *p > 0.5) {
             let text = format!(
-                "the largest discrepancy that is allowed, {m} noise sds, has the probability {probability:.2}: the model misses conditions by more, an effect is missing or the noise sds are too small"
+                "the largest discrepancy that is allowed, {m:.1} noise sds, has the probability {probability:.2}: the model misses conditions by more, an effect is missing or the noise sds are too small"
             );
             flag("bound", text);
         }
