@@ -176,7 +176,7 @@ async fn work(
         residual_load_n: vec![0.0],
         nodes_in_contact: vec![16],
         simulated_travel_m: vec![0.0],
-        settled_to: Vec::new(),
+        ..Observables::default()
     });
     let mut results: Vec<WorkResult> = Vec::new();
     let mut latencies_ms = Vec::new();

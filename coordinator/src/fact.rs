@@ -102,7 +102,7 @@ pub struct EvaluationRow {
 /// What is kept of a result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Kept {
-    /// While sampling: the model's values of the fitted measurements, in the order of the likelihood. Enough to
+    /// While sampling: the predicted values that the likelihood takes. Enough to
     /// score them again under another noise model, and a quarter of the whole.
     Fitted(Vec<f64>),
     /// Of the final draws: everything.

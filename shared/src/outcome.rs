@@ -4,10 +4,15 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::channel::Channel;
+use crate::model::ModelVariant;
 
 /// The result of simulating every condition of a variant at one parameter vector.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "nearly every outcome is the large variant: a box would cost an allocation and save nothing"
+)]
 pub enum Outcome {
     /// The model gave observables.
     Evaluated(Observables),
@@ -45,6 +50,25 @@ pub struct Observables {
     /// models and protocols that do not wait for averages to settle.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub settled_to: Vec<f64>,
+    /// Change of the drawbar pull `[N]` with ln k*, k* the stiffness of the soil. This and the three next are empty unless
+    /// the variant asks for them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub d_drawbar_pull_n: Vec<f64>,
+    /// Change of the torque \[N m\] with ln k*.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub d_torque_n_m: Vec<f64>,
+    /// Change of the sinkage `[m]` with ln k*.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub d_sinkage_m: Vec<f64>,
+    /// Change of the lateral force `[N]` with ln k*.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub d_lateral_force_n: Vec<f64>,
+    /// Pressure under each plate of the variant `[Pa]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plate_pressure_pa: Vec<f64>,
+    /// Shear stress under each ring of the variant `[Pa]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shear_stress_pa: Vec<f64>,
 }
 
 impl Observables {
@@ -61,7 +85,7 @@ impl Observables {
             residual_load_n: room(),
             nodes_in_contact: Vec::with_capacity(runs),
             simulated_travel_m: room(),
-            settled_to: Vec::new(),
+            ..Observables::default()
         }
     }
 
@@ -72,6 +96,16 @@ impl Observables {
             Channel::Torque => &self.torque_n_m,
             Channel::Sinkage => &self.sinkage_m,
             Channel::LateralForce => &self.lateral_force_n,
+        }
+    }
+
+    /// Change of a channel with ln k*, by run; empty unless the variant asks for it.
+    pub fn sensitivity(&self, channel: Channel) -> &[f64] {
+        match channel {
+            Channel::DrawbarPull => &self.d_drawbar_pull_n,
+            Channel::Torque => &self.d_torque_n_m,
+            Channel::Sinkage => &self.d_sinkage_m,
+            Channel::LateralForce => &self.d_lateral_force_n,
         }
     }
 
@@ -87,15 +121,28 @@ impl Observables {
             &self.residual_load_n,
             &self.simulated_travel_m,
             &self.settled_to,
+            &self.d_drawbar_pull_n,
+            &self.d_torque_n_m,
+            &self.d_sinkage_m,
+            &self.d_lateral_force_n,
+            &self.plate_pressure_pa,
+            &self.shear_stress_pa,
         ];
         let bits = vectors.into_iter().flatten().map(|v| v.to_bits());
         let counts = self.nodes_in_contact.iter().map(|&n| u64::from(n));
         fnv(bits.chain(counts))
     }
 
-    /// Whether every vector has an entry for each of `runs` conditions.
-    pub fn covers(&self, runs: usize) -> bool {
-        Channel::ALL.iter().all(|&c| self.channel(c).len() == runs)
+    /// Whether every vector has an entry for each condition of a variant, each plate and each ring.
+    pub fn covers(&self, variant: &ModelVariant) -> bool {
+        let runs = variant.conditions.len();
+        let derivatives = if variant.stiffness_sensitivity { runs } else { 0 };
+        self.plate_pressure_pa.len() == variant.plates.len()
+            && self.shear_stress_pa.len() == variant.rings.len()
+            && Channel::ALL
+                .iter()
+                .all(|&c| self.sensitivity(c).len() == derivatives)
+            && Channel::ALL.iter().all(|&c| self.channel(c).len() == runs)
             && [
                 &self.b_eff_m,
                 &self.contact_length_m,
@@ -115,7 +162,7 @@ impl Observables {
 pub struct Rejection {
     /// Stable word: `no_support`, `no_convergence`, `not_finite`, `energy_gained`, `protocol`, `formula`, `invalid_parameter`.
     pub kind: String,
-    /// Position of the condition that was refused.
+    /// Position of the condition that was refused, plates counted behind the runs and rings behind the plates.
     pub condition: u32,
     /// Quantity, value, unit, bound.
     pub message: String,

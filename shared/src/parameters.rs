@@ -8,6 +8,7 @@
 use std::collections::BTreeSet;
 
 use crate::channel::Channel;
+use crate::experiment::Scatter;
 use crate::file::unknown_word;
 use crate::model::{EffectSet, ModelKind};
 
@@ -96,8 +97,12 @@ impl From<&BaseParameter> for Quantity {
 /// Whether a name means something in jobs already, so that no effect may have it.
 pub(crate) fn is_taken(name: &str) -> bool {
     // "none" is the absence of effects in results
-    ["none", "noise"].contains(&name) || BASE.iter().chain(&SPATIAL).any(|p| p.name == name)
+    ["none", "noise", "bevameter"].contains(&name) || BASE.iter().chain(&SPATIAL).any(|p| p.name == name)
 }
+
+/// Natural logarithm of the ratio of tan(phi) under a ring to tan(phi) under the wheel, which share all else; a
+/// parameter of a calibration with readings of a ring.
+pub const RING_TRANSFER: &str = "bevameter.ln_transfer";
 
 /// Prefix of the inferred noise standard deviations.
 pub const NOISE_PREFIX: &str = "noise.";
@@ -107,11 +112,23 @@ pub fn noise_parameter(channel: Channel) -> String {
     format!("{NOISE_PREFIX}{}", channel.column())
 }
 
+/// The parameter that a relative scatter is inferred as: `noise.run_scatter`.
+pub fn scatter_parameter(scatter: Scatter) -> String {
+    format!("{NOISE_PREFIX}{}", scatter.key())
+}
+
 /// What is known of the parameter behind a name: of the model, of one of its wheels, of an effect.
 ///
 /// # Errors
 /// A sentence that names the unknown name and the nearest known one.
 pub fn lookup(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<Quantity, String> {
+    if name == RING_TRANSFER {
+        return Ok(Quantity {
+            unit: "1".to_owned(),
+            lower: -2.0,
+            upper: 2.0,
+        });
+    }
     let (stem, wheel) = name
         .split_once('.')
         .map_or((name, None), |(stem, wheel)| (stem, Some(wheel)));

@@ -9,7 +9,9 @@ use shared::api::{
 };
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
 use shared::experiment::Wheel;
-use shared::model::{Condition, EffectText, ModelKind, ModelVariant, SpatialSettings};
+use shared::model::{
+    Condition, EffectText, ModelKind, ModelVariant, PlateCondition, RingCondition, SpatialSettings,
+};
 use shared::outcome::{Fault, Observables, Outcome, Rejection};
 
 /// A message has one form: it is written so, and read back to the same.
@@ -49,6 +51,12 @@ fn observables() -> Observables {
         nodes_in_contact: vec![16],
         simulated_travel_m: vec![0.0],
         settled_to: vec![0.004],
+        d_drawbar_pull_n: vec![-3.5],
+        d_torque_n_m: vec![-0.5],
+        d_sinkage_m: vec![-0.004],
+        d_lateral_force_n: vec![0.0],
+        plate_pressure_pa: vec![9000.5],
+        shear_stress_pa: vec![5000.5],
     }
 }
 
@@ -56,7 +64,8 @@ fn observables_json() -> Value {
     json!({
         "drawbar_pull_n": [12.5], "torque_n_m": [2.25], "sinkage_m": [0.006], "lateral_force_n": [0.0],
         "b_eff_m": [0.03], "contact_length_m": [0.05], "residual_load_n": [1e-9], "nodes_in_contact": [16],
-        "simulated_travel_m": [0.0], "settled_to": [0.004],
+        "simulated_travel_m": [0.0], "settled_to": [0.004], "d_drawbar_pull_n": [-3.5], "d_torque_n_m": [-0.5],
+        "d_sinkage_m": [-0.004], "d_lateral_force_n": [0.0], "plate_pressure_pa": [9000.5], "shear_stress_pa": [5000.5],
     })
 }
 
@@ -165,6 +174,9 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         bin_length_m: None,
         conditions: vec![condition],
         protocol: Default::default(),
+        stiffness_sensitivity: false,
+        plates: Vec::new(),
+        rings: Vec::new(),
     };
     golden(
         &variant,
@@ -179,6 +191,29 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
                          "simulated_transient_sinkage_s": 1.0, "lowpass_hz": 0.5},
         }),
     );
+    let asked = ModelVariant {
+        stiffness_sensitivity: true,
+        plates: vec![PlateCondition {
+            plate_radius_m: 0.05,
+            sinkage_m: 0.01,
+        }],
+        rings: vec![RingCondition {
+            normal_stress_pa: 2e4,
+            shear_displacement_m: 0.012,
+        }],
+        ..variant.clone()
+    };
+    let json = serde_json::to_value(&asked).unwrap();
+    assert_eq!(json["stiffness_sensitivity"], true);
+    assert_eq!(
+        json["plates"],
+        json!([{"plate_radius_m": 0.05, "sinkage_m": 0.01}])
+    );
+    assert_eq!(
+        json["rings"],
+        json!([{"normal_stress_pa": 2e4, "shear_displacement_m": 0.012}])
+    );
+    assert_ne!(variant.hash(), asked.hash());
     assert_eq!(variant.hash(), variant.clone().hash());
     let other = ModelVariant {
         gravity_m_s2: 1.62,

@@ -9,6 +9,7 @@ mod effects;
 mod end_to_end;
 mod forward;
 mod leases;
+mod likelihood;
 mod mesh;
 mod point_fit;
 mod spatial;

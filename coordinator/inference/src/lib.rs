@@ -23,7 +23,7 @@ pub mod rng;
 pub mod round;
 pub mod tmcmc;
 
-pub use likelihood::{Datum, GaussianLikelihood, LikelihoodError, Sd};
+pub use likelihood::{CommonError, Datum, Discrepancy, ErrorLaw, Likelihood, LikelihoodError, Sd, Size};
 pub use log_likelihood::{LogLikelihood, NotANumber};
 pub use prior::{Distribution, Marginal, Prior, PriorError};
 pub use round::{Failure, Progress, Proposal, TellError};

@@ -2,8 +2,7 @@
 
 use inference::lm::{Estimate, Optimiser, Settings, SettingsError, Stop};
 use inference::{
-    Datum, Distribution, Failure, GaussianLikelihood, LikelihoodError, Marginal, Prior, Progress, Sd,
-    TellError,
+    Datum, Distribution, Failure, Likelihood, LikelihoodError, Marginal, Prior, Progress, Sd, TellError,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -18,17 +17,17 @@ fn normal(mean: f64, sd: f64) -> Marginal {
     Marginal::new(Distribution::Normal { mean, sd }, None).unwrap()
 }
 
-fn data(values: &[f64], sd: impl Fn(usize) -> Sd) -> GaussianLikelihood {
+fn data(values: &[f64], sd: impl Fn(usize) -> Sd) -> Likelihood {
     let datum = |(run, &value): (usize, &f64)| Datum {
         run,
         channel: 0,
         value,
         sd: sd(run),
     };
-    GaussianLikelihood::new(values.iter().enumerate().map(datum).collect()).unwrap()
+    Likelihood::new(values.iter().enumerate().map(datum).collect()).unwrap()
 }
 
-fn begin(prior: &[Marginal], likelihood: &GaussianLikelihood, settings: Settings) -> Optimiser {
+fn begin(prior: &[Marginal], likelihood: &Likelihood, settings: Settings) -> Optimiser {
     Optimiser::new(Prior::new(prior.to_vec()), likelihood.clone(), settings).unwrap()
 }
 
@@ -47,7 +46,7 @@ fn end(mut fit: Optimiser, model: Model, order: impl Fn(u64, &mut Vec<usize>)) -
     fit
 }
 
-fn fit(prior: &[Marginal], likelihood: &GaussianLikelihood, settings: Settings, model: Model) -> Estimate {
+fn fit(prior: &[Marginal], likelihood: &Likelihood, settings: Settings, model: Model) -> Estimate {
     let ended = end(begin(prior, likelihood, settings), model, |_, _| ());
     ended.estimate().unwrap().clone()
 }
@@ -118,7 +117,7 @@ fn a_linear_model_with_normal_priors_has_its_closed_form() {
     near(
         estimate.log_likelihood,
         likelihood
-            .log_likelihood_of(&linear(&estimate.theta).unwrap(), &estimate.theta)
+            .log_likelihood(&linear(&estimate.theta).unwrap(), &estimate.theta)
             .unwrap()
             .value(),
         1e-12,
@@ -313,10 +312,7 @@ fn a_model_with_the_noise_of_a_grid_is_fitted_within_its_uncertainty() {
     });
     assert_eq!(smooth.stop, Stop::Decrease);
     let score = |theta: &[f64]| {
-        let likely = likelihood
-            .log_likelihood_of(&wheel(theta), theta)
-            .unwrap()
-            .value();
+        let likely = likelihood.log_likelihood(&wheel(theta), theta).unwrap().value();
         likely + Prior::new(prior.to_vec()).log_density(theta)
     };
     // Along the ridge of stiffness and exponent the noise of 0.3 % looks like information over short steps. It makes

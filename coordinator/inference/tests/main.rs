@@ -4,6 +4,7 @@
 
 mod answers;
 mod ask_tell;
+mod bevameter;
 mod flags;
 mod likelihood;
 mod lm;

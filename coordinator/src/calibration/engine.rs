@@ -2,7 +2,7 @@
 
 use inference::lm::{Estimate, Optimiser};
 use inference::{
-    GaussianLikelihood, LogLikelihood, Posterior, Prior, Progress, Proposal, Sampler, StageRecord, TellError,
+    Likelihood, LogLikelihood, Posterior, Prior, Progress, Proposal, Sampler, StageRecord, TellError,
 };
 
 use crate::spec::{Method, MethodError};
@@ -21,7 +21,7 @@ pub enum Engine {
 pub(super) struct Scored<'a> {
     /// ln p(data | theta) at the parameters that were asked for.
     pub log_likelihood: LogLikelihood,
-    /// The model's values of the fitted measurements, in the order of the likelihood; `None` where it refused.
+    /// The predicted values that the likelihood takes; `None` where the model refused.
     pub fitted: Option<&'a [f64]>,
 }
 
@@ -39,11 +39,7 @@ impl Engine {
     ///
     /// # Errors
     /// [`MethodError`] where the settings do not fit the prior.
-    pub(super) fn new(
-        prior: Prior,
-        likelihood: &GaussianLikelihood,
-        method: Method,
-    ) -> Result<Self, MethodError> {
+    pub(super) fn new(prior: Prior, likelihood: &Likelihood, method: Method) -> Result<Self, MethodError> {
         Ok(match method {
             Method::Sample(settings) => Engine::Sampler(Box::new(Sampler::new(prior, settings)?)),
             Method::Fit(settings) => {

@@ -12,7 +12,6 @@ use std::sync::Arc;
 
 use inference::{LogLikelihood, Posterior};
 use shared::api::CalibrationState;
-use shared::channel::Channel;
 use shared::model::ModelVariant;
 use shared::outcome::{Observables, Outcome};
 
@@ -204,15 +203,15 @@ impl Calibration {
         outcome: Result<Observables, String>,
         worker: &str,
     ) -> Result<(Vec<Fact>, bool), ResultError> {
-        let runs = if self.is_holdout(evaluation) {
-            self.spec.holdout_runs.len()
-        } else {
-            self.spec.fit_runs.len()
+        let variant = match (&self.spec.holdout_variant, self.is_holdout(evaluation)) {
+            (Some(variant), true) => variant,
+            _ => &self.spec.fit_variant,
         };
         if self.theta(evaluation).is_some()
             && let Ok(observables) = &outcome
-            && !observables.covers(runs)
+            && !observables.covers(variant)
         {
+            let runs = variant.conditions.len();
             return Err(ResultError::WrongShape { evaluation, runs });
         }
         match self.queue.complete(evaluation) {
@@ -290,10 +289,8 @@ impl Calibration {
         let Ok(observables) = outcome else {
             return Ok(LogLikelihood::Impossible);
         };
-        let channels = Channel::ALL.map(|c| observables.channel(c));
-        self.spec
-            .likelihood
-            .log_likelihood(|run, channel| channels[channel][run], theta)
+        let values = self.spec.predicted_values(observables);
+        self.spec.likelihood.log_likelihood(&values, theta)
     }
 
     /// Lets a completed evaluation take effect on counts, engine and phase.
@@ -420,17 +417,7 @@ impl Calibration {
         match outcome {
             Err(reason) => Kept::Refused(reason),
             Ok(observables) if self.draws.is_some() => Kept::Whole(Box::new(observables)),
-            Ok(observables) => {
-                let channels = Channel::ALL.map(|c| observables.channel(c));
-                Kept::Fitted(
-                    self.spec
-                        .likelihood
-                        .data()
-                        .iter()
-                        .map(|d| channels[d.channel][d.run])
-                        .collect(),
-                )
-            }
+            Ok(observables) => Kept::Fitted(self.spec.predicted_values(&observables)),
         }
     }
 }

@@ -222,7 +222,7 @@ mod tests {
             residual_load_n: values.clone(),
             nodes_in_contact: vec![1; runs],
             simulated_travel_m: values,
-            settled_to: Vec::new(),
+            ..Observables::default()
         })
     }
 

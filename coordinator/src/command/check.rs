@@ -104,7 +104,13 @@ fn pilot(mut spec: crate::spec::Spec) -> anyhow::Result<Pilot> {
         settings.particles = settings.particles.min(least);
     }
     let method = spec.method;
-    let runs = spec.fit_runs.len();
+    // With derivatives by the stiffness, each condition is simulated twice.
+    let runs = spec.fit_runs.len()
+        * if spec.fit_variant.stiffness_sensitivity {
+            2
+        } else {
+            1
+        };
     let model = Evaluate::new(&spec.fit_variant).map_err(anyhow::Error::msg)?;
     let identity = Identity {
         id: 0,

@@ -6,7 +6,7 @@ use shared::experiment::RunUse;
 use super::Outcome;
 use super::baseline::Baseline;
 use super::errors::ErrorTable;
-use super::predictive::predictive;
+use super::predictive::{Levels, predictive};
 
 /// Model against measurement.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -70,13 +70,14 @@ impl Outcome {
     /// Model against measurement, run by run.
     pub fn comparison(&self) -> Comparison {
         let baseline = Baseline::new(&self.spec.experiment);
+        let levels = Levels::of(self);
         let mut rows = Vec::new();
         for (i, run) in self.spec.experiment.runs.iter().enumerate() {
             for channel in Channel::ALL {
                 let Some(measured) = run.measured[channel.index()] else {
                     continue;
                 };
-                let p = predictive(self, i, channel);
+                let p = predictive(self, &levels, i, channel);
                 let holdout = run.usage == RunUse::Holdout;
                 rows.push(ComparisonRow {
                     run: run.name.clone(),

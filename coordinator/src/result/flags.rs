@@ -3,6 +3,7 @@
 use inference::lm::Stop;
 
 use super::Outcome;
+use super::predictive::discrepancy_posterior;
 use super::summary::ParameterSummary;
 
 /// Something that deserves attention.
@@ -90,6 +91,12 @@ impl Outcome {
                     flag("no_information", text);
                 }
             }
+        }
+        if let Some((m, probability)) = discrepancy_posterior(self).last().filter(|(_, p)| *p > 0.5) {
+            let text = format!(
+                "the largest discrepancy that is allowed, {m:.1} noise sds, has the probability {probability:.2}: the model misses conditions by more, an effect is missing or the noise sds are too small"
+            );
+            flag("bound", text);
         }
         let (evaluations, rejected) = (self.row.evaluations.unwrap_or(0), self.row.rejected.unwrap_or(0));
         if rejected as f64 > MANY_REJECTED * evaluations as f64 {

@@ -10,6 +10,7 @@ mod errors;
 mod flags;
 mod point_estimate;
 mod predictive;
+mod readings;
 pub mod report;
 mod settling;
 mod summary;

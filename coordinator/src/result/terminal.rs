@@ -10,6 +10,7 @@ use shared::model::{EffectSet, ModelKind};
 use super::comparison::{Comparison, ComparisonRow};
 use super::coverage::Coverage;
 use super::errors::ErrorTable;
+use super::readings::{error_model, reading_errors};
 use super::settling::unsettled;
 use super::{Outcome, prior_mean};
 use crate::spec::{FreeParameter, Spec};
@@ -56,13 +57,31 @@ pub fn specification(spec: &Spec) -> String {
     let holdout = spec.experiment.runs.len() - spec.fit_runs.len();
     let _ = writeln!(
         text,
-        "{} fit runs with {} measurements, {holdout} holdout runs; model {}; {}, seed {}\n",
+        "{} fit runs with {} measurements, {holdout} holdout runs; model {}; {}, seed {}",
         spec.fit_runs.len(),
-        spec.likelihood.data().len(),
+        spec.wheel_data(),
         spec.model_words(),
         spec.method.words(),
         spec.method.seed()
     );
+    let bevameter = &spec.bevameter;
+    for (readings, what) in [
+        (bevameter.plates.len(), "plates"),
+        (bevameter.rings.len(), "rings"),
+    ] {
+        if readings > 0 {
+            let _ = writeln!(text, "{readings} readings of {what}");
+        }
+    }
+    for words in spec
+        .likelihood_settings
+        .words()
+        .into_iter()
+        .chain(spec.scatter_words())
+    {
+        let _ = writeln!(text, "{words}");
+    }
+    text.push('\n');
     let fixed = &spec.fit_variant.fixed;
     let width = width(spec.parameters.iter().map(|p| &p.name).chain(fixed.keys()));
     let _ = writeln!(
@@ -123,8 +142,16 @@ pub fn summary(outcome: &Outcome) -> String {
     if let Some(estimate) = &outcome.estimate {
         let _ = writeln!(text, "log-posterior {:.2}", estimate.log_posterior());
     }
+    for words in error_model(outcome) {
+        let _ = writeln!(text, "{words}");
+    }
     text.push('\n');
-    text.push_str(&comparison(&outcome.comparison()));
+    if !outcome.spec.experiment.runs.is_empty() {
+        text.push_str(&comparison(&outcome.comparison()));
+    }
+    for error in reading_errors(outcome) {
+        let _ = writeln!(text, "{}", error.words());
+    }
     text.push_str(&match &outcome.estimate {
         Some(estimate) => point(outcome, estimate),
         None => parameters(outcome),

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use shared::file::{FileError, number, parse_toml, unknown_word};
+use shared::file::{FileError, parse_toml, unknown_word};
 use shared::model::ModelSettings;
 
+use super::errors::{LikelihoodSettings, RawLikelihood};
 use super::method::{Method, RawSampler};
 use super::priors::PriorEntry;
 
@@ -20,6 +21,8 @@ pub struct Job {
     pub priors: Vec<PriorEntry>,
     /// The algorithm with its settings.
     pub method: Method,
+    /// How measurements scatter around the model.
+    pub likelihood: LikelihoodSettings,
 }
 
 #[derive(Deserialize)]
@@ -53,22 +56,6 @@ impl Default for RawDiscovery {
     }
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct RawLikelihood {
-    kind: String,
-    discrepancy: toml::Value,
-}
-
-impl Default for RawLikelihood {
-    fn default() -> Self {
-        RawLikelihood {
-            kind: "gaussian".into(),
-            discrepancy: toml::Value::Float(0.0),
-        }
-    }
-}
-
 pub(super) const LATER: &str = "is not available in this version";
 
 impl Job {
@@ -82,8 +69,9 @@ impl Job {
         raw.discovery
             .check()
             .map_err(|e| fail(format!("[discovery] {e}")))?;
-        raw.likelihood
-            .check()
+        let likelihood = raw
+            .likelihood
+            .settings()
             .map_err(|e| fail(format!("[likelihood] {e}")))?;
         let model = ModelSettings::from_table(&raw.model).map_err(|e| fail(format!("[model] {e}")))?;
         let method = raw.sampler.method().map_err(|e| fail(format!("[sampler] {e}")))?;
@@ -105,6 +93,7 @@ impl Job {
             model,
             priors,
             method,
+            likelihood,
         })
     }
 
@@ -131,20 +120,6 @@ impl RawDiscovery {
             "off" => Err(format!("max_effects = {} must be at most 10", self.max_effects)),
             later @ ("ask" | "auto") => Err(format!("apply = \"{later}\" {LATER}")),
             other => Err(unknown_word("value of apply", other, ["off", "ask", "auto"])),
-        }
-    }
-}
-
-impl RawLikelihood {
-    fn check(&self) -> Result<(), String> {
-        match self.kind.as_str() {
-            "gaussian" => {}
-            "student_t" => return Err(format!("kind = \"student_t\" {LATER}")),
-            other => return Err(unknown_word("kind", other, ["gaussian", "student_t"])),
-        }
-        match number(&self.discrepancy) {
-            Some(zero) if zero.abs() == 0.0 => Ok(()),
-            _ => Err(format!("discrepancy = {} {LATER}; 0.0 is", self.discrepancy)),
         }
     }
 }

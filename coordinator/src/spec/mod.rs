@@ -1,5 +1,7 @@
 //! Turns the text of a job and its experiment into everything a calibration needs.
 
+mod bevameter;
+mod errors;
 mod job_file;
 mod method;
 mod noise;
@@ -7,12 +9,16 @@ mod priors;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use inference::{GaussianLikelihood, Prior};
+use inference::{Datum, Likelihood, Prior};
+use shared::channel::Channel;
 use shared::experiment::{Experiment, RunUse};
 use shared::file::{FileError, FileSet};
 use shared::model::{EffectSet, ModelSettings, ModelVariant, equations_of};
+use shared::outcome::Observables;
 use shared::parameters;
 
+pub use bevameter::{Bevameter, PLATE, RING, Reading};
+pub use errors::LikelihoodSettings;
 pub use job_file::Job;
 pub use method::{Method, MethodError};
 pub(crate) use noise::repeat_scatter;
@@ -38,7 +44,11 @@ pub struct Spec {
     /// What workers evaluate for the final draws besides: the holdout runs, if there are any.
     pub holdout_variant: Option<ModelVariant>,
     /// The likelihood of the measurements that are fitted; runs count within [`Spec::fit_runs`].
-    pub likelihood: GaussianLikelihood,
+    pub likelihood: Likelihood,
+    /// What the job says of the errors.
+    pub likelihood_settings: LikelihoodSettings,
+    /// The measured readings of plates and rings; all are fitted.
+    pub bevameter: Bevameter,
 }
 
 /// A calibration was begun with other files of its effects than this program has.
@@ -84,24 +94,17 @@ impl Spec {
     ) -> Result<Spec, FileError> {
         let experiment = Experiment::parse(experiment_name, files)?;
         let in_job = |message: String| FileError::whole(job_name, message);
-        for (key, readings) in [
-            ("plates", experiment.plates.len()),
-            ("shear", experiment.shear.len()),
-        ] {
-            if readings > 0 {
-                let message = format!(
-                    "{key}: bevameter rows in the likelihood are not available in this version; `worker simulate` predicts them"
-                );
-                return Err(FileError::whole(experiment_name, message));
-            }
-        }
-
+        let in_experiment = |message: String| FileError::whole(experiment_name, message);
+        let bevameter = Bevameter::new(&experiment).map_err(in_experiment)?;
         let wheels = experiment.wheel_names();
         let mut model = job.model;
         let named = job.priors.iter().map(|entry| entry.name.as_str());
         let named = named.filter(|name| !name.starts_with(parameters::NOISE_PREFIX));
         let fixed = model.fixed.keys().map(String::as_str);
-        let effects = EffectSet::choose(job_name, &model, named.chain(fixed), texts)?;
+        let of_effects = named
+            .chain(fixed)
+            .filter(|name| *name != parameters::RING_TRANSFER);
+        let effects = EffectSet::choose(job_name, &model, of_effects, texts)?;
         let mut parameters = Vec::new();
         for entry in job.priors {
             match entry
@@ -123,16 +126,13 @@ impl Spec {
         add_unsaid(job_name, &effects, &wheels, &mut model, &mut parameters)?;
         let (fit_runs, holdout_runs): (Vec<usize>, Vec<usize>) =
             (0..experiment.runs.len()).partition(|&i| experiment.runs[i].usage == RunUse::Fit);
-        noise::add_unknown_sds(&experiment, &mut parameters);
-        noise::check_names(&experiment, &parameters).map_err(in_job)?;
-        let in_experiment = |message: String| FileError::whole(experiment_name, message);
-        let data = noise::data(&experiment, &fit_runs, &parameters).map_err(in_experiment)?;
-        if data.is_empty() {
-            return Err(in_experiment(
-                "no fit run has a measured channel: there is nothing to fit".into(),
-            ));
-        }
-        let likelihood = GaussianLikelihood::new(data).map_err(|e| in_experiment(e.to_string()))?;
+        bevameter
+            .add_transfer(&model.fixed, &mut parameters)
+            .map_err(in_job)?;
+        noise::add_unknown_sds(&experiment, &bevameter, &mut parameters);
+        noise::check_names(&experiment, &bevameter, &parameters).map_err(in_job)?;
+        let likelihood = errors::likelihood(&experiment, &fit_runs, &bevameter, &parameters, job.likelihood)
+            .map_err(in_experiment)?;
         if parameters.is_empty() {
             return Err(in_job(
                 "[priors] leaves no parameter free: there is nothing to calibrate".into(),
@@ -141,6 +141,12 @@ impl Spec {
         job.method
             .check(parameters.len())
             .map_err(|e| in_job(format!("[sampler] {e}")))?;
+        if matches!(job.method, Method::Fit(_)) && likelihood.entangles_unknown_sds() {
+            return Err(in_job(format!(
+                "[sampler] {}",
+                inference::lm::SettingsError::EntangledNoise
+            )));
+        }
         let model_parameters: Vec<String> = parameters
             .iter()
             .filter(|p| !p.name.starts_with(parameters::NOISE_PREFIX))
@@ -148,9 +154,14 @@ impl Spec {
             .collect();
         let variant = |runs: &[usize]| {
             let runs = runs.iter().map(|&i| &experiment.runs[i]);
-            ModelVariant::new(&experiment, &model, &effects, model_parameters.clone(), runs).map_err(in_job)
+            let mut variant =
+                ModelVariant::new(&experiment, &model, &effects, model_parameters.clone(), runs)
+                    .map_err(in_job)?;
+            variant.stiffness_sensitivity = !likelihood.sensitive().is_empty();
+            Ok(variant)
         };
-        let fit_variant = variant(&fit_runs)?;
+        let mut fit_variant = variant(&fit_runs)?;
+        bevameter.ask(&mut fit_variant);
         let holdout_variant = match holdout_runs.as_slice() {
             [] => None,
             runs => Some(variant(runs)?),
@@ -165,7 +176,35 @@ impl Spec {
             fit_variant,
             holdout_variant,
             likelihood,
+            likelihood_settings: job.likelihood,
+            bevameter,
         })
+    }
+
+    /// The predicted values that the likelihood takes, of an evaluation of the fitted runs.
+    pub fn predicted_values(&self, observables: &Observables) -> Vec<f64> {
+        let channels = Channel::ALL.map(|c| observables.channel(c));
+        let derivatives = Channel::ALL.map(|c| observables.sensitivity(c));
+        let data = self.likelihood.data();
+        let value = |d: &Datum| match d.channel {
+            PLATE => libm::log(observables.plate_pressure_pa[d.run]),
+            RING => libm::log(observables.shear_stress_pa[d.run]),
+            channel => channels[channel][d.run],
+        };
+        let sensitive = self.likelihood.sensitive().iter().map(|&i| &data[i]);
+        data.iter()
+            .map(value)
+            .chain(sensitive.map(|d| derivatives[d.channel][d.run]))
+            .collect()
+    }
+
+    /// The measurements of wheels that are fitted.
+    pub fn wheel_data(&self) -> usize {
+        self.likelihood
+            .data()
+            .iter()
+            .filter(|d| d.channel < PLATE)
+            .count()
     }
 
     /// Whether another specification means the same calibration; comments and the order of keys do not count.

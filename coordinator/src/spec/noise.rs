@@ -2,18 +2,40 @@
 
 use inference::{Datum, Distribution, Marginal, Sd};
 use shared::channel::Channel;
-use shared::experiment::{Experiment, NoiseSd, RunUse, TestRun};
-use shared::parameters::{NOISE_PREFIX, noise_parameter};
+use shared::experiment::{Experiment, NoiseSd, RunUse, Scatter, ScatterSd, TestRun};
+use shared::parameters::{NOISE_PREFIX, noise_parameter, scatter_parameter};
 
+use super::bevameter::Bevameter;
 use super::priors::FreeParameter;
 
 /// Prior scale of an unknown noise sd where the job states none: the run-to-run scatter that is usual
 /// on single-wheel rigs, 2 N, 0.2 N m, 1 mm, 2 N.
 const USUAL_SD: [f64; 4] = [2.0, 0.2, 0.001, 2.0];
 
-/// Adds a half-normal prior for every unknown noise sd that the job does not mention, and moves all noise
+/// Adds a half-normal prior for every unknown noise sd and scatter that the job does not mention, and moves all noise
 /// parameters behind the model's.
-pub(super) fn add_unknown_sds(experiment: &Experiment, parameters: &mut Vec<FreeParameter>) {
+pub(super) fn add_unknown_sds(
+    experiment: &Experiment,
+    bevameter: &Bevameter,
+    parameters: &mut Vec<FreeParameter>,
+) {
+    for scatter in Scatter::ALL {
+        let name = scatter_parameter(scatter);
+        let unknown = experiment.noise.scatter(scatter) == ScatterSd::Unknown;
+        if unknown
+            && needs_scatter(experiment, bevameter, scatter)
+            && !parameters.iter().any(|p| p.name == name)
+        {
+            let scale = scatter.prior_scale();
+            let marginal = Marginal::new(Distribution::HalfNormal { scale }, None)
+                .expect("the usual scales are positive and finite");
+            parameters.push(FreeParameter {
+                name,
+                unit: "1".to_owned(),
+                marginal,
+            });
+        }
+    }
     for channel in Channel::ALL {
         let unknown = experiment.noise.sd[channel.index()] == Some(NoiseSd::Unknown);
         let name = noise_parameter(channel);
@@ -34,7 +56,25 @@ pub(super) fn add_unknown_sds(experiment: &Experiment, parameters: &mut Vec<Free
 }
 
 /// Refuses a prior for a noise sd that is not inferred.
-pub(super) fn check_names(experiment: &Experiment, parameters: &[FreeParameter]) -> Result<(), String> {
+pub(super) fn check_names(
+    experiment: &Experiment,
+    bevameter: &Bevameter,
+    parameters: &[FreeParameter],
+) -> Result<(), String> {
+    for scatter in Scatter::ALL {
+        let (name, key) = (scatter_parameter(scatter), scatter.key());
+        if !parameters.iter().any(|p| p.name == name) {
+            continue;
+        }
+        if experiment.noise.scatter(scatter) != ScatterSd::Unknown {
+            return Err(format!(
+                "{name} has a prior, but the experiment does not say {key} = \"unknown\" under [noise]"
+            ));
+        }
+        if !needs_scatter(experiment, bevameter, scatter) {
+            return Err(format!("{name} has a prior, but nothing that is fitted needs it"));
+        }
+    }
     for channel in Channel::ALL {
         let name = noise_parameter(channel);
         let stated = parameters.iter().any(|p| p.name == name);
@@ -49,6 +89,12 @@ pub(super) fn check_names(experiment: &Experiment, parameters: &[FreeParameter])
         }
     }
     Ok(())
+}
+
+/// Whether anything that is fitted scatters so.
+fn needs_scatter(experiment: &Experiment, bevameter: &Bevameter, scatter: Scatter) -> bool {
+    let fitted = || Channel::ALL.iter().any(|&c| experiment.measures(c, RunUse::Fit));
+    bevameter.scatters(scatter) || (scatter == Scatter::Run && fitted())
 }
 
 /// Whether any fitted measurement of the channel lacks a standard deviation of its own.
@@ -159,6 +205,19 @@ fn pooled(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> (f64
         })
         .sum();
     ((sum / freedom as f64).sqrt(), freedom)
+}
+
+/// The fitted runs by condition, as positions among them; a run joins the first condition that it repeats.
+pub(super) fn conditions(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Vec<usize>> {
+    let mut conditions: Vec<(&TestRun, Vec<usize>)> = Vec::new();
+    for (position, &i) in fit_runs.iter().enumerate() {
+        let run = &experiment.runs[i];
+        match conditions.iter_mut().find(|(first, _)| repeats(first, run)) {
+            Some((_, positions)) => positions.push(position),
+            None => conditions.push((run, vec![position])),
+        }
+    }
+    conditions.into_iter().map(|(_, positions)| positions).collect()
 }
 
 /// Whether two runs repeat one condition, within what a rig can hold: slip to 0.02, load to 15 %, speed to 5 %.

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use formula::{Effect, Parameter};
 use inference::{Distribution, Marginal};
 use shared::channel::Channel;
+use shared::experiment::Scatter;
 use shared::file::{FileError, number, unknown_word};
 use shared::model::EffectSet;
 use shared::parameters::{self, NOISE_PREFIX, Quantity, behind};
@@ -72,7 +73,10 @@ impl PriorEntry {
                 .any(|e| e.parameter(key).is_some())
         };
         let dotted = |key: &&String| {
-            wheels.contains(key.as_str()) || Channel::ALL.iter().any(|c| c.column() == *key) || of_effect(key)
+            let of_noise = Channel::ALL.iter().any(|c| c.column() == *key)
+                || Scatter::ALL.iter().any(|s| s.key() == *key);
+            let of_ring = parameters::RING_TRANSFER == format!("{}.{key}", self.name);
+            wheels.contains(key.as_str()) || of_noise || of_ring || of_effect(key)
         };
         match table.keys().find(dotted) {
             None => Ok(()),
@@ -152,14 +156,23 @@ fn quantity(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<
     let Some(column) = name.strip_prefix(NOISE_PREFIX) else {
         return parameters::lookup(name, wheels, effects);
     };
-    match Channel::ALL.into_iter().find(|c| c.column() == column) {
-        Some(channel) => Ok(Quantity {
-            unit: channel.unit().to_owned(),
-            lower: 0.0,
-            upper: f64::INFINITY,
-        }),
-        None => Err(unknown_word("noise", column, Channel::ALL.map(Channel::column))),
-    }
+    let unit = match Channel::ALL.into_iter().find(|c| c.column() == column) {
+        Some(channel) => channel.unit(),
+        None if Scatter::ALL.iter().any(|s| s.key() == column) => "1",
+        None => {
+            let known = Channel::ALL.map(Channel::column).into_iter();
+            return Err(unknown_word(
+                "noise",
+                column,
+                known.chain(Scatter::ALL.map(Scatter::key)),
+            ));
+        }
+    };
+    Ok(Quantity {
+        unit: unit.to_owned(),
+        lower: 0.0,
+        upper: f64::INFINITY,
+    })
 }
 
 fn distribution(table: &toml::Table) -> Result<Distribution, String> {

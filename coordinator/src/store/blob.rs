@@ -1,12 +1,20 @@
 //! Observables as bytes: little-endian `f64`, one vector after the other.
+//!
+//! Four channels and five diagnostics of each run come first; nothing else stands in the oldest form. A second form adds
+//! `settled_to`: then a not-a-number ends the bytes. The third holds anything more: then an infinity ends them, with
+//! what there is before it. No observable is either.
 
+use shared::channel::Channel;
 use shared::outcome::Observables;
 
 use super::StoreError;
 
-/// Vectors per run: four channels and five diagnostics. A tenth, `settled_to`, stands only where there is one; then a
-/// not-a-number ends the bytes, which no observable can be.
+/// Vectors per run that always stand there.
 const VECTORS: usize = 9;
+
+/// Numbers before the infinity that ends the third form: runs, whether `settled_to` and the four derivatives stand there
+/// (0 or 1), plates, rings.
+const TRAILER: usize = 5;
 
 /// The bytes of numbers.
 pub(super) fn encode(values: &[f64]) -> Vec<u8> {
@@ -31,10 +39,28 @@ pub(super) fn encode_whole(o: &Observables) -> Vec<u8> {
             .collect::<Vec<_>>(),
     );
     push(&o.simulated_travel_m);
-    if !o.settled_to.is_empty() {
-        push(&o.settled_to);
-        push(&[f64::NAN]);
+    push(&o.settled_to);
+    let derivatives = Channel::ALL.map(|c| o.sensitivity(c));
+    let more = [derivatives[0], &o.plate_pressure_pa, &o.shear_stress_pa];
+    if more.iter().all(|v| v.is_empty()) {
+        if !o.settled_to.is_empty() {
+            push(&[f64::NAN]);
+        }
+        return bytes;
     }
+    derivatives.into_iter().for_each(&mut push);
+    push(&o.plate_pressure_pa);
+    push(&o.shear_stress_pa);
+    let there = |v: &[f64]| f64::from(u8::from(!v.is_empty()));
+    let count = |v: &[f64]| v.len() as f64;
+    push(&[
+        count(&o.sinkage_m),
+        there(&o.settled_to),
+        there(derivatives[0]),
+        count(&o.plate_pressure_pa),
+        count(&o.shear_stress_pa),
+        f64::INFINITY,
+    ]);
     bytes
 }
 
@@ -51,38 +77,89 @@ pub(super) fn decode_values(bytes: &[u8]) -> Result<Vec<f64>, StoreError> {
     }
 }
 
+/// Lengths of what stands in the bytes.
+struct Extent {
+    runs: usize,
+    settled: bool,
+    derivatives: bool,
+    plates: usize,
+    rings: usize,
+}
+
+impl Extent {
+    fn words(&self) -> Option<usize> {
+        let vectors = VECTORS + usize::from(self.settled) + 4 * usize::from(self.derivatives);
+        self.runs
+            .checked_mul(vectors)?
+            .checked_add(self.plates)?
+            .checked_add(self.rings)
+    }
+
+    /// Splits the end off: what stands there, and the words before it.
+    fn split(words: &[f64]) -> Option<(Extent, &[f64])> {
+        let of_runs = |words: &[f64], settled: bool| {
+            let vectors = VECTORS + usize::from(settled);
+            words.len().is_multiple_of(vectors).then(|| Extent {
+                runs: words.len() / vectors,
+                settled,
+                derivatives: false,
+                plates: 0,
+                rings: 0,
+            })
+        };
+        match words {
+            [words @ .., last] if last.is_nan() => Some((of_runs(words, true)?, words)),
+            [words @ .., last] if last.is_infinite() => {
+                let (words, trailer) = words.split_at_checked(words.len().checked_sub(TRAILER)?)?;
+                // Written from counts, so the conversion back is exact; of anything else the sum is wrong.
+                let &[runs, settled, derivatives, plates, rings] = trailer else {
+                    return None;
+                };
+                let extent = Extent {
+                    runs: runs as usize,
+                    settled: settled > 0.0,
+                    derivatives: derivatives > 0.0,
+                    plates: plates as usize,
+                    rings: rings as usize,
+                };
+                (extent.words() == Some(words.len())).then_some((extent, words))
+            }
+            words => Some((of_runs(words, false)?, words)),
+        }
+    }
+}
+
 /// The observables of bytes.
 pub(super) fn decode(bytes: &[u8]) -> Result<Observables, StoreError> {
-    let (words, rest) = bytes.as_chunks::<8>();
-    let (words, vectors) = match words {
-        [words @ .., last] if f64::from_le_bytes(*last).is_nan() => (words, VECTORS + 1),
-        words => (words, VECTORS),
+    let corrupt = || StoreError::Corrupt(format!("observables of {} bytes", bytes.len()));
+    let words = decode_values(bytes).map_err(|_| corrupt())?;
+    let (extent, values) = Extent::split(&words).ok_or_else(corrupt)?;
+    let mut rest = values;
+    let mut take = |count: usize| {
+        let (vector, behind) = rest.split_at(count);
+        rest = behind;
+        vector.to_vec()
     };
-    if !rest.is_empty() || words.len() % vectors != 0 {
-        return Err(StoreError::Corrupt(format!(
-            "observables of {} bytes",
-            bytes.len()
-        )));
-    }
-    let values: Vec<f64> = words.iter().map(|w| f64::from_le_bytes(*w)).collect();
-    let runs = values.len() / vectors;
-    let vector = |k: usize| values[k * runs..(k + 1) * runs].to_vec();
+    let runs = extent.runs;
+    let optional = |there: bool| if there { runs } else { 0 };
     Ok(Observables {
-        drawbar_pull_n: vector(0),
-        torque_n_m: vector(1),
-        sinkage_m: vector(2),
-        lateral_force_n: vector(3),
-        b_eff_m: vector(4),
-        contact_length_m: vector(5),
-        residual_load_n: vector(6),
+        drawbar_pull_n: take(runs),
+        torque_n_m: take(runs),
+        sinkage_m: take(runs),
+        lateral_force_n: take(runs),
+        b_eff_m: take(runs),
+        contact_length_m: take(runs),
+        residual_load_n: take(runs),
         // Written from u32, so the conversion back is exact.
-        nodes_in_contact: vector(7).into_iter().map(|n| n as u32).collect(),
-        simulated_travel_m: vector(8),
-        settled_to: if vectors > VECTORS {
-            vector(VECTORS)
-        } else {
-            Vec::new()
-        },
+        nodes_in_contact: take(runs).into_iter().map(|n| n as u32).collect(),
+        simulated_travel_m: take(runs),
+        settled_to: take(optional(extent.settled)),
+        d_drawbar_pull_n: take(optional(extent.derivatives)),
+        d_torque_n_m: take(optional(extent.derivatives)),
+        d_sinkage_m: take(optional(extent.derivatives)),
+        d_lateral_force_n: take(optional(extent.derivatives)),
+        plate_pressure_pa: take(extent.plates),
+        shear_stress_pa: take(extent.rings),
     })
 }
 
@@ -102,11 +179,34 @@ mod tests {
             residual_load_n: vec![1e-12, 0.0],
             nodes_in_contact: vec![16, 24],
             simulated_travel_m: vec![0.0, 1.0],
-            settled_to: Vec::new(),
+            ..Observables::default()
         };
+        assert_eq!(encode_whole(&observables).len(), 9 * 2 * 8);
         assert_eq!(decode(&encode_whole(&observables)).unwrap(), observables);
         observables.settled_to = vec![0.003, 0.004];
         assert_eq!(decode(&encode_whole(&observables)).unwrap(), observables);
+        assert_eq!(encode_whole(&observables).len(), 21 * 8);
+        for settled_to in [vec![0.003, 0.004], Vec::new()] {
+            observables.settled_to = settled_to;
+            observables.plate_pressure_pa = vec![1e4, 2e4, 3e4];
+            assert_eq!(decode(&encode_whole(&observables)).unwrap(), observables);
+            observables.d_drawbar_pull_n = vec![-1.0, -2.0];
+            observables.d_torque_n_m = vec![0.1, 0.2];
+            observables.d_sinkage_m = vec![-0.01, -0.02];
+            observables.d_lateral_force_n = vec![0.0, -0.0];
+            assert_eq!(decode(&encode_whole(&observables)).unwrap(), observables);
+            let bytes = encode_whole(&observables);
+            assert!(decode(&bytes[8..]).is_err());
+            observables.d_drawbar_pull_n.clear();
+            observables.d_torque_n_m.clear();
+            observables.d_sinkage_m.clear();
+            observables.d_lateral_force_n.clear();
+        }
+        let bevameter = Observables {
+            shear_stress_pa: vec![7.0],
+            ..Observables::default()
+        };
+        assert_eq!(decode(&encode_whole(&bevameter)).unwrap(), bevameter);
         assert!(decode(&[0; 10]).is_err());
     }
 }

@@ -1,7 +1,7 @@
 //! An experiment as its files describe it: wheels, rig, noise, protocol, test runs, bevameter readings.
 //!
 //! # Layout
-//! - `settings`: the tables of `experiment.toml`; `wheel`: those of the wheels.
+//! - `settings`: the tables of `experiment.toml`; `wheel`: those of the wheels; `scatter`: relative noise.
 //! - `mesh`: a wheel given as a surface of triangles.
 //! - `runs`: the rows of `runs.csv`.
 //! - `bevameter`: the rows of `plates.csv` and `shear.csv`.
@@ -10,6 +10,7 @@
 mod bevameter;
 mod mesh;
 mod runs;
+mod scatter;
 mod settings;
 mod table;
 mod wheel;
@@ -20,6 +21,7 @@ use std::path::Path;
 pub use bevameter::{PLATE_COLUMNS, PlateReading, SHEAR_COLUMNS, ShearReading};
 pub use mesh::{MOST_BYTES, MOST_TRIANGLES, SurfaceMesh};
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
+pub use scatter::{Scatter, ScatterSd};
 pub use settings::{Noise, NoiseSd, Protocol, ProtocolKind, Rig, Soil};
 pub use wheel::Wheel;
 
@@ -228,12 +230,29 @@ mod tests {
     }
 
     #[test]
-    fn what_a_later_version_brings_says_so() {
-        let toml = TOML.replace("[noise]", "[noise]\nrun_scatter = 0.1");
-        assert!(
-            parse(&toml, HEADER)
-                .unwrap_err()
-                .contains("not available in this version")
-        );
+    fn relative_scatter_is_read_and_bounded() {
+        let read = |line: &str| parse(&TOML.replace("[noise]", &format!("[noise]\n{line}")), HEADER);
+        let row = "a,w,s,0.2,100,0.01,1,,fit\n";
+        let toml = TOML.replace("[noise]", "[noise]\nrun_scatter = 0.1\nplate_noise = \"unknown\"");
+        let noise = parse(&toml, &format!("{HEADER}{row}")).unwrap().noise;
+        assert_eq!(noise.scatter(Scatter::Run), ScatterSd::Known(0.1));
+        assert_eq!(noise.scatter(Scatter::PlateReading), ScatterSd::Unknown);
+        assert_eq!(noise.scatter(Scatter::RingTest), ScatterSd::Known(0.05));
+        for (line, message) in [
+            (
+                "run_scatter = -0.1",
+                "[noise] run_scatter -0.1 must lie in [0, 1]: it is relative",
+            ),
+            (
+                "ring_noise = 0.0",
+                "[noise] ring_noise 0 must be > 0 and <= 1: it is relative",
+            ),
+            (
+                "plate_scatter = \"replicates\"",
+                "[noise] plate_scatter = \"replicates\" must be a number or \"unknown\"",
+            ),
+        ] {
+            assert_eq!(read(line).unwrap_err(), format!("experiment.toml: {message}"));
+        }
     }
 }

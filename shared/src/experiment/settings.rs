@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::scatter::{Scatter, ScatterSd};
 use super::wheel::{RawWheel, Wheel};
 use crate::channel::Channel;
 use crate::file::{FileError, parse_toml};
@@ -48,11 +49,29 @@ pub enum NoiseSd {
     Unknown,
 }
 
-/// Noise by channel, in the order of [`Channel::ALL`]; `None` = nothing stated.
-#[derive(Debug, Clone, Default, PartialEq)]
+/// How measurements scatter.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Noise {
-    /// Source of the standard deviation of each channel.
+    /// Source of the standard deviation of each channel, in the order of [`Channel::ALL`]; `None` = nothing stated.
     pub sd: [Option<NoiseSd>; 4],
+    /// Relative standard deviations, in the order of [`Scatter::ALL`].
+    pub scatter: [ScatterSd; 5],
+}
+
+impl Default for Noise {
+    fn default() -> Self {
+        Noise {
+            sd: [None; 4],
+            scatter: Scatter::ALL.map(|s| ScatterSd::Known(s.usual())),
+        }
+    }
+}
+
+impl Noise {
+    /// A relative standard deviation.
+    pub fn scatter(&self, scatter: Scatter) -> ScatterSd {
+        self.scatter[scatter.index()]
+    }
 }
 
 /// How a time history becomes the averages of a run.
@@ -133,11 +152,15 @@ struct RawNoise {
     sinkage_m: Option<RawSd>,
     lateral_force_n: Option<RawSd>,
     run_scatter: Option<RawSd>,
+    plate_scatter: Option<RawSd>,
+    plate_noise: Option<RawSd>,
+    ring_scatter: Option<RawSd>,
+    ring_noise: Option<RawSd>,
 }
 
 #[derive(Deserialize)]
 #[serde(untagged)]
-enum RawSd {
+pub(super) enum RawSd {
     Number(f64),
     Word(String),
 }
@@ -224,12 +247,16 @@ fn check_numbers(rig: &Rig, soils: &BTreeMap<String, Soil>, protocol: &Protocol)
 }
 
 fn noise(raw: RawNoise) -> Result<Noise, String> {
-    match raw.run_scatter {
-        None => {}
-        Some(RawSd::Number(x)) if x.abs() == 0.0 => {}
-        Some(_) => {
-            return Err("run_scatter: soil scatter from run to run is not available in this version".into());
-        }
+    let relative = [
+        raw.run_scatter,
+        raw.plate_scatter,
+        raw.plate_noise,
+        raw.ring_scatter,
+        raw.ring_noise,
+    ];
+    let mut scatter = Noise::default().scatter;
+    for (kind, entry) in Scatter::ALL.into_iter().zip(relative) {
+        scatter[kind.index()] = kind.read(entry)?;
     }
     let entries = [
         raw.drawbar_pull_n,
@@ -257,7 +284,7 @@ fn noise(raw: RawNoise) -> Result<Noise, String> {
             },
         };
     }
-    Ok(Noise { sd })
+    Ok(Noise { sd, scatter })
 }
 
 pub(super) fn positive(key: &str, value: f64, unit: &str) -> Result<(), String> {

@@ -1,7 +1,7 @@
 //! Which forward model is meant, and the self-contained variant of it that a worker evaluates.
 //!
 //! # Layout
-//! - here: [`ModelKind`], [`Condition`] and [`ModelVariant`].
+//! - here: [`ModelKind`], [`Condition`], [`PlateCondition`], [`RingCondition`] and [`ModelVariant`].
 //! - [`effects`]: which effects, in which order, and where the values of their parameters stand.
 //! - [`settings`]: the table `[model]` of a job.
 //! - [`spatial`]: what the three-dimensional model needs beside.
@@ -113,6 +113,35 @@ pub struct ModelVariant {
     /// How histories become averages.
     #[schema(value_type = Object)]
     pub protocol: Protocol,
+    /// Whether each condition is simulated once more on soil that is a little stiffer, for the derivatives by ln k*.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stiffness_sensitivity: bool,
+    /// Readings of plates to predict beside.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plates: Vec<PlateCondition>,
+    /// Readings of rings to predict beside.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rings: Vec<RingCondition>,
+}
+
+/// A plate in the soil; what it measured stays with the coordinator.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlateCondition {
+    /// Radius of the round plate `[m]`.
+    pub plate_radius_m: f64,
+    /// Sinkage `[m]`.
+    pub sinkage_m: f64,
+}
+
+/// A ring on the soil; what it measured stays with the coordinator.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RingCondition {
+    /// Normal stress under the ring `[Pa]`.
+    pub normal_stress_pa: f64,
+    /// Displacement at the ring's mean radius `[m]`.
+    pub shear_displacement_m: f64,
 }
 
 impl ModelVariant {
@@ -184,6 +213,9 @@ impl ModelVariant {
             bin_length_m,
             conditions,
             protocol: experiment.protocol.clone(),
+            stiffness_sensitivity: false,
+            plates: Vec::new(),
+            rings: Vec::new(),
         };
         variant.check_expressible(effects)?;
         Ok(variant)

@@ -118,3 +118,29 @@ fn forward_runs_refuse_tables_and_parameters_that_they_cannot_give() {
         "{message}"
     );
 }
+
+#[test]
+fn readings_that_cannot_be_data_are_refused() {
+    let zero = PLATES.replace("9000", "0");
+    refused(
+        with("plates", &zero, "p1,0.04,0.006,", "p1,0.04,0.006,1"),
+        "experiment.toml: test \"p1\": pressure_pa 0 Pa at sinkage_m 0.002 m has no logarithm: both must be > 0, or the reading be left out or blank",
+    );
+    let ring = SHEAR.replace("0.012,", "0.012,9000");
+    let job = || with("shear", &ring, "9000", "9000.0");
+    refused(
+        job().in_job("kappa = 0.0", "kappa = 0.0\nbevameter.ln_transfer = 0.0"),
+        "job.toml line 10: write the name in quotes: \"bevameter.ln_transfer\"",
+    );
+    refused(
+        Job::small().in_job("kappa = 0.0", "kappa = 0.0\n\"bevameter.ln_transfer\" = 0.0"),
+        "job.toml: bevameter.ln_transfer is given, but the experiment has no measured reading of a ring",
+    );
+    refused(
+        job().in_job(
+            "kappa = 0.0",
+            "kappa = 0.0\n\"janosi_hanamoto.shear_modulus_m.w\" = { lognormal = [0.008, 2.5] }",
+        ),
+        "job.toml: janosi_hanamoto.shear_modulus_m.w belongs to one wheel: a ring feels janosi_hanamoto.shear_modulus_m, which all share",
+    );
+}

@@ -2,7 +2,7 @@
 
 use farm_tests::job::Job;
 
-use super::{PLATES, SHEAR, refusal, refused};
+use super::{refusal, refused};
 
 const KAPPA: &str = "kappa = 0.0";
 const N: &str = "n = { normal = [1.1, 0.2], bounds = [0.8, 2.0] }";
@@ -208,34 +208,75 @@ fn what_a_later_version_brings_says_so() {
         "[discovery] apply = \"ask\"",
     );
     later(
-        section("[likelihood]\nkind = \"student_t\"\n"),
-        "[likelihood] kind = \"student_t\"",
-    );
-    later(
-        section("[likelihood]\ndiscrepancy = \"unknown\"\n"),
-        "[likelihood] discrepancy = \"unknown\"",
-    );
-    let top = |text: &str| Job {
-        experiment: format!("{text}\n{}", small().experiment),
-        ..small()
-    };
-    later(
-        top("plates = \"plates.csv\"").beside("plates.csv", PLATES),
-        "plates: bevameter rows in the likelihood",
-    );
-    later(
-        top("shear = \"shear.csv\"").beside("shear.csv", SHEAR),
-        "shear: bevameter rows in the likelihood",
-    );
-    later(
-        small().in_experiment("[noise]", "[noise]\nrun_scatter = 0.1"),
-        "[noise] run_scatter",
-    );
-    later(
         Job {
             runs: small().runs.replace(",use", ",history").replace(",fit", ",a.csv"),
             ..small()
         },
         "column \"history\"",
+    );
+}
+
+#[test]
+fn error_models_that_mean_nothing_are_refused() {
+    let section = |text: &str| Job {
+        job: format!("{}[likelihood]\n{text}\n", Job::small().job),
+        ..Job::small()
+    };
+    refused(
+        section("kind = \"student\""),
+        "job.toml: [likelihood] unknown kind \"student\"; the nearest known is \"student_t\"",
+    );
+    refused(
+        section("degrees_of_freedom = 4"),
+        "job.toml: [likelihood] degrees_of_freedom belongs to kind = \"student_t\"",
+    );
+    refused(
+        section("kind = \"student_t\"\ndegrees_of_freedom = 0.5"),
+        "job.toml: [likelihood] degrees_of_freedom = 0.5 must be a finite number >= 1",
+    );
+    for wrong in ["-1.0", "\"some\"", "inf", "true"] {
+        refused(
+            section(&format!("discrepancy = {wrong}")),
+            &format!(
+                "job.toml: [likelihood] discrepancy = {wrong} must be a number >= 0, in noise sds, or \"unknown\""
+            ),
+        );
+    }
+    let prior = |name: &str| {
+        Job::small().in_job(
+            "kappa = 0.0",
+            &format!("kappa = 0.0\n\"{name}\" = {{ half_normal = 0.1 }}"),
+        )
+    };
+    refused(
+        prior("noise.run_scatter"),
+        "job.toml: noise.run_scatter has a prior, but the experiment does not say run_scatter = \"unknown\" under [noise]",
+    );
+    refused(
+        prior("noise.plate_noise").in_experiment("[noise]", "[noise]\nplate_noise = \"unknown\""),
+        "job.toml: noise.plate_noise has a prior, but nothing that is fitted needs it",
+    );
+    refused(
+        prior("noise.run_scater"),
+        "job.toml line 10: unknown noise \"run_scater\"; the nearest known is \"run_scatter\"",
+    );
+    refused(
+        Job::small().in_experiment("[noise]", "[noise]\nrun_scatter = 1.5"),
+        "experiment.toml: [noise] run_scatter 1.5 must lie in [0, 1]: it is relative",
+    );
+    let lm = |job: Job| {
+        job.in_job(
+            "algorithm = \"tmcmc\"\nparticles = 60\nmoves = [2, 4]",
+            "algorithm = \"lm\"",
+        )
+    };
+    let message = refusal(&lm(
+        Job::small().in_experiment("[noise]", "[noise]\nrun_scatter = \"unknown\"")
+    ));
+    assert!(
+        message.starts_with(
+            "job.toml: [sampler] lm finds an unknown noise sd of independent normal errors alone"
+        ),
+        "{message}"
     );
 }

@@ -4,6 +4,7 @@ use scm::bevameter::{Plate, plate, ring};
 use scm::shear::ShearDisplacement;
 use scm::{Rejection, Soil};
 use shared::model::ModelVariant;
+use shared::parameters::RING_TRANSFER;
 
 use super::parameters::{SoilMap, Source};
 
@@ -24,12 +25,15 @@ pub fn without_action(variant: &ModelVariant) -> impl Iterator<Item = &str> {
 pub struct Bevameter {
     soil: SoilMap,
     modulus: Option<Source>,
+    ln_transfer: Option<Source>,
 }
 
 /// What a bevameter reads at one parameter vector.
 #[derive(Debug)]
 pub struct Readings {
     soil: Soil,
+    /// The soil that a ring feels: its tan(phi) may be another one.
+    under_ring: Soil,
     law: ShearDisplacement,
 }
 
@@ -42,13 +46,26 @@ impl Bevameter {
         Ok(Bevameter {
             soil: SoilMap::new(variant)?,
             modulus: Source::find(variant, SHEAR_MODULUS),
+            ln_transfer: Source::find(variant, RING_TRANSFER),
         })
     }
 
     /// The readings at one parameter vector.
     pub fn at(&self, theta: &[f64]) -> Readings {
+        let soil = self.soil.soil(theta);
+        let friction_angle_rad = match self.ln_transfer {
+            None => soil.friction_angle_rad,
+            Some(source) => {
+                let factor = libm::exp(source.value(theta));
+                libm::atan(factor * libm::tan(soil.friction_angle_rad))
+            }
+        };
         Readings {
-            soil: self.soil.soil(theta),
+            under_ring: Soil {
+                friction_angle_rad,
+                ..soil
+            },
+            soil,
             law: ShearDisplacement::new(self.modulus.map_or(0.0, |k| k.value(theta))),
         }
     }
@@ -69,6 +86,6 @@ impl Readings {
     /// # Errors
     /// [`Rejection`]: a number is outside its bounds.
     pub fn shear_stress_pa(&self, normal_stress_pa: f64, displacement_m: f64) -> Result<f64, Rejection> {
-        ring::shear_stress(&self.soil, &self.law, normal_stress_pa, displacement_m)
+        ring::shear_stress(&self.under_ring, &self.law, normal_stress_pa, displacement_m)
     }
 }

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use rand::{RngExt, SeedableRng};
 use scm::spatial::History;
 use shared::channel::Channel;
-use shared::experiment::{CONDITION_COLUMNS, Experiment, NoiseSd, TestRun};
+use shared::experiment::{CONDITION_COLUMNS, Experiment, NoiseSd, Scatter, ScatterSd, TestRun};
 use shared::file::{FileError, number, parse_toml, read_beside, read_text};
 use shared::model::{EffectSet, ModelSettings, ModelVariant};
 use shared::outcome::{Observables, Outcome};
@@ -224,6 +224,9 @@ fn check_quotes(parameters: &str) -> Result<(), String> {
 fn noise(experiment: &Experiment, seed: Option<u64>) -> Result<Vec<[f64; 4]>, String> {
     let mut noise = vec![[0.0; 4]; experiment.runs.len()];
     let Some(seed) = seed else { return Ok(noise) };
+    if experiment.noise.scatter(Scatter::Run) != ScatterSd::Known(0.0) {
+        return Err("--noise-seed draws independent noise alone: [noise] run_scatter is not available there in this version".into());
+    }
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     for (row, run) in noise.iter_mut().zip(&experiment.runs) {
         for channel in Channel::ALL {

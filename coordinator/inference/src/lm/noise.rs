@@ -1,6 +1,6 @@
 //! Find the most probable noise sd for given residuals.
 
-use crate::likelihood::{GaussianLikelihood, Sd};
+use crate::likelihood::{Likelihood, Sd};
 use crate::prior::{Marginal, Prior};
 
 /// Where the prior reaches down to 0, a noise sd ends at this share of the prior's: residuals that vanish would
@@ -31,7 +31,7 @@ pub(super) struct Profiled {
 
 impl Noise {
     /// The inferred noise sds of a likelihood, by ascending parameter.
-    pub(super) fn all(prior: &Prior, likelihood: &GaussianLikelihood) -> Vec<Self> {
+    pub(super) fn all(prior: &Prior, likelihood: &Likelihood) -> Vec<Self> {
         let data = likelihood.data();
         prior
             .marginals()

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::axis::Axis;
 use super::noise::{Noise, Profiled};
 use super::quadratic::Quadratic;
-use crate::likelihood::{GaussianLikelihood, Sd};
+use crate::likelihood::Likelihood;
 use crate::log_likelihood::LogLikelihood;
 use crate::prior::Prior;
 
@@ -16,7 +16,7 @@ pub(super) type Column = Option<Vec<f64>>;
 #[derive(Debug, Clone)]
 pub(super) struct Objective {
     pub(super) prior: Prior,
-    pub(super) likelihood: GaussianLikelihood,
+    pub(super) likelihood: Likelihood,
     /// The parameters that the model takes.
     pub(super) axes: Vec<Axis>,
     /// The others.
@@ -39,7 +39,7 @@ pub(super) struct Point {
 }
 
 impl Objective {
-    pub(super) fn new(prior: Prior, likelihood: GaussianLikelihood) -> Self {
+    pub(super) fn new(prior: Prior, likelihood: Likelihood) -> Self {
         let noises = Noise::all(&prior, &likelihood);
         let axes = prior
             .marginals()
@@ -75,7 +75,7 @@ impl Objective {
             theta[source.parameter] = profiled.sd;
         }
         let log_prior = self.prior.log_density(&theta);
-        let Ok(LogLikelihood::Finite(log_likelihood)) = self.likelihood.log_likelihood_of(predicted, &theta)
+        let Ok(LogLikelihood::Finite(log_likelihood)) = self.likelihood.log_likelihood(predicted, &theta)
         else {
             return None;
         };
@@ -105,33 +105,18 @@ impl Objective {
     }
 
     /// The parabola of f along the axes around a point: slopes
-    /// `-sum_i J_ik r_i / sd_i^2 + (-ln p_k)'`, curvatures `sum_i J_ik J_il / sd_i^2 + (-ln p_k)''`.
+    /// `-sum_i J_ik r_i / sd_i^2 + (-ln p_k)'`, curvatures `sum_i J_ik J_il / sd_i^2 + (-ln p_k)''`; of correlated or
+    /// heavy-tailed data with [`Whitening`](crate::likelihood::Whitening) in the place of the sds.
     ///
     /// The model's own curvature is left out, as Gauss and Newton do; so is the change of the noise sds, whose mixed
     /// curvature with the axes has expectation zero. Axes without a column do not move.
     pub(super) fn quadratic(&self, point: &Point, columns: &[Column]) -> Quadratic {
-        let data = self.likelihood.data();
-        let sd = |i: usize| match data[i].sd {
-            Sd::Known(sd) => sd,
-            Sd::Inferred { parameter } => point.theta[parameter],
-        };
+        // What cannot be whitened has no finite f, and so no point.
+        let whitening = self.likelihood.whitening(&point.predicted, &point.theta).ok();
         let scaled: Vec<Option<Vec<f64>>> = columns
             .iter()
-            .map(|column| {
-                let column = column.as_ref()?;
-                Some(
-                    column
-                        .iter()
-                        .enumerate()
-                        .map(|(i, change)| change / sd(i))
-                        .collect(),
-                )
-            })
+            .map(|column| Some(whitening.as_ref()?.apply(column.as_ref()?)))
             .collect();
-        let residuals: Vec<f64> = (0..data.len())
-            .map(|i| (data[i].value - point.predicted[i]) / sd(i))
-            .collect();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
         let count = self.axes.len();
         let mut gradient = vec![0.0; count];
         let mut hessian = DMatrix::zeros(count, count);
@@ -139,11 +124,13 @@ impl Objective {
             let (slope, curvature) = axis.slope(point.position[k]);
             gradient[k] = slope;
             hessian[(k, k)] = curvature;
-            let Some(own) = &scaled[k] else { continue };
-            gradient[k] -= dot(own, &residuals);
+            let (Some(own), Some(whitening)) = (&scaled[k], &whitening) else {
+                continue;
+            };
+            gradient[k] -= whitening.slope(own);
             for (l, other) in scaled.iter().enumerate() {
                 if let Some(other) = other {
-                    hessian[(k, l)] += dot(own, other);
+                    hessian[(k, l)] += whitening.curvature(own, other);
                 }
             }
         }

@@ -5,7 +5,7 @@ use super::estimate::{Estimate, Stop};
 use super::objective::{Column, Objective, Point};
 use super::settings::{Settings, SettingsError};
 use super::stencil::{Sides, Stencil};
-use crate::likelihood::{GaussianLikelihood, LikelihoodError};
+use crate::likelihood::Likelihood;
 use crate::prior::Prior;
 use crate::round::{Failure, Progress, Proposal, Round, TellError};
 
@@ -60,12 +60,11 @@ impl Optimiser {
     ///
     /// # Errors
     /// [`SettingsError`] names the setting, its value and its bound.
-    pub fn new(
-        prior: Prior,
-        likelihood: GaussianLikelihood,
-        settings: Settings,
-    ) -> Result<Self, SettingsError> {
+    pub fn new(prior: Prior, likelihood: Likelihood, settings: Settings) -> Result<Self, SettingsError> {
         settings.check(prior.dimension())?;
+        if likelihood.entangles_unknown_sds() {
+            return Err(SettingsError::EntangledNoise);
+        }
         let objective = Objective::new(prior, likelihood);
         let mut optimiser = Self {
             columns: vec![None; objective.axes.len()],
@@ -90,11 +89,10 @@ impl Optimiser {
     /// Takes the predicted values of a pending proposal; the last one of a round advances the fit.
     ///
     /// # Arguments
-    /// - `predicted`: the model's values in the order of the likelihood's data, each in the unit of its datum;
-    ///   `None` where the model rejected the parameters.
+    /// - `predicted`: the model's values as [`Likelihood::log_likelihood`] takes them; `None` where the model rejected the parameters.
     ///
     /// # Errors
-    /// [`TellError`]: told before, never asked for, not one finite value for each datum. The fit is then unchanged.
+    /// [`TellError`]: told before, never asked for, not as many finite values as the likelihood takes. The fit is then unchanged.
     pub fn tell(&mut self, particle: usize, predicted: Option<&[f64]>) -> Result<Progress, TellError> {
         if let Some(values) = predicted {
             self.check(values)?;
@@ -112,20 +110,11 @@ impl Optimiser {
     }
 
     fn check(&self, values: &[f64]) -> Result<(), TellError> {
-        let data = self.objective.likelihood.data();
-        let (expected, given) = (data.len(), values.len());
+        let (expected, given) = (self.objective.likelihood.values(), values.len());
         if expected != given {
             return Err(TellError::Length { expected, given });
         }
-        match data.iter().zip(values).find(|(_, value)| !value.is_finite()) {
-            None => Ok(()),
-            Some((datum, &value)) => Err(LikelihoodError::Prediction {
-                run: datum.run,
-                channel: datum.channel,
-                value,
-            }
-            .into()),
-        }
+        Ok(self.objective.likelihood.check_values(values)?)
     }
 
     /// Completes a round and asks for the next, unless the fit has ended.

@@ -87,6 +87,11 @@ pub enum SettingsError {
         /// The setting.
         value: f64,
     },
+    /// A noise sd or a scatter is unknown whose most probable value has no closed form.
+    #[error(
+        "lm finds an unknown noise sd of independent normal errors alone: state the sds and scatters, or sample them with tmcmc, where errors are in common (discrepancy, run_scatter, plate and ring tests) or student_t"
+    )]
+    EntangledNoise,
     /// A tolerance is not a finite number above 0.
     #[error("{name} = {value} is not a finite number above 0")]
     Tolerance {

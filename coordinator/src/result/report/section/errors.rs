@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use crate::result::coverage::Coverage;
+use crate::result::readings::reading_errors;
 use crate::result::report::number;
 use crate::result::report::quantity::Quantity;
 use crate::result::{ChannelError, Comparison, ComparisonRow, ErrorTable, Outcome};
@@ -39,6 +40,7 @@ pub(in crate::result::report) fn errors(outcome: &Outcome, comparison: &Comparis
                 }
             }
         } }
+        @for error in reading_errors(outcome) { p { (error.words()) "." } }
         @if comparison.holdout.is_none() { p.note { "No holdout rows: the errors of prediction are not known." } }
         p.note {
             "Error: measured minus " (predicted) ". \u{b1} is the sampling error of a root mean square over n rows "

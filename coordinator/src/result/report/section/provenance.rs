@@ -4,6 +4,7 @@ use maud::{Markup, html};
 use shared::experiment::RunUse;
 
 use crate::result::Outcome;
+use crate::result::readings::error_model;
 use crate::result::report::number;
 use crate::spec::Method;
 
@@ -37,7 +38,14 @@ pub(in crate::result::report) fn provenance(outcome: &Outcome) -> Markup {
             dt { "data" }
             dd {
                 (number::count(spec.fit_runs.len(), "fitted run")) " with "
-                (number::count(spec.likelihood.data().len(), "measurement")) ", " (number::count(held, "holdout run"))
+                (number::count(spec.wheel_data(), "measurement")) ", " (number::count(held, "holdout run"))
+            }
+            @let (plates, rings) = (spec.bevameter.plates.len(), spec.bevameter.rings.len());
+            @if plates + rings > 0 {
+                dt { "bevameter" } dd { (number::count(plates, "plate reading")) ", " (number::count(rings, "ring reading")) }
+            }
+            @for words in error_model(outcome) {
+                dt { "errors" } dd { (words) }
             }
             dt { "algorithm" }
             dd {

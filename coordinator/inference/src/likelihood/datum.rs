@@ -1,0 +1,157 @@
+//! One measured value and its noise, and what makes data or predictions unfit to be scored.
+
+use crate::log_likelihood::NotANumber;
+
+/// The size of an error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sd {
+    /// A known standard deviation, in the unit of the datum.
+    Known(f64),
+    /// An inferred standard deviation.
+    Inferred {
+        /// Its index in theta.
+        parameter: usize,
+    },
+}
+
+/// One measured value; what was not measured is not in the list.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Datum {
+    /// Index of the test run.
+    pub run: usize,
+    /// Index of the channel.
+    pub channel: usize,
+    /// The measured value, in the unit of the channel.
+    pub value: f64,
+    /// Its noise.
+    pub sd: Sd,
+}
+
+/// Data or predictions that cannot be scored.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum LikelihoodError {
+    /// A measured value is NaN or infinite.
+    #[error("measured value {value} of run {run}, channel {channel} is not finite")]
+    Value {
+        /// Index of the run.
+        run: usize,
+        /// Index of the channel.
+        channel: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A noise sd is not a finite number above 0.
+    #[error("noise sd {value} of run {run}, channel {channel} is not a finite number above 0")]
+    Noise {
+        /// Index of the run.
+        run: usize,
+        /// Index of the channel.
+        channel: usize,
+        /// The sd.
+        value: f64,
+    },
+    /// An inferred sd names a parameter that theta lacks.
+    #[error("noise sd is parameter {parameter}, but theta has {dimension}")]
+    MissingParameter {
+        /// The index.
+        parameter: usize,
+        /// The length of theta.
+        dimension: usize,
+    },
+    /// A predicted value is NaN or infinite.
+    #[error("prediction {value} of run {run}, channel {channel} is not finite")]
+    Prediction {
+        /// Index of the run.
+        run: usize,
+        /// Index of the channel.
+        channel: usize,
+        /// The prediction.
+        value: f64,
+    },
+    /// There are not as many predicted values as the likelihood asks for.
+    #[error("{given} predicted values, {expected} are expected")]
+    Length {
+        /// As many as [`Likelihood::values`](super::Likelihood::values) says.
+        expected: usize,
+        /// As many as were given.
+        given: usize,
+    },
+    /// A number of the error model is outside its bounds.
+    #[error("{name} = {value} is not {bound}")]
+    Setting {
+        /// The number.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        bound: &'static str,
+    },
+    /// A common error names a datum that is not there, or one twice.
+    #[error("a common error names datum {datum} of {data}, or names it twice")]
+    Membership {
+        /// The index.
+        datum: usize,
+        /// The number of data.
+        data: usize,
+    },
+    /// The sum is NaN or plus infinity.
+    #[error(transparent)]
+    NotANumber(#[from] NotANumber),
+}
+
+impl Sd {
+    /// Its value, known or in theta.
+    pub(super) fn value(self, theta: &[f64]) -> Result<f64, LikelihoodError> {
+        match self {
+            Sd::Known(sd) => Ok(sd),
+            Sd::Inferred { parameter } => {
+                theta
+                    .get(parameter)
+                    .copied()
+                    .ok_or(LikelihoodError::MissingParameter {
+                        parameter,
+                        dimension: theta.len(),
+                    })
+            }
+        }
+    }
+}
+
+impl Datum {
+    /// The noise sd, known or in theta, above 0.
+    pub(super) fn noise_sd(&self, theta: &[f64]) -> Result<f64, LikelihoodError> {
+        let sd = self.sd.value(theta)?;
+        if sd.is_finite() && sd > 0.0 {
+            Ok(sd)
+        } else {
+            Err(LikelihoodError::Noise {
+                run: self.run,
+                channel: self.channel,
+                value: sd,
+            })
+        }
+    }
+
+    /// What is wrong with the measured value or its known sd, if anything is.
+    pub(super) fn check(&self) -> Result<(), LikelihoodError> {
+        let &Self {
+            run, channel, value, ..
+        } = self;
+        if !value.is_finite() {
+            return Err(LikelihoodError::Value { run, channel, value });
+        }
+        match self.sd {
+            Sd::Known(_) => self.noise_sd(&[]).map(drop),
+            Sd::Inferred { .. } => Ok(()),
+        }
+    }
+
+    pub(super) fn check_prediction(&self, value: f64) -> Result<(), LikelihoodError> {
+        let &Self { run, channel, .. } = self;
+        if value.is_finite() {
+            Ok(())
+        } else {
+            Err(LikelihoodError::Prediction { run, channel, value })
+        }
+    }
+}

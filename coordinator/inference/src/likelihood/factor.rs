@@ -1,0 +1,62 @@
+//! The Cholesky factor of a small covariance, every sum in a fixed order.
+
+/// L of `S = L L'`, row by row.
+#[derive(Debug, Clone)]
+pub(super) struct Factor {
+    count: usize,
+    rows: Vec<f64>,
+}
+
+impl Factor {
+    /// Factors `diag(d^2) + sum v v'`; `None` where that overflows.
+    ///
+    /// # Arguments
+    /// - `sds`: d, each > 0.
+    /// - `common`: each v as a list of (position, value).
+    pub(super) fn new(sds: &[f64], common: &[Vec<(usize, f64)>]) -> Option<Self> {
+        let count = sds.len();
+        let mut rows = vec![0.0; count * count];
+        for (i, sd) in sds.iter().enumerate() {
+            rows[i * count + i] = sd * sd;
+        }
+        for error in common {
+            for &(i, a) in error {
+                for &(j, b) in error.iter().take_while(|(j, _)| *j <= i) {
+                    rows[i * count + j] += a * b;
+                }
+            }
+        }
+        for j in 0..count {
+            for i in j..count {
+                let mut sum = rows[i * count + j];
+                for k in 0..j {
+                    sum -= rows[i * count + k] * rows[j * count + k];
+                }
+                rows[i * count + j] = if i > j {
+                    sum / rows[j * count + j]
+                } else if sum.is_finite() && sum > 0.0 {
+                    sum.sqrt()
+                } else {
+                    return None;
+                };
+            }
+        }
+        Some(Self { count, rows })
+    }
+
+    /// ln det S.
+    pub(super) fn log_determinant(&self) -> f64 {
+        let logs = (0..self.count).map(|i| libm::log(self.rows[i * self.count + i]));
+        2.0 * logs.sum::<f64>()
+    }
+
+    /// `L^-1 v`.
+    pub(super) fn whiten(&self, mut v: Vec<f64>) -> Vec<f64> {
+        for i in 0..self.count {
+            let row = &self.rows[i * self.count..];
+            let before: f64 = (0..i).map(|k| row[k] * v[k]).sum();
+            v[i] = (v[i] - before) / row[i];
+        }
+        v
+    }
+}

@@ -1,0 +1,91 @@
+//! Scatter that is stated relative to what it scatters: of the soil from run to run, of bevameter tests and readings.
+
+use super::settings::RawSd;
+
+/// What scatters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scatter {
+    /// The soil's stiffness, from run to run of a wheel.
+    Run,
+    /// The pressure under a plate, from test to test.
+    PlateTest,
+    /// The pressure under a plate, from reading to reading.
+    PlateReading,
+    /// The shear stress under a ring, from test to test.
+    RingTest,
+    /// The shear stress under a ring, from reading to reading.
+    RingReading,
+}
+
+/// A relative standard deviation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ScatterSd {
+    /// Stated.
+    Known(f64),
+    /// A parameter of the calibration: `noise.` and the key.
+    Unknown,
+}
+
+impl Scatter {
+    /// Every kind, in the order of [`Scatter::index`].
+    pub const ALL: [Scatter; 5] = [
+        Scatter::Run,
+        Scatter::PlateTest,
+        Scatter::PlateReading,
+        Scatter::RingTest,
+        Scatter::RingReading,
+    ];
+
+    /// Position in [`Scatter::ALL`].
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Key under `[noise]`, and in the parameter's name.
+    pub fn key(self) -> &'static str {
+        match self {
+            Scatter::Run => "run_scatter",
+            Scatter::PlateTest => "plate_scatter",
+            Scatter::PlateReading => "plate_noise",
+            Scatter::RingTest => "ring_scatter",
+            Scatter::RingReading => "ring_noise",
+        }
+    }
+
+    /// Value where an experiment says nothing.
+    pub fn usual(self) -> f64 {
+        match self {
+            Scatter::Run => 0.0,
+            Scatter::PlateTest => 0.10,
+            Scatter::PlateReading | Scatter::RingReading => 0.03,
+            Scatter::RingTest => 0.05,
+        }
+    }
+
+    /// Scale of the half-normal prior of an unknown one where a job says nothing: twice what is usual, and of the soil
+    /// from run to run 0.2.
+    pub fn prior_scale(self) -> f64 {
+        match self {
+            Scatter::Run => 0.2,
+            other => 2.0 * other.usual(),
+        }
+    }
+
+    /// Reads a value; readings have noise, tests may have no scatter.
+    pub(super) fn read(self, raw: Option<RawSd>) -> Result<ScatterSd, String> {
+        let key = self.key();
+        match raw {
+            None => Ok(ScatterSd::Known(self.usual())),
+            Some(RawSd::Word(word)) if word == "unknown" => Ok(ScatterSd::Unknown),
+            Some(RawSd::Word(word)) => Err(format!("{key} = \"{word}\" must be a number or \"unknown\"")),
+            Some(RawSd::Number(x)) => {
+                let reading = matches!(self, Scatter::PlateReading | Scatter::RingReading);
+                match (0.0..=1.0).contains(&x) && (x > 0.0 || !reading) {
+                    true => Ok(ScatterSd::Known(x)),
+                    false if reading => Err(format!("{key} {x} must be > 0 and <= 1: it is relative")),
+                    false => Err(format!("{key} {x} must lie in [0, 1]: it is relative")),
+                }
+            }
+        }
+    }
+}

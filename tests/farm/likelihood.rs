@@ -1,0 +1,239 @@
+//! Error models through the whole farm: heavy tails, discrepancy, scatter of the soil, plates and rings.
+
+use farm_tests::job::Job;
+use farm_tests::programs::{coordinator, run};
+use farm_tests::service::Service;
+use farm_tests::text::same;
+use farm_tests::wait::until;
+use serde_json::Value;
+
+use super::point_fit::fit;
+
+/// Terminal and summary of a run in a fresh folder.
+fn ran(job: &Job) -> (String, Value) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = job.write(&folder.path().join("job")).display().to_string();
+    let out = folder.path().join("out");
+    let text = run(coordinator(["run", &path, "--out", &out.display().to_string()])).success();
+    let summary = std::fs::read_to_string(out.join("summary.json")).expect("summary.json");
+    assert!(out.join("report.html").exists());
+    (text, serde_json::from_str(&summary).expect("JSON"))
+}
+
+fn likelihood(keys: &str) -> Job {
+    let small = Job::small();
+    let job = format!("{}[likelihood]\n{keys}\n", small.job);
+    Job { job, ..small }
+}
+
+/// Summary without what differs from run to run.
+fn timeless(mut summary: Value) -> Value {
+    summary["calibrations"][0]["wall_s"] = Value::Null;
+    summary
+}
+
+#[test]
+fn an_error_model_of_nothing_changes_no_number() {
+    let (_, plain) = ran(&Job::small());
+    let zero = likelihood("kind = \"gaussian\"\ndiscrepancy = 0.0")
+        .in_experiment("[noise]", "[noise]\nrun_scatter = 0.0\nplate_scatter = 0.3");
+    let (text, summary) = ran(&zero);
+    assert_eq!(timeless(summary), timeless(plain));
+    assert!(!text.contains("noise sds in each condition"), "{text}");
+}
+
+#[test]
+fn each_error_model_is_said_and_widens_the_intervals() {
+    let covered = |summary: &Value, rows: &str| {
+        let coverage = &summary["calibrations"][0]["coverage90"][rows];
+        coverage.as_f64().expect("a share")
+    };
+    let (_, plain) = ran(&Job::small());
+    let scatter =
+        |value: &str| Job::small().in_experiment("[noise]", &format!("[noise]\nrun_scatter = {value}"));
+    for (job, words) in [
+        (
+            likelihood("kind = \"student_t\""),
+            "Student's t with 5 degrees of freedom",
+        ),
+        (likelihood("discrepancy = 2.0"), "may be off by 2 noise sds"),
+        (
+            likelihood("discrepancy = \"unknown\""),
+            "m is marginalised over 9 values from 0.5 to 8, uniform in log m: 0.50, 0.71, 1.00",
+        ),
+        (scatter("0.1"), "scatters from run to run, relative sd 0.1;"),
+    ] {
+        let (text, summary) = ran(&job);
+        assert!(text.contains(words), "{words} in\n{text}");
+        assert_eq!(summary["status"], "finished");
+        for rows in ["fit", "holdout"] {
+            let (wider, usual) = (covered(&summary, rows), covered(&plain, rows));
+            assert!(wider >= usual, "{words}: {rows} {wider} below {usual}");
+        }
+        assert_eq!(
+            text.contains("probability of each m"),
+            words.contains("marginalised")
+        );
+    }
+    let (_, summary) = ran(&scatter("\"unknown\""));
+    let scatter = &summary["calibrations"][0]["parameters"]["noise.run_scatter"];
+    // The data have none: far below the prior's mean of 0.16.
+    assert!(scatter["mean"].as_f64().is_some_and(|m| m < 0.05), "{scatter}");
+}
+
+/// A fit is told derivatives as well; they come back from the store.
+#[test]
+fn killing_the_coordinator_amid_a_fit_with_scatter_changes_no_byte() {
+    let job = fit().in_experiment("[noise]", "[noise]\nrun_scatter = 0.05");
+    let job = Job {
+        job: format!(
+            "{}[likelihood]\nkind = \"student_t\"\ndiscrepancy = \"unknown\"\n",
+            job.job
+        ),
+        ..job
+    };
+    let result = |service: &Service, id: i64| {
+        let mut summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
+        summary["point_estimates"][0]["wall_s"] = Value::Null;
+        format!("{summary:#}")
+    };
+    let expected = {
+        let service = Service::start(&["--local-workers", "1"]);
+        let id = service.submit(&job);
+        service.wait_for(id, "finished");
+        result(&service, id)
+    };
+    let mut service = Service::start(&[]);
+    let id = service.submit(&job);
+    let _worker = service.worker("worker", 1);
+    until("progress", || service.evaluations(id).filter(|&n| n >= 5));
+    service.kill();
+    service.restart();
+    service.wait_for(id, "finished");
+    same(&result(&service, id), &expected);
+    assert_eq!(service.metric("grouser_determinism_faults_total"), 0);
+}
+
+/// Readings of Bekker's law at `k_c` = 2e4, `k_phi` = 1e7, n = 1, each test off by its own few per cent.
+fn plates() -> String {
+    let mut csv = "test,plate_radius_m,sinkage_m,pressure_pa\n".to_owned();
+    for (test, (radius, shift)) in [
+        (0.03, 1.03),
+        (0.03, 0.98),
+        (0.06, 0.97),
+        (0.06, 1.02),
+        (0.12, 1.01),
+        (0.12, 0.99),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        for i in 1..=8 {
+            let z = 0.003 * f64::from(i);
+            let wiggle = if i % 2 == 0 { 1.01 } else { 0.99 };
+            let p = (2e4 / radius + 1e7) * z * shift * wiggle;
+            csv += &format!("t{test},{radius},{z},{p}\n");
+        }
+    }
+    csv
+}
+
+/// Readings of rings at c = 500 Pa, Phi = 30 deg, K = 12 mm.
+fn shear() -> String {
+    let mut csv = "test,normal_stress_pa,shear_displacement_m,shear_stress_pa\n".to_owned();
+    for (test, (sigma, shift)) in [(5e3, 1.01), (2e4, 0.99), (4e4, 1.0)].into_iter().enumerate() {
+        for i in 1..=10 {
+            let j = 0.004 * f64::from(i);
+            let tau = (500.0 + sigma * (30.0_f64).to_radians().tan()) * (1.0 - (-j / 0.012).exp()) * shift;
+            csv += &format!("r{test},{sigma},{j},{tau}\n");
+        }
+    }
+    csv
+}
+
+const BEVAMETER: &str = r#"experiment = "experiment.toml"
+[model]
+kind = "quasi_static"
+effects = ["janosi_hanamoto"]
+[priors]
+log10_p_ref = { uniform = [4.0, 6.0] }
+kappa = { uniform = [-0.9, 1.0] }
+n = { uniform = [0.6, 1.6] }
+friction_angle_deg = { uniform = [10.0, 50.0] }
+cohesion_pa = { uniform = [0.0, 5000.0] }
+"janosi_hanamoto.shear_modulus_m" = { lognormal = [0.01, 2.5] }
+"bevameter.ln_transfer" = 0.0
+[sampler]
+algorithm = "lm"
+"#;
+
+#[test]
+fn plates_and_rings_alone_are_fitted_without_a_wheel() {
+    let job = Job {
+        experiment: "plates = \"plates.csv\"\nshear = \"shear.csv\"\n[soil.s]\n".into(),
+        job: BEVAMETER.into(),
+        runs: String::new(),
+        others: Vec::new(),
+    };
+    let job = job.beside("plates.csv", plates()).beside("shear.csv", shear());
+    let (text, summary) = ran(&job);
+    for words in [
+        "48 readings in 6 tests of plates",
+        "30 readings in 3 tests of rings",
+    ] {
+        assert!(text.contains(words), "{words} in\n{text}");
+    }
+    let estimate = &summary["point_estimates"][0];
+    for (name, truth) in [
+        // (2e4 / 0.03 + 1e7) 0.01; 2e4 / (1e7 0.03)
+        ("log10_p_ref", 5.028_028_7),
+        ("kappa", 0.066_667),
+        ("n", 1.0),
+        ("friction_angle_deg", 30.0),
+        ("cohesion_pa", 500.0),
+        ("janosi_hanamoto.shear_modulus_m", 0.012),
+    ] {
+        let (value, sd) = (&estimate["parameters"][name], &estimate["sd"][name]);
+        let (value, sd) = (value.as_f64().expect("a value"), sd.as_f64().expect("an sd"));
+        assert!(
+            (value - truth).abs() < 3.0 * sd,
+            "{name} = {value} +- {sd}, not {truth}"
+        );
+    }
+    // Sampled, with every scatter unknown.
+    let sampled = job
+        .in_job("algorithm = \"lm\"", "particles = 80\nmoves = [3, 6]")
+        .in_experiment(
+            "[soil.s]",
+            "[soil.s]\n[noise]\nplate_scatter = \"unknown\"\nplate_noise = \"unknown\"\nring_scatter = \"unknown\"\nring_noise = \"unknown\"",
+        );
+    let (text, summary) = ran(&sampled);
+    assert!(text.contains("relative sd unknown from test to test"), "{text}");
+    let noise = &summary["calibrations"][0]["parameters"]["noise.plate_noise"]["mean"];
+    assert!(
+        noise.as_f64().is_some_and(|x| (0.005..0.03).contains(&x)),
+        "{noise}"
+    );
+    assert_eq!(summary["calibrations"][0]["error"]["fit"], Value::Null);
+}
+
+/// The transfer is a parameter of its own beside wheel runs, and a ring that disagrees with the wheel moves it.
+#[test]
+fn a_ring_beside_wheels_has_a_transfer() {
+    let job = Job::small().in_experiment(
+        "runs = \"runs.csv\"",
+        "runs = \"runs.csv\"\nshear = \"shear.csv\"",
+    );
+    let csv: String = shear()
+        .lines()
+        .filter(|line| line.starts_with("test") || line.contains(",0.04,"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let (text, summary) = ran(&job.beside("shear.csv", csv));
+    assert!(text.contains("3 readings in 3 tests of rings"), "{text}");
+    let transfer = &summary["calibrations"][0]["parameters"]["bevameter.ln_transfer"];
+    let (mean, sd) = (&transfer["mean"], &transfer["sd"]);
+    // tan 27.87 deg is 0.53 on the wheel's side; the rings say tan 30 deg and a cohesion on top.
+    assert!(mean.as_f64().is_some_and(|m| m > 0.02), "{transfer}");
+    assert!(sd.as_f64().is_some_and(|s| s < 0.1), "{transfer}");
+}
