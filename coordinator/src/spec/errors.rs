@@ -126,7 +126,7 @@ impl RawLikelihood {
             (other, _) => return Err(unknown_word("kind", other, ["gaussian", "student_t"])),
         };
         let value = &self.discrepancy;
-        let number = value.as_float().or(value.as_integer().map(|i| i as f64));
+        let number = shared::file::number(value);
         let discrepancy = match (number, value.as_str()) {
             (_, Some("unknown")) => Discrepancy::Unknown,
             (Some(m), _) if m.abs() == 0.0 => Discrepancy::None,
