@@ -285,6 +285,23 @@ pub(crate) fn shells() -> Problem {
     }
 }
 
+/// (d2) Eggbox: eighteen modes, ten of them at the border.
+pub(crate) fn eggbox() -> Problem {
+    const SIDE: f64 = 10.0 * std::f64::consts::PI;
+    Problem {
+        name: "d2",
+        prior: vec![uniform(0.0, SIDE); 2],
+        log_likelihood: |x| {
+            let base = 2.0 + libm::cos(0.5 * x[0]) * libm::cos(0.5 * x[1]);
+            base * base * base * base * base
+        },
+        log_evidence: 235.855_940_33,
+        mean: vec![15.707_963_27; 2],
+        sd: vec![9.398_735_39; 2],
+        derived: None,
+    }
+}
+
 /// A skew target that no reflection leaves alone: a half-normal prior of scale 1 and ln L = -3 x, so that
 /// Z = 2 exp(9/2) Q(3) and the posterior is a normal of mean -3 and sd 1, cut at 0.
 pub(crate) fn skew() -> Problem {
