@@ -11,5 +11,6 @@ mod forward;
 mod leases;
 mod mesh;
 mod point_fit;
+mod search;
 mod spatial;
 mod summary_contract;

@@ -9,3 +9,4 @@ mod likelihood;
 mod lm;
 mod priors;
 mod problems;
+mod search;

@@ -69,7 +69,7 @@ impl Outcome {
         let spec = spec_of(reader, row).await?;
         let estimate = match spec.method {
             Method::Sample(_) => None,
-            Method::Fit(_) => reader.estimate(row.id).await?,
+            Method::Fit(_) | Method::Search(_) => reader.estimate(row.id).await?,
         };
         Ok(Outcome {
             spec,

@@ -4,6 +4,7 @@ mod job_file;
 mod method;
 mod noise;
 mod priors;
+mod sampler_keys;
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -230,7 +230,8 @@ impl Sampler {
     }
 
     /// Drift of a stage: of its chains from start to end or, after Ching and Chen, of every particle from the
-    /// leader of its chain (with one step, as BASIS has, they are the same). The chains have moved if they accepted one step each on average.
+    /// leader of its chain (with one step, as BASIS has, they are the same). The chains have moved if they
+    /// accepted one step each on average.
     fn drift(&self, stage: &Stage) -> Drift {
         let chains = &stage.chains;
         let moved = stage.accepted >= chains.len() as u64;
