@@ -1,6 +1,6 @@
 //! What the store is told: facts, in the order in which they came about.
 
-use inference::lm::Estimate;
+use inference::point::Estimate;
 use inference::{Posterior, StageRecord};
 use shared::api::CalibrationState;
 use shared::outcome::Observables;

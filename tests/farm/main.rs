@@ -12,5 +12,6 @@ mod leases;
 mod likelihood;
 mod mesh;
 mod point_fit;
+mod search;
 mod spatial;
 mod summary_contract;

@@ -271,6 +271,13 @@ fn a_summary_of_a_fit_keeps_the_contract_and_its_point_stands_apart() {
 }
 
 #[test]
+fn summaries_of_searches_keep_the_contract() {
+    for job in super::search::searches() {
+        assert_eq!(complaints(&summary(&job)), Vec::<String>::new());
+    }
+}
+
+#[test]
 fn the_check_notices_what_breaks_the_contract() {
     let good: Value = serde_json::json!({
         "experiment": "e", "seed": 1, "model_version": "1", "model_kind": "quasi_static", "status": "finished",

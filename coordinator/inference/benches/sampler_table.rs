@@ -4,12 +4,16 @@
 //! rmse of the others, how many of them are off by more than 4 standard errors + 0.3; worst drift; stages,
 //! steps per stage; estimated / true sd and mean errors in sd, a derived quantity last.
 //!
-//! `cargo bench -p inference --bench sampler_table [-- SEEDS [PARTICLES LEAST MOST [PROBLEM]]]`
+//! Below it, unless one problem was asked for: what it costs to find the most probable parameters (`fits`).
+//!
+//! `cargo bench -p inference --bench sampler_table [-- SEEDS [PARTICLES LEAST MOST [PROBLEM]]]`, or `-- fits [SEEDS]`
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic as tests do")]
 
 #[path = "../tests/problems.rs"]
 mod problems;
+
+mod fits;
 
 use inference::{Algorithm, Settings};
 use problems::Problem;
@@ -100,6 +104,10 @@ fn main() {
         .skip(1)
         .filter(|argument| argument != "--bench")
         .collect();
+    if arguments.first().is_some_and(|word| word == "fits") {
+        let seeds = arguments.get(1).and_then(|text| text.parse().ok());
+        return fits::print(seeds.unwrap_or(10));
+    }
     let number = |index: usize| arguments.get(index).and_then(|text| text.parse::<usize>().ok());
     let seeds = number(0).unwrap_or(20) as u64;
     println!(
@@ -127,6 +135,7 @@ fn main() {
         (problems::thin_ridge(), 250, 10, ".30, .16, goal .2"),
         (problems::bekker_reparametrised(), 155, 20, ".97, .37, goal .4"),
         (problems::shells(), 585, 10, ".11, .07, goal .2"),
+        (problems::eggbox(), 585, 10, "-"),
         (problems::skew(), 1240, 10, "-"),
         (
             problems::bekker_known_noise(),
@@ -167,14 +176,15 @@ fn main() {
         };
         row(problem, &format!("{particles} [{least}, 60]"), lean, seeds);
         row(problem, "1000 [10, 60]", base, seeds);
-        row(
-            problem,
-            "ching-chen-2007",
-            Settings {
-                algorithm: Algorithm::ChingChen2007,
-                ..base
-            },
-            seeds,
-        );
+        for (label, algorithm) in [
+            ("ching-chen-2007", Algorithm::ChingChen2007),
+            ("basis", Algorithm::Basis),
+        ] {
+            row(problem, label, Settings { algorithm, ..base }, seeds);
+        }
+    }
+    if arguments.len() < 2 {
+        println!();
+        fits::print(seeds);
     }
 }

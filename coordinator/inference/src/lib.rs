@@ -11,16 +11,22 @@
 //! - [`rng`]: one random stream per (seed, stage, particle, step).
 //! - [`round`]: proposals that can be evaluated at the same time; what every ask/tell algorithm shares.
 //! - [`tmcmc`]: the ask/tell sampler, its stages and its evidence.
+//! - [`point`]: what every search for the most probable parameters shares: axes, the result.
 //! - [`lm`]: the ask/tell fit of the most probable parameters.
+//! - [`search`]: the ask/tell search by generations; [`ga`], [`cma_es`]: how the next generation is made.
 //! - [`diagnostics`]: summaries of draws: moments, quantiles, bounds, effective sizes.
 
+pub mod cma_es;
 pub mod diagnostics;
+pub mod ga;
 pub mod likelihood;
 pub mod lm;
 pub mod log_likelihood;
+pub mod point;
 pub mod prior;
 pub mod rng;
 pub mod round;
+pub mod search;
 pub mod tmcmc;
 
 pub use likelihood::{CommonError, Datum, Discrepancy, ErrorLaw, Likelihood, LikelihoodError, Sd, Size};

@@ -94,6 +94,11 @@ fn gaussian_shells() {
     check(&problems::shells());
 }
 
+#[test]
+fn eggbox() {
+    check(&problems::eggbox());
+}
+
 /// One parameter, and no symmetry that could hide a sign.
 #[test]
 fn skew_target() {

@@ -59,7 +59,7 @@ fn run(prior: Prior, settings: Settings, score: impl Fn(&[f64]) -> f64, shuffle:
 #[test]
 fn the_order_of_tells_is_irrelevant() {
     let problem = problems::shear_building();
-    for algorithm in [Algorithm::Tmcmc, Algorithm::ChingChen2007] {
+    for algorithm in [Algorithm::Tmcmc, Algorithm::ChingChen2007, Algorithm::Basis] {
         let settings = Settings { algorithm, ..small() };
         let score = |theta: &[f64]| problem.score(theta).value();
         let [straight, shuffled] = [0, 99].map(|shuffle| run(problem.prior(), settings, score, shuffle));

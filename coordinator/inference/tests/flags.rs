@@ -65,3 +65,25 @@ fn the_original_sampler_is_never_silently_wrong() {
     assert_eq!(posterior.particles.len(), 1000);
     assert!((posterior.log_evidence - problems::shells().log_evidence).abs() < 0.5);
 }
+
+#[test]
+fn basis_is_never_silently_wrong() {
+    let settings = Settings {
+        algorithm: Algorithm::Basis,
+        ..Settings::default()
+    };
+    for problem in [
+        problems::correlated_gaussian(),
+        problems::bekker_known_noise(),
+        problems::bekker_unknown_noise(),
+    ] {
+        assert_eq!(right_or_flagged(&problem, settings), 4, "{}", problem.name);
+    }
+    right_or_flagged(&problems::eggbox(), settings);
+    // One step for every particle in each of a few stages.
+    let sampler = problems::shells().run(settings);
+    let posterior = sampler.posterior().unwrap();
+    assert_eq!(posterior.particles.len(), 1000);
+    assert!(sampler.stages().iter().all(|stage| stage.steps == 1));
+    assert!((posterior.log_evidence - problems::shells().log_evidence).abs() < 0.5);
+}

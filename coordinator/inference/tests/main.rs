@@ -10,3 +10,4 @@ mod likelihood;
 mod lm;
 mod priors;
 mod problems;
+mod search;

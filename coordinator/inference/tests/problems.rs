@@ -1,5 +1,6 @@
 //! Hold sampler problems with known evidence and moments, for tests and bench.
 
+use inference::search::{self, Search};
 use inference::{Distribution, LogLikelihood, Marginal, Prior, Progress, Sampler, Settings};
 
 /// A function of the parameters, its posterior mean and sd.
@@ -13,6 +14,8 @@ pub(crate) struct Problem {
     log_likelihood: fn(&[f64]) -> f64,
     /// ln Z.
     pub(crate) log_evidence: f64,
+    /// Highest ln p(data | theta) + ln p(theta).
+    pub(crate) optimum: f64,
     /// Posterior means.
     pub(crate) mean: Vec<f64>,
     /// Posterior standard deviations.
@@ -35,6 +38,18 @@ impl Problem {
     /// The log-likelihood of a parameter vector.
     pub(crate) fn score(&self, theta: &[f64]) -> LogLikelihood {
         LogLikelihood::new((self.log_likelihood)(theta)).unwrap()
+    }
+
+    /// Runs a search to its end.
+    pub(crate) fn search(&self, settings: search::Settings) -> Search {
+        let mut search = Search::new(self.prior(), settings).unwrap();
+        while !search.pending().is_empty() {
+            for proposal in search.pending().to_vec() {
+                let value = self.score(&proposal.theta);
+                search.tell(proposal.particle, value).unwrap();
+            }
+        }
+        search
     }
 
     /// Runs a sampler to its end.
@@ -64,28 +79,36 @@ fn log_normal_density(x: f64, mean: f64, sd: f64) -> f64 {
     -0.5 * z * z - libm::log(sd) - 0.5 * libm::log(std::f64::consts::TAU)
 }
 
+const GAUSSIAN_MEAN: [f64; 5] = [1.0, -2.0, 0.5, 3.0, 0.0];
+const GAUSSIAN_SD: [f64; 5] = [0.05, 0.2, 0.5, 1.0, 0.1];
+
+/// The innovations of (a), each of unit variance.
+pub(crate) fn whitened(x: &[f64]) -> Vec<f64> {
+    let z: Vec<f64> = (0..5)
+        .map(|i| (x[i] - GAUSSIAN_MEAN[i]) / GAUSSIAN_SD[i])
+        .collect();
+    let innovation = (1.0_f64 - 0.81).sqrt();
+    let rest = (1..5).map(|i| (z[i] - 0.9 * z[i - 1]) / innovation);
+    std::iter::once(z[0]).chain(rest).collect()
+}
+
 /// (a) Five-dimensional normal density with correlation 0.9^|i - j| in a wide box.
 ///
 /// Standardised, the residuals form an AR(1) sequence, whose density is a product.
 pub(crate) fn correlated_gaussian() -> Problem {
-    const MEAN: [f64; 5] = [1.0, -2.0, 0.5, 3.0, 0.0];
-    const SD: [f64; 5] = [0.05, 0.2, 0.5, 1.0, 0.1];
     fn log_likelihood(x: &[f64]) -> f64 {
-        let z: Vec<f64> = (0..5).map(|i| (x[i] - MEAN[i]) / SD[i]).collect();
         let innovation = (1.0_f64 - 0.81).sqrt();
-        let first = log_normal_density(z[0], 0.0, 1.0);
-        let rest: f64 = (1..5)
-            .map(|i| log_normal_density(z[i], 0.9 * z[i - 1], innovation))
-            .sum();
-        first + rest - SD.iter().map(|&sd| libm::log(sd)).sum::<f64>()
+        let density: f64 = whitened(x).iter().map(|&z| log_normal_density(z, 0.0, 1.0)).sum();
+        density - 4.0 * libm::log(innovation) - GAUSSIAN_SD.iter().map(|&sd| libm::log(sd)).sum::<f64>()
     }
     Problem {
         name: "a",
         prior: vec![uniform(-10.0, 10.0); 5],
         log_likelihood,
         log_evidence: -14.978_661_37,
-        mean: MEAN.to_vec(),
-        sd: SD.to_vec(),
+        optimum: -8.650_989_331_88,
+        mean: GAUSSIAN_MEAN.to_vec(),
+        sd: GAUSSIAN_SD.to_vec(),
         derived: None,
     }
 }
@@ -109,25 +132,31 @@ fn lognormal_of_mode(mode: f64, sd: f64) -> Distribution {
     }
 }
 
+/// Relative errors of the squared frequencies of (b), in units of their sd of 1/16.
+pub(crate) fn frequency_residuals(theta: &[f64]) -> Vec<f64> {
+    let (m1, m2) = (16.5e3, 16.1e3);
+    let (k1, k2) = (29.7e6 * theta[0], 29.7e6 * theta[1]);
+    // det(K - w M) = 0: m1 m2 w^2 - ((k1 + k2) m2 + k2 m1) w + k1 k2 = 0.
+    let half = 0.5 * ((k1 + k2) * m2 + k2 * m1);
+    let root = (half * half - m1 * m2 * k1 * k2).max(0.0).sqrt();
+    let w_high = (half + root) / (m1 * m2);
+    let w_low = k1 * k2 / (half + root);
+    let square = |w: f64, f: f64| w / (std::f64::consts::TAU * f) / (std::f64::consts::TAU * f) - 1.0;
+    vec![16.0 * square(w_low, 3.13), 16.0 * square(w_high, 9.83)]
+}
+
 /// (b) Two-storey shear building, bimodal (Beck & Au 2002).
 pub(crate) fn shear_building() -> Problem {
     fn log_likelihood(theta: &[f64]) -> f64 {
-        let (m1, m2) = (16.5e3, 16.1e3);
-        let (k1, k2) = (29.7e6 * theta[0], 29.7e6 * theta[1]);
-        // det(K - w M) = 0: m1 m2 w^2 - ((k1 + k2) m2 + k2 m1) w + k1 k2 = 0.
-        let half = 0.5 * ((k1 + k2) * m2 + k2 * m1);
-        let root = (half * half - m1 * m2 * k1 * k2).max(0.0).sqrt();
-        let w_high = (half + root) / (m1 * m2);
-        let w_low = k1 * k2 / (half + root);
-        let square = |w: f64, f: f64| w / (std::f64::consts::TAU * f) / (std::f64::consts::TAU * f) - 1.0;
-        let (first, second) = (square(w_low, 3.13), square(w_high, 9.83));
-        -(first * first + second * second) * 128.0
+        let residuals = frequency_residuals(theta);
+        -0.5 * residuals.iter().map(|r| r * r).sum::<f64>()
     }
     Problem {
         name: "b",
         prior: vec![lognormal_of_mode(1.3, 1.0), lognormal_of_mode(0.8, 1.0)],
         log_likelihood,
         log_evidence: -6.495_973_65,
+        optimum: -2.951_742_892_39,
         mean: vec![1.116_995_03, 0.593_436_54],
         sd: vec![0.662_373_08, 0.329_946_52],
         derived: Some((
@@ -148,13 +177,14 @@ pub(crate) fn thin_ridge() -> Problem {
         prior: vec![uniform(-1e9, 1e9), uniform(1.0, 1e10)],
         log_likelihood: |theta| log_normal_density(sum(theta), 1e6, 5e4),
         log_evidence: -23.718_998_11,
+        optimum: -56.180_980_764_96,
         mean: vec![-4.999e8, 5.0e9],
         sd: vec![2.886_751_35e8, 2.886_751_35e9],
         derived: Some((sum, 1e6, 5e4)),
     }
 }
 
-const SINKAGE: [f64; 12] = [
+pub(crate) const SINKAGE: [f64; 12] = [
     0.01,
     0.014_545_454_5,
     0.019_090_909_1,
@@ -169,7 +199,7 @@ const SINKAGE: [f64; 12] = [
     0.06,
 ];
 
-const LOG_PRESSURE: [f64; 12] = [
+pub(crate) const LOG_PRESSURE: [f64; 12] = [
     8.588_387_429_148,
     9.084_761_790_596,
     9.202_510_686_505,
@@ -206,6 +236,7 @@ pub(crate) fn bekker_known_noise() -> Problem {
         prior: vec![uniform(-1e9, 1e9), uniform(1.0, 1e10), uniform(0.8, 2.0)],
         log_likelihood: |theta| log_sum(theta).map_or(f64::NEG_INFINITY, |sum| plate(sum, theta[2], 0.08)),
         log_evidence: 0.101_649_73,
+        optimum: -29.092_426_450_53,
         mean: vec![-4.999_224_24e8, 5.0e9, 1.076_811_59],
         sd: vec![2.886_751_35e8, 2.886_751_35e9, 4.289_118_94e-2],
         derived: Some((
@@ -232,6 +263,7 @@ pub(crate) fn bekker_unknown_noise() -> Problem {
             })
         },
         log_evidence: -2.359_492_03,
+        optimum: -29.774_760_971_69,
         mean: vec![-4.999_225_28e8, 5.0e9, 1.076_433_52, -1.136_401_32],
         sd: vec![2.886_751_35e8, 2.886_751_35e9, 4.174_204_58e-2, 1.024_649_18e-1],
         derived: Some((
@@ -257,6 +289,7 @@ pub(crate) fn bekker_reparametrised() -> Problem {
             plate(log_sum, theta[2], libm::exp10(theta[3]))
         },
         log_evidence: 5.184_196_59,
+        optimum: 12.875_743_569_94,
         mean: vec![4.164_964_28, 0.5, 1.070_415_76, -1.136_988_51],
         sd: vec![0.010_421_96, 0.288_675_13, 0.041_510_59, 0.102_145_33],
         derived: None,
@@ -279,9 +312,28 @@ pub(crate) fn shells() -> Problem {
         prior: vec![uniform(-6.0, 6.0); 2],
         log_likelihood,
         log_evidence: -1.745_641_87,
+        optimum: -3.586_166_739_79,
         mean: vec![0.0, 0.0],
         sd: vec![3.776_903_49, 1.419_506_96],
         derived: Some((|x| f64::from(u8::from(x[0] > 0.0)), 0.5, 0.5)),
+    }
+}
+
+/// (d2) Eggbox: eighteen modes, ten of them at the border.
+pub(crate) fn eggbox() -> Problem {
+    const SIDE: f64 = 10.0 * std::f64::consts::PI;
+    Problem {
+        name: "d2",
+        prior: vec![uniform(0.0, SIDE); 2],
+        log_likelihood: |x| {
+            let base = 2.0 + libm::cos(0.5 * x[0]) * libm::cos(0.5 * x[1]);
+            base * base * base * base * base
+        },
+        log_evidence: 235.855_940_33,
+        optimum: 236.105_370_042_31,
+        mean: vec![15.707_963_27; 2],
+        sd: vec![9.398_735_39; 2],
+        derived: None,
     }
 }
 
@@ -296,6 +348,7 @@ pub(crate) fn skew() -> Problem {
         prior: vec![Distribution::HalfNormal { scale: 1.0 }],
         log_likelihood: |x| -3.0 * x[0],
         log_evidence: libm::log(2.0 * upper_tail) + 4.5,
+        optimum: -0.225_791_352_64,
         mean: vec![hazard - 3.0],
         sd: vec![(1.0 - hazard * (hazard - 3.0)).sqrt()],
         derived: None,

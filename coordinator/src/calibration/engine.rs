@@ -1,6 +1,8 @@
-//! The sampler or the fit of a calibration: what asks for evaluations and is told their results.
+//! The sampler, fit or search of a calibration: what asks for evaluations and is told their results.
 
-use inference::lm::{Estimate, Optimiser};
+use inference::lm::Optimiser;
+use inference::point::Estimate;
+use inference::search::Search;
 use inference::{
     Likelihood, LogLikelihood, Posterior, Prior, Progress, Proposal, Sampler, StageRecord, TellError,
 };
@@ -12,8 +14,10 @@ use crate::spec::{Method, MethodError};
 pub enum Engine {
     /// Samples the posterior; told log-likelihoods.
     Sampler(Box<Sampler>),
-    /// Fits the most probable parameters; told predicted values.
+    /// Fits the most probable parameters by steps; told predicted values.
     Fit(Box<Optimiser>),
+    /// Searches the most probable parameters by generations; told log-likelihoods.
+    Search(Box<Search>),
 }
 
 /// The result of an evaluation, scored.
@@ -45,6 +49,7 @@ impl Engine {
             Method::Fit(settings) => {
                 Engine::Fit(Box::new(Optimiser::new(prior, likelihood.clone(), settings)?))
             }
+            Method::Search(settings) => Engine::Search(Box::new(Search::new(prior, settings)?)),
         })
     }
 
@@ -53,6 +58,7 @@ impl Engine {
         match self {
             Engine::Sampler(sampler) => sampler.round(),
             Engine::Fit(fit) => fit.round(),
+            Engine::Search(search) => search.round(),
         }
     }
 
@@ -61,6 +67,7 @@ impl Engine {
         match self {
             Engine::Sampler(sampler) => sampler.pending(),
             Engine::Fit(fit) => fit.pending(),
+            Engine::Search(search) => search.pending(),
         }
     }
 
@@ -69,14 +76,15 @@ impl Engine {
         match self {
             Engine::Sampler(sampler) => sampler.tell(particle, scored.log_likelihood),
             Engine::Fit(fit) => fit.tell(particle, scored.fitted),
+            Engine::Search(search) => search.tell(particle, scored.log_likelihood),
         }
     }
 
-    /// The finished stages; a fit has none.
+    /// The finished stages; a fit and a search have none.
     pub fn stages(&self) -> &[StageRecord] {
         match self {
             Engine::Sampler(sampler) => sampler.stages(),
-            Engine::Fit(_) => &[],
+            Engine::Fit(_) | Engine::Search(_) => &[],
         }
     }
 
@@ -85,6 +93,7 @@ impl Engine {
         match self {
             Engine::Sampler(sampler) => sampler.posterior().map(Finding::Posterior),
             Engine::Fit(fit) => fit.estimate().map(Finding::Estimate),
+            Engine::Search(search) => search.estimate().map(Finding::Estimate),
         }
     }
 }

@@ -156,14 +156,18 @@ mod tests {
     const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 0.05\n";
     const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\na,w,s,0.2,100,0.008,5.0,fit\nb,w,s,0.4,100,0.008,5.1,holdout\n";
 
-    const FIT: &str = "algorithm = \"lm\"\nstarts = 3\nmax_evaluations = 60\n";
+    const FITS: [&str; 3] = [
+        "algorithm = \"lm\"\nstarts = 3\nmax_evaluations = 60\n",
+        "algorithm = \"ga\"\npopulation = 9\ngenerations = 6\n",
+        "algorithm = \"cma-es\"\nmax_evaluations = 60\n",
+    ];
 
     fn fresh() -> Calibration {
         calibration(JOB)
     }
 
-    fn fresh_fit() -> Calibration {
-        calibration(&JOB.replace("particles = 20\nmoves = [2, 4]\n", FIT))
+    fn fresh_fit(sampler: &str) -> Calibration {
+        calibration(&JOB.replace("particles = 20\nmoves = [2, 4]\n", sampler))
     }
 
     fn calibration(job: &str) -> Calibration {
@@ -317,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fit_is_told_again_from_its_stored_values_and_ends_with_the_same_estimate() {
+    fn a_fit_or_search_is_told_again_from_what_is_stored_and_ends_with_the_same_estimate() {
         let estimates = |facts: &[Fact]| -> Vec<String> {
             let estimate = |f: &Fact| match f {
                 Fact::Estimate { estimate, .. } => Some(format!("{estimate:?}")),
@@ -325,23 +329,25 @@ mod tests {
             };
             facts.iter().filter_map(estimate).collect()
         };
-        let first = work(&mut fresh_fit(), usize::MAX, false);
-        let whole = sorted(&first);
-        assert_eq!(estimates(&first).len(), 1);
-        // The fitted runs of the estimate and its holdout runs come last.
-        let sampled = whole.iter().filter(|r| r.evaluation < PREDICTIONS_FROM).count();
-        assert_eq!(whole.len(), sampled + 2);
-        assert!(sampled <= 60);
-        for cut in 1..whole.len() {
-            let begun = work(&mut fresh_fit(), cut, true);
-            let mut again = fresh_fit();
-            let lost = again.replay(stored(&begun)).unwrap();
-            assert_eq!(again.evaluations, cut as u64);
-            let rest = work(&mut again, usize::MAX, false);
-            let all: Vec<Fact> = begun.iter().chain(&rest).cloned().collect();
-            assert_eq!(sorted(&all), whole, "cut after {cut}");
-            let told: Vec<String> = [lost, rest].iter().flat_map(|f| estimates(f)).collect();
-            assert_eq!(told, estimates(&first), "cut after {cut}");
+        for sampler in FITS {
+            let first = work(&mut fresh_fit(sampler), usize::MAX, false);
+            let whole = sorted(&first);
+            assert_eq!(estimates(&first).len(), 1);
+            // The fitted runs of the estimate and its holdout runs come last.
+            let sampled = whole.iter().filter(|r| r.evaluation < PREDICTIONS_FROM).count();
+            assert_eq!(whole.len(), sampled + 2);
+            assert!(sampled <= 60);
+            for cut in 1..whole.len() {
+                let begun = work(&mut fresh_fit(sampler), cut, true);
+                let mut again = fresh_fit(sampler);
+                let lost = again.replay(stored(&begun)).unwrap();
+                assert_eq!(again.evaluations, cut as u64);
+                let rest = work(&mut again, usize::MAX, false);
+                let all: Vec<Fact> = begun.iter().chain(&rest).cloned().collect();
+                assert_eq!(sorted(&all), whole, "cut after {cut}");
+                let told: Vec<String> = [lost, rest].iter().flat_map(|f| estimates(f)).collect();
+                assert_eq!(told, estimates(&first), "cut after {cut}");
+            }
         }
     }
 

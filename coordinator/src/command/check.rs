@@ -39,18 +39,25 @@ pub(super) async fn check(file: &JobFile) -> anyhow::Result<()> {
                 s.particles, pilot.evaluations
             )
         }
-        Method::Fit(_) => format!("\nThe fit itself took {} evaluations.\n", pilot.evaluations),
+        Method::Fit(_) | Method::Search(_) => format!(
+            "\nThe {} itself took {} evaluations.\n",
+            if matches!(pilot.method, Method::Fit(_)) {
+                "fit"
+            } else {
+                "search"
+            },
+            pilot.evaluations
+        ),
     };
     if !pilot.complete {
-        text += &match pilot.method {
-            Method::Sample(_) => format!(
+        text += &match pilot.method.max_evaluations() {
+            None => format!(
                 "It was stopped at tempering exponent {:.2e}: what follows is a lower bound.\n",
                 pilot.exponent
             ),
-            Method::Fit(s) => format!(
-                "It was stopped before its end: what follows is its budget of {} evaluations.\n",
-                s.max_evaluations
-            ),
+            Some(most) => {
+                format!("It was stopped before its end: what follows is its budget of {most} evaluations.\n")
+            }
         };
     }
     text += &format!(
@@ -74,7 +81,7 @@ pub(super) async fn check(file: &JobFile) -> anyhow::Result<()> {
 }
 
 struct Pilot {
-    /// What ran: a smaller sampler, or the fit itself.
+    /// What ran: a smaller sampler, or the fit or the search itself.
     method: Method,
     evaluations: u64,
     runs: usize,
@@ -85,13 +92,16 @@ struct Pilot {
 }
 
 impl Pilot {
-    /// Evaluations that the whole job will take: stages hardly depend on the particles; a fit is what it is.
+    /// Evaluations that the whole job will take: stages hardly depend on the particles; a fit or a search is
+    /// what it is.
     fn expected(&self, method: Method) -> f64 {
         match (method, self.method) {
             (Method::Sample(whole), Method::Sample(small)) => {
                 self.evaluations as f64 * whole.particles as f64 / small.particles as f64
             }
-            (Method::Fit(whole), _) if !self.complete => whole.max_evaluations as f64,
+            (whole, _) if !self.complete => whole
+                .max_evaluations()
+                .map_or(self.evaluations as f64, |most| most as f64),
             _ => self.evaluations as f64,
         }
     }
@@ -148,7 +158,7 @@ fn pilot(mut spec: crate::spec::Spec) -> anyhow::Result<Pilot> {
         rejected_share: calibration.rejected as f64 / evaluations as f64,
         exponent: match calibration.engine() {
             Engine::Sampler(sampler) => sampler.current().tempering_exponent,
-            Engine::Fit(_) => 1.0,
+            Engine::Fit(_) | Engine::Search(_) => 1.0,
         },
         complete: calibration.engine().finding().is_some(),
     })

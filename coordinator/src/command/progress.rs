@@ -34,16 +34,14 @@ impl Display {
             Some(s) => format!("about {s:.0} s to go"),
             None => "time to go unknown yet".into(),
         };
-        let message = if p.algorithm == "lm" {
-            format!(
-                "{} steps taken | {} evaluations, {:.0}/s",
-                p.stage, p.evaluations, p.evaluations_per_s
-            )
-        } else {
-            format!(
-                "stage {} exponent {:.3e} step {} acceptance {:.2} | {} evaluations, {:.0}/s | {time}",
-                p.stage, p.tempering_exponent, p.step, p.acceptance, p.evaluations, p.evaluations_per_s
-            )
+        let pace = format!("{} evaluations, {:.0}/s", p.evaluations, p.evaluations_per_s);
+        let message = match p.algorithm.as_str() {
+            "lm" => format!("{} steps taken | {pace}", p.stage),
+            "ga" | "cma-es" => format!("{} generations | {pace}", p.stage),
+            _ => format!(
+                "stage {} exponent {:.3e} step {} acceptance {:.2} | {pace} | {time}",
+                p.stage, p.tempering_exponent, p.step, p.acceptance
+            ),
         };
         match &self.bar {
             Some(bar) => {

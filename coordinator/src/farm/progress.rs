@@ -49,6 +49,7 @@ pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> Cal
             (now.stage, now.tempering_exponent, now.step, now.acceptance)
         }
         Engine::Fit(fit) => (fit.current().steps, 1.0, 0, None),
+        Engine::Search(search) => (search.current().generations, 1.0, 0, None),
     };
     let queue = &calibration.queue;
     let per_second = pace.per_second(calibration.evaluations, now_ms);

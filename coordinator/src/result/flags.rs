@@ -1,7 +1,5 @@
 //! What deserves attention, each with a sentence a test engineer understands.
 
-use inference::lm::Stop;
-
 use super::Outcome;
 use super::predictive::discrepancy_posterior;
 use super::summary::ParameterSummary;
@@ -71,8 +69,15 @@ impl Outcome {
             }
         }
         if let Some(estimate) = &self.estimate {
-            if estimate.stop == Stop::Budget {
-                let text = "the fit spent its budget before it settled: a better point may be near, and the standard deviations are rough; allow more max_evaluations".into();
+            if estimate.stop.is_early() {
+                let (what, rough) = match estimate.sd {
+                    Some(_) => ("fit", ", and the standard deviations are rough"),
+                    None => ("search", ""),
+                };
+                let text = format!(
+                    "the {what} spent its budget before it settled: a better point may be near{rough}; allow more {}",
+                    self.spec.method.budget_key()
+                );
                 flag("not_equilibrated", text);
             }
             for p in estimate.fitted(&self.spec.parameters) {
@@ -83,7 +88,7 @@ impl Outcome {
                         p.value, p.free.unit
                     );
                     flag("bound", text);
-                } else if p.sd.is_none_or(|sd| sd > NO_CONTRACTION * prior_sd) {
+                } else if estimate.sd.is_some() && p.sd.is_none_or(|sd| sd > NO_CONTRACTION * prior_sd) {
                     let sd = p.sd.map_or("unbounded".into(), |sd| format!("{sd:.3e}"));
                     let text = format!(
                         "the data say nothing about {name}: its standard deviation is {sd} after the fit and {prior_sd:.3e} before"

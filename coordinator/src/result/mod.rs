@@ -76,7 +76,7 @@ impl Outcome {
         }
         let estimate = match spec.method {
             Method::Sample(_) => None,
-            Method::Fit(_) => reader.estimate(row.id).await?,
+            Method::Fit(_) | Method::Search(_) => reader.estimate(row.id).await?,
         };
         Ok(Outcome {
             spec,

@@ -1,4 +1,4 @@
-//! The result of a fit: the most probable parameters, beside no posterior.
+//! The result of a fit or a search: the most probable parameters, beside no posterior.
 
 use std::collections::BTreeMap;
 
@@ -7,15 +7,16 @@ use super::summary::{BaselineSummary, ErrorSummary};
 use crate::spec::FreeParameter;
 use crate::store::EstimateRow;
 
-/// A deterministic fit.
+/// Deterministic updating.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct PointEstimate {
     /// Algorithm.
     pub algorithm: String,
     /// The most probable parameters by name.
     pub parameters: BTreeMap<String, f64>,
-    /// Their standard deviations after Laplace; null at a bound, and where nothing fixes a parameter.
-    pub sd: BTreeMap<String, Option<f64>>,
+    /// Their standard deviations after Laplace; null at a bound, and where nothing fixes a parameter. Null for a search
+    /// by generations, which does not know the curvature.
+    pub sd: Option<BTreeMap<String, Option<f64>>>,
     /// The parameters that lie at a bound of their prior.
     pub at_bound: Vec<String>,
     /// Log-likelihood plus log-density of the prior, both normalised.
@@ -24,14 +25,28 @@ pub struct PointEstimate {
     pub error: ErrorSummary,
     /// Interpolation without physics.
     pub baseline: BaselineSummary,
-    /// Evaluations of the fit.
+    /// Evaluations spent.
     pub evaluations: u64,
     /// Of these, refused by the model.
     pub rejected: u64,
     /// Wall time `[s]`.
     pub wall_s: f64,
-    /// Why it ended: `decrease` (no step gains anything), `step` (none that is tried does), `budget`.
+    /// Why it ended: `decrease` (no step gains anything), `step` (none that is tried does), `budget`; of a search by
+    /// generations `stagnation` (nobody better for many), `generations`, `budget`.
     pub stop: String,
+    /// How a search by generations came there; empty for a fit.
+    pub history: Vec<GenerationSummary>,
+}
+
+/// Where a search stood after a generation.
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct GenerationSummary {
+    /// Evaluations so far.
+    pub evaluations: u64,
+    /// Highest log-posterior so far; null while the model refused everything.
+    pub best: Option<f64>,
+    /// Mean log-posterior of the generation; null if the model refused all of it.
+    pub mean: Option<f64>,
 }
 
 /// One fitted parameter.
@@ -57,14 +72,14 @@ impl EstimateRow {
         parameters.iter().enumerate().map(|(i, free)| FittedParameter {
             free,
             value: self.theta[i],
-            sd: self.sd[i],
+            sd: self.sd.as_ref().and_then(|sd| sd[i]),
             at_bound: self.at_bound[i],
         })
     }
 }
 
 impl Outcome {
-    /// What a fit found; none of a sample.
+    /// What a fit or a search found; none of a sample.
     pub fn point_estimates(&self) -> Vec<PointEstimate> {
         let Some(estimate) = &self.estimate else {
             return Vec::new();
@@ -75,7 +90,10 @@ impl Outcome {
         vec![PointEstimate {
             algorithm: self.spec.method.name().to_owned(),
             parameters: fitted().map(|p| (name(p), p.value)).collect(),
-            sd: fitted().map(|p| (name(p), p.sd)).collect(),
+            sd: estimate
+                .sd
+                .is_some()
+                .then(|| fitted().map(|p| (name(p), p.sd)).collect()),
             at_bound: fitted().filter(|p| p.at_bound).map(name).collect(),
             log_posterior: estimate.log_posterior(),
             baseline: BaselineSummary::of(&comparison),
@@ -87,6 +105,15 @@ impl Outcome {
             rejected: self.row.rejected.unwrap_or(0),
             wall_s: self.row.busy_ms as f64 / 1000.0,
             stop: estimate.stop.name().to_owned(),
+            history: estimate
+                .history
+                .iter()
+                .map(|g| GenerationSummary {
+                    evaluations: g.evaluations,
+                    best: g.best,
+                    mean: g.mean,
+                })
+                .collect(),
         }]
     }
 }

@@ -169,7 +169,7 @@ pub fn summary(outcome: &Outcome) -> String {
     text
 }
 
-/// The most probable parameters with their standard deviations after Laplace.
+/// The most probable parameters, with their standard deviations after Laplace where they are known.
 fn point(outcome: &Outcome, estimate: &EstimateRow) -> String {
     let width = width(outcome.spec.parameters.iter().map(|p| &p.name));
     let mut text = format!(

@@ -1,18 +1,19 @@
 //! The table `[sampler]`: which algorithm, and its settings.
 
-use inference::{Algorithm, lm};
+use inference::{Algorithm, cma_es, ga, lm, search};
 use serde::Deserialize;
-use shared::file::unknown_word;
 
-use super::job_file::LATER;
+use super::sampler_keys::Keys;
 
 /// How parameters are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method {
     /// A sample of the posterior.
     Sample(inference::Settings),
-    /// The most probable parameters.
+    /// The most probable parameters, by steps.
     Fit(lm::Settings),
+    /// The most probable parameters, by generations.
+    Search(search::Settings),
 }
 
 /// Settings that do not fit the prior.
@@ -24,6 +25,9 @@ pub enum MethodError {
     /// The fit's.
     #[error(transparent)]
     Fit(#[from] lm::SettingsError),
+    /// The search's.
+    #[error(transparent)]
+    Search(#[from] search::SettingsError),
 }
 
 impl Method {
@@ -33,8 +37,11 @@ impl Method {
             Method::Sample(settings) => match settings.algorithm {
                 Algorithm::Tmcmc => "tmcmc",
                 Algorithm::ChingChen2007 => "ching-chen-2007",
+                Algorithm::Basis => "basis",
             },
             Method::Fit(_) => "lm",
+            Method::Search(search::Settings::Ga(_)) => "ga",
+            Method::Search(search::Settings::CmaEs(_)) => "cma-es",
         }
     }
 
@@ -43,7 +50,23 @@ impl Method {
         let name = self.name();
         match self {
             Method::Sample(settings) => format!("{name} with {} particles", settings.particles),
-            Method::Fit(settings) => format!("{name} with at most {} evaluations", settings.max_evaluations),
+            Method::Search(search::Settings::Ga(settings)) => format!(
+                "{name} with at most {} generations of {}",
+                settings.generations, settings.population
+            ),
+            Method::Fit(lm::Settings { max_evaluations, .. })
+            | Method::Search(search::Settings::CmaEs(cma_es::Settings { max_evaluations, .. })) => {
+                format!("{name} with at most {max_evaluations} evaluations")
+            }
+        }
+    }
+
+    /// The key of the budget that a longer run needs more of.
+    pub fn budget_key(&self) -> &'static str {
+        match self {
+            Method::Sample(_) => "particles",
+            Method::Search(search::Settings::Ga(_)) => "generations",
+            Method::Fit(_) | Method::Search(search::Settings::CmaEs(_)) => "max_evaluations",
         }
     }
 
@@ -52,6 +75,7 @@ impl Method {
         match self {
             Method::Sample(settings) => settings.seed,
             Method::Fit(settings) => settings.seed,
+            Method::Search(settings) => settings.seed(),
         }
     }
 
@@ -60,6 +84,17 @@ impl Method {
         match self {
             Method::Sample(settings) => settings.particles,
             Method::Fit(settings) => settings.max_evaluations,
+            Method::Search(search::Settings::Ga(settings)) => settings.population,
+            Method::Search(search::Settings::CmaEs(settings)) => settings.max_evaluations,
+        }
+    }
+
+    /// Most evaluations, where the job says so.
+    pub fn max_evaluations(&self) -> Option<usize> {
+        match self {
+            Method::Sample(_) => None,
+            Method::Fit(settings) => Some(settings.max_evaluations),
+            Method::Search(settings) => Some(settings.max_evaluations()),
         }
     }
 
@@ -71,6 +106,7 @@ impl Method {
         match self {
             Method::Sample(settings) => settings.check(dimension)?,
             Method::Fit(settings) => settings.check(dimension)?,
+            Method::Search(settings) => settings.check(dimension)?,
         }
         Ok(())
     }
@@ -87,64 +123,74 @@ pub(super) struct RawSampler {
     starts: Option<usize>,
     max_evaluations: Option<usize>,
     difference_step: Option<f64>,
+    population: Option<usize>,
+    generations: Option<usize>,
+    restarts: Option<usize>,
 }
-
-const AVAILABLE: [&str; 3] = ["tmcmc", "ching-chen-2007", "lm"];
 
 impl RawSampler {
     pub(super) fn method(self) -> Result<Method, String> {
-        let name = self.algorithm.as_deref().unwrap_or("tmcmc");
-        match name {
-            "tmcmc" => self.sample(Algorithm::Tmcmc),
-            "ching-chen-2007" => self.sample(Algorithm::ChingChen2007),
-            "lm" => self.fit(),
-            later @ ("basis" | "ga" | "cma-es") => Err(format!("algorithm = \"{later}\" {LATER}")),
-            other => Err(unknown_word("algorithm", other, AVAILABLE)),
-        }
-    }
-
-    fn sample(&self, algorithm: Algorithm) -> Result<Method, String> {
-        let foreign = [
+        let keys = Keys::of(self.algorithm.as_deref().unwrap_or("tmcmc"))?;
+        keys.refuse(&[
+            ("particles", self.particles.is_some()),
+            ("moves", self.moves.is_some()),
             ("starts", self.starts.is_some()),
             ("max_evaluations", self.max_evaluations.is_some()),
             ("difference_step", self.difference_step.is_some()),
-        ];
+            ("population", self.population.is_some()),
+            ("generations", self.generations.is_some()),
+            ("restarts", self.restarts.is_some()),
+        ])?;
+        Ok(match keys.algorithm {
+            "ching-chen-2007" => self.sample(Algorithm::ChingChen2007),
+            "basis" => self.sample(Algorithm::Basis),
+            "lm" => self.fit(),
+            "ga" => self.ga(),
+            "cma-es" => self.cma_es(),
+            _ => self.sample(Algorithm::Tmcmc),
+        })
+    }
+
+    fn sample(self, algorithm: Algorithm) -> Method {
         let usual = inference::Settings::default();
-        let method = Method::Sample(inference::Settings {
+        Method::Sample(inference::Settings {
             algorithm,
             particles: self.particles.unwrap_or(usual.particles),
             moves: self.moves.unwrap_or(usual.moves),
             seed: self.seed.unwrap_or(usual.seed),
             ..usual
-        });
-        refuse(&foreign, "lm", &method, "particles, moves, seed")
+        })
     }
 
-    fn fit(&self) -> Result<Method, String> {
-        let foreign = [
-            ("particles", self.particles.is_some()),
-            ("moves", self.moves.is_some()),
-        ];
+    fn fit(self) -> Method {
         let usual = lm::Settings::default();
-        let method = Method::Fit(lm::Settings {
+        Method::Fit(lm::Settings {
             starts: self.starts.unwrap_or(usual.starts),
             max_evaluations: self.max_evaluations.unwrap_or(usual.max_evaluations),
             difference_step: self.difference_step.unwrap_or(usual.difference_step),
             seed: self.seed.unwrap_or(usual.seed),
             ..usual
-        });
-        let own = "starts, max_evaluations, difference_step, seed";
-        refuse(&foreign, "tmcmc and ching-chen-2007", &method, own)
+        })
     }
-}
 
-/// Refuses keys that stand there but belong to other algorithms.
-fn refuse(foreign: &[(&str, bool)], owners: &str, method: &Method, own: &str) -> Result<Method, String> {
-    match foreign.iter().find(|(_, stated)| *stated) {
-        None => Ok(*method),
-        Some((key, _)) => Err(format!(
-            "{key} belongs to algorithm {owners}; {} takes {own}",
-            method.name()
-        )),
+    fn ga(self) -> Method {
+        let usual = ga::Settings::default();
+        Method::Search(search::Settings::Ga(ga::Settings {
+            population: self.population.unwrap_or(usual.population),
+            generations: self.generations.unwrap_or(usual.generations),
+            seed: self.seed.unwrap_or(usual.seed),
+            ..usual
+        }))
+    }
+
+    fn cma_es(self) -> Method {
+        let usual = cma_es::Settings::default();
+        Method::Search(search::Settings::CmaEs(cma_es::Settings {
+            population: self.population,
+            max_evaluations: self.max_evaluations.unwrap_or(usual.max_evaluations),
+            restarts: self.restarts.unwrap_or(usual.restarts),
+            seed: self.seed.unwrap_or(usual.seed),
+            ..usual
+        }))
     }
 }

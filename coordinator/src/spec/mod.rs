@@ -6,6 +6,7 @@ mod job_file;
 mod method;
 mod noise;
 mod priors;
+mod sampler_keys;
 
 use std::collections::{BTreeMap, BTreeSet};
 

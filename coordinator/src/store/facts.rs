@@ -3,7 +3,7 @@
 use std::sync::atomic::Ordering;
 
 use inference::StageRecord;
-use inference::lm::Estimate;
+use inference::point::Estimate;
 use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 
 use super::json;
@@ -156,17 +156,23 @@ async fn estimate(
     calibration: i64,
     e: &Estimate,
 ) -> Result<(), sqlx::Error> {
+    let history: Vec<(u64, Option<f64>, Option<f64>)> = e
+        .history
+        .iter()
+        .map(|g| (g.evaluations, g.best, g.mean))
+        .collect();
     sqlx::query(
-        "INSERT OR REPLACE INTO estimates (calibration, theta, log_likelihood, log_prior, sd, at_bound, stop)
-         VALUES (?, ?, ?, ?, ?, ?, ?)",
+        "INSERT OR REPLACE INTO estimates (calibration, theta, log_likelihood, log_prior, sd, at_bound, stop, history)
+         VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
     )
     .bind(calibration)
     .bind(json(&e.theta))
     .bind(e.log_likelihood)
     .bind(e.log_prior)
-    .bind(json(&e.sd))
+    .bind(e.laplace.as_ref().map(|laplace| json(&laplace.sd)))
     .bind(json(&e.at_bound))
     .bind(e.stop.name())
+    .bind(json(&history))
     .execute(&mut *connection)
     .await?;
     sqlx::query("UPDATE calibrations SET evaluations = ?, rejected = ? WHERE id = ?")

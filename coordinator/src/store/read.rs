@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use inference::lm::Stop;
+use inference::point::{Generation, Stop};
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
@@ -103,12 +103,15 @@ pub struct EstimateRow {
     pub log_likelihood: f64,
     /// Log-density of the prior there.
     pub log_prior: f64,
-    /// Standard deviations after Laplace; `None` at a bound, and where nothing fixes a parameter.
-    pub sd: Vec<Option<f64>>,
+    /// Standard deviations after Laplace; `None` at a bound, and where nothing fixes a parameter. A search by
+    /// generations has none at all.
+    pub sd: Option<Vec<Option<f64>>>,
     /// Whether each parameter lies at a bound of its prior.
     pub at_bound: Vec<bool>,
-    /// Why the fit ended.
+    /// Why the fit or the search ended.
     pub stop: Stop,
+    /// How a search by generations came there.
+    pub history: Vec<Generation>,
 }
 
 /// A final draw.
@@ -255,13 +258,20 @@ impl Reader {
             .await?;
         row.map(|row| {
             let stop: &str = row.get("stop");
+            let history = array::<(u64, Option<f64>, Option<f64>)>(row.get("history"))?;
+            let generation = |(evaluations, best, mean)| Generation {
+                evaluations,
+                best,
+                mean,
+            };
             Ok(EstimateRow {
                 theta: numbers(row.get("theta"))?,
                 log_likelihood: row.get("log_likelihood"),
                 log_prior: row.get("log_prior"),
-                sd: array(row.get("sd"))?,
+                sd: row.get::<Option<&str>, _>("sd").map(array).transpose()?,
                 at_bound: array(row.get("at_bound"))?,
                 stop: Stop::from_name(stop).ok_or_else(|| StoreError::Corrupt(format!("stop {stop}")))?,
+                history: history.into_iter().map(generation).collect(),
             })
         })
         .transpose()

@@ -189,12 +189,6 @@ fn what_a_later_version_brings_says_so() {
         );
     };
     let small = Job::small;
-    for algorithm in ["basis", "ga", "cma-es"] {
-        later(
-            small().in_job("\"tmcmc\"", &format!("\"{algorithm}\"")),
-            &format!("algorithm = \"{algorithm}\""),
-        );
-    }
     let section = |text: &str| Job {
         job: small().job + text,
         ..small()

@@ -1,10 +1,10 @@
 //! Go from round to round: what the results of one lead to.
 
 use super::damping::Damping;
-use super::estimate::Stop;
 use super::objective::Point;
 use super::optimiser::{Answer, Optimiser, Phase};
 use super::stencil::{Sides, Stencil};
+use crate::point::Stop;
 use crate::rng::Stream;
 use crate::round::{Failure, Proposal};
 

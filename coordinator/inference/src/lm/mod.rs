@@ -25,18 +25,17 @@
 //! # Layout
 //! - `settings`: starts, budget, step of the differences.
 //! - `optimiser`: the rounds; `descent`: what each leads to; `view`: what the outside sees of them.
-//! - `axis`: one parameter in units of its prior's width. `noise`: one noise sd.
+//! - `noise`: one noise sd.
 //! - `objective`: f at a point, and its parabola there. `quadratic`: the least of a damped parabola in a box.
 //! - `stencil`: the differences. `damping`: how far to trust the parabola.
-//! - `estimate`: the result, with its covariance.
+//! - `laplace`: the result, with its covariance.
 //!
 //! # Source
 //! Marquardt 1963, J. SIAM 11:431; the control of the damping after Nielsen 1999, IMM-REP-1999-05.
 
-mod axis;
 mod damping;
 mod descent;
-mod estimate;
+mod laplace;
 mod noise;
 mod objective;
 mod optimiser;
@@ -45,7 +44,6 @@ mod settings;
 mod stencil;
 mod view;
 
-pub use estimate::{Estimate, Stop};
 pub use optimiser::Optimiser;
 pub use settings::{Settings, SettingsError};
 pub use view::Current;

@@ -2,11 +2,11 @@
 
 use nalgebra::DMatrix;
 
-use super::axis::Axis;
 use super::noise::{Noise, Profiled};
 use super::quadratic::Quadratic;
 use crate::likelihood::Likelihood;
 use crate::log_likelihood::LogLikelihood;
+use crate::point::Axis;
 use crate::prior::Prior;
 
 /// A column of the Jacobian: the change of every predicted value along one axis; `None` where it is not known.

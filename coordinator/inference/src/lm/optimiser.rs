@@ -1,11 +1,11 @@
 //! Run the rounds: list proposals, take their predicted values, and say when it is over.
 
 use super::damping::Damping;
-use super::estimate::{Estimate, Stop};
 use super::objective::{Column, Objective, Point};
 use super::settings::{Settings, SettingsError};
 use super::stencil::{Sides, Stencil};
 use crate::likelihood::Likelihood;
+use crate::point::{Estimate, Stop};
 use crate::prior::Prior;
 use crate::round::{Failure, Progress, Proposal, Round, TellError};
 
@@ -147,7 +147,7 @@ impl Optimiser {
         let Some(point) = &self.best else { return };
         // A step that settled the fit ends it even where the budget has no room for another Jacobian.
         let stop = if self.settled { Stop::Decrease } else { stop };
-        let mut estimate = Estimate::at(&self.objective, point, &self.columns, stop);
+        let mut estimate = self.objective.estimate(point, &self.columns, stop);
         estimate.evaluations = self.evaluations as u64;
         estimate.rejected = self.rejected as u64;
         self.phase = Phase::Done(Box::new(estimate));

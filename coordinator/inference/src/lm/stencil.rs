@@ -1,7 +1,7 @@
 //! Ask for the differences that make a Jacobian.
 
-use super::axis::Axis;
 use super::objective::Column;
+use crate::point::Axis;
 
 /// To which sides differences are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! Show a fit's state to the outside.
 
-use super::estimate::Estimate;
 use super::optimiser::{Optimiser, Phase};
 use super::settings::Settings;
+use crate::point::Estimate;
 use crate::prior::Prior;
 use crate::round::{Failure, Proposal};
 

@@ -5,7 +5,8 @@
 //! lists [`Proposal`](crate::Proposal)s and waits until each has been told, in any order.
 //!
 //! # Departures from the paper
-//! - Every particle moves, by several steps; [`Algorithm::ChingChen2007`] keeps the paper's moves.
+//! - Every particle moves, by several steps; [`Algorithm::ChingChen2007`] keeps the paper's moves, and
+//!   [`Algorithm::Basis`] those of its unbiased version.
 //! - Every state that a chain visits is weighted for the next stage, not its last one alone: the evaluations
 //!   are paid for (Dau & Chopin 2022, J. R. Stat. Soc. B 84:114).
 //! - The evidence bridges the states of neighbouring stages both ways instead of averaging weights one way.

@@ -230,16 +230,16 @@ impl Sampler {
     }
 
     /// Drift of a stage: of its chains from start to end or, after Ching and Chen, of every particle from the
-    /// leader of its chain. The chains have moved if they accepted one step each on average.
+    /// leader of its chain (with one step, as BASIS has, they are the same). The chains have moved if they
+    /// accepted one step each on average.
     fn drift(&self, stage: &Stage) -> Drift {
         let chains = &stage.chains;
         let moved = stage.accepted >= chains.len() as u64;
-        let (members, end): (Vec<usize>, Vec<f64>) = match self.settings.algorithm {
-            Algorithm::Tmcmc => {
-                let end = chains.iter().map(|chain| chain.current.log_likelihood.value());
-                ((0..chains.len()).collect(), end.collect())
-            }
-            Algorithm::ChingChen2007 => (stage.pool.chains.clone(), stage.pool.log_likelihoods()),
+        let (members, end): (Vec<usize>, Vec<f64>) = if self.settings.algorithm.keeps_every_step() {
+            (stage.pool.chains.clone(), stage.pool.log_likelihoods())
+        } else {
+            let end = chains.iter().map(|chain| chain.current.log_likelihood.value());
+            ((0..chains.len()).collect(), end.collect())
         };
         let start: Vec<f64> = members.iter().map(|&chain| chains[chain].start.value()).collect();
         let clusters: Vec<usize> = members.iter().map(|&chain| chains[chain].ancestor).collect();
@@ -255,9 +255,10 @@ impl Sampler {
         } = self.passage;
         let ancestors = stage.chains.iter().map(|chain| chain.ancestor).collect();
         let log_evidence_increment = log_evidence + self.evidence.add(&stage.pool, ancestors, step);
-        let population: Vec<&State> = match self.settings.algorithm {
-            Algorithm::Tmcmc => stage.chains.iter().map(|chain| &chain.current).collect(),
-            Algorithm::ChingChen2007 => stage.pool.states.iter().collect(),
+        let population: Vec<&State> = if self.settings.algorithm.keeps_every_step() {
+            stage.pool.states.iter().collect()
+        } else {
+            stage.chains.iter().map(|chain| &chain.current).collect()
         };
         self.stages.push(StageRecord {
             stage: stage.index,

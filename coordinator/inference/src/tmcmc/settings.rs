@@ -11,6 +11,20 @@ pub enum Algorithm {
     /// Ching & Chen 2007, J. Eng. Mech. 133:816. Kept because published calibrations used it. Its chains are
     /// too short to forget where they started, so its runs are reported as not equilibrated.
     ChingChen2007,
+    /// BASIS: every resampled particle takes one step of the original sampler's random walk.
+    ///
+    /// Wu, Angelikopoulos, Papadimitriou & Koumoutsakos 2018, ASCE-ASME J. Risk Uncertainty B 4:011008, with
+    /// their chain length of 1. No chain is longer than another, so no particle is moved further from its
+    /// stage's target than another, and all are evaluated in one round. One step forgets even less than the
+    /// original sampler's chains, so its runs are reported as not equilibrated.
+    Basis,
+}
+
+impl Algorithm {
+    /// Whether the population is every state that the chains took, not their last states alone.
+    pub(super) fn keeps_every_step(self) -> bool {
+        matches!(self, Self::ChingChen2007 | Self::Basis)
+    }
 }
 
 /// Settings of a sampler.

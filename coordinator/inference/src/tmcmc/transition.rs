@@ -70,8 +70,11 @@ impl Transition {
                 let scale = scale.unwrap_or_else(|| initial_scale(factor.dimension()));
                 Stage::new(index, next, chains, Mixture { factor, frozen }, scale, true)
             }
-            Algorithm::ChingChen2007 => {
-                let chains = ching_chen::leaders(&indices).into_iter().map(chain).collect();
+            original @ (Algorithm::ChingChen2007 | Algorithm::Basis) => {
+                let chains = match original {
+                    Algorithm::Basis => indices.iter().map(|&from| chain((from, 1))).collect(),
+                    _ => ching_chen::leaders(&indices).into_iter().map(chain).collect(),
+                };
                 let mixture = Mixture {
                     factor,
                     frozen: Vec::new(),

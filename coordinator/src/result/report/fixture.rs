@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use inference::point::{Generation, Stop};
+use inference::{ga, search};
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
@@ -82,9 +84,10 @@ pub(in crate::result) fn fit() -> Outcome {
         theta: first.theta.clone(),
         log_likelihood: -20.0,
         log_prior: -1.0,
-        sd,
+        sd: Some(sd),
         at_bound,
-        stop: inference::lm::Stop::Decrease,
+        stop: Stop::Decrease,
+        history: Vec::new(),
     });
     outcome.predictions = vec![first];
     outcome.posterior.clear();
@@ -92,6 +95,22 @@ pub(in crate::result) fn fit() -> Outcome {
     outcome.row.log_evidence = None;
     outcome.row.log_evidence_se = None;
     outcome.row.equilibrated = None;
+    outcome
+}
+
+/// A search of the same job that its generations cut short.
+pub(in crate::result) fn search() -> Outcome {
+    let mut outcome = fit();
+    outcome.spec.method = Method::Search(search::Settings::Ga(ga::Settings::default()));
+    if let Some(estimate) = &mut outcome.estimate {
+        estimate.sd = None;
+        estimate.stop = Stop::Generations;
+        estimate.history = vec![Generation {
+            evaluations: 100,
+            best: Some(-21.0),
+            mean: None,
+        }];
+    }
     outcome
 }
 

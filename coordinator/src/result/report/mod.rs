@@ -28,7 +28,10 @@ pub fn page(outcome: &Outcome) -> String {
     let (parameters, method) = match &outcome.estimate {
         Some(estimate) => (
             section::estimate(outcome, estimate),
-            ("fit", "Fit", section::fit(outcome, estimate)),
+            match estimate.sd {
+                Some(_) => ("fit", "Fit", section::fit(outcome, estimate)),
+                None => ("search", "Search", section::fit(outcome, estimate)),
+            },
         ),
         None => (
             section::parameters(outcome),
@@ -110,6 +113,7 @@ mod tests {
             fixture::without_holdout(),
             fixture::all_refused(),
             fixture::fit(),
+            fixture::search(),
         ] {
             let page = page(&outcome);
             for word in ["NaN", "inf ", "inf\"", "-inf"] {
@@ -144,6 +148,23 @@ mod tests {
         ] {
             assert!(!page.contains(words), "{words}");
         }
+    }
+
+    #[test]
+    fn a_search_that_was_cut_short_says_so_and_has_no_standard_deviations() {
+        let outcome = fixture::search();
+        let page = page(&outcome);
+        for words in [
+            "ga with at most 200 generations of 100",
+            "its generations had passed",
+            "allow more generations",
+            "there are no standard deviations",
+        ] {
+            assert!(page.contains(words), "{words}");
+        }
+        assert!(!page.contains("Laplace") && !page.contains("no information"));
+        let estimates = outcome.point_estimates();
+        assert!(estimates[0].sd.is_none() && estimates[0].history.len() == 1);
     }
 
     #[test]

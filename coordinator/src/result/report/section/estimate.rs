@@ -1,6 +1,6 @@
-//! What a fit found, in place of a posterior's parameters and a sampler's stages.
+//! What a fit or a search found, in place of a posterior's parameters and a sampler's stages.
 
-use inference::lm::Stop;
+use inference::point::Stop;
 use maud::{Markup, html};
 
 use super::parameters::{fixed, prior_words};
@@ -34,8 +34,13 @@ pub(in crate::result::report) fn estimate(outcome: &Outcome, estimate: &Estimate
         } }
         p.note {
             "Most probable: the highest likelihood times prior density of the parameters as the job declares them. "
-            "Sd: from the curvature there (Laplace), the parameters at a bound held; right where the posterior is a normal distribution, and too small where the noise was inferred from repeats that share a misfit. "
-            "AT BOUND: exactly at a bound of the prior; there is no sd."
+            @if estimate.sd.is_some() {
+                "Sd: from the curvature there (Laplace), the parameters at a bound held; right where the posterior is a normal distribution, and too small where the noise was inferred from repeats that share a misfit. "
+                "AT BOUND: exactly at a bound of the prior; there is no sd."
+            } @else {
+                "A search by generations does not know the curvature there, so there are no standard deviations; what the data say nothing about lies anywhere. "
+                "AT BOUND: exactly at a bound of the prior."
+            }
         }
         (fixed(outcome))
     }
@@ -48,7 +53,7 @@ pub(in crate::result::report) fn fit(outcome: &Outcome, estimate: &EstimateRow) 
             dt { "log-posterior" }
             dd {
                 (number::significant(estimate.log_posterior(), 5)) " (log-likelihood " (number::significant(estimate.log_likelihood, 5))
-                " plus log-density of the prior " (number::significant(estimate.log_prior, 5)) "; without the evidence, which a fit does not know)"
+                " plus log-density of the prior " (number::significant(estimate.log_prior, 5)) "; without the evidence, which is not known)"
             }
             dt { "stopped because" } dd { (reason(estimate.stop)) }
             (cost(outcome))
@@ -64,5 +69,7 @@ pub(super) fn reason(stop: Stop) -> &'static str {
             "no step that was tried gained anything: nearer to the optimum the noise of the model does not let one see"
         }
         Stop::Budget => "its budget of evaluations was spent; a better point may be near",
+        Stop::Stagnation => "for many generations it found nothing better",
+        Stop::Generations => "its generations had passed; a better point may be near",
     }
 }

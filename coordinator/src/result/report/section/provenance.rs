@@ -1,5 +1,6 @@
 //! Where the result comes from, enough to make it again.
 
+use inference::search;
 use maud::{Markup, html};
 use shared::experiment::RunUse;
 
@@ -56,6 +57,10 @@ pub(in crate::result::report) fn provenance(outcome: &Outcome) -> Markup {
                     }
                     Method::Fit(s) => {
                         ", " (number::count(s.starts, "start")) ", differences of at least " (number::as_written(s.difference_step)) " prior widths"
+                    }
+                    Method::Search(search::Settings::Ga(_)) => {}
+                    Method::Search(search::Settings::CmaEs(s)) => {
+                        ", " (s.first_population(spec.parameters.len())) " individuals and at most " (number::count(s.restarts, "restart")) " with twice as many each"
                     }
                 }
             }

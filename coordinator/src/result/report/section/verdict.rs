@@ -36,7 +36,8 @@ pub(in crate::result::report) fn verdict(outcome: &Outcome, comparison: &Compari
 fn sentences(outcome: &Outcome, comparison: &Comparison) -> Vec<String> {
     let mut text = vec![match &outcome.estimate {
         Some(estimate) => format!(
-            "A fit found the most probable parameters in {}; it stopped because {}. It says nothing of what else the data allow.",
+            "A {} found the most probable parameters in {}; it stopped because {}. It says nothing of what else the data allow.",
+            if estimate.sd.is_some() { "fit" } else { "search" },
             number::count(outcome.row.evaluations.unwrap_or(0) as usize, "evaluation"),
             reason(estimate.stop)
         ),
@@ -204,7 +205,10 @@ fn inferred_noise(outcome: &Outcome) -> Option<String> {
             .iter()
             .position(|p| p.name == noise_parameter(channel))?;
         let (value, sd) = match &outcome.estimate {
-            Some(estimate) => (estimate.theta[parameter], estimate.sd[parameter].unwrap_or(0.0)),
+            Some(estimate) => {
+                let sd = estimate.sd.as_ref().and_then(|sd| sd[parameter]);
+                (estimate.theta[parameter], sd.unwrap_or(0.0))
+            }
             None => diagnostics::mean_and_sd(&outcome.draws(parameter))?,
         };
         let q = Quantity::of(channel);

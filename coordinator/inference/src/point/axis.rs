@@ -4,17 +4,17 @@ use crate::prior::Marginal;
 
 /// One parameter that the model takes, with t = u / width; u is the sampling coordinate of its marginal.
 #[derive(Debug, Clone)]
-pub(super) struct Axis {
+pub(crate) struct Axis {
     /// Index in theta.
-    pub(super) parameter: usize,
-    pub(super) lower: f64,
-    pub(super) upper: f64,
+    pub(crate) parameter: usize,
+    pub(crate) lower: f64,
+    pub(crate) upper: f64,
     marginal: Marginal,
     width: f64,
 }
 
 impl Axis {
-    pub(super) fn new(parameter: usize, marginal: &Marginal) -> Self {
+    pub(crate) fn new(parameter: usize, marginal: &Marginal) -> Self {
         let width = marginal.width();
         let (lower, upper) = marginal.support();
         Self {
@@ -27,13 +27,13 @@ impl Axis {
     }
 
     /// t of a parameter; exactly the bound's where it lies at a bound.
-    pub(super) fn position(&self, x: f64) -> f64 {
+    pub(crate) fn position(&self, x: f64) -> f64 {
         let t = self.marginal.coordinate(x) / self.width;
         t.max(self.lower).min(self.upper)
     }
 
     /// The parameter at t; exactly the bound where t is one.
-    pub(super) fn value(&self, t: f64) -> f64 {
+    pub(crate) fn value(&self, t: f64) -> f64 {
         let (lower, upper) = self.marginal.support();
         if t <= self.lower {
             lower
@@ -45,18 +45,18 @@ impl Axis {
     }
 
     /// Whether t is a bound.
-    pub(super) fn is_bound(&self, t: f64) -> bool {
+    pub(crate) fn is_bound(&self, t: f64) -> bool {
         t <= self.lower || t >= self.upper
     }
 
     /// Slope and curvature of -ln p(x) along t.
-    pub(super) fn slope(&self, t: f64) -> (f64, f64) {
+    pub(crate) fn slope(&self, t: f64) -> (f64, f64) {
         let (slope, curvature) = self.marginal.slope(t * self.width);
         (slope * self.width, curvature * self.width * self.width)
     }
 
     /// dx/dt at t.
-    pub(super) fn rate(&self, t: f64) -> f64 {
+    pub(crate) fn rate(&self, t: f64) -> f64 {
         self.marginal.rate(self.value(t)) * self.width
     }
 }

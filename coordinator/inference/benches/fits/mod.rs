@@ -1,0 +1,91 @@
+//! Print what it costs to find the most probable parameters.
+//!
+//! Of each problem and algorithm: how many seeds came within 0.1 nats of the optimum, mean evaluations of these until
+//! then and of all to their end; how often the search itself said that it was cut short; the worst loss in nats.
+//!
+//! Levenberg and Marquardt's fit is told residuals, so it has the problems that are sums of squares: a, b, and c5 with the
+//! noise sd itself as a parameter (c5 has its decimal logarithm, whose density has another maximum). It keeps no history:
+//! what it took until then is not known.
+
+mod residuals;
+
+use inference::point::Estimate;
+use inference::search::Settings;
+use inference::{cma_es, ga};
+
+use crate::problems::{self, Problem};
+
+/// A loss that nobody would notice in a posterior, in nats.
+const CLOSE: f64 = 0.1;
+
+/// A line of the table.
+fn row(name: &str, algorithm: &str, optimum: f64, runs: &[Estimate]) {
+    let close = |value: f64| value > optimum - CLOSE;
+    let hits: Vec<&Estimate> = runs.iter().filter(|run| close(run.log_posterior())).collect();
+    let reached = |run: &Estimate| {
+        let generation = run.history.iter().find(|g| g.best.is_some_and(close))?;
+        Some(generation.evaluations)
+    };
+    let until: Vec<u64> = hits.iter().filter_map(|run| reached(run)).collect();
+    let until = match until.len() {
+        0 => "-".to_owned(),
+        count => (until.iter().sum::<u64>() / count as u64).to_string(),
+    };
+    let all = runs.iter().map(|run| run.evaluations).sum::<u64>() / runs.len() as u64;
+    let early = runs.iter().filter(|run| run.stop.is_early()).count();
+    let loss = runs
+        .iter()
+        .fold(0.0_f64, |worst, run| worst.max(optimum - run.log_posterior()));
+    println!(
+        "{name:5} {algorithm:16} {:4}/{:<3} {until:>8} {all:>8} {early:>6} {loss:>9.3}",
+        hits.len(),
+        runs.len()
+    );
+}
+
+fn searched(problem: &Problem, settings: impl Fn(u64) -> Settings, seeds: u64) -> Vec<Estimate> {
+    (1..=seeds)
+        .map(|seed| problem.search(settings(seed)).estimate().unwrap().clone())
+        .collect()
+}
+
+/// Prints the table.
+pub(crate) fn print(seeds: u64) {
+    println!(
+        "{:5} {:16} {:>8} {:>8} {:>8} {:>6} {:>9}",
+        "", "algorithm", "close", "until", "to end", "short", "worst"
+    );
+    let genetic = |seed| {
+        Settings::Ga(ga::Settings {
+            seed,
+            ..ga::Settings::default()
+        })
+    };
+    let adapting = |seed, restarts| {
+        Settings::CmaEs(cma_es::Settings {
+            seed,
+            restarts,
+            ..cma_es::Settings::default()
+        })
+    };
+    for problem in [
+        problems::correlated_gaussian(),
+        problems::shear_building(),
+        problems::thin_ridge(),
+        problems::bekker_known_noise(),
+        problems::bekker_unknown_noise(),
+        problems::bekker_reparametrised(),
+        problems::shells(),
+        problems::eggbox(),
+        problems::skew(),
+    ] {
+        let print = |algorithm: &str, runs: &[Estimate]| row(problem.name, algorithm, problem.optimum, runs);
+        print("ga", &searched(&problem, genetic, seeds));
+        print("cma-es", &searched(&problem, |seed| adapting(seed, 4), seeds));
+        print(
+            "cma-es, one run",
+            &searched(&problem, |seed| adapting(seed, 0), seeds),
+        );
+    }
+    residuals::print(seeds);
+}

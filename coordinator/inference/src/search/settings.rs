@@ -1,0 +1,125 @@
+//! Hold the settings of a search and refuse those that cannot work.
+
+use crate::{cma_es, ga};
+
+/// Settings of a search: which strategy, and its own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Settings {
+    /// A genetic algorithm.
+    Ga(ga::Settings),
+    /// Covariance matrix adaptation.
+    CmaEs(cma_es::Settings),
+}
+
+/// Largest population: more than any farm has workers.
+const MOST_INDIVIDUALS: usize = 100_000;
+
+/// Settings that cannot work.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SettingsError {
+    /// The prior has no parameters.
+    #[error("the prior has no parameters")]
+    NoParameters,
+    /// The population is too small or too large.
+    #[error("population = {population} is not from {least} to {MOST_INDIVIDUALS}")]
+    Population {
+        /// The setting.
+        population: usize,
+        /// The least population.
+        least: usize,
+    },
+    /// The generations are too few or too many.
+    #[error("generations = {generations} is not from 2 to {most}")]
+    Generations {
+        /// The setting.
+        generations: usize,
+        /// The most generations.
+        most: usize,
+    },
+    /// Nobody would survive, or hardly anybody be born.
+    #[error("elite = {elite} is not from 1 to half of the population, {population}")]
+    Elite {
+        /// The setting.
+        elite: usize,
+        /// The population.
+        population: usize,
+    },
+    /// The budget is beyond reason, or does not reach to a second generation.
+    #[error("max_evaluations = {max_evaluations} is not from {least} (two generations) to {most}")]
+    Evaluations {
+        /// The setting.
+        max_evaluations: usize,
+        /// The least budget.
+        least: usize,
+        /// The most evaluations.
+        most: usize,
+    },
+    /// The restarts double the population too often.
+    #[error("restarts = {restarts} is above {most}")]
+    Restarts {
+        /// The setting.
+        restarts: usize,
+        /// The most restarts.
+        most: usize,
+    },
+    /// The tolerance is not a finite number above 0.
+    #[error("tolerance = {value} is not a finite number above 0")]
+    Tolerance {
+        /// The setting.
+        value: f64,
+    },
+}
+
+/// Refuses a population out of bounds.
+pub(crate) fn check_population(population: usize, least: usize) -> Result<(), SettingsError> {
+    if (least..=MOST_INDIVIDUALS).contains(&population) {
+        Ok(())
+    } else {
+        Err(SettingsError::Population { population, least })
+    }
+}
+
+impl Settings {
+    /// Seed of all random numbers.
+    #[must_use]
+    pub fn seed(&self) -> u64 {
+        match self {
+            Self::Ga(settings) => settings.seed,
+            Self::CmaEs(settings) => settings.seed,
+        }
+    }
+
+    /// Most evaluations, all generations together.
+    #[must_use]
+    pub fn max_evaluations(&self) -> usize {
+        match self {
+            Self::Ga(settings) => settings.max_evaluations(),
+            Self::CmaEs(settings) => settings.max_evaluations,
+        }
+    }
+
+    /// Checks the settings for a prior of `dimension` parameters.
+    ///
+    /// # Errors
+    /// [`SettingsError`] with the setting, its value and its bound.
+    pub fn check(&self, dimension: usize) -> Result<(), SettingsError> {
+        if dimension == 0 {
+            return Err(SettingsError::NoParameters);
+        }
+        let value = match self {
+            Self::Ga(settings) => {
+                settings.check()?;
+                settings.tolerance
+            }
+            Self::CmaEs(settings) => {
+                settings.check(dimension)?;
+                settings.tolerance
+            }
+        };
+        if value.is_finite() && value > 0.0 {
+            Ok(())
+        } else {
+            Err(SettingsError::Tolerance { value })
+        }
+    }
+}
