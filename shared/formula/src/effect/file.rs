@@ -135,17 +135,6 @@ pub(super) fn read(text: &str) -> Result<Effect, EffectError> {
         }
         formulas.push((hook, result));
     }
-    if let (Some(mechanism), Some(stated)) = (mechanism, &raw.mechanism) {
-        let names: Vec<&str> = parameters.iter().map(|(name, _)| name.as_str()).collect();
-        if names != mechanism.parameters() {
-            let expected = mechanism.parameters().join(", ");
-            let message = format!(
-                "mechanism {} takes the parameters {expected}, in this order",
-                mechanism.name()
-            );
-            return Err(at(text, stated.span().start, message));
-        }
-    }
     let used = |node: Node| {
         let id = graph.find(node);
         id.is_some_and(|id| {

@@ -115,6 +115,15 @@ impl Effects {
                 let (name, model) = (&effect.name, model.name());
                 return Err(format!("effect {name} has no form in {model}"));
             }
+            let names = effect.parameters.iter().map(|p| p.name.as_str());
+            if let Some(mechanism) = mechanism.filter(|m| !names.clone().eq(m.parameters().iter().copied())) {
+                let expected = mechanism.parameters().join(", ");
+                return Err(format!(
+                    "effect {}: mechanism {} takes the parameters {expected}, in this order",
+                    effect.name,
+                    mechanism.name()
+                ));
+            }
             let program = |hook: Hook| match mechanism {
                 Some(_) => None,
                 None => effect.program(hook, model.local()),

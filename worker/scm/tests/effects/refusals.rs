@@ -192,3 +192,13 @@ fn a_wheel_that_reads_as_sunk_to_its_hub_is_refused() {
         "{message}"
     );
 }
+
+#[test]
+fn a_mechanism_without_its_parameters_is_refused() {
+    let text = "name = \"springs\"\nsummary = \"rebound\"\nsource = \"none\"\nmechanism = \"rebound\"\n";
+    let effect = Effect::read(text).unwrap();
+    assert_eq!(
+        Effects::compile(Model::QuasiStatic, [&effect]).unwrap_err(),
+        "effect springs: mechanism rebound takes the parameters compliance_m_pa, in this order"
+    );
+}
