@@ -40,8 +40,11 @@ fn late_results_change_nothing(job: &Job, expected: &str) -> bool {
     let service = Service::start(&["--lease-ms", "500"]);
     let id = service.submit(job);
     let mut halted = service.worker("halted", 2);
+    // One that has not yet fetched what it is to simulate gives its leases back when it finds it gone.
+    let evaluations = || service.status(id)["progress"]["evaluations"].as_u64();
+    until("first results", || (evaluations() > Some(0)).then_some(()));
     let held = halt_with_leases(&service, &halted);
-    assert!(service.status(id)["progress"]["evaluations"].as_u64() < Some(5000));
+    assert!(evaluations() < Some(5000));
     let _other = service.worker("other", 2);
     service.wait_for(id, "finished");
     assert!(service.metric("grouser_leases_failed_total") >= held);
