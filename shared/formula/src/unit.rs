@@ -60,7 +60,7 @@ impl Unit {
                 let known = KNOWN.iter().find(|(known, _)| *known == name);
                 let (_, dimension) = known.ok_or_else(|| unknown(factor))?;
                 let power: i16 = power.parse().map_err(|_| unknown(factor))?;
-                if power.abs() > HIGHEST {
+                if power.unsigned_abs() > HIGHEST.unsigned_abs() {
                     return Err(unknown(factor));
                 }
                 let power = if place == 0 { power } else { -power };
