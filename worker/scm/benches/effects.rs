@@ -4,43 +4,20 @@
 //! hold on a machine that does other things. A base velocity of 0 mobilises the whole strength; the formula then does what the
 //! code does otherwise, and both give the same forces.
 
+#[path = "../tests/support.rs"]
+#[expect(dead_code, reason = "tests draw random cases")]
+mod support;
+
 use std::hint::black_box;
 use std::time::Instant;
 
 use formula::Effect;
 use formula::catalogue::find;
 use scm::effects::{Active, Effects, Model, Site};
-use scm::{Averages, Condition, Soil, Wheel, quasi_static};
+use scm::{Averages, quasi_static};
+use support::base;
 
 const TURNS: u32 = 2000;
-
-const WHEEL: Wheel = Wheel {
-    radius_m: 0.125,
-    width_m: 0.112,
-    rig_radius_m: 0.125,
-};
-
-fn soil(shear_velocity_m_s: f64) -> Soil {
-    Soil {
-        k_c: 0.0,
-        k_phi: 1e7,
-        n: 1.1,
-        cohesion_pa: 0.0,
-        friction_angle_rad: 30_f64.to_radians(),
-        shear_velocity_m_s,
-        gamma_exponent: 0.5,
-    }
-}
-
-fn condition(slip: f64) -> Condition {
-    Condition {
-        slip,
-        wheel_load_n: 100.0,
-        sled_speed_m_s: 0.01 * (1.0 - slip),
-        slip_angle_rad: 0.0,
-        pass: 1,
-    }
-}
 
 /// One of the ways to simulate: its name, and what it simulates.
 type Way<'a> = (&'a str, Box<dyn FnMut() -> Averages + 'a>);
@@ -77,8 +54,10 @@ fn main() {
         let effects = Effects::compile(Model::QuasiStatic, [&law]).expect("a form");
         let jh = Effects::compile(Model::QuasiStatic, [janosi]).expect("a form");
         let run = |velocity: f64, active: &mut Active| {
-            let (soil, condition) = (soil(black_box(velocity)), condition(slip));
-            quasi_static::simulate_with(&soil, &WHEEL, &condition, active, &site).expect("support")
+            let mut case = base(slip, 100.0, 30.0);
+            case.soil.shear_velocity_m_s = black_box(velocity);
+            quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, active, &site)
+                .expect("support")
         };
         // an evaluation activates its effects once for all of its runs
         let (mut law, mut jh) = (effects.activate([vec![0.001]]), jh.activate([vec![0.01]]));

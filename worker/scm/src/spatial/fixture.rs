@@ -1,5 +1,7 @@
 //! The soil, the wheel and the condition from which this module's tests depart.
 
+use super::{Ground, Scene, Shape};
+use crate::effects::{Active, Site};
 use crate::{Condition, Soil, Wheel};
 
 /// Cohesionless sand of 0.5 rad.
@@ -28,3 +30,15 @@ pub(super) const CONDITION: Condition = Condition {
     slip_angle_rad: 0.0,
     pass: 1,
 };
+
+/// The soil and the wheel with the rest of a scene.
+pub(super) fn scene<'a>(ground: &'a Ground, shape: &'a Shape, effects: &'a Active<'a>) -> Scene<'a> {
+    Scene {
+        soil: &SOIL,
+        ground,
+        wheel: &WHEEL,
+        shape,
+        effects,
+        site: Site::default(),
+    }
+}

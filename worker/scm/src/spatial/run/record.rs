@@ -215,21 +215,15 @@ fn means(channels: [&[f64]; 4], from: f64, to: f64) -> Result<[f64; 4], Rejectio
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::{Active, Site};
-    use crate::spatial::fixture::{CONDITION, SOIL, WHEEL};
-    use crate::spatial::{Ground, Grousers, Scene, Settings, Shape};
+    use crate::effects::Active;
+    use crate::spatial::fixture::{CONDITION, scene};
+    use crate::spatial::{Ground, Grousers, Settings, Shape};
 
     /// What finishing a short run says, after its record was changed.
     fn finished(change: fn(&mut Record)) -> Result<Run, Rejection> {
         let (ground, shape) = (Ground::default(), Shape::Rim(Grousers::default()));
-        let scene = Scene {
-            soil: &SOIL,
-            ground: &ground,
-            wheel: &WHEEL,
-            shape: &shape,
-            effects: &Active::default(),
-            site: Site::default(),
-        };
+        let none = Active::default();
+        let scene = scene(&ground, &shape, &none);
         let mut rolling = Rolling::new(&scene, &CONDITION, None, Settings::default(), 0.05)?;
         let mut record = Record::new(rolling.steps.time);
         let lowered = rolling.lower()?;

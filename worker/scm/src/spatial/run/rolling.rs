@@ -414,8 +414,8 @@ impl<'a> Rolling<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::{Active, Effects, Model, Site};
-    use crate::spatial::fixture::{CONDITION, SOIL, WHEEL};
+    use crate::effects::{Active, Effects, Model};
+    use crate::spatial::fixture::{CONDITION, scene};
     use crate::spatial::{Grousers, Shape};
 
     fn condition(slip_angle_rad: f64) -> Condition {
@@ -442,20 +442,13 @@ mod tests {
             height_m: 0.009,
             thickness_m: 0.002,
         });
-        let scene = Scene {
-            soil: &SOIL,
-            ground: &ground,
-            wheel: &WHEEL,
-            shape: &shape,
-            effects,
-            site: Site::default(),
-        };
+        let scene = scene(&ground, &shape, effects);
         let settings = Settings {
             both_halves,
             ..Settings::default()
         };
         let condition = condition(slip_angle_rad);
-        let case = effects.case(&SOIL, &WHEEL, &condition, &scene.site);
+        let case = effects.case(scene.soil, scene.wheel, &condition, &scene.site);
         let case = case.expect("admissible formulas");
         let case = (!effects.is_empty()).then_some(&case);
         let mut rolling = Rolling::new(&scene, &condition, case, settings, 0.2).expect("a track");
@@ -506,14 +499,8 @@ mod tests {
     #[test]
     fn between_passes_the_rut_stays_and_its_slopes_slide() {
         let (ground, shape) = (Ground::default(), Shape::Rim(Grousers::default()));
-        let scene = Scene {
-            soil: &SOIL,
-            ground: &ground,
-            wheel: &WHEEL,
-            shape: &shape,
-            effects: &Active::default(),
-            site: Site::default(),
-        };
+        let none = Active::default();
+        let scene = scene(&ground, &shape, &none);
         let condition = condition(0.0);
         let settings = Settings {
             displacement: crate::spatial::Displacement::Node,
