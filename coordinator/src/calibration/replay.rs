@@ -196,16 +196,16 @@ mod tests {
             model_version: Some(version),
             ..Stored::default()
         };
-        let now = calibration(&job).spec.fit_variant.model_version("scm-3");
+        let now = calibration(&job).spec.fit_variant.model_version("scm-4");
         assert!(calibration(&job).replay(begun(now.clone())).is_ok());
-        assert!(fresh().replay(begun("scm-3".into())).is_ok());
+        assert!(fresh().replay(begun("scm-4".into())).is_ok());
         let error = calibration(&job)
-            .replay(begun("scm-3+effects.00000000".into()))
+            .replay(begun("scm-4+effects.00000000".into()))
             .unwrap_err();
         assert_eq!(
             error.to_string(),
             format!(
-                "the effects' files have changed since: it was begun with model version scm-3+effects.00000000, this program has {now}"
+                "the effects' files have changed since: it was begun with model version scm-4+effects.00000000, this program has {now}"
             )
         );
     }

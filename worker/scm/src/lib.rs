@@ -58,4 +58,4 @@ pub use soil::{Soil, bekker_moduli};
 pub use wheel::Wheel;
 
 /// Identifies the equations and numerics; bumped when any number changes.
-pub const MODEL_VERSION: &str = "scm-3";
+pub const MODEL_VERSION: &str = "scm-4";

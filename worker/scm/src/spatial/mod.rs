@@ -111,7 +111,8 @@ pub struct Run {
 /// # Errors
 /// - [`Rejection::InvalidParameter`]: a field is outside its bounds. Nothing is clamped.
 /// - [`Rejection::NoSupport`]: no balance before the hub reaches the undisturbed surface; also where k* ≤ 0 everywhere.
-/// - [`Rejection::NoConvergence`]: the mean residual of the balance exceeds 2 % of the load: the load jumps as patches join.
+/// - [`Rejection::NoConvergence`]: the mean residual of the balance exceeds 2 % of the load, over the averaged steps or the run:
+///   the load jumps as patches join.
 /// - [`Rejection::EnergyGained`]: motor and sled got work out of the soil, on average: `T omega − F v < 0`.
 /// - [`Rejection::Formula`]: a formula gives what cannot be used, at a node that bears or of the run.
 /// - [`Rejection::NotFinite`]: forces overflow. [`Rejection::Protocol`]: the protocol does not fit the run.
@@ -124,7 +125,7 @@ pub struct Run {
 /// ones on flowing soil no balance, where the quasi-static model, which knows one patch, still does. Wheels up to 126 lanes wide straight ahead, 62 at a slip angle.
 ///
 /// # Numerics
-/// dx is refined until eight nodes lie in the contact of a smooth wheel, and the contact ends between nodes, so that
+/// dx is refined until eight nodes lie in the contact of a smooth wheel, on soil or on its elastic layer, and the contact ends between nodes, so that
 /// areas and distances do not jump. A grouser bears by the width of it that covers a column. Balance to 2e-3 of the
 /// load, or to 1 µm where patches join. Where left and right are alike, half the wheel is modelled.
 ///

@@ -25,6 +25,27 @@ fn hard_ground_is_resolved_by_eight_nodes_along_the_travel() {
 }
 
 #[test]
+fn hard_soil_needs_no_finer_grid_than_its_elastic_layer() {
+    // n 0.8: without the layer a smooth wheel would touch this soil over 0.7 mm
+    for grousers in [false, true] {
+        let mut track = smooth(0.2, 100.0, 30.0);
+        (track.case.soil.k_phi, track.case.soil.n) = (1e10, 0.8);
+        if grousers {
+            track = Track::with_grousers(track.case);
+        }
+        let mut finer = track.clone();
+        finer.settings.dem_spacing_m = 0.9e-3; // the finest for this width
+        let (got, fine) = (track.averages(), finer.averages());
+        let off = [
+            (got.drawbar_pull_n - fine.drawbar_pull_n).abs() / 0.1,
+            (got.torque_n_m - fine.torque_n_m).abs() / 0.01,
+            (got.sinkage_m - fine.sinkage_m).abs() / 2e-5,
+        ];
+        assert!(off.into_iter().all(|o| o < 1.0), "{off:?} {got:?} {fine:?}");
+    }
+}
+
+#[test]
 fn a_wheel_sunk_to_three_quarters_of_its_radius_agrees_with_the_quasi_static_one() {
     for (k_phi, sinkage) in [(1e6, 0.023), (3e5, 0.048), (1e5, 0.0955)] {
         let mut track = smooth(0.2, 100.0, 30.0);

@@ -149,6 +149,7 @@ fn runs_too_large_to_compute_are_named_and_not_begun() {
         ("steps of the run", |t| t.case.condition.pass = 1_000_000),
         ("nodes of the terrain", |t| {
             (t.case.soil.k_phi, t.settings.travel_step_m) = (1e17, 1.0);
+            t.ground.elastic_stiffness_pa_m = 1e17;
         }),
         ("sled_speed_m_s", |t| t.case.condition.sled_speed_m_s = 1e308),
         ("sled_speed_m_s", |t| t.case.condition.sled_speed_m_s = 5e-324),
@@ -180,6 +181,17 @@ fn grousers_that_no_wheel_has_room_for_are_named() {
         let message = rejection(&track).to_string();
         assert!(message.contains(name), "{message}");
     }
+}
+
+#[test]
+fn a_run_that_will_be_out_of_balance_is_refused_before_its_end() {
+    let mut track = Track::with_grousers(smooth(0.2, 100.0, 30.0).case).for_a_travel_of(0.4, 0.24);
+    (track.case.soil.k_c, track.case.soil.k_phi, track.case.soil.n) = (-2.51e8, 6.61e9, 1.03);
+    let Err(scm::Rejection::NoConvergence { evaluations, .. }) = track.try_roll() else {
+        panic!("{track:?} finds a balance");
+    };
+    // the whole run would need twenty thousand
+    assert!(evaluations < 1000, "{evaluations}");
 }
 
 #[test]

@@ -32,7 +32,7 @@ pub(crate) fn roll(
         }
         rolling.start_again();
     }
-    let mut record = Record::new(rolling.steps.time);
+    let mut record = Record::new(rolling.steps.time, steps);
     let lowered = rolling.lower()?;
     record.push(&mut rolling, &lowered)?;
     let (windows, settled_to) = match settings.protocol {

@@ -13,7 +13,7 @@ const CONTOUR_EVERY: usize = 7;
 /// balance leaves of the load, and, on hard ground, springs under grousers, whose force acts along the spoke while their depth
 /// is measured downwards (0.2 % of load times speed).
 const ENERGY_TOLERANCE: f64 = 5e-3;
-/// Largest mean residual of the vertical balance, relative to the wheel load.
+/// Largest mean residual of the vertical balance, relative to the wheel load, over the averaged steps and over the run.
 const MOST_RESIDUAL: f64 = 0.02;
 
 /// Means of drawbar pull, torque, sinkage and lateral force, and the steps over which the rest is averaged.
@@ -31,6 +31,9 @@ pub(super) struct Record {
     b_eff_m: Vec<f64>,
     nodes: Vec<f64>,
     residual_n: Vec<f64>,
+    /// Sum of the residuals since the wheel was lowered, and the most it may be, in loads.
+    missed: f64,
+    most_missed: f64,
     /// Load that was to be carried, less the nominal one.
     load_change_n: Vec<f64>,
     /// Power that motor and rig put into the soil `[W]`.
@@ -38,7 +41,8 @@ pub(super) struct Record {
 }
 
 impl Record {
-    pub(super) fn new(step_s: f64) -> Self {
+    /// The record of a run of at most so many steps.
+    pub(super) fn new(step_s: f64, most_steps: usize) -> Self {
         Self {
             history: History {
                 step_s,
@@ -49,12 +53,18 @@ impl Record {
             b_eff_m: Vec::new(),
             nodes: Vec::new(),
             residual_n: Vec::new(),
+            missed: 0.0,
+            most_missed: MOST_RESIDUAL * most_steps as f64,
             load_change_n: Vec::new(),
             power_w: Vec::new(),
         }
     }
 
     /// Keep what a step gave, as it is measured; power and balance are the soil's own.
+    ///
+    /// # Errors
+    /// [`Rejection::NoConvergence`] as soon as the steps so far miss so much that the mean over the run will be too large: what
+    /// comes then is no balance, and finding none at every step takes long.
     pub(super) fn push(&mut self, rolling: &mut Rolling, step: &Step) -> Result<(), Rejection> {
         let reaction = &step.reaction;
         if self.history.len().is_multiple_of(CONTOUR_EVERY) {
@@ -87,6 +97,18 @@ impl Record {
                 - reaction.force_y * motion.lateral
                 - reaction.force_z * step.rising,
         );
+        let steps = self.residual_n.len() - 1;
+        if steps > 0 {
+            self.missed += step.residual.abs() / step.load;
+        }
+        if self.missed > self.most_missed {
+            return Err(Rejection::NoConvergence {
+                residual_load_n: self.missed / steps as f64 * step.load,
+                wheel_load_n: step.load,
+                sinkage_m: rolling.sinkage(step.hub),
+                evaluations: rolling.contact.trials as u32,
+            });
+        }
         Ok(())
     }
 
@@ -225,7 +247,7 @@ mod tests {
         let none = Active::default();
         let scene = scene(&ground, &shape, &none);
         let mut rolling = Rolling::new(&scene, &CONDITION, None, Settings::default(), 0.05)?;
-        let mut record = Record::new(rolling.steps.time);
+        let mut record = Record::new(rolling.steps.time, 50);
         let lowered = rolling.lower()?;
         record.push(&mut rolling, &lowered)?;
         for _ in 0..50 {

@@ -107,7 +107,8 @@ impl<'a> Rolling<'a> {
         let deflection = deflection(scene, condition.wheel_load_n)?;
         let underside = Underside::new(wheel, scene.shape, deflection);
         let mirrored = !settings.both_halves && motion.lateral.abs() == 0.0 && underside.is_symmetric();
-        let dx = spacing_along(soil, wheel, condition, &settings);
+        let elastic_stiffness = elastic_stiffness(scene.effects, ground)?;
+        let dx = spacing_along(soil, elastic_stiffness, wheel, condition, &settings);
         let steps = steps(wheel, condition, &motion, &settings, dx);
         let width = underside.width(wheel);
         let rotation = motion.rotation.abs();
@@ -140,7 +141,6 @@ impl<'a> Rolling<'a> {
         }
         let nodes = effects.as_ref().and_then(|effects| effects.nodes.as_ref());
         let slides = nodes.is_some_and(|nodes| nodes.use_variable(Variable::J));
-        let elastic_stiffness = elastic_stiffness(scene.effects, ground)?;
         Ok(Self {
             wheel,
             condition,

@@ -35,14 +35,32 @@ pub(crate) struct Steps {
 
 /// Spacing along travel: the given one, or an eighth of a smooth wheel's contact where that is finer `[m]`.
 ///
-/// Where the quasi-static model knows no contact, because the soil does not carry a smooth wheel, it is the given one.
-pub(crate) fn spacing_along(soil: &Soil, wheel: &Wheel, condition: &Condition, settings: &Settings) -> f64 {
+/// The contact is the quasi-static model's or, on soil that hardly yields, that on the elastic layer alone. Where the
+/// quasi-static model knows no contact, because the soil does not carry a smooth wheel, it is the given spacing.
+/// Checked by `spatial::extremes::hard_soil_needs_no_finer_grid_than_its_elastic_layer`.
+pub(crate) fn spacing_along(
+    soil: &Soil,
+    elastic_stiffness: f64,
+    wheel: &Wheel,
+    condition: &Condition,
+    settings: &Settings,
+) -> f64 {
     let smooth = quasi_static::simulate(soil, wheel, condition);
     smooth.map_or(settings.dem_spacing_m, |averages| {
-        settings
-            .dem_spacing_m
-            .min(averages.contact_length_m / NODES_ALONG)
+        let contact = averages
+            .contact_length_m
+            .max(elastic_contact(elastic_stiffness, wheel, condition));
+        settings.dem_spacing_m.min(contact / NODES_ALONG)
     })
+}
+
+/// Length of a smooth wheel's contact on springs of a stiffness `[Pa/m]`, side by side, on rigid ground `[m]`.
+///
+/// They carry `W = K b int (d - x^2 / 2R) dx = 4/3 K b d sqrt(2 R d)` over `2 sqrt(2 R d)`, d the depth of the rim.
+fn elastic_contact(stiffness: f64, wheel: &Wheel, condition: &Condition) -> f64 {
+    let diameter = 2.0 * wheel.radius_m;
+    let root = libm::cbrt(0.75 * condition.wheel_load_n / (stiffness * wheel.width_m * libm::sqrt(diameter)));
+    2.0 * root * libm::sqrt(diameter)
 }
 
 /// The steps of a run on a terrain of some spacing.
