@@ -33,4 +33,7 @@ pub use likelihood::{CommonError, Datum, Discrepancy, ErrorLaw, Likelihood, Like
 pub use log_likelihood::{LogLikelihood, NotANumber};
 pub use prior::{Distribution, Marginal, Prior, PriorError};
 pub use round::{Failure, Progress, Proposal, TellError};
-pub use tmcmc::{Algorithm, Current, Particle, Posterior, Sampler, Settings, SettingsError, StageRecord};
+pub use tmcmc::{
+    Algorithm, Answer, Current, Metamodel, Pair, Particle, Posterior, Sampler, Settings, SettingsError,
+    StageRecord, Subchain, SubchainEnd,
+};

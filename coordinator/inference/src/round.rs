@@ -1,6 +1,7 @@
 //! Hold a round: proposals that can be evaluated at the same time, and their results in any order.
 
 use crate::likelihood::LikelihoodError;
+use crate::tmcmc::Subchain;
 
 /// A parameter vector that awaits its evaluation.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,6 +10,19 @@ pub struct Proposal {
     pub particle: usize,
     /// The parameters, in the order of the prior.
     pub theta: Vec<f64>,
+    /// The moves to take from there before the model is asked at their end; `None`: it is asked there.
+    pub subchain: Option<Subchain>,
+}
+
+impl Proposal {
+    /// A proposal to be evaluated where it is.
+    pub(crate) fn plain(particle: usize, theta: Vec<f64>) -> Self {
+        Self {
+            particle,
+            theta,
+            subchain: None,
+        }
+    }
 }
 
 /// The proposals of a round with the results told so far, and the count of completed rounds.
@@ -82,6 +96,11 @@ impl<A> Round<A> {
             .is_some_and(|slot| self.answers[slot].is_some())
     }
 
+    /// The proposal of a pending particle.
+    pub(crate) fn proposal(&self, particle: usize) -> Option<&Proposal> {
+        self.slot(particle).map(|slot| &self.pending[slot])
+    }
+
     /// Position of a particle among the pending proposals.
     fn slot(&self, particle: usize) -> Option<usize> {
         self.pending
@@ -124,6 +143,9 @@ pub enum Failure {
         /// Draws needed.
         needed: usize,
     },
+    /// The metamodel's predictions cannot be scored.
+    #[error("the metamodel: {0}")]
+    Metamodel(LikelihoodError),
     /// The next exponent cannot be told from the last.
     #[error("tempering exponent {exponent} cannot grow by {step}: the log-likelihoods differ too much")]
     ExponentStuck {
@@ -160,6 +182,14 @@ pub enum TellError {
         expected: usize,
         /// Predicted values.
         given: usize,
+    },
+    /// A particle was to be evaluated where it is, and came back from a subchain, or the other way round.
+    #[error("particle {particle} of round {round} was told what was not asked of it")]
+    NotAsked {
+        /// The round.
+        round: u64,
+        /// The particle.
+        particle: usize,
     },
     /// The predicted values cannot be scored.
     #[error(transparent)]

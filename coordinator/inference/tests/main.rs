@@ -8,6 +8,7 @@ mod bevameter;
 mod flags;
 mod likelihood;
 mod lm;
+mod metamodel;
 mod priors;
 mod problems;
 mod search;

@@ -1,9 +1,11 @@
 //! Errors that several data share, and the blocks of data that they tie together.
 
+use serde::{Deserialize, Serialize};
+
 use super::datum::{Datum, LikelihoodError, Sd};
 
 /// An error that several data have in common: it adds `v v'` to their covariance.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CommonError {
     /// Indices of the data, ascending.
     pub data: Vec<usize>,
@@ -12,7 +14,7 @@ pub struct CommonError {
 }
 
 /// What a common error does to each of its data.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Size {
     /// Shifts all alike: `v_i` = this sd, in the unit of the data, >= 0.
     Shift(Sd),
@@ -25,7 +27,7 @@ pub enum Size {
 }
 
 /// How far off the model may be, in noise sds.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum Discrepancy {
     /// Not at all.
     #[default]

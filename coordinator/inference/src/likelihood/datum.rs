@@ -1,9 +1,11 @@
 //! One measured value and its noise, and what makes data or predictions unfit to be scored.
 
+use serde::{Deserialize, Serialize};
+
 use crate::log_likelihood::NotANumber;
 
 /// The size of an error.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Sd {
     /// A known standard deviation, in the unit of the datum.
     Known(f64),
@@ -15,7 +17,7 @@ pub enum Sd {
 }
 
 /// One measured value; what was not measured is not in the list.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Datum {
     /// Index of the test run.
     pub run: usize,

@@ -1,10 +1,12 @@
 //! The law of the errors: normal, or Student's t with its heavy tails.
 
+use serde::{Deserialize, Serialize};
+
 use super::datum::LikelihoodError;
 use crate::prior::LN_SQRT_TAU;
 
 /// How errors scatter around their scale.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum ErrorLaw {
     /// Normal; the scale is the standard deviation.
     #[default]

@@ -15,6 +15,8 @@ mod factor;
 mod law;
 mod whitening;
 
+use serde::{Deserialize, Serialize};
+
 use crate::log_likelihood::LogLikelihood;
 use crate::prior::LN_SQRT_TAU;
 
@@ -26,7 +28,8 @@ pub use law::ErrorLaw;
 pub use whitening::Whitening;
 
 /// Measured values and the law of their errors.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Written", into = "Written")]
 pub struct Likelihood {
     data: Vec<Datum>,
     law: ErrorLaw,
@@ -36,6 +39,34 @@ pub struct Likelihood {
     alone: Vec<usize>,
     blocks: Vec<Block>,
     sensitive: Vec<usize>,
+}
+
+/// A likelihood as it travels: what it is made from.
+#[derive(Serialize, Deserialize)]
+struct Written {
+    data: Vec<Datum>,
+    law: ErrorLaw,
+    common: Vec<CommonError>,
+    discrepancy: Discrepancy,
+}
+
+impl From<Likelihood> for Written {
+    fn from(likelihood: Likelihood) -> Self {
+        Self {
+            data: likelihood.data,
+            law: likelihood.law,
+            common: likelihood.common,
+            discrepancy: likelihood.discrepancy,
+        }
+    }
+}
+
+impl TryFrom<Written> for Likelihood {
+    type Error = LikelihoodError;
+
+    fn try_from(written: Written) -> Result<Self, LikelihoodError> {
+        Self::with_common(written.data, written.law, written.common, written.discrepancy)
+    }
 }
 
 /// A factored block: its covariance and what is left of its residuals.

@@ -137,7 +137,7 @@ impl Optimiser {
     pub(super) fn ask(&mut self, phase: Phase, thetas: impl Iterator<Item = Vec<f64>>) {
         let proposals = thetas
             .enumerate()
-            .map(|(particle, theta)| Proposal { particle, theta })
+            .map(|(particle, theta)| Proposal::plain(particle, theta))
             .collect();
         self.round.ask(proposals);
         self.phase = phase;

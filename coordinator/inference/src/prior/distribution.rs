@@ -1,9 +1,11 @@
 //! Name the distributions that a prior may have, and check their numbers.
 
+use serde::{Deserialize, Serialize};
+
 use super::PriorError;
 
 /// A univariate distribution before truncation.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Distribution {
     /// Constant density between two ends.
     Uniform {

@@ -1,5 +1,7 @@
 //! Truncate and renormalise a distribution, and give it the coordinate in which the sampler moves.
 
+use serde::{Deserialize, Serialize};
+
 use super::distribution::{Distribution, ordered};
 use super::normal::{self, LN_SQRT_TAU};
 use super::{PriorError, moments};
@@ -10,7 +12,8 @@ use crate::rng::Stream;
 const TAIL_NATS: f64 = 45.0;
 
 /// The prior of one parameter: a distribution, truncated to its bounds and renormalised.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Written", into = "Written")]
 pub struct Marginal {
     distribution: Distribution,
     /// Support of x.
@@ -20,6 +23,36 @@ pub struct Marginal {
     density: Density,
     mean: f64,
     sd: f64,
+}
+
+/// A marginal as it travels: what it is made from.
+#[derive(Serialize, Deserialize)]
+struct Written {
+    distribution: Distribution,
+    /// Where the support was cut off; JSON has no infinite numbers.
+    lower: Option<f64>,
+    upper: Option<f64>,
+}
+
+impl From<Marginal> for Written {
+    fn from(marginal: Marginal) -> Self {
+        let (lower, upper) = marginal.distribution.support();
+        Self {
+            distribution: marginal.distribution,
+            lower: (marginal.lower > lower).then_some(marginal.lower),
+            upper: (marginal.upper < upper).then_some(marginal.upper),
+        }
+    }
+}
+
+impl TryFrom<Written> for Marginal {
+    type Error = PriorError;
+
+    fn try_from(written: Written) -> Result<Self, PriorError> {
+        let (lower, upper) = written.distribution.support();
+        let ends = [written.lower.unwrap_or(lower), written.upper.unwrap_or(upper)];
+        Self::new(written.distribution, Some(ends))
+    }
 }
 
 /// u(x): the coordinate in which the prior is uniform or normal.

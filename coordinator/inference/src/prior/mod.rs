@@ -11,10 +11,12 @@ pub use error::PriorError;
 pub use marginal::Marginal;
 pub(crate) use normal::LN_SQRT_TAU;
 
+use serde::{Deserialize, Serialize};
+
 use crate::rng::Stream;
 
 /// Independent marginals, one per parameter.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Prior {
     marginals: Vec<Marginal>,
 }

@@ -126,10 +126,10 @@ impl Search {
                     || self.evaluations == 0
                     || 2 * (self.evaluations + positions.len()) <= budget =>
             {
-                let proposals = positions.iter().enumerate().map(|(particle, position)| Proposal {
-                    particle,
-                    theta: self.space.theta(position),
-                });
+                let proposals = positions
+                    .iter()
+                    .enumerate()
+                    .map(|(particle, position)| Proposal::plain(particle, self.space.theta(position)));
                 self.round.ask(proposals.collect());
                 self.positions = positions;
             }

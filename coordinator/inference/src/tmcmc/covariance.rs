@@ -1,11 +1,13 @@
 //! Factor the weighted covariance of a pool, however thin it is.
 
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
+use serde::{Deserialize, Serialize};
 
 /// The weighted mean and a matrix A with A A' = the weighted covariance.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Factor {
     mean: Vec<f64>,
+    #[serde(with = "square")]
     root: DMatrix<f64>,
     /// Whether the root is lower triangular with a positive diagonal, so that it can be inverted.
     regular: bool,
@@ -97,6 +99,26 @@ impl Factor {
             whitened[row] = (x[row] - self.mean[row] - known) / self.root[(row, row)];
         }
         Some(whitened)
+    }
+}
+
+/// A square matrix travels by columns.
+mod square {
+    use nalgebra::DMatrix;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    pub(super) fn serialize<S: Serializer>(matrix: &DMatrix<f64>, to: S) -> Result<S::Ok, S::Error> {
+        matrix.as_slice().serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<DMatrix<f64>, D::Error> {
+        let entries = Vec::<f64>::deserialize(from)?;
+        let size = entries.len().isqrt();
+        if size * size != entries.len() {
+            let count = entries.len();
+            return Err(D::Error::custom(format!("{count} entries make no square matrix")));
+        }
+        Ok(DMatrix::from_vec(size, size, entries))
     }
 }
 

@@ -118,6 +118,7 @@ mod tests {
                     coordinates: Vec::new(),
                     log_prior: 0.0,
                     log_likelihood,
+                    pair: None,
                 },
             );
         }

@@ -15,11 +15,13 @@
 //! - A stage ends when its particles have forgotten their start; one that cannot is flagged, and the result
 //!   with it.
 
+mod answer;
 mod bridge;
 mod ching_chen;
 mod covariance;
 mod equilibrium;
 mod evidence;
+mod metamodel;
 mod population;
 mod proposal;
 mod record;
@@ -32,6 +34,8 @@ mod transition;
 mod view;
 mod weights;
 
+pub use answer::Answer;
+pub use metamodel::{Metamodel, Pair, Subchain, SubchainEnd};
 pub use population::Particle;
 pub use record::{Current, Posterior, StageRecord};
 pub use sampler::Sampler;

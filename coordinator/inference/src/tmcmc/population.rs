@@ -1,5 +1,8 @@
 //! Hold the states of a population and what the outside sees of them.
 
+use std::sync::Arc;
+
+use super::metamodel::Pair;
 use crate::log_likelihood::LogLikelihood;
 use crate::prior::Prior;
 
@@ -21,6 +24,8 @@ pub(super) struct State {
     /// Log-density of the coordinates, Jacobian included.
     pub(super) log_prior: f64,
     pub(super) log_likelihood: LogLikelihood,
+    /// What fine and coarse model say here, where a metamodel is to learn from it.
+    pub(super) pair: Option<Arc<Pair>>,
 }
 
 impl State {

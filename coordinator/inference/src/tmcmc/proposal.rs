@@ -1,5 +1,7 @@
 //! Propose steps: random walk, differential evolution, now and then an autoregressive jump.
 
+use serde::{Deserialize, Serialize};
+
 use super::covariance::Factor;
 use crate::rng::Stream;
 
@@ -20,7 +22,7 @@ const JUMPS: f64 = 0.1;
 const JUMP_NOVELTY: f64 = 0.9;
 
 /// Proposals whose law is fixed for a stage.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Mixture {
     pub(super) factor: Factor,
     /// Members for differential evolution; empty for a pure random walk.

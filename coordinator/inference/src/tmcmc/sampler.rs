@@ -1,18 +1,22 @@
 //! Run the rounds: list proposals, take their log-likelihoods, advance.
 
+use std::sync::Arc;
+
+use super::answer::Answer;
 use super::equilibrium::{Drift, is_alarming, pooled_z};
 use super::evidence::Evidence;
+use super::metamodel::{Metamodel, Purpose};
 use super::population::{Pool, State};
 use super::record::{Posterior, StageRecord};
 use super::settings::{Algorithm, Settings, SettingsError};
 use super::stage::Stage;
 use super::transition::Transition;
-use crate::log_likelihood::LogLikelihood;
+use crate::likelihood::Likelihood;
 use crate::prior::Prior;
 use crate::rng::Stream;
 use crate::round::{Failure, Progress, Proposal, Round, TellError};
 
-/// Steps between two looks at a stage's equilibrium.
+/// Steps between two looks at a stage's equilibrium; one with a metamodel, whose steps hold many moves.
 const BLOCK: usize = 5;
 
 /// An ask/tell sampler.
@@ -23,7 +27,9 @@ const BLOCK: usize = 5;
 pub struct Sampler {
     pub(super) prior: Prior,
     pub(super) settings: Settings,
-    pub(super) round: Round<LogLikelihood>,
+    /// What a metamodel scores its predictions with; `None`: there is none.
+    pub(super) likelihood: Option<Likelihood>,
+    pub(super) round: Round<Answer>,
     pub(super) phase: Phase,
     pub(super) evidence: Evidence,
     pub(super) passage: Passage,
@@ -63,15 +69,13 @@ impl Sampler {
         let pending: Vec<Proposal> = (0..settings.particles)
             .map(|particle| {
                 let mut stream = Stream::new(settings.seed, 0, particle as u64, 0);
-                Proposal {
-                    particle,
-                    theta: prior.sample(&mut stream),
-                }
+                Proposal::plain(particle, prior.sample(&mut stream))
             })
             .collect();
         let mut sampler = Self {
             prior,
             settings,
+            likelihood: None,
             round: Round::default(),
             phase: Phase::Prior,
             evidence: Evidence::default(),
@@ -85,12 +89,38 @@ impl Sampler {
         Ok(sampler)
     }
 
-    /// Takes the log-likelihood of a pending particle; the last one of a round advances the sampler.
+    /// A sampler whose chains are moved by a metamodel between evaluations.
+    ///
+    /// # Arguments
+    /// - `settings`: of [`Algorithm::Tmcmc`]; `metamodel_moves` of 0 is a sampler without.
+    /// - `likelihood`: scores what the metamodel predicts; the answers have to be scored by the same.
     ///
     /// # Errors
-    /// [`TellError::AlreadyTold`] and [`TellError::NotPending`]; the sampler is then unchanged.
-    pub fn tell(&mut self, particle: usize, value: LogLikelihood) -> Result<Progress, TellError> {
-        Ok(if self.round.tell(particle, value)? {
+    /// [`SettingsError`] names the setting, its value and its bound.
+    pub fn with_metamodel(
+        prior: Prior,
+        settings: Settings,
+        likelihood: Likelihood,
+    ) -> Result<Self, SettingsError> {
+        let mut sampler = Self::new(prior, settings)?;
+        sampler.likelihood = (settings.metamodel_moves > 0).then_some(likelihood);
+        Ok(sampler)
+    }
+
+    /// Takes the answer for a pending particle, a log-likelihood or what a subchain came to; the last one of a round
+    /// advances the sampler.
+    ///
+    /// # Errors
+    /// [`TellError::AlreadyTold`], [`TellError::NotPending`] and [`TellError::NotAsked`]; the sampler is then unchanged.
+    pub fn tell(&mut self, particle: usize, answer: impl Into<Answer>) -> Result<Progress, TellError> {
+        let answer = answer.into();
+        let moved = matches!(answer, Answer::Moved { .. });
+        let asked = self.round.proposal(particle);
+        if asked.is_some_and(|proposal| proposal.subchain.is_some() != moved) {
+            let round = self.round.number();
+            return Err(TellError::NotAsked { round, particle });
+        }
+        Ok(if self.round.tell(particle, answer)? {
             self.advance()
         } else {
             Progress::Waiting
@@ -102,12 +132,12 @@ impl Sampler {
         let stages = self.stages.len();
         loop {
             let (proposals, answers) = self.round.complete();
-            self.evaluations += answers.len() as u64;
-            self.rejected += answers.iter().filter(|answer| answer.is_impossible()).count() as u64;
+            self.evaluations += answers.iter().filter(|answer| answer.is_evaluated()).count() as u64;
+            self.rejected += answers.iter().filter(|answer| answer.is_refused()).count() as u64;
             let next = match std::mem::replace(&mut self.phase, Phase::Done) {
-                Phase::Prior => self.finish_prior(&proposals, &answers),
+                Phase::Prior => self.finish_prior(&proposals, answers),
                 Phase::Moving(mut stage) => {
-                    stage.accept(&answers);
+                    stage.accept(&self.prior, answers);
                     self.after_step(stage)
                 }
                 ended @ (Phase::Done | Phase::Failed(_)) => Ok(ended),
@@ -133,10 +163,13 @@ impl Sampler {
 
     /// Turns the prior draws into the first stage; draws that the model rejected are dropped, and the
     /// evidence multiplied by the surviving fraction.
-    fn finish_prior(&mut self, proposals: &[Proposal], answers: &[LogLikelihood]) -> Result<Phase, Failure> {
+    fn finish_prior(&mut self, proposals: &[Proposal], answers: Vec<Answer>) -> Result<Phase, Failure> {
+        let draws = answers.len();
         let mut pool = Pool::default();
-        for (proposal, &log_likelihood) in proposals.iter().zip(answers) {
-            if !log_likelihood.is_impossible() {
+        for (proposal, answer) in proposals.iter().zip(answers) {
+            if let Answer::Here { log_likelihood, pair } = answer
+                && !log_likelihood.is_impossible()
+            {
                 let coordinates = self.prior.coordinates(&proposal.theta);
                 let log_prior = self.prior.log_density_of_coordinates(&coordinates);
                 pool.push(
@@ -145,11 +178,12 @@ impl Sampler {
                         coordinates,
                         log_prior,
                         log_likelihood,
+                        pair: pair.map(Arc::new),
                     },
                 );
             }
         }
-        let (possible, draws, needed) = (pool.states.len(), answers.len(), self.prior.dimension() + 2);
+        let (possible, needed) = (pool.states.len(), self.prior.dimension() + 2);
         if possible == 0 {
             return Err(Failure::AllImpossible { draws });
         }
@@ -174,8 +208,12 @@ impl Sampler {
         scale: Option<f64>,
         log_evidence: f64,
     ) -> Result<Phase, Failure> {
-        let Transition { stage, weights, step } =
-            Transition::new(pool, index, exponent, scale, &self.settings)?;
+        let Transition {
+            mut stage,
+            weights,
+            step,
+        } = Transition::new(pool, index, exponent, scale, &self.settings)?;
+        stage.metamodel = self.learn(&stage, pool, &weights.normalised())?;
         self.passage = Passage {
             step,
             weight_cov: weights.cov,
@@ -184,13 +222,30 @@ impl Sampler {
         Ok(Phase::Moving(Box::new(stage)))
     }
 
+    /// The metamodel of a stage, from the pool that it begins with.
+    fn learn(&self, stage: &Stage, pool: &Pool, weights: &[f64]) -> Result<Option<Arc<Metamodel>>, Failure> {
+        let Some(likelihood) = &self.likelihood else {
+            return Ok(None);
+        };
+        let purpose = Purpose {
+            seed: self.settings.seed,
+            stage: stage.index,
+            exponent: stage.exponent,
+            moves: self.settings.metamodel_moves,
+            prior: &self.prior,
+            likelihood,
+        };
+        let metamodel = Metamodel::learn(&purpose, pool, weights, &stage.mixture);
+        Ok(metamodel.map_err(Failure::Metamodel)?.map(Arc::new))
+    }
+
     /// Goes on with a stage, or ends it and starts the next or the posterior.
     fn after_step(&mut self, stage: Box<Stage>) -> Result<Phase, Failure> {
         let [least, _] = self.settings.moves;
         let mut drift = None;
         if self.settings.algorithm == Algorithm::Tmcmc
             && stage.step >= least
-            && (stage.step - least).is_multiple_of(BLOCK)
+            && (stage.step - least).is_multiple_of(if stage.metamodel.is_some() { 1 } else { BLOCK })
         {
             drift = Some(self.drift(&stage)).filter(|drift| drift.is_settled());
         }

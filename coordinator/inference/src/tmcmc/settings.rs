@@ -40,6 +40,8 @@ pub struct Settings {
     pub seed: u64,
     /// Coefficient of variation of the incremental weights that picks the next exponent.
     pub target_cov: f64,
+    /// Moves that a metamodel takes between two evaluations; 0: there is no metamodel ([`Algorithm::Tmcmc`] only).
+    pub metamodel_moves: usize,
 }
 
 impl Default for Settings {
@@ -51,6 +53,7 @@ impl Default for Settings {
             moves: [10, 60],
             seed: 1,
             target_cov: 1.0,
+            metamodel_moves: 0,
         }
     }
 }
@@ -90,6 +93,12 @@ pub enum SettingsError {
         /// Most moves.
         most: usize,
     },
+    /// The metamodel's moves are more than a worker should take at a time, or the algorithm has no steps to take them in.
+    #[error("metamodel_moves {value} is not 0 to {MOST_MOVES}, or the algorithm takes no metamodel")]
+    MetamodelMoves {
+        /// The setting.
+        value: usize,
+    },
     /// The target coefficient of variation is not a finite number above 0.
     #[error("target_cov {value} is not a finite number above 0")]
     TargetCov {
@@ -120,6 +129,12 @@ impl Settings {
             })
         } else if fewest == 0 || fewest > most || most > MOST_MOVES {
             Err(SettingsError::Moves { least: fewest, most })
+        } else if self.metamodel_moves > MOST_MOVES
+            || (self.metamodel_moves > 0 && self.algorithm != Algorithm::Tmcmc)
+        {
+            Err(SettingsError::MetamodelMoves {
+                value: self.metamodel_moves,
+            })
         } else if !(self.target_cov.is_finite() && self.target_cov > 0.0) {
             Err(SettingsError::TargetCov {
                 value: self.target_cov,

@@ -1,5 +1,9 @@
 //! Move the chains of one stage, one step per round.
 
+use std::sync::Arc;
+
+use super::answer::Answer;
+use super::metamodel::{Metamodel, PLAIN_STEPS, Pair, Subchain, SubchainEnd};
 use super::population::{Pool, State};
 use super::proposal::{Candidate, Mixture, target_acceptance};
 use crate::log_likelihood::LogLikelihood;
@@ -22,10 +26,27 @@ pub(super) struct Chain {
 #[derive(Debug, Clone)]
 struct Step {
     chain: usize,
-    candidate: Candidate,
-    log_prior: f64,
     /// ln of the uniform number that decides.
     log_uniform: f64,
+    kind: Kind,
+}
+
+/// How a step finds its end.
+#[derive(Debug, Clone)]
+enum Kind {
+    /// Outside the prior's support: nothing is asked.
+    Outside { scaled: bool },
+    /// One proposal.
+    Plain { candidate: Candidate, log_prior: f64 },
+    /// Moves of the metamodel.
+    Delayed,
+}
+
+/// What a step came to.
+struct Verdict {
+    state: Option<State>,
+    scaled: u32,
+    scaled_accepted: u32,
 }
 
 /// A stage in progress.
@@ -37,6 +58,8 @@ pub(super) struct Stage {
     /// Every state that a chain took after its start.
     pub(super) pool: Pool,
     pub(super) mixture: Mixture,
+    /// What takes moves between evaluations, if there is one.
+    pub(super) metamodel: Option<Arc<Metamodel>>,
     pub(super) scale: f64,
     pub(super) adaptive: bool,
     pub(super) step: usize,
@@ -61,6 +84,7 @@ impl Stage {
             chains,
             pool: Pool::default(),
             mixture,
+            metamodel: None,
             scale,
             adaptive,
             step: 0,
@@ -76,7 +100,7 @@ impl Stage {
         (self.proposed > 0).then(|| self.accepted as f64 / self.proposed as f64)
     }
 
-    /// Draws the next step of every chain that goes on; returns the proposals inside the prior's support.
+    /// Draws the next step of every chain that goes on; returns what has to be evaluated.
     pub(super) fn propose(&mut self, prior: &Prior, seed: u64) -> Vec<Proposal> {
         self.steps.clear();
         let mut proposals = Vec::new();
@@ -84,62 +108,67 @@ impl Stage {
             if self.step >= walker.length {
                 continue;
             }
-            let mut stream = Stream::new(seed, self.index as u64, chain as u64, self.step as u64 + 1);
+            let step = self.step as u64 + 1;
+            let mut stream = Stream::new(seed, self.index as u64, chain as u64, step);
             let log_uniform = libm::log(stream.uniform());
-            let candidate = self
-                .mixture
-                .candidate(&walker.current.coordinates, self.scale, &mut stream);
-            let log_prior = prior.log_density_of_coordinates(&candidate.coordinates);
-            if log_prior > f64::NEG_INFINITY {
+            let from = &walker.current.coordinates;
+            let kind = if self.metamodel.is_some() && stream.uniform() >= PLAIN_STEPS {
                 proposals.push(Proposal {
                     particle: chain,
-                    theta: prior.theta(&candidate.coordinates),
+                    theta: prior.theta(from),
+                    subchain: Some(Subchain {
+                        chain: chain as u64,
+                        step,
+                        scale: self.scale,
+                    }),
                 });
-            }
+                Kind::Delayed
+            } else {
+                let candidate = self.mixture.candidate(from, self.scale, &mut stream);
+                let log_prior = prior.log_density_of_coordinates(&candidate.coordinates);
+                if log_prior > f64::NEG_INFINITY {
+                    proposals.push(Proposal::plain(chain, prior.theta(&candidate.coordinates)));
+                    Kind::Plain { candidate, log_prior }
+                } else {
+                    Kind::Outside {
+                        scaled: candidate.scaled,
+                    }
+                }
+            };
             self.steps.push(Step {
                 chain,
-                candidate,
-                log_prior,
                 log_uniform,
+                kind,
             });
         }
         proposals
     }
 
-    /// Accepts or rejects every step; `answers` are the log-likelihoods of the last proposals, in their
-    /// order.
-    pub(super) fn accept(&mut self, answers: &[LogLikelihood]) {
-        self.evaluations += answers.len() as u64;
-        let mut answers = answers.iter();
+    /// Accepts or rejects every step; `answers` are those of the last proposals, in their order.
+    pub(super) fn accept(&mut self, prior: &Prior, answers: Vec<Answer>) {
+        let mut answers = answers.into_iter();
         let (mut scaled, mut scaled_accepted) = (0_u32, 0_u32);
-        for step in self.steps.drain(..) {
-            let inside = step.log_prior > f64::NEG_INFINITY;
-            let answer = if inside { answers.next().copied() } else { None };
-            let chain = &mut self.chains[step.chain];
-            let follows_scale = step.candidate.scaled;
-            let accepted = match answer {
-                Some(answer @ LogLikelihood::Finite(nats)) => {
-                    let gain = nats.get() - chain.current.log_likelihood.value();
-                    let ratio = self.exponent * gain
-                        + (step.log_prior - chain.current.log_prior)
-                        + step.candidate.log_correction;
-                    let accept = step.log_uniform < ratio;
-                    if accept {
-                        chain.current = State {
-                            coordinates: step.candidate.coordinates,
-                            log_prior: step.log_prior,
-                            log_likelihood: answer,
-                        };
-                    }
-                    accept
-                }
-                Some(LogLikelihood::Impossible) | None => false,
+        for step in std::mem::take(&mut self.steps) {
+            let answer = match step.kind {
+                Kind::Outside { .. } => None,
+                Kind::Plain { .. } | Kind::Delayed => answers.next(),
             };
+            self.evaluations += u64::from(answer.as_ref().is_some_and(Answer::is_evaluated));
+            let chain = &mut self.chains[step.chain];
+            let verdict = decide(
+                step.kind,
+                step.log_uniform,
+                answer,
+                &chain.current,
+                self.exponent,
+                prior,
+            );
             self.proposed += 1;
-            self.accepted += u64::from(accepted);
-            if follows_scale {
-                scaled += 1;
-                scaled_accepted += u32::from(accepted);
+            scaled += verdict.scaled;
+            scaled_accepted += verdict.scaled_accepted;
+            if let Some(state) = verdict.state {
+                chain.current = state;
+                self.accepted += 1;
             }
             self.pool.push(step.chain, chain.current.clone());
         }
@@ -153,5 +182,67 @@ impl Stage {
     /// Whether every chain has taken all its steps.
     pub(super) fn is_exhausted(&self) -> bool {
         self.chains.iter().all(|chain| self.step >= chain.length)
+    }
+}
+
+/// Decides a step from a state.
+fn decide(
+    kind: Kind,
+    log_uniform: f64,
+    answer: Option<Answer>,
+    current: &State,
+    exponent: f64,
+    prior: &Prior,
+) -> Verdict {
+    let gain = |log_likelihood: LogLikelihood| log_likelihood.value() - current.log_likelihood.value();
+    match (kind, answer) {
+        (Kind::Plain { candidate, log_prior }, Some(Answer::Here { log_likelihood, pair })) => {
+            let ratio =
+                exponent * gain(log_likelihood) + (log_prior - current.log_prior) + candidate.log_correction;
+            let accepted = log_uniform < ratio;
+            let scaled = u32::from(candidate.scaled);
+            Verdict {
+                state: accepted.then(|| State {
+                    coordinates: candidate.coordinates,
+                    log_prior,
+                    log_likelihood,
+                    pair: pair.map(Arc::new),
+                }),
+                scaled,
+                scaled_accepted: scaled * u32::from(accepted),
+            }
+        }
+        (Kind::Delayed, Some(Answer::Moved { end, found })) => Verdict {
+            scaled: end.scaled,
+            scaled_accepted: end.scaled_accepted,
+            state: found
+                .filter(|(log_likelihood, _)| {
+                    // The subchain has the prior and the metamodel's share in it already.
+                    log_uniform < exponent * (gain(*log_likelihood) - end.log_gain)
+                })
+                .map(|(log_likelihood, pair)| moved(prior, &end, log_likelihood, pair)),
+        },
+        (Kind::Outside { scaled }, _) => Verdict {
+            state: None,
+            scaled: u32::from(scaled),
+            scaled_accepted: 0,
+        },
+        // Answers are checked against what was asked when they are told.
+        _ => Verdict {
+            state: None,
+            scaled: 0,
+            scaled_accepted: 0,
+        },
+    }
+}
+
+/// The state at the end of a subchain.
+fn moved(prior: &Prior, end: &SubchainEnd, log_likelihood: LogLikelihood, pair: Option<Pair>) -> State {
+    let coordinates = prior.coordinates(&end.theta);
+    State {
+        log_prior: prior.log_density_of_coordinates(&coordinates),
+        coordinates,
+        log_likelihood,
+        pair: pair.map(Arc::new),
     }
 }

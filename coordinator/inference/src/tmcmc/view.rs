@@ -1,5 +1,6 @@
 //! Show a sampler's state to the outside.
 
+use super::metamodel::Metamodel;
 use super::record::{Current, Posterior, StageRecord};
 use super::sampler::{Phase, Sampler};
 use super::settings::Settings;
@@ -32,6 +33,15 @@ impl Sampler {
     #[must_use]
     pub fn pending(&self) -> &[Proposal] {
         self.round.pending()
+    }
+
+    /// What takes the subchains of the stage in progress; `None` without a metamodel, and while the prior is drawn.
+    #[must_use]
+    pub fn metamodel(&self) -> Option<&Metamodel> {
+        match &self.phase {
+            Phase::Moving(stage) => stage.metamodel.as_deref(),
+            Phase::Prior | Phase::Done | Phase::Failed(_) => None,
+        }
     }
 
     /// Whether a pending particle has been told.
