@@ -208,7 +208,8 @@ async fn work(
                 lease: l.lease,
                 calibration: l.calibration,
                 evaluation: l.evaluation,
-                outcome: outcome.clone(),
+                end: None,
+                outcome: Some(outcome.clone()),
             })
             .collect();
     }

@@ -3,8 +3,10 @@
 use std::future::Future;
 use std::sync::Arc;
 
+use inference::{Subchain, SubchainEnd};
 use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
 use shared::model::ModelVariant;
+use shared::outcome::Outcome;
 use tokio::sync::watch;
 use worker::evaluator::SimulationClock;
 use worker::pull::{Coordinator, ExchangeError, Settings, run};
@@ -126,9 +128,13 @@ impl Evaluate {
         worker::model::CompiledVariant::new(variant).map(Evaluate)
     }
 
-    /// Simulates every condition at one parameter vector.
-    pub fn evaluate(&self, theta: &[f64]) -> shared::outcome::Outcome {
-        self.0.evaluate(theta)
+    /// Evaluates what a lease would ask for.
+    pub fn serve(
+        &self,
+        theta: &[f64],
+        subchain: Option<&Subchain>,
+    ) -> (Option<Outcome>, Option<SubchainEnd>) {
+        self.0.serve(theta, subchain)
     }
 
     /// Drawbar pull `[N]`, torque \[N m\] and sinkage `[m]` of every condition, each alone: a refusal leaves the others.

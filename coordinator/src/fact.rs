@@ -1,9 +1,11 @@
 //! What the store is told: facts, in the order in which they came about.
 
 use inference::point::Estimate;
-use inference::{Posterior, StageRecord};
+use inference::{Posterior, StageRecord, SubchainEnd};
 use shared::api::CalibrationState;
 use shared::outcome::Observables;
+
+use crate::calibration::Computed;
 
 /// Something that must survive a restart.
 #[derive(Debug, Clone)]
@@ -93,6 +95,10 @@ pub struct EvaluationRow {
     pub log_likelihood: Option<f64>,
     /// What is kept of the result.
     pub kept: Kept,
+    /// The quasi-static model's values of the fitted measurements, where it was asked.
+    pub coarse: Option<Vec<f64>>,
+    /// Where the subchain ended that was asked for; `theta` is that end.
+    pub end: Option<SubchainEnd>,
     /// What a second computation must agree with.
     pub fingerprint: Fingerprint,
     /// Who computed it.
@@ -103,7 +109,7 @@ pub struct EvaluationRow {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Kept {
     /// While sampling: the predicted values that the likelihood takes. Enough to
-    /// score them again under another noise model, and a quarter of the whole.
+    /// score them again under another noise model, and a quarter of the whole. Empty where a subchain stayed.
     Fitted(Vec<f64>),
     /// Of the final draws: everything.
     Whole(Box<Observables>),
@@ -117,13 +123,19 @@ pub struct Fingerprint(pub i64);
 
 impl Fingerprint {
     /// The fingerprint of a result.
-    pub fn of(result: &Result<Observables, String>) -> Self {
-        Fingerprint(match result {
-            Ok(observables) => observables.fingerprint().cast_signed(),
+    pub fn of(computed: &Computed) -> Self {
+        let outcome = match &computed.outcome {
+            None => 0,
+            Some(Ok(observables)) => observables.fingerprint().cast_signed(),
             // A refusal is compared by its text.
-            Err(reason) => reason
+            Some(Err(reason)) => reason
                 .bytes()
                 .fold(7, |hash: i64, b| hash.wrapping_mul(31).wrapping_add(i64::from(b))),
-        })
+        };
+        let end = computed.end.as_ref().into_iter();
+        let numbers = end.flat_map(|end| end.theta.iter().copied().chain([end.log_gain]));
+        Fingerprint(numbers.fold(outcome, |hash, number| {
+            hash.wrapping_mul(31).wrapping_add(number.to_bits().cast_signed())
+        }))
     }
 }

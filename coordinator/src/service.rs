@@ -118,7 +118,7 @@ impl Service {
                     continue;
                 }
             };
-            let fitted = matches!(spec.method, Method::Fit(_));
+            let fitted = matches!(spec.method, Method::Fit(_)) || spec.method.has_metamodel();
             let stored = reader.stored(id, fitted).await?;
             let evaluations = stored.evaluations.len();
             let identity = Identity {

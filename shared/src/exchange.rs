@@ -1,12 +1,13 @@
 //! The messages between worker and coordinator: one long-polled exchange, and the fetch of a variant.
 
+use inference::{Subchain, SubchainEnd};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::outcome::Outcome;
 
 /// Version of these messages; a coordinator answers another one with 426.
-pub const PROTOCOL_VERSION: u32 = 4;
+pub const PROTOCOL_VERSION: u32 = 5;
 
 /// `POST /v1/work/exchange`: results of finished leases, and how many more are wanted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -40,8 +41,13 @@ pub struct WorkResult {
     pub calibration: i64,
     /// The evaluation within the calibration.
     pub evaluation: u64,
-    /// What came out.
-    pub outcome: Outcome,
+    /// Where the subchain of the lease ended, if it asked for one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<Object>)]
+    pub end: Option<SubchainEnd>,
+    /// What came out; of a subchain, at its end. Absent where none of its moves was accepted: there was nothing to evaluate.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outcome: Option<Outcome>,
 }
 
 /// The answer: results are durable, and here is more work.
@@ -74,6 +80,10 @@ pub struct Lease {
     pub evaluation: u64,
     /// Hash of the variant to evaluate; `GET /v1/work/variants/HASH`.
     pub variant: String,
-    /// Parameter vector in the variant's order.
+    /// Parameter vector in the variant's order; of a subchain, the whole one that the sampler has, noise included.
     pub theta: Vec<f64>,
+    /// The moves to take from there by the variant's metamodel, before the model is evaluated at their end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<Object>)]
+    pub subchain: Option<Subchain>,
 }

@@ -7,6 +7,7 @@
 //! - [`model`]: which forward model is meant ([`model::ModelSettings`]) and the self-contained
 //!   [`model::ModelVariant`] that a worker evaluates.
 //! - [`outcome`]: what an evaluation gives: observables, a rejection of the parameters, or a fault.
+//! - [`predicted`]: which of the observables a likelihood takes.
 //! - [`exchange`]: the messages between worker and coordinator.
 //! - [`api`]: the messages between a user and the service.
 //! - [`sentence`]: what went wrong, with its causes.
@@ -22,4 +23,5 @@ pub mod file;
 pub mod model;
 pub mod outcome;
 pub mod parameters;
+pub mod predicted;
 pub mod sentence;

@@ -69,6 +69,9 @@ pub struct Observables {
     /// Shear stress under each ring of the variant `[Pa]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shear_stress_pa: Vec<f64>,
+    /// The predicted values of the quasi-static model beside; `None` where the variant has none, or it refuses.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coarse: Option<Vec<f64>>,
 }
 
 impl Observables {
@@ -130,7 +133,8 @@ impl Observables {
         ];
         let bits = vectors.into_iter().flatten().map(|v| v.to_bits());
         let counts = self.nodes_in_contact.iter().map(|&n| u64::from(n));
-        fnv(bits.chain(counts))
+        let coarse = self.coarse.iter().flatten().map(|v| v.to_bits());
+        fnv(bits.chain(counts).chain(coarse))
     }
 
     /// Whether every vector has an entry for each condition of a variant, each plate and each ring.

@@ -3,6 +3,7 @@
 use farm_tests::fake_worker::{FakeWorker, evaluated};
 use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::service::Service;
+use inference::{Subchain, SubchainEnd};
 use serde_json::{Value, json};
 use shared::api::{
     CalibrationState, CalibrationStatus, ErrorBody, ErrorDetail, ErrorKind, NewCalibration, Progress,
@@ -57,6 +58,7 @@ fn observables() -> Observables {
         d_lateral_force_n: vec![0.0],
         plate_pressure_pa: vec![9000.5],
         shear_stress_pa: vec![5000.5],
+        coarse: Some(vec![11.5]),
     }
 }
 
@@ -66,6 +68,7 @@ fn observables_json() -> Value {
         "b_eff_m": [0.03], "contact_length_m": [0.05], "residual_load_n": [1e-9], "nodes_in_contact": [16],
         "simulated_travel_m": [0.0], "settled_to": [0.004], "d_drawbar_pull_n": [-3.5], "d_torque_n_m": [-0.5],
         "d_sinkage_m": [-0.004], "d_lateral_force_n": [0.0], "plate_pressure_pa": [9000.5], "shear_stress_pa": [5000.5],
+        "coarse": [11.5],
     })
 }
 
@@ -80,7 +83,22 @@ fn an_exchange_request_has_one_form() {
         lease,
         calibration: 1,
         evaluation: 7,
-        outcome,
+        end: None,
+        outcome: Some(outcome),
+    };
+    let stayed = WorkResult {
+        lease: 4,
+        calibration: 1,
+        evaluation: 8,
+        end: Some(SubchainEnd {
+            theta: vec![1.5],
+            log_gain: 0.25,
+            moves: 20,
+            accepted: 0,
+            scaled: 17,
+            scaled_accepted: 0,
+        }),
+        outcome: None,
     };
     let request = ExchangeRequest {
         worker: "host-1".into(),
@@ -95,6 +113,7 @@ fn an_exchange_request_has_one_form() {
                     message: "disk full".into(),
                 }),
             ),
+            stayed,
         ],
         holding: vec![9],
         returned: vec![10, 11],
@@ -110,6 +129,8 @@ fn an_exchange_request_has_one_form() {
                 {"lease": 2, "calibration": 1, "evaluation": 7,
                  "outcome": {"rejected": {"kind": "no_support", "condition": 3, "message": "sinkage 0.2 m"}}},
                 {"lease": 3, "calibration": 1, "evaluation": 7, "outcome": {"fault": {"message": "disk full"}}},
+                {"lease": 4, "calibration": 1, "evaluation": 8, "end": {"theta": [1.5], "log_gain": 0.25, "moves": 20,
+                 "accepted": 0, "scaled": 17, "scaled_accepted": 0}},
             ],
             "holding": [9], "returned": [10, 11], "want": 16, "wait_ms": 20_000,
         }),
@@ -124,6 +145,11 @@ fn an_exchange_response_has_one_form() {
         evaluation: 7,
         variant: "00ff".into(),
         theta: vec![4.5, 0.1 + 0.2],
+        subchain: Some(Subchain {
+            chain: 3,
+            step: 2,
+            scale: 0.75,
+        }),
     };
     let response = ExchangeResponse {
         leases: vec![lease],
@@ -136,7 +162,8 @@ fn an_exchange_response_has_one_form() {
     golden(
         &response,
         &json!({
-            "leases": [{"lease": 5, "calibration": 1, "evaluation": 7, "variant": "00ff", "theta": [4.5, 0.30000000000000004]}],
+            "leases": [{"lease": 5, "calibration": 1, "evaluation": 7, "variant": "00ff", "theta": [4.5, 0.30000000000000004],
+                        "subchain": {"chain": 3, "step": 2, "scale": 0.75}}],
             "lease_ms": 15_000, "remaining": 40, "workers": 3, "duplicates": 1, "refused": "another version",
         }),
     );
@@ -176,6 +203,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         protocol: Default::default(),
         stiffness_sensitivity: false,
         plates: Vec::new(),
+        companion: None,
         rings: Vec::new(),
     };
     golden(

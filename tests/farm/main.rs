@@ -11,6 +11,7 @@ mod forward;
 mod leases;
 mod likelihood;
 mod mesh;
+mod metamodel;
 mod point_fit;
 mod search;
 mod spatial;

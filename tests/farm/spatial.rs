@@ -118,27 +118,11 @@ fn a_wheel_from_an_stl_file_rolls_like_the_rim_it_is_the_surface_of() {
     }
 }
 
-/// Two runs, a coarse terrain and few particles: a calibration of the three-dimensional model in seconds.
-fn job() -> Job {
-    let small = Job::small().sampler(30, [1, 2], 5);
-    let few: Vec<&str> = small
-        .runs
-        .lines()
-        .filter(|line| !line.starts_with('#'))
-        .take(3)
-        .collect();
-    let runs = few.join("\n") + "\n";
-    Job { runs, ..small }.in_job(
-        "kind = \"quasi_static\"",
-        "kind = \"scm\"\ndem_spacing_m = 0.008\ntravel_step_m = 0.001\nsteady_travel_m = 0.2",
-    )
-}
-
 #[test]
 fn a_calibration_of_the_rolling_wheel_is_the_same_on_one_thread_and_on_six() {
     let posterior = |workers: &[(&str, usize)]| {
         let service = Service::start(&[]);
-        let id = service.submit(&job());
+        let id = service.submit(&Job::rolling().sampler(30, [1, 2], 5));
         let _workers: Vec<_> = workers
             .iter()
             .map(|(name, threads)| service.worker(name, *threads))

@@ -31,6 +31,22 @@ impl Job {
         }
     }
 
+    /// Two runs and a coarse terrain: a calibration of the three-dimensional model in seconds.
+    pub fn rolling() -> Job {
+        let small = Job::small();
+        let few: Vec<&str> = small
+            .runs
+            .lines()
+            .filter(|line| !line.starts_with('#'))
+            .take(3)
+            .collect();
+        let runs = few.join("\n") + "\n";
+        Job { runs, ..small }.in_job(
+            "kind = \"quasi_static\"",
+            "kind = \"scm\"\ndem_spacing_m = 0.008\ntravel_step_m = 0.001\nsteady_travel_m = 0.2",
+        )
+    }
+
     /// The same job with other settings of the sampler.
     pub fn sampler(self, particles: usize, moves: [usize; 2], seed: u64) -> Job {
         let sampler = format!("particles = {particles}\nmoves = {moves:?}\nseed = {seed}");

@@ -120,12 +120,13 @@ impl Evaluator {
 
 fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) -> WorkResult {
     let began = Instant::now();
-    let outcome = std::panic::catch_unwind(AssertUnwindSafe(|| variant.evaluate(&lease.theta)))
-        .unwrap_or_else(|_| {
-            Outcome::Fault(Fault {
-                message: "the model panicked".into(),
-            })
-        });
+    let served = AssertUnwindSafe(|| variant.serve(&lease.theta, lease.subchain.as_ref()));
+    let (outcome, end) = std::panic::catch_unwind(served).unwrap_or_else(|_| {
+        let fault = Fault {
+            message: "the model panicked".into(),
+        };
+        (Some(Outcome::Fault(fault)), None)
+    });
     let elapsed = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);
     clock.simulated_ns.fetch_add(elapsed, Ordering::Relaxed);
     clock.evaluations.fetch_add(1, Ordering::Relaxed);
@@ -139,6 +140,7 @@ fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) ->
         lease,
         calibration,
         evaluation,
+        end,
         outcome,
     }
 }

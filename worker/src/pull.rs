@@ -314,7 +314,8 @@ impl<C: Coordinator> Worker<C> {
             lease,
             calibration,
             evaluation,
-            outcome,
+            end: None,
+            outcome: Some(outcome),
         });
     }
 

@@ -4,7 +4,8 @@ use inference::lm::Optimiser;
 use inference::point::Estimate;
 use inference::search::Search;
 use inference::{
-    Likelihood, LogLikelihood, Posterior, Prior, Progress, Proposal, Sampler, StageRecord, TellError,
+    Answer, Likelihood, LogLikelihood, Metamodel, Pair, Posterior, Prior, Progress, Proposal, Sampler,
+    StageRecord, SubchainEnd, TellError,
 };
 
 use crate::spec::{Method, MethodError};
@@ -27,6 +28,28 @@ pub(super) struct Scored<'a> {
     pub log_likelihood: LogLikelihood,
     /// The predicted values that the likelihood takes; `None` where the model refused.
     pub fitted: Option<&'a [f64]>,
+    /// The same of the quasi-static model, where it was asked.
+    pub coarse: Option<&'a [f64]>,
+    /// Where the subchain ended that was asked for.
+    pub end: Option<&'a SubchainEnd>,
+}
+
+impl Scored<'_> {
+    /// What a sampler is told.
+    fn answer(&self) -> Answer {
+        let log_likelihood = self.log_likelihood;
+        let pair = self.fitted.zip(self.coarse).map(|(fine, coarse)| Pair {
+            fine: fine.to_vec(),
+            coarse: coarse.to_vec(),
+        });
+        match self.end {
+            None => Answer::Here { log_likelihood, pair },
+            Some(end) => Answer::Moved {
+                found: (end.accepted > 0).then_some((log_likelihood, pair)),
+                end: end.clone(),
+            },
+        }
+    }
 }
 
 /// What an engine ends with.
@@ -45,7 +68,10 @@ impl Engine {
     /// [`MethodError`] where the settings do not fit the prior.
     pub(super) fn new(prior: Prior, likelihood: &Likelihood, method: Method) -> Result<Self, MethodError> {
         Ok(match method {
-            Method::Sample(settings) => Engine::Sampler(Box::new(Sampler::new(prior, settings)?)),
+            Method::Sample(settings) => {
+                let sampler = Sampler::with_metamodel(prior, settings, likelihood.clone())?;
+                Engine::Sampler(Box::new(sampler))
+            }
             Method::Fit(settings) => {
                 Engine::Fit(Box::new(Optimiser::new(prior, likelihood.clone(), settings)?))
             }
@@ -74,9 +100,17 @@ impl Engine {
     /// Takes the result of a pending particle.
     pub(super) fn tell(&mut self, particle: usize, scored: Scored) -> Result<Progress, TellError> {
         match self {
-            Engine::Sampler(sampler) => sampler.tell(particle, scored.log_likelihood),
+            Engine::Sampler(sampler) => sampler.tell(particle, scored.answer()),
             Engine::Fit(fit) => fit.tell(particle, scored.fitted),
             Engine::Search(search) => search.tell(particle, scored.log_likelihood),
+        }
+    }
+
+    /// What takes the subchains of the stage in progress, if anything does.
+    pub(super) fn metamodel(&self) -> Option<&Metamodel> {
+        match self {
+            Engine::Sampler(sampler) => sampler.metamodel(),
+            Engine::Fit(_) | Engine::Search(_) => None,
         }
     }
 

@@ -3,6 +3,7 @@
 //! Pure: it is told outcomes and answers with facts to store. The same [`Calibration::complete`] serves a
 //! living worker and a replay from the store, so a restart cannot take another path.
 
+mod computed;
 mod engine;
 mod identity;
 mod replay;
@@ -10,15 +11,16 @@ mod replay;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use inference::{LogLikelihood, Posterior};
+use inference::{LogLikelihood, Posterior, Proposal, Subchain};
 use shared::api::CalibrationState;
 use shared::model::ModelVariant;
-use shared::outcome::{Observables, Outcome};
+use shared::outcome::Observables;
 
 use crate::fact::{EvaluationRow, Fact, Fingerprint, Kept};
 use crate::lease::{Completion, Queue};
 use crate::spec::{MethodError, Spec};
 
+pub use computed::{Computed, result_of};
 use engine::Scored;
 pub use engine::{Engine, Finding};
 pub use identity::{EvaluationKey, PREDICTIONS_FROM};
@@ -61,6 +63,8 @@ pub struct Calibration {
     engine: Engine,
     fit_hash: String,
     holdout_hash: Option<String>,
+    /// The fitted runs with the metamodel of the present stage, and the hash.
+    stage_variant: Option<(String, ModelVariant)>,
     /// The final draws, to simulate on fitted and holdout runs; `None` while sampling.
     draws: Option<Vec<Vec<f64>>>,
     /// Evaluations of the present round that are done.
@@ -80,6 +84,23 @@ pub enum ResultError {
         /// How many entries are expected.
         runs: usize,
     },
+    /// A subchain's end where none was asked for, or none where one was, or one that cannot be.
+    #[error("the result of evaluation {evaluation} does not answer what its lease asked for")]
+    OtherQuestion {
+        /// The evaluation.
+        evaluation: u64,
+    },
+}
+
+/// What an evaluation is leased with.
+#[derive(Debug, Clone, Copy)]
+pub struct Question<'a> {
+    /// Hash of the variant.
+    pub variant: &'a str,
+    /// The parameters: those of the model, of a subchain all.
+    pub theta: &'a [f64],
+    /// The subchain that starts there.
+    pub subchain: Option<Subchain>,
 }
 
 impl Calibration {
@@ -102,6 +123,7 @@ impl Calibration {
             evaluations: 0,
             rejected: 0,
             engine,
+            stage_variant: None,
             draws: None,
             done: BTreeSet::new(),
             failed: BTreeMap::new(),
@@ -120,15 +142,27 @@ impl Calibration {
         matches!(self.state, CalibrationState::Queued | CalibrationState::Running)
     }
 
-    /// The hash and parameter vector that an evaluation is leased with.
-    pub fn lease_of(&self, evaluation: u64) -> Option<(&str, &[f64])> {
+    /// What an evaluation is leased with.
+    pub fn question(&self, evaluation: u64) -> Option<Question<'_>> {
         let theta = self.theta(evaluation)?;
-        let hash = if self.is_holdout(evaluation) {
+        if let Some(subchain) = self.subchain(evaluation) {
+            let (variant, _) = self.stage_variant.as_ref()?;
+            return Some(Question {
+                variant,
+                theta,
+                subchain: Some(subchain),
+            });
+        }
+        let variant = if self.is_holdout(evaluation) {
             self.holdout_hash.as_deref()?
         } else {
             &self.fit_hash
         };
-        Some((hash, self.spec.model_theta(theta)))
+        Some(Question {
+            variant,
+            theta: self.spec.model_theta(theta),
+            subchain: None,
+        })
     }
 
     /// Whether an evaluation is of the holdout runs.
@@ -142,29 +176,49 @@ impl Calibration {
         match hash {
             h if h == self.fit_hash => Some(&self.spec.fit_variant),
             h if Some(h) == self.holdout_hash.as_deref() => self.spec.holdout_variant.as_ref(),
-            _ => None,
+            h => {
+                let (hash, variant) = self.stage_variant.as_ref()?;
+                (h == hash).then_some(variant)
+            }
         }
     }
 
-    /// The whole parameter vector of an evaluation that is asked for at present.
+    /// The whole parameter vector of an evaluation that is asked for at present; of a subchain, where it starts.
     fn theta(&self, evaluation: u64) -> Option<&[f64]> {
         match (
             EvaluationKey::of(evaluation, self.spec.method.width()),
             &self.draws,
         ) {
             (EvaluationKey::Prediction { draw, .. }, Some(draws)) => draws.get(draw).map(Vec::as_slice),
-            (EvaluationKey::Sampling { round, particle }, None) if round == self.engine.round() => self
-                .engine
-                .pending()
-                .binary_search_by_key(&particle, |p| p.particle)
-                .ok()
-                .map(|i| self.engine.pending()[i].theta.as_slice()),
+            _ => self.proposal(evaluation).map(|p| p.theta.as_slice()),
+        }
+    }
+
+    /// The proposal of an evaluation that is asked for at present, while sampling.
+    fn proposal(&self, evaluation: u64) -> Option<&Proposal> {
+        let pending = self.engine.pending();
+        match EvaluationKey::of(evaluation, self.spec.method.width()) {
+            EvaluationKey::Sampling { round, particle }
+                if self.draws.is_none() && round == self.engine.round() =>
+            {
+                let place = pending.binary_search_by_key(&particle, |p| p.particle).ok()?;
+                Some(&pending[place])
+            }
             _ => None,
         }
     }
 
+    /// The subchain that an evaluation asks for.
+    fn subchain(&self, evaluation: u64) -> Option<Subchain> {
+        self.proposal(evaluation).and_then(|p| p.subchain)
+    }
+
     /// Asks for the evaluations of the present round.
     fn ask(&mut self) {
+        self.stage_variant = self.engine.metamodel().map(|metamodel| {
+            let variant = self.spec.fit_variant.with_metamodel(metamodel);
+            (variant.hash(), variant)
+        });
         let particles = self.spec.method.width();
         self.done.clear();
         let failed = |evaluation| self.failed.get(&evaluation).copied().unwrap_or(0);
@@ -200,24 +254,15 @@ impl Calibration {
     pub fn complete(
         &mut self,
         evaluation: u64,
-        outcome: Result<Observables, String>,
+        computed: impl Into<Computed>,
         worker: &str,
     ) -> Result<(Vec<Fact>, bool), ResultError> {
-        let variant = match (&self.spec.holdout_variant, self.is_holdout(evaluation)) {
-            (Some(variant), true) => variant,
-            _ => &self.spec.fit_variant,
-        };
-        if self.theta(evaluation).is_some()
-            && let Ok(observables) = &outcome
-            && !observables.covers(variant)
-        {
-            let runs = variant.conditions.len();
-            return Err(ResultError::WrongShape { evaluation, runs });
-        }
+        let computed = computed.into();
+        self.check_shape(evaluation, &computed)?;
         match self.queue.complete(evaluation) {
             Completion::First => {}
             Completion::Duplicate | Completion::Unknown => {
-                let fingerprint = Fingerprint::of(&outcome);
+                let fingerprint = Fingerprint::of(&computed);
                 let (calibration, worker) = (self.identity.id, worker.to_owned());
                 return Ok((
                     vec![Fact::Duplicate {
@@ -230,16 +275,19 @@ impl Calibration {
                 ));
             }
         }
-        let theta = self
+        let asked = self
             .theta(evaluation)
-            .expect("the queue holds only evaluations asked for")
-            .to_vec();
+            .expect("the queue holds only evaluations asked for");
+        let theta = computed.end.as_ref().map_or(asked, |end| &end.theta).to_vec();
+        let fingerprint = Fingerprint::of(&computed);
+        let rejected = computed.is_refused();
+        let Computed { end, outcome } = computed;
         let scored = if self.draws.is_some() {
             Ok(None)
         } else {
-            self.score(&outcome, &theta).map(Some)
+            outcome.as_ref().map(|o| self.score(o, &theta)).transpose()
         };
-        let scored = match scored {
+        let log_likelihood = match scored {
             Ok(scored) => scored,
             Err(error) => {
                 let mut facts = Vec::new();
@@ -247,28 +295,31 @@ impl Calibration {
                 return Ok((facts, false));
             }
         };
-        let log_likelihood = scored.and_then(|s| match s {
-            LogLikelihood::Impossible => None,
-            finite => Some(finite.value()),
-        });
-        let rejected = outcome.is_err();
-        let fingerprint = Fingerprint::of(&outcome);
+        let coarse = match &outcome {
+            Some(Ok(observables)) if self.draws.is_none() => observables.coarse.clone(),
+            _ => None,
+        };
         let kept = self.kept(outcome);
         let fitted = match &kept {
             Kept::Fitted(values) => Some(values.as_slice()),
             Kept::Whole(_) | Kept::Refused(_) => None,
         };
-        let scored = scored.map(|log_likelihood| Scored {
-            log_likelihood,
+        let scored = self.draws.is_none().then(|| Scored {
+            // Where a subchain stayed there is nothing to score, and nothing is asked of the score.
+            log_likelihood: log_likelihood.unwrap_or(LogLikelihood::Impossible),
             fitted,
+            coarse: coarse.as_deref(),
+            end: end.as_ref(),
         });
         let mut consequences = Vec::new();
         self.record(evaluation, rejected, scored, &mut consequences);
         let row = EvaluationRow {
             evaluation,
             theta,
-            log_likelihood,
+            log_likelihood: log_likelihood.map(LogLikelihood::value).filter(|l| l.is_finite()),
             kept,
+            coarse,
+            end,
             fingerprint,
             worker: worker.to_owned(),
         };
@@ -278,6 +329,32 @@ impl Calibration {
         }];
         facts.append(&mut consequences);
         Ok((facts, true))
+    }
+
+    /// Checks that a result answers what is asked for at present; of what is not, nothing is known.
+    fn check_shape(&self, evaluation: u64, computed: &Computed) -> Result<(), ResultError> {
+        if self.theta(evaluation).is_none() {
+            return Ok(());
+        }
+        let subchain = self.subchain(evaluation).is_some();
+        if !computed.answers(subchain, self.spec.parameters.len()) {
+            return Err(ResultError::OtherQuestion { evaluation });
+        }
+        let variant = match (&self.spec.holdout_variant, self.is_holdout(evaluation)) {
+            (Some(variant), true) => variant,
+            _ => &self.spec.fit_variant,
+        };
+        let values = self.spec.likelihood.values();
+        match &computed.outcome {
+            Some(Ok(observables))
+                if !observables.covers(variant)
+                    || observables.coarse.as_ref().is_some_and(|c| c.len() != values) =>
+            {
+                let runs = variant.conditions.len();
+                Err(ResultError::WrongShape { evaluation, runs })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The log-likelihood of an outcome.
@@ -295,7 +372,9 @@ impl Calibration {
 
     /// Lets a completed evaluation take effect on counts, engine and phase.
     fn record(&mut self, evaluation: u64, rejected: bool, scored: Option<Scored>, facts: &mut Vec<Fact>) {
-        self.evaluations += 1;
+        // A subchain that stayed where it was has evaluated nothing.
+        let stayed = scored.is_some_and(|s| s.end.is_some_and(|end| end.accepted == 0));
+        self.evaluations += u64::from(!stayed);
         self.rejected += u64::from(rejected);
         self.done.insert(evaluation);
         let Some(scored) = scored else {
@@ -413,11 +492,12 @@ impl Calibration {
         self.change_state(CalibrationState::Running, None, facts);
     }
 
-    fn kept(&self, outcome: Result<Observables, String>) -> Kept {
+    fn kept(&self, outcome: Option<Result<Observables, String>>) -> Kept {
         match outcome {
-            Err(reason) => Kept::Refused(reason),
-            Ok(observables) if self.draws.is_some() => Kept::Whole(Box::new(observables)),
-            Ok(observables) => Kept::Fitted(self.spec.predicted_values(&observables)),
+            None => Kept::Fitted(Vec::new()),
+            Some(Err(reason)) => Kept::Refused(reason),
+            Some(Ok(observables)) if self.draws.is_some() => Kept::Whole(Box::new(observables)),
+            Some(Ok(observables)) => Kept::Fitted(self.spec.predicted_values(&observables)),
         }
     }
 }
@@ -436,16 +516,4 @@ fn final_draws(posterior: &Posterior) -> Vec<Vec<f64>> {
         .chain(even)
         .map(|i| particles[i].theta.clone())
         .collect()
-}
-
-/// Turns what a worker says into what a calibration takes; a fault is no result.
-pub fn result_of(outcome: Outcome) -> Result<Result<Observables, String>, String> {
-    match outcome {
-        Outcome::Evaluated(observables) => Ok(Ok(observables)),
-        Outcome::Rejected(r) => Ok(Err(format!(
-            "{}: condition {}: {}",
-            r.kind, r.condition, r.message
-        ))),
-        Outcome::Fault(fault) => Err(fault.message),
-    }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use inference::LogLikelihood;
+use inference::{LogLikelihood, SubchainEnd};
 use shared::api::CalibrationState;
 
 use super::{Calibration, Scored};
@@ -35,8 +35,13 @@ pub struct StoredEvaluation {
     pub log_likelihood: Option<f64>,
     /// Whether the model refused.
     pub rejected: bool,
-    /// The model's values of the fitted measurements; read back for a fit alone, which is told them.
+    /// The model's values of the fitted measurements; read back for a fit and with a metamodel, which are told
+    /// them.
     pub fitted: Option<Vec<f64>>,
+    /// Those of the quasi-static model; read back with a metamodel alone.
+    pub coarse: Option<Vec<f64>>,
+    /// Where the subchain ended.
+    pub end: Option<SubchainEnd>,
 }
 
 /// Why a stored calibration cannot go on.
@@ -111,11 +116,11 @@ impl Calibration {
         facts: &mut Vec<Fact>,
     ) -> Result<(), ReplayError> {
         let proposed = self.theta(evaluation).unwrap_or_default().to_vec();
-        let same = proposed.len() == stored.theta.len()
-            && proposed
-                .iter()
-                .zip(&stored.theta)
-                .all(|(a, b)| a.to_bits() == b.to_bits());
+        // Of a subchain the store has the end, not the start; that it was asked for is all that can be compared.
+        let same = match &stored.end {
+            Some(_) => self.subchain(evaluation).is_some(),
+            None => same_bits(&proposed, &stored.theta),
+        };
         if !same {
             return Err(ReplayError::OtherTheta {
                 evaluation,
@@ -134,10 +139,17 @@ impl Calibration {
         let scored = scored.map(|log_likelihood| Scored {
             log_likelihood,
             fitted: stored.fitted.as_deref(),
+            coarse: stored.coarse.as_deref(),
+            end: stored.end.as_ref(),
         });
         self.record(evaluation, stored.rejected, scored, facts);
         Ok(())
     }
+}
+
+/// Whether two vectors agree to the bit.
+fn same_bits(a: &[f64], b: &[f64]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }
 
 #[cfg(test)]
@@ -240,11 +252,11 @@ mod tests {
                 asked.reverse();
             }
             for evaluation in asked {
-                let Some((_, theta)) = calibration.lease_of(evaluation) else {
+                let Some(question) = calibration.question(evaluation) else {
                     break;
                 };
                 let runs = 1;
-                let outcome = toy(theta, runs);
+                let outcome = toy(question.theta, runs);
                 let (new, counted) = calibration.complete(evaluation, outcome, "toy").unwrap();
                 facts.extend(new);
                 done += usize::from(counted);
@@ -281,6 +293,8 @@ mod tests {
                         Kept::Fitted(values) => Some(values.clone()),
                         _ => None,
                     },
+                    coarse: row.coarse.clone(),
+                    end: row.end.clone(),
                 };
                 (row.evaluation, evaluation)
             })
@@ -386,14 +400,14 @@ mod tests {
         let mut facts = Vec::new();
         while !calibration.state.is_final() {
             for evaluation in calibration.queue.asked() {
-                let Some((_, theta)) = calibration.lease_of(evaluation) else {
+                let Some(question) = calibration.question(evaluation) else {
                     break;
                 };
                 let holdout = evaluation >= PREDICTIONS_FROM && evaluation % 2 == 1;
                 let outcome = if holdout {
                     Err("no_support: condition 0: toy".into())
                 } else {
-                    toy(theta, 1)
+                    toy(question.theta, 1)
                 };
                 facts.extend(calibration.complete(evaluation, outcome, "toy").unwrap().0);
             }

@@ -1,13 +1,12 @@
 //! `coordinator check`: validate a job and say what it will cost.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use shared::outcome::Outcome as Evaluated;
-
 use super::job;
 use super::output::say;
-use crate::calibration::{Calibration, Engine, Identity, result_of};
+use crate::calibration::{Calibration, Computed, Engine, Identity, result_of};
 use crate::config::JobFile;
 use crate::embedded::Evaluate;
 use crate::result::terminal;
@@ -121,7 +120,7 @@ fn pilot(mut spec: crate::spec::Spec) -> anyhow::Result<Pilot> {
         } else {
             1
         };
-    let model = Evaluate::new(&spec.fit_variant).map_err(anyhow::Error::msg)?;
+    let mut models: BTreeMap<String, Evaluate> = BTreeMap::new();
     let identity = Identity {
         id: 0,
         name: "pilot".into(),
@@ -136,14 +135,23 @@ fn pilot(mut spec: crate::spec::Spec) -> anyhow::Result<Pilot> {
             break;
         }
         for evaluation in calibration.queue.asked() {
-            let Some((_, theta)) = calibration.lease_of(evaluation) else {
+            let Some(question) = calibration.question(evaluation) else {
+                break;
+            };
+            if !models.contains_key(question.variant)
+                && let Some(variant) = calibration.variant(question.variant)
+            {
+                let model = Evaluate::new(variant).map_err(anyhow::Error::msg)?;
+                models.insert(question.variant.to_owned(), model);
+            }
+            let Some(model) = models.get(question.variant) else {
                 break;
             };
             let start = Instant::now();
-            let outcome: Evaluated = model.evaluate(theta);
+            let (outcome, end) = model.serve(question.theta, question.subchain.as_ref());
             simulated_s += start.elapsed().as_secs_f64();
-            let result = result_of(outcome).map_err(anyhow::Error::msg)?;
-            calibration.complete(evaluation, result, "pilot")?;
+            let outcome = outcome.map(result_of).transpose().map_err(anyhow::Error::msg)?;
+            calibration.complete(evaluation, Computed { end, outcome }, "pilot")?;
         }
     }
     if let Some(message) = calibration.message {

@@ -13,7 +13,7 @@ use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease};
 use shared::model::ModelVariant;
 use shared::model::equations_of;
 
-use crate::calibration::{Calibration, result_of};
+use crate::calibration::{Calibration, Computed};
 use crate::fact::Fact;
 use progress::Pace;
 use token::Tokens;
@@ -212,14 +212,14 @@ impl Farm {
             return false;
         };
         let calibration = &mut entry.calibration;
-        let leased = calibration.queue.evaluation_of(result.lease);
-        let taken = match result_of(result.outcome) {
+        let (lease, evaluation) = (result.lease, result.evaluation);
+        let leased = calibration.queue.evaluation_of(lease);
+        let taken = match Computed::of(result) {
             // A lapsed lease is taken on trust; one that is out must be answered for what it was given for.
-            Ok(_) if leased.is_some_and(|e| e != result.evaluation) => Err(format!(
-                "the result of lease {} names evaluation {}, not its own",
-                result.lease, result.evaluation
+            Ok(_) if leased.is_some_and(|e| e != evaluation) => Err(format!(
+                "the result of lease {lease} names evaluation {evaluation}, not its own"
             )),
-            Ok(outcome) => match calibration.complete(result.evaluation, outcome, worker) {
+            Ok(computed) => match calibration.complete(evaluation, computed, worker) {
                 Ok((facts, counted)) => {
                     self.facts.extend(facts);
                     entry.pace.count(calibration.evaluations, now_ms);
@@ -246,7 +246,7 @@ impl Farm {
             Err(message) => {
                 record.faults += 1;
                 self.counters.failed_leases += 1;
-                if let Some(failure) = calibration.queue.fail(result.lease) {
+                if let Some(failure) = calibration.queue.fail(lease) {
                     self.facts.extend(calibration.lease_failed(&failure, &message));
                 }
                 true
@@ -315,16 +315,16 @@ impl Farm {
                 calibration.change_state(CalibrationState::Running, None, &mut self.facts);
             }
             for (lease, evaluation) in claims {
-                let (variant, theta) = calibration
-                    .lease_of(evaluation)
+                let question = calibration
+                    .question(evaluation)
                     .expect("a claimed evaluation is asked for at present");
-                let (variant, theta) = (variant.to_owned(), theta.to_vec());
                 leases.push(Lease {
                     lease,
                     calibration: id,
                     evaluation,
-                    variant,
-                    theta,
+                    variant: question.variant.to_owned(),
+                    theta: question.theta.to_vec(),
+                    subchain: question.subchain,
                 });
             }
         }

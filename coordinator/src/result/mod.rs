@@ -23,7 +23,7 @@ use shared::api::{CalibrationState, CalibrationStatus};
 
 use crate::service::ServiceError;
 use crate::spec::{Method, Spec};
-use crate::store::{CalibrationRow, EstimateRow, Prediction, Reader, Sample, StageRow};
+use crate::store::{CalibrationRow, EstimateRow, Prediction, Reader, Sample, StageRow, Subchains};
 
 pub use comparison::{Comparison, ComparisonRow};
 pub use csv::PosteriorTable;
@@ -52,6 +52,8 @@ pub struct Outcome {
     pub predictions: Vec<Prediction>,
     /// How often the model refused, by kind.
     pub rejections: BTreeMap<String, u64>,
+    /// What a metamodel did; `None` where there was none.
+    pub subchains: Option<Subchains>,
 }
 
 impl Outcome {
@@ -85,6 +87,7 @@ impl Outcome {
             posterior: reader.samples(row.id, None).await?,
             predictions: reader.predictions(row.id).await?,
             rejections: reader.rejections(row.id).await?,
+            subchains: reader.subchains(row.id).await?,
             stages,
             row: row.clone(),
         })

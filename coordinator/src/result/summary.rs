@@ -55,6 +55,8 @@ pub struct CalibrationSummary {
     pub rejected: Option<u64>,
     /// Wall time `[s]`.
     pub wall_s: f64,
+    /// What a metamodel did between evaluations; null without one.
+    pub metamodel: Option<MetamodelSummary>,
     /// Stages.
     pub stages: Vec<StageSummary>,
     /// Parameters by name.
@@ -67,6 +69,17 @@ pub struct CalibrationSummary {
     pub noise_sd: BTreeMap<String, f64>,
     /// Share of measurements inside their 90 % interval.
     pub coverage90: CoverageSummary,
+}
+
+/// What a metamodel did between evaluations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct MetamodelSummary {
+    /// Moves that it proposed, each an evaluation of `quasi_static` in place of one of `scm`.
+    pub moves: u64,
+    /// Subchains of such moves.
+    pub subchains: u64,
+    /// Of these, the ones that ended elsewhere than they began, where `scm` was asked.
+    pub moved: u64,
 }
 
 /// A stage.
@@ -189,6 +202,11 @@ impl Outcome {
             evaluations: self.row.evaluations,
             rejected: self.row.rejected,
             wall_s: self.row.busy_ms as f64 / 1000.0,
+            metamodel: self.subchains.map(|s| MetamodelSummary {
+                moves: s.moves,
+                subchains: s.subchains,
+                moved: s.moved,
+            }),
             stages: self
                 .stages
                 .iter()

@@ -133,6 +133,13 @@ pub fn summary(outcome: &Outcome) -> String {
         row.rejected.unwrap_or(0),
         row.busy_ms as f64 / 1000.0
     );
+    if let Some(metamodel) = &outcome.subchains {
+        let _ = writeln!(
+            text,
+            "metamodel: {} moves by quasi_static in {} subchains, {} of which moved and were evaluated",
+            metamodel.moves, metamodel.subchains, metamodel.moved
+        );
+    }
     if let (Some(z), Some(se)) = (row.log_evidence, row.log_evidence_se) {
         let _ = writeln!(text, "log-evidence {z:.2} +- {se:.2}");
     }

@@ -61,6 +61,11 @@ impl Method {
         }
     }
 
+    /// Whether a metamodel takes moves between evaluations.
+    pub fn has_metamodel(&self) -> bool {
+        matches!(self, Method::Sample(settings) if settings.metamodel_moves > 0)
+    }
+
     /// The key of the budget that a longer run needs more of.
     pub fn budget_key(&self) -> &'static str {
         match self {
@@ -112,6 +117,9 @@ impl Method {
     }
 }
 
+/// Least and most steps of a stage whose steps are subchains of a metamodel.
+const METAMODEL_STEPS: [usize; 2] = [3, 30];
+
 /// The table as written; every algorithm reads its own keys.
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -120,6 +128,7 @@ pub(super) struct RawSampler {
     seed: Option<u64>,
     particles: Option<usize>,
     moves: Option<[usize; 2]>,
+    metamodel_moves: Option<usize>,
     starts: Option<usize>,
     max_evaluations: Option<usize>,
     difference_step: Option<f64>,
@@ -134,6 +143,7 @@ impl RawSampler {
         keys.refuse(&[
             ("particles", self.particles.is_some()),
             ("moves", self.moves.is_some()),
+            ("metamodel_moves", self.metamodel_moves.is_some()),
             ("starts", self.starts.is_some()),
             ("max_evaluations", self.max_evaluations.is_some()),
             ("difference_step", self.difference_step.is_some()),
@@ -153,10 +163,18 @@ impl RawSampler {
 
     fn sample(self, algorithm: Algorithm) -> Method {
         let usual = inference::Settings::default();
+        let metamodel_moves = self.metamodel_moves.unwrap_or(usual.metamodel_moves);
+        // A step of many moves forgets more than one of one.
+        let moves = if metamodel_moves > 0 {
+            METAMODEL_STEPS
+        } else {
+            usual.moves
+        };
         Method::Sample(inference::Settings {
             algorithm,
             particles: self.particles.unwrap_or(usual.particles),
-            moves: self.moves.unwrap_or(usual.moves),
+            moves: self.moves.unwrap_or(moves),
+            metamodel_moves,
             seed: self.seed.unwrap_or(usual.seed),
             ..usual
         })

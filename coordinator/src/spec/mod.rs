@@ -5,24 +5,26 @@ mod errors;
 mod job_file;
 mod method;
 mod noise;
+mod predicted;
 mod priors;
 mod sampler_keys;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use inference::{Datum, Likelihood, Prior};
-use shared::channel::Channel;
+use inference::{Likelihood, Prior};
 use shared::experiment::{Experiment, RunUse};
 use shared::file::{FileError, FileSet};
-use shared::model::{EffectSet, ModelSettings, ModelVariant, equations_of};
+use shared::model::{Companion, EffectSet, ModelKind, ModelSettings, ModelVariant, equations_of};
 use shared::outcome::Observables;
 use shared::parameters;
+use shared::predicted::Predicted;
 
 pub use bevameter::{Bevameter, PLATE, RING, Reading};
 pub use errors::LikelihoodSettings;
 pub use job_file::Job;
 pub use method::{Method, MethodError};
 pub(crate) use noise::repeat_scatter;
+use predicted::predicted;
 pub use priors::{FreeParameter, check_own};
 
 /// A calibration as its files determine it; equal files give an equal specification.
@@ -46,6 +48,8 @@ pub struct Spec {
     pub holdout_variant: Option<ModelVariant>,
     /// The likelihood of the measurements that are fitted; runs count within [`Spec::fit_runs`].
     pub likelihood: Likelihood,
+    /// Which of the observables it takes.
+    predicted: Vec<Predicted>,
     /// What the job says of the errors.
     pub likelihood_settings: LikelihoodSettings,
     /// The measured readings of plates and rings; all are fitted.
@@ -163,6 +167,21 @@ impl Spec {
         };
         let mut fit_variant = variant(&fit_runs)?;
         bevameter.ask(&mut fit_variant);
+        let predicted = predicted(&likelihood);
+        if job.method.has_metamodel() {
+            if model.kind == ModelKind::QuasiStatic {
+                return Err(in_job(
+                    "metamodel_moves under [sampler]: the metamodel is made of quasi_static, and needs kind = \"scm\" to save runs of"
+                        .into(),
+                ));
+            }
+            let coarse = fit_variant.coarse();
+            coarse.map_err(|e| in_job(format!("metamodel_moves under [sampler]: {e}")))?;
+            fit_variant.companion = Some(Companion {
+                values: predicted.clone(),
+                metamodel: None,
+            });
+        }
         let holdout_variant = match holdout_runs.as_slice() {
             [] => None,
             runs => Some(variant(runs)?),
@@ -177,6 +196,7 @@ impl Spec {
             fit_variant,
             holdout_variant,
             likelihood,
+            predicted,
             likelihood_settings: job.likelihood,
             bevameter,
         })
@@ -184,19 +204,7 @@ impl Spec {
 
     /// The predicted values that the likelihood takes, of an evaluation of the fitted runs.
     pub fn predicted_values(&self, observables: &Observables) -> Vec<f64> {
-        let channels = Channel::ALL.map(|c| observables.channel(c));
-        let derivatives = Channel::ALL.map(|c| observables.sensitivity(c));
-        let data = self.likelihood.data();
-        let value = |d: &Datum| match d.channel {
-            PLATE => libm::log(observables.plate_pressure_pa[d.run]),
-            RING => libm::log(observables.shear_stress_pa[d.run]),
-            channel => channels[channel][d.run],
-        };
-        let sensitive = self.likelihood.sensitive().iter().map(|&i| &data[i]);
-        data.iter()
-            .map(value)
-            .chain(sensitive.map(|d| derivatives[d.channel][d.run]))
-            .collect()
+        self.predicted.iter().map(|value| value.of(observables)).collect()
     }
 
     /// The measurements of wheels that are fitted.

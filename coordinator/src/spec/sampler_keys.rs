@@ -13,7 +13,7 @@ pub(super) struct Keys {
 const ALL: [Keys; 6] = [
     Keys {
         algorithm: "tmcmc",
-        keys: &["particles", "moves", "seed"],
+        keys: &["particles", "moves", "metamodel_moves", "seed"],
     },
     Keys {
         algorithm: "ching-chen-2007",

@@ -160,6 +160,8 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Observables, StoreError> {
         d_lateral_force_n: take(optional(extent.derivatives)),
         plate_pressure_pa: take(extent.plates),
         shear_stress_pa: take(extent.rings),
+        // kept beside, and only of what is fitted
+        coarse: None,
     })
 }
 

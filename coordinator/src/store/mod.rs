@@ -15,7 +15,7 @@ use std::path::Path;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
 use sqlx::{Connection, SqliteConnection, SqlitePool};
 
-pub use read::{CalibrationRow, EstimateRow, ExperimentRow, Prediction, Sample, StageRow};
+pub use read::{CalibrationRow, EstimateRow, ExperimentRow, Prediction, Sample, StageRow, Subchains};
 pub use writer::{FactSink, NewCalibrationRow, StoreHealth, Writer};
 
 /// Why the store cannot be used.
@@ -195,7 +195,7 @@ impl Reader {
 }
 
 /// Numbers as a JSON array; every finite `f64` comes back to the bit.
-fn json<T: serde::Serialize>(values: &[T]) -> String {
+fn json<T: serde::Serialize + ?Sized>(values: &T) -> String {
     serde_json::to_string(values).expect("numbers have a JSON form")
 }
 

@@ -125,6 +125,17 @@ pub struct Prediction {
     pub holdout: Option<Result<Observables, String>>,
 }
 
+/// What a metamodel did between evaluations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Subchains {
+    /// Subchains that were asked for.
+    pub subchains: u64,
+    /// Moves that they proposed.
+    pub moves: u64,
+    /// Subchains that ended elsewhere, where the model was asked.
+    pub moved: u64,
+}
+
 const CALIBRATION: &str = "SELECT c.*, s.experiment FROM calibrations c JOIN studies s ON s.id = c.study";
 
 impl Reader {
@@ -307,6 +318,28 @@ impl Reader {
             }
         }
         Ok(predictions)
+    }
+
+    /// What a metamodel did between evaluations; `None` where there was none.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn subchains(&self, calibration: i64) -> Result<Option<Subchains>, StoreError> {
+        let row = sqlx::query(
+            "SELECT count(*) AS subchains, ifnull(sum(json_extract(subchain, '$.moves')), 0) AS moves,
+             ifnull(sum(json_extract(subchain, '$.accepted') > 0), 0) AS moved FROM evaluations
+             WHERE calibration = ? AND subchain IS NOT NULL",
+        )
+        .bind(calibration)
+        .fetch_one(&self.pool)
+        .await?;
+        let count = |column: &str| row.get::<i64, _>(column).unsigned_abs();
+        let subchains = Subchains {
+            subchains: count("subchains"),
+            moves: count("moves"),
+            moved: count("moved"),
+        };
+        Ok((subchains.subchains > 0).then_some(subchains))
     }
 
     /// How often the model refused, by the kind of refusal.

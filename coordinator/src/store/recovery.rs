@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use inference::SubchainEnd;
 use shared::api::CalibrationState;
 use sqlx::Row;
 
@@ -22,7 +23,8 @@ impl Reader {
         Ok(ids)
     }
 
-    /// Everything a replay needs; with `fitted`, also the model's values, which a fit is told.
+    /// Everything a replay needs; with `fitted`, also the models' values, which a fit is told and a metamodel
+    /// learns from.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -33,7 +35,8 @@ impl Reader {
             .await?;
         let evaluations = sqlx::query(
             "SELECT evaluation, theta, log_likelihood, rejection IS NOT NULL AS rejected,
-             CASE WHEN ?2 THEN fitted END AS fitted FROM evaluations WHERE calibration = ?1",
+             CASE WHEN ?2 THEN fitted END AS fitted, CASE WHEN ?2 THEN coarse END AS coarse, subchain
+             FROM evaluations WHERE calibration = ?1",
         )
         .bind(calibration)
         .bind(fitted)
@@ -43,14 +46,18 @@ impl Reader {
             .iter()
             .map(|row| {
                 let number = row.get::<i64, _>("evaluation").unsigned_abs();
+                let values = |column: &str| {
+                    let bytes: Option<&[u8]> = row.get(column);
+                    bytes.map(blob::decode_values).transpose()
+                };
+                let end: Option<&str> = row.get("subchain");
                 let stored = StoredEvaluation {
                     theta: numbers(row.get("theta"))?,
                     log_likelihood: row.get("log_likelihood"),
                     rejected: row.get("rejected"),
-                    fitted: row
-                        .get::<Option<&[u8]>, _>("fitted")
-                        .map(blob::decode_values)
-                        .transpose()?,
+                    fitted: values("fitted")?,
+                    coarse: values("coarse")?,
+                    end: end.map(subchain_end).transpose()?,
                 };
                 Ok((number, stored))
             })
@@ -80,4 +87,8 @@ impl Reader {
             failed,
         })
     }
+}
+
+fn subchain_end(json: &str) -> Result<SubchainEnd, StoreError> {
+    serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("subchain {json}: {e}")))
 }

@@ -363,7 +363,7 @@ async fn insert_evaluations(
         let part = rows.drain(..rows.len().min(ROWS));
         let mut query: QueryBuilder<Sqlite> = QueryBuilder::new(
             "INSERT OR IGNORE INTO evaluations
-             (calibration, evaluation, theta, log_likelihood, rejection, fitted, observables, fingerprint, worker) ",
+             (calibration, evaluation, theta, log_likelihood, rejection, fitted, observables, fingerprint, worker, subchain, coarse) ",
         );
         query.push_values(part, |mut values, (calibration, row)| {
             let (rejection, fitted, observables) = match row.kept {
@@ -380,7 +380,9 @@ async fn insert_evaluations(
                 .push_bind(fitted)
                 .push_bind(observables)
                 .push_bind(row.fingerprint.0)
-                .push_bind(row.worker);
+                .push_bind(row.worker)
+                .push_bind(row.end.as_ref().map(super::json))
+                .push_bind(row.coarse.as_deref().map(blob::encode));
         });
         query.build().persistent(false).execute(&mut *connection).await?;
     }

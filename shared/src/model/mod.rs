@@ -3,16 +3,19 @@
 //! # Layout
 //! - here: [`ModelKind`], [`Condition`], [`PlateCondition`], [`RingCondition`] and [`ModelVariant`].
 //! - [`effects`]: which effects, in which order, and where the values of their parameters stand.
+//! - [`metamodel`]: the quasi-static model beside the three-dimensional one.
 //! - [`settings`]: the table `[model]` of a job.
 //! - [`spatial`]: what the three-dimensional model needs beside.
 
 pub mod effects;
+pub mod metamodel;
 pub mod settings;
 pub mod spatial;
 
 pub use effects::{EffectSet, EffectText};
 use formula::effect::Mechanism;
 use formula::{Effect, Hook, Variable};
+pub use metamodel::Companion;
 pub use settings::ModelSettings;
 use spatial::Displacement;
 pub use spatial::SpatialSettings;
@@ -122,6 +125,9 @@ pub struct ModelVariant {
     /// Readings of rings to predict beside.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rings: Vec<RingCondition>,
+    /// The quasi-static model beside, where a metamodel is made of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub companion: Option<Companion>,
 }
 
 /// A plate in the soil; what it measured stays with the coordinator.
@@ -216,6 +222,7 @@ impl ModelVariant {
             stiffness_sensitivity: false,
             plates: Vec::new(),
             rings: Vec::new(),
+            companion: None,
         };
         variant.check_expressible(effects)?;
         Ok(variant)

@@ -4,9 +4,11 @@
 //! - here: [`CompiledVariant`] and the cache of them.
 //! - `effects`: the effects, compiled, with the sources of their parameters.
 //! - `parameters`: where each physical quantity comes from.
+//! - `companion`: the quasi-static model beside, and the subchains of a metamodel.
 //! - `spatial`: the three-dimensional model; `bevameter`: plates and rings.
 
 mod bevameter;
+mod companion;
 mod effects;
 mod parameters;
 mod spatial;
@@ -19,6 +21,7 @@ use shared::model::{EffectSet, ModelKind, ModelVariant, PlateCondition, RingCond
 use shared::outcome::{Observables, Outcome, Rejection};
 
 pub use bevameter::{Bevameter, Readings, without_action};
+use companion::CompiledCompanion;
 use effects::{ActiveEffects, EffectMap};
 use parameters::{Radius, SoilMap};
 use spatial::SpatialModel;
@@ -36,6 +39,8 @@ pub struct CompiledVariant {
     stiffness_sensitivity: bool,
     /// What plates and rings read, where there are any to predict.
     bevameter: Option<(Bevameter, Vec<PlateCondition>, Vec<RingCondition>)>,
+    /// The quasi-static model beside, where a metamodel is made of it.
+    companion: Option<Box<CompiledCompanion>>,
 }
 
 /// The stiffness is raised by this share for its derivatives: a model on a grid has noise of some 0.3 % of a force, and the
@@ -101,6 +106,7 @@ impl CompiledVariant {
             conditions,
             effects,
             stiffness_sensitivity: variant.stiffness_sensitivity,
+            companion: CompiledCompanion::new(variant)?,
             bevameter: match variant.plates.is_empty() && variant.rings.is_empty() {
                 true => None,
                 false => Some((
@@ -146,10 +152,13 @@ impl CompiledVariant {
         {
             return Outcome::Rejected(rejection);
         }
-        match self.read_bevameter(theta, &mut observables) {
-            Ok(()) => Outcome::Evaluated(observables),
-            Err(rejection) => Outcome::Rejected(rejection),
+        if let Err(rejection) = self.read_bevameter(theta, &mut observables) {
+            return Outcome::Rejected(rejection);
         }
+        if let Some(companion) = &self.companion {
+            companion.add(theta, &mut observables);
+        }
+        Outcome::Evaluated(observables)
     }
 
     /// Simulates every condition on stiffer soil: derivatives of the channels by ln k*.

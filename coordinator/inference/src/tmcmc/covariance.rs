@@ -4,7 +4,7 @@ use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
 /// The weighted mean and a matrix A with A A' = the weighted covariance.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Factor {
     mean: Vec<f64>,
     #[serde(with = "square")]

@@ -22,7 +22,7 @@ const JUMPS: f64 = 0.1;
 const JUMP_NOVELTY: f64 = 0.9;
 
 /// Proposals whose law is fixed for a stage.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Mixture {
     pub(super) factor: Factor,
     /// Members for differential evolution; empty for a pure random walk.

@@ -200,6 +200,7 @@ fn build(last: &str) -> Outcome {
         posterior,
         predictions,
         rejections: BTreeMap::from([("no_support".into(), 3)]),
+        subchains: None,
         spec,
     }
 }

@@ -17,7 +17,7 @@ const RIDGE: f64 = 1e-9;
 /// The whitened coordinates are `w = A^-1 (u - m)`, m and A A' mean and covariance of the pool. Beyond
 /// `|w| = sqrt(d) + 2`, where nothing was seen, the correction is that of the border: a polynomial grows without bound
 /// where it was not fitted.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Correction {
     degree: Degree,
     /// By predicted value, a coefficient for each feature.

@@ -40,7 +40,7 @@ pub struct Pair {
 }
 
 /// All that a subchain needs but the coarse model itself, frozen for a stage.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Metamodel {
     seed: u64,
     stage: usize,

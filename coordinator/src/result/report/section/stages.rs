@@ -52,6 +52,13 @@ pub(super) fn cost(outcome: &Outcome) -> Markup {
         .collect();
     html! {
         dt { "evaluations" } dd { (row.evaluations.map_or(number::NONE.into(), |n| n.to_string())) }
+        @if let Some(metamodel) = &outcome.subchains {
+            dt { "metamodel" }
+            dd {
+                (metamodel.moves) " moves by quasi_static in " (metamodel.subchains) " subchains, " (metamodel.moved)
+                " of which moved and were evaluated"
+            }
+        }
         dt { "refused by the model" }
         dd {
             (refused)

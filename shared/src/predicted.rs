@@ -1,0 +1,51 @@
+//! Name the values that a likelihood takes out of the observables.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::channel::Channel;
+use crate::outcome::Observables;
+
+/// One predicted value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Predicted {
+    /// The average of a channel, in its unit.
+    Average {
+        /// The channel.
+        #[schema(value_type = String)]
+        channel: Channel,
+        /// Position of the run.
+        run: usize,
+    },
+    /// Its change with ln k*, k* the stiffness of the soil.
+    Sensitivity {
+        /// The channel.
+        #[schema(value_type = String)]
+        channel: Channel,
+        /// Position of the run.
+        run: usize,
+    },
+    /// ln of the pressure under a plate `[ln Pa]`.
+    LnPlatePressure {
+        /// Position of the reading.
+        reading: usize,
+    },
+    /// ln of the shear stress under a ring `[ln Pa]`.
+    LnShearStress {
+        /// Position of the reading.
+        reading: usize,
+    },
+}
+
+impl Predicted {
+    /// The value; `observables` must cover the variant that this was made for.
+    pub fn of(self, observables: &Observables) -> f64 {
+        match self {
+            Predicted::Average { channel, run } => observables.channel(channel)[run],
+            Predicted::Sensitivity { channel, run } => observables.sensitivity(channel)[run],
+            Predicted::LnPlatePressure { reading } => libm::log(observables.plate_pressure_pa[reading]),
+            Predicted::LnShearStress { reading } => libm::log(observables.shear_stress_pa[reading]),
+        }
+    }
+}
