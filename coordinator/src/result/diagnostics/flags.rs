@@ -2,7 +2,7 @@
 //! in a calibration where nothing is wrong a family raises a flag once in a hundred times.
 
 use super::datum::size;
-use super::{ChiSquareTest, Diagnostics, LEVEL, ResidualDiagnostics, probability};
+use super::{ChiSquareTest, Diagnostics, LEVEL, ResidualDiagnostics, p_words};
 use crate::result::Flag;
 use crate::result::report::number;
 
@@ -90,7 +90,7 @@ fn outliers(residuals: &[ResidualDiagnostics]) -> Vec<Flag> {
             if row.residual > 0.0 { "above" } else { "below" },
             row.studentised
                 .map_or(number::NONE.into(), |t| number::significant(t.abs(), 2)),
-            probability(p)
+            p_words(p)
         );
         flag("outlier", Some(&row.channel), Some(p), text)
     };
@@ -109,7 +109,7 @@ fn conflicts(diagnostics: &Diagnostics) -> Vec<Flag> {
         let text = format!(
             "the data pull {} into the tail of its prior ({} among {tests} tests): the prior is wrong, or an effect is missing",
             parameter.name,
-            probability(p)
+            p_words(p)
         );
         Some(flag("conflict", None, Some(p), text))
     });
@@ -119,7 +119,7 @@ fn conflicts(diagnostics: &Diagnostics) -> Vec<Flag> {
             "the data contradict the prior as a whole (squared distance {} where {} is expected, {} among {tests} tests): the prior is wrong, or an effect is missing",
             number::significant(conflict.statistic, 3),
             conflict.degrees_of_freedom,
-            probability(p)
+            p_words(p)
         );
         Some(flag("conflict", None, Some(p), text))
     });

@@ -111,15 +111,22 @@ fn posterior_draws(outcome: &Outcome) -> Vec<Predicted> {
     predicted.collect()
 }
 
-/// A probability in words: `p = 0.012`, `p < 1e-12`.
+/// A probability: `0.012`, `3e-7`, `< 1e-12`.
 pub(super) fn probability(p: f64) -> String {
     if p < 1e-12 {
-        "p < 1e-12".into()
+        "< 1e-12".into()
     } else if p < 1e-3 {
-        format!("p = {p:.0e}")
+        format!("{p:.0e}")
     } else {
-        format!("p = {}", super::report::number::significant(p, 2))
+        super::report::number::significant(p, 2)
     }
+}
+
+/// The same in a sentence: `p = 0.012`, `p < 1e-12`.
+pub(super) fn p_words(p: f64) -> String {
+    let value = probability(p);
+    let relation = if value.starts_with('<') { "p" } else { "p =" };
+    format!("{relation} {value}")
 }
 
 #[cfg(test)]
@@ -150,7 +157,7 @@ mod tests {
 
     #[test]
     fn probabilities_in_words() {
-        let words = [0.0123, 3.4e-7, 0.0].map(probability);
+        let words = [0.0123, 3.4e-7, 0.0].map(p_words);
         assert_eq!(words, ["p = 0.012", "p = 3e-7", "p < 1e-12"]);
     }
 }

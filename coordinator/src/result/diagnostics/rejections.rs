@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use inference::diagnostics::{self, BINS, Region, Side};
 
-use super::{LEVEL, probability};
+use super::{LEVEL, p_words};
 use crate::result::Outcome;
 use crate::result::report::number;
 use crate::spec::{FreeParameter, Spec};
@@ -220,7 +220,7 @@ impl RejectionDiagnostics {
             reasons.join(", "),
             percent(region.draws, self.prior_draws),
             percent(refused, region.draws),
-            probability(region.p)
+            p_words(region.p)
         ))
     }
 }

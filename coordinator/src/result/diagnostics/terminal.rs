@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{ChannelDiagnostics, CoverageCount, Diagnostics, DirectionDiagnostics, RejectionDiagnostics};
-use super::{ResidualDiagnostics, SamplerDiagnostics, shown};
+use super::{ResidualDiagnostics, SamplerDiagnostics, probability, shown};
 use crate::result::report::number;
 use crate::result::terminal::number as four;
 
@@ -53,6 +53,10 @@ fn cell(value: Option<f64>) -> String {
 
 fn short(value: Option<f64>) -> String {
     value.map_or("-".into(), |x| number::significant(x, 2))
+}
+
+fn p_cell(value: Option<f64>) -> String {
+    value.map_or("-".into(), probability)
 }
 
 fn sampler(sampler: &SamplerDiagnostics) -> String {
@@ -135,7 +139,7 @@ fn channels(channels: &[ChannelDiagnostics]) -> String {
             short(c.effective_parameters),
             cell(square.map(|s| s.chi_square)),
             cell(square.map(|s| s.degrees_of_freedom)),
-            short(square.and_then(|s| s.p)),
+            p_cell(square.and_then(|s| s.p)),
             count(&c.coverage90_fit),
             count(&c.coverage90_holdout)
         );
@@ -160,7 +164,7 @@ fn residuals(all: &[ResidualDiagnostics]) -> String {
             four(scale * r.error_sd),
             r.leverage,
             short(r.studentised),
-            short(r.p)
+            p_cell(r.p)
         );
     }
     text
@@ -189,7 +193,7 @@ fn parameters(diagnostics: &Diagnostics) -> String {
             "{:<width$} {:>11} {:>23}{}",
             p.name,
             p.contraction.map_or("-".into(), |c| number::fixed(c, 2)),
-            short(p.conflict_p),
+            p_cell(p.conflict_p),
             if p.at_bound { "  AT BOUND" } else { "" }
         );
     }
@@ -199,7 +203,7 @@ fn parameters(diagnostics: &Diagnostics) -> String {
             number::significant(all.statistic, 3),
             all.degrees_of_freedom
         );
-        let _ = writeln!(text, "{distance}, p {}", short(all.p));
+        let _ = writeln!(text, "{distance}, p {}", p_cell(all.p));
     }
     text
 }

@@ -4,7 +4,9 @@ use maud::{Markup, html};
 
 use crate::result::Diagnostics;
 use crate::result::diagnostics::terminal::{largest, loadings};
-use crate::result::diagnostics::{ChannelDiagnostics, CoverageCount, ResidualDiagnostics, shown};
+use crate::result::diagnostics::{
+    ChannelDiagnostics, CoverageCount, ResidualDiagnostics, probability, shown,
+};
 use crate::result::report::number;
 
 /// So many of the worst-known directions are shown.
@@ -39,6 +41,10 @@ fn or_dash(value: Option<f64>, digits: i32) -> String {
     value.map_or(number::NONE.into(), |x| number::significant(x, digits))
 }
 
+fn p_cell(value: Option<f64>) -> String {
+    value.map_or(number::NONE.into(), probability)
+}
+
 fn channels(diagnostics: &Diagnostics) -> Markup {
     let count = |c: &Option<CoverageCount>| {
         c.map_or(number::NONE.into(), |c| {
@@ -66,7 +72,7 @@ fn channels(diagnostics: &Diagnostics) -> Markup {
                         td { span.alarm[silent(c)] { (or_dash(c.information, 2)) } }
                         td { (or_dash(c.effective_parameters, 2)) }
                         td { (or_dash(square.map(|s| s.chi_square), 3)) } td { (or_dash(square.map(|s| s.degrees_of_freedom), 3)) }
-                        td { (or_dash(square.and_then(|s| s.p), 2)) }
+                        td { (p_cell(square.and_then(|s| s.p))) }
                         td.text { (count(&c.coverage90_fit)) } td.text { (count(&c.coverage90_holdout)) }
                     }
                 }
@@ -74,7 +80,7 @@ fn channels(diagnostics: &Diagnostics) -> Markup {
                     tr.first {
                         td.text { "all together" } td {} td { (all.data) } td {} td {} td {} td {}
                         td { (number::significant(all.chi_square, 3)) } td { (number::significant(all.degrees_of_freedom, 3)) }
-                        td { (or_dash(all.p, 2)) } td {} td {}
+                        td { (p_cell(all.p)) } td {} td {}
                     }
                 }
             }
@@ -96,7 +102,7 @@ fn residuals(all: &[ResidualDiagnostics]) -> Markup {
                     td.text { (r.run) } td.text { (r.channel.replace('_', " ")) }
                     td { (number::to_spread(scale * r.residual, scale * r.error_sd)) } td { (number::to_spread(scale * r.error_sd, scale * r.error_sd)) } td.text { (unit) }
                     td { (number::fixed(r.leverage, 2)) }
-                    td { (or_dash(r.studentised, 2)) } td { (or_dash(r.p, 2)) }
+                    td { (or_dash(r.studentised, 2)) } td { (p_cell(r.p)) }
                 } } }
             } }
             p.note {
@@ -116,12 +122,12 @@ fn parameters(diagnostics: &Diagnostics) -> Markup {
                     tr {
                         td.text { (p.name) }
                         td { (p.contraction.map_or(number::NONE.into(), |c| number::fixed(c, 2))) }
-                        td { (or_dash(p.conflict_p, 2)) }
+                        td { (p_cell(p.conflict_p)) }
                         td.text { @if p.at_bound { span.alarm { "AT BOUND" } } }
                     }
                 }
                 @if let Some(all) = &diagnostics.conflict {
-                    tr.first { td.text { "all together" } td {} td { (or_dash(all.p, 2)) } td {} }
+                    tr.first { td.text { "all together" } td {} td { (p_cell(all.p)) } td {} }
                 }
             }
         }
