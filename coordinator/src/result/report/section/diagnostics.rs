@@ -4,9 +4,7 @@ use maud::{Markup, html};
 
 use crate::result::Diagnostics;
 use crate::result::diagnostics::terminal::{largest, loadings};
-use crate::result::diagnostics::{
-    ChannelDiagnostics, CoverageCount, ResidualDiagnostics, probability, shown,
-};
+use crate::result::diagnostics::{ChannelDiagnostics, ResidualDiagnostics, probability, shown};
 use crate::result::report::number;
 
 /// So many of the worst-known directions are shown.
@@ -21,7 +19,8 @@ pub(in crate::result::report) fn diagnostics(diagnostics: &Diagnostics) -> Marku
         p.note {
             "Error sd: noise, and what it shares with other rows. Prior allows: standard deviation of the prediction over draws from the prior. "
             "Information: the latter over the former; a channel below 1 cannot inform. Parameters spent: sum of the leverages. "
-            "Chi-square: squares of the residuals over the errors' variances; none where the noise was inferred from them."
+            "Chi-square: squares of the residuals over the errors' variances; none where the noise was inferred from them. "
+            "How many rows lie in their intervals stands under the errors by channel."
         }
         (residuals(&diagnostics.residuals))
         h3 { "What the data did to the prior" }
@@ -46,21 +45,12 @@ fn p_cell(value: Option<f64>) -> String {
 }
 
 fn channels(diagnostics: &Diagnostics) -> Markup {
-    let count = |c: &Option<CoverageCount>| {
-        c.map_or(number::NONE.into(), |c| {
-            format!(
-                "{} of {} ({} to {} expected)",
-                c.inside, c.of, c.expected_from, c.expected_to
-            )
-        })
-    };
     let silent = |c: &ChannelDiagnostics| c.silence.is_some();
     html! {
         table {
             thead { tr {
                 th.text { "channel" } th.text { "unit" } th { "rows" } th { "error sd" } th { "prior" br; "allows" } th { "information" }
                 th { "parameters" br; "spent" } th { "chi-square" } th { "expected" } th { "p" }
-                th.text { "inside 90 %, fit" } th.text { "holdout" }
             } }
             tbody {
                 @for c in &diagnostics.channels {
@@ -73,14 +63,13 @@ fn channels(diagnostics: &Diagnostics) -> Markup {
                         td { (or_dash(c.effective_parameters, 2)) }
                         td { (or_dash(square.map(|s| s.chi_square), 3)) } td { (or_dash(square.map(|s| s.degrees_of_freedom), 3)) }
                         td { (p_cell(square.and_then(|s| s.p))) }
-                        td.text { (count(&c.coverage90_fit)) } td.text { (count(&c.coverage90_holdout)) }
                     }
                 }
                 @if let Some(all) = &diagnostics.chi_square {
                     tr.first {
                         td.text { "all together" } td {} td { (all.data) } td {} td {} td {} td {}
                         td { (number::significant(all.chi_square, 3)) } td { (number::significant(all.degrees_of_freedom, 3)) }
-                        td { (p_cell(all.p)) } td {} td {}
+                        td { (p_cell(all.p)) }
                     }
                 }
             }
