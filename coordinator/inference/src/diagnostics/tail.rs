@@ -134,6 +134,6 @@ mod tests {
         // More are drawn than are unmarked: one hit is sure.
         assert!((libm::exp(ln_hypergeometric_tail(4, 3, 2, 1)) - 1.0).abs() < 1e-12);
         // More than there are.
-        assert_eq!(ln_hypergeometric_tail(4, 1, 2, 2), f64::NEG_INFINITY);
+        assert!(ln_hypergeometric_tail(4, 1, 2, 2) < -1e300);
     }
 }

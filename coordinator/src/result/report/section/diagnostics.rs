@@ -18,7 +18,7 @@ pub(in crate::result::report) fn diagnostics(diagnostics: &Diagnostics) -> Marku
         div.scroll { (channels(diagnostics)) }
         p.note {
             "Error sd: noise, and what it shares with other rows. Prior allows: standard deviation of the prediction over draws from the prior. "
-            "Information: the latter over the former; a channel below 1 cannot inform. Parameters spent: sum of the leverages. "
+            "Information: the latter over the former; below 1 a row says less than the prior did. Parameters spent: sum of the leverages. "
             "Chi-square: squares of the residuals over the errors' variances; none where the noise was inferred from them. "
             "How many rows lie in their intervals stands under the errors by channel."
         }
