@@ -40,8 +40,8 @@ pub enum Command {
     Report(Report),
     /// Write a calibration's draws and comparison.
     Export(Export),
-    /// Say where the model fails (later).
-    Diagnose(Later),
+    /// Say how far a calibration can be trusted, and where its model fails.
+    Diagnose(Target),
     /// Find the missing effect (later).
     Discover(Later),
     /// Add an effect (later).

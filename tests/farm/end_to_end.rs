@@ -78,6 +78,16 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
     for word in ["r00", "r39", "holdout measurements", "pull N", "90 % interval"] {
         assert!(compared.contains(word), "{word} in\n{compared}");
     }
+    let diagnosed = verb(&service, &["diagnose", "1"]);
+    for word in [
+        "effective sample size",
+        "information",
+        "contraction",
+        "largest residuals",
+        "chi-square",
+    ] {
+        assert!(diagnosed.contains(word), "{word} in\n{diagnosed}");
+    }
     let report = verb(&service, &["report", "1"]);
     assert!(
         report.to_lowercase().starts_with("<!doctype html>") && report.contains("sand"),
@@ -103,7 +113,15 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
         exported["comparison"]["rows"].as_array().map(Vec::len),
         Some(40 * 3)
     );
-    for part in ["stages", "samples", "posterior", "comparison", "flags", "summary"] {
+    for part in [
+        "stages",
+        "samples",
+        "posterior",
+        "comparison",
+        "diagnostics",
+        "flags",
+        "summary",
+    ] {
         let answer = service.client.json(&format!("/v1/calibrations/2/{part}"));
         assert!(answer.is_object() || answer.is_array(), "{part}: {answer}");
     }
@@ -120,6 +138,10 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
     let folder = service.folder().display().to_string();
     let alone = run(coordinator(["export", "1", "--out", &folder])).success();
     same(&alone, &csv);
+    assert_eq!(
+        run(coordinator(["diagnose", "1", "--out", &folder])).success(),
+        diagnosed
+    );
 }
 
 #[test]
@@ -271,6 +293,7 @@ fn the_openapi_document_lists_every_route_of_the_contract() {
             "samples",
             "posterior",
             "comparison",
+            "diagnostics",
             "flags",
             "summary",
             "events",

@@ -5,6 +5,7 @@ mod bad_input;
 mod bevameter;
 mod bit_identity;
 mod conformance;
+mod diagnostics;
 mod effects;
 mod end_to_end;
 mod forward;

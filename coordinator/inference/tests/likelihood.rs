@@ -305,3 +305,56 @@ fn error_models_that_mean_nothing_are_refused() {
         Ok(LogLikelihood::Impossible)
     );
 }
+
+/// Five data: one alone, a shift over two, a derivative over two others, a discrepancy over the first of these pairs.
+fn entangled(discrepancy: Discrepancy) -> Likelihood {
+    let data = (0..5)
+        .map(|i| datum(i, i % 2, i as f64, Sd::Known(0.5 + 0.1 * i as f64)))
+        .collect();
+    let common = [
+        (vec![1, 2], Size::Shift(Sd::Inferred { parameter: 0 })),
+        (vec![3, 4], Size::Sensitivity(Sd::Known(0.3))),
+        (vec![1], Size::Discrepancy),
+    ];
+    let common = common.map(|(data, size)| CommonError { data, size });
+    Likelihood::with_common(data, ErrorLaw::Gaussian, common.to_vec(), discrepancy).unwrap()
+}
+
+const ENTANGLED: [f64; 7] = [0.1, 0.9, 2.3, 3.0, 3.5, 2.0, -1.5];
+
+#[test]
+fn variances_are_the_diagonal_of_the_covariance() {
+    let known = entangled(Discrepancy::Known(2.0));
+    let found = known.error_variances(&ENTANGLED, &[0.7]).unwrap();
+    // Noise 0.5 ... 0.9; shift 0.7; twice the noise of datum 1; 0.3 times the derivatives 2 and -1.5.
+    let expected = [0.25, 0.36 + 0.49 + 1.44, 0.49 + 0.49, 0.64 + 0.36, 0.81 + 0.2025];
+    for (a, b) in found.iter().zip(expected) {
+        assert!((a - b).abs() < 1e-12, "{found:?}");
+    }
+    let unknown = entangled(Discrepancy::Unknown);
+    let weights = unknown.discrepancy_weights(&ENTANGLED, &[0.7]).unwrap();
+    let squares: f64 = weights.iter().map(|(m, w)| w * m * m).sum();
+    let found = unknown.error_variances(&ENTANGLED, &[0.7]).unwrap();
+    assert!((found[1] - (0.36 + 0.49 + 0.36 * squares)).abs() < 1e-12);
+}
+
+#[test]
+fn a_part_has_the_density_of_its_data_alone() {
+    let whole = entangled(Discrepancy::Known(2.0));
+    let (part, places) = whole.part(&[0, 2, 4]).unwrap();
+    assert_eq!(places, [0, 2, 4, 6]);
+    let values: Vec<f64> = places.iter().map(|&p| ENTANGLED[p]).collect();
+    // Nothing is shared any more: three independent normals with the variances of the whole.
+    let density = |variance: f64, residual: f64| {
+        -0.5 * (2.0 * std::f64::consts::PI * variance).ln() - 0.5 * residual * residual / variance
+    };
+    let expected = density(0.25, -0.1) + density(0.98, -0.3) + density(1.0125, 0.5);
+    let found = part.log_likelihood(&values, &[0.7]).unwrap().value();
+    assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    let all: Vec<usize> = (0..5).collect();
+    assert_eq!(whole.part(&all).unwrap().0, whole);
+    assert!(matches!(
+        whole.part(&[5]),
+        Err(LikelihoodError::Membership { datum: 5, data: 5 })
+    ));
+}

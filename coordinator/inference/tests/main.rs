@@ -5,6 +5,7 @@
 mod answers;
 mod ask_tell;
 mod bevameter;
+mod diagnostics;
 mod flags;
 mod likelihood;
 mod lm;

@@ -237,3 +237,42 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn scores_are_normal_quantiles() {
+    // Phi(1) and Phi(-2.5), from tables.
+    for (p, score) in [
+        (0.841_344_746_068_543, 1.0),
+        (0.006_209_665_325_776, -2.5),
+        (0.5, 0.0),
+    ] {
+        for marginal in cases() {
+            let x = marginal.quantile(p);
+            assert!((marginal.cumulative(x) - p).abs() < 1e-9, "{marginal:?}");
+            assert!((marginal.normal_score(x) - score).abs() < 1e-6, "{marginal:?}");
+        }
+    }
+    let marginal = Marginal::new(
+        Distribution::Uniform {
+            lower: 4.0,
+            upper: 5.6,
+        },
+        None,
+    )
+    .unwrap();
+    assert!(marginal.normal_score(4.0) < -37.0 && marginal.normal_score(5.6) > 37.0);
+    assert!(marginal.cumulative(3.0) <= 0.0 && marginal.cumulative(6.0) >= 1.0);
+}
+
+#[test]
+fn coordinates_have_the_moments_of_their_draws() {
+    for marginal in cases() {
+        let count = 20_000;
+        let of = |k: usize| marginal.coordinate(marginal.quantile((k as f64 + 0.5) / count as f64));
+        let draws: Vec<f64> = (0..count).map(of).collect();
+        let (mean, sd) = inference::diagnostics::mean_and_sd(&draws).unwrap();
+        let (expected, expected_sd) = marginal.coordinate_moments();
+        assert!((mean - expected).abs() < 1e-3 * expected_sd, "{marginal:?}");
+        assert!((sd / expected_sd - 1.0).abs() < 2e-3, "{marginal:?}");
+    }
+}

@@ -33,7 +33,7 @@ pub async fn execute(command: Command) -> anyhow::Result<()> {
         Command::Compare(target) => verbs::compare(&target).await,
         Command::Report(report) => verbs::report(&report).await,
         Command::Export(export) => verbs::export(&export).await,
-        Command::Diagnose(_) => bail!("diagnose is not available in this version"),
+        Command::Diagnose(target) => verbs::diagnose(&target).await,
         Command::Discover(_) => bail!("discover is not available in this version"),
         Command::Extend(_) => bail!("extend is not available in this version"),
         Command::AddRuns(_) => bail!("add-runs is not available in this version"),

@@ -5,7 +5,7 @@ use serde::de::DeserializeOwned;
 use shared::api::{CalibrationStatus, ErrorBody};
 
 use crate::config::{Source, Target};
-use crate::result::{self, Comparison, Outcome, PosteriorTable, Summary, report};
+use crate::result::{self, Comparison, Diagnostics, Outcome, PosteriorTable, Summary, report};
 use crate::store::Reader;
 
 /// A service or a folder.
@@ -61,6 +61,16 @@ impl Place {
         match self {
             Place::Service(client) => client.get(&format!("/v1/calibrations/{id}/comparison")).await,
             Place::Folder(reader) => Ok(outcome(reader, id).await?.comparison()),
+        }
+    }
+
+    pub(super) async fn diagnostics(&self, id: i64) -> anyhow::Result<Diagnostics> {
+        match self {
+            Place::Service(client) => client.get(&format!("/v1/calibrations/{id}/diagnostics")).await,
+            Place::Folder(reader) => {
+                let outcome = outcome(reader, id).await?;
+                Ok(outcome.diagnostics(&outcome.comparison()))
+            }
         }
     }
 

@@ -1,4 +1,4 @@
-//! The short verbs: submit, list, status, cancel, pause, resume, compare, report, export.
+//! The short verbs: submit, list, status, cancel, pause, resume, compare, diagnose, report, export.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use super::job;
 use super::output::say;
 use super::source::{Client, Place};
 use crate::config::{Export, Format, Report, Source, Submit, Target};
-use crate::result::terminal;
+use crate::result::{self, terminal};
 
 pub(super) async fn submit(config: &Submit) -> anyhow::Result<()> {
     let job = job::read(&config.file)?;
@@ -63,6 +63,12 @@ pub(super) async fn compare(target: &Target) -> anyhow::Result<()> {
     let place = Place::open(&target.source).await?;
     let comparison = place.comparison(place.id(target).await?).await?;
     Ok(say(&terminal::comparison(&comparison))?)
+}
+
+pub(super) async fn diagnose(target: &Target) -> anyhow::Result<()> {
+    let place = Place::open(&target.source).await?;
+    let diagnostics = place.diagnostics(place.id(target).await?).await?;
+    Ok(say(&result::diagnostics::terminal::text(&diagnostics))?)
 }
 
 pub(super) async fn report(config: &Report) -> anyhow::Result<()> {

@@ -11,7 +11,7 @@ use utoipa_axum::routes;
 
 use super::error::{Body, HttpError, Id};
 use crate::farm::Control;
-use crate::result::{Comparison, Flag, Outcome, PosteriorTable, Summary, report};
+use crate::result::{Comparison, Diagnostics, Flag, Outcome, PosteriorTable, Summary, report};
 use crate::service::Service;
 use crate::store::{Sample, StageRow};
 
@@ -26,6 +26,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(samples))
         .routes(routes!(posterior))
         .routes(routes!(comparison))
+        .routes(routes!(diagnostics))
         .routes(routes!(flags))
         .routes(routes!(summary))
         .routes(routes!(report_page))
@@ -157,11 +158,23 @@ async fn comparison(State(service): State<Service>, Id(id): Id) -> Result<Json<C
     Ok(Json(outcome(&service, id).await?.comparison()))
 }
 
+async fn diagnosed(service: &Service, id: i64) -> Result<Diagnostics, HttpError> {
+    let outcome = outcome(service, id).await?;
+    Ok(outcome.diagnostics(&outcome.comparison()))
+}
+
+/// How far the result can be trusted, and where the model fails.
+#[utoipa::path(get, path = "/calibrations/{id}/diagnostics", params(("id" = i64, Path)), responses(
+    (status = 200, body = Diagnostics), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn diagnostics(State(service): State<Service>, Id(id): Id) -> Result<Json<Diagnostics>, HttpError> {
+    Ok(Json(diagnosed(&service, id).await?))
+}
+
 /// What deserves attention.
 #[utoipa::path(get, path = "/calibrations/{id}/flags", params(("id" = i64, Path)), responses(
     (status = 200, body = Vec<Flag>), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
 async fn flags(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<Flag>>, HttpError> {
-    Ok(Json(outcome(&service, id).await?.flags()))
+    Ok(Json(diagnosed(&service, id).await?.flags))
 }
 
 /// The summary, as `summary.json` has it.

@@ -1,13 +1,15 @@
 //! What deserves attention, each with a sentence a test engineer understands.
 
 use super::Outcome;
+use super::diagnostics::{Diagnostics, findings_that_alarm};
 use super::predictive::discrepancy_posterior;
 use super::summary::ParameterSummary;
 
 /// Something that deserves attention.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Flag {
-    /// `bound`, `not_equilibrated`, `no_information`, `rejections`; later versions add others.
+    /// `chi2`, `outlier`, `conflict`, `bound`, `not_equilibrated`, `no_information`, `rejections`; later versions add
+    /// others.
     pub kind: String,
     /// The channel it is about.
     pub channel: Option<String>,
@@ -19,15 +21,15 @@ pub struct Flag {
     pub text: String,
 }
 
-/// A posterior as wide as so much of its prior has learnt nothing worth the name.
+/// A posterior as wide as so much of its prior, in the sampler's coordinate, has learnt nothing worth the name.
 const NO_CONTRACTION: f64 = 0.95;
 /// A share of refused vectors above which the prior deserves another look.
 const MANY_REJECTED: f64 = 0.5;
 
 impl Outcome {
     /// What deserves attention.
-    pub fn flags(&self) -> Vec<Flag> {
-        let mut flags = Vec::new();
+    pub(super) fn flags(&self, diagnostics: &Diagnostics) -> Vec<Flag> {
+        let mut flags = findings_that_alarm(diagnostics);
         let mut flag = |kind: &str, text: String| {
             flags.push(Flag {
                 kind: kind.into(),
@@ -54,17 +56,14 @@ impl Outcome {
             };
             flag("not_equilibrated", text);
         }
-        for (name, parameter) in self.parameter_summaries() {
+        for ((name, parameter), found) in self.parameter_summaries().iter().zip(&diagnostics.parameters) {
             if parameter.at_bound {
-                flag("bound", bound_text(&name, &parameter));
+                flag("bound", bound_text(name, parameter));
             }
-            if let Some(prior_sd) = parameter.prior_sd
-                && parameter.sd > NO_CONTRACTION * prior_sd
-            {
-                let text = format!(
-                    "the data say nothing about {name}: its standard deviation is {:.3e} after the fit and {prior_sd:.3e} before",
-                    parameter.sd
-                );
+            if let Some(contraction) = found.contraction.filter(|c| *c < 1.0 - NO_CONTRACTION) {
+                let left = 100.0 * (1.0 - contraction);
+                let text =
+                    format!("the data say nothing about {name}: {left:.0} % of its prior's spread is left");
                 flag("no_information", text);
             }
         }
@@ -110,10 +109,14 @@ impl Outcome {
                 .iter()
                 .map(|(kind, n)| format!("{kind} {n}"))
                 .collect();
-            let text = format!(
+            let mut text = format!(
                 "the model refused {rejected} of {evaluations} parameter vectors ({}): much of the prior means nothing to it",
                 kinds.join(", ")
             );
+            if let Some(words) = diagnostics.rejections.words() {
+                text.push_str("; ");
+                text.push_str(&words);
+            }
             flag("rejections", text);
         }
         let holdout = self.predictions.iter().filter_map(|p| p.holdout.as_ref());

@@ -6,6 +6,7 @@ mod baseline;
 mod comparison;
 mod coverage;
 mod csv;
+pub mod diagnostics;
 mod errors;
 mod flags;
 mod point_estimate;
@@ -23,10 +24,11 @@ use shared::api::{CalibrationState, CalibrationStatus};
 
 use crate::service::ServiceError;
 use crate::spec::{Method, Spec};
-use crate::store::{CalibrationRow, EstimateRow, Prediction, Reader, Sample, StageRow, Subchains};
+use crate::store::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Reader, Sample, StageRow, Subchains};
 
 pub use comparison::{Comparison, ComparisonRow};
 pub use csv::PosteriorTable;
+pub use diagnostics::Diagnostics;
 pub use errors::{ChannelError, ErrorTable};
 pub use flags::Flag;
 pub use point_estimate::PointEstimate;
@@ -54,6 +56,10 @@ pub struct Outcome {
     pub rejections: BTreeMap<String, u64>,
     /// What a metamodel did; `None` where there was none.
     pub subchains: Option<Subchains>,
+    /// The draws from the prior that a sampler began with; none of a fit.
+    pub prior_draws: Vec<PriorDraw>,
+    /// How often a lease failed, by what was said of it.
+    pub faults: BTreeMap<String, u64>,
 }
 
 impl Outcome {
@@ -80,14 +86,20 @@ impl Outcome {
             Method::Sample(_) => None,
             Method::Fit(_) | Method::Search(_) => reader.estimate(row.id).await?,
         };
+        let prior_draws = match spec.method {
+            Method::Sample(_) => reader.prior_draws(row.id, spec.method.width()).await?,
+            Method::Fit(_) | Method::Search(_) => Vec::new(),
+        };
         Ok(Outcome {
             spec,
             estimate,
+            prior_draws,
             experiment: row.name.clone(),
             posterior: reader.samples(row.id, None).await?,
             predictions: reader.predictions(row.id).await?,
             rejections: reader.rejections(row.id).await?,
             subchains: reader.subchains(row.id).await?,
+            faults: reader.faults(row.id).await?,
             stages,
             row: row.clone(),
         })

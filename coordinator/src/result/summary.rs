@@ -165,7 +165,7 @@ impl Outcome {
             status: self.row.state.name().to_owned(),
             calibrations: self.calibration_summary().into_iter().collect(),
             point_estimates: self.point_estimates(),
-            flags: self.flags(),
+            flags: self.diagnostics(&self.comparison()).flags,
             discovery: None,
         }
     }

@@ -9,6 +9,7 @@ use shared::model::{EffectSet, ModelKind};
 
 use super::comparison::{Comparison, ComparisonRow};
 use super::coverage::Coverage;
+use super::diagnostics::terminal::{findings, flags};
 use super::errors::ErrorTable;
 use super::readings::{error_model, reading_errors};
 use super::settling::unsettled;
@@ -153,8 +154,9 @@ pub fn summary(outcome: &Outcome) -> String {
         let _ = writeln!(text, "{words}");
     }
     text.push('\n');
+    let compared = outcome.comparison();
     if !outcome.spec.experiment.runs.is_empty() {
-        text.push_str(&comparison(&outcome.comparison()));
+        text.push_str(&comparison(&compared));
     }
     for error in reading_errors(outcome) {
         let _ = writeln!(text, "{}", error.words());
@@ -163,12 +165,11 @@ pub fn summary(outcome: &Outcome) -> String {
         Some(estimate) => point(outcome, estimate),
         None => parameters(outcome),
     });
-    let flags = outcome.flags();
-    if !flags.is_empty() {
-        text.push('\n');
-    }
-    for flag in flags {
-        let _ = writeln!(text, "flag {}: {}", flag.kind, flag.text);
+    let diagnostics = outcome.diagnostics(&compared);
+    for words in [findings(&diagnostics), flags(&diagnostics)] {
+        if !words.is_empty() {
+            let _ = write!(text, "\n{words}");
+        }
     }
     if let Some(note) = unsettled(outcome) {
         let _ = writeln!(text, "\nnote: {note}");

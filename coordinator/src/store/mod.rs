@@ -5,6 +5,7 @@
 
 mod blob;
 mod facts;
+mod prior;
 mod read;
 mod recovery;
 mod writer;
@@ -15,6 +16,7 @@ use std::path::Path;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
 use sqlx::{Connection, SqliteConnection, SqlitePool};
 
+pub use prior::PriorDraw;
 pub use read::{CalibrationRow, EstimateRow, ExperimentRow, Prediction, Sample, StageRow, Subchains};
 pub use writer::{FactSink, NewCalibrationRow, StoreHealth, Writer};
 

@@ -55,7 +55,7 @@ pub struct CalibrationRow {
 }
 
 /// A stored stage, without its population.
-#[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct StageRow {
     /// Position, counted from 0 = the prior.
     pub stage: u32,

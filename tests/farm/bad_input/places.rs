@@ -161,7 +161,12 @@ fn a_calibration_that_is_not_there_or_not_ready_is_named() {
     let id = service.submit(&Job::small());
     assert_eq!(verb(&["status", "77"]), "there is no calibration 77");
     assert_eq!(verb(&["cancel", "77"]), "there is no calibration 77");
-    for words in [["compare", "1"], ["report", "1"], ["export", "1"]] {
+    for words in [
+        ["compare", "1"],
+        ["diagnose", "1"],
+        ["report", "1"],
+        ["export", "1"],
+    ] {
         assert_eq!(
             verb(&words),
             "calibration 1 is queued; results are there when it is finished"
@@ -174,7 +179,7 @@ fn a_calibration_that_is_not_there_or_not_ready_is_named() {
     service.submit(&Job::small());
     assert_eq!(verb(&["status"]), "there are 2 calibrations: name one by its id");
     assert_eq!(service.status(id)["state"], "queued");
-    for later in ["diagnose", "discover", "extend", "add-runs"] {
+    for later in ["discover", "extend", "add-runs"] {
         let message = run(coordinator([later])).refusal();
         assert!(message.contains("not available in this version"), "{message}");
     }

@@ -159,6 +159,7 @@ fn what_is_not_there_is_404_and_what_does_not_fit_is_409() {
         "/samples",
         "/posterior",
         "/comparison",
+        "/diagnostics",
         "/flags",
         "/summary",
         "/report",
@@ -173,7 +174,14 @@ fn what_is_not_there_is_404_and_what_does_not_fit_is_409() {
 
     let id = service.submit(&Job::small());
     let post = |verb: &str| client.post(&format!("/v1/calibrations/{id}/{verb}"), &json!({}));
-    for path in ["posterior", "comparison", "flags", "summary", "report"] {
+    for path in [
+        "posterior",
+        "comparison",
+        "diagnostics",
+        "flags",
+        "summary",
+        "report",
+    ] {
         let message = "calibration 1 is queued; results are there when it is finished";
         is(
             &client.get(&format!("/v1/calibrations/{id}/{path}")),

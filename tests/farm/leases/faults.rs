@@ -72,6 +72,14 @@ fn a_poisonous_evaluation_pauses_its_calibration_and_an_innocent_one_is_not_blam
     let _cured = service.worker("cured", 2);
     let finished = service.wait_for(id, "finished");
     assert_eq!(finished["message"], Value::Null);
+    // Three leases of 0 and one of 1 were lost; both are draws from the prior.
+    let diagnostics = service.client.json(&format!("/v1/calibrations/{id}/diagnostics"));
+    let found = &diagnostics["rejections"];
+    let lost = &found["faults"]["the lease expired after 100 ms without renewal"];
+    assert!(lost.as_u64() >= Some(4), "{found}");
+    let bins = found["parameters"][0]["bins"].as_array().expect("bins").iter();
+    let of_prior: u64 = bins.filter_map(|bin| bin["faults"].as_u64()).sum();
+    assert!(of_prior >= 4, "{found}");
     let undisturbed = Service::start(&["--local-workers", "1"]);
     assert_eq!(
         rejections(&service, id),

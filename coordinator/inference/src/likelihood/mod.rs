@@ -6,13 +6,16 @@
 //!
 //! # Layout
 //! - `datum`: a measured value with its noise. `law`: normal or Student's t.
-//! - `common`: errors in common, and the blocks that they make. `factor`: the covariance of a block.
+//! - `common`: errors in common, and the blocks that they make. `spread`: what they and the noise come to.
+//! - `factor`: the covariance of a block. `part`: some of the data alone.
 //! - `whitening`: residuals and derivatives made independent, for least squares.
 
 mod common;
 mod datum;
 mod factor;
 mod law;
+mod part;
+mod spread;
 mod whitening;
 
 use serde::{Deserialize, Serialize};
@@ -25,6 +28,7 @@ pub use common::{CommonError, Discrepancy, HIGHEST, LEVELS, LOWEST, Size};
 pub use datum::{Datum, LikelihoodError, Sd};
 use factor::Factor;
 pub use law::ErrorLaw;
+use spread::Spread;
 pub use whitening::Whitening;
 
 /// Measured values and the law of their errors.
@@ -275,35 +279,7 @@ impl Likelihood {
         values: &[f64],
         theta: &[f64],
     ) -> Result<Option<Scored>, LikelihoodError> {
-        let mut sds = Vec::with_capacity(block.data.len());
-        for &i in &block.data {
-            sds.push(self.data[i].noise_sd(theta)?);
-        }
-        let position = |i: &usize| block.data.binary_search(i).unwrap_or_default();
-        let mut common = Vec::with_capacity(block.common.len());
-        for &c in &block.common {
-            let CommonError { data, size } = &self.common[c];
-            let error: Vec<(usize, f64)> = match *size {
-                Size::Shift(sd) => {
-                    let sd = sd.value(theta)?;
-                    data.iter().map(|i| (position(i), sd)).collect()
-                }
-                Size::Discrepancy => {
-                    let squares: f64 = data.iter().map(|i| sds[position(i)] * sds[position(i)]).sum();
-                    let shift = m * (squares / data.len() as f64).sqrt();
-                    data.iter().map(|i| (position(i), shift)).collect()
-                }
-                Size::Sensitivity(sd) => {
-                    let sd = sd.value(theta)?;
-                    let derivative = |i: &usize| {
-                        let place = self.sensitive.binary_search(i).unwrap_or_default();
-                        values[self.data.len() + place]
-                    };
-                    data.iter().map(|i| (position(i), sd * derivative(i))).collect()
-                }
-            };
-            common.push(error);
-        }
+        let Spread { sds, common } = self.spread(block, m, values, theta)?;
         Ok(Factor::new(&sds, &common).map(|factor| {
             let residuals = block.data.iter().map(|&i| self.data[i].value - values[i]);
             let whitened = factor.whiten(residuals.collect());

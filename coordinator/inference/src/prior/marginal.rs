@@ -220,6 +220,54 @@ impl Marginal {
         }
     }
 
+    /// The share of the probability below x; 0 and 1 outside the support.
+    #[must_use]
+    pub fn cumulative(&self, x: f64) -> f64 {
+        self.tails(x)[0]
+    }
+
+    /// The standard normal number with as much probability below it as x has: `Phi^-1(P(X < x))`.
+    ///
+    /// Scores of draws from this distribution are standard normal, whatever it is. An x on an end of the support, or
+    /// outside, has the score of the least probability that a number can hold, +-37.5. Checked by
+    /// `priors::scores_are_normal_quantiles`.
+    #[must_use]
+    pub fn normal_score(&self, x: f64) -> f64 {
+        let [below, above] = self.tails(x).map(|p| p.max(f64::MIN_POSITIVE));
+        if below < above {
+            normal::lower_quantile(below)
+        } else {
+            -normal::lower_quantile(above)
+        }
+    }
+
+    /// Mean and standard deviation of the sampling coordinate.
+    #[must_use]
+    pub fn coordinate_moments(&self) -> (f64, f64) {
+        match self.density {
+            Density::Uniform { lower, width } => (lower + 0.5 * width, width / 12.0_f64.sqrt()),
+            Density::Normal {
+                mean, sd, low, high, ..
+            } => {
+                let (from, to) = window(low, high, 0.0);
+                let peak = 0.0_f64.max(low).min(high);
+                let log_density = |z: f64| 0.5 * (peak - z) * (peak + z);
+                moments::mean_and_sd(from, to, log_density, |z| mean + sd * z)
+            }
+        }
+    }
+
+    /// The probabilities below and above x, each with its digits.
+    fn tails(&self, x: f64) -> [f64; 2] {
+        if x <= self.lower {
+            [0.0, 1.0]
+        } else if x >= self.upper {
+            [1.0, 0.0]
+        } else {
+            self.density.tails(self.coordinate.of(x))
+        }
+    }
+
     /// One independent draw, by inversion.
     pub fn sample(&self, stream: &mut Stream) -> f64 {
         self.quantile(stream.uniform())
@@ -328,6 +376,23 @@ impl Density {
             Self::Normal { mean, sd, mass, .. } => {
                 let z = (u - mean) / sd;
                 -0.5 * z * z - LN_SQRT_TAU - libm::log(sd) - libm::log(mass)
+            }
+        }
+    }
+
+    /// The probabilities below and above u, which lies inside.
+    fn tails(&self, u: f64) -> [f64; 2] {
+        match *self {
+            Self::Uniform { lower, width } => [(u - lower) / width, (lower + width - u) / width],
+            Self::Normal {
+                mean,
+                sd,
+                low,
+                high,
+                mass,
+            } => {
+                let z = (u - mean) / sd;
+                [normal::mass(low, z) / mass, normal::mass(z, high) / mass]
             }
         }
     }

@@ -10,7 +10,7 @@ use shared::outcome::Observables;
 
 use crate::result::Outcome;
 use crate::spec::{Method, Spec};
-use crate::store::{CalibrationRow, EstimateRow, Prediction, Sample, StageRow};
+use crate::store::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Sample, StageRow};
 
 const JOB: &str = r#"
 # <i>bold & brave</i>
@@ -91,6 +91,7 @@ pub(in crate::result) fn fit() -> Outcome {
     });
     outcome.predictions = vec![first];
     outcome.posterior.clear();
+    outcome.prior_draws.clear();
     outcome.stages.clear();
     outcome.row.log_evidence = None;
     outcome.row.log_evidence_se = None;
@@ -155,6 +156,17 @@ fn build(last: &str) -> Outcome {
             ..Observables::default()
         }
     };
+    // The model refuses two draws, those with the least n.
+    let prior_draws = (0..40)
+        .map(|k| PriorDraw {
+            theta: theta(k),
+            result: match share(k, 1) < 0.075 {
+                true => Err("no_support: condition 0: k* = -2 Pa".into()),
+                false => Ok(spec.predicted_values(&predicted(k, &spec.fit_runs))),
+            },
+            faults: u64::from(k == 7),
+        })
+        .collect();
     let predictions = (0..20)
         .map(|k| Prediction {
             theta: theta(k),
@@ -201,6 +213,8 @@ fn build(last: &str) -> Outcome {
         predictions,
         rejections: BTreeMap::from([("no_support".into(), 3)]),
         subchains: None,
+        prior_draws,
+        faults: BTreeMap::from([("the lease expired".into(), 1)]),
         spec,
     }
 }

@@ -11,7 +11,7 @@
 mod chart;
 #[cfg(test)]
 pub(super) mod fixture;
-mod number;
+pub(super) mod number;
 mod quantity;
 mod section;
 
@@ -25,6 +25,7 @@ const STYLE: &str = include_str!("style.css");
 /// The report as one HTML page.
 pub fn page(outcome: &Outcome) -> String {
     let comparison = outcome.comparison();
+    let diagnostics = outcome.diagnostics(&comparison);
     let (parameters, method) = match &outcome.estimate {
         Some(estimate) => (
             section::estimate(outcome, estimate),
@@ -38,7 +39,7 @@ pub fn page(outcome: &Outcome) -> String {
             ("stages", "Sampler", section::stages(outcome)),
         ),
     };
-    let sections: [(&str, &str, Markup); 5] = [
+    let mut sections: Vec<(&str, &str, Markup)> = vec![
         (
             "comparison",
             "Model against measurement",
@@ -53,6 +54,18 @@ pub fn page(outcome: &Outcome) -> String {
         method,
         ("provenance", "Provenance", section::provenance(outcome)),
     ];
+    // A point has no spread to diagnose by.
+    if diagnostics.sampler.is_some() {
+        let after_parameters = [
+            ("diagnostics", "Diagnostics", section::diagnostics(&diagnostics)),
+            (
+                "rejections",
+                "Refusals by region of the prior",
+                section::rejections(&diagnostics.rejections),
+            ),
+        ];
+        sections.splice(3..3, after_parameters);
+    }
     let markup = html! {
         (DOCTYPE)
         html lang="en" {
@@ -72,7 +85,7 @@ pub fn page(outcome: &Outcome) -> String {
                     }
                 }
                 main {
-                    (section::verdict(outcome, &comparison))
+                    (section::verdict(outcome, &comparison, &diagnostics))
                     @for (id, title, body) in &sections {
                         section id=(id) { h2 { (title) } (body) }
                     }

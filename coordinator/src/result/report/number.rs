@@ -1,14 +1,14 @@
 //! Numbers with as many digits as they deserve.
 
 /// What stands where there is no number.
-pub(super) const NONE: &str = "\u{2013}";
+pub(in crate::result) const NONE: &str = "\u{2013}";
 
 /// Beyond these sizes a number is written with an exponent.
 const LARGE: f64 = 1e7;
 const DECIMALS: i32 = 7;
 
 /// A number to so many significant digits.
-pub(super) fn significant(x: f64, digits: i32) -> String {
+pub(in crate::result) fn significant(x: f64, digits: i32) -> String {
     if !x.is_finite() {
         return NONE.into();
     }
@@ -24,7 +24,7 @@ pub(super) fn significant(x: f64, digits: i32) -> String {
 }
 
 /// A number to the digit in which its spread has its second figure.
-pub(super) fn to_spread(x: f64, spread: f64) -> String {
+pub(in crate::result) fn to_spread(x: f64, spread: f64) -> String {
     if !x.is_finite() {
         return NONE.into();
     }
@@ -50,7 +50,7 @@ pub(super) fn with_spread(x: f64, spread: f64) -> String {
 }
 
 /// So many decimals (negative: whole tens, hundreds), and no negative zero.
-pub(super) fn fixed(x: f64, decimals: i32) -> String {
+pub(in crate::result) fn fixed(x: f64, decimals: i32) -> String {
     let x = match decimals {
         0.. => x,
         _ => (x / 10f64.powi(-decimals)).round() * 10f64.powi(-decimals),
@@ -76,12 +76,12 @@ pub(super) fn as_written(x: f64) -> String {
 }
 
 /// A count with its noun: `1 run`, `2 runs`.
-pub(super) fn count(n: usize, noun: &str) -> String {
+pub(in crate::result) fn count(n: usize, noun: &str) -> String {
     format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
 
 /// Words joined as in a sentence: `a, b and c`.
-pub(super) fn list(words: &[String]) -> String {
+pub(in crate::result) fn list(words: &[String]) -> String {
     match words {
         [] => String::new(),
         [one] => one.clone(),

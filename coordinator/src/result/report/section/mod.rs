@@ -1,17 +1,21 @@
 //! The parts of the page, in reading order.
 
 mod comparison;
+mod diagnostics;
 mod errors;
 mod estimate;
 mod parameters;
 mod provenance;
+mod rejections;
 mod stages;
 mod verdict;
 
 pub(super) use comparison::comparison;
+pub(super) use diagnostics::diagnostics;
 pub(super) use errors::errors;
 pub(super) use estimate::{estimate, fit};
 pub(super) use parameters::parameters;
 pub(super) use provenance::{provenance, subtitle};
+pub(super) use rejections::rejections;
 pub(super) use stages::stages;
 pub(super) use verdict::verdict;

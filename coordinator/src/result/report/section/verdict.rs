@@ -1,6 +1,6 @@
 //! What the result says, in plain words made from its numbers.
 
-use inference::diagnostics;
+use inference::diagnostics::mean_and_sd;
 use maud::{Markup, html};
 use shared::channel::Channel;
 use shared::experiment::{RunUse, Wheel};
@@ -12,17 +12,21 @@ use crate::result::coverage::Coverage;
 use crate::result::report::number;
 use crate::result::report::quantity::Quantity;
 use crate::result::settling::unsettled;
-use crate::result::{Comparison, ErrorTable, Outcome, terminal};
+use crate::result::{Comparison, Diagnostics, ErrorTable, Outcome, terminal};
 use crate::spec::repeat_scatter;
 
 /// Flags first, then the verdict, then what a reader must know of the model.
-pub(in crate::result::report) fn verdict(outcome: &Outcome, comparison: &Comparison) -> Markup {
-    let flags = outcome.flags();
+pub(in crate::result::report) fn verdict(
+    outcome: &Outcome,
+    comparison: &Comparison,
+    diagnostics: &Diagnostics,
+) -> Markup {
+    let flags = &diagnostics.flags;
     html! {
         @if !flags.is_empty() {
             div.flags role="note" {
                 h2 { "Needs attention" }
-                ul { @for flag in &flags { li { span.kind { (flag.kind.replace('_', " ")) } ": " (flag.text) } } }
+                ul { @for flag in flags { li { span.kind { (flag.kind.replace('_', " ")) } ": " (flag.text) } } }
             }
         }
         p.verdict {
@@ -209,7 +213,7 @@ fn inferred_noise(outcome: &Outcome) -> Option<String> {
                 let sd = estimate.sd.as_ref().and_then(|sd| sd[parameter]);
                 (estimate.theta[parameter], sd.unwrap_or(0.0))
             }
-            None => diagnostics::mean_and_sd(&outcome.draws(parameter))?,
+            None => mean_and_sd(&outcome.draws(parameter))?,
         };
         let q = Quantity::of(channel);
         let shown = if sd > 0.0 {

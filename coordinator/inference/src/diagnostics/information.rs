@@ -1,0 +1,68 @@
+//! See whether a channel can say anything, before the data are looked at.
+
+use std::collections::BTreeMap;
+
+use super::predicted::Predicted;
+use crate::likelihood::Datum;
+
+/// What the prior allows the data of a channel to vary, beside their errors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Signal {
+    /// Data of the channel.
+    pub data: usize,
+    /// Root mean square over the data of the prior predictive standard deviation [unit of the channel].
+    pub prior_sd: f64,
+    /// Root mean square of the errors' standard deviations [unit of the channel].
+    pub error_sd: f64,
+    /// Root mean square of the one over the other; below 1 a datum says less than the prior did.
+    pub ratio: f64,
+}
+
+impl Signal {
+    /// Whether all data of the channel together, were they independent looks at one thing, would say as much as the prior.
+    #[must_use]
+    pub fn is_heard_together(&self) -> bool {
+        self.ratio * (self.data as f64).sqrt() >= 1.0
+    }
+}
+
+/// The signal of every channel that has data; empty with fewer than two draws.
+///
+/// # Arguments
+/// - `error_variances`: of each datum, as [`Likelihood::error_variances`](crate::Likelihood::error_variances) gives them.
+/// - `prior_draws`: predictions at draws from the prior that the model took.
+///
+/// Checked by `diagnostics::the_signal_of_a_linear_model_is_its_slope`.
+#[must_use]
+pub fn signals(
+    data: &[Datum],
+    error_variances: &[f64],
+    prior_draws: &[Predicted],
+) -> BTreeMap<usize, Signal> {
+    let mut sums: BTreeMap<usize, [f64; 4]> = BTreeMap::new();
+    if prior_draws.len() < 2 {
+        return BTreeMap::new();
+    }
+    for (i, (datum, error)) in data.iter().zip(error_variances).enumerate() {
+        let values: Vec<f64> = prior_draws.iter().map(|draw| draw.values[i]).collect();
+        let Some((_, sd)) = super::mean_and_sd(&values) else {
+            continue;
+        };
+        let sum = sums.entry(datum.channel).or_default();
+        for (total, term) in sum.iter_mut().zip([1.0, sd * sd, *error, sd * sd / error]) {
+            *total += term;
+        }
+    }
+    sums.into_iter()
+        .map(|(channel, [count, prior, error, ratio])| {
+            let rms = |sum: f64| (sum / count).sqrt();
+            let signal = Signal {
+                data: count as usize,
+                prior_sd: rms(prior),
+                error_sd: rms(error),
+                ratio: rms(ratio),
+            };
+            (channel, signal)
+        })
+        .collect()
+}

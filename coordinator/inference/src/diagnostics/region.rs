@@ -1,0 +1,88 @@
+//! Find the part of the prior in which failures concentrate.
+
+use super::tail::ln_hypergeometric_tail;
+
+/// Parts of equal probability that the prior of each parameter is cut into.
+pub const BINS: usize = 5;
+
+/// One end of a parameter's prior: bins `from` to `to`, the latter not among them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Side {
+    /// Position of the parameter.
+    pub parameter: usize,
+    /// First bin.
+    pub from: usize,
+    /// The bin behind the last.
+    pub to: usize,
+}
+
+/// A region of the prior that holds more failures than its share.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Region {
+    /// One side, or two that must both hold.
+    pub sides: Vec<Side>,
+    /// Draws in the region.
+    pub drawn: usize,
+    /// Failures among them.
+    pub failed: usize,
+    /// Probability of so many failures there by chance, times the number of regions that were looked at; at most 1.
+    pub p: f64,
+}
+
+/// The bin of a probability: the prior's distribution function at a draw.
+#[must_use]
+pub fn bin(probability: f64) -> usize {
+    ((probability * BINS as f64) as usize).min(BINS - 1)
+}
+
+/// The region with the least probability by chance, among the ends of every parameter and of every pair; `None` where all
+/// draws failed or none did. The first of equals; of one parameter rather than two.
+///
+/// # Equation
+/// Fisher's exact test: with N draws, R failures and K draws in a region, the failures there are hypergeometric if
+/// failing has nothing to do with it. Bonferroni over the `8 d + 64 d (d - 1) / 2` regions of d parameters.
+///
+/// # Arguments
+/// - `draws`: the [`bin`] of every parameter, and whether the draw failed.
+///
+/// Checked by `diagnostics::failures_of_a_corner_are_found_there`.
+#[must_use]
+pub fn concentration(draws: &[(Vec<usize>, bool)]) -> Option<Region> {
+    let dimension = draws.first()?.0.len();
+    let failures = draws.iter().filter(|d| d.1).count();
+    if failures == 0 || failures == draws.len() {
+        return None;
+    }
+    let ends = |parameter: usize| {
+        let cuts = 1..BINS;
+        cuts.flat_map(move |cut| [(0, cut), (cut, BINS)])
+            .map(move |(from, to)| Side { parameter, from, to })
+    };
+    let single = (0..dimension).flat_map(ends).map(|side| vec![side]);
+    let pairs = (0..dimension)
+        .flat_map(|i| (i + 1..dimension).map(move |j| (i, j)))
+        .flat_map(|(i, j)| ends(i).flat_map(move |a| ends(j).map(move |b| vec![a, b])));
+    let regions: Vec<Vec<Side>> = single.chain(pairs).collect();
+    let tried = libm::log(regions.len() as f64);
+    let mut best: Option<(f64, Region)> = None;
+    for sides in regions {
+        let inside = |bins: &[usize]| sides.iter().all(|s| (s.from..s.to).contains(&bins[s.parameter]));
+        let (mut drawn, mut failed) = (0, 0);
+        for (_, failure) in draws.iter().filter(|(bins, _)| inside(bins)) {
+            drawn += 1;
+            failed += usize::from(*failure);
+        }
+        let chance = ln_hypergeometric_tail(draws.len(), failures, drawn, failed);
+        if best.as_ref().is_none_or(|(least, _)| chance < *least) {
+            let p = libm::exp((chance + tried).min(0.0));
+            let region = Region {
+                sides,
+                drawn,
+                failed,
+                p,
+            };
+            best = Some((chance, region));
+        }
+    }
+    best.map(|(_, region)| region)
+}

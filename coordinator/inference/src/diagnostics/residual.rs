@@ -1,0 +1,203 @@
+//! Judge residuals by what the fit leaves them, one by one and in sum.
+
+use super::predicted::Predicted;
+use super::tail::chi_square_tail;
+use crate::likelihood::{ErrorLaw, Likelihood, LikelihoodError, Sd};
+
+/// A measured value beside the posterior's mean prediction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Residual {
+    /// Measured minus predicted [unit of the datum].
+    pub value: f64,
+    /// Standard deviation of the error: noise, and what it shares with other data [unit of the datum].
+    pub error_sd: f64,
+    /// Share h of the error's variance that the fit takes up; 1 or more where the linear identity fails.
+    pub leverage: f64,
+    /// The residual over its own standard deviation; `None` where h is 1 or more, or nothing else shows its noise.
+    pub studentised: Option<f64>,
+    /// Probability of one so large on either side.
+    pub p: Option<f64>,
+}
+
+/// The sum of squares of residuals that are made independent, of unit variance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChiSquare {
+    /// The sum.
+    pub value: f64,
+    /// Data that count: those whose noise is known.
+    pub data: usize,
+    /// What the fit takes up of them: the effective number of parameters.
+    pub effective_parameters: f64,
+    /// Probability of so large a sum; `None` where the fit takes up everything.
+    pub p: Option<f64>,
+}
+
+impl ChiSquare {
+    /// Data minus effective parameters.
+    #[must_use]
+    pub fn degrees_of_freedom(&self) -> f64 {
+        self.data as f64 - self.effective_parameters
+    }
+}
+
+/// Every residual of the posterior's mean prediction, studentised for its leverage.
+///
+/// # Equation
+/// `t_i = r_i / sqrt(R_ii - V_i)`, R the covariance of the errors, `V_i` the posterior variance of the prediction;
+/// for independent errors `r_i / (sigma_i sqrt(1 - h_i))` with `h_i = V_i / sigma_i^2`. A noise sd that is
+/// inferred is estimated anew from the other data that have it: `s^2 = mean_j r_j^2 / (1 - h_j)`, j not i, with
+/// `sum (1 - h) - 1` degrees of freedom (external studentisation).
+///
+/// # Arguments
+/// - `draws`: of the posterior, equally weighted, with their predictions; two or more, else nothing is returned.
+///
+/// # Returns
+/// One for each datum, in their order. The probability is of the likelihood's law, of Student's t where the sd is
+/// estimated.
+///
+/// # Errors
+/// Those of [`Likelihood::log_likelihood`].
+///
+/// # Validity
+/// `Cov(r) = R - X S X'` holds exactly for predictions that are linear in normal parameters, with R known; R is taken at
+/// the posterior mean. Where predictions bend over the posterior, or R is inferred among errors in common, it is an
+/// approximation. Where the sd is estimated, alarms are a little rarer than stated: 4.2 % at 5 %, with twelve data and two
+/// parameters.
+///
+/// # Source
+/// Cook & Weisberg 1982, *Residuals and Influence in Regression*, section 2.2, with the posterior covariance S in place of
+/// `(X'X)^-1`. Checked by `diagnostics::leverage_of_a_line_is_its_closed_form` and
+/// `diagnostics::studentised_residuals_keep_their_level`.
+pub fn residuals(likelihood: &Likelihood, draws: &[Predicted]) -> Result<Vec<Residual>, LikelihoodError> {
+    let Some(mean) = Predicted::mean(draws) else {
+        return Ok(Vec::new());
+    };
+    let variances = likelihood.error_variances(&mean.values, &mean.theta)?;
+    let data = likelihood.data();
+    let mut rows: Vec<Residual> = variances
+        .iter()
+        .enumerate()
+        .map(|(i, variance)| {
+            let squares = draws.iter().map(|d| (d.values[i] - mean.values[i]).powi(2));
+            let spread = squares.sum::<f64>() / (draws.len() - 1) as f64;
+            Residual {
+                value: data[i].value - mean.values[i],
+                error_sd: variance.sqrt(),
+                leverage: spread / variance,
+                studentised: None,
+                p: None,
+            }
+        })
+        .collect();
+    for i in 0..rows.len() {
+        let judged = match own_scale(likelihood, i) {
+            Some(parameter) => {
+                let peers: Vec<Residual> = (0..rows.len())
+                    .filter(|&j| j != i && own_scale(likelihood, j) == Some(parameter))
+                    .map(|j| rows[j])
+                    .collect();
+                against_peers(rows[i], &peers)
+            }
+            None => against_law(rows[i], likelihood.law()),
+        };
+        (rows[i].studentised, rows[i].p) = judged.unzip();
+    }
+    Ok(rows)
+}
+
+/// The parameter that is the sd of a datum, where other data can tell it as well.
+fn own_scale(likelihood: &Likelihood, i: usize) -> Option<usize> {
+    match likelihood.data()[i].sd {
+        Sd::Inferred { parameter } if likelihood.is_alone(i) && likelihood.law() == ErrorLaw::Gaussian => {
+            Some(parameter)
+        }
+        _ => None,
+    }
+}
+
+fn against_law(row: Residual, law: ErrorLaw) -> Option<(f64, f64)> {
+    let left = 1.0 - row.leverage;
+    let t = (left > 0.0).then(|| row.value / (row.error_sd * left.sqrt()))?;
+    Some((t, 2.0 * law.cumulative(-t.abs())))
+}
+
+fn against_peers(row: Residual, peers: &[Residual]) -> Option<(f64, f64)> {
+    let left = 1.0 - row.leverage;
+    let usable = || peers.iter().filter(|peer| peer.leverage < 1.0);
+    let count = usable().count() as f64;
+    let degrees_of_freedom = usable().map(|peer| 1.0 - peer.leverage).sum::<f64>() - row.leverage;
+    let squares: f64 = usable()
+        .map(|peer| peer.value * peer.value / (1.0 - peer.leverage))
+        .sum();
+    if left <= 0.0 || degrees_of_freedom < 1.0 || squares <= 0.0 {
+        return None;
+    }
+    let t = row.value / (left * squares / count).sqrt();
+    let law = ErrorLaw::StudentT { degrees_of_freedom };
+    Some((t, 2.0 * law.cumulative(-t.abs())))
+}
+
+/// The chi-square of the data that `keep` keeps and whose noise is known; `None` where there are none, the law is not
+/// normal, or there are fewer than two draws.
+///
+/// # Equation
+/// `Q = r' R^-1 r` with `E(Q) = n - tr(H)`, `H = X S X' R^-1`; tr(H), the posterior variance of the whitened
+/// predictions, is the effective number of parameters. Q is referred to a chi-square with `n - tr(H)` degrees of freedom.
+/// An unknown discrepancy enters with each of its values, weighted by its probability after the data.
+///
+/// # Errors
+/// Those of [`Likelihood::log_likelihood`].
+///
+/// # Validity
+/// The mean is exact for linear predictions and normal errors; the tail is exact where H is a projection (a weak prior),
+/// and a little too heavy otherwise, so that alarms are rarer than stated. Data whose noise is inferred are left out: it was
+/// inferred so as to make their sum right.
+///
+/// # Source
+/// Spiegelhalter et al. 2002, J. R. Stat. Soc. B 64:583, section 4 (leverage as effective parameters). Checked by
+/// `diagnostics::chi_square_of_a_line_is_its_closed_form` and `diagnostics::chi_square_keeps_its_level`.
+pub fn chi_square(
+    likelihood: &Likelihood,
+    draws: &[Predicted],
+    keep: impl Fn(usize) -> bool,
+) -> Result<Option<ChiSquare>, LikelihoodError> {
+    let known = |i: usize| matches!(likelihood.data()[i].sd, Sd::Known(_));
+    let kept: Vec<usize> = (0..likelihood.data().len())
+        .filter(|&i| known(i) && keep(i))
+        .collect();
+    let Some(mean) = Predicted::mean(draws).filter(|_| likelihood.law() == ErrorLaw::Gaussian) else {
+        return Ok(None);
+    };
+    if kept.is_empty() {
+        return Ok(None);
+    }
+    let (part, places) = likelihood.part(&kept)?;
+    let of = |values: &[f64]| -> Vec<f64> { places.iter().map(|&place| values[place]).collect() };
+    let centre = of(&mean.values);
+    let whitening = part.whitening(&centre, &mean.theta)?;
+    let squares = |difference: &[f64]| {
+        let whitened = whitening.apply(difference);
+        whitening.curvature(&whitened, &whitened)
+    };
+    let residuals: Vec<f64> = part
+        .data()
+        .iter()
+        .zip(&centre)
+        .map(|(d, m)| d.value - m)
+        .collect();
+    let spread: f64 = draws
+        .iter()
+        .map(|draw| {
+            let difference: Vec<f64> = of(&draw.values).iter().zip(&centre).map(|(v, m)| v - m).collect();
+            squares(&difference)
+        })
+        .sum();
+    let value = squares(&residuals);
+    let effective_parameters = spread / (draws.len() - 1) as f64;
+    Ok(Some(ChiSquare {
+        value,
+        data: kept.len(),
+        effective_parameters,
+        p: chi_square_tail(value, kept.len() as f64 - effective_parameters),
+    }))
+}

@@ -1,0 +1,103 @@
+//! How far errors reach: the noise of each datum, and what it shares with others.
+
+use super::common::{Block, CommonError, Size};
+use super::datum::LikelihoodError;
+use super::{Discrepancy, Likelihood};
+
+/// The errors of a block: the covariance is `diag(sds^2) + sum v v'`.
+pub(super) struct Spread {
+    /// Noise sds, in the order of the block's data.
+    pub(super) sds: Vec<f64>,
+    /// Each v as a list of (position in the block, value).
+    pub(super) common: Vec<Vec<(usize, f64)>>,
+}
+
+impl Likelihood {
+    /// Whether a datum shares no error with others.
+    #[must_use]
+    pub fn is_alone(&self, datum: usize) -> bool {
+        self.alone.binary_search(&datum).is_ok()
+    }
+
+    /// The variance of each datum's error: its noise, and its share of every error in common; an unknown discrepancy
+    /// counts with the mean over its values, weighted by their probabilities after the data.
+    ///
+    /// # Arguments
+    /// As those of [`Likelihood::log_likelihood`].
+    ///
+    /// # Returns
+    /// The diagonal of the covariance [squared unit of the datum], in the order of the data; under Student's t that of
+    /// the scale matrix.
+    ///
+    /// # Errors
+    /// Those of [`Likelihood::log_likelihood`]. Checked by `likelihood::variances_are_the_diagonal_of_the_covariance`.
+    pub fn error_variances(&self, values: &[f64], theta: &[f64]) -> Result<Vec<f64>, LikelihoodError> {
+        self.check_values(values)?;
+        let mut variances = vec![0.0; self.data.len()];
+        for &i in &self.alone {
+            let sd = self.data[i].noise_sd(theta)?;
+            variances[i] = sd * sd;
+        }
+        let levels = match self.discrepancy {
+            Discrepancy::None => Vec::new(),
+            _ => self.discrepancy_weights(values, theta)?,
+        };
+        for block in &self.blocks {
+            let levels: &[(f64, f64)] = if block.has_discrepancy {
+                &levels
+            } else {
+                &[(0.0, 1.0)]
+            };
+            for &(m, probability) in levels {
+                let Spread { sds, common } = self.spread(block, m, values, theta)?;
+                for (i, sd) in block.data.iter().zip(sds) {
+                    variances[*i] += probability * sd * sd;
+                }
+                for (position, v) in common.into_iter().flatten() {
+                    variances[block.data[position]] += probability * v * v;
+                }
+            }
+        }
+        Ok(variances)
+    }
+
+    /// The errors of a block.
+    pub(super) fn spread(
+        &self,
+        block: &Block,
+        m: f64,
+        values: &[f64],
+        theta: &[f64],
+    ) -> Result<Spread, LikelihoodError> {
+        let mut sds = Vec::with_capacity(block.data.len());
+        for &i in &block.data {
+            sds.push(self.data[i].noise_sd(theta)?);
+        }
+        let position = |i: &usize| block.data.binary_search(i).unwrap_or_default();
+        let mut common = Vec::with_capacity(block.common.len());
+        for &c in &block.common {
+            let CommonError { data, size } = &self.common[c];
+            let error: Vec<(usize, f64)> = match *size {
+                Size::Shift(sd) => {
+                    let sd = sd.value(theta)?;
+                    data.iter().map(|i| (position(i), sd)).collect()
+                }
+                Size::Discrepancy => {
+                    let squares: f64 = data.iter().map(|i| sds[position(i)] * sds[position(i)]).sum();
+                    let shift = m * (squares / data.len() as f64).sqrt();
+                    data.iter().map(|i| (position(i), shift)).collect()
+                }
+                Size::Sensitivity(sd) => {
+                    let sd = sd.value(theta)?;
+                    let derivative = |i: &usize| {
+                        let place = self.sensitive.binary_search(i).unwrap_or_default();
+                        values[self.data.len() + place]
+                    };
+                    data.iter().map(|i| (position(i), sd * derivative(i))).collect()
+                }
+            };
+            common.push(error);
+        }
+        Ok(Spread { sds, common })
+    }
+}

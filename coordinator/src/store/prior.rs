@@ -1,0 +1,69 @@
+//! What became of the draws from the prior, and of the leases.
+
+use std::collections::BTreeMap;
+
+use sqlx::Row;
+
+use super::{Reader, StoreError, blob, numbers};
+
+/// A draw from the prior that a sampler began with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PriorDraw {
+    /// Parameter vector, noise parameters included.
+    pub theta: Vec<f64>,
+    /// The predicted values that the likelihood takes, or why the model refused.
+    pub result: Result<Vec<f64>, String>,
+    /// Leases of it that failed before one succeeded.
+    pub faults: u64,
+}
+
+impl Reader {
+    /// The draws of a sampler's first round.
+    ///
+    /// # Arguments
+    /// - `count`: how many there are.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn prior_draws(&self, calibration: i64, count: usize) -> Result<Vec<PriorDraw>, StoreError> {
+        let rows = sqlx::query(
+            "SELECT e.theta, e.rejection, e.fitted,
+               (SELECT count(*) FROM faults f
+                WHERE f.calibration = e.calibration AND f.evaluation = e.evaluation AND f.attempt > 0) AS faults
+             FROM evaluations e WHERE e.calibration = ? AND e.evaluation < ? ORDER BY e.evaluation",
+        )
+        .bind(calibration)
+        .bind(count as i64)
+        .fetch_all(&self.pool)
+        .await?;
+        rows.iter()
+            .map(|row| {
+                Ok(PriorDraw {
+                    theta: numbers(row.get("theta"))?,
+                    result: match row.get::<Option<String>, _>("rejection") {
+                        Some(reason) => Err(reason),
+                        None => Ok(blob::decode_values(row.get("fitted"))?),
+                    },
+                    faults: row.get::<i64, _>("faults").unsigned_abs(),
+                })
+            })
+            .collect()
+    }
+
+    /// How often a lease failed, by what was said of it.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn faults(&self, calibration: i64) -> Result<BTreeMap<String, u64>, StoreError> {
+        let rows = sqlx::query(
+            "SELECT message, count(*) AS n FROM faults WHERE calibration = ? AND attempt > 0 GROUP BY message",
+        )
+        .bind(calibration)
+        .fetch_all(&self.pool)
+        .await?;
+        Ok(rows
+            .iter()
+            .map(|row| (row.get("message"), row.get::<i64, _>("n").unsigned_abs()))
+            .collect())
+    }
+}
