@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 use crate::outcome::Outcome;
 
 /// Version of these messages; a coordinator answers another one with 426.
-pub const PROTOCOL_VERSION: u32 = 4;
+pub const PROTOCOL_VERSION: u32 = 5;
 
 /// `POST /v1/work/exchange`: results of finished leases, and how many more are wanted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -271,6 +271,7 @@ fn the_openapi_document_lists_every_route_of_the_contract() {
             "samples",
             "posterior",
             "comparison",
+            "histories",
             "flags",
             "summary",
             "events",

@@ -8,6 +8,7 @@ mod conformance;
 mod effects;
 mod end_to_end;
 mod forward;
+mod histories;
 mod leases;
 mod likelihood;
 mod mesh;

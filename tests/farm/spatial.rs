@@ -25,7 +25,7 @@ fn simulate(folder: &Path, model: &Path) -> Ended {
 }
 
 /// The numbers of a column of a CSV file.
-fn column(csv: &str, name: &str) -> Vec<f64> {
+pub(crate) fn column(csv: &str, name: &str) -> Vec<f64> {
     let mut lines = csv.lines();
     let header = lines.next().expect("a header");
     let position = header.split(',').position(|h| h == name).expect("the column");
@@ -119,7 +119,7 @@ fn a_wheel_from_an_stl_file_rolls_like_the_rim_it_is_the_surface_of() {
 }
 
 /// Two runs, a coarse terrain and few particles: a calibration of the three-dimensional model in seconds.
-fn job() -> Job {
+pub(crate) fn job() -> Job {
     let small = Job::small().sampler(30, [1, 2], 5);
     let few: Vec<&str> = small
         .runs

@@ -11,7 +11,7 @@ use utoipa_axum::routes;
 
 use super::error::{Body, HttpError, Id};
 use crate::farm::Control;
-use crate::result::{Comparison, Flag, Outcome, PosteriorTable, Summary, report};
+use crate::result::{ChannelHistory, Comparison, Flag, Outcome, PosteriorTable, Summary, report};
 use crate::service::Service;
 use crate::store::{Sample, StageRow};
 
@@ -26,6 +26,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(samples))
         .routes(routes!(posterior))
         .routes(routes!(comparison))
+        .routes(routes!(histories))
         .routes(routes!(flags))
         .routes(routes!(summary))
         .routes(routes!(report_page))
@@ -155,6 +156,17 @@ async fn posterior(State(service): State<Service>, Id(id): Id) -> Result<Json<Po
     (status = 200, body = Comparison), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
 async fn comparison(State(service): State<Service>, Id(id): Id) -> Result<Json<Comparison>, HttpError> {
     Ok(Json(outcome(&service, id).await?.comparison()))
+}
+
+/// Measured and simulated histories of each fitted run, filtered, at the likeliest parameters; null of a model that knows no
+/// time.
+#[utoipa::path(get, path = "/calibrations/{id}/histories", params(("id" = i64, Path)), responses(
+    (status = 200, body = Option<Vec<ChannelHistory>>), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn histories(
+    State(service): State<Service>,
+    Id(id): Id,
+) -> Result<Json<Option<Vec<ChannelHistory>>>, HttpError> {
+    Ok(Json(outcome(&service, id).await?.histories()))
 }
 
 /// What deserves attention.

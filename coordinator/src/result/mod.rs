@@ -7,6 +7,7 @@ mod comparison;
 mod coverage;
 mod csv;
 mod errors;
+mod figure;
 mod flags;
 mod point_estimate;
 mod predictive;
@@ -20,6 +21,7 @@ use std::collections::BTreeMap;
 
 use inference::Marginal;
 use shared::api::{CalibrationState, CalibrationStatus};
+use shared::outcome::SimulatedHistory;
 
 use crate::service::ServiceError;
 use crate::spec::{Method, Spec};
@@ -28,6 +30,7 @@ use crate::store::{CalibrationRow, EstimateRow, Prediction, Reader, Sample, Stag
 pub use comparison::{Comparison, ComparisonRow};
 pub use csv::PosteriorTable;
 pub use errors::{ChannelError, ErrorTable};
+pub use figure::{ChannelHistory, ModelSeries, Series};
 pub use flags::Flag;
 pub use point_estimate::PointEstimate;
 pub use predictive::Predictive;
@@ -50,6 +53,8 @@ pub struct Outcome {
     pub posterior: Vec<Sample>,
     /// The final draws, simulated on every run; the first is the most probable particle, of a fit the only one.
     pub predictions: Vec<Prediction>,
+    /// What each fitted run felt over time at the likeliest parameters; `None` of a model that knows no time.
+    pub simulated_histories: Option<Vec<SimulatedHistory>>,
     /// How often the model refused, by kind.
     pub rejections: BTreeMap<String, u64>,
 }
@@ -84,6 +89,7 @@ impl Outcome {
             experiment: row.name.clone(),
             posterior: reader.samples(row.id, None).await?,
             predictions: reader.predictions(row.id).await?,
+            simulated_histories: reader.histories(row.id).await?,
             rejections: reader.rejections(row.id).await?,
             stages,
             row: row.clone(),

@@ -3,12 +3,14 @@
 //! # Layout
 //! - here: [`CompiledVariant`] and the cache of them.
 //! - `effects`: the effects, compiled, with the sources of their parameters.
+//! - `recording`: what a run felt over time, at 10 Hz.
 //! - `parameters`: where each physical quantity comes from.
 //! - `spatial`: the three-dimensional model; `bevameter`: plates and rings.
 
 mod bevameter;
 mod effects;
 mod parameters;
+mod recording;
 mod spatial;
 
 use std::collections::BTreeMap;
@@ -21,6 +23,7 @@ use shared::outcome::{Observables, Outcome, Rejection};
 pub use bevameter::{Bevameter, Readings, without_action};
 use effects::{ActiveEffects, EffectMap};
 use parameters::{Radius, SoilMap};
+pub use recording::at_10_hz;
 use spatial::SpatialModel;
 
 /// A variant whose names are resolved, so that an evaluation looks up nothing.
@@ -34,6 +37,7 @@ pub struct CompiledVariant {
     /// The three-dimensional model; `None`: the quasi-static one.
     spatial: Option<SpatialModel>,
     stiffness_sensitivity: bool,
+    histories: bool,
     /// What plates and rings read, where there are any to predict.
     bevameter: Option<(Bevameter, Vec<PlateCondition>, Vec<RingCondition>)>,
 }
@@ -56,6 +60,9 @@ impl CompiledVariant {
     pub fn new(variant: &ModelVariant) -> Result<Self, String> {
         let set = EffectSet::read(&variant.effects)?;
         variant.check_expressible(&set)?;
+        if variant.histories && variant.kind == ModelKind::QuasiStatic {
+            return Err("histories: quasi_static knows the steady state alone; use kind = \"scm\"".into());
+        }
         let effects = EffectMap::new(variant, &set)?;
         let names: Vec<&str> = variant.wheels.keys().map(String::as_str).collect();
         let soil = SoilMap::new(variant)?;
@@ -101,6 +108,7 @@ impl CompiledVariant {
             conditions,
             effects,
             stiffness_sensitivity: variant.stiffness_sensitivity,
+            histories: variant.histories,
             bevameter: match variant.plates.is_empty() && variant.rings.is_empty() {
                 true => None,
                 false => Some((
@@ -136,6 +144,14 @@ impl CompiledVariant {
                 Ok(Simulated::Rolled(run)) => {
                     push(&mut observables, &run.averages);
                     observables.settled_to.extend(run.settled_to);
+                    if self.histories {
+                        match recording::recorded(&run.history) {
+                            Ok(history) => observables.histories.push(history),
+                            Err(rejection) => {
+                                return rejected(rejection.kind(), position, rejection.to_string());
+                            }
+                        }
+                    }
                     keep(*run);
                 }
                 Err(rejection) => return rejected(rejection.kind(), position, rejection.to_string()),
