@@ -14,6 +14,17 @@ pub struct FileSet {
     pub files: BTreeMap<String, String>,
 }
 
+impl FileSet {
+    /// The text of a file that the file `by` names.
+    ///
+    /// # Errors
+    /// [`FileError`] of `by`, where the file did not come along.
+    pub fn named(&self, by: &str, file: &str) -> Result<&str, FileError> {
+        let text = self.files.get(file).map(String::as_str);
+        text.ok_or_else(|| FileError::whole(by, format!("file \"{file}\" is named but was not sent along")))
+    }
+}
+
 /// Why a file cannot be used: which file, which line, what is wrong.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{file}{}: {message}", place(*line, *column))]

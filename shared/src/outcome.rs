@@ -72,6 +72,35 @@ pub struct Observables {
     /// The predicted values of the quasi-static model beside; `None` where the variant has none, or it refuses.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coarse: Option<Vec<f64>>,
+    /// What each run felt over time; empty unless the variant asks for it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub histories: Vec<SimulatedHistory>,
+}
+
+/// What a simulated run felt over time: means over intervals of 0.1 s, from its beginning, transients included, unfiltered.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SimulatedHistory {
+    /// Drawbar pull `[N]`.
+    pub drawbar_pull_n: Vec<f64>,
+    /// Torque \[N m\].
+    pub torque_n_m: Vec<f64>,
+    /// Sinkage `[m]`.
+    pub sinkage_m: Vec<f64>,
+    /// Lateral force `[N]`.
+    pub lateral_force_n: Vec<f64>,
+}
+
+impl SimulatedHistory {
+    /// Samples of a channel.
+    pub fn channel(&self, channel: Channel) -> &[f64] {
+        match channel {
+            Channel::DrawbarPull => &self.drawbar_pull_n,
+            Channel::Torque => &self.torque_n_m,
+            Channel::Sinkage => &self.sinkage_m,
+            Channel::LateralForce => &self.lateral_force_n,
+        }
+    }
 }
 
 impl Observables {
@@ -131,7 +160,12 @@ impl Observables {
             &self.plate_pressure_pa,
             &self.shear_stress_pa,
         ];
-        let bits = vectors.into_iter().flatten().map(|v| v.to_bits());
+        let samples = self
+            .histories
+            .iter()
+            .flat_map(|history| Channel::ALL.map(|c| history.channel(c)));
+        let values = vectors.into_iter().map(Vec::as_slice).chain(samples);
+        let bits = values.flatten().map(|v| v.to_bits());
         let counts = self.nodes_in_contact.iter().map(|&n| u64::from(n));
         let coarse = self.coarse.iter().flatten().map(|v| v.to_bits());
         fnv(bits.chain(counts).chain(coarse))
@@ -141,8 +175,15 @@ impl Observables {
     pub fn covers(&self, variant: &ModelVariant) -> bool {
         let runs = variant.conditions.len();
         let derivatives = if variant.stiffness_sensitivity { runs } else { 0 };
+        let histories = if variant.histories { runs } else { 0 };
+        let whole = |history: &SimulatedHistory| {
+            let samples = history.sinkage_m.len();
+            Channel::ALL.iter().all(|&c| history.channel(c).len() == samples)
+        };
         self.plate_pressure_pa.len() == variant.plates.len()
             && self.shear_stress_pa.len() == variant.rings.len()
+            && self.histories.len() == histories
+            && self.histories.iter().all(whole)
             && Channel::ALL
                 .iter()
                 .all(|&c| self.sensitivity(c).len() == derivatives)

@@ -5,18 +5,20 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 7] = [
+const CRATES: [&str; 8] = [
     "shared",
     "shared/formula",
+    "shared/signal",
     "coordinator",
     "coordinator/inference",
     "worker",
     "worker/scm",
     "tests",
 ];
-const OURS: [&str; 7] = [
+const OURS: [&str; 8] = [
     "shared",
     "formula",
+    "signal",
     "coordinator",
     "inference",
     "worker",
@@ -124,13 +126,17 @@ fn manifests_keep_the_direction_of_dependencies() {
             .collect()
     };
     assert_eq!(ours("shared/formula"), set(&[]));
-    assert_eq!(ours("shared"), set(&["formula", "inference"]));
-    assert_eq!(ours("worker/scm"), set(&["formula"]));
+    assert_eq!(ours("shared/signal"), set(&[]));
+    assert_eq!(ours("shared"), set(&["formula", "inference", "signal"]));
+    assert_eq!(ours("worker/scm"), set(&["formula", "signal"]));
     assert_eq!(ours("coordinator/inference"), set(&[]));
-    assert_eq!(ours("worker"), set(&["formula", "inference", "scm", "shared"]));
+    assert_eq!(
+        ours("worker"),
+        set(&["formula", "inference", "scm", "shared", "signal"])
+    );
     assert_eq!(
         ours("coordinator"),
-        set(&["formula", "inference", "shared", "worker"])
+        set(&["formula", "inference", "shared", "signal", "worker"])
     );
     for krate in CRATES {
         assert!(!ours(krate).contains("farm-tests"), "{krate} imports the tests");
@@ -150,12 +156,18 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         "clap",
         "indicatif",
     ];
-    for krate in ["shared", "shared/formula", "worker/scm", "coordinator/inference"] {
+    for krate in [
+        "shared",
+        "shared/formula",
+        "shared/signal",
+        "worker/scm",
+        "coordinator/inference",
+    ] {
         let dependencies = dependencies(krate);
         let found: Vec<&str> = impure.into_iter().filter(|d| dependencies.contains(*d)).collect();
         assert!(found.is_empty(), "{krate} imports {found:?}");
     }
-    for krate in ["shared", "shared/formula", "worker/scm"] {
+    for krate in ["shared", "shared/formula", "shared/signal", "worker/scm"] {
         let dependencies = dependencies(krate);
         assert!(
             !dependencies.iter().any(|d| d.starts_with("rand")),
@@ -168,7 +180,7 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         &["coordinator/inference/src/rng.rs"],
     );
     nowhere(
-        &["worker/scm/src", "shared/formula/src"],
+        &["worker/scm/src", "shared/formula/src", "shared/signal/src"],
         &["HashMap", "HashSet", "std::collections::HashMap"],
         &[],
     );

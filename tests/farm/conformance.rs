@@ -13,7 +13,7 @@ use shared::experiment::Wheel;
 use shared::model::{
     Condition, EffectText, ModelKind, ModelVariant, PlateCondition, RingCondition, SpatialSettings,
 };
-use shared::outcome::{Fault, Observables, Outcome, Rejection};
+use shared::outcome::{Fault, Observables, Outcome, Rejection, SimulatedHistory};
 
 /// A message has one form: it is written so, and read back to the same.
 #[track_caller]
@@ -59,6 +59,12 @@ fn observables() -> Observables {
         plate_pressure_pa: vec![9000.5],
         shear_stress_pa: vec![5000.5],
         coarse: Some(vec![11.5]),
+        histories: vec![SimulatedHistory {
+            drawbar_pull_n: vec![12.0, 13.0],
+            torque_n_m: vec![2.0, 2.5],
+            sinkage_m: vec![0.005, 0.007],
+            lateral_force_n: vec![0.0, 0.0],
+        }],
     }
 }
 
@@ -69,6 +75,8 @@ fn observables_json() -> Value {
         "simulated_travel_m": [0.0], "settled_to": [0.004], "d_drawbar_pull_n": [-3.5], "d_torque_n_m": [-0.5],
         "d_sinkage_m": [-0.004], "d_lateral_force_n": [0.0], "plate_pressure_pa": [9000.5], "shear_stress_pa": [5000.5],
         "coarse": [11.5],
+        "histories": [{"drawbar_pull_n": [12.0, 13.0], "torque_n_m": [2.0, 2.5], "sinkage_m": [0.005, 0.007],
+                       "lateral_force_n": [0.0, 0.0]}],
     })
 }
 
@@ -202,6 +210,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         conditions: vec![condition],
         protocol: Default::default(),
         stiffness_sensitivity: false,
+        histories: false,
         plates: Vec::new(),
         companion: None,
         rings: Vec::new(),
@@ -221,6 +230,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
     );
     let asked = ModelVariant {
         stiffness_sensitivity: true,
+        histories: true,
         plates: vec![PlateCondition {
             plate_radius_m: 0.05,
             sinkage_m: 0.01,
@@ -233,6 +243,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
     };
     let json = serde_json::to_value(&asked).unwrap();
     assert_eq!(json["stiffness_sensitivity"], true);
+    assert_eq!(json["histories"], true);
     assert_eq!(
         json["plates"],
         json!([{"plate_radius_m": 0.05, "sinkage_m": 0.01}])

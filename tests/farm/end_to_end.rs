@@ -294,6 +294,7 @@ fn the_openapi_document_lists_every_route_of_the_contract() {
             "posterior",
             "comparison",
             "diagnostics",
+            "histories",
             "flags",
             "summary",
             "events",

@@ -9,6 +9,7 @@ mod diagnostics;
 mod effects;
 mod end_to_end;
 mod forward;
+mod histories;
 mod leases;
 mod likelihood;
 mod mesh;

@@ -25,7 +25,7 @@ fn simulate(folder: &Path, model: &Path) -> Ended {
 }
 
 /// The numbers of a column of a CSV file.
-fn column(csv: &str, name: &str) -> Vec<f64> {
+pub(crate) fn column(csv: &str, name: &str) -> Vec<f64> {
     let mut lines = csv.lines();
     let header = lines.next().expect("a header");
     let position = header.split(',').position(|h| h == name).expect("the column");

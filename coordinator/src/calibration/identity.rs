@@ -4,6 +4,9 @@
 /// Below, they are the sampler's or the fit's.
 pub const PREDICTIONS_FROM: u64 = 1 << 40;
 
+/// Number of the evaluation that keeps its histories.
+pub const HISTORIES: u64 = 2 * PREDICTIONS_FROM;
+
 /// What an evaluation is for. Its number depends on the job alone, so it is the same after a restart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EvaluationKey {
@@ -16,6 +19,8 @@ pub enum EvaluationKey {
         /// The particle.
         particle: usize,
     },
+    /// What each fitted run felt over time at the likeliest parameters.
+    Histories,
     /// A final draw.
     Prediction {
         /// Position among the draws.
@@ -31,6 +36,7 @@ impl EvaluationKey {
     pub fn number(self, width: usize) -> u64 {
         match self {
             EvaluationKey::Sampling { round, particle } => round * width as u64 + particle as u64,
+            EvaluationKey::Histories => HISTORIES,
             EvaluationKey::Prediction { draw, holdout } => {
                 PREDICTIONS_FROM + 2 * draw as u64 + u64::from(holdout)
             }
@@ -40,6 +46,7 @@ impl EvaluationKey {
     /// The evaluation of a number.
     pub fn of(number: u64, width: usize) -> Self {
         match number.checked_sub(PREDICTIONS_FROM) {
+            Some(_) if number >= HISTORIES => EvaluationKey::Histories,
             Some(k) => EvaluationKey::Prediction {
                 draw: (k / 2) as usize,
                 holdout: k % 2 == 1,
@@ -58,7 +65,15 @@ mod tests {
 
     #[test]
     fn number_and_key_are_inverse() {
-        for number in [0, 999, 1000, 123_456, PREDICTIONS_FROM, PREDICTIONS_FROM + 199] {
+        for number in [
+            0,
+            999,
+            1000,
+            123_456,
+            PREDICTIONS_FROM,
+            PREDICTIONS_FROM + 199,
+            HISTORIES,
+        ] {
             assert_eq!(EvaluationKey::of(number, 1000).number(1000), number);
         }
     }

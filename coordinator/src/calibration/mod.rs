@@ -23,7 +23,7 @@ use crate::spec::{MethodError, Spec};
 pub use computed::{Computed, result_of};
 use engine::Scored;
 pub use engine::{Engine, Finding};
-pub use identity::{EvaluationKey, PREDICTIONS_FROM};
+pub use identity::{EvaluationKey, HISTORIES, PREDICTIONS_FROM};
 pub use replay::{ReplayError, Stored, StoredEvaluation};
 
 /// What the farm needs to know of a calibration besides its specification.
@@ -65,12 +65,23 @@ pub struct Calibration {
     holdout_hash: Option<String>,
     /// The fitted runs with the metamodel of the present stage, and the hash.
     stage_variant: Option<(String, ModelVariant)>,
-    /// The final draws, to simulate on fitted and holdout runs; `None` while sampling.
-    draws: Option<Vec<Vec<f64>>>,
+    /// What is simulated once more for its histories, with its hash; `None` of a model that knows no time.
+    histories: Option<(String, ModelVariant)>,
+    /// What the calibration ends with; `None` while sampling.
+    draws: Option<FinalDraws>,
     /// Evaluations of the present round that are done.
     done: BTreeSet<u64>,
     /// Failed leases by evaluation, kept over a restart.
     failed: BTreeMap<u64, u32>,
+}
+
+/// What is simulated once the posterior, or the estimate, is known.
+#[derive(Debug)]
+struct FinalDraws {
+    /// To simulate on fitted and holdout runs.
+    thetas: Vec<Vec<f64>>,
+    /// The one of the highest likelihood, to simulate with its histories.
+    likeliest: Vec<f64>,
 }
 
 /// A message that is no result: the calibration and the reason.
@@ -114,6 +125,10 @@ impl Calibration {
             identity,
             fit_hash: spec.fit_variant.hash(),
             holdout_hash: spec.holdout_variant.as_ref().map(ModelVariant::hash),
+            histories: spec
+                .fit_variant
+                .with_histories()
+                .map(|variant| (variant.hash(), variant)),
             spec,
             state: CalibrationState::Queued,
             message: None,
@@ -153,10 +168,10 @@ impl Calibration {
                 subchain: Some(subchain),
             });
         }
-        let variant = if self.is_holdout(evaluation) {
-            self.holdout_hash.as_deref()?
-        } else {
-            &self.fit_hash
+        let variant = match self.key(evaluation) {
+            EvaluationKey::Prediction { holdout: true, .. } => self.holdout_hash.as_deref()?,
+            EvaluationKey::Histories => &self.histories.as_ref()?.0,
+            _ => &self.fit_hash,
         };
         Some(Question {
             variant,
@@ -165,10 +180,9 @@ impl Calibration {
         })
     }
 
-    /// Whether an evaluation is of the holdout runs.
-    fn is_holdout(&self, evaluation: u64) -> bool {
-        let key = EvaluationKey::of(evaluation, self.spec.method.width());
-        matches!(key, EvaluationKey::Prediction { holdout: true, .. })
+    /// What an evaluation is for.
+    fn key(&self, evaluation: u64) -> EvaluationKey {
+        EvaluationKey::of(evaluation, self.spec.method.width())
     }
 
     /// The variant of a hash, if it is one of this calibration's.
@@ -177,19 +191,22 @@ impl Calibration {
             h if h == self.fit_hash => Some(&self.spec.fit_variant),
             h if Some(h) == self.holdout_hash.as_deref() => self.spec.holdout_variant.as_ref(),
             h => {
-                let (hash, variant) = self.stage_variant.as_ref()?;
-                (h == hash).then_some(variant)
+                let others = self.stage_variant.iter().chain(&self.histories);
+                others
+                    .filter(|(own, _)| own == h)
+                    .map(|(_, variant)| variant)
+                    .next()
             }
         }
     }
 
     /// The whole parameter vector of an evaluation that is asked for at present; of a subchain, where it starts.
     fn theta(&self, evaluation: u64) -> Option<&[f64]> {
-        match (
-            EvaluationKey::of(evaluation, self.spec.method.width()),
-            &self.draws,
-        ) {
-            (EvaluationKey::Prediction { draw, .. }, Some(draws)) => draws.get(draw).map(Vec::as_slice),
+        match (self.key(evaluation), &self.draws) {
+            (EvaluationKey::Prediction { draw, .. }, Some(draws)) => {
+                draws.thetas.get(draw).map(Vec::as_slice)
+            }
+            (EvaluationKey::Histories, Some(draws)) => Some(&draws.likeliest),
             _ => self.proposal(evaluation).map(|p| p.theta.as_slice()),
         }
     }
@@ -197,7 +214,7 @@ impl Calibration {
     /// The proposal of an evaluation that is asked for at present, while sampling.
     fn proposal(&self, evaluation: u64) -> Option<&Proposal> {
         let pending = self.engine.pending();
-        match EvaluationKey::of(evaluation, self.spec.method.width()) {
+        match self.key(evaluation) {
             EvaluationKey::Sampling { round, particle }
                 if self.draws.is_none() && round == self.engine.round() =>
             {
@@ -225,10 +242,12 @@ impl Calibration {
         match &self.draws {
             Some(draws) => {
                 let parts = if self.holdout_hash.is_some() { 2 } else { 1 };
-                let keys = (0..draws.len()).flat_map(|draw| {
+                let keys = (0..draws.thetas.len()).flat_map(|draw| {
                     let part = move |holdout| EvaluationKey::Prediction { draw, holdout }.number(particles);
                     [false, true].into_iter().take(parts).map(part)
                 });
+                let histories = self.histories.iter().map(|_| EvaluationKey::Histories);
+                let keys = keys.chain(histories.map(|key| key.number(particles)));
                 self.queue.ask(keys, failed);
             }
             None => {
@@ -340,8 +359,9 @@ impl Calibration {
         if !computed.answers(subchain, self.spec.parameters.len()) {
             return Err(ResultError::OtherQuestion { evaluation });
         }
-        let variant = match (&self.spec.holdout_variant, self.is_holdout(evaluation)) {
-            (Some(variant), true) => variant,
+        let variant = match (self.key(evaluation), &self.spec.holdout_variant, &self.histories) {
+            (EvaluationKey::Prediction { holdout: true, .. }, Some(variant), _) => variant,
+            (EvaluationKey::Histories, _, Some((_, variant))) => variant,
             _ => &self.spec.fit_variant,
         };
         let values = self.spec.likelihood.values();
@@ -383,9 +403,7 @@ impl Calibration {
             }
             return;
         };
-        let EvaluationKey::Sampling { particle, .. } =
-            EvaluationKey::of(evaluation, self.spec.method.width())
-        else {
+        let EvaluationKey::Sampling { particle, .. } = self.key(evaluation) else {
             return;
         };
         let stages = self.engine.stages().len();
@@ -411,7 +429,10 @@ impl Calibration {
                         });
                     }
                     Some(Finding::Estimate(estimate)) => {
-                        self.draws = Some(vec![estimate.theta.clone()]);
+                        self.draws = Some(FinalDraws {
+                            thetas: vec![estimate.theta.clone()],
+                            likeliest: estimate.theta.clone(),
+                        });
                         facts.push(Fact::Estimate {
                             calibration,
                             estimate: Box::new(estimate.clone()),
@@ -502,18 +523,21 @@ impl Calibration {
     }
 }
 
-/// The draws that are simulated on every run: the most probable particle, then evenly spaced ones.
-fn final_draws(posterior: &Posterior) -> Vec<Vec<f64>> {
+/// The draws that are simulated on every run: the most probable particle, then evenly spaced ones; beside, the likeliest.
+fn final_draws(posterior: &Posterior) -> FinalDraws {
     let particles = &posterior.particles;
-    let best = (0..particles.len()).reduce(|a, b| {
-        let score = |i: usize| particles[i].log_likelihood.value() + particles[i].log_prior;
-        if score(b) > score(a) { b } else { a }
-    });
+    let highest = |score: &dyn Fn(usize) -> f64| {
+        (0..particles.len()).reduce(|a, b| if score(b) > score(a) { b } else { a })
+    };
+    let log_likelihood = |i: usize| particles[i].log_likelihood.value();
+    let best = highest(&|i| log_likelihood(i) + particles[i].log_prior);
+    let likeliest = highest(&log_likelihood);
     let spread = crate::spec::PREDICTION_DRAWS - 1;
     let count = particles.len().min(spread);
     let even = (0..count).map(|k| k * particles.len() / count);
-    best.into_iter()
-        .chain(even)
-        .map(|i| particles[i].theta.clone())
-        .collect()
+    let theta = |i: usize| particles[i].theta.clone();
+    FinalDraws {
+        thetas: best.into_iter().chain(even).map(theta).collect(),
+        likeliest: likeliest.map(theta).unwrap_or_default(),
+    }
 }

@@ -157,9 +157,9 @@ mod tests {
     use std::sync::Arc;
 
     use shared::file::FileSet;
-    use shared::outcome::Observables;
+    use shared::outcome::{Observables, SimulatedHistory};
 
-    use super::super::{Identity, PREDICTIONS_FROM};
+    use super::super::{HISTORIES, Identity, PREDICTIONS_FROM};
     use super::*;
     use crate::fact::{EvaluationRow, Kept};
     use crate::spec::Spec;
@@ -256,7 +256,16 @@ mod tests {
                     break;
                 };
                 let runs = 1;
-                let outcome = toy(question.theta, runs);
+                let mut outcome = toy(question.theta, runs);
+                if let (Ok(observables), true) = (&mut outcome, evaluation == HISTORIES) {
+                    let samples = vec![0.25; 3];
+                    observables.histories = vec![SimulatedHistory {
+                        drawbar_pull_n: samples.clone(),
+                        torque_n_m: samples.clone(),
+                        sinkage_m: samples.clone(),
+                        lateral_force_n: samples,
+                    }];
+                }
                 let (new, counted) = calibration.complete(evaluation, outcome, "toy").unwrap();
                 facts.extend(new);
                 done += usize::from(counted);
@@ -363,6 +372,49 @@ mod tests {
                 assert_eq!(told, estimates(&first), "cut after {cut}");
             }
         }
+    }
+
+    #[test]
+    fn a_model_that_knows_time_ends_with_the_histories_of_the_likeliest_draw() {
+        let rolling = || calibration(&JOB.replace("quasi_static", "scm"));
+        let facts = work(&mut rolling(), usize::MAX, false);
+        let whole = sorted(&facts);
+        let last = whole.last().unwrap();
+        assert_eq!(last.evaluation, HISTORIES);
+        let kept = match &last.kept {
+            Kept::Whole(observables) => observables,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(kept.histories[0].sinkage_m.len(), 3);
+        let posterior = facts.iter().find_map(|f| match f {
+            Fact::Posterior { posterior, .. } => Some(posterior),
+            _ => None,
+        });
+        let particles = &posterior.unwrap().particles;
+        let likeliest = particles
+            .iter()
+            .map(|p| p.log_likelihood.value())
+            .fold(f64::MIN, f64::max);
+        let of = particles.iter().find(|p| p.theta == last.theta).unwrap();
+        assert!(of.log_likelihood.value() >= likeliest);
+        // all other rows are as without
+        assert!(whole[..whole.len() - 1].iter().all(|r| match &r.kept {
+            Kept::Whole(o) => o.histories.is_empty(),
+            _ => true,
+        }));
+        for cut in [20, whole.len() - 2, whole.len() - 1] {
+            let begun = work(&mut rolling(), cut, true);
+            let mut again = rolling();
+            again.replay(stored(&begun)).unwrap();
+            let mut all = begun;
+            all.extend(work(&mut again, usize::MAX, false));
+            assert_eq!(sorted(&all), whole, "cut after {cut}");
+        }
+        assert!(
+            sorted(&work(&mut fresh(), usize::MAX, false))
+                .iter()
+                .all(|r| r.evaluation < HISTORIES)
+        );
     }
 
     #[test]

@@ -259,6 +259,7 @@ fn run((_, slip, wheel_load_n, rim_m_s): (&str, f64, f64, f64), pass: u32) -> Te
         slip_angle_deg: 0.0,
         pass,
         measured: [None; 4],
+        history: None,
         sd: [None; 4],
         usage: RunUse::Fit,
     }

@@ -11,7 +11,9 @@ use utoipa_axum::routes;
 
 use super::error::{Body, HttpError, Id};
 use crate::farm::Control;
-use crate::result::{Comparison, Diagnostics, Flag, Outcome, PosteriorTable, Summary, report};
+use crate::result::{
+    ChannelHistory, Comparison, Diagnostics, Flag, Outcome, PosteriorTable, Summary, report,
+};
 use crate::service::Service;
 use crate::store::{Sample, StageRow};
 
@@ -27,6 +29,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(posterior))
         .routes(routes!(comparison))
         .routes(routes!(diagnostics))
+        .routes(routes!(histories))
         .routes(routes!(flags))
         .routes(routes!(summary))
         .routes(routes!(report_page))
@@ -168,6 +171,17 @@ async fn diagnosed(service: &Service, id: i64) -> Result<Diagnostics, HttpError>
     (status = 200, body = Diagnostics), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
 async fn diagnostics(State(service): State<Service>, Id(id): Id) -> Result<Json<Diagnostics>, HttpError> {
     Ok(Json(diagnosed(&service, id).await?))
+}
+
+/// Measured and simulated histories of each fitted run, filtered, at the likeliest parameters; null of a model that knows no
+/// time.
+#[utoipa::path(get, path = "/calibrations/{id}/histories", params(("id" = i64, Path)), responses(
+    (status = 200, body = Option<Vec<ChannelHistory>>), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn histories(
+    State(service): State<Service>,
+    Id(id): Id,
+) -> Result<Json<Option<Vec<ChannelHistory>>>, HttpError> {
+    Ok(Json(outcome(&service, id).await?.histories()))
 }
 
 /// What deserves attention.

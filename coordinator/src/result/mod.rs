@@ -8,6 +8,7 @@ mod coverage;
 mod csv;
 pub mod diagnostics;
 mod errors;
+mod figure;
 mod flags;
 mod point_estimate;
 mod predictive;
@@ -21,6 +22,7 @@ use std::collections::BTreeMap;
 
 use inference::Marginal;
 use shared::api::{CalibrationState, CalibrationStatus};
+use shared::outcome::SimulatedHistory;
 
 use crate::service::ServiceError;
 use crate::spec::{Method, Spec};
@@ -30,6 +32,7 @@ pub use comparison::{Comparison, ComparisonRow};
 pub use csv::PosteriorTable;
 pub use diagnostics::Diagnostics;
 pub use errors::{ChannelError, ErrorTable};
+pub use figure::{ChannelHistory, ModelSeries, Series};
 pub use flags::Flag;
 pub use point_estimate::PointEstimate;
 pub use predictive::Predictive;
@@ -52,6 +55,8 @@ pub struct Outcome {
     pub posterior: Vec<Sample>,
     /// The final draws, simulated on every run; the first is the most probable particle, of a fit the only one.
     pub predictions: Vec<Prediction>,
+    /// What each fitted run felt over time at the likeliest parameters; `None` of a model that knows no time.
+    pub simulated_histories: Option<Vec<SimulatedHistory>>,
     /// How often the model refused, by kind.
     pub rejections: BTreeMap<String, u64>,
     /// What a metamodel did; `None` where there was none.
@@ -97,6 +102,7 @@ impl Outcome {
             experiment: row.name.clone(),
             posterior: reader.samples(row.id, None).await?,
             predictions: reader.predictions(row.id).await?,
+            simulated_histories: reader.histories(row.id).await?,
             rejections: reader.rejections(row.id).await?,
             subchains: reader.subchains(row.id).await?,
             faults: reader.faults(row.id).await?,

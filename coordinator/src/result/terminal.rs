@@ -5,6 +5,7 @@ use std::fmt::Write;
 use formula::Variable;
 use shared::api::CalibrationStatus;
 use shared::channel::Channel;
+use shared::experiment::{MeasuredHistory, Protocol};
 use shared::model::{EffectSet, ModelKind};
 
 use super::comparison::{Comparison, ComparisonRow};
@@ -74,6 +75,15 @@ pub fn specification(spec: &Spec) -> String {
             let _ = writeln!(text, "{readings} readings of {what}");
         }
     }
+    for run in &spec.experiment.runs {
+        if let Some(history) = &run.history {
+            let _ = writeln!(
+                text,
+                "{}",
+                averaging(&run.name, history, &spec.experiment.protocol)
+            );
+        }
+    }
     for words in spec
         .likelihood_settings
         .words()
@@ -105,6 +115,35 @@ pub fn specification(spec: &Spec) -> String {
     }
     for (name, value) in fixed {
         let _ = writeln!(text, "{name:<width$} {:>12} {:>12}", number(*value), "fixed");
+    }
+    text
+}
+
+/// What was cut from a run's recording, and averaged: samples, periods.
+fn averaging(run: &str, history: &MeasuredHistory, protocol: &Protocol) -> String {
+    let filter = match protocol.lowpass_hz {
+        0.0 => "not filtered".to_owned(),
+        cutoff => format!("low-pass {cutoff} Hz"),
+    };
+    let (samples, step_s) = (history.t_s.len(), history.interval_s);
+    let cut = (history.transient_s / step_s).round();
+    let mut text = format!(
+        "run {run}: {samples} samples of {step_s:.3} s in {}; {filter}, the first {cut:.0} ({} s) cut",
+        history.file, history.transient_s
+    );
+    for (channel, recorded) in history.channels() {
+        let over = match recorded.periods {
+            0 => "all".to_owned(),
+            1 => "1 grouser period of".to_owned(),
+            periods => format!("{periods} grouser periods of"),
+        };
+        let _ = write!(
+            text,
+            "\n    {} {} over {over} the last {:.2} s",
+            channel.column(),
+            number(recorded.average),
+            recorded.covered_s
+        );
     }
     text
 }

@@ -2,10 +2,11 @@
 //!
 //! Four channels and five diagnostics of each run come first; nothing else stands in the oldest form. A second form adds
 //! `settled_to`: then a not-a-number ends the bytes. The third holds anything more: then an infinity ends them, with
-//! what there is before it. No observable is either.
+//! what there is before it. No observable is either. The fourth form is any of these with histories behind it: then a negative
+//! infinity ends the bytes, before it the number of runs and of the samples of each.
 
 use shared::channel::Channel;
-use shared::outcome::Observables;
+use shared::outcome::{Observables, SimulatedHistory};
 
 use super::StoreError;
 
@@ -23,6 +24,25 @@ pub(super) fn encode(values: &[f64]) -> Vec<u8> {
 
 /// The bytes of observables.
 pub(super) fn encode_whole(o: &Observables) -> Vec<u8> {
+    let mut bytes = encode_averages(o);
+    if o.histories.is_empty() {
+        return bytes;
+    }
+    for history in &o.histories {
+        for channel in Channel::ALL {
+            bytes.extend(encode(history.channel(channel)));
+        }
+    }
+    let samples = o.histories.iter().map(|h| h.sinkage_m.len() as f64);
+    let runs = o.histories.len() as f64;
+    bytes.extend(encode(
+        &samples.chain([runs, f64::NEG_INFINITY]).collect::<Vec<_>>(),
+    ));
+    bytes
+}
+
+/// The bytes of everything but histories.
+fn encode_averages(o: &Observables) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(o.sinkage_m.len() * VECTORS * 8);
     let mut push = |values: &[f64]| bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
     push(&o.drawbar_pull_n);
@@ -133,7 +153,8 @@ impl Extent {
 pub(super) fn decode(bytes: &[u8]) -> Result<Observables, StoreError> {
     let corrupt = || StoreError::Corrupt(format!("observables of {} bytes", bytes.len()));
     let words = decode_values(bytes).map_err(|_| corrupt())?;
-    let (extent, values) = Extent::split(&words).ok_or_else(corrupt)?;
+    let (words, histories) = split_histories(&words).ok_or_else(corrupt)?;
+    let (extent, values) = Extent::split(words).ok_or_else(corrupt)?;
     let mut rest = values;
     let mut take = |count: usize| {
         let (vector, behind) = rest.split_at(count);
@@ -162,7 +183,34 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Observables, StoreError> {
         shear_stress_pa: take(extent.rings),
         // kept beside, and only of what is fitted
         coarse: None,
+        histories,
     })
+}
+
+/// Splits histories off the end, where there are any.
+fn split_histories(all: &[f64]) -> Option<(&[f64], Vec<SimulatedHistory>)> {
+    let [words @ .., runs, f64::NEG_INFINITY] = all else {
+        return Some((all, Vec::new()));
+    };
+    // Written from counts, so the conversion back is exact; of anything else the lengths are wrong.
+    let (words, samples) = words.split_at_checked(words.len().checked_sub(*runs as usize)?)?;
+    let count: f64 = samples.iter().sum();
+    let (words, mut rest) = words.split_at_checked(words.len().checked_sub(4 * count as usize)?)?;
+    let mut histories = Vec::new();
+    for &samples in samples {
+        let mut take = || {
+            let (channel, behind) = rest.split_at_checked(samples as usize)?;
+            rest = behind;
+            Some(channel.to_vec())
+        };
+        histories.push(SimulatedHistory {
+            drawbar_pull_n: take()?,
+            torque_n_m: take()?,
+            sinkage_m: take()?,
+            lateral_force_n: take()?,
+        });
+    }
+    Some((words, histories))
 }
 
 #[cfg(test)]
@@ -203,6 +251,22 @@ mod tests {
             observables.d_torque_n_m.clear();
             observables.d_sinkage_m.clear();
             observables.d_lateral_force_n.clear();
+        }
+        let history = |samples: usize, x: f64| SimulatedHistory {
+            drawbar_pull_n: vec![x; samples],
+            torque_n_m: vec![2.0 * x; samples],
+            sinkage_m: vec![-x; samples],
+            lateral_force_n: vec![0.0; samples],
+        };
+        for settled_to in [vec![0.003, 0.004], Vec::new()] {
+            observables.settled_to = settled_to;
+            for plates in [Vec::new(), vec![1e4]] {
+                observables.plate_pressure_pa = plates;
+                observables.histories = vec![history(3, 0.25), history(5, 1e-3)];
+                let bytes = encode_whole(&observables);
+                assert_eq!(decode(&bytes).unwrap(), observables);
+                assert!(decode(&bytes[8 * 14..]).is_err());
+            }
         }
         let bevameter = Observables {
             shear_stress_pa: vec![7.0],

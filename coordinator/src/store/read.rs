@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use inference::point::{Generation, Stop};
 use shared::api::CalibrationState;
 use shared::file::FileSet;
-use shared::outcome::Observables;
+use shared::outcome::{Observables, SimulatedHistory};
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 
 use super::{Reader, StoreError, blob, numbers};
-use crate::calibration::{EvaluationKey, PREDICTIONS_FROM};
+use crate::calibration::{EvaluationKey, HISTORIES, PREDICTIONS_FROM};
 
 /// A stored experiment.
 #[derive(Debug, Clone)]
@@ -295,10 +295,11 @@ impl Reader {
     pub async fn predictions(&self, calibration: i64) -> Result<Vec<Prediction>, StoreError> {
         let rows = sqlx::query(
             "SELECT evaluation, theta, rejection, observables FROM evaluations
-             WHERE calibration = ? AND evaluation >= ? ORDER BY evaluation",
+             WHERE calibration = ? AND evaluation >= ? AND evaluation < ? ORDER BY evaluation",
         )
         .bind(calibration)
         .bind(PREDICTIONS_FROM as i64)
+        .bind(HISTORIES as i64)
         .fetch_all(&self.pool)
         .await?;
         let mut predictions: Vec<Prediction> = Vec::new();
@@ -340,6 +341,22 @@ impl Reader {
             moved: count("moved"),
         };
         Ok((subchains.subchains > 0).then_some(subchains))
+    }
+
+    /// What each fitted run felt over time at the likeliest parameters; `None` of a model that knows no time.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn histories(&self, calibration: i64) -> Result<Option<Vec<SimulatedHistory>>, StoreError> {
+        let row = sqlx::query(
+            "SELECT observables FROM evaluations WHERE calibration = ? AND evaluation = ? AND observables IS NOT NULL",
+        )
+        .bind(calibration)
+        .bind(HISTORIES as i64)
+        .fetch_optional(&self.pool)
+        .await?;
+        row.map(|row| Ok(blob::decode(row.get("observables"))?.histories))
+            .transpose()
     }
 
     /// How often the model refused, by the kind of refusal.

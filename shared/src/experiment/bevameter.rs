@@ -80,7 +80,6 @@ fn columns<'a>(names: &'a [&'a str; 4]) -> Columns<'a> {
     Columns {
         known: names.to_vec(),
         required: &names[..3],
-        later: &[],
     }
 }
 

@@ -3,11 +3,12 @@
 //! # Layout
 //! - `settings`: the tables of `experiment.toml`; `wheel`: those of the wheels; `scatter`: relative noise.
 //! - `mesh`: a wheel given as a surface of triangles.
-//! - `runs`: the rows of `runs.csv`.
+//! - `runs`: the rows of `runs.csv`; `history`: what a run recorded over time, and its averages.
 //! - `bevameter`: the rows of `plates.csv` and `shear.csv`.
 //! - `table`: rows of a CSV file whose columns are known by name.
 
 mod bevameter;
+mod history;
 mod mesh;
 mod runs;
 mod scatter;
@@ -19,6 +20,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 pub use bevameter::{PLATE_COLUMNS, PlateReading, SHEAR_COLUMNS, ShearReading};
+pub use history::{MeasuredHistory, Recorded};
 pub use mesh::{MOST_BYTES, MOST_TRIANGLES, SurfaceMesh};
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
 pub use scatter::{Scatter, ScatterSd};
@@ -58,9 +60,14 @@ impl Experiment {
         let toml = read_text(path)?;
         let named = settings::parse(&path.display().to_string(), &toml)?;
         let mut files = BTreeMap::new();
-        for file in [named.runs, named.plates, named.shear].into_iter().flatten() {
-            let text = read_text(&sibling(path, &file))?;
-            files.insert(file, text);
+        for file in [&named.runs, &named.plates, &named.shear].into_iter().flatten() {
+            files.insert(file.clone(), read_text(&sibling(path, file))?);
+        }
+        if let Some(runs) = &named.runs {
+            for file in runs::named_histories(runs, &files[runs])? {
+                let text = read_text(&sibling(path, &file))?;
+                files.insert(file, text);
+            }
         }
         for file in named.meshes.into_values() {
             let text = mesh::read(&sibling(path, &file))?;
@@ -76,11 +83,7 @@ impl Experiment {
     /// Checked by `tests::malformed_experiments_say_what_is_wrong`.
     pub fn parse(name: &str, files: &FileSet) -> Result<Experiment, FileError> {
         let mut file = settings::parse(name, &files.toml)?;
-        let text = |named: &str| {
-            files.files.get(named).ok_or_else(|| {
-                FileError::whole(name, format!("file \"{named}\" is named but was not sent along"))
-            })
-        };
+        let text = |named: &str| files.named(name, named);
         for (wheel_name, named) in &file.meshes {
             let mesh = SurfaceMesh::parse(named, text(named)?)?;
             if let Some(wheel) = file.wheel.get_mut(wheel_name) {
@@ -91,7 +94,8 @@ impl Experiment {
         }
         let (mut runs, mut plates, mut shear) = (Vec::new(), Vec::new(), Vec::new());
         if let Some(named) = &file.runs {
-            runs = runs::parse(named, text(named)?, &file.wheel, &file.soil)?;
+            text(named)?;
+            runs = runs::parse(named, files, &file.wheel, &file.soil, &file.protocol)?;
         }
         if let Some(named) = &file.plates {
             plates = bevameter::plates(named, text(named)?)?;
@@ -226,6 +230,40 @@ mod tests {
         assert_eq!(
             parse(&negative, HEADER).unwrap_err(),
             "experiment.toml: [wheel.w] width_m -0.05 m must be > 0 m"
+        );
+    }
+
+    #[test]
+    fn a_history_gives_the_channels_that_are_not_stated() {
+        let toml = TOML.replace(
+            "[noise]",
+            "[protocol]\nmeasured_transient_s = 0.1\nlowpass_hz = 0.0\n[noise]",
+        );
+        let header = HEADER.replace("use", "history,use");
+        let with = |row: &str| {
+            let csv = format!("{header}{row}\n");
+            let history = "t_s,drawbar_pull_n\n0.1,9\n0.2,1\n0.3,3\n";
+            let files = FileSet {
+                toml: toml.clone(),
+                files: [("runs.csv", csv.as_str()), ("h.csv", history)]
+                    .map(|(name, text)| (name.to_owned(), text.to_owned()))
+                    .into(),
+            };
+            Experiment::parse("experiment.toml", &files).map_err(|e| e.to_string())
+        };
+        let run = with("a,w,s,0.2,100,0.01,,0.004,h.csv,fit")
+            .unwrap()
+            .runs
+            .remove(0);
+        assert_eq!(run.measured, [Some(2.0), None, Some(0.004), None]);
+        assert_eq!(run.history.unwrap().file, "h.csv");
+        assert_eq!(
+            with("a,w,s,0.2,100,0.01,5,,h.csv,fit").unwrap_err(),
+            "runs.csv line 2: run \"a\": drawbar_pull_n is stated as 5 N and recorded in h.csv: leave one of them out"
+        );
+        assert_eq!(
+            with("a,w,s,0.2,100,0.01,,,other.csv,fit").unwrap_err(),
+            "runs.csv: file \"other.csv\" is named but was not sent along"
         );
     }
 

@@ -1,12 +1,13 @@
 //! The rows of `runs.csv`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use super::settings::Soil;
+use super::history::{MeasuredHistory, averaged};
+use super::settings::{Protocol, Soil};
 use super::table::{self, Columns, Row};
 use super::wheel::Wheel;
 use crate::channel::Channel;
-use crate::file::FileError;
+use crate::file::{FileError, FileSet};
 
 /// One run of the rig: its condition and what was measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,8 +28,10 @@ pub struct TestRun {
     pub slip_angle_deg: f64,
     /// How often the wheel passes; the last pass is measured.
     pub pass: u32,
-    /// Measured value by channel [channel's unit]; `None` = unmeasured.
+    /// Measured value by channel [channel's unit], stated or averaged from the history; `None` = unmeasured.
     pub measured: [Option<f64>; 4],
+    /// The history that some of the measured values are averages of.
+    pub history: Option<MeasuredHistory>,
     /// Standard deviation that wins over the experiment's, by channel.
     pub sd: [Option<f64>; 4],
     /// Fitted, or kept to judge the fit.
@@ -66,42 +69,78 @@ pub const CONDITION_COLUMNS: [&str; 8] = [
     "pass",
 ];
 const REQUIRED: usize = 6;
+/// The column that names a run's history.
+const HISTORY: &str = "history";
 
-/// Parses `runs.csv` against the wheels and soils of its experiment.
-pub(super) fn parse(
-    file: &str,
-    text: &str,
-    wheels: &BTreeMap<String, Wheel>,
-    soils: &BTreeMap<String, Soil>,
-) -> Result<Vec<TestRun>, FileError> {
-    let sd_columns = Channel::ALL.map(|c| format!("{}_sd", c.column()));
+/// The known columns of `runs.csv`.
+fn columns<'a>(sd_columns: &'a [String; 4]) -> Columns<'a> {
     let mut known: Vec<&str> = CONDITION_COLUMNS.to_vec();
     known.extend(Channel::ALL.iter().map(|c| c.column()));
     known.extend(sd_columns.iter().map(String::as_str));
-    known.push("use");
-    let columns = Columns {
+    known.extend([HISTORY, "use"]);
+    Columns {
         known,
         required: &CONDITION_COLUMNS[..REQUIRED],
-        later: &[(
-            "history",
-            "averaging time histories is not available in this version",
-        )],
-    };
+    }
+}
+
+fn sd_columns() -> [String; 4] {
+    Channel::ALL.map(|c| format!("{}_sd", c.column()))
+}
+
+/// The files of histories that the runs name, each once.
+pub(super) fn named_histories(file: &str, text: &str) -> Result<BTreeSet<String>, FileError> {
+    let names = table::rows(file, text, &columns(&sd_columns()), |row, _| {
+        Ok(row.text(HISTORY).map(str::to_owned))
+    })?;
+    Ok(names.into_iter().flatten().collect())
+}
+
+/// Parses `runs.csv` against the wheels and soils of its experiment, whose `files` hold the histories.
+pub(super) fn parse(
+    file: &str,
+    files: &FileSet,
+    wheels: &BTreeMap<String, Wheel>,
+    soils: &BTreeMap<String, Soil>,
+    protocol: &Protocol,
+) -> Result<Vec<TestRun>, FileError> {
+    let text = files.named(file, file)?;
     let mut first_line: BTreeMap<String, usize> = BTreeMap::new();
-    let runs = table::rows(file, text, &columns, |row, line| {
+    let rows = table::rows(file, text, &columns(&sd_columns()), |row, line| {
         let run = row.test_run(wheels, soils)?;
+        let history = row.text(HISTORY).map(str::to_owned);
         match first_line.insert(run.name.clone(), line) {
             Some(first) => Err(format!(
                 "run \"{}\" stands twice (first on line {first})",
                 run.name
             )),
-            None => Ok(run),
+            None => Ok((run, history, line)),
         }
     })?;
-    if runs.is_empty() {
+    if rows.is_empty() {
         return Err(FileError::whole(file, "no test run stands in the file"));
     }
-    Ok(runs)
+    let average = |(mut run, history, line): (TestRun, Option<String>, usize)| {
+        if let Some(named) = history {
+            let text = files.named(file, &named)?;
+            let wheel = &wheels[&run.wheel];
+            let history = averaged(&named, text, wheel, protocol, (run.slip, run.sled_speed_m_s))?;
+            for (channel, recorded) in history.channels() {
+                if let Some(stated) = run.measured[channel.index()].replace(recorded.average) {
+                    let message = format!(
+                        "run \"{}\": {} is stated as {stated} {} and recorded in {named}: leave one of them out",
+                        run.name,
+                        channel.column(),
+                        channel.unit()
+                    );
+                    return Err(FileError::at(file, line, message));
+                }
+            }
+            run.history = Some(history);
+        }
+        Ok(run)
+    };
+    rows.into_iter().map(average).collect()
 }
 
 impl Row<'_> {
@@ -143,11 +182,8 @@ impl Row<'_> {
                 sd[channel.index()] = Some(self.positive(&sd_column, channel.unit())?);
             }
         }
-        let diameter = 2.0 * wheels[&wheel].radius_m;
-        if let Some(z) = measured[Channel::Sinkage.index()].filter(|z| z.abs() > diameter) {
-            return Err(format!(
-                "sinkage_m {z} m is more than the wheel's diameter {diameter} m: metres are expected, were these millimetres?"
-            ));
+        if let Some(z) = measured[Channel::Sinkage.index()] {
+            wheels[&wheel].check_sinkage(z)?;
         }
         Ok(TestRun {
             name: self.word("run")?.to_owned(),
@@ -159,6 +195,7 @@ impl Row<'_> {
             slip_angle_deg,
             pass,
             measured,
+            history: None,
             sd,
             usage,
         })

@@ -10,8 +10,6 @@ pub(super) struct Columns<'a> {
     pub(super) known: Vec<&'a str>,
     /// Names that must be there.
     pub(super) required: &'a [&'a str],
-    /// Names that a later version understands, with what to say of each.
-    pub(super) later: &'a [(&'a str, &'a str)],
 }
 
 impl Columns<'_> {
@@ -19,16 +17,8 @@ impl Columns<'_> {
     fn find(&self, header: &csv::StringRecord) -> Result<BTreeMap<String, usize>, String> {
         let mut positions = BTreeMap::new();
         for (position, name) in header.iter().enumerate() {
-            if let Some((_, why)) = self.later.iter().find(|(later, _)| *later == name) {
-                return Err(format!("column \"{name}\": {why}"));
-            }
             if !self.known.contains(&name) {
-                let later = self.later.iter().map(|(name, _)| *name);
-                return Err(unknown_word(
-                    "column",
-                    name,
-                    self.known.iter().copied().chain(later),
-                ));
+                return Err(unknown_word("column", name, self.known.iter().copied()));
             }
             if positions.insert(name.to_owned(), position).is_some() {
                 return Err(format!("column \"{name}\" stands twice"));
@@ -100,6 +90,11 @@ pub(super) struct Row<'a> {
 }
 
 impl Row<'_> {
+    /// Whether the file has a column.
+    pub(super) fn has(&self, column: &str) -> bool {
+        self.positions.contains_key(column)
+    }
+
     /// The field of a column; `None` where it is blank or the column absent.
     pub(super) fn text(&self, column: &str) -> Option<&str> {
         self.positions

@@ -31,6 +31,33 @@ impl Wheel {
     pub fn has_grousers(&self) -> bool {
         self.grouser_count > 0 || self.grouser_height_m > 0.0
     }
+
+    /// Refuses a sinkage `[m]` beyond the wheel's diameter, which is a mistake of units.
+    pub(super) fn check_sinkage(&self, sinkage_m: f64) -> Result<(), String> {
+        let diameter = 2.0 * self.radius_m;
+        if sinkage_m.abs() > diameter {
+            return Err(format!(
+                "sinkage_m {sinkage_m} m is more than the wheel's diameter {diameter} m: metres are expected, were these millimetres?"
+            ));
+        }
+        Ok(())
+    }
+
+    /// Time from one grouser to the next `[s]`, by the rig's reckoning of the rim's speed: `2 pi R_s / (N omega R_s)` with
+    /// `omega R_s = v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the sled speed `[m/s]`.
+    ///
+    /// `None` without grousers that are counted, and for a wheel that does not turn. A surface mesh counts none.
+    pub fn grouser_period_s(&self, slip: f64, sled_speed_m_s: f64) -> Option<f64> {
+        let rim_speed_m_s = if slip < 0.0 {
+            sled_speed_m_s * (1.0 + slip)
+        } else {
+            sled_speed_m_s / (1.0 - slip)
+        };
+        let turns = self.grouser_count > 0 && rim_speed_m_s > 0.0;
+        turns.then(|| {
+            std::f64::consts::TAU * self.rig_radius_m / (f64::from(self.grouser_count) * rim_speed_m_s)
+        })
+    }
 }
 
 /// The keys of `[wheel.NAME]`.
@@ -88,5 +115,31 @@ impl RawWheel {
             }
         }
         Ok((wheel, self.mesh))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grouser_follows_the_other_after_a_twelfth_of_a_turn() {
+        let mut wheel = Wheel {
+            radius_m: 0.13,
+            width_m: 0.1,
+            grouser_count: 12,
+            grouser_height_m: 0.0,
+            grouser_thickness_m: 0.0,
+            rig_radius_m: 0.125,
+            mesh: None,
+        };
+        // 8 mm/s at slip 0.2 and 12.5 mm/s at slip -0.2 are 10 mm/s of the rim: 2 pi 0.125 m / 12 / 0.01 m/s
+        for (slip, speed) in [(0.2, 0.008), (-0.2, 0.0125)] {
+            let period = wheel.grouser_period_s(slip, speed).unwrap();
+            assert!((period - 6.544_984_694_978_736).abs() < 1e-12, "{period}");
+        }
+        assert_eq!(wheel.grouser_period_s(-1.0, 0.01), None);
+        wheel.grouser_count = 0;
+        assert_eq!(wheel.grouser_period_s(0.2, 0.01), None);
     }
 }

@@ -119,6 +119,9 @@ pub struct ModelVariant {
     /// Whether each condition is simulated once more on soil that is a little stiffer, for the derivatives by ln k*.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub stiffness_sensitivity: bool,
+    /// Whether what each run felt over time comes back, too; only a model that rolls in time has that.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub histories: bool,
     /// Readings of plates to predict beside.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plates: Vec<PlateCondition>,
@@ -220,6 +223,7 @@ impl ModelVariant {
             conditions,
             protocol: experiment.protocol.clone(),
             stiffness_sensitivity: false,
+            histories: false,
             plates: Vec::new(),
             rings: Vec::new(),
             companion: None,
@@ -298,6 +302,19 @@ impl ModelVariant {
             }
         }
         Ok(())
+    }
+
+    /// The same runs with what each felt over time, and nothing beside; `None` of a model that knows no time, and without
+    /// runs.
+    pub fn with_histories(&self) -> Option<Self> {
+        let rolls = self.kind == ModelKind::Scm && !self.conditions.is_empty();
+        rolls.then(|| ModelVariant {
+            histories: true,
+            stiffness_sensitivity: false,
+            plates: Vec::new(),
+            rings: Vec::new(),
+            ..self.clone()
+        })
     }
 
     /// The names of all parameters, free and fixed.

@@ -201,13 +201,6 @@ fn what_a_later_version_brings_says_so() {
         section("[discovery]\napply = \"ask\"\n"),
         "[discovery] apply = \"ask\"",
     );
-    later(
-        Job {
-            runs: small().runs.replace(",use", ",history").replace(",fit", ",a.csv"),
-            ..small()
-        },
-        "column \"history\"",
-    );
 }
 
 #[test]

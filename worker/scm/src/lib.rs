@@ -22,7 +22,6 @@
 //! - [`bevameter`]: a plate pressed into the soil and a ring turned on it, by the same laws as the wheel.
 //!
 //! After a model:
-//! - [`signal`]: a time history to averages: resampling, zero-phase low-pass, means over whole periods.
 //!
 //! Numerics:
 //! - [`elementary`], of the crate `formula`: `exp`, `ln` and powers that vectorise and give the same bits on every machine.
@@ -43,7 +42,6 @@ mod quadrature;
 pub mod quasi_static;
 pub mod rejection;
 pub mod shear;
-pub mod signal;
 pub mod soil;
 pub mod spatial;
 pub mod wheel;

@@ -53,7 +53,7 @@ pub enum Rejection {
     },
     /// The protocol does not fit the run.
     #[error("the protocol does not fit the run: {0}")]
-    Protocol(#[from] crate::signal::SignalError),
+    Protocol(#[from] signal::SignalError),
     /// A formula of an effect gave what the model cannot use.
     #[error(transparent)]
     Formula(Box<FormulaRefusal>),

@@ -10,7 +10,6 @@ mod quadrature;
 mod reference_table;
 mod rejections;
 mod scene;
-mod signal;
 mod spatial;
 mod support;
 mod validation;

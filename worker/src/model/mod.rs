@@ -3,6 +3,7 @@
 //! # Layout
 //! - here: [`CompiledVariant`] and the cache of them.
 //! - `effects`: the effects, compiled, with the sources of their parameters.
+//! - `recording`: what a run felt over time, at 10 Hz.
 //! - `parameters`: where each physical quantity comes from.
 //! - `companion`: the quasi-static model beside, and the subchains of a metamodel.
 //! - `spatial`: the three-dimensional model; `bevameter`: plates and rings.
@@ -11,6 +12,7 @@ mod bevameter;
 mod companion;
 mod effects;
 mod parameters;
+mod recording;
 mod spatial;
 
 use std::collections::BTreeMap;
@@ -24,6 +26,7 @@ pub use bevameter::{Bevameter, Readings, without_action};
 use companion::CompiledCompanion;
 use effects::{ActiveEffects, EffectMap};
 use parameters::{Radius, SoilMap};
+pub use recording::at_10_hz;
 use spatial::SpatialModel;
 
 /// A variant whose names are resolved, so that an evaluation looks up nothing.
@@ -37,6 +40,7 @@ pub struct CompiledVariant {
     /// The three-dimensional model; `None`: the quasi-static one.
     spatial: Option<SpatialModel>,
     stiffness_sensitivity: bool,
+    histories: bool,
     /// What plates and rings read, where there are any to predict.
     bevameter: Option<(Bevameter, Vec<PlateCondition>, Vec<RingCondition>)>,
     /// The quasi-static model beside, where a metamodel is made of it.
@@ -61,6 +65,9 @@ impl CompiledVariant {
     pub fn new(variant: &ModelVariant) -> Result<Self, String> {
         let set = EffectSet::read(&variant.effects)?;
         variant.check_expressible(&set)?;
+        if variant.histories && variant.kind == ModelKind::QuasiStatic {
+            return Err("histories: quasi_static knows the steady state alone; use kind = \"scm\"".into());
+        }
         let effects = EffectMap::new(variant, &set)?;
         let names: Vec<&str> = variant.wheels.keys().map(String::as_str).collect();
         let soil = SoilMap::new(variant)?;
@@ -107,6 +114,7 @@ impl CompiledVariant {
             effects,
             stiffness_sensitivity: variant.stiffness_sensitivity,
             companion: CompiledCompanion::new(variant)?,
+            histories: variant.histories,
             bevameter: match variant.plates.is_empty() && variant.rings.is_empty() {
                 true => None,
                 false => Some((
@@ -142,6 +150,14 @@ impl CompiledVariant {
                 Ok(Simulated::Rolled(run)) => {
                     push(&mut observables, &run.averages);
                     observables.settled_to.extend(run.settled_to);
+                    if self.histories {
+                        match recording::recorded(&run.history) {
+                            Ok(history) => observables.histories.push(history),
+                            Err(rejection) => {
+                                return rejected(rejection.kind(), position, rejection.to_string());
+                            }
+                        }
+                    }
                     keep(*run);
                 }
                 Err(rejection) => return rejected(rejection.kind(), position, rejection.to_string()),

@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use scm::signal::{INTERVAL_S, intervals, resample};
 use scm::spatial::History;
 use shared::experiment::Experiment;
 use shared::file::FileError;
 use shared::model::ModelVariant;
+use signal::INTERVAL_S;
 
 use super::SimulateError;
+use crate::model::at_10_hz;
 
 /// Columns of a history file: time at the end of an interval, and means over the interval.
 const COLUMNS: [&str; 6] = [
@@ -59,15 +60,10 @@ fn file_name(run: &str) -> String {
 }
 
 fn table(history: &History) -> Result<Vec<u8>, SimulateError> {
-    // the first entry is of the wheel at rest
-    let edges: Vec<f64> = (0..history.len()).map(|i| i as f64 * history.step_s).collect();
-    let rows = intervals(&edges, INTERVAL_S);
+    let channels = at_10_hz(history)?;
+    let rows = channels[0].len();
     let mut columns = vec![(1..=rows).map(|i| i as f64 * INTERVAL_S).collect::<Vec<f64>>()];
-    for channel in history.channels() {
-        let mut samples = vec![0.0; rows];
-        resample(&edges, &channel[1..], INTERVAL_S, &mut samples)?;
-        columns.push(samples);
-    }
+    columns.extend(channels);
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(COLUMNS)?;
     for row in 0..rows {

@@ -40,7 +40,7 @@ pub enum SimulateError {
     },
     /// A history cannot be brought to a regular interval.
     #[error("history: {0}")]
-    History(#[from] scm::signal::SignalError),
+    History(#[from] signal::SignalError),
     /// A table cannot be put together.
     #[error("table: {0}")]
     Table(#[from] csv::Error),

@@ -211,6 +211,7 @@ fn build(last: &str) -> Outcome {
         stages: vec![stage(1, 0.001), stage(2, 0.1), stage(3, 1.0)],
         posterior,
         predictions,
+        simulated_histories: None,
         rejections: BTreeMap::from([("no_support".into(), 3)]),
         subchains: None,
         prior_draws,

@@ -6,9 +6,9 @@ use super::track::count;
 use crate::Condition;
 use crate::effects::Case;
 use crate::rejection::Rejection;
-use crate::signal::{self, INTERVAL_S, LowPass, Window, period_mean};
 use crate::spatial::settings::{Protocol, Settings};
 use crate::spatial::{Run, Scene};
+use signal::{INTERVAL_S, LowPass, average};
 
 /// Roll the wheel by the settings' protocol, pass after pass; the last one counts.
 ///
@@ -117,31 +117,16 @@ fn steady(
 
 /// Averages of histories at 10 Hz, filtered, with their transients cut.
 fn fixed(rolling: &Rolling, record: &Record, cut_s: [f64; 2], lowpass_hz: f64) -> Result<Windows, Rejection> {
-    let filter = if lowpass_hz > 0.0 {
-        Some(LowPass::new(lowpass_hz, 1.0 / INTERVAL_S)?)
-    } else {
-        None
-    };
+    let filter = LowPass::unless_zero(lowpass_hz, 1.0 / INTERVAL_S)?;
     let step = rolling.steps.time;
     let edges: Vec<f64> = (0..record.history.len()).map(|i| i as f64 * step).collect();
     let mut samples = vec![0.0; signal::intervals(&edges, INTERVAL_S)];
     let mut means = [0.0; 4];
     for (i, channel) in record.history.channels().into_iter().take(4).enumerate() {
         signal::resample(&edges, &channel[1..], INTERVAL_S, &mut samples)?;
-        if let Some(filter) = &filter {
-            filter.apply(&mut samples);
-        }
-        let history = signal::History {
-            start_s: 0.0,
-            interval_s: INTERVAL_S,
-            samples: &samples,
-        };
-        let window = Window {
-            from_s: if i == 2 { cut_s[1] } else { cut_s[0] },
-            to_s: history.end_s(),
-            period_s: rolling.grouser_period_s(),
-        };
-        means[i] = period_mean(&history, &window)?.mean;
+        let cut_s = if i == 2 { cut_s[1] } else { cut_s[0] };
+        let period_s = rolling.grouser_period_s();
+        means[i] = average(&mut samples, INTERVAL_S, filter.as_ref(), cut_s, period_s)?.mean;
     }
     Ok(Windows {
         means,

@@ -3,9 +3,9 @@
 use super::history::History;
 use super::rolling::{Rolling, Step};
 use crate::rejection::Rejection;
-use crate::signal::{self, Window, period_mean};
 use crate::spatial::Run;
 use crate::{Averages, Condition};
+use signal::{Window, period_mean};
 
 /// Steps from one look at the contour to the next: no multiple of which is a column's, whose phase the contour shows.
 const CONTOUR_EVERY: usize = 7;

@@ -86,7 +86,7 @@ pub struct PeriodMean {
 ///
 /// # Source
 /// A window that is no multiple of the period is off by up to `A / (π N)`. Checked by
-/// `signal::a_mean_over_whole_periods_is_free_of_the_swing` and others of that file.
+/// `a_mean_over_whole_periods_is_free_of_the_swing` and others of that file.
 pub fn period_mean(history: &History<'_>, window: &Window) -> Result<PeriodMean, SignalError> {
     let Window {
         from_s,

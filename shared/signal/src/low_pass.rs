@@ -17,8 +17,8 @@ const PAD: usize = 9;
 /// # Source
 /// Butterworth 1930; forward and backward, with ends as in `scipy.signal.filtfilt(*butter(2, f_c, fs=f_s), x)`: odd
 /// extension by nine samples, filter at rest on the first of them. Checked by
-/// `signal::sines_keep_their_phase_and_are_weakened_by_the_gain_squared`,
-/// `signal::a_constant_comes_through_and_a_ramp_nearly`, `signal::figures_of_an_independent_filter_are_met`.
+/// `sines_keep_their_phase_and_are_weakened_by_the_gain_squared`,
+/// `a_constant_comes_through_and_a_ramp_nearly`, `figures_of_an_independent_filter_are_met`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LowPass {
     b: [f64; 3],
@@ -30,7 +30,7 @@ impl LowPass {
     ///
     /// # Arguments
     /// - `cutoff_hz`: `f_c` \[Hz\], above 0 and below half the sampling rate. A history that shall not be filtered
-    ///   is not brought here: there is no cut-off that stands for that.
+    ///   is not brought here: [`LowPass::unless_zero`] has a word for that.
     /// - `sample_hz`: `f_s` \[Hz\], > 0.
     ///
     /// # Errors
@@ -47,6 +47,17 @@ impl LowPass {
             b: [w2 * norm, 2.0 * w2 * norm, w2 * norm],
             a: [2.0 * (w2 - 1.0) * norm, (1.0 - root_2_w + w2) * norm],
         })
+    }
+
+    /// The same, where a cut-off of 0 Hz stands for no filter, as in the protocol of an experiment.
+    ///
+    /// # Errors
+    /// As those of [`LowPass::new`].
+    pub fn unless_zero(cutoff_hz: f64, sample_hz: f64) -> Result<Option<Self>, SignalError> {
+        if cutoff_hz == 0.0 {
+            return Ok(None);
+        }
+        LowPass::new(cutoff_hz, sample_hz).map(Some)
     }
 
     /// Filters a history in place.

@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use scm::signal::{History, INTERVAL_S, LowPass, SignalError, Window, intervals, period_mean, resample};
+use signal::{History, INTERVAL_S, LowPass, SignalError, Window, average, intervals, period_mean, resample};
 
 const RATE_HZ: f64 = 10.0;
 
@@ -282,4 +282,37 @@ fn windows_outside_the_history_are_refused() {
         refused(1.0, 3.0, Some(0.0)).to_string(),
         "period_s = 0 s must be above 0 s"
     );
+}
+
+#[test]
+fn an_average_is_filter_cut_and_mean_in_this_order() {
+    let raw: Vec<f64> = (0..300)
+        .map(|k| 5.0 + libm::sin(f64::from(k) * 0.11) + 40.0 * libm::exp(-0.2 * f64::from(k)))
+        .collect();
+    let filter = LowPass::new(0.5, RATE_HZ).unwrap();
+    let mut filtered = raw.clone();
+    filter.apply(&mut filtered);
+    let history = History {
+        start_s: 0.0,
+        interval_s: INTERVAL_S,
+        samples: &filtered,
+    };
+    let window = Window {
+        from_s: 8.0,
+        to_s: history.end_s(),
+        period_s: Some(6.5),
+    };
+    let expected = period_mean(&history, &window).unwrap();
+    let mut samples = raw.clone();
+    let got = average(&mut samples, INTERVAL_S, Some(&filter), 8.0, Some(6.5)).unwrap();
+    assert_eq!(got, expected);
+    assert_eq!(samples, filtered);
+    assert_eq!(got.periods, 3);
+    let mut unfiltered = raw.clone();
+    let plain = average(&mut unfiltered, INTERVAL_S, None, 8.0, Some(6.5)).unwrap();
+    assert_eq!(unfiltered, raw);
+    assert!(plain.mean.to_bits() != got.mean.to_bits());
+    assert_eq!(LowPass::unless_zero(0.0, RATE_HZ), Ok(None));
+    assert_eq!(LowPass::unless_zero(0.5, RATE_HZ), Ok(Some(filter)));
+    assert!(average(&mut unfiltered, INTERVAL_S, None, 30.0, None).is_err());
 }

@@ -41,7 +41,7 @@ pub fn intervals(edges_s: &[f64], interval_s: f64) -> usize {
 /// # Validity
 /// Exact for a step function: the means times dt add up to its integral, to rounding.
 ///
-/// Checked by `signal::means_over_intervals_keep_the_integral` and others of that file.
+/// Checked by `means_over_intervals_keep_the_integral` and others of that file.
 pub fn resample(
     edges_s: &[f64],
     values: &[f64],

@@ -4,21 +4,24 @@
 //! - [`mod@resample`]: steps of uneven length to intervals of equal length.
 //! - [`low_pass`]: a filter that shifts nothing in time.
 //! - [`mod@period_mean`]: the mean over a whole number of periods at the end of a window.
+//! - [`mod@average`]: filter and mean as a protocol has them, of simulated and measured histories alike.
 //! - `error`: what is wrong with a history or a setting.
 //!
 //! A history is a sequence of means over intervals of equal length: what a rig's data logger gives, and what
 //! [`resample()`] makes of a simulation. Buffers are the caller's; nothing here allocates.
 //! Steps and results depend on the arguments alone, bit for bit: sums run from the first sample to the last.
 
+pub mod average;
 mod error;
 pub mod low_pass;
 pub mod period_mean;
 pub mod resample;
 
+pub use average::average;
 pub use error::SignalError;
 pub use low_pass::LowPass;
 pub use period_mean::{History, PeriodMean, Window, period_mean};
 pub use resample::{intervals, resample};
 
-/// Interval of the recordings of the rigs and of every history here `[s]`: 10 Hz.
+/// Interval of the recordings of the rigs and of every simulated history `[s]`: 10 Hz.
 pub const INTERVAL_S: f64 = 0.1;
