@@ -14,4 +14,5 @@ mod mesh;
 mod point_fit;
 mod search;
 mod spatial;
+mod study;
 mod summary_contract;

@@ -1,6 +1,6 @@
 //! Tables, summary, flags and report of a calibration, from what the store kept.
 //!
-//! Everything here is a pure function of an [`Outcome`]; the decisions it states read no holdout row.
+//! Everything here is a pure function of an [`Outcome`], or of the [`Study`] that it belongs to; the decisions it states read no holdout row.
 
 mod baseline;
 mod comparison;
@@ -13,6 +13,7 @@ mod predictive;
 mod readings;
 pub mod report;
 mod settling;
+mod study;
 mod summary;
 pub mod terminal;
 
@@ -31,6 +32,7 @@ pub use errors::{ChannelError, ErrorTable};
 pub use flags::Flag;
 pub use point_estimate::PointEstimate;
 pub use predictive::Predictive;
+pub use study::Study;
 pub use summary::{CalibrationSummary, ParameterSummary, Summary};
 
 /// A finished calibration with everything that the store kept of it.

@@ -79,15 +79,13 @@ impl EstimateRow {
 }
 
 impl Outcome {
-    /// What a fit or a search found; none of a sample.
-    pub fn point_estimates(&self) -> Vec<PointEstimate> {
-        let Some(estimate) = &self.estimate else {
-            return Vec::new();
-        };
+    /// What a fit or a search found; `None` of a sample.
+    pub fn point_estimate(&self) -> Option<PointEstimate> {
+        let estimate = self.estimate.as_ref()?;
         let comparison = self.comparison();
         let fitted = || estimate.fitted(&self.spec.parameters);
         let name = |p: FittedParameter| p.free.name.clone();
-        vec![PointEstimate {
+        Some(PointEstimate {
             algorithm: self.spec.method.name().to_owned(),
             parameters: fitted().map(|p| (name(p), p.value)).collect(),
             sd: estimate
@@ -114,6 +112,6 @@ impl Outcome {
                     mean: g.mean,
                 })
                 .collect(),
-        }]
+        })
     }
 }

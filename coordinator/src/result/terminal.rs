@@ -12,7 +12,7 @@ use super::coverage::Coverage;
 use super::errors::ErrorTable;
 use super::readings::{error_model, reading_errors};
 use super::settling::unsettled;
-use super::{Outcome, prior_mean};
+use super::{Outcome, Study, prior_mean};
 use crate::spec::{FreeParameter, Spec};
 use crate::store::EstimateRow;
 
@@ -111,6 +111,12 @@ pub fn specification(spec: &Spec) -> String {
 /// The width of a column of names.
 fn width<'a>(names: impl Iterator<Item = &'a String>) -> usize {
     names.map(String::len).fold(28, usize::max)
+}
+
+/// The results of a study, one calibration after the other.
+pub fn study(study: &Study) -> String {
+    let results: Vec<String> = study.outcomes().map(summary).collect();
+    results.join("\n")
 }
 
 /// The result of a run: parameters, errors, table of model against measurement, flags.

@@ -5,6 +5,7 @@ mod errors;
 mod job_file;
 mod method;
 mod noise;
+mod point_job;
 mod priors;
 mod sampler_keys;
 
@@ -23,6 +24,7 @@ pub use errors::LikelihoodSettings;
 pub use job_file::Job;
 pub use method::{Method, MethodError};
 pub(crate) use noise::repeat_scatter;
+pub use point_job::point_job;
 pub use priors::{FreeParameter, check_own};
 
 /// A calibration as its files determine it; equal files give an equal specification.
@@ -36,6 +38,8 @@ pub struct Spec {
     pub parameters: Vec<FreeParameter>,
     /// The algorithm with its settings.
     pub method: Method,
+    /// The fits and searches that stand beside the sample in its study.
+    pub point_estimates: Vec<Method>,
     /// The fitted runs, as positions in the experiment.
     pub fit_runs: Vec<usize>,
     /// The runs that are not fitted, as positions in the experiment.
@@ -139,14 +143,16 @@ impl Spec {
                 "[priors] leaves no parameter free: there is nothing to calibrate".into(),
             ));
         }
-        job.method
-            .check(parameters.len())
-            .map_err(|e| in_job(format!("[sampler] {e}")))?;
-        if matches!(job.method, Method::Fit(_)) && likelihood.entangles_unknown_sds() {
-            return Err(in_job(format!(
-                "[sampler] {}",
-                inference::lm::SettingsError::EntangledNoise
-            )));
+        for method in std::iter::once(&job.method).chain(&job.point_estimates) {
+            method
+                .check(parameters.len())
+                .map_err(|e| in_job(format!("[sampler] {e}")))?;
+            if matches!(method, Method::Fit(_)) && likelihood.entangles_unknown_sds() {
+                return Err(in_job(format!(
+                    "[sampler] {}",
+                    inference::lm::SettingsError::EntangledNoise
+                )));
+            }
         }
         let model_parameters: Vec<String> = parameters
             .iter()
@@ -172,6 +178,7 @@ impl Spec {
             model,
             parameters,
             method: job.method,
+            point_estimates: job.point_estimates,
             fit_runs,
             holdout_runs,
             fit_variant,

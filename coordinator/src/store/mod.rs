@@ -16,7 +16,7 @@ use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, S
 use sqlx::{Connection, SqliteConnection, SqlitePool};
 
 pub use read::{CalibrationRow, EstimateRow, ExperimentRow, Prediction, Sample, StageRow};
-pub use writer::{FactSink, NewCalibrationRow, StoreHealth, Writer};
+pub use writer::{FactSink, NewCalibrationRow, NewStudy, StoreHealth, StudyIds, Writer};
 
 /// Why the store cannot be used.
 #[derive(Debug, thiserror::Error)]

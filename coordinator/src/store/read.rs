@@ -175,6 +175,19 @@ impl Reader {
         rows.iter().map(calibration_row).collect()
     }
 
+    /// The calibrations of a study, oldest first.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn study(&self, id: i64) -> Result<Vec<CalibrationRow>, StoreError> {
+        let query = format!("{CALIBRATION} WHERE c.study = ? ORDER BY c.id");
+        let rows = sqlx::query(sqlx::AssertSqlSafe(query))
+            .bind(id)
+            .fetch_all(&self.pool)
+            .await?;
+        rows.iter().map(calibration_row).collect()
+    }
+
     /// Ids of all studies with their experiment and calibrations, oldest first.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
 
-use crate::result::Outcome;
+use crate::result::{Outcome, Study};
 use crate::spec::{Method, Spec};
 use crate::store::{CalibrationRow, EstimateRow, Prediction, Sample, StageRow};
 
@@ -112,6 +112,14 @@ pub(in crate::result) fn search() -> Outcome {
         }];
     }
     outcome
+}
+
+/// A sample with a search beside it.
+pub(in crate::result) fn study() -> Study {
+    Study {
+        beside: vec![search()],
+        ..Study::from(outcome())
+    }
 }
 
 fn build(last: &str) -> Outcome {

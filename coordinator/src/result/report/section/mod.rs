@@ -1,5 +1,6 @@
 //! The parts of the page, in reading order.
 
+mod beside;
 mod comparison;
 mod errors;
 mod estimate;
@@ -8,6 +9,7 @@ mod provenance;
 mod stages;
 mod verdict;
 
+pub(super) use beside::beside;
 pub(super) use comparison::comparison;
 pub(super) use errors::errors;
 pub(super) use estimate::{estimate, fit};
