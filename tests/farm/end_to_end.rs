@@ -273,6 +273,7 @@ fn the_openapi_document_lists_every_route_of_the_contract() {
             "comparison",
             "flags",
             "summary",
+            "figures",
             "events",
             "discovery",
         ]

@@ -65,6 +65,22 @@ fn each_calibration_of_a_study_is_what_the_same_job_gives_alone() {
         &format!("{:#}", study["point_estimates"]),
         &format!("{estimates:#}"),
     );
+    let figures = service
+        .client
+        .json(&format!("/v1/calibrations/{}/figures", ids[0]));
+    assert_eq!(figures["searches"][0]["algorithm"], "cma-es");
+    let labels: Vec<&str> = figures["errors"][0]["marks"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|mark| mark["label"].as_str())
+        .collect();
+    assert_eq!(
+        labels,
+        ["mean", "maximum likelihood", "LM optimum", "CMA-ES optimum"],
+        "{:#}",
+        figures["errors"][0]["marks"]
+    );
     let ledger = service.client.json("/v1/studies/1");
     assert_eq!(ledger["ledger"].as_array().map(Vec::len), Some(1));
     assert_eq!(ledger["point_estimates"].as_array().map(Vec::len), Some(2));

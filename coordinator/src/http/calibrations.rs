@@ -11,7 +11,7 @@ use utoipa_axum::routes;
 
 use super::error::{Body, HttpError, Id};
 use crate::farm::Control;
-use crate::result::{Comparison, Flag, Outcome, PosteriorTable, Study, Summary, report};
+use crate::result::{Comparison, Figures, Flag, Outcome, PosteriorTable, Study, Summary, report};
 use crate::service::Service;
 use crate::store::{Sample, StageRow};
 
@@ -28,6 +28,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(comparison))
         .routes(routes!(flags))
         .routes(routes!(summary))
+        .routes(routes!(figures))
         .routes(routes!(report_page))
 }
 
@@ -174,6 +175,13 @@ async fn flags(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<Fl
     (status = 200, body = Summary), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
 async fn summary(State(service): State<Service>, Id(id): Id) -> Result<Json<Summary>, HttpError> {
     Ok(Json(study(&service, id).await?.summary()))
+}
+
+/// What the figures of its study show, as numbers.
+#[utoipa::path(get, path = "/calibrations/{id}/figures", params(("id" = i64, Path)), responses(
+    (status = 200, body = Figures), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn figures(State(service): State<Service>, Id(id): Id) -> Result<Json<Figures>, HttpError> {
+    Ok(Json(study(&service, id).await?.figures()))
 }
 
 /// The report of its study, as `report.html` has it.

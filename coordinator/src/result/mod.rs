@@ -6,7 +6,9 @@ mod baseline;
 mod comparison;
 mod coverage;
 mod csv;
+mod entangled;
 mod errors;
+pub mod figure;
 mod flags;
 mod point_estimate;
 mod predictive;
@@ -29,6 +31,7 @@ use crate::store::{CalibrationRow, EstimateRow, Prediction, Reader, Sample, Stag
 pub use comparison::{Comparison, ComparisonRow};
 pub use csv::PosteriorTable;
 pub use errors::{ChannelError, ErrorTable};
+pub use figure::Figures;
 pub use flags::Flag;
 pub use point_estimate::PointEstimate;
 pub use predictive::Predictive;
@@ -50,6 +53,10 @@ pub struct Outcome {
     pub estimate: Option<EstimateRow>,
     /// The equally weighted draws of the posterior; none of a fit.
     pub posterior: Vec<Sample>,
+    /// The populations at the end of the stages before the last, from the prior on; none of a fit.
+    pub populations: Vec<Vec<Sample>>,
+    /// The model's values of the fitted measurements at the draw of the highest likelihood.
+    pub likeliest_values: Option<Vec<f64>>,
     /// The final draws, simulated on every run; the first is the most probable particle, of a fit the only one.
     pub predictions: Vec<Prediction>,
     /// How often the model refused, by kind.
@@ -80,16 +87,29 @@ impl Outcome {
             Method::Sample(_) => None,
             Method::Fit(_) | Method::Search(_) => reader.estimate(row.id).await?,
         };
+        let mut populations = reader.populations(row.id).await?;
+        let posterior = populations.pop().unwrap_or_default();
+        let likeliest_values = match likeliest(&posterior) {
+            Some(sample) => reader.fitted_values(row.id, &sample.theta).await?,
+            None => None,
+        };
         Ok(Outcome {
             spec,
             estimate,
             experiment: row.name.clone(),
-            posterior: reader.samples(row.id, None).await?,
+            posterior,
+            populations,
+            likeliest_values,
             predictions: reader.predictions(row.id).await?,
             rejections: reader.rejections(row.id).await?,
             stages,
             row: row.clone(),
         })
+    }
+
+    /// The draw of the highest likelihood; the first of equals.
+    pub fn likeliest(&self) -> Option<&Sample> {
+        likeliest(&self.posterior)
     }
 
     /// The predictions that results are made from: equally weighted draws, without the most probable particle, which is
@@ -111,6 +131,14 @@ impl Outcome {
     pub fn draws(&self, parameter: usize) -> Vec<f64> {
         self.posterior.iter().map(|s| s.theta[parameter]).collect()
     }
+}
+
+fn likeliest(draws: &[Sample]) -> Option<&Sample> {
+    let score = |s: &Sample| s.log_likelihood.unwrap_or(f64::NEG_INFINITY);
+    let best = draws
+        .iter()
+        .reduce(|best, s| if score(s) > score(best) { s } else { best });
+    best.filter(|s| s.log_likelihood.is_some())
 }
 
 /// The mean of a prior; that of a symmetric one is integrated to zero but for rounding, which is not shown.

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use inference::point::Generation;
+
 use super::Outcome;
 use super::summary::{BaselineSummary, ErrorSummary};
 use crate::spec::FreeParameter;
@@ -64,6 +66,16 @@ impl EstimateRow {
         self.log_likelihood + self.log_prior
     }
 
+    /// How a search by generations came there.
+    pub(super) fn generations(&self) -> Vec<GenerationSummary> {
+        let generation = |g: &Generation| GenerationSummary {
+            evaluations: g.evaluations,
+            best: g.best,
+            mean: g.mean,
+        };
+        self.history.iter().map(generation).collect()
+    }
+
     /// Its parameters, in the order of the job.
     pub(super) fn fitted<'a>(
         &'a self,
@@ -103,15 +115,7 @@ impl Outcome {
             rejected: self.row.rejected.unwrap_or(0),
             wall_s: self.row.busy_ms as f64 / 1000.0,
             stop: estimate.stop.name().to_owned(),
-            history: estimate
-                .history
-                .iter()
-                .map(|g| GenerationSummary {
-                    evaluations: g.evaluations,
-                    best: g.best,
-                    mean: g.mean,
-                })
-                .collect(),
+            history: estimate.generations(),
         })
     }
 }

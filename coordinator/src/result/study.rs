@@ -3,6 +3,7 @@
 use shared::api::CalibrationState;
 
 use super::Outcome;
+use super::figure::History;
 use super::flags::Flag;
 use super::point_estimate::PointEstimate;
 use super::summary::{CalibrationSummary, Summary};
@@ -18,6 +19,8 @@ pub struct Study {
     pub lead: Outcome,
     /// Those beside it: the point estimates that the job asks for.
     pub beside: Vec<Outcome>,
+    /// Measurement and model over time, where runs have measured histories.
+    pub histories: Option<Vec<History>>,
 }
 
 impl Study {
@@ -39,6 +42,7 @@ impl Study {
             state: unfinished.map_or(CalibrationState::Finished, |r| r.state),
             lead,
             beside,
+            histories: None,
         })
     }
 
@@ -94,6 +98,7 @@ impl From<Outcome> for Study {
             state: lead.row.state,
             lead,
             beside: Vec::new(),
+            histories: None,
         }
     }
 }

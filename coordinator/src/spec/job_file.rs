@@ -23,6 +23,8 @@ pub struct Job {
     pub method: Method,
     /// The fits and searches that stand beside the sample in its study.
     pub point_estimates: Vec<Method>,
+    /// What an independent test says of parameters, for the figures alone: name and value.
+    pub reference: BTreeMap<String, f64>,
     /// How measurements scatter around the model.
     pub likelihood: LikelihoodSettings,
 }
@@ -40,6 +42,14 @@ struct RawJob {
     discovery: RawDiscovery,
     #[serde(default)]
     likelihood: RawLikelihood,
+    #[serde(default)]
+    figures: RawFigures,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct RawFigures {
+    reference: BTreeMap<String, f64>,
 }
 
 #[derive(Deserialize)]
@@ -98,6 +108,7 @@ impl Job {
             priors,
             method,
             point_estimates,
+            reference: raw.figures.reference,
             likelihood,
         })
     }

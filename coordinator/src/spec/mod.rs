@@ -50,6 +50,8 @@ pub struct Spec {
     pub holdout_variant: Option<ModelVariant>,
     /// The likelihood of the measurements that are fitted; runs count within [`Spec::fit_runs`].
     pub likelihood: Likelihood,
+    /// What an independent test says of parameters; the figures show it, nothing else reads it.
+    pub reference: BTreeMap<String, f64>,
     /// What the job says of the errors.
     pub likelihood_settings: LikelihoodSettings,
     /// The measured readings of plates and rings; all are fitted.
@@ -128,6 +130,11 @@ impl Spec {
                 priors::Parsed::Free(parameter) => parameters.push(parameter),
             }
         }
+        for (name, &value) in &job.reference {
+            parameters::lookup(name, &wheels, &effects)
+                .and_then(|quantity| parameters::check_value(&quantity, name, value))
+                .map_err(|e| in_job(format!("[figures] reference: {e}")))?;
+        }
         add_unsaid(job_name, &effects, &wheels, &mut model, &mut parameters)?;
         let (fit_runs, holdout_runs): (Vec<usize>, Vec<usize>) =
             (0..experiment.runs.len()).partition(|&i| experiment.runs[i].usage == RunUse::Fit);
@@ -184,6 +191,7 @@ impl Spec {
             fit_variant,
             holdout_variant,
             likelihood,
+            reference: job.reference,
             likelihood_settings: job.likelihood,
             bevameter,
         })

@@ -91,6 +91,8 @@ pub(in crate::result) fn fit() -> Outcome {
     });
     outcome.predictions = vec![first];
     outcome.posterior.clear();
+    outcome.populations.clear();
+    outcome.likeliest_values = None;
     outcome.stages.clear();
     outcome.row.log_evidence = None;
     outcome.row.log_evidence_se = None;
@@ -170,6 +172,7 @@ fn build(last: &str) -> Outcome {
             holdout: (!spec.holdout_runs.is_empty()).then(|| Ok(predicted(k, &spec.holdout_runs))),
         })
         .collect();
+    let likeliest_values = spec.predicted_values(&predicted(0, &spec.fit_runs));
     let stage = |stage: u32, tempering_exponent: f64| StageRow {
         stage,
         tempering_exponent,
@@ -205,6 +208,8 @@ fn build(last: &str) -> Outcome {
         row,
         estimate: None,
         stages: vec![stage(1, 0.001), stage(2, 0.1), stage(3, 1.0)],
+        populations: vec![posterior.clone(); 2],
+        likeliest_values: Some(likeliest_values),
         posterior,
         predictions,
         rejections: BTreeMap::from([("no_support".into(), 3)]),
