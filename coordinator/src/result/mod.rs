@@ -53,7 +53,7 @@ pub struct Outcome {
     pub estimate: Option<EstimateRow>,
     /// The equally weighted draws of the posterior; none of a fit.
     pub posterior: Vec<Sample>,
-    /// The populations at the end of the stages before the last, from the prior on; none of a fit.
+    /// The draws from the prior, then the populations at the end of the stages before the last; none of a fit.
     pub populations: Vec<Vec<Sample>>,
     /// The model's values of the fitted measurements at the draw of the highest likelihood.
     pub likeliest_values: Option<Vec<f64>>,
@@ -89,6 +89,9 @@ impl Outcome {
         };
         let mut populations = reader.populations(row.id).await?;
         let posterior = populations.pop().unwrap_or_default();
+        if let Method::Sample(settings) = spec.method {
+            populations.insert(0, prior_draws(reader, row.id, &spec, settings.particles).await?);
+        }
         let likeliest_values = match likeliest(&posterior) {
             Some(sample) => reader.fitted_values(row.id, &sample.theta).await?,
             None => None,
@@ -131,6 +134,23 @@ impl Outcome {
     pub fn draws(&self, parameter: usize) -> Vec<f64> {
         self.posterior.iter().map(|s| s.theta[parameter]).collect()
     }
+}
+
+/// The population that a sampler begins with: its first evaluations.
+async fn prior_draws(
+    reader: &Reader,
+    calibration: i64,
+    spec: &Spec,
+    particles: usize,
+) -> Result<Vec<Sample>, ServiceError> {
+    let prior = spec.prior();
+    let draws = reader.evaluations_below(calibration, particles).await?;
+    let sample = |(theta, log_likelihood): (Vec<f64>, Option<f64>)| Sample {
+        log_prior: prior.log_density(&theta),
+        theta,
+        log_likelihood,
+    };
+    Ok(draws.into_iter().map(sample).collect())
 }
 
 fn likeliest(draws: &[Sample]) -> Option<&Sample> {

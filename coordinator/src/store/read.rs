@@ -268,6 +268,28 @@ impl Reader {
             .collect()
     }
 
+    /// The first evaluations of a calibration, up to a number: the parameter vector and its log-likelihood, `None` where
+    /// the model refused.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn evaluations_below(
+        &self,
+        calibration: i64,
+        number: usize,
+    ) -> Result<Vec<(Vec<f64>, Option<f64>)>, StoreError> {
+        let rows = sqlx::query(
+            "SELECT theta, log_likelihood FROM evaluations WHERE calibration = ? AND evaluation < ? ORDER BY evaluation",
+        )
+        .bind(calibration)
+        .bind(number as i64)
+        .fetch_all(&self.pool)
+        .await?;
+        rows.iter()
+            .map(|row| Ok((numbers(row.get("theta"))?, row.get("log_likelihood"))))
+            .collect()
+    }
+
     /// The predicted values that the likelihood took of a parameter vector while sampling; `None` where it was not
     /// simulated then, or refused.
     ///

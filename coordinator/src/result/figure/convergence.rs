@@ -76,30 +76,48 @@ pub(super) fn search(outcome: &Outcome) -> Option<SearchConvergence> {
     })
 }
 
-/// The populations of all stages, the posterior last.
-fn stage_populations(outcome: &Outcome) -> impl Iterator<Item = &[Sample]> {
-    let earlier = outcome.populations.iter().map(Vec::as_slice);
-    earlier.chain(std::iter::once(outcome.posterior.as_slice()))
+/// A population with its stage, its tempering exponent and the evaluations up to its end.
+struct Population<'a> {
+    stage: u32,
+    tempering_exponent: f64,
+    evaluations: u64,
+    samples: &'a [Sample],
+}
+
+/// The populations from the prior, which is stage 0, to the posterior.
+fn all(outcome: &Outcome) -> Vec<Population<'_>> {
+    let Some((prior, later)) = outcome.populations.split_first() else {
+        return Vec::new();
+    };
+    let mut evaluations = prior.len() as u64;
+    let mut populations = vec![Population {
+        stage: 0,
+        tempering_exponent: 0.0,
+        evaluations,
+        samples: prior,
+    }];
+    let later = later.iter().chain([&outcome.posterior]);
+    for (row, samples) in outcome.stages.iter().zip(later) {
+        evaluations += row.evaluations;
+        populations.push(Population {
+            stage: row.stage,
+            tempering_exponent: row.tempering_exponent,
+            evaluations,
+            samples,
+        });
+    }
+    populations
 }
 
 /// The stages of a sampler.
 pub(super) fn stages(outcome: &Outcome) -> Vec<StageConvergence> {
-    let mut evaluations = 0;
-    let stage = |(stage, population): (&crate::store::StageRow, &[Sample])| {
-        evaluations += stage.evaluations;
-        StageConvergence {
-            stage: stage.stage,
-            tempering_exponent: stage.tempering_exponent,
-            evaluations,
-            log_likelihood: range(population),
-        }
+    let stage = |population: &Population| StageConvergence {
+        stage: population.stage,
+        tempering_exponent: population.tempering_exponent,
+        evaluations: population.evaluations,
+        log_likelihood: range(population.samples),
     };
-    outcome
-        .stages
-        .iter()
-        .zip(stage_populations(outcome))
-        .map(stage)
-        .collect()
+    all(outcome).iter().map(stage).collect()
 }
 
 fn range(population: &[Sample]) -> Option<LogLikelihoodRange> {
@@ -122,17 +140,18 @@ pub(super) fn populations(outcome: &Outcome) -> Option<Populations> {
         _ if free.len() > 1 => [0, 1],
         _ => return None,
     };
-    let all: Vec<_> = outcome.stages.iter().zip(stage_populations(outcome)).collect();
+    let all = all(outcome);
     let last = all.len().checked_sub(1)?;
     let mut shown = vec![0, last / 2, last];
     shown.dedup();
     let stages = shown.into_iter().map(|i| {
-        let (stage, population) = all[i];
-        let every = population.len().div_ceil(POINTS).max(1);
+        let population = &all[i];
+        let every = population.samples.len().div_ceil(POINTS).max(1);
         StagePopulation {
-            stage: stage.stage,
-            tempering_exponent: stage.tempering_exponent,
+            stage: population.stage,
+            tempering_exponent: population.tempering_exponent,
             points: population
+                .samples
                 .iter()
                 .step_by(every)
                 .map(|s| [s.theta[x], s.theta[y]])
@@ -154,7 +173,7 @@ mod tests {
     fn evaluations_add_up_and_every_population_has_its_range() {
         let stages = stages(&fixture::outcome());
         let evaluations: Vec<u64> = stages.iter().map(|s| s.evaluations).collect();
-        assert_eq!(evaluations, [480, 960, 1440]);
+        assert_eq!(evaluations, [40, 520, 1000, 1480]);
         let range = stages[0].log_likelihood.unwrap();
         assert!(range.q05 < range.q50 && range.q50 < range.q95 && range.q95 <= range.highest);
     }
@@ -164,10 +183,10 @@ mod tests {
         let mut outcome = fixture::outcome();
         let populations = populations(&outcome).unwrap();
         let stages: Vec<u32> = populations.stages.iter().map(|s| s.stage).collect();
-        assert_eq!(stages, [1, 2, 3]);
+        assert_eq!(stages, [0, 1, 3]);
         assert_eq!(populations.parameters[1].unit, "deg");
         assert!(populations.stages.iter().all(|s| s.points.len() == 40));
-        outcome.stages.clear();
+        outcome.populations.clear();
         assert!(super::populations(&outcome).is_none());
     }
 }

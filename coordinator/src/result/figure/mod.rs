@@ -62,6 +62,18 @@ impl From<&FreeParameter> for AxisParameter {
     }
 }
 
+impl Figures {
+    /// Whether there is nothing to show.
+    pub fn is_empty(&self) -> bool {
+        // populations stand beside stages
+        self.searches.is_empty()
+            && self.stages.is_empty()
+            && self.posteriors.is_empty()
+            && self.histories.is_none()
+            && self.errors.is_empty()
+    }
+}
+
 impl Study {
     /// What the figures show: of the first sample, and of what stands beside it.
     pub fn figures(&self) -> Figures {
@@ -96,7 +108,7 @@ mod tests {
     fn a_study_has_every_figure_that_its_calibrations_allow() {
         let figures = fixture::study().figures();
         assert_eq!(figures.searches.len(), 1);
-        assert_eq!(figures.stages.len(), 3);
+        assert_eq!(figures.stages.len(), 4);
         assert!(figures.populations.is_some());
         let pairs: Vec<[&str; 2]> = figures
             .posteriors
@@ -106,7 +118,8 @@ mod tests {
         assert_eq!(pairs[0], ["n", "friction_angle_deg"]);
         let channels: Vec<&str> = figures.errors.iter().map(|e| e.channel.as_str()).collect();
         assert_eq!(channels, ["drawbar_pull", "sinkage"]);
-        assert!(figures.histories.is_none());
+        assert!(figures.histories.is_none() && !figures.is_empty());
+        assert!(Study::from(fixture::fit()).figures().is_empty());
     }
 
     #[test]

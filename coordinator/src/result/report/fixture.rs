@@ -208,7 +208,7 @@ fn build(last: &str) -> Outcome {
         row,
         estimate: None,
         stages: vec![stage(1, 0.001), stage(2, 0.1), stage(3, 1.0)],
-        populations: vec![posterior.clone(); 2],
+        populations: vec![posterior.clone(); 3],
         likeliest_values: Some(likeliest_values),
         posterior,
         predictions,

@@ -1,18 +1,21 @@
-//! The self-contained report: one HTML page without scripts or external resources, for screen and paper.
+//! The self-contained report: one HTML page that needs nothing from elsewhere, for screen and paper.
 //!
 //! # Layout
 //! - `section`: the parts of the page, in reading order.
 //! - `chart`: the pictures, drawn as inline SVG.
 //! - `coverage`: how many measurements lie in their intervals, and how many should.
+//! - `script`: the modules that draw the figures in the reader's browser, and their numbers.
 //! - `number`, `quantity`: digits and units as people read them.
 //!
-//! Names come from users; the templates escape every text.
+//! Names come from users; the templates escape every text, and so do the modules. Without scripts everything but the figures
+//! stands there, and in place of each figure its numbers.
 
 mod chart;
 #[cfg(test)]
 pub(super) mod fixture;
 mod number;
 mod quantity;
+mod script;
 mod section;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -56,6 +59,10 @@ pub fn page(study: &Study) -> String {
     if !study.beside.is_empty() {
         sections.push(("beside", "Point estimates", section::beside(&study.beside)));
     }
+    let figures = study.figures();
+    if !figures.is_empty() {
+        sections.push(("figures", "Figures", section::figures(&figures)));
+    }
     sections.push(("provenance", "Provenance", section::provenance(outcome)));
     let markup = html! {
         (DOCTYPE)
@@ -81,6 +88,7 @@ pub fn page(study: &Study) -> String {
                         section id=(id) { h2 { (title) } (body) }
                     }
                 }
+                @if !figures.is_empty() { (script::scripts(&figures)) }
             }
         }
     };
@@ -99,12 +107,16 @@ mod tests {
 
     #[test]
     fn names_of_users_are_escaped_everywhere() {
-        let page = page(fixture::outcome());
+        let page = super::page(&fixture::study());
         assert!(
             page.contains("&lt;script&gt;"),
             "the hostile names of the fixture are shown"
         );
-        assert!(!page.contains("<script"), "and never as markup");
+        // The only scripts are ours: the numbers of the figures and the modules that draw them.
+        let ours = ["<script type=\"application/json\"", "<script type=\"module\">"];
+        assert_eq!(page.matches("<script").count(), ours.len(), "and never as markup");
+        assert!(ours.iter().all(|script| page.contains(script)));
+        assert_eq!(page.matches("</script").count(), ours.len());
         assert!(!page.contains("<i>bold"), "nor in the text of the job");
     }
 
