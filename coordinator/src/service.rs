@@ -11,8 +11,8 @@ use shared::file::{FileError, FileSet};
 use crate::calibration::{Calibration, Identity};
 use crate::farm::dispatch::{Dispatcher, Stopped};
 use crate::farm::{Control, ControlError, Farm};
-use crate::spec::{EffectsChanged, Job, Method, MethodError, Spec};
-use crate::store::{CalibrationRow, NewCalibrationRow, Store, StoreError};
+use crate::spec::{EffectsChanged, Job, Method, MethodError, Spec, point_job};
+use crate::store::{CalibrationRow, NewCalibrationRow, NewStudy, Store, StoreError, StudyIds};
 
 /// A lease lasts so long without renewal `[ms]`.
 pub const LEASE_MS: u64 = 15_000;
@@ -176,7 +176,7 @@ impl Service {
             .await?)
     }
 
-    /// Stores a calibration after validating it, and takes it in hand.
+    /// Stores a calibration after validating it, with the point estimates that its job asks for, and takes them in hand.
     ///
     /// # Errors
     /// [`ServiceError`].
@@ -186,44 +186,43 @@ impl Service {
             what: "experiment",
             id: new.experiment.to_string(),
         })?;
+        let name = new.name.unwrap_or_else(|| "calibration".into());
         let job = FileSet {
             toml: new.toml,
             files: new.files,
         };
-        // The sampler is built once before anything is stored: what it refuses leaves nothing half-written.
+        // The samplers are built once before anything is stored: what they refuse leaves nothing half-written.
         let trial = Identity {
             id: 0,
-            name: String::new(),
+            name,
             study: 0,
             experiment: new.experiment,
         };
         // Reading a stranger's files and drawing a large population from the prior is CPU work: not on the async
         // runtime.
-        let drawn = tokio::task::spawn_blocking(move || {
-            let (name, files) = ("job.toml", &job.files);
-            let parsed = Job::parse(name, &job.toml)?;
-            parsed.check_files(name, files)?;
-            let spec = Spec::of(name, parsed, files, "experiment.toml", &experiment.files)?;
-            Ok::<_, ServiceError>((Calibration::new(trial, Arc::new(spec))?, job))
-        });
-        let (mut calibration, job) = drawn.await.map_err(|_| Stopped)??;
-        let name = new.name.unwrap_or_else(|| "calibration".into());
-        let row = NewCalibrationRow {
-            experiment: new.experiment,
-            name: name.clone(),
+        let members = tokio::task::spawn_blocking(move || members(&trial, &job, &experiment.files));
+        let members = members.await.map_err(|_| Stopped)??;
+        let row = |(calibration, job): &(Calibration, FileSet)| NewCalibrationRow {
+            name: calibration.identity.name.clone(),
+            toml: job.toml.clone(),
             files: file_json(&job.files),
-            toml: job.toml,
+        };
+        let study = NewStudy {
+            experiment: new.experiment,
+            calibrations: members.iter().map(row).collect(),
             now_ms: now_ms(),
         };
-        let (id, study) = self.store.writer().add_calibration(row).await?;
-        calibration.identity = Identity {
-            id,
-            name,
+        let StudyIds { study, calibrations } = self.store.writer().add_study(study).await?;
+        for ((mut calibration, _), &id) in members.into_iter().zip(&calibrations) {
+            (calibration.identity.id, calibration.identity.study) = (id, study);
+            self.dispatcher.add(calibration, Vec::new()).await?;
+        }
+        let (id, point_estimates) = calibrations.split_first().expect("a study begins with its job");
+        Ok(CalibrationCreated {
+            id: *id,
             study,
-            experiment: new.experiment,
-        };
-        self.dispatcher.add(calibration, Vec::new()).await?;
-        Ok(CalibrationCreated { id, study })
+            point_estimates: point_estimates.to_vec(),
+        })
     }
 
     /// A stored calibration.
@@ -314,6 +313,34 @@ impl Service {
         self.store.writer().durable(fact).await?;
         Ok(response)
     }
+}
+
+/// The calibrations that a job begins its study with, each with its own job: the job itself, then the point estimates
+/// that it asks for.
+fn members(
+    identity: &Identity,
+    job: &FileSet,
+    experiment: &FileSet,
+) -> Result<Vec<(Calibration, FileSet)>, ServiceError> {
+    let file = "job.toml";
+    let parsed = Job::parse(file, &job.toml)?;
+    parsed.check_files(file, &job.files)?;
+    let spec = Spec::of(file, parsed, &job.files, "experiment.toml", experiment)?;
+    let point_estimates = spec.point_estimates.clone();
+    let mut members = vec![(Calibration::new(identity.clone(), Arc::new(spec))?, job.clone())];
+    for method in &point_estimates {
+        let job = FileSet {
+            toml: point_job(file, &job.toml, method)?,
+            files: job.files.clone(),
+        };
+        let spec = Spec::new(file, &job, "experiment.toml", experiment)?;
+        let identity = Identity {
+            name: format!("{} ({})", identity.name, method.name()),
+            ..identity.clone()
+        };
+        members.push((Calibration::new(identity, Arc::new(spec))?, job));
+    }
+    Ok(members)
 }
 
 fn file_json(files: &BTreeMap<String, String>) -> String {

@@ -46,6 +46,9 @@ pub struct CalibrationCreated {
     pub id: i64,
     /// The study that it opens.
     pub study: i64,
+    /// Ids of the point estimates that the job asks for beside it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub point_estimates: Vec<i64>,
 }
 
 /// Where a calibration stands.

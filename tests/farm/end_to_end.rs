@@ -297,6 +297,7 @@ fn the_openapi_document_lists_every_route_of_the_contract() {
             "histories",
             "flags",
             "summary",
+            "figures",
             "events",
             "discovery",
         ]

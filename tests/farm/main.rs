@@ -17,4 +17,5 @@ mod metamodel;
 mod point_fit;
 mod search;
 mod spatial;
+mod study;
 mod summary_contract;

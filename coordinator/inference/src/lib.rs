@@ -14,7 +14,7 @@
 //! - [`point`]: what every search for the most probable parameters shares: axes, the result.
 //! - [`lm`]: the ask/tell fit of the most probable parameters.
 //! - [`search`]: the ask/tell search by generations; [`ga`], [`cma_es`]: how the next generation is made.
-//! - [`diagnostics`]: summaries of draws: moments, quantiles, bounds, effective sizes.
+//! - [`diagnostics`]: summaries of draws: moments, quantiles, densities, bounds, effective sizes.
 
 pub mod cma_es;
 pub mod diagnostics;

@@ -25,6 +25,7 @@ pub(super) async fn check(file: &JobFile) -> anyhow::Result<()> {
     }
     say(&text)?;
     let method = job.spec.method;
+    let beside = job.spec.point_estimates.clone();
     let pilot = tokio::task::spawn_blocking(move || pilot(job.spec)).await??;
     let evaluations = pilot.expected(method);
     let simulations = evaluations * pilot.runs as f64;
@@ -70,6 +71,15 @@ pub(super) async fn check(file: &JobFile) -> anyhow::Result<()> {
         core_s / 3600.0 / cores as f64,
         core_s / cores as f64
     );
+    for method in beside {
+        // Their budgets: where they settle is not known before.
+        let most = method.max_evaluations().unwrap_or_default() as f64;
+        text += &format!(
+            "beside it {}: at most {:.3} core hours\n",
+            method.words(),
+            most * pilot.seconds_per_evaluation / 3600.0
+        );
+    }
     if pilot.rejected_share > 0.0 {
         text += &format!(
             "the model refused {:.0} % of the pilot's parameter vectors\n",

@@ -15,8 +15,9 @@ use super::progress::Display;
 use crate::config::Run;
 use crate::embedded::{LocalWorkers, model_version};
 use crate::farm::Control;
-use crate::result::{Outcome, report, terminal};
+use crate::result::{Study, report, terminal};
 use crate::service::{LEASE_MS, Service};
+use crate::store::CalibrationRow;
 
 /// How often the display looks.
 const LOOK: Duration = Duration::from_millis(100);
@@ -59,10 +60,10 @@ async fn in_folder(
     service: &Service,
     listener: Option<TcpListener>,
 ) -> anyhow::Result<()> {
-    let id = take_up(job, out, service).await?;
-    let row = service.calibration_row(id).await?;
-    if !row.state.is_final() {
-        match calibrate(config, id, service, listener).await? {
+    let study = take_up(job, out, service).await?;
+    let rows = service.store().reader().study(study).await?;
+    if rows.iter().any(|row| !row.state.is_final()) {
+        match calibrate(config, study, service, listener).await? {
             End::Over => {}
             End::Stopped => {
                 note("stopped; the same command goes on from here");
@@ -70,29 +71,31 @@ async fn in_folder(
             }
         }
     }
-    let row = service.calibration_row(id).await?;
-    match row.state {
-        CalibrationState::Finished => {
-            let outcome = Outcome::load(&service.store().reader(), &row).await?;
-            write_results(&outcome, out)?;
-            let files = format!(
-                "\nin {}: summary.json, posterior.csv, report.html, grouser.db\n",
-                out.display()
-            );
-            Ok(say(&(terminal::summary(&outcome) + &files))?)
-        }
-        state => bail!(
-            "calibration {}: {}",
-            state.name(),
-            row.message.unwrap_or_default()
+    let rows = service.store().reader().study(study).await?;
+    if let Some(row) = rows.iter().find(|row| row.state == CalibrationState::Finished) {
+        let study = Study::load(&service.store().reader(), row).await?;
+        write_results(&study, out)?;
+        let files = format!(
+            "\nin {}: summary.json, posterior.csv, report.html, grouser.db\n",
+            out.display()
+        );
+        say(&(terminal::study(&study) + &files))?;
+    }
+    match rows.iter().find(|row| row.state != CalibrationState::Finished) {
+        None => Ok(()),
+        Some(row) => bail!(
+            "calibration {} {}: {}",
+            row.name,
+            row.state.name(),
+            row.message.as_deref().unwrap_or_default()
         ),
     }
 }
 
-/// The calibration of this folder: the stored one, if it is of the same job, or a new one.
+/// The study of this folder: the stored one, if it is of the same job, or a new one.
 async fn take_up(job: &JobOnDisk, out: &Path, service: &Service) -> anyhow::Result<i64> {
     let rows = service.store().reader().calibrations().await?;
-    let Some(row) = rows.first() else {
+    let Some(first) = rows.first() else {
         let experiment = NewExperiment {
             toml: job.experiment.toml.clone(),
             files: job.experiment.files.clone(),
@@ -104,13 +107,14 @@ async fn take_up(job: &JobOnDisk, out: &Path, service: &Service) -> anyhow::Resu
             files: job.job.files.clone(),
             name: Some(job.name.clone()),
         };
-        return Ok(service.add_calibration(new).await?.id);
+        return Ok(service.add_calibration(new).await?.study);
     };
-    let stored = service.spec_of(row).await?;
+    // The others of the study follow from the first.
+    let stored = service.spec_of(first).await?;
     if !stored.same_as(&job.spec) {
         let differs =
             |(name, text): (&String, &String)| job.job.files.get(name).is_some_and(|now| now != text);
-        let changed = row.job.files.iter().find(|&file| differs(file));
+        let changed = first.job.files.iter().find(|&file| differs(file));
         let what = match changed {
             Some((name, _)) => format!("the effect file {name}"),
             None => "the job or its experiment".to_owned(),
@@ -120,6 +124,14 @@ async fn take_up(job: &JobOnDisk, out: &Path, service: &Service) -> anyhow::Resu
             out.display()
         );
     }
+    for row in rows.iter().filter(|row| row.study == first.study) {
+        go_on(row, out, service).await?;
+    }
+    Ok(first.study)
+}
+
+/// Lets a stored calibration go on, where this program can.
+async fn go_on(row: &CalibrationRow, out: &Path, service: &Service) -> anyhow::Result<()> {
     if let Some(reason) = service.left_alone(row.id) {
         bail!(
             "{} holds a calibration that cannot go on: {reason}",
@@ -141,12 +153,12 @@ async fn take_up(job: &JobOnDisk, out: &Path, service: &Service) -> anyhow::Resu
     if row.state == CalibrationState::Paused {
         service.control(row.id, Control::Resume).await?;
     }
-    Ok(row.id)
+    Ok(())
 }
 
 async fn calibrate(
     config: &Run,
-    id: i64,
+    study: i64,
     service: &Service,
     listener: Option<TcpListener>,
 ) -> anyhow::Result<End> {
@@ -168,7 +180,7 @@ async fn calibrate(
     let workers =
         (threads > 0).then(|| LocalWorkers::start(service.dispatcher().clone(), threads, stop.wait()));
     let failure = workers.as_ref().map(LocalWorkers::failure);
-    let end = watch_until_over(id, service, failure).await;
+    let end = watch_until_over(study, service, failure).await;
     let wall_s = began.elapsed().as_secs_f64();
     stop.now();
     if let Some(workers) = workers {
@@ -187,9 +199,9 @@ async fn calibrate(
     end
 }
 
-/// Shows progress until the calibration is over, or until ^C.
+/// Shows progress until every calibration of the study is over, or until ^C.
 async fn watch_until_over(
-    id: i64,
+    study: i64,
     service: &Service,
     failure: Option<impl Future<Output = String>>,
 ) -> anyhow::Result<End> {
@@ -212,29 +224,31 @@ async fn watch_until_over(
             reason = &mut failure => bail!("the local workers ended: {reason}"),
             () = tokio::time::sleep(LOOK) => {}
         }
-        let status = service.status(id).await?;
-        if status.state == CalibrationState::Paused {
+        let mut statuses = service.list().await?;
+        statuses.retain(|status| status.study == study && !status.state.is_final());
+        let paused = statuses.iter().find(|s| s.state == CalibrationState::Paused);
+        if let Some(status) = paused {
             display.finish();
             bail!(
                 "paused: {}; the same command goes on from here",
-                status.message.unwrap_or_default()
+                status.message.as_deref().unwrap_or_default()
             );
         }
-        if status.state.is_final() {
+        let Some(status) = statuses.first() else {
             display.finish();
             return Ok(End::Over);
-        }
-        display.show(&status);
+        };
+        display.show(status);
     }
 }
 
 /// Writes every result beside its final name first, so that a half-written file never takes that name.
-fn write_results(outcome: &Outcome, out: &Path) -> anyhow::Result<()> {
-    let summary = serde_json::to_string_pretty(&outcome.summary())?;
+fn write_results(study: &Study, out: &Path) -> anyhow::Result<()> {
+    let summary = serde_json::to_string_pretty(&study.summary())?;
     let files: [(&str, String); 3] = [
         ("summary.json", summary + "\n"),
-        ("posterior.csv", outcome.posterior_table().to_csv()),
-        ("report.html", report::page(outcome)),
+        ("posterior.csv", study.lead.posterior_table().to_csv()),
+        ("report.html", report::page(study)),
     ];
     for (name, text) in files {
         let path: PathBuf = out.join(name);

@@ -5,8 +5,8 @@ use serde::de::DeserializeOwned;
 use shared::api::{CalibrationStatus, ErrorBody};
 
 use crate::config::{Source, Target};
-use crate::result::{self, Comparison, Diagnostics, Outcome, PosteriorTable, Summary, report};
-use crate::store::Reader;
+use crate::result::{self, Comparison, Diagnostics, Outcome, PosteriorTable, Study, Summary, report};
+use crate::store::{CalibrationRow, Reader};
 
 /// A service or a folder.
 pub(super) enum Place {
@@ -35,13 +35,13 @@ impl Place {
         }
     }
 
-    /// The calibration that is meant: the one named, or the only one.
+    /// The calibration that is meant: the one named, or the first of the only study.
     pub(super) async fn id(&self, target: &Target) -> anyhow::Result<i64> {
         if let Some(id) = target.id {
             return Ok(id);
         }
         match self.list().await?.as_slice() {
-            [only] => Ok(only.id),
+            [first, others @ ..] if others.iter().all(|o| o.study == first.study) => Ok(first.id),
             [] => bail!("there is no calibration"),
             several => bail!("there are {} calibrations: name one by its id", several.len()),
         }
@@ -84,24 +84,29 @@ impl Place {
     pub(super) async fn summary(&self, id: i64) -> anyhow::Result<Summary> {
         match self {
             Place::Service(client) => client.get(&format!("/v1/calibrations/{id}/summary")).await,
-            Place::Folder(reader) => Ok(outcome(reader, id).await?.summary()),
+            Place::Folder(reader) => Ok(study(reader, id).await?.summary()),
         }
     }
 
     pub(super) async fn report(&self, id: i64) -> anyhow::Result<String> {
         match self {
             Place::Service(client) => client.text(&format!("/v1/calibrations/{id}/report")).await,
-            Place::Folder(reader) => Ok(report::page(&outcome(reader, id).await?)),
+            Place::Folder(reader) => Ok(report::page(&study(reader, id).await?)),
         }
     }
 }
 
+async fn row(reader: &Reader, id: i64) -> anyhow::Result<CalibrationRow> {
+    let row = reader.calibration(id).await?;
+    row.with_context(|| format!("there is no calibration {id}"))
+}
+
 async fn outcome(reader: &Reader, id: i64) -> anyhow::Result<Outcome> {
-    let row = reader
-        .calibration(id)
-        .await?
-        .with_context(|| format!("there is no calibration {id}"))?;
-    Ok(Outcome::load(reader, &row).await?)
+    Ok(Outcome::load(reader, &row(reader, id).await?).await?)
+}
+
+async fn study(reader: &Reader, id: i64) -> anyhow::Result<Study> {
+    Ok(Study::load(reader, &row(reader, id).await?).await?)
 }
 
 /// A service over HTTP.

@@ -27,10 +27,11 @@ pub(super) async fn submit(config: &Submit) -> anyhow::Result<()> {
         name: Some(job.name),
     };
     let created: CalibrationCreated = client.post("/v1/calibrations", &new).await?;
-    Ok(say(&format!(
-        "calibration {} of study {}\n",
-        created.id, created.study
-    ))?)
+    let mut text = format!("calibration {} of study {}\n", created.id, created.study);
+    for id in created.point_estimates {
+        text += &format!("calibration {id} beside it\n");
+    }
+    Ok(say(&text)?)
 }
 
 pub(super) async fn list(source: &Source) -> anyhow::Result<()> {

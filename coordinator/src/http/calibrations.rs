@@ -12,7 +12,7 @@ use utoipa_axum::routes;
 use super::error::{Body, HttpError, Id};
 use crate::farm::Control;
 use crate::result::{
-    ChannelHistory, Comparison, Diagnostics, Flag, Outcome, PosteriorTable, Summary, report,
+    ChannelHistory, Comparison, Diagnostics, Figures, Flag, Outcome, PosteriorTable, Study, Summary, report,
 };
 use crate::service::Service;
 use crate::store::{Sample, StageRow};
@@ -32,10 +32,11 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(histories))
         .routes(routes!(flags))
         .routes(routes!(summary))
+        .routes(routes!(figures))
         .routes(routes!(report_page))
 }
 
-/// Validates a job, stores it and takes it in hand.
+/// Validates a job, stores it and takes it in hand, with the point estimates that it asks for beside it.
 #[utoipa::path(post, path = "/calibrations", request_body = NewCalibration, responses(
     (status = 201, body = CalibrationCreated, headers(("Location" = String))),
     (status = 404, body = ErrorBody, description = "no such experiment"),
@@ -147,6 +148,11 @@ async fn outcome(service: &Service, id: i64) -> Result<Outcome, HttpError> {
     Ok(Outcome::load(&service.store().reader(), &row).await?)
 }
 
+async fn study(service: &Service, id: i64) -> Result<Study, HttpError> {
+    let row = service.calibration_row(id).await?;
+    Ok(Study::load(&service.store().reader(), &row).await?)
+}
+
 /// The equally weighted draws of the posterior.
 #[utoipa::path(get, path = "/calibrations/{id}/posterior", params(("id" = i64, Path)), responses(
     (status = 200, body = PosteriorTable), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
@@ -191,16 +197,23 @@ async fn flags(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<Fl
     Ok(Json(diagnosed(&service, id).await?.flags))
 }
 
-/// The summary, as `summary.json` has it.
+/// The summary of its study, as `summary.json` has it.
 #[utoipa::path(get, path = "/calibrations/{id}/summary", params(("id" = i64, Path)), responses(
     (status = 200, body = Summary), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
 async fn summary(State(service): State<Service>, Id(id): Id) -> Result<Json<Summary>, HttpError> {
-    Ok(Json(outcome(&service, id).await?.summary()))
+    Ok(Json(study(&service, id).await?.summary()))
 }
 
-/// The report, as `report.html` has it.
+/// What the figures of its study show, as numbers.
+#[utoipa::path(get, path = "/calibrations/{id}/figures", params(("id" = i64, Path)), responses(
+    (status = 200, body = Figures), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn figures(State(service): State<Service>, Id(id): Id) -> Result<Json<Figures>, HttpError> {
+    Ok(Json(study(&service, id).await?.figures()))
+}
+
+/// The report of its study, as `report.html` has it.
 #[utoipa::path(get, path = "/calibrations/{id}/report", params(("id" = i64, Path)), responses(
     (status = 200, content_type = "text/html", body = String), (status = 404, body = ErrorBody)))]
 async fn report_page(State(service): State<Service>, Id(id): Id) -> Result<Html<String>, HttpError> {
-    Ok(Html(report::page(&outcome(&service, id).await?)))
+    Ok(Html(report::page(&study(&service, id).await?)))
 }

@@ -64,7 +64,7 @@ async fn ledger(State(service): State<Service>, Id(id): Id) -> Result<Json<Ledge
         if row.state == CalibrationState::Finished {
             let outcome = Outcome::load(&reader, &row).await?;
             ledger.extend(outcome.calibration_summary());
-            point_estimates.extend(outcome.point_estimates());
+            point_estimates.extend(outcome.point_estimate());
         }
     }
     Ok(Json(Ledger {

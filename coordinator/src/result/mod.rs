@@ -1,20 +1,22 @@
 //! Tables, summary, flags and report of a calibration, from what the store kept.
 //!
-//! Everything here is a pure function of an [`Outcome`]; the decisions it states read no holdout row.
+//! Everything here is a pure function of an [`Outcome`], or of the [`Study`] that it belongs to; the decisions it states read no holdout row.
 
 mod baseline;
 mod comparison;
 mod coverage;
 mod csv;
 pub mod diagnostics;
+mod entangled;
 mod errors;
-mod figure;
+pub mod figure;
 mod flags;
 mod point_estimate;
 mod predictive;
 mod readings;
 pub mod report;
 mod settling;
+mod study;
 mod summary;
 pub mod terminal;
 
@@ -32,10 +34,11 @@ pub use comparison::{Comparison, ComparisonRow};
 pub use csv::PosteriorTable;
 pub use diagnostics::Diagnostics;
 pub use errors::{ChannelError, ErrorTable};
-pub use figure::{ChannelHistory, ModelSeries, Series};
+pub use figure::{ChannelHistory, Figures, ModelSeries, Series};
 pub use flags::Flag;
 pub use point_estimate::PointEstimate;
 pub use predictive::Predictive;
+pub use study::Study;
 pub use summary::{CalibrationSummary, ParameterSummary, Summary};
 
 /// A finished calibration with everything that the store kept of it.
@@ -53,6 +56,10 @@ pub struct Outcome {
     pub estimate: Option<EstimateRow>,
     /// The equally weighted draws of the posterior; none of a fit.
     pub posterior: Vec<Sample>,
+    /// The draws from the prior, then the populations at the end of the stages before the last; none of a fit.
+    pub populations: Vec<Vec<Sample>>,
+    /// The model's values of the fitted measurements at the draw of the highest likelihood.
+    pub likeliest_values: Option<Vec<f64>>,
     /// The final draws, simulated on every run; the first is the most probable particle, of a fit the only one.
     pub predictions: Vec<Prediction>,
     /// What each fitted run felt over time at the likeliest parameters; `None` of a model that knows no time.
@@ -95,12 +102,23 @@ impl Outcome {
             Method::Sample(_) => reader.prior_draws(row.id, spec.method.width()).await?,
             Method::Fit(_) | Method::Search(_) => Vec::new(),
         };
+        let mut populations = reader.populations(row.id).await?;
+        let posterior = populations.pop().unwrap_or_default();
+        if let Method::Sample(_) = spec.method {
+            populations.insert(0, first_population(&spec, &prior_draws));
+        }
+        let likeliest_values = match likeliest(&posterior) {
+            Some(sample) => reader.fitted_values(row.id, &sample.theta).await?,
+            None => None,
+        };
         Ok(Outcome {
             spec,
             estimate,
             prior_draws,
             experiment: row.name.clone(),
-            posterior: reader.samples(row.id, None).await?,
+            posterior,
+            populations,
+            likeliest_values,
             predictions: reader.predictions(row.id).await?,
             simulated_histories: reader.histories(row.id).await?,
             rejections: reader.rejections(row.id).await?,
@@ -109,6 +127,11 @@ impl Outcome {
             stages,
             row: row.clone(),
         })
+    }
+
+    /// The draw of the highest likelihood; the first of equals.
+    pub fn likeliest(&self) -> Option<&Sample> {
+        likeliest(&self.posterior)
     }
 
     /// The predictions that results are made from: equally weighted draws, without the most probable particle, which is
@@ -130,6 +153,30 @@ impl Outcome {
     pub fn draws(&self, parameter: usize) -> Vec<f64> {
         self.posterior.iter().map(|s| s.theta[parameter]).collect()
     }
+}
+
+/// The population that a sampler begins with.
+fn first_population(spec: &Spec, draws: &[PriorDraw]) -> Vec<Sample> {
+    let prior = spec.prior();
+    let score = |draw: &PriorDraw| {
+        let values = draw.result.as_ref().ok()?;
+        let scored = spec.likelihood.log_likelihood(values, &draw.theta).ok()?;
+        Some(scored.value()).filter(|value| value.is_finite())
+    };
+    let sample = |draw: &PriorDraw| Sample {
+        theta: draw.theta.clone(),
+        log_likelihood: score(draw),
+        log_prior: prior.log_density(&draw.theta),
+    };
+    draws.iter().map(sample).collect()
+}
+
+fn likeliest(draws: &[Sample]) -> Option<&Sample> {
+    let score = |s: &Sample| s.log_likelihood.unwrap_or(f64::NEG_INFINITY);
+    let best = draws
+        .iter()
+        .reduce(|best, s| if score(s) > score(best) { s } else { best });
+    best.filter(|s| s.log_likelihood.is_some())
 }
 
 /// The mean of a prior; that of a symmetric one is integrated to zero but for rounding, which is not shown.

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use inference::point::Generation;
+
 use super::Outcome;
 use super::summary::{BaselineSummary, ErrorSummary};
 use crate::spec::FreeParameter;
@@ -64,6 +66,16 @@ impl EstimateRow {
         self.log_likelihood + self.log_prior
     }
 
+    /// How a search by generations came there.
+    pub(super) fn generations(&self) -> Vec<GenerationSummary> {
+        let generation = |g: &Generation| GenerationSummary {
+            evaluations: g.evaluations,
+            best: g.best,
+            mean: g.mean,
+        };
+        self.history.iter().map(generation).collect()
+    }
+
     /// Its parameters, in the order of the job.
     pub(super) fn fitted<'a>(
         &'a self,
@@ -79,15 +91,13 @@ impl EstimateRow {
 }
 
 impl Outcome {
-    /// What a fit or a search found; none of a sample.
-    pub fn point_estimates(&self) -> Vec<PointEstimate> {
-        let Some(estimate) = &self.estimate else {
-            return Vec::new();
-        };
+    /// What a fit or a search found; `None` of a sample.
+    pub fn point_estimate(&self) -> Option<PointEstimate> {
+        let estimate = self.estimate.as_ref()?;
         let comparison = self.comparison();
         let fitted = || estimate.fitted(&self.spec.parameters);
         let name = |p: FittedParameter| p.free.name.clone();
-        vec![PointEstimate {
+        Some(PointEstimate {
             algorithm: self.spec.method.name().to_owned(),
             parameters: fitted().map(|p| (name(p), p.value)).collect(),
             sd: estimate
@@ -105,15 +115,7 @@ impl Outcome {
             rejected: self.row.rejected.unwrap_or(0),
             wall_s: self.row.busy_ms as f64 / 1000.0,
             stop: estimate.stop.name().to_owned(),
-            history: estimate
-                .history
-                .iter()
-                .map(|g| GenerationSummary {
-                    evaluations: g.evaluations,
-                    best: g.best,
-                    mean: g.mean,
-                })
-                .collect(),
-        }]
+            history: estimate.generations(),
+        })
     }
 }

@@ -155,21 +155,6 @@ pub struct CoverageSummary {
 }
 
 impl Outcome {
-    /// The summary of the study.
-    pub fn summary(&self) -> Summary {
-        Summary {
-            experiment: self.experiment.clone(),
-            seed: self.spec.method.seed(),
-            model_version: self.row.model_version.clone().unwrap_or_default(),
-            model_kind: self.spec.model.kind.name().to_owned(),
-            status: self.row.state.name().to_owned(),
-            calibrations: self.calibration_summary().into_iter().collect(),
-            point_estimates: self.point_estimates(),
-            flags: self.diagnostics(&self.comparison()).flags,
-            discovery: None,
-        }
-    }
-
     /// The calibration's line of the ledger; `None` for a fit: point estimates stand apart.
     pub fn calibration_summary(&self) -> Option<CalibrationSummary> {
         if self.estimate.is_some() {

@@ -14,7 +14,7 @@ use super::diagnostics::terminal::{findings, flags};
 use super::errors::ErrorTable;
 use super::readings::{error_model, reading_errors};
 use super::settling::unsettled;
-use super::{Outcome, prior_mean};
+use super::{Outcome, Study, prior_mean};
 use crate::spec::{FreeParameter, Spec};
 use crate::store::EstimateRow;
 
@@ -151,6 +151,12 @@ fn averaging(run: &str, history: &MeasuredHistory, protocol: &Protocol) -> Strin
 /// The width of a column of names.
 fn width<'a>(names: impl Iterator<Item = &'a String>) -> usize {
     names.map(String::len).fold(28, usize::max)
+}
+
+/// The results of a study, one calibration after the other.
+pub fn study(study: &Study) -> String {
+    let results: Vec<String> = study.outcomes().map(summary).collect();
+    results.join("\n")
 }
 
 /// The result of a run: parameters, errors, table of model against measurement, flags.

@@ -21,6 +21,10 @@ pub struct Job {
     pub priors: Vec<PriorEntry>,
     /// The algorithm with its settings.
     pub method: Method,
+    /// The fits and searches that stand beside the sample in its study.
+    pub point_estimates: Vec<Method>,
+    /// What an independent test says of parameters, for the figures alone: name and value.
+    pub reference: BTreeMap<String, f64>,
     /// How measurements scatter around the model.
     pub likelihood: LikelihoodSettings,
 }
@@ -38,6 +42,14 @@ struct RawJob {
     discovery: RawDiscovery,
     #[serde(default)]
     likelihood: RawLikelihood,
+    #[serde(default)]
+    figures: RawFigures,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct RawFigures {
+    reference: BTreeMap<String, f64>,
 }
 
 #[derive(Deserialize)]
@@ -74,7 +86,9 @@ impl Job {
             .settings()
             .map_err(|e| fail(format!("[likelihood] {e}")))?;
         let model = ModelSettings::from_table(&raw.model).map_err(|e| fail(format!("[model] {e}")))?;
-        let method = raw.sampler.method().map_err(|e| fail(format!("[sampler] {e}")))?;
+        let in_sampler = |e: String| fail(format!("[sampler] {e}"));
+        let method = raw.sampler.method().map_err(in_sampler)?;
+        let point_estimates = raw.sampler.point_estimates(method.seed()).map_err(in_sampler)?;
         let mut priors: Vec<_> = raw.priors.into_iter().collect();
         priors.sort_by_key(|(_, value)| value.span().start);
         let priors = priors
@@ -93,6 +107,8 @@ impl Job {
             model,
             priors,
             method,
+            point_estimates,
+            reference: raw.figures.reference,
             likelihood,
         })
     }

@@ -2,6 +2,7 @@
 
 use inference::{Algorithm, cma_es, ga, lm, search};
 use serde::Deserialize;
+use shared::file::unknown_word;
 
 use super::sampler_keys::Keys;
 
@@ -119,6 +120,8 @@ impl Method {
 
 /// Least and most steps of a stage whose steps are subchains of a metamodel.
 const METAMODEL_STEPS: [usize; 2] = [3, 30];
+/// The algorithms that find the most probable parameters.
+const POINT_ESTIMATES: [&str; 3] = ["lm", "ga", "cma-es"];
 
 /// The table as written; every algorithm reads its own keys.
 #[derive(Default, Deserialize)]
@@ -135,10 +138,12 @@ pub(super) struct RawSampler {
     population: Option<usize>,
     generations: Option<usize>,
     restarts: Option<usize>,
+    point_estimates: Option<Vec<String>>,
 }
 
 impl RawSampler {
-    pub(super) fn method(self) -> Result<Method, String> {
+    /// The algorithm with its settings.
+    pub(super) fn method(&self) -> Result<Method, String> {
         let keys = Keys::of(self.algorithm.as_deref().unwrap_or("tmcmc"))?;
         keys.refuse(&[
             ("particles", self.particles.is_some()),
@@ -150,6 +155,7 @@ impl RawSampler {
             ("population", self.population.is_some()),
             ("generations", self.generations.is_some()),
             ("restarts", self.restarts.is_some()),
+            ("point_estimates", self.point_estimates.is_some()),
         ])?;
         Ok(match keys.algorithm {
             "ching-chen-2007" => self.sample(Algorithm::ChingChen2007),
@@ -161,7 +167,27 @@ impl RawSampler {
         })
     }
 
-    fn sample(self, algorithm: Algorithm) -> Method {
+    /// The fits and searches beside the sample: each with its usual settings and the sample's seed.
+    pub(super) fn point_estimates(&self, seed: u64) -> Result<Vec<Method>, String> {
+        let names = self.point_estimates.as_deref().unwrap_or_default();
+        let method = |(i, name): (usize, &String)| {
+            if !POINT_ESTIMATES.contains(&name.as_str()) {
+                return Err(unknown_word("point estimate", name, POINT_ESTIMATES));
+            }
+            if names[..i].contains(name) {
+                return Err(format!("point_estimates names {name} twice"));
+            }
+            RawSampler {
+                algorithm: Some(name.clone()),
+                seed: Some(seed),
+                ..RawSampler::default()
+            }
+            .method()
+        };
+        names.iter().enumerate().map(method).collect()
+    }
+
+    fn sample(&self, algorithm: Algorithm) -> Method {
         let usual = inference::Settings::default();
         let metamodel_moves = self.metamodel_moves.unwrap_or(usual.metamodel_moves);
         // A step of many moves forgets more than one of one.
@@ -180,7 +206,7 @@ impl RawSampler {
         })
     }
 
-    fn fit(self) -> Method {
+    fn fit(&self) -> Method {
         let usual = lm::Settings::default();
         Method::Fit(lm::Settings {
             starts: self.starts.unwrap_or(usual.starts),
@@ -191,7 +217,7 @@ impl RawSampler {
         })
     }
 
-    fn ga(self) -> Method {
+    fn ga(&self) -> Method {
         let usual = ga::Settings::default();
         Method::Search(search::Settings::Ga(ga::Settings {
             population: self.population.unwrap_or(usual.population),
@@ -201,7 +227,7 @@ impl RawSampler {
         }))
     }
 
-    fn cma_es(self) -> Method {
+    fn cma_es(&self) -> Method {
         let usual = cma_es::Settings::default();
         Method::Search(search::Settings::CmaEs(cma_es::Settings {
             population: self.population,

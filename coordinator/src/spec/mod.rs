@@ -5,6 +5,7 @@ mod errors;
 mod job_file;
 mod method;
 mod noise;
+mod point_job;
 mod predicted;
 mod priors;
 mod sampler_keys;
@@ -24,6 +25,7 @@ pub use errors::LikelihoodSettings;
 pub use job_file::Job;
 pub use method::{Method, MethodError};
 pub(crate) use noise::repeat_scatter;
+pub use point_job::point_job;
 use predicted::predicted;
 pub use priors::{FreeParameter, check_own};
 
@@ -38,6 +40,8 @@ pub struct Spec {
     pub parameters: Vec<FreeParameter>,
     /// The algorithm with its settings.
     pub method: Method,
+    /// The fits and searches that stand beside the sample in its study.
+    pub point_estimates: Vec<Method>,
     /// The fitted runs, as positions in the experiment.
     pub fit_runs: Vec<usize>,
     /// The runs that are not fitted, as positions in the experiment.
@@ -50,6 +54,8 @@ pub struct Spec {
     pub likelihood: Likelihood,
     /// Which of the observables it takes.
     predicted: Vec<Predicted>,
+    /// What an independent test says of parameters; the figures show it, nothing else reads it.
+    pub reference: BTreeMap<String, f64>,
     /// What the job says of the errors.
     pub likelihood_settings: LikelihoodSettings,
     /// The measured readings of plates and rings; all are fitted.
@@ -128,6 +134,11 @@ impl Spec {
                 priors::Parsed::Free(parameter) => parameters.push(parameter),
             }
         }
+        for (name, &value) in &job.reference {
+            parameters::lookup(name, &wheels, &effects)
+                .and_then(|quantity| parameters::check_value(&quantity, name, value))
+                .map_err(|e| in_job(format!("[figures] reference: {e}")))?;
+        }
         add_unsaid(job_name, &effects, &wheels, &mut model, &mut parameters)?;
         let (fit_runs, holdout_runs): (Vec<usize>, Vec<usize>) =
             (0..experiment.runs.len()).partition(|&i| experiment.runs[i].usage == RunUse::Fit);
@@ -143,14 +154,16 @@ impl Spec {
                 "[priors] leaves no parameter free: there is nothing to calibrate".into(),
             ));
         }
-        job.method
-            .check(parameters.len())
-            .map_err(|e| in_job(format!("[sampler] {e}")))?;
-        if matches!(job.method, Method::Fit(_)) && likelihood.entangles_unknown_sds() {
-            return Err(in_job(format!(
-                "[sampler] {}",
-                inference::lm::SettingsError::EntangledNoise
-            )));
+        for method in std::iter::once(&job.method).chain(&job.point_estimates) {
+            method
+                .check(parameters.len())
+                .map_err(|e| in_job(format!("[sampler] {e}")))?;
+            if matches!(method, Method::Fit(_)) && likelihood.entangles_unknown_sds() {
+                return Err(in_job(format!(
+                    "[sampler] {}",
+                    inference::lm::SettingsError::EntangledNoise
+                )));
+            }
         }
         let model_parameters: Vec<String> = parameters
             .iter()
@@ -191,12 +204,14 @@ impl Spec {
             model,
             parameters,
             method: job.method,
+            point_estimates: job.point_estimates,
             fit_runs,
             holdout_runs,
             fit_variant,
             holdout_variant,
             likelihood,
             predicted,
+            reference: job.reference,
             likelihood_settings: job.likelihood,
             bevameter,
         })

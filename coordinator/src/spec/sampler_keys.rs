@@ -13,15 +13,15 @@ pub(super) struct Keys {
 const ALL: [Keys; 6] = [
     Keys {
         algorithm: "tmcmc",
-        keys: &["particles", "moves", "metamodel_moves", "seed"],
+        keys: &["particles", "moves", "metamodel_moves", "seed", "point_estimates"],
     },
     Keys {
         algorithm: "ching-chen-2007",
-        keys: &["particles", "moves", "seed"],
+        keys: &["particles", "moves", "seed", "point_estimates"],
     },
     Keys {
         algorithm: "basis",
-        keys: &["particles", "seed"],
+        keys: &["particles", "seed", "point_estimates"],
     },
     Keys {
         algorithm: "lm",

@@ -18,7 +18,7 @@ use sqlx::{Connection, SqliteConnection, SqlitePool};
 
 pub use prior::PriorDraw;
 pub use read::{CalibrationRow, EstimateRow, ExperimentRow, Prediction, Sample, StageRow, Subchains};
-pub use writer::{FactSink, NewCalibrationRow, StoreHealth, Writer};
+pub use writer::{FactSink, NewCalibrationRow, NewStudy, StoreHealth, StudyIds, Writer};
 
 /// Why the store cannot be used.
 #[derive(Debug, thiserror::Error)]

@@ -186,6 +186,19 @@ impl Reader {
         rows.iter().map(calibration_row).collect()
     }
 
+    /// The calibrations of a study, oldest first.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn study(&self, id: i64) -> Result<Vec<CalibrationRow>, StoreError> {
+        let query = format!("{CALIBRATION} WHERE c.study = ? ORDER BY c.id");
+        let rows = sqlx::query(sqlx::AssertSqlSafe(query))
+            .bind(id)
+            .fetch_all(&self.pool)
+            .await?;
+        rows.iter().map(calibration_row).collect()
+    }
+
     /// Ids of all studies with their experiment and calibrations, oldest first.
     ///
     /// # Errors
@@ -247,15 +260,44 @@ impl Reader {
         .bind(stage)
         .fetch_all(&self.pool)
         .await?;
-        rows.iter()
-            .map(|row| {
-                Ok(Sample {
-                    theta: numbers(row.get("theta"))?,
-                    log_likelihood: row.get("log_likelihood"),
-                    log_prior: row.get("log_prior"),
-                })
-            })
+        rows.iter().map(sample).collect()
+    }
+
+    /// The populations at the end of every stage, in order.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn populations(&self, calibration: i64) -> Result<Vec<Vec<Sample>>, StoreError> {
+        let rows = sqlx::query(
+            "SELECT stage, theta, log_likelihood, log_prior FROM samples WHERE calibration = ? ORDER BY stage, particle",
+        )
+        .bind(calibration)
+        .fetch_all(&self.pool)
+        .await?;
+        rows.chunk_by(|a, b| a.get::<u32, _>("stage") == b.get::<u32, _>("stage"))
+            .map(|stage| stage.iter().map(sample).collect())
             .collect()
+    }
+
+    /// The predicted values that the likelihood took of a parameter vector while sampling; `None` where it was not
+    /// simulated then, or refused.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn fitted_values(
+        &self,
+        calibration: i64,
+        theta: &[f64],
+    ) -> Result<Option<Vec<f64>>, StoreError> {
+        let row = sqlx::query(
+            "SELECT fitted FROM evaluations
+             WHERE calibration = ? AND theta = ? AND fitted IS NOT NULL ORDER BY evaluation LIMIT 1",
+        )
+        .bind(calibration)
+        .bind(super::json(theta))
+        .fetch_optional(&self.pool)
+        .await?;
+        row.map(|row| blob::decode_values(row.get("fitted"))).transpose()
     }
 
     /// The result of a fit.
@@ -376,6 +418,14 @@ impl Reader {
             .map(|row| (row.get("kind"), row.get::<i64, _>("n").unsigned_abs()))
             .collect())
     }
+}
+
+fn sample(row: &SqliteRow) -> Result<Sample, StoreError> {
+    Ok(Sample {
+        theta: numbers(row.get("theta"))?,
+        log_likelihood: row.get("log_likelihood"),
+        log_prior: row.get("log_prior"),
+    })
 }
 
 fn array<T: serde::de::DeserializeOwned>(json: &str) -> Result<Vec<T>, StoreError> {

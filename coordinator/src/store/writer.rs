@@ -28,26 +28,42 @@ enum Write {
         now_ms: i64,
         reply: oneshot::Sender<i64>,
     },
-    Calibration {
-        new: NewCalibrationRow,
-        reply: oneshot::Sender<Ids>,
+    Study {
+        new: NewStudy,
+        reply: oneshot::Sender<StudyIds>,
     },
     Close,
+}
+
+/// A study to store, with the calibrations that it begins with: all of them, or none.
+#[derive(Debug, Clone)]
+pub struct NewStudy {
+    /// The experiment that it is about.
+    pub experiment: i64,
+    /// Its calibrations.
+    pub calibrations: Vec<NewCalibrationRow>,
+    /// Now.
+    pub now_ms: i64,
+}
+
+/// Ids of a new study and its calibrations, in their order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StudyIds {
+    /// The study.
+    pub study: i64,
+    /// Its calibrations.
+    pub calibrations: Vec<i64>,
 }
 
 /// A calibration to store.
 #[derive(Debug, Clone)]
 pub struct NewCalibrationRow {
-    /// The experiment that it is about.
-    pub experiment: i64,
     /// Name for lists.
     pub name: String,
     /// Text of `job.toml`.
     pub toml: String,
     /// Texts of the files it names, as a JSON object.
     pub files: String,
-    /// Now.
-    pub now_ms: i64,
 }
 
 /// Figures of the writer, for the metrics page.
@@ -218,14 +234,14 @@ impl Writer {
             .map_err(|_| StoreError::Stopped)
     }
 
-    /// Stores a calibration and the study that it opens; their ids.
+    /// Stores a study with its first calibrations; their ids.
     ///
     /// # Errors
     /// [`StoreError::Stopped`].
-    pub async fn add_calibration(&self, new: NewCalibrationRow) -> Result<(i64, i64), StoreError> {
+    pub async fn add_study(&self, new: NewStudy) -> Result<StudyIds, StoreError> {
         let (reply, answer) = oneshot::channel();
         self.sender
-            .send(Write::Calibration { new, reply })
+            .send(Write::Study { new, reply })
             .map_err(|_| StoreError::Stopped)?;
         self.waiting
             .while_urgent(answer)
@@ -274,11 +290,8 @@ async fn run(
 #[derive(Default)]
 struct Replies {
     experiments: Vec<(oneshot::Sender<i64>, i64)>,
-    calibrations: Vec<(oneshot::Sender<Ids>, Ids)>,
+    studies: Vec<(oneshot::Sender<StudyIds>, StudyIds)>,
 }
-
-/// A calibration and its study.
-type Ids = (i64, i64);
 
 impl Replies {
     fn send(self) {
@@ -286,7 +299,7 @@ impl Replies {
         for (reply, id) in self.experiments {
             let _ = reply.send(id);
         }
-        for (reply, ids) in self.calibrations {
+        for (reply, ids) in self.studies {
             let _ = reply.send(ids);
         }
     }
@@ -329,29 +342,36 @@ async fn write_group(
                 .await?;
                 replies.experiments.push((reply, id));
             }
-            Write::Calibration { new, reply } => {
-                let study: i64 =
-                    sqlx::query_scalar("INSERT INTO studies (experiment) VALUES (?) RETURNING id")
-                        .bind(new.experiment)
-                        .fetch_one(&mut *connection)
-                        .await?;
-                let id: i64 = sqlx::query_scalar(
-                    "INSERT INTO calibrations (study, name, toml, files, state, created_at_ms)
-                     VALUES (?, ?, ?, ?, 'queued', ?) RETURNING id",
-                )
-                .bind(study)
-                .bind(new.name)
-                .bind(new.toml)
-                .bind(new.files)
-                .bind(new.now_ms)
-                .fetch_one(&mut *connection)
-                .await?;
-                replies.calibrations.push((reply, (id, study)));
-            }
+            Write::Study { new, reply } => replies
+                .studies
+                .push((reply, insert_study(connection, new).await?)),
         }
     }
     insert_evaluations(connection, &mut rows).await?;
     Ok(facts)
+}
+
+async fn insert_study(connection: &mut SqliteConnection, new: NewStudy) -> Result<StudyIds, sqlx::Error> {
+    let study: i64 = sqlx::query_scalar("INSERT INTO studies (experiment) VALUES (?) RETURNING id")
+        .bind(new.experiment)
+        .fetch_one(&mut *connection)
+        .await?;
+    let mut calibrations = Vec::new();
+    for row in new.calibrations {
+        let id = sqlx::query_scalar(
+            "INSERT INTO calibrations (study, name, toml, files, state, created_at_ms)
+             VALUES (?, ?, ?, ?, 'queued', ?) RETURNING id",
+        )
+        .bind(study)
+        .bind(row.name)
+        .bind(row.toml)
+        .bind(row.files)
+        .bind(new.now_ms)
+        .fetch_one(&mut *connection)
+        .await?;
+        calibrations.push(id);
+    }
+    Ok(StudyIds { study, calibrations })
 }
 
 /// Inserts evaluations, many rows to a statement: SQLite through sqlx costs by the statement.

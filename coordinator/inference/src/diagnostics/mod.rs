@@ -6,6 +6,7 @@
 //! - `moments`, `quantile`, `ess`, `bound`: draws of one parameter.
 //! - `spectrum`: combinations of parameters that the data know best and worst.
 //! - `conflict`: prior against posterior.
+//! - `density`, `density_of_pairs`: kernel densities, and the levels that hold most of a sample.
 //! - `predicted`: draws with their predictions. `information`: what a channel can say. `residual`: what the fit leaves,
 //!   one by one and in sum.
 //! - `region`: where in the prior failures concentrate.
@@ -13,6 +14,8 @@
 
 mod bound;
 mod conflict;
+mod density;
+mod density_of_pairs;
 mod ess;
 mod information;
 mod moments;
@@ -25,6 +28,8 @@ mod tail;
 
 pub use bound::at_bound;
 pub use conflict::{Conflict, conflict};
+pub use density::{bandwidth, density};
+pub use density_of_pairs::{density_of_pairs, highest_density_levels};
 pub use ess::{kish_ess, rank_correlation, weight_cov};
 pub use information::{Signal, signals};
 pub use moments::{mean, mean_and_sd};

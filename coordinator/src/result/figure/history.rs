@@ -7,7 +7,7 @@ use shared::outcome::SimulatedHistory;
 use signal::{INTERVAL_S, LowPass};
 use utoipa::ToSchema;
 
-use super::super::Outcome;
+use super::super::{Outcome, Study};
 use crate::spec::Method;
 
 /// One channel of one fitted run over time.
@@ -39,7 +39,7 @@ pub struct Series {
 /// What the model gives at one parameter vector.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct ModelSeries {
-    /// Which parameter vector: MLE, the particle of the highest likelihood, or the algorithm that found it.
+    /// Which parameter vector: `maximum likelihood`, that particle; `GA optimum`, what the algorithm found.
     pub label: String,
     /// Ends of the intervals `[s]`.
     pub t_s: Vec<f64>,
@@ -55,8 +55,10 @@ impl Outcome {
     pub fn histories(&self) -> Option<Vec<ChannelHistory>> {
         let simulated = self.simulated_histories.as_ref()?;
         let label = match self.spec.method {
-            Method::Sample(_) => "MLE".to_owned(),
-            Method::Fit(_) | Method::Search(_) => self.spec.method.name().to_uppercase(),
+            Method::Sample(_) => "maximum likelihood".to_owned(),
+            Method::Fit(_) | Method::Search(_) => {
+                format!("{} optimum", self.spec.method.name().to_uppercase())
+            }
         };
         // A cut-off that 10 Hz cannot have passes everything; the protocol that filters averages refuses it.
         let lowpass_hz = self.spec.experiment.protocol.lowpass_hz;
@@ -79,6 +81,19 @@ impl Outcome {
         }
         Some(histories)
     }
+}
+
+/// The histories of a study's calibrations in the same pictures; `None` where none has any.
+pub(super) fn all(study: &Study) -> Option<Vec<ChannelHistory>> {
+    let mut each = study.outcomes().filter_map(Outcome::histories);
+    let mut histories = each.next()?;
+    for others in each {
+        // The calibrations of a study fit the same runs.
+        for (own, other) in histories.iter_mut().zip(others) {
+            own.model.extend(other.model);
+        }
+    }
+    Some(histories)
 }
 
 /// The ends of so many intervals `[s]`.

@@ -8,7 +8,7 @@ use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
 
-use crate::result::Outcome;
+use crate::result::{Outcome, Study};
 use crate::spec::{Method, Spec};
 use crate::store::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Sample, StageRow};
 
@@ -92,6 +92,8 @@ pub(in crate::result) fn fit() -> Outcome {
     outcome.predictions = vec![first];
     outcome.posterior.clear();
     outcome.prior_draws.clear();
+    outcome.populations.clear();
+    outcome.likeliest_values = None;
     outcome.stages.clear();
     outcome.row.log_evidence = None;
     outcome.row.log_evidence_se = None;
@@ -113,6 +115,14 @@ pub(in crate::result) fn search() -> Outcome {
         }];
     }
     outcome
+}
+
+/// A sample with a search beside it.
+pub(in crate::result) fn study() -> Study {
+    Study {
+        beside: vec![search()],
+        ..Study::from(outcome())
+    }
 }
 
 fn build(last: &str) -> Outcome {
@@ -174,6 +184,7 @@ fn build(last: &str) -> Outcome {
             holdout: (!spec.holdout_runs.is_empty()).then(|| Ok(predicted(k, &spec.holdout_runs))),
         })
         .collect();
+    let likeliest_values = spec.predicted_values(&predicted(0, &spec.fit_runs));
     let stage = |stage: u32, tempering_exponent: f64| StageRow {
         stage,
         tempering_exponent,
@@ -209,6 +220,8 @@ fn build(last: &str) -> Outcome {
         row,
         estimate: None,
         stages: vec![stage(1, 0.001), stage(2, 0.1), stage(3, 1.0)],
+        populations: vec![posterior.clone(); 3],
+        likeliest_values: Some(likeliest_values),
         posterior,
         predictions,
         simulated_histories: None,

@@ -1,29 +1,33 @@
-//! The self-contained report: one HTML page without scripts or external resources, for screen and paper.
+//! The self-contained report: one HTML page that needs nothing from elsewhere, for screen and paper.
 //!
 //! # Layout
 //! - `section`: the parts of the page, in reading order.
 //! - `chart`: the pictures, drawn as inline SVG.
 //! - `coverage`: how many measurements lie in their intervals, and how many should.
+//! - `script`: the modules that draw the figures in the reader's browser, and their numbers.
 //! - `number`, `quantity`: digits and units as people read them.
 //!
-//! Names come from users; the templates escape every text.
+//! Names come from users; the templates escape every text, and so do the modules. Without scripts everything but the figures
+//! stands there, and in place of each figure its numbers.
 
 mod chart;
 #[cfg(test)]
 pub(super) mod fixture;
 pub(super) mod number;
 mod quantity;
+mod script;
 mod section;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::Outcome;
+use super::Study;
 
 /// Light, dark and paper.
 const STYLE: &str = include_str!("style.css");
 
 /// The report as one HTML page.
-pub fn page(outcome: &Outcome) -> String {
+pub fn page(study: &Study) -> String {
+    let outcome = &study.lead;
     let comparison = outcome.comparison();
     let diagnostics = outcome.diagnostics(&comparison);
     let (parameters, method) = match &outcome.estimate {
@@ -52,7 +56,6 @@ pub fn page(outcome: &Outcome) -> String {
         ),
         ("parameters", "Parameters", parameters),
         method,
-        ("provenance", "Provenance", section::provenance(outcome)),
     ];
     // A point has no spread to diagnose by.
     if diagnostics.sampler.is_some() {
@@ -66,6 +69,14 @@ pub fn page(outcome: &Outcome) -> String {
         ];
         sections.splice(3..3, after_parameters);
     }
+    if !study.beside.is_empty() {
+        sections.push(("beside", "Point estimates", section::beside(&study.beside)));
+    }
+    let figures = study.figures();
+    if !figures.is_empty() {
+        sections.push(("figures", "Figures", section::figures(&figures)));
+    }
+    sections.push(("provenance", "Provenance", section::provenance(outcome)));
     let markup = html! {
         (DOCTYPE)
         html lang="en" {
@@ -85,11 +96,12 @@ pub fn page(outcome: &Outcome) -> String {
                     }
                 }
                 main {
-                    (section::verdict(outcome, &comparison, &diagnostics))
+                    (section::verdict(study, &comparison))
                     @for (id, title, body) in &sections {
                         section id=(id) { h2 { (title) } (body) }
                     }
                 }
+                @if !figures.is_empty() { (script::scripts(&figures)) }
             }
         }
     };
@@ -98,22 +110,32 @@ pub fn page(outcome: &Outcome) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{fixture, page};
+    use crate::result::{Outcome, Study};
+
+    use super::fixture;
+
+    fn page(outcome: Outcome) -> String {
+        super::page(&Study::from(outcome))
+    }
 
     #[test]
     fn names_of_users_are_escaped_everywhere() {
-        let page = page(&fixture::outcome());
+        let page = super::page(&fixture::study());
         assert!(
             page.contains("&lt;script&gt;"),
             "the hostile names of the fixture are shown"
         );
-        assert!(!page.contains("<script"), "and never as markup");
+        // The only scripts are ours: the numbers of the figures and the modules that draw them.
+        let ours = ["<script type=\"application/json\"", "<script type=\"module\">"];
+        assert_eq!(page.matches("<script").count(), ours.len(), "and never as markup");
+        assert!(ours.iter().all(|script| page.contains(script)));
+        assert_eq!(page.matches("</script").count(), ours.len());
         assert!(!page.contains("<i>bold"), "nor in the text of the job");
     }
 
     #[test]
     fn the_page_needs_nothing_from_elsewhere() {
-        let page = page(&fixture::outcome());
+        let page = page(fixture::outcome());
         for word in ["http://", "https://", "src=", "@import", "url("] {
             assert!(!page.contains(word), "{word}");
         }
@@ -128,7 +150,7 @@ mod tests {
             fixture::fit(),
             fixture::search(),
         ] {
-            let page = page(&outcome);
+            let page = page(outcome);
             for word in ["NaN", "inf ", "inf\"", "-inf"] {
                 assert!(!page.contains(word), "{word}");
             }
@@ -137,12 +159,12 @@ mod tests {
 
     #[test]
     fn equal_outcomes_give_equal_pages() {
-        assert_eq!(page(&fixture::outcome()), page(&fixture::outcome()));
+        assert_eq!(page(fixture::outcome()), page(fixture::outcome()));
     }
 
     #[test]
     fn a_fit_shows_its_point_and_claims_no_distribution() {
-        let page = page(&fixture::fit());
+        let page = page(fixture::fit());
         for words in [
             "AT BOUND",
             "no step gains anything",
@@ -165,8 +187,8 @@ mod tests {
 
     #[test]
     fn a_search_that_was_cut_short_says_so_and_has_no_standard_deviations() {
-        let outcome = fixture::search();
-        let page = page(&outcome);
+        let estimate = fixture::search().point_estimate().unwrap();
+        let page = page(fixture::search());
         for words in [
             "ga with at most 200 generations of 100",
             "its generations had passed",
@@ -176,20 +198,34 @@ mod tests {
             assert!(page.contains(words), "{words}");
         }
         assert!(!page.contains("Laplace") && !page.contains("no information"));
-        let estimates = outcome.point_estimates();
-        assert!(estimates[0].sd.is_none() && estimates[0].history.len() == 1);
+        assert!(estimate.sd.is_none() && estimate.history.len() == 1);
     }
 
     #[test]
     fn without_holdout_the_report_says_what_that_means() {
-        assert!(page(&fixture::without_holdout()).contains("No run was held out"));
-        assert!(!page(&fixture::outcome()).contains("No run was held out"));
+        assert!(page(fixture::without_holdout()).contains("No run was held out"));
+        assert!(!page(fixture::outcome()).contains("No run was held out"));
     }
 
     #[test]
     fn the_model_s_limits_and_the_likelihood_s_departure_are_always_stated() {
-        let page = page(&fixture::outcome());
+        let page = page(fixture::outcome());
         assert!(page.contains("Grousers are not modelled here"));
         assert!(page.contains("lack 1/sigma"));
+    }
+
+    #[test]
+    fn a_search_beside_a_sample_has_its_point_and_its_tables() {
+        let page = super::page(&fixture::study());
+        let (_, beside) = page.split_once("id=\"beside\"").unwrap();
+        for words in [
+            "ga with at most 200 generations of 100",
+            "AT BOUND",
+            "in units of",
+            "Table of all runs",
+        ] {
+            assert!(beside.contains(words), "{words}");
+        }
+        assert!(page.contains("log-evidence"), "and the sample stands there too");
     }
 }

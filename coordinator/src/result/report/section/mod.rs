@@ -1,19 +1,23 @@
 //! The parts of the page, in reading order.
 
+mod beside;
 mod comparison;
 mod diagnostics;
 mod errors;
 mod estimate;
+mod figures;
 mod parameters;
 mod provenance;
 mod rejections;
 mod stages;
 mod verdict;
 
+pub(super) use beside::beside;
 pub(super) use comparison::comparison;
 pub(super) use diagnostics::diagnostics;
 pub(super) use errors::errors;
 pub(super) use estimate::{estimate, fit};
+pub(super) use figures::figures;
 pub(super) use parameters::parameters;
 pub(super) use provenance::{provenance, subtitle};
 pub(super) use rejections::rejections;

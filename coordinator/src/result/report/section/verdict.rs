@@ -12,21 +12,18 @@ use crate::result::coverage::Coverage;
 use crate::result::report::number;
 use crate::result::report::quantity::Quantity;
 use crate::result::settling::unsettled;
-use crate::result::{Comparison, Diagnostics, ErrorTable, Outcome, terminal};
+use crate::result::{Comparison, ErrorTable, Outcome, Study, terminal};
 use crate::spec::repeat_scatter;
 
 /// Flags first, then the verdict, then what a reader must know of the model.
-pub(in crate::result::report) fn verdict(
-    outcome: &Outcome,
-    comparison: &Comparison,
-    diagnostics: &Diagnostics,
-) -> Markup {
-    let flags = &diagnostics.flags;
+pub(in crate::result::report) fn verdict(study: &Study, comparison: &Comparison) -> Markup {
+    let outcome = &study.lead;
+    let flags = study.flags();
     html! {
         @if !flags.is_empty() {
             div.flags role="note" {
                 h2 { "Needs attention" }
-                ul { @for flag in flags { li { span.kind { (flag.kind.replace('_', " ")) } ": " (flag.text) } } }
+                ul { @for flag in &flags { li { span.kind { (flag.kind.replace('_', " ")) } ": " (flag.text) } } }
             }
         }
         p.verdict {

@@ -1,0 +1,154 @@
+//! A study of several calibrations: a sample with point estimates beside it, each one like the same job alone.
+
+use farm_tests::job::Job;
+use farm_tests::programs::{coordinator, run};
+use farm_tests::service::Service;
+use farm_tests::text::same;
+use farm_tests::wait::until;
+use farm_tests::workspace::text;
+use serde_json::{Value, json};
+
+const SAMPLER: &str = "algorithm = \"tmcmc\"\nparticles = 60\nmoves = [2, 4]";
+
+/// The small job with two point estimates beside it.
+fn job() -> Job {
+    Job::small().in_job(
+        SAMPLER,
+        &format!("{SAMPLER}\npoint_estimates = [\"lm\", \"cma-es\"]"),
+    )
+}
+
+/// A summary without its wall times.
+fn timeless(mut summary: Value) -> Value {
+    for part in ["calibrations", "point_estimates"] {
+        for calibration in summary[part].as_array_mut().expect("a list") {
+            calibration["wall_s"] = Value::Null;
+        }
+    }
+    summary
+}
+
+fn summary(service: &Service, id: i64) -> Value {
+    timeless(service.client.json(&format!("/v1/calibrations/{id}/summary")))
+}
+
+/// Submits the job; ids of the sample and of what stands beside it.
+fn submit(service: &Service) -> Vec<i64> {
+    let first = service.submit(&job());
+    let studies = service.client.json("/v1/studies");
+    let ids: Vec<i64> = serde_json::from_value(studies[0]["calibrations"].clone()).expect("ids");
+    assert_eq!(ids[0], first);
+    ids
+}
+
+#[test]
+fn each_calibration_of_a_study_is_what_the_same_job_gives_alone() {
+    let service = Service::start(&["--local-workers", "2"]);
+    let ids = submit(&service);
+    assert_eq!(ids.len(), 3);
+    for &id in &ids {
+        service.wait_for(id, "finished");
+    }
+    let study = summary(&service, ids[0]);
+    assert_eq!(study["status"], "finished");
+    // whichever calibration is asked, the summary is of its study
+    assert_eq!(summary(&service, ids[2]), study);
+    let mut alone = Vec::new();
+    for sampler in [SAMPLER, "algorithm = \"lm\"", "algorithm = \"cma-es\""] {
+        let id = service.submit(&Job::small().in_job(SAMPLER, sampler));
+        service.wait_for(id, "finished");
+        alone.push(summary(&service, id));
+    }
+    assert_eq!(study["calibrations"], alone[0]["calibrations"]);
+    let estimates = json!([alone[1]["point_estimates"][0], alone[2]["point_estimates"][0]]);
+    same(
+        &format!("{:#}", study["point_estimates"]),
+        &format!("{estimates:#}"),
+    );
+    let figures = service
+        .client
+        .json(&format!("/v1/calibrations/{}/figures", ids[0]));
+    assert_eq!(figures["searches"][0]["algorithm"], "cma-es");
+    let labels: Vec<&str> = figures["errors"][0]["marks"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|mark| mark["label"].as_str())
+        .collect();
+    assert_eq!(
+        labels,
+        ["mean", "maximum likelihood", "LM optimum", "CMA-ES optimum"],
+        "{:#}",
+        figures["errors"][0]["marks"]
+    );
+    let ledger = service.client.json("/v1/studies/1");
+    assert_eq!(ledger["ledger"].as_array().map(Vec::len), Some(1));
+    assert_eq!(ledger["point_estimates"].as_array().map(Vec::len), Some(2));
+}
+
+#[test]
+fn killing_coordinator_and_worker_amid_a_study_changes_no_byte() {
+    let expected = {
+        let service = Service::start(&["--local-workers", "2"]);
+        let ids = submit(&service);
+        for &id in &ids {
+            service.wait_for(id, "finished");
+        }
+        summary(&service, ids[0])
+    };
+    let mut service = Service::start(&[]);
+    let ids = submit(&service);
+    let mut worker = service.worker("worker", 1);
+    until("progress", || service.evaluations(ids[0]).filter(|&n| n >= 60));
+    service.kill();
+    worker.kill();
+    service.restart();
+    let _worker = service.worker("worker", 2);
+    for &id in &ids {
+        service.wait_for(id, "finished");
+    }
+    same(
+        &format!("{:#}", summary(&service, ids[0])),
+        &format!("{expected:#}"),
+    );
+    assert_eq!(service.metric("grouser_determinism_faults_total"), 0);
+}
+
+#[test]
+fn a_run_prints_the_whole_study_and_knows_its_folder_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = job().write(&folder.path().join("job")).display().to_string();
+    let out = folder.path().join("out");
+    let go = || coordinator(["run", &path, "--out", &out.display().to_string()]);
+    let printed = run(go()).success();
+    for words in ["log-evidence", "lm stopped by", "cma-es stopped by"] {
+        assert!(printed.contains(words), "{words} in\n{printed}");
+    }
+    let summary: Value = serde_json::from_str(&text(&out.join("summary.json"))).expect("JSON");
+    let counts = ["calibrations", "point_estimates"].map(|part| summary[part].as_array().map(Vec::len));
+    assert_eq!(counts, [Some(1), Some(2)]);
+    assert_eq!(run(go()).success(), printed, "a finished study is printed again");
+    // a folder of one study needs no id
+    let report = run(coordinator(["report", "--out", &out.display().to_string()])).success();
+    assert!(report.contains("id=\"beside\""));
+    let other = job().in_job(", \"cma-es\"", "");
+    other.write(&folder.path().join("job"));
+    let refusal = run(go()).refusal();
+    assert!(
+        refusal.contains("the job or its experiment has changed"),
+        "{refusal}"
+    );
+}
+
+#[test]
+fn check_says_what_the_point_estimates_may_cost() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = job().write(&folder.path().join("job")).display().to_string();
+    let check = run(coordinator(["check", &path])).success();
+    for words in [
+        "beside it lm with at most 200 evaluations",
+        "beside it cma-es with",
+    ] {
+        assert!(check.contains(words), "{words} in\n{check}");
+    }
+}
