@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use farm_tests::programs::{run, worker};
+use farm_tests::programs::{coordinator, run, worker};
 use farm_tests::workspace::text;
 
 const EXPERIMENT: &str = r#"plates = "plates.csv"
@@ -138,4 +138,55 @@ fn effects_that_plates_and_rings_do_not_feel_are_named() {
         "{notes:?}"
     );
     ended.success();
+}
+
+/// The most probable friction angle of the paper's rings and its standard deviation, the rings alone and a flat prior.
+fn angle_of_the_papers_rings() -> (f64, f64) {
+    let paper = farm_tests::workspace::root().join("examples/paper");
+    let experiment: toml::Table = text(&paper.join("bevameter-experiment.toml"))
+        .parse()
+        .expect("TOML");
+    let noise = |key: &str| experiment["noise"][key].as_float().expect("a number");
+    let folder = tempfile::tempdir().expect("a folder");
+    let write =
+        |name: &str, content: &str| std::fs::write(folder.path().join(name), content).expect("a file");
+    write("rings.csv", &text(&paper.join("rings.csv")));
+    write(
+        "experiment.toml",
+        &format!(
+            "shear = \"rings.csv\"\n[soil.wf34]\n[noise]\nring_scatter = {}\nring_noise = {}\n",
+            noise("ring_scatter"),
+            noise("ring_noise")
+        ),
+    );
+    write(
+        "job.toml",
+        r#"experiment = "experiment.toml"
+[model]
+kind = "quasi_static"
+k_c = 0.0
+k_phi = 1e7
+n = 1.1
+[priors]
+friction_angle_deg = { uniform = [5.0, 60.0] }
+"bevameter.ln_transfer" = 0.0
+[sampler]
+algorithm = "lm"
+"#,
+    );
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    run(coordinator(["run", &path("job.toml"), "--out", &path("out")])).success();
+    let summary = text(&folder.path().join("out/summary.json"));
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+    let estimate = &summary["point_estimates"][0];
+    let number = |of: &str| estimate[of]["friction_angle_deg"].as_f64().expect("a number");
+    (number("parameters"), number("sd"))
+}
+
+#[test]
+fn the_papers_rings_alone_give_thirty_degrees_to_one_and_a_half() {
+    let (angle, sd) = angle_of_the_papers_rings();
+    assert!((angle - 30.0).abs() < 0.02, "{angle}");
+    // sd of ln tan(phi) by hand: sqrt(0.12^2 / 4 + 0.03^2 / 12) = 0.0606; times sin(2 phi) / 2 = 0.433: 1.504 deg
+    assert!((sd - 1.504).abs() < 0.01, "{sd}");
 }

@@ -5,7 +5,7 @@ use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::text::same;
 use farm_tests::wait::until;
-use farm_tests::workspace::text;
+use farm_tests::workspace::{root, text};
 use serde_json::{Value, json};
 
 const SAMPLER: &str = "algorithm = \"tmcmc\"\nparticles = 60\nmoves = [2, 4]";
@@ -151,4 +151,27 @@ fn check_says_what_the_point_estimates_may_cost() {
     ] {
         assert!(check.contains(words), "{words} in\n{check}");
     }
+}
+
+#[test]
+fn the_papers_jobs_are_studies_of_a_sample_and_a_genetic_algorithm() {
+    let service = Service::start(&[]);
+    for job in ["table1", "sharp", "bevameter"] {
+        let path = root()
+            .join(format!("examples/paper/{job}.toml"))
+            .display()
+            .to_string();
+        let said = run(coordinator(["submit", &path, "--url", &service.url()])).success();
+        assert!(said.contains("beside it"), "{said}");
+    }
+    let studies = service.client.json("/v1/studies");
+    let sizes: Vec<usize> = studies
+        .as_array()
+        .into_iter()
+        .flatten()
+        .map(|study| study["calibrations"].as_array().map_or(0, Vec::len))
+        .collect();
+    assert_eq!(sizes, [2, 2, 2]);
+    let list = service.client.json("/v1/calibrations");
+    assert_eq!(list[1]["name"], "table1 (ga)");
 }

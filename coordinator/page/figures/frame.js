@@ -2,7 +2,7 @@
 
 import { escape, px } from "./text.js";
 
-const MARGINS = { left: 56, right: 14, top: 12, bottom: 44 };
+const MARGINS = { left: 66, right: 14, top: 12, bottom: 44 };
 
 /** The pixels of both axes on a picture of this size. */
 export function place(width, height, x, y) {
