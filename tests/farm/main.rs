@@ -13,6 +13,7 @@ mod leases;
 mod likelihood;
 mod mesh;
 mod point_fit;
+mod posterior_prior;
 mod search;
 mod spatial;
 mod summary_contract;
