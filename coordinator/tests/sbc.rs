@@ -16,12 +16,12 @@ fn verdicts(noise_factor: f64) -> Vec<Verdict> {
         seed: 7,
         noise_factor,
     };
-    let fates = study.run().unwrap();
+    let fates = study.run().expect("every data set is calibrated");
     assert_eq!(fates.len(), study.sets);
     let flagged = fates.iter().filter(|f| !f.equilibrated).count();
     assert!(flagged <= 4, "{flagged} flagged");
     assert!(fates.iter().all(|f| f.refused < 10));
-    judge(&study.parameters().unwrap(), &fates, BINS)
+    judge(&study.parameters().expect("the job is valid"), &fates, BINS)
 }
 
 #[test]
