@@ -128,6 +128,11 @@ impl Evaluate {
         worker::model::CompiledVariant::new(variant).map(Evaluate)
     }
 
+    /// Simulates every condition at one parameter vector.
+    pub fn evaluate(&self, theta: &[f64]) -> Outcome {
+        self.0.evaluate(theta)
+    }
+
     /// Evaluates what a lease would ask for.
     pub fn serve(
         &self,

@@ -104,6 +104,21 @@ pub(crate) fn is_taken(name: &str) -> bool {
 /// parameter of a calibration with readings of a ring.
 pub const RING_TRANSFER: &str = "bevameter.ln_transfer";
 
+/// Radius of the plate at which `p_ref` and `kappa` are defined `[m]`.
+pub const B_REF_M: f64 = 0.03;
+/// Sinkage at which `p_ref` is defined `[m]`.
+pub const Z_REF_M: f64 = 0.01;
+
+/// Bekker's moduli `k_c` `[N/m^(n+1)]` and `k_phi` `[N/m^(n+2)]` in the place of `log10_p_ref`, `kappa` and n.
+///
+/// `p_ref = (k_c / b_ref + k_phi) z_ref^n`, `kappa = k_c / (k_phi b_ref)`, hence `k_phi = p_ref / (z_ref^n (1 + kappa))` and
+/// `k_c = kappa k_phi b_ref`. Infinite at `kappa = -1`. The models' own conversion gives the same bits: checked by
+/// `worker::model::parameters::tests::moduli_are_converted_alike_everywhere`.
+pub fn bekker_moduli(log10_p_ref: f64, kappa: f64, n: f64) -> (f64, f64) {
+    let k_phi = libm::exp10(log10_p_ref) / libm::pow(Z_REF_M, n) / (1.0 + kappa);
+    (kappa * k_phi * B_REF_M, k_phi)
+}
+
 /// Prefix of the inferred noise standard deviations.
 pub const NOISE_PREFIX: &str = "noise.";
 

@@ -15,6 +15,7 @@ mod likelihood;
 mod mesh;
 mod metamodel;
 mod point_fit;
+mod posterior_prior;
 mod search;
 mod spatial;
 mod study;

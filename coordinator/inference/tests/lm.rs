@@ -552,3 +552,26 @@ fn settings_that_cannot_work_are_refused() {
         ));
     }
 }
+
+/// A prior N(0, R) and a datum of a + 2 b: the most probable point is C w d / (w' C w + e^2), the covariance C - C w w' C / (w' C w + e^2).
+#[test]
+fn a_correlated_prior_counts_as_on_paper() {
+    let (rho, datum, sd) = (-0.7, 1.5, 0.4);
+    let prior = Prior::new(vec![normal(0.0, 1.0), normal(0.0, 1.0)])
+        .correlated(vec![0, 1], &[vec![1.0, rho], vec![rho, 1.0]])
+        .unwrap();
+    let likelihood = data(&[datum], |_| Sd::Known(sd));
+    let settings = Settings {
+        starts: 2,
+        ..Settings::default()
+    };
+    let begun = Optimiser::new(prior, likelihood, settings).unwrap();
+    let ended = end(begun, &|theta| Some(vec![theta[0] + 2.0 * theta[1]]), |_, _| ());
+    let estimate = ended.estimate().unwrap();
+    let covariance = [1.0 + 2.0 * rho, rho + 2.0];
+    let variance = covariance[0] + 2.0 * covariance[1] + sd * sd;
+    for (k, own) in covariance.into_iter().enumerate() {
+        near(estimate.theta[k], own * datum / variance, 1e-6);
+        near(estimate.sd(k).unwrap(), (1.0 - own * own / variance).sqrt(), 1e-4);
+    }
+}

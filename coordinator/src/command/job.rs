@@ -33,7 +33,7 @@ pub(super) fn read(file: &JobFile) -> Result<JobOnDisk, FileError> {
     let experiment_path = sibling(path, named);
     let experiment_name = experiment_path.display().to_string();
     let experiment = Experiment::read_files(&experiment_path)?;
-    let mut files = read_beside(path, &job.model.effect_files)?;
+    let mut files = read_beside(path, &job.named_files())?;
     let added = added_files(&file.effect_file)?;
     let names: Vec<String> = added.keys().cloned().collect();
     job.model

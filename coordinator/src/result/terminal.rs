@@ -15,7 +15,7 @@ use super::errors::ErrorTable;
 use super::readings::{error_model, reading_errors};
 use super::settling::unsettled;
 use super::{Outcome, Study, prior_mean};
-use crate::spec::{FreeParameter, Spec};
+use crate::spec::{FreeParameter, JointPrior, Spec};
 use crate::store::EstimateRow;
 
 /// What a reader of the result should know of the model before it runs.
@@ -83,6 +83,9 @@ pub fn specification(spec: &Spec) -> String {
                 averaging(&run.name, history, &spec.experiment.protocol)
             );
         }
+    }
+    for words in spec.joint_prior.iter().flat_map(JointPrior::words) {
+        let _ = writeln!(text, "{words}");
     }
     for words in spec
         .likelihood_settings

@@ -8,6 +8,7 @@ use shared::model::ModelSettings;
 
 use super::errors::{LikelihoodSettings, RawLikelihood};
 use super::method::{Method, RawSampler};
+use super::posterior::PosteriorPrior;
 use super::priors::PriorEntry;
 
 /// A job as written, before it meets its experiment.
@@ -19,6 +20,8 @@ pub struct Job {
     pub model: ModelSettings,
     /// The priors in the order of the file.
     pub priors: Vec<PriorEntry>,
+    /// The posterior that is the prior of what the entries leave unsaid.
+    pub posterior: Option<PosteriorPrior>,
     /// The algorithm with its settings.
     pub method: Method,
     /// The fits and searches that stand beside the sample in its study.
@@ -76,7 +79,7 @@ impl Job {
     /// # Errors
     /// [`FileError`] with the line, or with the table and key.
     pub fn parse(name: &str, toml: &str) -> Result<Job, FileError> {
-        let raw: RawJob = parse_toml(name, toml)?;
+        let mut raw: RawJob = parse_toml(name, toml)?;
         let fail = |message: String| FileError::whole(name, message);
         raw.discovery
             .check()
@@ -89,6 +92,8 @@ impl Job {
         let in_sampler = |e: String| fail(format!("[sampler] {e}"));
         let method = raw.sampler.method().map_err(in_sampler)?;
         let point_estimates = raw.sampler.point_estimates(method.seed()).map_err(in_sampler)?;
+        let posterior = PosteriorPrior::take(|key| raw.priors.remove(key).map(toml::Spanned::into_inner))
+            .map_err(|e| fail(format!("[priors] {e}")))?;
         let mut priors: Vec<_> = raw.priors.into_iter().collect();
         priors.sort_by_key(|(_, value)| value.span().start);
         let priors = priors
@@ -106,6 +111,7 @@ impl Job {
             experiment: raw.experiment,
             model,
             priors,
+            posterior,
             method,
             point_estimates,
             reference: raw.figures.reference,
@@ -113,12 +119,18 @@ impl Job {
         })
     }
 
+    /// The files that the job names beside its experiment.
+    pub fn named_files(&self) -> Vec<String> {
+        let posterior = self.posterior.as_ref().map(|p| p.file.clone());
+        self.model.effect_files.iter().cloned().chain(posterior).collect()
+    }
+
     /// Checks that no file came along that the job does not name; `name` is how messages call it.
     ///
     /// # Errors
     /// [`FileError`] with the file that is not named, and the nearest that is.
     pub fn check_files(&self, name: &str, texts: &BTreeMap<String, String>) -> Result<(), FileError> {
-        let named = &self.model.effect_files;
+        let named = self.named_files();
         match texts.keys().find(|file| !named.contains(file)) {
             None => Ok(()),
             Some(file) => {

@@ -6,15 +6,16 @@ mod job_file;
 mod method;
 mod noise;
 mod point_job;
+mod posterior;
 mod predicted;
 mod priors;
 mod sampler_keys;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use inference::{Likelihood, Prior};
+use inference::{Likelihood, Prior, PriorError};
 use shared::experiment::{Experiment, RunUse};
-use shared::file::{FileError, FileSet};
+use shared::file::{FileError, FileSet, number};
 use shared::model::{Companion, EffectSet, ModelKind, ModelSettings, ModelVariant, equations_of};
 use shared::outcome::Observables;
 use shared::parameters;
@@ -26,6 +27,7 @@ pub use job_file::Job;
 pub use method::{Method, MethodError};
 pub(crate) use noise::repeat_scatter;
 pub use point_job::point_job;
+pub use posterior::{ImpliedModuli, JointPrior, PosteriorPrior};
 use predicted::predicted;
 pub use priors::{FreeParameter, check_own};
 
@@ -38,6 +40,8 @@ pub struct Spec {
     pub model: ModelSettings,
     /// The free parameters with their priors, in the order of every parameter vector.
     pub parameters: Vec<FreeParameter>,
+    /// The posterior of another calibration that is the prior of the first of them, if there is one.
+    pub joint_prior: Option<JointPrior>,
     /// The algorithm with its settings.
     pub method: Method,
     /// The fits and searches that stand beside the sample in its study.
@@ -92,7 +96,7 @@ impl Spec {
         Spec::of(job_name, parsed, &job.files, experiment_name, files)
     }
 
-    /// The same of a job that is parsed, with the texts of its effect files.
+    /// The same of a job that is parsed, with the texts of the files that it names.
     ///
     /// # Errors
     /// As those of [`Spec::new`].
@@ -117,6 +121,24 @@ impl Spec {
             .filter(|name| *name != parameters::RING_TRANSFER);
         let effects = EffectSet::choose(job_name, &model, of_effects, texts)?;
         let mut parameters = Vec::new();
+        let mut joint_prior = None;
+        if let Some(posterior) = job.posterior {
+            let text = texts.get(&posterior.file).ok_or_else(|| {
+                in_job(format!(
+                    "file \"{}\" is named but was not sent along",
+                    posterior.file
+                ))
+            })?;
+            let entry = |name: &str| job.priors.iter().find(|entry| entry.name == name);
+            let fixed = |name: &str| {
+                let stated = || entry(name).and_then(|entry| number(&entry.value));
+                model.fixed.get(name).copied().or_else(stated)
+            };
+            let is_said = |name: &str| entry(name).is_some() || model.fixed.contains_key(name);
+            let (joint, covered) = posterior.fit(text, fixed, is_said, &wheels, &effects)?;
+            joint_prior = Some(joint);
+            parameters = covered;
+        }
         for entry in job.priors {
             match entry
                 .parse(&wheels, &effects)
@@ -147,6 +169,9 @@ impl Spec {
             .map_err(in_job)?;
         noise::add_unknown_sds(&experiment, &bevameter, &mut parameters);
         noise::check_names(&experiment, &bevameter, &parameters).map_err(in_job)?;
+        if joint_prior.is_some() {
+            joint(&joint_prior, &parameters).map_err(|e| in_job(format!("[priors] posterior: {e}")))?;
+        }
         let likelihood = errors::likelihood(&experiment, &fit_runs, &bevameter, &parameters, job.likelihood)
             .map_err(in_experiment)?;
         if parameters.is_empty() {
@@ -203,6 +228,7 @@ impl Spec {
             experiment,
             model,
             parameters,
+            joint_prior,
             method: job.method,
             point_estimates: job.point_estimates,
             fit_runs,
@@ -263,7 +289,7 @@ impl Spec {
 
     /// The joint prior, in parameter order.
     pub fn prior(&self) -> Prior {
-        Prior::new(self.parameters.iter().map(|p| p.marginal.clone()).collect())
+        joint(&self.joint_prior, &self.parameters).expect("checked when the specification was made")
     }
 
     /// The part of a parameter vector that the model takes: everything but the noise sds.
@@ -271,6 +297,15 @@ impl Spec {
     /// Noise parameters stand behind the model's, so this is a prefix.
     pub fn model_theta<'a>(&self, theta: &'a [f64]) -> &'a [f64] {
         &theta[..self.fit_variant.parameters.len()]
+    }
+}
+
+/// The prior of parameters, of which the first may be jointly normal.
+fn joint(joint: &Option<JointPrior>, parameters: &[FreeParameter]) -> Result<Prior, PriorError> {
+    let prior = Prior::new(parameters.iter().map(|p| p.marginal.clone()).collect());
+    match joint {
+        None => Ok(prior),
+        Some(joint) => prior.correlated((0..joint.parameters.len()).collect(), &joint.correlations),
     }
 }
 

@@ -136,3 +136,14 @@ impl Radius {
         self.0.map(|source| source.value(theta))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn moduli_are_converted_alike_everywhere() {
+        for (log10_p_ref, kappa, n) in [(4.56, 0.0, 1.1), (3.93, -0.66, 1.295), (5.5, 0.4, 0.8)] {
+            let of_names = shared::parameters::bekker_moduli(log10_p_ref, kappa, n);
+            assert_eq!(of_names, scm::bekker_moduli(log10_p_ref, kappa, n));
+        }
+    }
+}

@@ -134,6 +134,19 @@ impl Objective {
                 }
             }
         }
+        // The width of a normal marginal's axis is its standard deviation, the correlations' unit.
+        let of_prior = self.prior.slopes_of_correlation(&point.theta);
+        let axis_of = |parameter: usize| self.axes.iter().position(|axis| axis.parameter == parameter);
+        for (parameter, slope) in of_prior.slopes {
+            if let Some(k) = axis_of(parameter) {
+                gradient[k] += slope;
+            }
+        }
+        for (parameter, other, curvature) in of_prior.curvatures {
+            if let (Some(k), Some(l)) = (axis_of(parameter), axis_of(other)) {
+                hessian[(k, l)] += curvature;
+            }
+        }
         Quadratic {
             gradient,
             hessian,

@@ -41,6 +41,17 @@ pub enum PriorError {
         /// Upper end of the support.
         support_upper: f64,
     },
+    /// A correlated parameter is not normal, or truncated.
+    #[error(
+        "parameter {parameter} has a correlation: its marginal must be normal in its sampling coordinate, without bounds"
+    )]
+    NotNormal {
+        /// Position of the parameter.
+        parameter: usize,
+    },
+    /// The correlations are no positive definite matrix with ones on the diagonal and a row for each parameter.
+    #[error("the correlations are no positive definite, symmetric matrix with ones on its diagonal")]
+    NotACorrelation,
     /// The distribution has no probability between the bounds.
     #[error("bounds [{lower}, {upper}] hold no probability")]
     NoMass {

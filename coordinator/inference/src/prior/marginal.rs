@@ -303,6 +303,16 @@ impl Marginal {
         }
     }
 
+    /// Mean and standard deviation of the sampling coordinate, where that is normal and not truncated.
+    pub(super) fn untruncated_normal(&self) -> Option<(f64, f64)> {
+        match self.density {
+            Density::Normal {
+                mean, sd, low, high, ..
+            } if low == f64::NEG_INFINITY && high == f64::INFINITY => Some((mean, sd)),
+            _ => None,
+        }
+    }
+
     /// Spread of the sampling coordinate: its standard deviation, or that of a uniform density between the
     /// bounds where they cut off more.
     pub(crate) fn width(&self) -> f64 {

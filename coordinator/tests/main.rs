@@ -1,0 +1,3 @@
+//! The coordinator's parts together, without HTTP and store.
+
+mod sbc;
