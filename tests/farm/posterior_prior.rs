@@ -14,7 +14,7 @@ fn draws() -> String {
     let mut text = "log_likelihood,log_prior,log10_p_ref,kappa,n,noise.plate_noise\n".to_owned();
     for k in 0..60 {
         let z = |step: usize| ((k * step) % 60) as f64 / 30.0 - 1.0;
-        let (p, kappa, n) = (4.56 + 0.05 * z(7), 0.2 * z(7) + 0.02 * z(11), 1.1 + 0.05 * z(17));
+        let (p, kappa, n) = (4.56 + 0.05 * z(7), 0.2 * z(7) + 0.05 * z(11), 1.1 + 0.05 * z(17));
         let _ = writeln!(text, "-1,-1,{p},{kappa},{n},0.1");
     }
     text
@@ -54,7 +54,7 @@ fn a_posterior_is_a_prior_alone_and_through_the_service() {
         a.iter().zip(b).map(|(a, b)| (a - at) * (b - bt)).sum::<f64>()
     };
     let correlation = product(&p, &kappa) / (product(&p, &p) * product(&kappa, &kappa)).sqrt();
-    assert!(correlation > 0.6, "{correlation}");
+    assert!(correlation > 0.4, "{correlation}");
 
     let service = Service::start(&[]);
     let id = service.submit(&job());

@@ -8,7 +8,7 @@ use signal::{INTERVAL_S, SignalError, intervals, resample};
 /// Means over intervals of 0.1 s of drawbar pull, torque, sinkage, lateral force and wheel load, from the start of the travel.
 ///
 /// # Errors
-/// As those of [`resample`].
+/// As those of [`resample()`].
 pub fn at_10_hz(history: &History) -> Result<[Vec<f64>; 5], SignalError> {
     // the first entry is of the wheel at rest
     let edges: Vec<f64> = (0..history.len()).map(|i| i as f64 * history.step_s).collect();
