@@ -30,6 +30,7 @@ impl ModelVariant {
             kind: ModelKind::QuasiStatic,
             spatial: None,
             companion: None,
+            histories: false,
             fixed: self
                 .fixed
                 .iter()

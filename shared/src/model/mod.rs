@@ -310,6 +310,7 @@ impl ModelVariant {
         let rolls = self.kind == ModelKind::Scm && !self.conditions.is_empty();
         rolls.then(|| ModelVariant {
             histories: true,
+            companion: None,
             stiffness_sensitivity: false,
             plates: Vec::new(),
             rings: Vec::new(),
