@@ -17,6 +17,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use coordinator::calibration::{Calibration, Finding, Identity, result_of};
 use coordinator::embedded::Evaluate;
 use coordinator::spec::Spec;
+use inference::diagnostics::chi_square_tail;
 use inference::diagnostics::quantile;
 use inference::rng::Stream;
 use shared::channel::Channel;
@@ -267,28 +268,12 @@ pub(crate) fn judge(parameters: &[String], fates: &[Fate], bins: usize) -> Vec<V
         Verdict {
             parameter: parameter.clone(),
             counts,
-            p: chi_square_tail(chi_square, bins - 1),
+            p: chi_square_tail(chi_square, (bins - 1) as f64).unwrap_or(1.0),
             coverage: covered as f64 / fates.len() as f64,
             coverage_p: binomial_p(covered, fates.len(), 0.9),
         }
     };
     parameters.iter().enumerate().map(judge).collect()
-}
-
-/// P(chi-square of so many degrees of freedom > x): `Q(k/2, x/2)`, by the finite sum for even degrees and from erfc for odd ones.
-pub(crate) fn chi_square_tail(x: f64, degrees: usize) -> f64 {
-    let half = 0.5 * x;
-    // Q(a + 1, h) = Q(a, h) + h^a exp(-h) / Gamma(a + 1)
-    let (mut a, mut tail) = if degrees.is_multiple_of(2) {
-        (1.0, libm::exp(-half))
-    } else {
-        (0.5, libm::erfc(half.sqrt()))
-    };
-    while a < 0.5 * degrees as f64 - 0.25 {
-        tail += libm::exp(a * libm::log(half) - half - libm::lgamma(a + 1.0));
-        a += 1.0;
-    }
-    tail
 }
 
 /// Probability of a count at least as unlikely, of n tries that succeed with probability `q`.

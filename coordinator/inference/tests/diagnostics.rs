@@ -274,6 +274,36 @@ fn a_prior_that_is_wrong_is_contradicted() {
     assert!(right.p.unwrap() > 0.3, "{right:?}");
 }
 
+/// a and b are N(0, 1) with the correlation 0.98, and their difference is measured six of its own prior-predictive sds out:
+/// each alone looks fine.
+#[test]
+fn what_a_joint_prior_forbids_is_contradicted() {
+    let (rho, noise): (f64, f64) = (0.98, 0.1);
+    let normal = Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
+    let prior = Prior::new(vec![normal.clone(), normal])
+        .correlated(vec![0, 1], &[vec![1.0, rho], vec![rho, 1.0]])
+        .unwrap();
+    // The sum and the difference are independent: N(0, 2 (1 + rho)) and N(0, v) with v = 2 (1 - rho).
+    let v = 2.0 * (1.0 - rho);
+    let measured = 6.0 * (v + noise * noise).sqrt();
+    let (mean, sd) = (
+        measured * v / (v + noise * noise),
+        (1.0 / (1.0 / v + 1.0 / (noise * noise))).sqrt(),
+    );
+    let draws: Vec<[f64; 2]> = (0..4000)
+        .map(|k| {
+            let (x, y) = inference::rng::Stream::new(8, 0, k, 0).normal_pair();
+            let (sum, difference) = (x * (2.0 * (1.0 + rho)).sqrt(), mean + sd * y);
+            [0.5 * (sum + difference), 0.5 * (sum - difference)]
+        })
+        .collect();
+    let draws: Vec<&[f64]> = draws.iter().map(|d| d.as_slice()).collect();
+    let found = diagnostics::conflict(&prior, &draws).unwrap();
+    assert_eq!(found.degrees_of_freedom, 1, "{found:?}");
+    assert!((found.statistic - 36.0).abs() < 3.0, "{found:?}");
+    assert!(found.parameters.iter().flatten().all(|p| *p > 0.1), "{found:?}");
+}
+
 #[test]
 fn a_uniform_prior_is_contradicted_at_its_end_and_data_without_a_word_contradict_nothing() {
     let uniform = Distribution::Uniform {

@@ -1,6 +1,6 @@
 //! What came out of an evaluation that no machine failed at.
 
-use inference::SubchainEnd;
+use inference::{Prior, SubchainEnd};
 use shared::exchange::WorkResult;
 use shared::outcome::{Observables, Outcome};
 
@@ -33,16 +33,19 @@ impl Computed {
         Ok(Computed { end, outcome })
     }
 
-    /// Whether it answers what was asked: of a subchain its end, with parameters of this number, and something evaluated
-    /// there where it moved; of anything else an outcome alone.
-    pub(super) fn answers(&self, subchain: bool, dimension: usize) -> bool {
+    /// Whether it answers what was asked: of a subchain of so many moves its end, at parameters that the prior allows, with
+    /// something evaluated there where it moved; of anything else an outcome alone.
+    pub(super) fn answers(&self, subchain: bool, moves: usize, prior: &Prior) -> bool {
         match &self.end {
             None => !subchain && self.outcome.is_some(),
             Some(end) => {
                 subchain
-                    && end.theta.len() == dimension
-                    && end.theta.iter().all(|x| x.is_finite())
+                    && prior.log_density(&end.theta) > f64::NEG_INFINITY
                     && end.log_gain.is_finite()
+                    && end.moves as usize <= moves
+                    && end.accepted <= end.moves
+                    && end.scaled <= end.moves
+                    && end.scaled_accepted <= end.scaled.min(end.accepted)
                     && (end.accepted > 0) == self.outcome.is_some()
             }
         }
@@ -66,5 +69,58 @@ pub fn result_of(outcome: Outcome) -> Result<Result<Observables, String>, String
             r.kind, r.condition, r.message
         ))),
         Outcome::Fault(fault) => Err(fault.message),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use inference::{Distribution, Marginal};
+
+    use super::*;
+
+    /// Changes an honest end; whether it is still an answer to a subchain of ten moves.
+    fn answers(change: fn(&mut SubchainEnd)) -> bool {
+        let unit = Distribution::Loguniform {
+            lower: 1.0,
+            upper: 2.0,
+        };
+        let prior = Prior::new(vec![Marginal::new(unit, None).unwrap()]);
+        let mut end = SubchainEnd {
+            theta: vec![1.5],
+            log_gain: -0.5,
+            moves: 10,
+            accepted: 3,
+            scaled: 8,
+            scaled_accepted: 2,
+        };
+        change(&mut end);
+        let computed = Computed {
+            end: Some(end),
+            outcome: Some(Ok(Observables::default())),
+        };
+        assert!(
+            !computed.answers(false, 10, &prior),
+            "nobody asked for a subchain"
+        );
+        computed.answers(true, 10, &prior)
+    }
+
+    #[test]
+    fn an_end_that_no_subchain_can_have_is_no_answer() {
+        assert!(answers(|_| ()));
+        let wrong: [fn(&mut SubchainEnd); 9] = [
+            |end| end.theta = vec![-1.0],
+            |end| end.theta = vec![f64::NAN],
+            |end| end.theta.clear(),
+            |end| end.log_gain = f64::INFINITY,
+            |end| end.moves = 11,
+            |end| end.accepted = 11,
+            |end| end.accepted = 0,
+            |end| end.scaled = u32::MAX,
+            |end| end.scaled_accepted = 4,
+        ];
+        for (i, change) in wrong.into_iter().enumerate() {
+            assert!(!answers(change), "{i}");
+        }
     }
 }

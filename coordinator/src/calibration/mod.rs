@@ -11,7 +11,7 @@ mod replay;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use inference::{LogLikelihood, Posterior, Proposal, Subchain};
+use inference::{LogLikelihood, Metamodel, Posterior, Proposal, Subchain};
 use shared::api::CalibrationState;
 use shared::model::ModelVariant;
 use shared::outcome::Observables;
@@ -63,8 +63,8 @@ pub struct Calibration {
     engine: Engine,
     fit_hash: String,
     holdout_hash: Option<String>,
-    /// The fitted runs with the metamodel of the present stage, and the hash.
-    stage_variant: Option<(String, ModelVariant)>,
+    /// The fitted runs with the metamodel of the present stage: its number, the hash and the variant.
+    stage_variant: Option<(usize, (String, ModelVariant))>,
     /// What is simulated once more for its histories, with its hash; `None` of a model that knows no time.
     histories: Option<(String, ModelVariant)>,
     /// What the calibration ends with; `None` while sampling.
@@ -161,7 +161,7 @@ impl Calibration {
     pub fn question(&self, evaluation: u64) -> Option<Question<'_>> {
         let theta = self.theta(evaluation)?;
         if let Some(subchain) = self.subchain(evaluation) {
-            let (variant, _) = self.stage_variant.as_ref()?;
+            let (_, (variant, _)) = self.stage_variant.as_ref()?;
             return Some(Question {
                 variant,
                 theta,
@@ -191,7 +191,8 @@ impl Calibration {
             h if h == self.fit_hash => Some(&self.spec.fit_variant),
             h if Some(h) == self.holdout_hash.as_deref() => self.spec.holdout_variant.as_ref(),
             h => {
-                let others = self.stage_variant.iter().chain(&self.histories);
+                let of_stage = self.stage_variant.iter().map(|(_, variant)| variant);
+                let others = of_stage.chain(&self.histories);
                 others
                     .filter(|(own, _)| own == h)
                     .map(|(_, variant)| variant)
@@ -232,10 +233,7 @@ impl Calibration {
 
     /// Asks for the evaluations of the present round.
     fn ask(&mut self) {
-        self.stage_variant = self.engine.metamodel().map(|metamodel| {
-            let variant = self.spec.fit_variant.with_metamodel(metamodel);
-            (variant.hash(), variant)
-        });
+        self.prepare_stage();
         let particles = self.spec.method.width();
         self.done.clear();
         let failed = |evaluation| self.failed.get(&evaluation).copied().unwrap_or(0);
@@ -261,6 +259,18 @@ impl Calibration {
                 });
                 self.queue.ask(keys, failed);
             }
+        }
+    }
+
+    /// Makes the variant of the stage in progress, whose metamodel is frozen until the next one.
+    fn prepare_stage(&mut self) {
+        let metamodel = self.engine.metamodel();
+        let stage = metamodel.map(Metamodel::stage);
+        if self.stage_variant.as_ref().map(|(stage, ..)| *stage) != stage {
+            self.stage_variant = metamodel.map(|metamodel| {
+                let variant = self.spec.fit_variant.with_metamodel(metamodel);
+                (metamodel.stage(), (variant.hash(), variant))
+            });
         }
     }
 
@@ -356,7 +366,8 @@ impl Calibration {
             return Ok(());
         }
         let subchain = self.subchain(evaluation).is_some();
-        if !computed.answers(subchain, self.spec.parameters.len()) {
+        let moves = self.spec.method.metamodel_moves();
+        if !computed.answers(subchain, moves, &self.spec.prior()) {
             return Err(ResultError::OtherQuestion { evaluation });
         }
         let variant = match (self.key(evaluation), &self.spec.holdout_variant, &self.histories) {

@@ -352,7 +352,9 @@ impl Farm {
     /// Adds up busy time and lets go of what is over.
     fn account(&mut self, now_ms: u64) {
         for entry in self.calibrations.values_mut() {
-            if entry.calibration.state == CalibrationState::Running {
+            // What waits for others has not begun to cost anything.
+            let calibration = &entry.calibration;
+            if calibration.state == CalibrationState::Running && calibration.queue.leased() > 0 {
                 entry.calibration.busy_ms += now_ms.saturating_sub(entry.counted_ms);
             }
             entry.counted_ms = now_ms;

@@ -3,6 +3,7 @@
 use super::Outcome;
 use super::diagnostics::{Diagnostics, findings_that_alarm};
 use super::predictive::discrepancy_posterior;
+use super::report::number;
 use super::summary::ParameterSummary;
 
 /// Something that deserves attention.
@@ -29,7 +30,7 @@ const MANY_REJECTED: f64 = 0.5;
 impl Outcome {
     /// What deserves attention.
     pub(super) fn flags(&self, diagnostics: &Diagnostics) -> Vec<Flag> {
-        let mut flags = findings_that_alarm(diagnostics);
+        let mut flags = Vec::new();
         let mut flag = |kind: &str, text: String| {
             flags.push(Flag {
                 kind: kind.into(),
@@ -47,15 +48,26 @@ impl Outcome {
             .collect();
         if self.row.equilibrated == Some(false) {
             let text = if unbalanced.is_empty() {
-                "the sampler did not reach equilibrium: neither draws nor evidence can be trusted".into()
+                "the sampler did not reach equilibrium: neither draws nor evidence can be trusted, nor any flag that follows from them".into()
             } else {
                 format!(
-                    "stages {} ended before the moves reached equilibrium: neither draws nor evidence can be trusted; allow more moves or particles",
+                    "stages {} ended before the moves reached equilibrium: neither draws nor evidence can be trusted, nor any flag that follows from them; allow more moves or particles",
                     unbalanced.join(", ")
                 )
             };
             flag("not_equilibrated", text);
         }
+        // What casts doubt on all the others stands before them.
+        flags.extend(findings_that_alarm(diagnostics));
+        let mut flag = |kind: &str, text: String| {
+            flags.push(Flag {
+                kind: kind.into(),
+                channel: None,
+                against: None,
+                p: None,
+                text,
+            });
+        };
         for ((name, parameter), found) in self.parameter_summaries().iter().zip(&diagnostics.parameters) {
             if parameter.at_bound {
                 flag("bound", bound_text(name, parameter));
@@ -83,8 +95,9 @@ impl Outcome {
                 let (name, prior_sd) = (&p.free.name, p.free.marginal.sd());
                 if p.at_bound {
                     let text = format!(
-                        "{name} lies at a bound of its prior, {:.4} {}: the data ask for a value that the prior excludes, or an effect is missing",
-                        p.value, p.free.unit
+                        "{name} lies at a bound of its prior, {} {}: the data ask for a value that the prior excludes, or an effect is missing",
+                        number::significant(p.value, 4),
+                        p.free.unit
                     );
                     flag("bound", text);
                 } else if estimate.sd.is_some() && p.sd.is_none_or(|sd| sd > NO_CONTRACTION * prior_sd) {
@@ -135,7 +148,8 @@ impl Outcome {
 
 fn bound_text(name: &str, p: &ParameterSummary) -> String {
     format!(
-        "{name} lies at a bound of its prior (90 % of the posterior in {:.4} to {:.4}): the data ask for a value that the prior excludes, or an effect is missing",
-        p.q05, p.q95
+        "{name} lies at a bound of its prior (90 % of the posterior in {} to {}): the data ask for a value that the prior excludes, or an effect is missing",
+        number::significant(p.q05, 4),
+        number::significant(p.q95, 4)
     )
 }

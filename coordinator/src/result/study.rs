@@ -9,6 +9,9 @@ use super::summary::{CalibrationSummary, Summary};
 use crate::service::ServiceError;
 use crate::store::{CalibrationRow, Reader};
 
+/// The best of a thousand draws lies some nats below the mode, and more in many dimensions; this is beyond chance.
+const MISSED_NATS: f64 = 15.0;
+
 /// The finished calibrations of a study, oldest first. There is at least one.
 #[derive(Debug)]
 pub struct Study {
@@ -60,7 +63,8 @@ impl Study {
     /// What deserves attention; of a calibration beside the first, under the name of its algorithm.
     pub fn flags(&self) -> Vec<Flag> {
         let of = |outcome: &Outcome| outcome.diagnostics(&outcome.comparison()).flags;
-        let mut flags = of(&self.lead);
+        let mut flags = self.missed_modes();
+        flags.extend(of(&self.lead));
         for outcome in &self.beside {
             let name = outcome.spec.method.name();
             flags.extend(of(outcome).into_iter().map(|flag| Flag {
@@ -69,6 +73,38 @@ impl Study {
             }));
         }
         flags
+    }
+
+    /// A calibration whose best parameters are far less probable than what another one of the study found has missed them.
+    fn missed_modes(&self) -> Vec<Flag> {
+        let best = |outcome: &Outcome| match &outcome.estimate {
+            Some(estimate) => Some(estimate.log_likelihood + estimate.log_prior),
+            None => {
+                let sample = outcome.most_probable()?;
+                Some(sample.log_likelihood? + sample.log_prior)
+            }
+        };
+        let found: Vec<(&str, f64)> = self
+            .outcomes()
+            .filter_map(|outcome| Some((outcome.spec.method.name(), best(outcome)?)))
+            .collect();
+        let Some(&(winner, highest)) = found.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else {
+            return Vec::new();
+        };
+        found
+            .iter()
+            .filter(|(_, log_posterior)| highest - log_posterior > MISSED_NATS)
+            .map(|(name, log_posterior)| Flag {
+                kind: "not_equilibrated".into(),
+                channel: None,
+                against: None,
+                p: None,
+                text: format!(
+                    "{name} has missed what {winner} found, parameters whose log-posterior is {:.0} nats higher: its result is not the answer",
+                    highest - log_posterior
+                ),
+            })
+            .collect()
     }
 
     /// `summary.json`.
@@ -112,5 +148,29 @@ mod tests {
         assert_eq!(estimates, ["ga"]);
         let of_search = summary.flags.iter().filter(|f| f.text.starts_with("ga: "));
         assert!(of_search.count() > 0, "{:?}", summary.flags);
+    }
+
+    #[test]
+    fn what_another_calibration_found_is_held_against_those_that_missed_it() {
+        let mut study = fixture::study();
+        let missed = |study: &super::Study| {
+            let flags = study.flags();
+            let found = flags.iter().filter(|f| f.text.contains("has missed what"));
+            found.map(|f| f.text.clone()).collect::<Vec<String>>()
+        };
+        assert_eq!(missed(&study), Vec::<String>::new());
+        if let Some(estimate) = &mut study.beside[0].estimate {
+            estimate.log_likelihood += 100.0;
+        }
+        let texts = missed(&study);
+        assert!(
+            texts.len() == 1 && texts[0].starts_with("tmcmc has missed what ga found"),
+            "{texts:?}"
+        );
+        assert_eq!(
+            study.flags()[0].text,
+            texts[0],
+            "it stands before what it casts doubt on"
+        );
     }
 }

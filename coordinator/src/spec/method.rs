@@ -64,7 +64,15 @@ impl Method {
 
     /// Whether a metamodel takes moves between evaluations.
     pub fn has_metamodel(&self) -> bool {
-        matches!(self, Method::Sample(settings) if settings.metamodel_moves > 0)
+        self.metamodel_moves() > 0
+    }
+
+    /// Moves of a metamodel between two evaluations.
+    pub fn metamodel_moves(&self) -> usize {
+        match self {
+            Method::Sample(settings) => settings.metamodel_moves,
+            Method::Fit(_) | Method::Search(_) => 0,
+        }
     }
 
     /// The key of the budget that a longer run needs more of.

@@ -15,7 +15,7 @@ mod parameters;
 mod recording;
 mod spatial;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use scm::spatial::Run;
 use scm::{Averages, Condition, Soil, Wheel, quasi_static};
@@ -322,10 +322,14 @@ fn rejected(kind: &str, condition: usize, message: String) -> Outcome {
     Outcome::Rejected(refusal(kind, condition, message))
 }
 
-/// Variants by hash, each compiled once.
+/// Variants at hand; a metamodel brings a new one with every stage.
+const MOST_VARIANTS: usize = 64;
+
+/// Variants by hash, each compiled once; the oldest make room.
 #[derive(Debug, Default)]
 pub struct VariantCache {
     variants: BTreeMap<String, std::sync::Arc<CompiledVariant>>,
+    by_age: VecDeque<String>,
 }
 
 impl VariantCache {
@@ -346,8 +350,15 @@ impl VariantCache {
             ));
         }
         let compiled = CompiledVariant::new(variant)?;
-        self.variants
-            .insert(hash.to_owned(), std::sync::Arc::new(compiled));
+        let compiled = std::sync::Arc::new(compiled);
+        if self.variants.insert(hash.to_owned(), compiled).is_none() {
+            self.by_age.push_back(hash.to_owned());
+        }
+        if self.by_age.len() > MOST_VARIANTS
+            && let Some(oldest) = self.by_age.pop_front()
+        {
+            self.variants.remove(&oldest);
+        }
         Ok(())
     }
 }

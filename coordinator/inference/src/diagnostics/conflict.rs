@@ -26,7 +26,7 @@ pub struct Conflict {
 ///
 /// # Equation
 /// Every parameter is turned into its normal score `u = Phi^-1(F(theta))`, F its prior distribution, so that the prior
-/// is standard normal. With m and S the posterior's mean and covariance of u, `z_i = m_i / sqrt(1 - S_ii)`, and over
+/// is standard normal; where it is correlated, each parameter alone is, and D takes scores made independent. With m and S the posterior's mean and covariance of u, `z_i = m_i / sqrt(1 - S_ii)`, and over
 /// the eigenvectors v of S with eigenvalues l, `D = sum (v'm)^2 / (1 - l)`. Under the prior predictive distribution
 /// `Cov(m) = I - S`, so z is standard normal and D chi-square.
 ///
@@ -61,10 +61,15 @@ pub fn conflict(prior: &Prior, draws: &[&[f64]]) -> Option<Conflict> {
         .enumerate()
         .map(|(i, &m)| Some(two_sided(squared_z(m, covariance[(i, i)])?.sqrt())))
         .collect();
-    let informed: Vec<f64> = principal_directions(&scores)
+    let independent: Vec<Vec<f64>> = draws
+        .iter()
+        .map(|theta| prior.independent_scores(theta))
+        .collect();
+    let (centre, _) = mean_and_covariance(&independent)?;
+    let informed: Vec<f64> = principal_directions(&independent)
         .iter()
         .filter_map(|direction| {
-            let along: f64 = direction.loadings.iter().zip(&mean).map(|(v, m)| v * m).sum();
+            let along: f64 = direction.loadings.iter().zip(&centre).map(|(v, m)| v * m).sum();
             squared_z(along, direction.variance)
         })
         .collect();

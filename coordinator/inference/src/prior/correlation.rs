@@ -85,6 +85,16 @@ impl Correlation {
         self.log_volume - 0.5 * z.dot(&(&self.excess * &z))
     }
 
+    /// Replaces the normal scores of the correlated parameters by independent ones, `L^-1 z`.
+    pub(super) fn whiten(&self, scores: &mut [f64]) {
+        let mut z = DVector::from_iterator(self.parameters.len(), self.parameters.iter().map(|&p| scores[p]));
+        // The factor of a positive definite matrix has no zero on its diagonal.
+        self.factor.solve_lower_triangular_mut(&mut z);
+        for (&parameter, z) in self.parameters.iter().zip(z.iter()) {
+            scores[parameter] = *z;
+        }
+    }
+
     /// Replaces independent draws of the correlated parameters by dependent ones.
     pub(super) fn correlate(&self, marginals: &[Marginal], theta: &mut [f64]) {
         let coordinates: Vec<f64> = marginals

@@ -120,6 +120,24 @@ impl Prior {
         }
     }
 
+    /// Numbers that the prior makes independent standard normal: the marginals' normal scores, of correlated parameters each
+    /// given those before it.
+    #[must_use]
+    pub(crate) fn independent_scores(&self, theta: &[f64]) -> Vec<f64> {
+        let marginals = self.marginals.iter().zip(theta);
+        let mut scores: Vec<f64> = marginals.map(|(m, &x)| m.normal_score(x)).collect();
+        if let Some(correlation) = &self.correlation {
+            correlation.whiten(&mut scores);
+        }
+        scores
+    }
+
+    /// Whether some parameters are correlated.
+    #[must_use]
+    pub fn is_correlated(&self) -> bool {
+        self.correlation.is_some()
+    }
+
     /// One independent draw of theta.
     pub fn sample(&self, stream: &mut Stream) -> Vec<f64> {
         let mut theta: Vec<f64> = self

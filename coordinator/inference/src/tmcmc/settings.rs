@@ -93,9 +93,15 @@ pub enum SettingsError {
         /// Most moves.
         most: usize,
     },
-    /// The metamodel's moves are more than a worker should take at a time, or the algorithm has no steps to take them in.
-    #[error("metamodel_moves {value} is not 0 to {MOST_MOVES}, or the algorithm takes no metamodel")]
+    /// The metamodel's moves are more than a worker should take at a time.
+    #[error("metamodel_moves {value} is more than {MOST_MOVES}")]
     MetamodelMoves {
+        /// The setting.
+        value: usize,
+    },
+    /// The algorithm has no steps for a metamodel to take moves in.
+    #[error("metamodel_moves {value}: only tmcmc takes a metamodel")]
+    NoMetamodel {
         /// The setting.
         value: usize,
     },
@@ -129,10 +135,12 @@ impl Settings {
             })
         } else if fewest == 0 || fewest > most || most > MOST_MOVES {
             Err(SettingsError::Moves { least: fewest, most })
-        } else if self.metamodel_moves > MOST_MOVES
-            || (self.metamodel_moves > 0 && self.algorithm != Algorithm::Tmcmc)
-        {
+        } else if self.metamodel_moves > MOST_MOVES {
             Err(SettingsError::MetamodelMoves {
+                value: self.metamodel_moves,
+            })
+        } else if self.metamodel_moves > 0 && self.algorithm != Algorithm::Tmcmc {
+            Err(SettingsError::NoMetamodel {
                 value: self.metamodel_moves,
             })
         } else if !(self.target_cov.is_finite() && self.target_cov > 0.0) {

@@ -147,7 +147,7 @@ impl Stage {
     /// Accepts or rejects every step; `answers` are those of the last proposals, in their order.
     pub(super) fn accept(&mut self, prior: &Prior, answers: Vec<Answer>) {
         let mut answers = answers.into_iter();
-        let (mut scaled, mut scaled_accepted) = (0_u32, 0_u32);
+        let (mut scaled, mut scaled_accepted) = (0_u64, 0_u64);
         for step in std::mem::take(&mut self.steps) {
             let answer = match step.kind {
                 Kind::Outside { .. } => None,
@@ -164,8 +164,8 @@ impl Stage {
                 prior,
             );
             self.proposed += 1;
-            scaled += verdict.scaled;
-            scaled_accepted += verdict.scaled_accepted;
+            scaled += u64::from(verdict.scaled);
+            scaled_accepted += u64::from(verdict.scaled_accepted);
             if let Some(state) = verdict.state {
                 chain.current = state;
                 self.accepted += 1;
@@ -174,7 +174,7 @@ impl Stage {
         }
         self.step += 1;
         if self.adaptive && scaled > 0 {
-            let acceptance = f64::from(scaled_accepted) / f64::from(scaled);
+            let acceptance = scaled_accepted as f64 / scaled as f64;
             self.scale *= libm::exp(acceptance - target_acceptance(self.mixture.factor.dimension()));
         }
     }

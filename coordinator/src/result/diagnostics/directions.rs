@@ -30,8 +30,12 @@ pub struct Loading {
     pub loading: f64,
 }
 
-/// The principal directions, the worst known first; none of a fit.
+/// The principal directions, the worst known first; none of a fit, and none where the prior itself is correlated: what it
+/// ties together the data need not.
 pub(super) fn directions(outcome: &Outcome) -> Vec<DirectionDiagnostics> {
+    if outcome.spec.prior().is_correlated() {
+        return Vec::new();
+    }
     let all: Vec<usize> = (0..outcome.spec.parameters.len()).collect();
     let named = |direction: &Direction| DirectionDiagnostics {
         sd_ratio: direction.variance.sqrt(),

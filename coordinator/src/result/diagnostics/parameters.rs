@@ -32,17 +32,37 @@ pub struct PriorConflict {
     pub p: Option<f64>,
 }
 
+/// Where the model refuses more of the prior than this share, the prior's accepted draws take its place.
+const CUT: f64 = 0.05;
+
 /// Every parameter, in the order of the job, and all of them together.
 pub(super) fn parameters(outcome: &Outcome) -> (Vec<ParameterDiagnostics>, Option<PriorConflict>) {
     let draws: Vec<&[f64]> = outcome.posterior.iter().map(|s| s.theta.as_slice()).collect();
-    let conflict = diagnostics::conflict(&outcome.spec.prior(), &draws);
+    let accepted: Vec<&[f64]> = outcome
+        .prior_draws
+        .iter()
+        .filter(|draw| draw.result.is_ok())
+        .map(|draw| draw.theta.as_slice())
+        .collect();
+    let refused = outcome.prior_draws.len() - accepted.len();
+    let is_cut = refused as f64 > CUT * outcome.prior_draws.len() as f64;
+    // What the model refuses the data never saw: there the prior is another than the one declared.
+    let conflict = if is_cut {
+        None
+    } else {
+        diagnostics::conflict(&outcome.spec.prior(), &draws)
+    };
     let parameter = |(i, free): (usize, &FreeParameter)| {
         let draws = outcome.draws(i);
         let of = |c: &Conflict| c.parameters[i];
         ParameterDiagnostics {
             name: free.name.clone(),
             unit: free.unit.clone(),
-            contraction: contraction(free, &draws),
+            contraction: match is_cut {
+                true => spread(free, accepted.iter().map(|theta| theta[i]))
+                    .and_then(|before| contraction(free, &draws, before)),
+                false => contraction(free, &draws, free.marginal.coordinate_moments().1),
+            },
             at_bound: match &outcome.estimate {
                 Some(estimate) => estimate.at_bound[i],
                 None => diagnostics::summary(&draws).is_some_and(|s| free.marginal.at_bound(s.q05, s.q95)),
@@ -59,10 +79,17 @@ pub(super) fn parameters(outcome: &Outcome) -> (Vec<ParameterDiagnostics>, Optio
     (parameters.collect(), together)
 }
 
-fn contraction(free: &FreeParameter, draws: &[f64]) -> Option<f64> {
-    let coordinates: Vec<f64> = draws.iter().map(|&x| free.marginal.coordinate(x)).collect();
-    let (_, after) = diagnostics::mean_and_sd(&coordinates).filter(|_| draws.len() > 1)?;
-    Some(1.0 - after / free.marginal.coordinate_moments().1)
+/// One less the posterior's spread over what it was before the data.
+fn contraction(free: &FreeParameter, draws: &[f64], before: f64) -> Option<f64> {
+    let after = spread(free, draws.iter().copied())?;
+    (before > 0.0).then(|| 1.0 - after / before)
+}
+
+/// Standard deviation in the sampler's coordinate; `None` with fewer than two values.
+fn spread(free: &FreeParameter, values: impl Iterator<Item = f64>) -> Option<f64> {
+    let coordinates: Vec<f64> = values.map(|x| free.marginal.coordinate(x)).collect();
+    let (_, sd) = diagnostics::mean_and_sd(&coordinates).filter(|_| coordinates.len() > 1)?;
+    Some(sd)
 }
 
 #[cfg(test)]
@@ -70,6 +97,7 @@ mod tests {
     use inference::{Distribution, Marginal};
 
     use super::*;
+    use crate::result::report::fixture;
 
     fn free(distribution: Distribution) -> FreeParameter {
         FreeParameter {
@@ -87,14 +115,39 @@ mod tests {
             upper: 4.0,
         });
         let draws: Vec<f64> = (0..4000).map(|k| 3.0 + 0.2 * (k as f64 + 0.5) / 4000.0).collect();
-        assert!((contraction(&uniform, &draws).unwrap() - 0.9).abs() < 1e-3);
+        let before = uniform.marginal.coordinate_moments().1;
+        assert!((contraction(&uniform, &draws, before).unwrap() - 0.9).abs() < 1e-3);
+        assert_eq!(contraction(&uniform, &[3.0], before), None);
         // exp(+-a) with a = sqrt(1/2) ln 2 has the sd ln 2 of its logarithm, factor 4 in the prior: one half is left.
         let lognormal = free(Distribution::Lognormal {
             median: 1.0,
             factor: 4.0,
         });
         let a = 0.5_f64.sqrt() * 2.0_f64.ln();
-        assert!((contraction(&lognormal, &[a.exp(), (-a).exp()]).unwrap() - 0.5).abs() < 1e-9);
-        assert_eq!(contraction(&uniform, &[3.0]), None);
+        let before = lognormal.marginal.coordinate_moments().1;
+        let left = contraction(&lognormal, &[a.exp(), (-a).exp()], before).unwrap();
+        assert!((left - 0.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn where_the_model_refuses_much_the_accepted_draws_are_the_prior() {
+        let mut outcome = fixture::outcome();
+        let (whole, conflict) = parameters(&outcome);
+        assert!(conflict.is_some());
+        // Of the draws from the prior the model now takes only those in the lower half of the first parameter.
+        let mut first: Vec<f64> = outcome.prior_draws.iter().map(|draw| draw.theta[0]).collect();
+        first.sort_by(f64::total_cmp);
+        let middle = first[first.len() / 2];
+        for draw in &mut outcome.prior_draws {
+            if draw.theta[0] > middle {
+                draw.result = Err("no_support: condition 0: toy".into());
+            }
+        }
+        let (cut, conflict) = parameters(&outcome);
+        assert!(conflict.is_none());
+        assert!(
+            cut[0].contraction.unwrap() < whole[0].contraction.unwrap() - 0.02,
+            "{cut:?} {whole:?}"
+        );
     }
 }
