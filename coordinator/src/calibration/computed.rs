@@ -35,12 +35,12 @@ impl Computed {
 
     /// Whether it answers what was asked: of a subchain of so many moves its end, at parameters that the prior allows, with
     /// something evaluated there where it moved; of anything else an outcome alone.
-    pub(super) fn answers(&self, subchain: bool, moves: usize, prior: &Prior) -> bool {
+    pub(super) fn answers(&self, subchain: bool, moves: usize, prior: impl FnOnce() -> Prior) -> bool {
         match &self.end {
             None => !subchain && self.outcome.is_some(),
             Some(end) => {
                 subchain
-                    && prior.log_density(&end.theta) > f64::NEG_INFINITY
+                    && prior().log_density(&end.theta) > f64::NEG_INFINITY
                     && end.log_gain.is_finite()
                     && end.moves as usize <= moves
                     && end.accepted <= end.moves
@@ -99,10 +99,10 @@ mod tests {
             outcome: Some(Ok(Observables::default())),
         };
         assert!(
-            !computed.answers(false, 10, &prior),
+            !computed.answers(false, 10, || prior.clone()),
             "nobody asked for a subchain"
         );
-        computed.answers(true, 10, &prior)
+        computed.answers(true, 10, || prior)
     }
 
     #[test]

@@ -367,7 +367,7 @@ impl Calibration {
         }
         let subchain = self.subchain(evaluation).is_some();
         let moves = self.spec.method.metamodel_moves();
-        if !computed.answers(subchain, moves, &self.spec.prior()) {
+        if !computed.answers(subchain, moves, || self.spec.prior()) {
             return Err(ResultError::OtherQuestion { evaluation });
         }
         let variant = match (self.key(evaluation), &self.spec.holdout_variant, &self.histories) {

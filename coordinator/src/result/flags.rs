@@ -27,47 +27,25 @@ const NO_CONTRACTION: f64 = 0.95;
 /// A share of refused vectors above which the prior deserves another look.
 const MANY_REJECTED: f64 = 0.5;
 
-impl Outcome {
-    /// What deserves attention.
-    pub(super) fn flags(&self, diagnostics: &Diagnostics) -> Vec<Flag> {
-        let mut flags = Vec::new();
-        let mut flag = |kind: &str, text: String| {
-            flags.push(Flag {
-                kind: kind.into(),
-                channel: None,
-                against: None,
-                p: None,
-                text,
-            });
-        };
-        let unbalanced: Vec<String> = self
-            .stages
-            .iter()
-            .filter(|s| !s.equilibrated)
-            .map(|s| s.stage.to_string())
-            .collect();
-        if self.row.equilibrated == Some(false) {
-            let text = if unbalanced.is_empty() {
-                "the sampler did not reach equilibrium: neither draws nor evidence can be trusted, nor any flag that follows from them".into()
-            } else {
-                format!(
-                    "stages {} ended before the moves reached equilibrium: neither draws nor evidence can be trusted, nor any flag that follows from them; allow more moves or particles",
-                    unbalanced.join(", ")
-                )
-            };
-            flag("not_equilibrated", text);
+impl Flag {
+    /// A flag that is about no channel and no probability.
+    pub(super) fn plain(kind: &str, text: String) -> Self {
+        Flag {
+            kind: kind.into(),
+            channel: None,
+            against: None,
+            p: None,
+            text,
         }
-        // What casts doubt on all the others stands before them.
+    }
+}
+
+impl Outcome {
+    /// What deserves attention; what casts doubt on all the others stands first.
+    pub(super) fn flags(&self, diagnostics: &Diagnostics) -> Vec<Flag> {
+        let mut flags: Vec<Flag> = self.unbalanced().into_iter().collect();
         flags.extend(findings_that_alarm(diagnostics));
-        let mut flag = |kind: &str, text: String| {
-            flags.push(Flag {
-                kind: kind.into(),
-                channel: None,
-                against: None,
-                p: None,
-                text,
-            });
-        };
+        let mut flag = |kind: &str, text: String| flags.push(Flag::plain(kind, text));
         for ((name, parameter), found) in self.parameter_summaries().iter().zip(&diagnostics.parameters) {
             if parameter.at_bound {
                 flag("bound", bound_text(name, parameter));
@@ -143,6 +121,25 @@ impl Outcome {
             flag("rejections", text);
         }
         flags
+    }
+
+    /// A sampler that did not reach equilibrium.
+    fn unbalanced(&self) -> Option<Flag> {
+        if self.row.equilibrated != Some(false) {
+            return None;
+        }
+        let stages = self.stages.iter().filter(|s| !s.equilibrated);
+        let stages: Vec<String> = stages.map(|s| s.stage.to_string()).collect();
+        let doubt = "neither draws nor evidence can be trusted, nor any flag that follows from them";
+        let text = if stages.is_empty() {
+            format!("the sampler did not reach equilibrium: {doubt}")
+        } else {
+            format!(
+                "stages {} ended before the moves reached equilibrium: {doubt}; allow more moves or particles",
+                stages.join(", ")
+            )
+        };
+        Some(Flag::plain("not_equilibrated", text))
     }
 }
 

@@ -94,15 +94,12 @@ impl Study {
         found
             .iter()
             .filter(|(_, log_posterior)| highest - log_posterior > MISSED_NATS)
-            .map(|(name, log_posterior)| Flag {
-                kind: "not_equilibrated".into(),
-                channel: None,
-                against: None,
-                p: None,
-                text: format!(
+            .map(|(name, log_posterior)| {
+                let text = format!(
                     "{name} has missed what {winner} found, parameters whose log-posterior is {:.0} nats higher: its result is not the answer",
                     highest - log_posterior
-                ),
+                );
+                Flag::plain("not_equilibrated", text)
             })
             .collect()
     }

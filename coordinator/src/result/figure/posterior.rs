@@ -7,6 +7,7 @@ use inference::diagnostics;
 use super::mark::{Mark, MarkKind, Place};
 use super::{AxisParameter, reference};
 use crate::result::entangled::most_correlated;
+use crate::result::report::number;
 use crate::result::{Outcome, Study};
 
 /// The pairs that the source paper shows.
@@ -198,7 +199,11 @@ fn stiffness_line(
     let b = diagnostics::mean(&widths).filter(|b| *b > 0.0)?;
     let k_star = k_c / b + k_phi;
     Some(Line {
-        label: format!("k* = {k_star:e} N/m^(n+2) at b = {:.1} mm", 1e3 * b),
+        label: format!(
+            "k* = {} N/m^(n+2) at b = {:.1} mm",
+            number::significant(k_star, 3),
+            1e3 * b
+        ),
         points: range[0].map(|x| [x, k_star - x / b]),
     })
 }
