@@ -1,7 +1,8 @@
 //! How well the missing effect is found, on experiments whose truth is known.
 //!
-//! `cargo bench -p coordinator --bench hidden_effect [-- EXPERIMENTS [SEED]]`: as many experiments with one hidden effect of the
-//! catalogue as without, 200 of each where nothing is said; then the four experiments of `tests/data`.
+//! `cargo bench -p coordinator --bench hidden_effect [-- EXPERIMENTS [SEED [LINES]]]`: as many experiments with one hidden effect of
+//! the catalogue as without, 200 of each where nothing is said, with a line for each where LINES is 1; then the four experiments of
+//! `tests/data`.
 
 mod models;
 mod study;
@@ -28,11 +29,11 @@ fn main() -> ExitCode {
         .map(|a| a.parse())
         .collect();
     let Ok(numbers) = numbers else {
-        eprintln!("error: EXPERIMENTS and SEED are whole numbers");
+        eprintln!("error: EXPERIMENTS, SEED and LINES are whole numbers");
         return ExitCode::FAILURE;
     };
     let number = |i: usize, usual: u64| numbers.get(i).copied().unwrap_or(usual);
-    match drawn(number(0, 200), number(1, 1)).and_then(|()| synthetic()) {
+    match drawn(number(0, 200), number(1, 1), number(2, 0) == 1).and_then(|()| synthetic()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             eprintln!("error: {message}");
@@ -42,7 +43,7 @@ fn main() -> ExitCode {
 }
 
 /// Experiments drawn from the priors, each effect in turn.
-fn drawn(count: u64, seed: u64) -> Result<(), String> {
+fn drawn(count: u64, seed: u64, has_lines: bool) -> Result<(), String> {
     let models = Models::new(study::JOB, &study::experiment())?;
     let effects = models.candidates.len();
     println!(
@@ -68,7 +69,7 @@ fn drawn(count: u64, seed: u64) -> Result<(), String> {
             }
         };
         let fate = Fate::new(hidden, &finding, separation);
-        if std::env::var_os("SHOW").is_some() {
+        if has_lines {
             println!("{}", fate.line(&models, &case, &finding));
         }
         tally.add(fate);
@@ -91,15 +92,20 @@ fn synthetic() -> Result<(), String> {
         };
         let models = Models::new(&read("job.toml")?, &experiment)?;
         let finding = study::search(&models, &models.base.spec.likelihood)?;
-        println!("\n{name}: {} evaluations to confirm", finding.spent.to_confirm());
+        let data = models.base.spec.likelihood.data();
+        let measured: Vec<f64> = data.iter().map(|d| d.value).collect();
+        let perfect = models.base.spec.likelihood.log_likelihood(&measured, &[]);
+        let perfect = perfect.map_err(|e| e.to_string())?.value();
+        println!("\n{name}: {} data, {:?}", data.len(), finding.spent);
         for judged in finding.ranked().into_iter().take(5) {
             println!(
-                "  {:<28} ln BF {:8.2}  P {:.3}  class {:2} ({:.3})  {:?}",
+                "  {:<28} ln BF {:8.2}  P {:.3}  class {:2} ({:.3})  chi2 {:6.1}  {:?}",
                 models.name(judged.candidate),
                 judged.log_bayes_factor,
                 judged.probability,
                 judged.class,
                 finding.of_class(judged.class),
+                2.0 * (perfect - judged.log_likelihood),
                 judged.method
             );
         }

@@ -1,6 +1,6 @@
 //! Hide an effect in an experiment, measure with noise, search.
 
-use inference::discovery::{Engine, Finding, Starts};
+use inference::discovery::{Engine, Finding, Settings};
 use inference::rng::Stream;
 use inference::{Datum, Likelihood, Sd};
 use shared::file::FileSet;
@@ -9,8 +9,6 @@ use crate::models::Models;
 
 /// Streams of this study, far from those of any sampler.
 const STAGE: u64 = 1 << 41;
-/// Starts of the base's fit.
-const STARTS: usize = 32;
 /// Vectors of the prior that the model may refuse in a row.
 const MOST_REFUSED: u64 = 1000;
 /// Noise of a channel, as a share of the root mean square of its noise-free values over the design.
@@ -110,7 +108,7 @@ pub(crate) fn search(models: &Models, likelihood: &Likelihood) -> Result<Finding
         &models.prior(),
         likelihood.clone(),
         models.candidates.clone(),
-        &Starts::Even(STARTS),
+        &Settings::default(),
     )
     .map_err(|e| e.to_string())?;
     loop {

@@ -1,6 +1,6 @@
 //! The search for the missing effect, on linear models whose evidence has a closed form.
 
-use inference::discovery::{Candidate, CandidateError, Engine, Finding, Method, Starts};
+use inference::discovery::{Candidate, CandidateError, Engine, Finding, Method, Settings};
 use inference::{Datum, Distribution, Likelihood, Marginal, Sd};
 use nalgebra::{DMatrix, DVector};
 
@@ -53,7 +53,13 @@ fn likelihood(values: &[f64]) -> Likelihood {
 
 /// Searches; the candidate k changes the predictions along column `columns[k]`.
 fn search(values: &[f64], candidates: &[Candidate], columns: &[usize], backwards: bool) -> Finding {
-    let mut engine = Engine::new(&base(), likelihood(values), candidates.to_vec(), &Starts::Even(8)).unwrap();
+    let mut engine = Engine::new(
+        &base(),
+        likelihood(values),
+        candidates.to_vec(),
+        &Settings::default(),
+    )
+    .unwrap();
     while engine.finding().is_none() {
         let pending: Vec<_> = engine.pending().collect();
         let mut order: Vec<usize> = (0..pending.len()).collect();
@@ -75,7 +81,7 @@ fn search(values: &[f64], candidates: &[Candidate], columns: &[usize], backwards
     engine.finding().unwrap().clone()
 }
 
-/// ln N(y; 0, SD^2 I + sum_k scale_k^2 c_k c_k'): the evidence of a linear model with normal priors.
+/// `ln N(y; 0, SD^2 I + sum_k scale_k^2 c_k c_k')`: the evidence of a linear model with normal priors.
 fn log_evidence(values: &[f64], columns: &[(usize, f64)]) -> f64 {
     let covariance = DMatrix::from_fn(DATA, DATA, |i, j| {
         let noise = if i == j { SD * SD } else { 0.0 };
@@ -108,6 +114,28 @@ fn evidence_of_a_linear_extension_is_exact() {
     near(judged.log_bayes_factor, expected);
     near(judged.screen_log_bayes_factor, expected);
     assert_eq!(judged.method, Method::Confirmed);
+}
+
+#[test]
+fn draws_agree_with_the_closed_form_where_two_effects_are_close() {
+    let values = measured(&[(0, 0.7), (2, 1.5)]);
+    let candidates = [
+        effect("square", half_normal(2.0)),
+        effect("likeness", half_normal(2.0)),
+    ];
+    let finding = search(&values, &candidates, &[2, 4], false);
+    for (k, column) in [(0, 2), (1, 4)] {
+        let expected = half_normal_evidence(&values, column, 2.0) - log_evidence(&values, &BASE);
+        let judged = finding.of(Some(k)).unwrap();
+        assert_eq!(judged.method, Method::Sampled);
+        // 100 effective draws of either model: a tenth each.
+        let missed = (judged.log_bayes_factor - expected).abs();
+        assert!(
+            missed < 0.3 && missed > 0.0,
+            "{} for {expected}",
+            judged.log_bayes_factor
+        );
+    }
 }
 
 /// The integral over a half-normal strength, by the trapezoidal rule.
@@ -209,7 +237,7 @@ fn a_candidate_that_the_model_always_refuses_is_named_and_not_judged() {
         effect("cube", normal(0.0, 1.0)),
     ];
     let values = measured(&[(0, 0.3)]);
-    let mut engine = Engine::new(&base(), likelihood(&values), candidates, &Starts::Even(8)).unwrap();
+    let mut engine = Engine::new(&base(), likelihood(&values), candidates, &Settings::default()).unwrap();
     while engine.finding().is_none() {
         for (index, request) in engine.pending().collect::<Vec<_>>().iter().enumerate() {
             let own = |i: usize| request.candidate.map_or(0.0, |_| request.theta[2] * column(2, i));
@@ -227,7 +255,13 @@ fn a_candidate_that_the_model_always_refuses_is_named_and_not_judged() {
 #[test]
 fn what_cannot_be_searched_for_is_refused_with_its_reason() {
     let begin = |candidates: Vec<Candidate>| {
-        Engine::new(&base(), likelihood(&measured(&[])), candidates, &Starts::Even(8)).map(drop)
+        Engine::new(
+            &base(),
+            likelihood(&measured(&[])),
+            candidates,
+            &Settings::default(),
+        )
+        .map(drop)
     };
     let mut broken = effect("square", normal(0.0, 1.0));
     broken.strength = 1;
@@ -249,6 +283,6 @@ fn what_cannot_be_searched_for_is_refused_with_its_reason() {
         sd: Sd::Inferred { parameter: 1 },
     };
     let unknown = Likelihood::new(vec![datum]).unwrap();
-    let refused = Engine::new(&base(), unknown, Vec::new(), &Starts::Even(8)).map(drop);
+    let refused = Engine::new(&base(), unknown, Vec::new(), &Settings::default()).map(drop);
     assert_eq!(refused, Err(CandidateError::InferredNoise { datum: 0 }));
 }

@@ -20,12 +20,12 @@ pub(super) fn classes(products: &DMatrix<f64>) -> Vec<usize> {
         products[(i, j)].abs() > ALIKE * lengths.sqrt()
     };
     let mut members: Vec<Vec<usize>> = Vec::new();
-    let mut class = vec![0; count];
+    let mut class = Vec::with_capacity(count);
     for i in 0..count {
         let own = members
             .iter()
             .position(|others| others.iter().all(|&j| alike(i, j)));
-        class[i] = own.unwrap_or(members.len());
+        class.push(own.unwrap_or(members.len()));
         match own {
             Some(k) => members[k].push(i),
             None => members.push(vec![i]),

@@ -7,29 +7,29 @@ use super::descent::{Descent, Step};
 pub(super) const COUNT: usize = 4;
 
 /// As thorough as the base's fit.
-pub(super) const PLAN: [Step; 1] = [Step::Rounds { most: 4, trials: 12 }];
+pub(super) const PLAN: [Step; 1] = [Step::Rounds { most: 3, trials: 12 }];
 
-/// Distances of the strength from its neutral value, in standard deviations of its prior.
-const STRENGTHS: [f64; 3] = [0.3, 1.0, 2.0];
+/// Distances of the strength from its neutral value, in standard deviations of its prior: weak, usual and strong.
+const ONE_SIDED: [f64; 3] = [0.3, 1.0, 2.0];
+const TWO_SIDED: [f64; 4] = [0.5, -0.5, 1.5, -1.5];
 
-/// Where the fits begin: at the base's fit, the effect weak, usual and strong, and of either sign where it may be.
+/// Where the fits begin: at the base's fit with the effect added.
 pub(super) fn starts(frame: &Frame, base: &Descent) -> Vec<Vec<f64>> {
-    let signs: &[f64] = if frame.is_one_sided() {
-        &[1.0]
+    let strengths: &[f64] = if frame.is_one_sided() {
+        &ONE_SIDED
     } else {
-        &[1.0, -1.0]
+        &TWO_SIDED
     };
-    let count = STRENGTHS.len() * signs.len();
     // The shapes go round their usual values, so that each start has another.
-    let start = |n: usize| {
+    let start = |(n, strength): (usize, &f64)| {
         let mut position = base.point.position.clone();
         position.resize(frame.dimension(), [0.0, 1.0, -1.0][n % 3]);
         if let Some(k) = frame.strength {
-            position[k] = frame.neutral + signs[n % signs.len()] * STRENGTHS[n / signs.len()];
+            position[k] = frame.neutral + strength;
         }
         position
     };
-    (0..count).map(start).collect()
+    strengths.iter().enumerate().map(start).collect()
 }
 
 /// The same fit, gone on with.

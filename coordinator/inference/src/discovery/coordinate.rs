@@ -136,6 +136,12 @@ impl Frame {
         )
     }
 
+    /// Whether a position is within what is looked at.
+    pub(super) fn holds(&self, position: &[f64]) -> bool {
+        let (lower, upper) = self.room(position);
+        lower.iter().all(|l| *l <= 0.0) && upper.iter().all(|u| *u >= 0.0)
+    }
+
     /// Which parameters lie within 2 % of a bound of their range, the strength: where the effect is absent.
     pub(super) fn at_bound(&self, position: &[f64]) -> Vec<bool> {
         let near = |(coordinate, &t): (&Coordinate, &f64)| {

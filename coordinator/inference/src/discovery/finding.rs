@@ -18,6 +18,8 @@ pub enum Method {
     Polished,
     /// Laplace at the best of fits from several starts.
     Confirmed,
+    /// Importance sampling around that fit.
+    Sampled,
 }
 
 /// What was found of one model: the base, or the base with an effect.

@@ -8,8 +8,8 @@ use super::descent::{Descent, Point, parabola};
 use super::evidence::log_evidence;
 use crate::likelihood::{Likelihood, Whitening};
 
-/// Steps of the strength that are tried, in standard deviations of its prior: the second where the model refuses the first.
-pub(super) const STRENGTHS: [f64; 2] = [1.0, 0.3];
+/// Steps of the strength that are tried, in standard deviations of its prior: each where the model refuses the one before.
+pub(super) const STRENGTHS: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
 /// Coordinates of the shape parameters that are tried.
 const SHAPES: [f64; 3] = [0.0, -1.0, 1.0];
 
