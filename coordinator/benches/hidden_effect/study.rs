@@ -44,6 +44,7 @@ pub(crate) fn experiment() -> FileSet {
 /// An experiment whose truth is known.
 pub(crate) struct Case {
     pub(crate) hidden: Option<usize>,
+    pub(crate) truth: Vec<f64>,
     /// With noise, and without.
     pub(crate) measured: Likelihood,
     pub(crate) noise_free: Likelihood,
@@ -95,6 +96,7 @@ pub(crate) fn draw(models: &Models, hidden: Option<usize>, seed: u64, number: u6
             hidden,
             measured: with(1.0)?,
             noise_free: with(0.0)?,
+            truth,
         });
     }
     Err(format!(

@@ -102,7 +102,7 @@ impl Fate {
             .collect();
         let own = finding.of(case.hidden);
         format!(
-            "{:<26} {} {:7.1} (screen {:7.1}, c{}) sep {:7.1} | {} | base chi2/2 {:.1} ev {} {}",
+            "{:<26} {} {:7.1} (screen {:7.1}, c{}) sep {:7.1} | {} | base {:.1} nats below the truth, evaluations {} {} | truth {} fit {} base {}",
             models.name(case.hidden),
             match (self.detected, self.class) {
                 (false, _) => "  -  ",
@@ -117,9 +117,17 @@ impl Fate {
             best.join(", "),
             case.perfect() - finding.judged[0].log_likelihood,
             self.to_name,
-            self.to_confirm
+            self.to_confirm,
+            list(&case.truth),
+            own.map_or(String::new(), |j| list(&j.theta)),
+            list(&finding.judged[0].theta)
         )
     }
+}
+
+fn list(theta: &[f64]) -> String {
+    let numbers: Vec<String> = theta.iter().map(|x| format!("{x:.4e}")).collect();
+    format!("[{}]", numbers.join(" "))
 }
 
 /// All experiments.

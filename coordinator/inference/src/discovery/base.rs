@@ -70,7 +70,7 @@ mod tests {
             let first = thetas.iter().filter(|x| inside(4.0 * x[0])).count();
             let second = thetas.iter().filter(|x| inside(x[1])).count();
             assert!(
-                (7..=9).contains(&first) && (7..=9).contains(&second),
+                (7..=10).contains(&first) && (7..=10).contains(&second),
                 "{first} {second}"
             );
         }

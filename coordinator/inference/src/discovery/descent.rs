@@ -10,8 +10,10 @@ use crate::likelihood::Likelihood;
 use crate::lm::Quadratic;
 use crate::log_likelihood::LogLikelihood;
 
-/// Step of a difference, in standard deviations of the prior: long enough for the noise of a model on a grid.
+/// Longest and shortest step of a difference, in standard deviations of the prior; between them it is as long as the coordinate is
+/// uncertain by what is known so far. Long steps survive the noise of a model on a grid, short ones follow a sharp valley.
 const DIFFERENCE: f64 = 0.15;
+const SHORT_DIFFERENCE: f64 = 0.03;
 /// A step that gains, or promises, less than this ends the trials [nats]: far below what a Bayes factor is read to.
 const LEAST_GAIN: f64 = 0.01;
 /// The damping after the first step without gain, and how dampings follow each other.
@@ -119,12 +121,11 @@ impl Descent {
             match step {
                 Step::Differences => {
                     let (_, upper) = self.frame.room(&self.point.position);
+                    let uncertainty = self.parabola(likelihood).uncertainty();
                     let offset = |k: usize| {
-                        if upper[k] >= DIFFERENCE {
-                            DIFFERENCE
-                        } else {
-                            -DIFFERENCE
-                        }
+                        let length = uncertainty[k].unwrap_or(DIFFERENCE);
+                        let length = length.clamp(SHORT_DIFFERENCE, DIFFERENCE);
+                        if upper[k] >= length { length } else { -length }
                     };
                     let wanted: Vec<(usize, f64)> =
                         (0..self.frame.dimension()).map(|k| (k, offset(k))).collect();
