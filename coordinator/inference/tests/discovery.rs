@@ -27,7 +27,15 @@ fn effect(name: &str, prior: Marginal) -> Candidate {
 /// How the predictions change with each parameter: two of the base, then an effect's.
 fn column(k: usize, i: usize) -> f64 {
     let x = i as f64 / 6.0 - 1.0;
-    [1.0, x, x * x, x * x * x, x * x + 0.05 * x * x * x, 1.0][k]
+    [
+        1.0,
+        x,
+        x * x,
+        x * x * x,
+        x * x + 0.05 * x * x * x,
+        1.0,
+        x * x + 0.5 * x * x * x,
+    ][k]
 }
 
 /// Two straight-line parameters with unit priors.
@@ -118,20 +126,20 @@ fn evidence_of_a_linear_extension_is_exact() {
 
 #[test]
 fn draws_agree_with_the_closed_form_where_two_effects_are_close() {
-    let values = measured(&[(0, 0.7), (2, 1.5)]);
+    let values = measured(&[(0, 0.7), (2, 0.8), (6, 0.8)]);
     let candidates = [
         effect("square", half_normal(2.0)),
-        effect("likeness", half_normal(2.0)),
+        effect("skewed square", half_normal(2.0)),
     ];
-    let finding = search(&values, &candidates, &[2, 4], false);
-    for (k, column) in [(0, 2), (1, 4)] {
+    let finding = search(&values, &candidates, &[2, 6], false);
+    for (k, column) in [(0, 2), (1, 6)] {
         let expected = half_normal_evidence(&values, column, 2.0) - log_evidence(&values, &BASE);
         let judged = finding.of(Some(k)).unwrap();
         assert_eq!(judged.method, Method::Sampled);
-        // 100 effective draws of either model: a tenth each.
+        // At least 60 effective draws of either model: 0.13 nats each.
         let missed = (judged.log_bayes_factor - expected).abs();
         assert!(
-            missed < 0.3 && missed > 0.0,
+            missed < 0.4 && missed > 0.0,
             "{} for {expected}",
             judged.log_bayes_factor
         );
