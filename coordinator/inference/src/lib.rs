@@ -14,10 +14,12 @@
 //! - [`point`]: what every search for the most probable parameters shares: axes, the result.
 //! - [`lm`]: the ask/tell fit of the most probable parameters.
 //! - [`search`]: the ask/tell search by generations; [`ga`], [`cma_es`]: how the next generation is made.
+//! - [`discovery`]: the ask/tell search for the effect that the model is missing.
 //! - [`diagnostics`]: summaries of draws: moments, quantiles, densities, bounds, effective sizes.
 
 pub mod cma_es;
 pub mod diagnostics;
+pub mod discovery;
 pub mod ga;
 pub mod likelihood;
 pub mod lm;

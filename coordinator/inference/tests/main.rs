@@ -6,6 +6,7 @@ mod answers;
 mod ask_tell;
 mod bevameter;
 mod diagnostics;
+mod discovery;
 mod flags;
 mod likelihood;
 mod lm;

@@ -258,7 +258,7 @@ impl Marginal {
     }
 
     /// The probabilities below and above x, each with its digits.
-    fn tails(&self, x: f64) -> [f64; 2] {
+    pub(crate) fn tails(&self, x: f64) -> [f64; 2] {
         if x <= self.lower {
             [0.0, 1.0]
         } else if x >= self.upper {

@@ -5,7 +5,7 @@ mod distribution;
 mod error;
 mod marginal;
 mod moments;
-mod normal;
+pub(crate) mod normal;
 
 pub use distribution::Distribution;
 pub use error::PriorError;

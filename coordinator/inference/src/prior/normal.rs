@@ -7,8 +7,17 @@ pub(crate) const LN_SQRT_TAU: f64 = 0.918_938_533_204_672_8;
 const NEWTON_STEPS: usize = 60;
 
 /// P(Z < z).
-pub(super) fn cdf(z: f64) -> f64 {
+pub(crate) fn cdf(z: f64) -> f64 {
     0.5 * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
+}
+
+/// ln P(Z < z); below -30 by the first term of Mills' ratio, wrong there by 1/z^2.
+pub(crate) fn log_cdf(z: f64) -> f64 {
+    if z > -30.0 {
+        libm::log(cdf(z))
+    } else {
+        -0.5 * z * z - LN_SQRT_TAU - libm::log(-z)
+    }
 }
 
 /// P(a < Z < b) without cancellation in the tails.
@@ -26,7 +35,7 @@ pub(super) fn mass(a: f64, b: f64) -> f64 {
 ///
 /// Newton on ln cdf, which is concave and increasing, from a start below the root (cdf(z) <= exp(-z^2/2)/2
 /// for z <= 0): the iterates rise to the root and never pass it.
-pub(super) fn lower_quantile(p: f64) -> f64 {
+pub(crate) fn lower_quantile(p: f64) -> f64 {
     let mut z = -(-2.0 * libm::log(2.0 * p)).max(0.0).sqrt();
     for _ in 0..NEWTON_STEPS {
         let below = cdf(z);

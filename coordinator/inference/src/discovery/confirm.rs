@@ -1,0 +1,43 @@
+//! Fit the most probable extensions from several starts, so that none hides behind a poor one.
+
+use super::coordinate::Frame;
+use super::descent::{Descent, Step};
+
+/// How many extensions are confirmed.
+pub(super) const COUNT: usize = 4;
+
+/// As thorough as the base's fit.
+pub(super) const PLAN: [Step; 1] = [Step::Rounds { most: 3, trials: 12 }];
+
+/// Distances of the strength from its neutral value, in standard deviations of its prior: weak, usual and strong.
+const ONE_SIDED: [f64; 3] = [0.3, 1.0, 2.0];
+const TWO_SIDED: [f64; 4] = [0.5, -0.5, 1.5, -1.5];
+
+/// Where the fits begin: at the base's fit with the effect added.
+pub(super) fn starts(frame: &Frame, base: &Descent) -> Vec<Vec<f64>> {
+    let strengths: &[f64] = if frame.is_one_sided() {
+        &ONE_SIDED
+    } else {
+        &TWO_SIDED
+    };
+    // The shapes go round their usual values, so that each start has another.
+    let start = |(n, strength): (usize, &f64)| {
+        let mut position = base.point.position.clone();
+        position.resize(frame.dimension(), [0.0, 1.0, -1.0][n % 3]);
+        if let Some(k) = frame.strength {
+            position[k] = frame.neutral + strength;
+        }
+        position
+    };
+    strengths.iter().enumerate().map(start).collect()
+}
+
+/// The same fit, gone on with.
+pub(super) fn descent(fitted: &Descent) -> Descent {
+    Descent::new(
+        fitted.frame.clone(),
+        fitted.point.clone(),
+        fitted.columns.clone(),
+        &PLAN,
+    )
+}

@@ -1,0 +1,190 @@
+//! Parameters as coordinates in which every prior is the standard normal, or its upper half.
+
+use crate::prior::{Marginal, normal};
+
+use super::candidate::Candidate;
+
+/// Nothing is looked for beyond so many standard deviations of the prior.
+const FARTHEST: f64 = 6.0;
+
+/// How a parameter becomes a coordinate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    /// Standard normal: `Phi(t) = P(X < x)`.
+    Both,
+    /// Half-normal, 0 at the lower end of the support: `2 Phi(t) - 1 = P(X < x)`.
+    Above,
+    /// Half-normal, 0 at the upper end.
+    Below,
+}
+
+/// One parameter.
+#[derive(Debug, Clone)]
+pub(super) struct Coordinate {
+    pub(super) marginal: Marginal,
+    side: Side,
+}
+
+/// The parameters of the base model and, behind them, those of one candidate.
+#[derive(Debug, Clone)]
+pub(super) struct Frame {
+    pub(super) coordinates: Vec<Coordinate>,
+    /// Where the strength stands.
+    pub(super) strength: Option<usize>,
+    /// The strength's coordinate at which the effect is absent.
+    pub(super) neutral: f64,
+}
+
+impl Coordinate {
+    fn whole(marginal: &Marginal) -> Self {
+        Self {
+            marginal: marginal.clone(),
+            side: Side::Both,
+        }
+    }
+
+    /// The coordinate of x.
+    pub(super) fn position(&self, x: f64) -> f64 {
+        let [below, above] = self.marginal.tails(x);
+        let t = match self.side {
+            Side::Both => self.marginal.normal_score(x),
+            Side::Above => -normal::lower_quantile((0.5 * above).max(f64::MIN_POSITIVE)),
+            Side::Below => -normal::lower_quantile((0.5 * below).max(f64::MIN_POSITIVE)),
+        };
+        t.max(self.lower()).min(FARTHEST)
+    }
+
+    /// x of a coordinate.
+    pub(super) fn value(&self, t: f64) -> f64 {
+        let p = match self.side {
+            Side::Both => normal::cdf(t),
+            Side::Above => 1.0 - 2.0 * normal::cdf(-t),
+            Side::Below => 2.0 * normal::cdf(-t),
+        };
+        self.marginal.quantile(p)
+    }
+
+    fn lower(&self) -> f64 {
+        match self.side {
+            Side::Both => -FARTHEST,
+            Side::Above | Side::Below => 0.0,
+        }
+    }
+
+    fn is_half(&self) -> bool {
+        self.side != Side::Both
+    }
+}
+
+impl Frame {
+    pub(super) fn base(prior: &[Marginal]) -> Self {
+        Self {
+            coordinates: prior.iter().map(Coordinate::whole).collect(),
+            strength: None,
+            neutral: 0.0,
+        }
+    }
+
+    /// The base's coordinates with those of a candidate behind them.
+    pub(super) fn with(&self, candidate: &Candidate) -> Self {
+        let mut coordinates = self.coordinates.clone();
+        let strength = coordinates.len() + candidate.strength;
+        coordinates.extend(candidate.parameters.iter().map(Coordinate::whole));
+        let own = &mut coordinates[strength];
+        let (lower, upper) = own.marginal.support();
+        let neutral = if candidate.neutral <= lower {
+            own.side = Side::Above;
+            0.0
+        } else if candidate.neutral >= upper {
+            own.side = Side::Below;
+            0.0
+        } else {
+            own.position(candidate.neutral)
+        };
+        Self {
+            coordinates,
+            strength: Some(strength),
+            neutral,
+        }
+    }
+
+    pub(super) fn dimension(&self) -> usize {
+        self.coordinates.len()
+    }
+
+    /// Whether the strength has one sign only.
+    pub(super) fn is_one_sided(&self) -> bool {
+        self.strength.is_some_and(|k| self.coordinates[k].is_half())
+    }
+
+    pub(super) fn theta(&self, position: &[f64]) -> Vec<f64> {
+        let pairs = self.coordinates.iter().zip(position);
+        pairs.map(|(coordinate, &t)| coordinate.value(t)).collect()
+    }
+
+    pub(super) fn position(&self, theta: &[f64]) -> Vec<f64> {
+        let pairs = self.coordinates.iter().zip(theta);
+        pairs.map(|(coordinate, &x)| coordinate.position(x)).collect()
+    }
+
+    /// How far each coordinate may move down and up.
+    pub(super) fn room(&self, position: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let pairs = || self.coordinates.iter().zip(position);
+        (
+            pairs().map(|(coordinate, t)| coordinate.lower() - t).collect(),
+            pairs().map(|(_, t)| FARTHEST - t).collect(),
+        )
+    }
+
+    /// Whether a position is within what is looked at.
+    pub(super) fn holds(&self, position: &[f64]) -> bool {
+        let (lower, upper) = self.room(position);
+        lower.iter().all(|l| *l <= 0.0) && upper.iter().all(|u| *u >= 0.0)
+    }
+
+    /// Which parameters lie within 2 % of a bound of their range, the strength: where the effect is absent.
+    pub(super) fn at_bound(&self, position: &[f64]) -> Vec<bool> {
+        let near = |(coordinate, &t): (&Coordinate, &f64)| {
+            let x = coordinate.value(t);
+            coordinate.marginal.at_bound(x, x) || (coordinate.is_half() && t <= 0.0)
+        };
+        self.coordinates.iter().zip(position).map(near).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::prior::Distribution;
+
+    #[test]
+    fn a_half_normal_strength_is_its_own_coordinate_in_units_of_its_scale() {
+        let half = Marginal::new(Distribution::HalfNormal { scale: 3.0 }, None).unwrap();
+        let effect = Candidate {
+            name: "e".into(),
+            parameters: vec![half],
+            strength: 0,
+            neutral: 0.0,
+        };
+        let frame = Frame::base(&[]).with(&effect);
+        for t in [0.0, 0.1, 1.0, 2.5, 5.0] {
+            let x = frame.theta(&[t])[0];
+            assert!((x - 3.0 * t).abs() < 1e-6, "{x} at {t}");
+            assert!((frame.position(&[x])[0] - t).abs() < 1e-6);
+        }
+        assert!(frame.is_one_sided() && effect.is_one_sided());
+    }
+
+    #[test]
+    fn a_strength_of_either_sign_is_absent_at_the_score_of_its_neutral_value() {
+        let normal = Marginal::new(Distribution::Normal { mean: 1.0, sd: 2.0 }, None).unwrap();
+        let effect = Candidate {
+            name: "e".into(),
+            parameters: vec![normal],
+            strength: 0,
+            neutral: 0.0,
+        };
+        let frame = Frame::base(&[]).with(&effect);
+        assert!((frame.neutral + 0.5).abs() < 1e-12 && !frame.is_one_sided());
+    }
+}

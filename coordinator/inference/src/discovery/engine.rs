@@ -1,0 +1,172 @@
+//! Hold the state of a search: list requests, take their predicted values, and say when it is over.
+
+use super::base;
+use super::candidate::{Candidate, CandidateError, Request};
+use super::coordinate::Frame;
+use super::descent::Descent;
+use super::finding::{Finding, Method, Spent};
+use super::fleet::Fleet;
+use super::importance::Importance;
+use super::screen::Screened;
+use super::settings::{Settings, Starts};
+use crate::likelihood::{Likelihood, Sd};
+use crate::prior::Marginal;
+use crate::round::{Failure, Progress, Proposal, Round, TellError};
+
+/// An ask/tell search for the missing effect.
+///
+/// Its state is a function of priors, likelihood, candidates, starts and the told values, whatever their order within a round.
+#[derive(Debug, Clone)]
+pub struct Engine {
+    pub(super) likelihood: Likelihood,
+    pub(super) candidates: Vec<Candidate>,
+    /// Of the base, then of each candidate.
+    pub(super) base_frame: Frame,
+    pub(super) frames: Vec<Frame>,
+    pub(super) round: Round<Option<Vec<f64>>>,
+    /// Whose each request of the round is, and where.
+    pub(super) asked: Vec<(Option<usize>, Vec<f64>)>,
+    pub(super) phase: Phase,
+    pub(super) seed: u64,
+    pub(super) base: Option<(Descent, f64)>,
+    pub(super) screened: Vec<Option<Screened>>,
+    pub(super) judgements: Vec<Option<Judgement>>,
+    pub(super) spent: Spent,
+    /// Evaluations of each candidate.
+    pub(super) own: Vec<usize>,
+}
+
+/// What is known of a candidate so far.
+#[derive(Debug, Clone)]
+pub(super) struct Judgement {
+    pub(super) log_bayes_factor: f64,
+    pub(super) method: Method,
+    pub(super) fitted: Option<Descent>,
+}
+
+#[derive(Debug, Clone)]
+pub(super) enum Phase {
+    Starts,
+    Base(Fleet),
+    /// Which of the screen's strengths is tried.
+    Screen(usize),
+    Extensions(Fleet),
+    Polish(Fleet),
+    ConfirmStarts,
+    Confirm(Fleet),
+    /// The models that are drawn from, and how many draws each waits for.
+    Sample(Vec<(Option<usize>, Importance)>, Vec<usize>),
+    Done(Box<Finding>),
+    Failed(Failure),
+}
+
+impl Engine {
+    /// A search whose first round holds the starts of the base's fit.
+    ///
+    /// # Arguments
+    /// - `prior`: of the base's parameters, independent. `likelihood`: the data, their noise known.
+    ///
+    /// # Errors
+    /// [`CandidateError`] names the candidate or the datum.
+    pub fn new(
+        prior: &[Marginal],
+        likelihood: Likelihood,
+        candidates: Vec<Candidate>,
+        settings: &Settings,
+    ) -> Result<Self, CandidateError> {
+        if prior.is_empty() {
+            return Err(CandidateError::NoBase);
+        }
+        let is_inferred = |sd: Sd| matches!(sd, Sd::Inferred { .. });
+        if let Some(datum) = likelihood.data().iter().position(|d| is_inferred(d.sd)) {
+            return Err(CandidateError::InferredNoise { datum });
+        }
+        candidates.iter().try_for_each(Candidate::check)?;
+        let base_frame = Frame::base(prior);
+        let frames: Vec<Frame> = candidates.iter().map(|c| base_frame.with(c)).collect();
+        let positions = match &settings.starts {
+            Starts::Draws(draws) => draws.iter().map(|theta| base_frame.position(theta)).collect(),
+            Starts::Even(count) => base::starts(&base_frame, *count),
+        };
+        let count = candidates.len();
+        let mut engine = Self {
+            likelihood,
+            candidates,
+            base_frame,
+            frames,
+            round: Round::default(),
+            asked: Vec::new(),
+            phase: Phase::Starts,
+            seed: settings.seed,
+            base: None,
+            screened: vec![None; count],
+            judgements: vec![None; count],
+            spent: Spent::default(),
+            own: vec![0; count],
+        };
+        engine.ask(positions.into_iter().map(|position| (None, position)).collect());
+        Ok(engine)
+    }
+
+    /// What is asked of the model in this round; its position here is its index.
+    pub fn pending(&self) -> impl Iterator<Item = Request> {
+        let pairs = self.asked.iter().zip(self.round.pending());
+        pairs.map(|((candidate, _), proposal)| Request {
+            candidate: *candidate,
+            theta: proposal.theta.clone(),
+        })
+    }
+
+    /// Takes the predicted values of a request; the last one of a round advances the search.
+    ///
+    /// # Arguments
+    /// - `values`: as [`Likelihood::log_likelihood`] takes them; `None` where the model refused.
+    ///
+    /// # Errors
+    /// [`TellError`]: told before, never asked for, not as many finite values as the likelihood takes. Nothing is changed then.
+    pub fn tell(&mut self, index: usize, values: Option<&[f64]>) -> Result<Progress, TellError> {
+        if let Some(values) = values {
+            let (expected, given) = (self.likelihood.values(), values.len());
+            if expected != given {
+                return Err(TellError::Length { expected, given });
+            }
+            self.likelihood.check_values(values)?;
+        }
+        let complete = self.round.tell(index, values.map(<[f64]>::to_vec))?;
+        if complete {
+            let (_, answers) = self.round.complete();
+            self.advance(answers);
+        }
+        Ok(match &self.phase {
+            Phase::Done(_) => Progress::Finished,
+            Phase::Failed(failure) => Progress::Failed(*failure),
+            _ if complete => Progress::NextRound,
+            _ => Progress::Waiting,
+        })
+    }
+
+    /// What was found; `None` while the search goes on, and where it failed.
+    #[must_use]
+    pub fn finding(&self) -> Option<&Finding> {
+        match &self.phase {
+            Phase::Done(finding) => Some(finding),
+            _ => None,
+        }
+    }
+
+    pub(super) fn frame(&self, candidate: Option<usize>) -> &Frame {
+        candidate.map_or(&self.base_frame, |k| &self.frames[k])
+    }
+
+    pub(super) fn ask(&mut self, asked: Vec<(Option<usize>, Vec<f64>)>) {
+        for candidate in asked.iter().filter_map(|(candidate, _)| *candidate) {
+            self.own[candidate] += 1;
+        }
+        let proposals = asked.iter().enumerate().map(|(index, (candidate, position))| {
+            Proposal::plain(index, self.frame(*candidate).theta(position))
+        });
+        let proposals = proposals.collect();
+        self.round.ask(proposals);
+        self.asked = asked;
+    }
+}

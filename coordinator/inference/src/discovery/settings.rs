@@ -1,0 +1,29 @@
+//! Hold the settings of a search.
+
+/// Where the fit of the base begins.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Starts {
+    /// At the best of these parameter vectors, say draws of a posterior.
+    Draws(Vec<Vec<f64>>),
+    /// At the best of so many that fill the prior evenly.
+    Even(usize),
+}
+
+/// Settings of a search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Where the fit of the base begins.
+    pub starts: Starts,
+    /// Seed of the draws.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    /// 32 starts that fill the prior, seed 1.
+    fn default() -> Self {
+        Self {
+            starts: Starts::Even(32),
+            seed: 1,
+        }
+    }
+}
