@@ -14,7 +14,7 @@ use crate::log_likelihood::LogLikelihood;
 /// uncertain by what is known so far. Long steps survive the noise of a model on a grid, short ones follow a sharp valley.
 const DIFFERENCE: f64 = 0.15;
 const SHORT_DIFFERENCE: f64 = 0.03;
-/// A step that gains, or promises, less than this ends the trials [nats]: far below what a Bayes factor is read to.
+/// A step that gains, or promises, less than this ends the trials `[nats]`: far below what a Bayes factor is read to.
 const LEAST_GAIN: f64 = 0.01;
 /// The damping after the first step without gain, and how dampings follow each other.
 const FIRST_DAMPING: f64 = 0.05;
