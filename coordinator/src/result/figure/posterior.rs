@@ -225,7 +225,7 @@ mod tests {
         let reference = BTreeMap::from([("k_c".to_owned(), 0.0), ("k_phi".to_owned(), 1e7)]);
         let range = [[-1e5, 1e5], [0.0, 1e8]];
         let line = stiffness_line(&outcome, PAPER[0], range, &reference).unwrap();
-        assert_eq!(line.label, "k* = 1e7 N/m^(n+2) at b = 25.0 mm");
+        assert_eq!(line.label, "k* = 1.00e7 N/m^(n+2) at b = 25.0 mm");
         // 1e7 - k_c / 0.025
         let expected = [[-1e5, 1.4e7], [1e5, 6e6]];
         for (point, expected) in line.points.iter().zip(expected) {
