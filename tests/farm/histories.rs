@@ -141,7 +141,7 @@ fn the_likeliest_parameters_of_a_rolling_wheel_leave_their_histories() {
     let pull = &histories[0];
     assert_eq!(
         (&pull["unit"], &pull["model"][0]["label"]),
-        (&"N".into(), &"MLE".into())
+        (&"N".into(), &"maximum likelihood".into())
     );
     let recorded = column(&recording(), "drawbar_pull_n");
     assert_eq!(numbers(&pull["measured"]["raw"]), recorded);
