@@ -76,7 +76,7 @@ impl Study {
     }
 
     /// A calibration whose best parameters are far less probable than what another one of the study found has missed them.
-    fn missed_modes(&self) -> Vec<Flag> {
+    pub(super) fn missed_modes(&self) -> Vec<Flag> {
         let best = |outcome: &Outcome| match &outcome.estimate {
             Some(estimate) => Some(estimate.log_likelihood + estimate.log_prior),
             None => {
