@@ -192,11 +192,8 @@ impl Calibration {
             h if Some(h) == self.holdout_hash.as_deref() => self.spec.holdout_variant.as_ref(),
             h => {
                 let of_stage = self.stage_variant.iter().map(|(_, variant)| variant);
-                let others = of_stage.chain(&self.histories);
-                others
-                    .filter(|(own, _)| own == h)
-                    .map(|(_, variant)| variant)
-                    .next()
+                let mut others = of_stage.chain(&self.histories);
+                others.find(|(own, _)| own == h).map(|(_, variant)| variant)
             }
         }
     }

@@ -43,7 +43,7 @@ pub struct Conflict {
 /// `diagnostics::conflict_is_rare_where_the_prior_is_right` and `diagnostics::a_prior_that_is_wrong_is_contradicted`.
 #[must_use]
 pub fn conflict(prior: &Prior, draws: &[&[f64]]) -> Option<Conflict> {
-    let scores: Vec<Vec<f64>> = draws
+    let mut scores: Vec<Vec<f64>> = draws
         .iter()
         .map(|theta| {
             let marginals = prior.marginals().iter().zip(*theta);
@@ -61,12 +61,11 @@ pub fn conflict(prior: &Prior, draws: &[&[f64]]) -> Option<Conflict> {
         .enumerate()
         .map(|(i, &m)| Some(two_sided(squared_z(m, covariance[(i, i)])?.sqrt())))
         .collect();
-    let independent: Vec<Vec<f64>> = draws
-        .iter()
-        .map(|theta| prior.independent_scores(theta))
-        .collect();
-    let (centre, _) = mean_and_covariance(&independent)?;
-    let informed: Vec<f64> = principal_directions(&independent)
+    scores
+        .iter_mut()
+        .for_each(|scores| prior.make_independent(scores));
+    let (centre, _) = mean_and_covariance(&scores)?;
+    let informed: Vec<f64> = principal_directions(&scores)
         .iter()
         .filter_map(|direction| {
             let along: f64 = direction.loadings.iter().zip(&centre).map(|(v, m)| v * m).sum();

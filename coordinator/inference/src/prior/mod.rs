@@ -120,16 +120,12 @@ impl Prior {
         }
     }
 
-    /// Numbers that the prior makes independent standard normal: the marginals' normal scores, of correlated parameters each
-    /// given those before it.
-    #[must_use]
-    pub(crate) fn independent_scores(&self, theta: &[f64]) -> Vec<f64> {
-        let marginals = self.marginals.iter().zip(theta);
-        let mut scores: Vec<f64> = marginals.map(|(m, &x)| m.normal_score(x)).collect();
+    /// Turns the marginals' normal scores into numbers that the prior makes independent: of correlated parameters, each given
+    /// those before it.
+    pub(crate) fn make_independent(&self, scores: &mut [f64]) {
         if let Some(correlation) = &self.correlation {
-            correlation.whiten(&mut scores);
+            correlation.whiten(scores);
         }
-        scores
     }
 
     /// Whether some parameters are correlated.
