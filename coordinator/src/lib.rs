@@ -9,6 +9,7 @@
 //! - [`store`]: the SQLite file; the only place that knows SQL.
 //! - [`service`]: store and farm together: submit, recover, control.
 //! - [`http`]: the REST interface; the only place that knows axum.
+//! - [`discovery`]: the search for a missing effect: candidates, and what is said in the end.
 //! - [`effect`]: the effects as users meet them: cards and signatures.
 //! - [`embedded`]: local workers in this process; the only place that knows the worker.
 //! - [`result`]: tables, summary, flags and report of a calibration, from what the store kept.
@@ -18,6 +19,7 @@
 pub mod calibration;
 pub mod command;
 pub mod config;
+pub mod discovery;
 pub mod effect;
 pub mod embedded;
 pub mod fact;
