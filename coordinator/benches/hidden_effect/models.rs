@@ -81,7 +81,7 @@ impl Models {
             models.candidates.push(Candidate {
                 name: effect.name.clone(),
                 parameters: free.iter().map(|p| p.marginal.clone()).collect(),
-                strength,
+                strengths: vec![strength],
                 neutral,
             });
             models.extended.push(model);

@@ -19,7 +19,7 @@ fn effect(name: &str, prior: Marginal) -> Candidate {
     Candidate {
         name: name.into(),
         parameters: vec![prior],
-        strength: 0,
+        strengths: vec![0],
         neutral: 0.0,
     }
 }
@@ -272,25 +272,15 @@ fn what_cannot_be_searched_for_is_refused_with_its_reason() {
         .map(drop)
     };
     let mut broken = effect("square", normal(0.0, 1.0));
-    broken.strength = 1;
+    broken.strengths = vec![1];
     assert!(matches!(
         begin(vec![broken.clone()]),
         Err(CandidateError::NoStrength {
-            strength: 1,
             parameters: 1,
             ..
         })
     ));
-    broken.strength = 0;
+    broken.strengths = vec![0];
     broken.neutral = f64::NAN;
     assert!(matches!(begin(vec![broken]), Err(CandidateError::Neutral { .. })));
-    let datum = Datum {
-        run: 0,
-        channel: 0,
-        value: 1.0,
-        sd: Sd::Inferred { parameter: 1 },
-    };
-    let unknown = Likelihood::new(vec![datum]).unwrap();
-    let refused = Engine::new(&base(), unknown, Vec::new(), &Settings::default()).map(drop);
-    assert_eq!(refused, Err(CandidateError::InferredNoise { datum: 0 }));
 }

@@ -9,28 +9,22 @@ pub struct Candidate {
     pub name: String,
     /// The priors of its parameters, in the order in which they follow the base's in theta.
     pub parameters: Vec<Marginal>,
-    /// Which of them is the strength; the others shape the effect.
-    pub strength: usize,
-    /// The strength at which the effect is absent.
+    /// Which of them are strengths; the others shape the effect. Several are the knots of a curve.
+    pub strengths: Vec<usize>,
+    /// The value of every strength at which the effect is absent.
     pub neutral: f64,
 }
 
 impl Candidate {
-    /// Whether the neutral strength is an end of the prior's support.
-    #[must_use]
-    pub fn is_one_sided(&self) -> bool {
-        let (lower, upper) = self.parameters[self.strength].support();
-        self.neutral <= lower || self.neutral >= upper
-    }
-
     /// What is wrong with it, if anything is.
     pub(super) fn check(&self) -> Result<(), CandidateError> {
         let name = || self.name.clone();
-        if self.strength >= self.parameters.len() {
+        let parameters = self.parameters.len();
+        if self.strengths.is_empty() || self.strengths.iter().any(|k| *k >= parameters) {
             return Err(CandidateError::NoStrength {
                 name: name(),
-                strength: self.strength,
-                parameters: self.parameters.len(),
+                strengths: self.strengths.clone(),
+                parameters,
             });
         }
         if !self.neutral.is_finite() {
@@ -46,13 +40,13 @@ impl Candidate {
 /// A candidate that cannot be looked for.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CandidateError {
-    /// The strength is none of its parameters.
-    #[error("candidate {name}: strength is parameter {strength} of {parameters}")]
+    /// It has no strength, or one that is none of its parameters.
+    #[error("candidate {name}: strengths are parameters {strengths:?} of {parameters}")]
     NoStrength {
         /// The candidate.
         name: String,
-        /// Index of the strength.
-        strength: usize,
+        /// Indices of the strengths.
+        strengths: Vec<usize>,
         /// Number of its parameters.
         parameters: usize,
     },
@@ -67,12 +61,6 @@ pub enum CandidateError {
     /// There is no parameter to fit.
     #[error("the base model has no free parameter")]
     NoBase,
-    /// Noise that is to be inferred moves with every model; this version compares models at known noise.
-    #[error("datum {datum} has a noise sd that is to be inferred; discovery needs known ones")]
-    InferredNoise {
-        /// Index of the datum.
-        datum: usize,
-    },
 }
 
 /// A parameter vector at which the model is to be asked.

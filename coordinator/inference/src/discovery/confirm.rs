@@ -24,8 +24,8 @@ pub(super) fn starts(frame: &Frame, base: &Descent) -> Vec<Vec<f64>> {
     let start = |(n, strength): (usize, &f64)| {
         let mut position = base.point.position.clone();
         position.resize(frame.dimension(), [0.0, 1.0, -1.0][n % 3]);
-        if let Some(k) = frame.strength {
-            position[k] = frame.neutral + strength;
+        for &(k, neutral) in &frame.strengths {
+            position[k] = neutral + strength;
         }
         position
     };

@@ -29,10 +29,8 @@ pub(super) struct Coordinate {
 #[derive(Debug, Clone)]
 pub(super) struct Frame {
     pub(super) coordinates: Vec<Coordinate>,
-    /// Where the strength stands.
-    pub(super) strength: Option<usize>,
-    /// The strength's coordinate at which the effect is absent.
-    pub(super) neutral: f64,
+    /// Where the strengths of the last candidate stand, and their coordinates at which it is absent.
+    pub(super) strengths: Vec<(usize, f64)>,
 }
 
 impl Coordinate {
@@ -80,32 +78,59 @@ impl Frame {
     pub(super) fn base(prior: &[Marginal]) -> Self {
         Self {
             coordinates: prior.iter().map(Coordinate::whole).collect(),
-            strength: None,
-            neutral: 0.0,
+            strengths: Vec::new(),
         }
     }
 
     /// The base's coordinates with those of a candidate behind them.
     pub(super) fn with(&self, candidate: &Candidate) -> Self {
         let mut coordinates = self.coordinates.clone();
-        let strength = coordinates.len() + candidate.strength;
+        let first = coordinates.len();
         coordinates.extend(candidate.parameters.iter().map(Coordinate::whole));
-        let own = &mut coordinates[strength];
-        let (lower, upper) = own.marginal.support();
-        let neutral = if candidate.neutral <= lower {
-            own.side = Side::Above;
-            0.0
-        } else if candidate.neutral >= upper {
-            own.side = Side::Below;
-            0.0
-        } else {
-            own.position(candidate.neutral)
+        let mut neutral = |strength: &usize| {
+            let own = &mut coordinates[first + strength];
+            let (lower, upper) = own.marginal.support();
+            let absent = if candidate.neutral <= lower {
+                own.side = Side::Above;
+                0.0
+            } else if candidate.neutral >= upper {
+                own.side = Side::Below;
+                0.0
+            } else {
+                own.position(candidate.neutral)
+            };
+            (first + strength, absent)
         };
+        let strengths = candidate.strengths.iter().map(&mut neutral).collect();
         Self {
             coordinates,
-            strength: Some(strength),
-            neutral,
+            strengths,
         }
+    }
+
+    /// The strength of a candidate that has one.
+    pub(super) fn strength(&self) -> Option<(usize, f64)> {
+        match self.strengths.as_slice() {
+            [only] => Some(*only),
+            _ => None,
+        }
+    }
+
+    /// The coordinates that have one sign only.
+    pub(super) fn halves(&self) -> Vec<usize> {
+        let all = self.coordinates.iter().enumerate();
+        all.filter(|(_, coordinate)| coordinate.is_half())
+            .map(|(k, _)| k)
+            .collect()
+    }
+
+    /// A position with the last candidate absent.
+    pub(super) fn without(&self, position: &[f64]) -> Vec<f64> {
+        let mut absent = position.to_vec();
+        for &(k, neutral) in &self.strengths {
+            absent[k] = neutral;
+        }
+        absent
     }
 
     pub(super) fn dimension(&self) -> usize {
@@ -114,7 +139,7 @@ impl Frame {
 
     /// Whether the strength has one sign only.
     pub(super) fn is_one_sided(&self) -> bool {
-        self.strength.is_some_and(|k| self.coordinates[k].is_half())
+        self.strength().is_some_and(|(k, _)| self.coordinates[k].is_half())
     }
 
     pub(super) fn theta(&self, position: &[f64]) -> Vec<f64> {
@@ -163,7 +188,7 @@ mod tests {
         let effect = Candidate {
             name: "e".into(),
             parameters: vec![half],
-            strength: 0,
+            strengths: vec![0],
             neutral: 0.0,
         };
         let frame = Frame::base(&[]).with(&effect);
@@ -172,7 +197,7 @@ mod tests {
             assert!((x - 3.0 * t).abs() < 1e-6, "{x} at {t}");
             assert!((frame.position(&[x])[0] - t).abs() < 1e-6);
         }
-        assert!(frame.is_one_sided() && effect.is_one_sided());
+        assert!(frame.is_one_sided() && frame.halves() == [0]);
     }
 
     #[test]
@@ -181,10 +206,11 @@ mod tests {
         let effect = Candidate {
             name: "e".into(),
             parameters: vec![normal],
-            strength: 0,
+            strengths: vec![0],
             neutral: 0.0,
         };
         let frame = Frame::base(&[]).with(&effect);
-        assert!((frame.neutral + 0.5).abs() < 1e-12 && !frame.is_one_sided());
+        let (_, neutral) = frame.strength().unwrap();
+        assert!((neutral + 0.5).abs() < 1e-12 && !frame.is_one_sided());
     }
 }

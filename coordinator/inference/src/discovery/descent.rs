@@ -6,6 +6,7 @@ use nalgebra::DMatrix;
 
 use super::coordinate::Frame;
 use super::evidence::log_evidence;
+use super::noise;
 use crate::likelihood::Likelihood;
 use crate::lm::Quadratic;
 use crate::log_likelihood::LogLikelihood;
@@ -127,8 +128,13 @@ impl Descent {
                         let length = length.clamp(SHORT_DIFFERENCE, DIFFERENCE);
                         if upper[k] >= length { length } else { -length }
                     };
-                    let wanted: Vec<(usize, f64)> =
-                        (0..self.frame.dimension()).map(|k| (k, offset(k))).collect();
+                    // Noise changes no prediction.
+                    let noise = noise::coordinates(likelihood);
+                    let is_noise = |k: usize| noise.iter().any(|(own, _)| *own == k);
+                    let wanted: Vec<(usize, f64)> = (0..self.frame.dimension())
+                        .filter(|k| !is_noise(*k))
+                        .map(|k| (k, offset(k)))
+                        .collect();
                     let positions = self.offset(&wanted);
                     self.asked = Asked::Differences(wanted, false);
                     return positions;
@@ -280,8 +286,7 @@ impl Descent {
 
     /// ln evidence by the parabola at the point; `None` where it has no least.
     pub(super) fn log_evidence(&self, likelihood: &Likelihood) -> Option<f64> {
-        let half = self.frame.strength.filter(|_| self.frame.is_one_sided());
-        log_evidence(&self.parabola(likelihood), self.point.value, half)
+        log_evidence(&self.parabola(likelihood), self.point.value, &self.frame.halves())
     }
 }
 
@@ -305,6 +310,7 @@ pub(super) fn parabola(
             }
         }
     }
+    noise::add(frame, likelihood, point, &mut gradient, &mut hessian);
     let (lower, upper) = frame.room(&point.position);
     Quadratic {
         gradient,

@@ -9,7 +9,7 @@ use super::fleet::Fleet;
 use super::importance::Importance;
 use super::screen::Screened;
 use super::settings::{Settings, Starts};
-use crate::likelihood::{Likelihood, Sd};
+use crate::likelihood::Likelihood;
 use crate::prior::Marginal;
 use crate::round::{Failure, Progress, Proposal, Round, TellError};
 
@@ -28,6 +28,8 @@ pub struct Engine {
     pub(super) asked: Vec<(Option<usize>, Vec<f64>)>,
     pub(super) phase: Phase,
     pub(super) seed: u64,
+    /// How many candidates are fitted: all, or the first of the screen where the search is a quick one.
+    pub(super) most_extended: usize,
     pub(super) base: Option<(Descent, f64)>,
     pub(super) screened: Vec<Option<Screened>>,
     pub(super) judgements: Vec<Option<Judgement>>,
@@ -35,6 +37,9 @@ pub struct Engine {
     /// Evaluations of each candidate.
     pub(super) own: Vec<usize>,
 }
+
+/// How many candidates a quick search fits.
+pub(super) const QUICK: usize = 6;
 
 /// What is known of a candidate so far.
 #[derive(Debug, Clone)]
@@ -64,7 +69,7 @@ impl Engine {
     /// A search whose first round holds the starts of the base's fit.
     ///
     /// # Arguments
-    /// - `prior`: of the base's parameters, independent. `likelihood`: the data, their noise known.
+    /// - `prior`: of the base's parameters, independent; noise sds that are inferred among them. `likelihood`: the data.
     ///
     /// # Errors
     /// [`CandidateError`] names the candidate or the datum.
@@ -77,35 +82,64 @@ impl Engine {
         if prior.is_empty() {
             return Err(CandidateError::NoBase);
         }
-        let is_inferred = |sd: Sd| matches!(sd, Sd::Inferred { .. });
-        if let Some(datum) = likelihood.data().iter().position(|d| is_inferred(d.sd)) {
-            return Err(CandidateError::InferredNoise { datum });
-        }
         candidates.iter().try_for_each(Candidate::check)?;
-        let base_frame = Frame::base(prior);
-        let frames: Vec<Frame> = candidates.iter().map(|c| base_frame.with(c)).collect();
+        let mut engine = Self::unasked(Frame::base(prior), likelihood, candidates, settings.seed);
         let positions = match &settings.starts {
-            Starts::Draws(draws) => draws.iter().map(|theta| base_frame.position(theta)).collect(),
-            Starts::Even(count) => base::starts(&base_frame, *count),
+            Starts::Draws(draws) => draws
+                .iter()
+                .map(|theta| engine.base_frame.position(theta))
+                .collect(),
+            Starts::Even(count) => base::starts(&engine.base_frame, *count),
         };
+        engine.ask(positions.into_iter().map(|position| (None, position)).collect());
+        Ok(engine)
+    }
+
+    /// A quick search beyond a model that is fitted already: the most promising of the screen are fitted and polished, nothing is
+    /// confirmed. Without candidates it is done at once.
+    pub(super) fn beyond(
+        fitted: Descent,
+        log_evidence: f64,
+        likelihood: Likelihood,
+        candidates: Vec<Candidate>,
+        seed: u64,
+    ) -> Self {
         let count = candidates.len();
-        let mut engine = Self {
+        let mut engine = Self::unasked(fitted.frame.clone(), likelihood, candidates, seed);
+        engine.most_extended = QUICK;
+        engine.base = Some((fitted, log_evidence));
+        engine.screen(0, (0..count).collect());
+        engine
+    }
+
+    fn unasked(base_frame: Frame, likelihood: Likelihood, candidates: Vec<Candidate>, seed: u64) -> Self {
+        let count = candidates.len();
+        Self {
             likelihood,
+            frames: candidates.iter().map(|c| base_frame.with(c)).collect(),
             candidates,
             base_frame,
-            frames,
             round: Round::default(),
             asked: Vec::new(),
             phase: Phase::Starts,
-            seed: settings.seed,
+            seed,
+            most_extended: usize::MAX,
             base: None,
             screened: vec![None; count],
             judgements: vec![None; count],
             spent: Spent::default(),
             own: vec![0; count],
-        };
-        engine.ask(positions.into_iter().map(|position| (None, position)).collect());
-        Ok(engine)
+        }
+    }
+
+    /// The fit of the base and its log-evidence, once there is one.
+    pub(super) fn base_fit(&self) -> Option<(&Descent, f64)> {
+        self.base.as_ref().map(|(descent, evidence)| (descent, *evidence))
+    }
+
+    /// The best fit of a candidate so far.
+    pub(super) fn fit_of(&self, candidate: usize) -> Option<&Descent> {
+        self.judgements[candidate].as_ref()?.fitted.as_ref()
     }
 
     /// What is asked of the model in this round; its position here is its index.
@@ -143,6 +177,15 @@ impl Engine {
             _ if complete => Progress::NextRound,
             _ => Progress::Waiting,
         })
+    }
+
+    /// Why the search failed, if it did.
+    #[must_use]
+    pub fn failure(&self) -> Option<Failure> {
+        match self.phase {
+            Phase::Failed(failure) => Some(failure),
+            _ => None,
+        }
     }
 
     /// What was found; `None` while the search goes on, and where it failed.

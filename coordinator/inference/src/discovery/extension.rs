@@ -15,19 +15,18 @@ pub(super) fn descent(
     screened: &Screened,
     likelihood: &Likelihood,
 ) -> Option<Descent> {
-    let strength = frame.strength?;
-    let mut position = screened.point.position.clone();
-    position[strength] = frame.neutral;
+    let position = frame.without(&screened.point.position);
     let absent = Point::new(frame, likelihood, position, base.point.values.clone())?;
     let is_present = screened.point.value < absent.value;
     let mut columns = base.columns.clone();
     columns.extend_from_slice(&screened.columns[base.columns.len()..]);
     if !is_present {
-        for column in &mut columns[base.columns.len()..] {
-            column.fill(0.0);
+        // Where an effect is absent its shape changes nothing.
+        let is_strength = |k: usize| frame.strengths.iter().any(|(strength, _)| *strength == k);
+        for k in (base.columns.len()..columns.len()).filter(|k| !is_strength(*k)) {
+            columns[k].fill(0.0);
         }
     }
-    columns[strength].clone_from(&screened.change);
     let point = if is_present {
         screened.point.clone()
     } else {

@@ -80,12 +80,9 @@ impl Importance {
     /// The evidence is the mean of prior times likelihood over the density of the t, draws outside the support among them.
     pub(super) fn tell(&mut self, likelihood: &Likelihood, answers: Vec<Option<Vec<f64>>>) {
         self.round += 1;
-        let half = if self.frame.is_one_sided() {
-            libm::log(2.0)
-        } else {
-            0.0
-        };
-        let constant = half - self.mean.len() as f64 * LN_SQRT_TAU - libm::log(DRAWS as f64);
+        // The prior of a half-normal coordinate is twice the normal one.
+        let halves = libm::log(2.0) * self.frame.halves().len() as f64;
+        let constant = halves - self.mean.len() as f64 * LN_SQRT_TAU - libm::log(DRAWS as f64);
         let drawn = std::mem::take(&mut self.drawn);
         let weighted: Vec<(Vec<f64>, f64)> = drawn
             .into_iter()

@@ -19,6 +19,7 @@
 //! - `settings`. `engine`: the state of a search; `rounds`: what each leads to; `verdict`: what is kept and what is said.
 
 mod base;
+mod block;
 mod candidate;
 mod classes;
 mod confirm;
@@ -30,6 +31,8 @@ mod extension;
 mod finding;
 mod fleet;
 mod importance;
+pub mod inquiry;
+mod noise;
 mod polish;
 mod rounds;
 mod screen;

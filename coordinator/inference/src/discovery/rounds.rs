@@ -76,12 +76,12 @@ impl Engine {
         self.screen(0, (0..self.candidates.len()).collect());
     }
 
-    fn screen(&mut self, level: usize, wanted: Vec<usize>) {
+    pub(super) fn screen(&mut self, level: usize, wanted: Vec<usize>) {
         let Some((base, _)) = &self.base else { return };
         let mut asked = Vec::new();
         for k in wanted {
             let frame = &self.frames[k];
-            let at = screen::positions(frame, &base.point.position, &self.candidates[k], STRENGTHS[level]);
+            let at = screen::positions(frame, &base.point.position, STRENGTHS[level]);
             asked.extend(at.into_iter().map(|position| (Some(k), position)));
         }
         if asked.is_empty() {
@@ -129,7 +129,7 @@ impl Engine {
 
     fn extend(&mut self) {
         let Some((base, _)) = &self.base else { return };
-        let descents = (0..self.candidates.len()).filter_map(|k| {
+        let descents = self.best(self.most_extended).into_iter().filter_map(|k| {
             let screened = self.screened[k].as_ref()?;
             let descent = extension::descent(&self.frames[k], base, screened, &self.likelihood)?;
             Some((Some(k), descent))
@@ -158,6 +158,9 @@ impl Engine {
         };
         self.spent.polish += fleet.evaluations();
         self.take(fleet, Method::Polished);
+        if self.most_extended < usize::MAX {
+            return self.finish();
+        }
         let Some((base, _)) = &self.base else { return };
         let mut asked = Vec::new();
         for k in self.best(confirm::COUNT) {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::candidate::Candidate;
+use super::block;
 use super::coordinate::Frame;
 use super::descent::{Descent, Point, parabola};
 use super::evidence::log_evidence;
@@ -54,9 +54,12 @@ impl Absorbed {
     }
 }
 
-/// Where a candidate is asked, at every shape that is tried.
-pub(super) fn positions(frame: &Frame, base: &[f64], candidate: &Candidate, strength: f64) -> Vec<Vec<f64>> {
-    let shapes = if candidate.parameters.len() > 1 {
+/// Where a candidate is asked: at every shape that is tried, or along each of its strengths.
+pub(super) fn positions(frame: &Frame, base: &[f64], strength: f64) -> Vec<Vec<f64>> {
+    let Some((k, neutral)) = frame.strength() else {
+        return block::positions(frame, base, strength);
+    };
+    let shapes = if frame.dimension() > base.len() + 1 {
         &SHAPES[..]
     } else {
         &SHAPES[..1]
@@ -64,9 +67,7 @@ pub(super) fn positions(frame: &Frame, base: &[f64], candidate: &Candidate, stre
     let at = |&shape: &f64| {
         let mut position = base.to_vec();
         position.resize(frame.dimension(), shape);
-        if let Some(k) = frame.strength {
-            position[k] = frame.neutral + strength;
-        }
+        position[k] = neutral + strength;
         position
     };
     shapes.iter().map(at).collect()
@@ -75,10 +76,11 @@ pub(super) fn positions(frame: &Frame, base: &[f64], candidate: &Candidate, stre
 /// What the screen found of one candidate.
 #[derive(Debug, Clone)]
 pub(super) struct Screened {
-    /// At the best shape: the effect's point and the change of the predictions per unit of the strength's coordinate.
+    /// At the best shape: the effect's point and the change of the predictions per unit of the strength's coordinate. Of several
+    /// strengths: the point where they are absent, and the change that the linear solution makes.
     pub(super) point: Point,
     pub(super) change: Vec<f64>,
-    /// Changes along the shape coordinates at that point, in the order of the frame; zeros for all others.
+    /// Changes along the candidate's own coordinates there, in the order of the frame; zeros for all others.
     pub(super) columns: Vec<Vec<f64>>,
     /// Mean over the shapes.
     pub(super) log_bayes_factor: f64,
@@ -96,18 +98,19 @@ pub(super) fn judge(
     likelihood: &Likelihood,
     evaluated: &[(Vec<f64>, Option<Vec<f64>>)],
 ) -> Option<Screened> {
-    let strength = frame.strength?;
-    let half = frame.is_one_sided().then_some(strength);
+    let Some((strength, neutral)) = frame.strength() else {
+        return block::judge(frame, base, base_evidence, likelihood, evaluated);
+    };
+    let halves = frame.halves();
     let nodes = evaluated.iter().filter_map(|(position, values)| {
         let values = values.clone()?;
-        let step = position[strength] - frame.neutral;
+        let step = position[strength] - neutral;
         let pairs = values.iter().zip(&base.point.values);
         let change: Vec<f64> = pairs.map(|(with, without)| (with - without) / step).collect();
         let mut columns = base.columns.clone();
         columns.resize(frame.dimension(), vec![0.0; values.len()]);
         columns[strength].clone_from(&change);
-        let mut absent = position.clone();
-        absent[strength] = frame.neutral;
+        let absent = frame.without(position);
         let absent = Point::new(frame, likelihood, absent, base.point.values.clone())?;
         // The shape's own prior is no part of a factor at one shape.
         let mut parabola = parabola(frame, likelihood, &absent, &columns);
@@ -116,7 +119,7 @@ pub(super) fn judge(
             value -= 0.5 * position[k] * position[k];
             parabola.gradient[k] = 0.0;
         }
-        let factor = log_evidence(&parabola, value, half)? - base_evidence;
+        let factor = log_evidence(&parabola, value, &halves)? - base_evidence;
         let point = Point::new(frame, likelihood, position.clone(), values)?;
         Some((factor, point, change))
     });
@@ -145,6 +148,7 @@ pub(super) fn judge(
             columns[k] = pairs.map(|(x, m)| (x - m) / (t(other) - t(best))).collect();
         }
     }
+    columns[strength].clone_from(&best.2);
     Some(Screened {
         point: best.1.clone(),
         change: best.2.clone(),

@@ -74,6 +74,11 @@ impl Likelihood {
 }
 
 impl Whitening {
+    /// The sum of the squared residuals.
+    pub(crate) fn squared_residuals(&self) -> f64 {
+        self.residuals.iter().map(|r| r * r).sum()
+    }
+
     fn push(&mut self, residuals: &[f64], squared_distance: f64, law: ErrorLaw, probability: f64) {
         let [slope, curvature] = law.weights(residuals.len(), squared_distance);
         self.residuals.extend(residuals);
