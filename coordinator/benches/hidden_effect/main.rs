@@ -5,6 +5,7 @@
 //! `tests/data`.
 
 mod models;
+mod pipeline;
 mod study;
 mod tally;
 
@@ -90,26 +91,53 @@ fn synthetic() -> Result<(), String> {
             toml: read("experiment.toml")?,
             files: [("runs.csv".to_owned(), read("runs.csv")?)].into(),
         };
-        let models = Models::new(&read("job.toml")?, &experiment)?;
-        let finding = study::search(&models, &models.base.spec.likelihood)?;
-        let data = models.base.spec.likelihood.data();
-        let measured: Vec<f64> = data.iter().map(|d| d.value).collect();
-        let perfect = models.base.spec.likelihood.log_likelihood(&measured, &[]);
-        let perfect = perfect.map_err(|e| e.to_string())?.value();
-        println!("\n{name}: {} data, {:?}", data.len(), finding.spent);
-        for judged in finding.ranked().into_iter().take(5) {
+        let job = FileSet {
+            toml: read("job.toml")?,
+            files: Default::default(),
+        };
+        let begin = std::time::Instant::now();
+        let made = coordinator::discovery::Models::new(&job, &experiment, 3).map_err(|e| e.to_string())?;
+        println!("models {:?}", begin.elapsed());
+        drop(made);
+        let (models, answer) = pipeline::inquire(&job, &experiment)?;
+        println!("\n{name}: {:?} {:?}", answer.verdict, begin.elapsed());
+        println!(
+            "  {:?} {:?} to name {} all {}",
+            answer.chi_square.map(|c| (c.value, c.p())),
+            answer.chi_square_best.map(|c| (c.value, c.p())),
+            answer.evaluations_to_name,
+            answer.evaluations
+        );
+        let mut judged = answer.judged.clone();
+        judged.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        let name_of =
+            |k: Option<usize>| k.map_or("none".to_owned(), |k| models.task().candidates()[k].name.clone());
+        for j in judged.iter().take(6) {
             println!(
-                "  {:<28} ln BF {:8.2}  P {:.3}  class {:2} ({:.3})  chi2 {:6.1}  {:?}",
-                models.name(judged.candidate),
-                judged.log_bayes_factor,
-                judged.probability,
-                judged.class,
-                finding.of_class(judged.class),
-                2.0 * (perfect - judged.log_likelihood),
-                judged.method
+                "  {:<28} ln BF {:8.2} P {:.3} class {} {:?} {:?}",
+                name_of(j.candidate),
+                j.log_bayes_factor,
+                j.probability,
+                j.class,
+                j.method,
+                j.parameters
             );
         }
-        println!("  {:<28} P {:.3}", "none", finding.of_class(0));
+        println!(
+            "  not in library {:?}; best set {:?}",
+            answer.not_in_library,
+            answer
+                .best_set
+                .iter()
+                .map(|k| name_of(Some(*k)))
+                .collect::<Vec<_>>()
+        );
+        if let Some(o) = &answer.outside {
+            println!("  outside {} {:?}", name_of(Some(o.candidate)), o);
+        }
+        for n in &answer.next_runs {
+            println!("  next {:?}", n);
+        }
     }
     Ok(())
 }

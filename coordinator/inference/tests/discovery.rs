@@ -275,10 +275,7 @@ fn what_cannot_be_searched_for_is_refused_with_its_reason() {
     broken.strengths = vec![1];
     assert!(matches!(
         begin(vec![broken.clone()]),
-        Err(CandidateError::NoStrength {
-            parameters: 1,
-            ..
-        })
+        Err(CandidateError::NoStrength { parameters: 1, .. })
     ));
     broken.strengths = vec![0];
     broken.neutral = f64::NAN;

@@ -2,6 +2,7 @@
 
 mod bevameter;
 mod errors;
+mod extended_job;
 mod job_file;
 mod method;
 mod noise;
@@ -9,6 +10,7 @@ mod point_job;
 mod posterior;
 mod predicted;
 mod priors;
+mod reduced_job;
 mod sampler_keys;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,13 +25,15 @@ use shared::predicted::Predicted;
 
 pub use bevameter::{Bevameter, PLATE, RING, Reading};
 pub use errors::LikelihoodSettings;
+pub use extended_job::extended_job;
 pub use job_file::Job;
 pub use method::{Method, MethodError};
 pub(crate) use noise::repeat_scatter;
 pub use point_job::point_job;
 pub use posterior::{ImpliedModuli, JointPrior, PosteriorPrior};
 use predicted::predicted;
-pub use priors::{FreeParameter, check_own};
+pub use priors::{FreeParameter, check_own, free_parameters};
+pub use reduced_job::reduced_job;
 
 /// A calibration as its files determine it; equal files give an equal specification.
 #[derive(Debug, Clone)]

@@ -8,6 +8,7 @@ use shared::channel::Channel;
 use shared::experiment::Scatter;
 use shared::file::{FileError, number, unknown_word};
 use shared::model::EffectSet;
+use shared::model::effects::parameter_name;
 use shared::parameters::{self, NOISE_PREFIX, Quantity, behind};
 
 /// A parameter with a prior.
@@ -115,6 +116,21 @@ pub fn check_own(file: &str, effect: &Effect) -> Result<(), FileError> {
         Parsed::of_effect(&parameter.name, parameter).map_err(|e| FileError::at(file, parameter.line, e))?;
     }
     Ok(())
+}
+
+/// The parameters of an effect that its file leaves free, by their names in a job.
+///
+/// # Errors
+/// A sentence that names the parameter.
+pub fn free_parameters(effect: &Effect) -> Result<Vec<FreeParameter>, String> {
+    let mut free = Vec::new();
+    for parameter in &effect.parameters {
+        let name = parameter_name(effect, parameter, None);
+        if let Parsed::Free(parameter) = Parsed::of_effect(&name, parameter)? {
+            free.push(parameter);
+        }
+    }
+    Ok(free)
 }
 
 /// The prior density that a table describes, within the quantity's physical bounds.

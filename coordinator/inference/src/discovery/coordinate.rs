@@ -139,7 +139,8 @@ impl Frame {
 
     /// Whether the strength has one sign only.
     pub(super) fn is_one_sided(&self) -> bool {
-        self.strength().is_some_and(|(k, _)| self.coordinates[k].is_half())
+        self.strength()
+            .is_some_and(|(k, _)| self.coordinates[k].is_half())
     }
 
     pub(super) fn theta(&self, position: &[f64]) -> Vec<f64> {

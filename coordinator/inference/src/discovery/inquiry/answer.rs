@@ -129,9 +129,11 @@ fn weigh(task: &Task, found: &Found) -> Weighed {
     let weight_of = |candidate: Option<usize>, class: usize, factor: f64| {
         let own = std::iter::once(libm::log(prior(class)) + factor);
         let sets = found.sets.iter().filter(|set| set.effects.len() > 1);
-        let led = sets.filter(|set| candidate.is_some() && leader(set) == candidate).map(|set| {
-            libm::log(prior(class)) + set.log_bayes_factor - further * (set.effects.len() as f64 - 1.0)
-        });
+        let led = sets
+            .filter(|set| candidate.is_some() && leader(set) == candidate)
+            .map(|set| {
+                libm::log(prior(class)) + set.log_bayes_factor - further * (set.effects.len() as f64 - 1.0)
+            });
         let all: Vec<f64> = own.chain(led).collect();
         log_sum_exp(all.into_iter())
     };
@@ -150,7 +152,10 @@ fn weigh(task: &Task, found: &Found) -> Weighed {
     let probabilities: Vec<f64> = weights.iter().map(|w| libm::exp(w - sum)).collect();
     let not_in_library = laws.zip(outside_weight.map(|w| libm::exp(w - sum)));
     let of_class = |class: usize| -> f64 {
-        let own = judged.iter().zip(&probabilities).filter(|(j, _)| j.class == class);
+        let own = judged
+            .iter()
+            .zip(&probabilities)
+            .filter(|(j, _)| j.class == class);
         own.map(|(_, p)| p).sum()
     };
     let mut by_class: Vec<(Option<usize>, f64)> = (0..=classes).map(|c| (Some(c), of_class(c))).collect();
@@ -166,15 +171,18 @@ fn weigh(task: &Task, found: &Found) -> Weighed {
         credible.push(class);
     }
     let own = task.prior.len();
-    let judged = judged.iter().zip(&probabilities).map(|(j, &probability)| Judgement {
-        candidate: j.candidate,
-        log_bayes_factor: j.log_bayes_factor,
-        probability,
-        class: j.class,
-        is_credible: credible.contains(&Some(j.class)),
-        method: j.method,
-        parameters: j.theta[own.min(j.theta.len())..].to_vec(),
-    });
+    let judged = judged
+        .iter()
+        .zip(&probabilities)
+        .map(|(j, &probability)| Judgement {
+            candidate: j.candidate,
+            log_bayes_factor: j.log_bayes_factor,
+            probability,
+            class: j.class,
+            is_credible: credible.contains(&Some(j.class)),
+            method: j.method,
+            parameters: j.theta[own.min(j.theta.len())..].to_vec(),
+        });
     Weighed {
         judged: judged.collect(),
         not_in_library,
@@ -207,9 +215,9 @@ fn verdict(weighed: &Weighed, found: &Found, misfit_p: Option<f64>, law: Option<
         .iter()
         .reduce(|a, b| if b.probability > a.probability { b } else { a });
     match best {
-        Some(best) if best.probability > NAMED => best
-            .candidate
-            .map_or(Verdict::NothingDetectable, Verdict::Named),
+        Some(best) if best.probability > NAMED => {
+            best.candidate.map_or(Verdict::NothingDetectable, Verdict::Named)
+        }
         Some(_) => {
             let classes = judged.iter().map(|j| j.class).max().unwrap_or(0);
             let class = (1..=classes).find(|&class| of_class(class) > NAMED);
@@ -226,7 +234,9 @@ impl Answer {
         let Some(base) = found.fit() else {
             return Vec::new();
         };
-        let detected = found.best_set().is_some_and(|set| set.log_bayes_factor > DETECTED);
+        let detected = found
+            .best_set()
+            .is_some_and(|set| set.log_bayes_factor > DETECTED);
         if !detected {
             return Vec::new();
         }

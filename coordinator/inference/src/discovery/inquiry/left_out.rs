@@ -53,7 +53,12 @@ impl LeftOut {
             let (part, places) = likelihood.part(&kept).ok()?;
             let refit = |(model, (effects, fit)): (usize, &(Vec<usize>, &Descent))| {
                 let taken = |values: &[f64]| places.iter().map(|&i| values[i]).collect::<Vec<f64>>();
-                let point = Point::new(&fit.frame, &part, fit.point.position.clone(), taken(&fit.point.values))?;
+                let point = Point::new(
+                    &fit.frame,
+                    &part,
+                    fit.point.position.clone(),
+                    taken(&fit.point.values),
+                )?;
                 let columns = fit.columns.iter().map(|column| taken(column)).collect();
                 Some(Refit {
                     model,
@@ -73,7 +78,9 @@ impl LeftOut {
     }
 
     fn refits(&mut self) -> impl Iterator<Item = &mut Refit> {
-        self.0.iter_mut().flat_map(|level| level.refits.iter_mut().flatten())
+        self.0
+            .iter_mut()
+            .flat_map(|level| level.refits.iter_mut().flatten())
     }
 
     pub(super) fn wanted(&mut self) -> Vec<Asked> {

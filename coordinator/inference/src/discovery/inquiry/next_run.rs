@@ -140,7 +140,9 @@ impl NextRuns {
 
     /// The most informative runs, the best first.
     pub(super) fn best(&self) -> Vec<NextRun> {
-        let mut runs: Vec<NextRun> = (0..self.proposed.runs).filter_map(|run| self.judge(run)).collect();
+        let mut runs: Vec<NextRun> = (0..self.proposed.runs)
+            .filter_map(|run| self.judge(run))
+            .collect();
         runs.sort_by(|a, b| b.information_nats.total_cmp(&a.information_nats));
         runs.retain(|run| run.information_nats >= LEAST);
         runs.truncate(MOST);
@@ -150,8 +152,11 @@ impl NextRuns {
     /// The expected information of a run, `sum_m P_m E[ln p(y | m) - ln sum_k P_k p(y | k)]`, each explanation's outcomes taken to be
     /// normal about the mean of its draws; `None` where an explanation cannot predict it.
     fn judge(&self, run: usize) -> Option<NextRun> {
-        let predicted: Option<Vec<Predicted>> =
-            self.drawn.iter().map(|drawn| self.predicted(drawn, run)).collect();
+        let predicted: Option<Vec<Predicted>> = self
+            .drawn
+            .iter()
+            .map(|drawn| self.predicted(drawn, run))
+            .collect();
         let predicted = predicted?;
         let total: f64 = self.drawn.iter().map(|drawn| drawn.probability).sum();
         let shares: Vec<f64> = self.drawn.iter().map(|d| d.probability / total).collect();
@@ -192,9 +197,8 @@ impl NextRuns {
 
     fn predicted(&self, drawn: &Drawn, run: usize) -> Option<Predicted> {
         let channels = self.proposed.noise_sds.len();
-        let of_run = |values: &Vec<f64>| {
-            DVector::from_column_slice(&values[run * channels..(run + 1) * channels])
-        };
+        let of_run =
+            |values: &Vec<f64>| DVector::from_column_slice(&values[run * channels..(run + 1) * channels]);
         let outcomes: Vec<DVector<f64>> = drawn.values.iter().map(of_run).collect();
         let count = outcomes.len() as f64;
         let mean = outcomes.iter().fold(DVector::zeros(channels), |sum, y| sum + y) / count;

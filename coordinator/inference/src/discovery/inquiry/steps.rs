@@ -90,24 +90,34 @@ impl Inquiry {
         if let Some(failure) = search.engine.failure() {
             return Step::Failed(failure);
         }
-        self.found.base = search.engine.base_fit().map(|(fit, evidence)| (fit.clone(), evidence));
+        self.found.base = search
+            .engine
+            .base_fit()
+            .map(|(fit, evidence)| (fit.clone(), evidence));
         self.found.singles = search.engine.finding().cloned();
         self.found.to_name = search.engine.finding().map_or(0, |f| f.spent.to_name());
         self.add_sets(search, 0.0);
         let Some((base, _)) = self.found.base.clone() else {
-            return Step::Failed(Failure::AllImpossible { draws: self.evaluations });
+            return Step::Failed(Failure::AllImpossible {
+                draws: self.evaluations,
+            });
         };
         let theta = base.frame.theta(&base.point.position);
-        let reduced = self.task.reductions.iter().enumerate().filter_map(|(k, reduction)| {
-            let kept = reduction.parameters.iter();
-            let prior: Vec<_> = kept.clone().map(|&i| self.task.prior[i].clone()).collect();
-            let settings = Settings {
-                starts: Starts::Draws(vec![kept.map(|&i| theta[i]).collect()]),
-                seed: self.task.settings.seed,
-            };
-            let engine = Engine::new(&prior, self.task.likelihood.clone(), Vec::new(), &settings).ok()?;
-            Some(Search::without(k, engine))
-        });
+        let reduced = self
+            .task
+            .reductions
+            .iter()
+            .enumerate()
+            .filter_map(|(k, reduction)| {
+                let kept = reduction.parameters.iter();
+                let prior: Vec<_> = kept.clone().map(|&i| self.task.prior[i].clone()).collect();
+                let settings = Settings {
+                    starts: Starts::Draws(vec![kept.map(|&i| theta[i]).collect()]),
+                    seed: self.task.settings.seed,
+                };
+                let engine = Engine::new(&prior, self.task.likelihood.clone(), Vec::new(), &settings).ok()?;
+                Some(Search::without(k, engine))
+            });
         Step::Reductions(reduced.collect())
     }
 
@@ -164,7 +174,11 @@ impl Inquiry {
             self.add_sets(search, begun);
         }
         let grown = self.found.best_set().is_some_and(|set| set.effects.len() > size);
-        if grown { self.beyond(size + 1) } else { self.curves() }
+        if grown {
+            self.beyond(size + 1)
+        } else {
+            self.curves()
+        }
     }
 
     /// Keeps what a search found: every effect of the first, of the others those that are worth their choice.
@@ -195,18 +209,29 @@ impl Inquiry {
             Some(chi) => chi.p() < if detected { MISFIT[1] } else { WRONG },
             None => detected,
         };
-        let Some((base, evidence)) = self.found.base.clone().filter(|_| misfit && !self.task.pairs.is_empty())
+        let Some((base, evidence)) = self
+            .found
+            .base
+            .clone()
+            .filter(|_| misfit && !self.task.pairs.is_empty())
         else {
             return self.next_runs();
         };
         let candidates = self.task.pairs.iter().map(|pair| pair.curve.clone()).collect();
         let positions = (0..self.task.pairs.len()).map(|pair| self.task.curve(pair));
-        let engine = Engine::beyond(base, evidence, likelihood.clone(), candidates, self.task.settings.seed);
+        let engine = Engine::beyond(
+            base,
+            evidence,
+            likelihood.clone(),
+            candidates,
+            self.task.settings.seed,
+        );
         Step::Curves(Search::new(Vec::new(), positions.collect(), engine))
     }
 
     fn after_curves(&mut self, search: &Search) -> Step {
-        let pair_of = |candidate: usize| (0..self.task.pairs.len()).find(|&p| self.task.curve(p) == candidate);
+        let pair_of =
+            |candidate: usize| (0..self.task.pairs.len()).find(|&p| self.task.curve(p) == candidate);
         let laws = search.ranked().into_iter().filter_map(|(candidate, judged)| {
             Some(Law {
                 pair: pair_of(candidate)?,
@@ -238,7 +263,9 @@ impl Inquiry {
 
     fn after_forms(&mut self, search: &Search) -> Step {
         let ranked = search.ranked();
-        let curves: Vec<usize> = (0..self.task.pairs.len()).map(|pair| self.task.curve(pair)).collect();
+        let curves: Vec<usize> = (0..self.task.pairs.len())
+            .map(|pair| self.task.curve(pair))
+            .collect();
         for law in self.found.laws.iter_mut().flatten() {
             let first = curves[law.pair] + 1;
             let own = first..first + self.task.pairs[law.pair].forms.len();
@@ -300,6 +327,11 @@ impl Inquiry {
     }
 
     fn done(&mut self, next_runs: Vec<super::NextRun>) -> Step {
-        Step::Done(Box::new(Answer::new(&self.task, &self.found, next_runs, self.evaluations)))
+        Step::Done(Box::new(Answer::new(
+            &self.task,
+            &self.found,
+            next_runs,
+            self.evaluations,
+        )))
     }
 }
