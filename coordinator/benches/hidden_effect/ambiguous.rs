@@ -2,11 +2,12 @@
 
 use coordinator::discovery::Models;
 use inference::discovery::inquiry::{Answer, Asked, Model, Verdict};
+use inference::rng::Stream;
 
-use crate::study::case::Case;
-use crate::study::design::{Plan, Row};
+use crate::study::case::{Case, run as run_truth};
+use crate::study::design::{CHANNELS, Plan, Row};
 use crate::study::each;
-use crate::study::kind::expressible;
+use crate::study::kind::draw_clear;
 use crate::study::pipeline::Asking;
 use crate::study::rate::Rate;
 
@@ -14,6 +15,9 @@ use crate::study::rate::Rate;
 const MOST: usize = 2;
 /// The truths are others than those of the other kinds.
 const FIRST: u64 = 1_000_000;
+
+/// Streams of the noise of further runs.
+const STAGE: u64 = 1 << 45;
 
 /// How the search for one effect went on.
 struct Story {
@@ -89,12 +93,25 @@ fn proposed(models: &mut Models, answer: &Answer) -> Result<Option<Row>, String>
     }))
 }
 
+/// Makes one more run and measures it; `false` where the truth refuses it.
+fn measure(case: &mut Case, row: Row, seed: u64, number: u64) -> Result<bool, String> {
+    let made = run_truth(&case.truth_job, std::slice::from_ref(&row), &case.theta)?;
+    let Some(&[noise_free]) = made.as_deref() else {
+        return Ok(false);
+    };
+    let noise = Stream::new(seed, STAGE, number, case.rows.len() as u64).normals(CHANNELS);
+    let mut measured = noise_free;
+    for (k, x) in measured.iter_mut().enumerate() {
+        *x += case.sds[k] * noise[k];
+    }
+    case.rows.push(row);
+    case.noise_free.push(noise_free);
+    case.measured.push(measured);
+    Ok(true)
+}
+
 fn one(seed: u64, number: u64) -> Result<Story, String> {
-    let known = expressible(Plan::Narrow);
-    // Neighbours in the catalogue are alike in nothing; few experiments see much of it in steps.
-    let own = &known[(7 * number) as usize % known.len()];
-    let own = std::slice::from_ref(own);
-    let mut case = Case::draw(Plan::Narrow, own, seed, FIRST + number, 0)?;
+    let mut case = draw_clear(Plan::Narrow, 1, seed, FIRST + number)?;
     let mut line = format!("ambiguous {number} {}:", case.hidden[0]);
     let mut story = Story {
         is_open: false,
@@ -139,7 +156,7 @@ fn one(seed: u64, number: u64) -> Result<Story, String> {
             " -> slip {} load {} N sled {:.4} m/s",
             row.slip, row.wheel_load_n, row.sled_speed_m_s
         );
-        if !case.add(row, seed, FIRST + number)? {
+        if !measure(&mut case, row, seed, number)? {
             line += " refused by the truth";
             break;
         }

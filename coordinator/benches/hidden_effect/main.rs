@@ -4,7 +4,7 @@
 //! the project beside what came out. KIND is
 //! - `one`: one effect of the catalogue, each in turn; `none`: nothing; `two`, `three`: several, each worth 10 nats beside the others.
 //! - `outside`: one of the laws of `laws/`, which are in nobody's library.
-//! - `all`: COUNT of each of these.
+//! - `one+none`, or another list: COUNT of each. `all`: of each of these.
 //! - `scm`: one effect, of the three-dimensional model on a coarse grid.
 //! - `ambiguous`: one effect, at one load and one speed: whether the proposed runs, made and measured, tell what it is.
 //! - `tmcmc`: one effect; the search's log Bayes factor beside that of full evidences by the sampler.
@@ -44,15 +44,8 @@ fn main() -> ExitCode {
         "ambiguous" => ambiguous::run(count, seed),
         "tmcmc" => tmcmc::run(count, seed),
         "data" => data::run(),
-        "all" => [Kind::One, Kind::None, Kind::Outside, Kind::Two, Kind::Three]
-            .into_iter()
-            .map(|kind| fates(kind, count, seed))
-            .collect::<Result<Vec<_>, String>>()
-            .map(|fates| println!("{}", Tally(&fates.concat()))),
-        name => match Kind::ALL.into_iter().find(|kind| kind.name() == name) {
-            Some(kind) => fates(kind, count, seed).map(|fates| println!("{}", Tally(&fates))),
-            None => Err(format!("unknown kind \"{name}\"")),
-        },
+        "all" => tables("one+none+outside+two+three", count, seed),
+        kinds => tables(kinds, count, seed),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -63,11 +56,27 @@ fn main() -> ExitCode {
     }
 }
 
+/// Runs so many experiments of each kind, and prints the targets.
+fn tables(kinds: &str, count: u64, seed: u64) -> Result<(), String> {
+    let mut all = Vec::new();
+    for name in kinds.split('+') {
+        let kind = Kind::ALL.into_iter().find(|kind| kind.name() == name);
+        all.extend(fates(
+            kind.ok_or(format!("unknown kind \"{name}\""))?,
+            count,
+            seed,
+        )?);
+    }
+    println!("{}", Tally(&all));
+    Ok(())
+}
+
 /// How so many experiments of a kind fared, each printed as soon as it is over.
 fn fates(kind: Kind, count: u64, seed: u64) -> Result<Vec<Fate>, String> {
     let one = |number: u64| {
         let fate = kind
-            .run(seed, number)
+            .draw(seed, number)
+            .and_then(|case| kind.search(&case, number))
             .map_err(|e| format!("{} {number}: {e}", kind.name()));
         match &fate {
             Ok(fate) => println!("{fate}"),

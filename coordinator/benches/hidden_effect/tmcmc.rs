@@ -11,7 +11,7 @@ use shared::file::FileSet;
 use crate::study::case::{Case, spec};
 use crate::study::design::Plan;
 use crate::study::each;
-use crate::study::kind::expressible;
+use crate::study::kind::draw_clear;
 use crate::study::pipeline::Asking;
 use crate::study::rate::mean;
 
@@ -38,9 +38,7 @@ pub(crate) fn run(count: u64, seed: u64) -> Result<(), String> {
 }
 
 fn one(seed: u64, number: u64) -> Result<Compared, String> {
-    let known = expressible(Plan::Full);
-    let own = &known[(7 * number) as usize % known.len()];
-    let case = Case::draw(Plan::Full, std::slice::from_ref(own), seed, FIRST + number, 0)?;
+    let case = draw_clear(Plan::Full, 1, seed, FIRST + number)?;
     let mut asking = Asking::new(&case.plan.job(), &case.experiment(), 1)?;
     let answer = asking.inquire()?;
     let effects = answer.judged.iter().filter(|j| j.candidate.is_some());

@@ -63,7 +63,7 @@ pub(crate) fn blank(rows: &[Row]) -> FileSet {
 }
 
 /// Runs a model that is known; `None` where it refuses one of the rows.
-fn run(job: &FileSet, rows: &[Row], theta: &[f64]) -> Result<Option<Vec<Values>>, String> {
+pub(crate) fn run(job: &FileSet, rows: &[Row], theta: &[f64]) -> Result<Option<Vec<Values>>, String> {
     let spec = spec(job, &blank(rows))?;
     let theta = spec.model_theta(theta);
     let Some(mut all) = evaluated(&spec.fit_variant, theta)? else {
@@ -140,22 +140,5 @@ impl Case {
     /// The same without noise.
     pub(crate) fn clear(&self) -> FileSet {
         experiment(&self.rows, &self.noise_free, self.sds)
-    }
-
-    /// Makes one more run and measures it; `false` where the truth refuses it.
-    pub(crate) fn add(&mut self, row: Row, seed: u64, number: u64) -> Result<bool, String> {
-        let Some(values) = run(&self.truth_job, std::slice::from_ref(&row), &self.theta)? else {
-            return Ok(false);
-        };
-        let further = self.rows.len() as u64;
-        let noise = Stream::new(seed, STAGE + 1, number, further).normals(CHANNELS);
-        let mut measured = values[0];
-        for (k, x) in measured.iter_mut().enumerate() {
-            *x += self.sds[k] * noise[k];
-        }
-        self.rows.push(row);
-        self.noise_free.push(values[0]);
-        self.measured.push(measured);
-        Ok(true)
     }
 }

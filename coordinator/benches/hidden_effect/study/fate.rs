@@ -5,6 +5,7 @@ use std::fmt;
 use inference::discovery::inquiry::{Answer, Task, Verdict};
 
 use super::case::Case;
+use super::clear::CLEAR;
 use super::held_out::HeldOut;
 use super::kind::Kind;
 
@@ -26,7 +27,7 @@ pub(crate) struct Fate {
     pub(crate) over_base: f64,
     /// Something is said to be missing, and what: P > 0.9 or a law.
     pub(crate) is_claimed: bool,
-    pub(crate) is_outside: bool,
+    pub(crate) verdict: Verdict,
     /// The most probable class is the truth's; one of the two most probable is.
     pub(crate) is_right: bool,
     pub(crate) is_in_two: bool,
@@ -146,7 +147,7 @@ impl Fate {
             separation: known.separation,
             over_base: known.over_base,
             is_claimed: claimed.is_some(),
-            is_outside: answer.verdict == Verdict::Outside,
+            verdict: answer.verdict,
             is_right: is_truth(best),
             is_in_two: ranked.iter().take(2).any(|(class, _)| is_truth(*class)),
             is_alone: members.count() == 1,
@@ -171,6 +172,21 @@ impl Fate {
         };
         fate.line = fate.described(case, task, answer, known.number);
         fate
+    }
+
+    /// Whether a law outside the library is claimed.
+    pub(crate) fn is_outside(&self) -> bool {
+        self.verdict == Verdict::Outside
+    }
+
+    /// Whether nothing is to be complained of; what cannot be told from a rival may be named so.
+    fn is_good(&self) -> bool {
+        match self.kind {
+            Kind::None => !self.is_claimed,
+            Kind::Two | Kind::Three => self.is_exact,
+            Kind::Outside => self.pair || self.separation < CLEAR,
+            Kind::One | Kind::Spatial => self.is_right || self.separation < CLEAR,
+        }
     }
 
     fn described(&self, case: &Case, task: &Task, answer: &Answer, number: u64) -> String {
@@ -213,11 +229,7 @@ impl Fate {
             self.separation,
             self.over_base,
             answer.verdict,
-            if self.is_right || self.pair || self.is_exact {
-                ""
-            } else {
-                " WRONG"
-            },
+            if self.is_good() { "" } else { " WRONG" },
             best.join(", "),
             set.join("+"),
             answer.not_in_library.map_or(0.0, |(_, p)| p),

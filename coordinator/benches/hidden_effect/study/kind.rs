@@ -29,7 +29,7 @@ pub(crate) enum Kind {
     Outside,
     Two,
     Three,
-    /// One effect, of the three-dimensional model.
+    /// One effect worth 10 nats, of the three-dimensional model: what cannot be seen costs as much as what can.
     Spatial,
 }
 
@@ -54,9 +54,8 @@ impl Kind {
         }
     }
 
-    /// Draws an experiment, searches it blind, and compares.
-    pub(crate) fn run(self, seed: u64, number: u64) -> Result<Fate, String> {
-        let case = self.draw(seed, number)?;
+    /// Searches an experiment blind, and compares.
+    pub(crate) fn search(self, case: &Case, number: u64) -> Result<Fate, String> {
         let most = if self == Kind::Spatial { 1 } else { MAX_EFFECTS };
         let mut asking = Asking::new(&case.plan.job(), &case.experiment(), most)?;
         let begin = Instant::now();
@@ -66,11 +65,11 @@ impl Kind {
         let own = |name: &String| task.library.iter().position(|c| c.name == *name);
         let (separation, over_base) = match self {
             Kind::One | Kind::Spatial => {
-                let clear = Clear::new(&case, &mut asking)?;
+                let clear = Clear::new(case, &mut asking)?;
                 (clear.separation(own(&case.hidden[0])), clear.over_base())
             }
             Kind::Outside => {
-                let clear = Clear::new(&case, &mut asking)?;
+                let clear = Clear::new(case, &mut asking)?;
                 (clear.separation(None), clear.over_base())
             }
             Kind::None | Kind::Two | Kind::Three => (f64::INFINITY, f64::INFINITY),
@@ -79,13 +78,13 @@ impl Kind {
             number,
             separation,
             over_base,
-            held_out: HeldOut::new(&case, &mut asking, &answer)?,
+            held_out: HeldOut::new(case, &mut asking, &answer)?,
             seconds,
         };
         let law = LAWS.iter().find(|law| case.hidden == [law.name]);
         Ok(Fate::new(
             self,
-            &case,
+            case,
             &task,
             &answer,
             law.map(|law| law.pair),
@@ -93,52 +92,53 @@ impl Kind {
         ))
     }
 
-    fn draw(self, seed: u64, number: u64) -> Result<Case, String> {
+    /// Draws a truth, and measures it.
+    pub(crate) fn draw(self, seed: u64, number: u64) -> Result<Case, String> {
         // Each kind has truths of its own.
         let number_of_all = 10_000 * self as u64 + number;
         let turn = |count: usize| (number % count as u64) as usize;
-        let draw = |plan: Plan, hidden: &[(String, Extension)], attempt: u64| {
-            Case::draw(plan, hidden, seed, number_of_all, attempt)
-        };
+        let draw =
+            |plan: Plan, hidden: &[(String, Extension)]| Case::draw(plan, hidden, seed, number_of_all, 0);
         match self {
-            Kind::None => draw(Plan::Full, &[], 0),
+            Kind::None => draw(Plan::Full, &[]),
             Kind::One => {
                 let known = expressible(Plan::Full);
                 let own = &known[turn(known.len())];
-                draw(Plan::of(&own.0), std::slice::from_ref(own), 0)
+                draw(Plan::of(&own.0), std::slice::from_ref(own))
             }
-            Kind::Spatial => {
-                let known = expressible(Plan::Spatial);
-                let own = &known[turn(known.len())];
-                draw(Plan::Spatial, std::slice::from_ref(own), 0)
-            }
-            Kind::Outside => draw(Plan::Full, &[LAWS[turn(LAWS.len())].hidden()], 0),
-            Kind::Two | Kind::Three => {
-                let count = if self == Kind::Two { 2 } else { 3 };
-                for attempt in 0..MOST_DRAWN {
-                    let mut stream = Stream::new(seed, STAGE, number_of_all, attempt);
-                    let mut rest = expressible(Plan::Full);
-                    let mut hidden = Vec::new();
-                    for _ in 0..count {
-                        hidden.push(rest.swap_remove(stream.below(rest.len())));
-                    }
-                    let Ok(case) = draw(Plan::Full, &hidden, attempt) else {
-                        continue;
-                    };
-                    if each_counts(&case, &hidden)? {
-                        return Ok(case);
-                    }
-                }
-                Err(format!(
-                    "{MOST_DRAWN} sets of effects, each with one that counts for nothing"
-                ))
-            }
+            Kind::Outside => draw(Plan::Full, &[LAWS[turn(LAWS.len())].hidden()]),
+            Kind::Two => draw_clear(Plan::Full, 2, seed, number_of_all),
+            Kind::Three => draw_clear(Plan::Full, 3, seed, number_of_all),
+            Kind::Spatial => draw_clear(Plan::Spatial, 1, seed, number_of_all),
         }
     }
 }
 
+/// Draws so many effects of the catalogue at random until, without noise, the model without any one of them falls short by enough.
+pub(crate) fn draw_clear(plan: Plan, count: usize, seed: u64, number: u64) -> Result<Case, String> {
+    let known = expressible(plan);
+    for attempt in 0..MOST_DRAWN {
+        let mut stream = Stream::new(seed, STAGE, number, attempt);
+        let mut rest = known.clone();
+        let mut hidden = Vec::new();
+        for _ in 0..count {
+            hidden.push(rest.swap_remove(stream.below(rest.len())));
+        }
+        // Some effects do not go together.
+        let Ok(case) = Case::draw(plan, &hidden, seed, number, attempt) else {
+            continue;
+        };
+        if each_counts(&case, &hidden)? {
+            return Ok(case);
+        }
+    }
+    Err(format!(
+        "{MOST_DRAWN} sets of {count} effects, each with one that counts for nothing"
+    ))
+}
+
 /// The effects of the catalogue that a plan can have, each with what a job adds for it.
-pub(crate) fn expressible(plan: Plan) -> Vec<(String, Extension)> {
+fn expressible(plan: Plan) -> Vec<(String, Extension)> {
     let (explanations, _) = library(&plan.job(), &blank(&plan.rows()));
     // An effect on one wheel alone is none of the catalogue's own.
     let own = explanations.into_iter().filter(|e| !e.name.contains('.'));

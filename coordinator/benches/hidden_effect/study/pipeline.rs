@@ -57,7 +57,12 @@ impl Asking {
         };
         let own = self.models.variant(&question(first)).map_err(|e| e.to_string())?;
         let mut variant = own.1.clone();
+        // The soil's density is there only if an effect of this variant asks for it.
+        let density_kg_m3 = variant.conditions.first().and_then(|c| c.density_kg_m3);
         variant.conditions = conditions.to_vec();
+        for condition in &mut variant.conditions {
+            condition.density_kg_m3 = density_kg_m3;
+        }
         let evaluate = Evaluate::new(&variant)?;
         let predicted = thetas.iter().map(|theta| {
             match evaluate.evaluate(&self.models.model_theta(&question(theta), &variant)) {

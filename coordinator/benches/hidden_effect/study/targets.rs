@@ -100,8 +100,8 @@ impl Tally<'_> {
         let single = self.of(|x| matches!(x.kind, Kind::One | Kind::None));
         let none = self.of(|x| x.kind == Kind::None);
         let law = self.of(|x| x.kind == Kind::Outside && x.over_base >= CLEAR && x.separation >= CLEAR);
-        let law_claimed: Vec<&Fate> = law.iter().copied().filter(|x| x.is_outside).collect();
-        let in_library = self.of(|x| x.kind != Kind::Outside && x.kind != Kind::Spatial);
+        let law_claimed: Vec<&Fate> = law.iter().copied().filter(|x| x.is_outside()).collect();
+        let several = self.of(|x| matches!(x.kind, Kind::Two | Kind::Three));
         let (two, three) = (
             self.of(|x| x.kind == Kind::Two),
             self.of(|x| x.kind == Kind::Three),
@@ -173,7 +173,14 @@ impl Tally<'_> {
             .map(Target::least),
             Target::rate(
                 "false \"not in the library\"",
-                rate(&in_library, &|x| x.is_outside),
+                rate(&single, &|x| x.is_outside()),
+                0.05,
+                0.01,
+            )
+            .map(Target::least),
+            Target::rate(
+                "several effects: false \"not in the library\"",
+                rate(&several, &|x| x.is_outside()),
                 0.05,
                 0.01,
             )
@@ -189,7 +196,7 @@ impl Tally<'_> {
             Target::rate("  and variable", rate(&law_claimed, &|x| x.pair), 0.85, 0.95),
             Target::rate(
                 "outside, beyond the library by 10 nats: claimed",
-                rate(&law, &|x| x.is_outside),
+                rate(&law, &|x| x.is_outside()),
                 0.75,
                 0.90,
             ),
@@ -264,6 +271,9 @@ impl fmt::Display for Tally<'_> {
             let high = BINS.get(k + 1).copied().unwrap_or(f64::INFINITY);
             let own = stated.iter().filter(|x| (*low..high).contains(&x.stated));
             let own: Vec<_> = own.collect();
+            if own.is_empty() {
+                continue;
+            }
             let [mean, _] = mean(&own.iter().map(|x| x.stated).collect::<Vec<_>>());
             writeln!(
                 f,
