@@ -10,12 +10,12 @@ use study::clear::CLEAR;
 use study::each;
 use study::fate::Fate;
 use study::kind::Kind;
-use study::targets::Tally;
+use study::tally::Tally;
 
 const SEED: u64 = 1;
-/// slip_sinkage, rate_dependent_pressure, janosi_hanamoto, multipass_hardening, bulldozing, sled_drag.
+/// Slip-sinkage, pressure by rate, displacement of shear, hardening by passes, bulldozing, the sled's drag.
 const ONE: [u64; 6] = [2, 4, 21, 44, 108, 111];
-/// pore_air, slip_wave, slip_peak.
+/// Air in the pores, a wave over slip, a peak of shear over slip.
 const OUTSIDE: [u64; 3] = [2, 5, 10];
 /// A reference velocity with slip-softened pressure, and the pressure's peak with the rim's friction.
 const TWO: [u64; 2] = [3, 15];

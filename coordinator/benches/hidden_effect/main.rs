@@ -25,7 +25,7 @@ use std::process::ExitCode;
 use study::each;
 use study::fate::Fate;
 use study::kind::Kind;
-use study::targets::Tally;
+use study::tally::Tally;
 
 /// Experiments of a kind where nothing is said.
 const USUAL: u64 = 100;

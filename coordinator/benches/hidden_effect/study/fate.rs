@@ -47,6 +47,8 @@ pub(crate) struct Fate {
     /// The best set is what was hidden, up to classes.
     pub(crate) is_exact: bool,
     pub(crate) held_out: HeldOut,
+    /// Effects that were looked for, and evaluations.
+    pub(crate) candidates: usize,
     pub(crate) to_name: usize,
     pub(crate) to_confirm: usize,
     pub(crate) evaluations: usize,
@@ -164,6 +166,7 @@ impl Fate {
                 answer.best_set.iter().map(|k| Some(*k)).collect(),
             ),
             held_out: known.held_out,
+            candidates: task.library.len(),
             to_name: answer.evaluations_to_name,
             to_confirm: answer.evaluations_to_confirm,
             evaluations: answer.evaluations,
@@ -180,67 +183,13 @@ impl Fate {
     }
 
     /// Whether nothing is to be complained of; what cannot be told from a rival may be named so.
-    fn is_good(&self) -> bool {
+    pub(super) fn is_good(&self) -> bool {
         match self.kind {
             Kind::None => !self.is_claimed,
             Kind::Two | Kind::Three => self.is_exact,
             Kind::Outside => self.pair || self.separation < CLEAR,
             Kind::One | Kind::Spatial => self.is_right || self.separation < CLEAR,
         }
-    }
-
-    fn described(&self, case: &Case, task: &Task, answer: &Answer, number: u64) -> String {
-        let candidates = task.candidates();
-        let name = |k: Option<usize>| k.map_or("none", |k| candidates[k].name.as_str());
-        let mut judged: Vec<_> = answer.judged.iter().collect();
-        judged.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-        let best: Vec<String> = judged
-            .iter()
-            .take(3)
-            .map(|j| {
-                let (name, factor) = (name(j.candidate), j.log_bayes_factor);
-                format!("{name} {factor:.1} P {:.3} c{}", j.probability, j.class)
-            })
-            .collect();
-        let truth = judged
-            .iter()
-            .find(|j| j.candidate.is_some() && case.hidden == [name(j.candidate)]);
-        let own = truth.map_or(String::new(), |j| {
-            format!(
-                " (truth {:.1} P {:.3} c{})",
-                j.log_bayes_factor, j.probability, j.class
-            )
-        });
-        let set: Vec<&str> = answer.best_set.iter().map(|k| name(Some(*k))).collect();
-        let outside = answer.outside.as_ref().map_or(String::new(), |o| {
-            let [base, library] = o.left_out_nats;
-            format!(
-                " law {} {:.1} left out {base:.1} {library:.1}",
-                name(Some(o.candidate)),
-                o.log_bayes_factor
-            )
-        });
-        let theta: Vec<String> = case.theta.iter().map(|x| format!("{x:.3e}")).collect();
-        format!(
-            "{} {number} {} [{}] separation {:.1} over base {:.1} | {:?}{} | {}{own} | set {}{outside} | outside P {:.3} | chi2 p {:.1e}, best {:.1e} | held out {} | evaluations {} {} {}, {:.1} s",
-            self.kind.name(),
-            case.hidden.join("+"),
-            theta.join(" "),
-            self.separation,
-            self.over_base,
-            answer.verdict,
-            if self.is_good() { "" } else { " WRONG" },
-            best.join(", "),
-            set.join("+"),
-            answer.not_in_library.map_or(0.0, |(_, p)| p),
-            answer.chi_square.map_or(f64::NAN, |c| c.p()),
-            answer.chi_square_best.map_or(f64::NAN, |c| c.p()),
-            self.held_out,
-            self.to_name,
-            self.to_confirm,
-            self.evaluations,
-            self.seconds
-        )
     }
 }
 

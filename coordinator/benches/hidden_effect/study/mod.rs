@@ -4,7 +4,8 @@
 //! - `kind`: what is hidden, and how one experiment is run. `laws`: what is in nobody's library.
 //! - `design`: what the rig runs, and its files. `case`: a truth and its measurements.
 //! - `pipeline`: the search, as the farm runs it. `clear`: what the data could say without noise. `held_out`: unseen runs.
-//! - `fate`: how one experiment fared. `rate`: shares with their uncertainty. `targets`: the table.
+//! - `fate`: how one experiment fared; `line`: in one line.
+//! - `rate`: shares with their uncertainty. `target`: a line of the table; `tally`: the table.
 
 pub(crate) mod case;
 pub(crate) mod clear;
@@ -13,9 +14,11 @@ pub(crate) mod fate;
 mod held_out;
 pub(crate) mod kind;
 mod laws;
+mod line;
 pub(crate) mod pipeline;
 pub(crate) mod rate;
-pub(crate) mod targets;
+pub(crate) mod tally;
+mod target;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
