@@ -8,10 +8,10 @@ use shared::api::{CalibrationCreated, CalibrationState, CalibrationStatus, NewCa
 use shared::exchange::{ExchangeRequest, ExchangeResponse};
 use shared::file::{FileError, FileSet};
 
-use crate::calibration::{Calibration, Identity};
+use crate::calibration::{BeginError, Calibration, Identity};
 use crate::farm::dispatch::{Dispatcher, Stopped};
 use crate::farm::{Control, ControlError, Farm};
-use crate::spec::{EffectsChanged, Job, Method, MethodError, Spec, point_job};
+use crate::spec::{EffectsChanged, Job, Method, Spec, point_job};
 use crate::store::{CalibrationRow, NewCalibrationRow, NewStudy, Store, StoreError, StudyIds};
 
 /// A lease lasts so long without renewal `[ms]`.
@@ -25,9 +25,9 @@ pub enum ServiceError {
     /// A file is malformed.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The settings do not fit the prior.
-    #[error("[sampler] {0}")]
-    Settings(#[from] MethodError),
+    /// A calibration cannot begin.
+    #[error(transparent)]
+    Begin(#[from] BeginError),
     /// The effects are not those that the calibration was computed with.
     #[error(transparent)]
     Effects(#[from] EffectsChanged),
@@ -118,7 +118,7 @@ impl Service {
                     continue;
                 }
             };
-            let fitted = matches!(spec.method, Method::Fit(_)) || spec.method.has_metamodel();
+            let fitted = matches!(spec.method, Method::Fit(_) | Method::Discover { .. }) || spec.method.has_metamodel();
             let stored = reader.stored(id, fitted).await?;
             let evaluations = stored.evaluations.len();
             let identity = Identity {

@@ -10,12 +10,16 @@
 pub mod candidate;
 pub mod curve;
 mod design;
+mod investigation;
 pub mod form;
 mod models;
 pub mod range;
+mod other_tests;
 mod record;
 pub mod scan;
+mod told;
 
+pub use investigation::{Investigation, InvestigationError};
 pub use models::Models;
 pub use record::{
     ChiSquare, Discovery, Extension, JudgedEffect, NEXT_RUNS, NONE, NOT_IN_LIBRARY, NextRun, Outside, Verdict,

@@ -70,7 +70,7 @@ impl IntoResponse for HttpError {
 impl From<ServiceError> for HttpError {
     fn from(error: ServiceError) -> Self {
         let kind = match &error {
-            ServiceError::File(_) | ServiceError::Settings(_) => ErrorKind::InvalidFile,
+            ServiceError::File(_) | ServiceError::Begin(_) => ErrorKind::InvalidFile,
             ServiceError::NotFound { .. } => ErrorKind::NotFound,
             ServiceError::Control(_) | ServiceError::Effects(_) => ErrorKind::Conflict,
             ServiceError::Busy(_) => ErrorKind::Busy,

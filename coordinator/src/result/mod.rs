@@ -95,12 +95,12 @@ impl Outcome {
             spec.check_effects(pinned)?;
         }
         let estimate = match spec.method {
-            Method::Sample(_) => None,
+            Method::Sample(_) | Method::Discover { .. } => None,
             Method::Fit(_) | Method::Search(_) => reader.estimate(row.id).await?,
         };
         let prior_draws = match spec.method {
             Method::Sample(_) => reader.prior_draws(row.id, spec.method.width()).await?,
-            Method::Fit(_) | Method::Search(_) => Vec::new(),
+            Method::Fit(_) | Method::Search(_) | Method::Discover { .. } => Vec::new(),
         };
         let mut populations = reader.populations(row.id).await?;
         let posterior = populations.pop().unwrap_or_default();

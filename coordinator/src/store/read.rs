@@ -11,6 +11,7 @@ use sqlx::sqlite::SqliteRow;
 
 use super::{Reader, StoreError, blob, numbers};
 use crate::calibration::{EvaluationKey, HISTORIES, PREDICTIONS_FROM};
+use crate::discovery::Discovery;
 
 /// A stored experiment.
 #[derive(Debug, Clone)]
@@ -328,6 +329,22 @@ impl Reader {
             })
         })
         .transpose()
+    }
+
+    /// What a search for a missing effect found.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn discovery(&self, calibration: i64) -> Result<Option<Discovery>, StoreError> {
+        let record: Option<String> = sqlx::query_scalar("SELECT record FROM discoveries WHERE calibration = ?")
+            .bind(calibration)
+            .fetch_optional(&self.pool)
+            .await?;
+        let read = |json: String| {
+            serde_json::from_str(&json)
+                .map_err(|e| StoreError::Corrupt(format!("record of search {calibration}: {e}")))
+        };
+        record.map(read).transpose()
     }
 
     /// The final draws of a calibration; the first is the most probable particle, of a fit the only one.
