@@ -118,7 +118,8 @@ impl Service {
                     continue;
                 }
             };
-            let fitted = matches!(spec.method, Method::Fit(_) | Method::Discover { .. }) || spec.method.has_metamodel();
+            let fitted = matches!(spec.method, Method::Fit(_) | Method::Discover { .. })
+                || spec.method.has_metamodel();
             let stored = reader.stored(id, fitted).await?;
             let evaluations = stored.evaluations.len();
             let identity = Identity {

@@ -8,6 +8,7 @@ mod bevameter;
 mod diagnostics;
 mod discovery;
 mod flags;
+mod inquiry;
 mod likelihood;
 mod lm;
 mod metamodel;

@@ -4,8 +4,8 @@ use inference::lm::Optimiser;
 use inference::point::Estimate;
 use inference::search::Search;
 use inference::{
-    Answer, LogLikelihood, Metamodel, Pair, Posterior, Progress, Proposal, Sampler,
-    StageRecord, SubchainEnd, TellError,
+    Answer, LogLikelihood, Metamodel, Pair, Posterior, Progress, Proposal, Sampler, StageRecord, SubchainEnd,
+    TellError,
 };
 
 use crate::discovery::{Discovery, Investigation, InvestigationError, Models};

@@ -17,9 +17,9 @@ use shared::file::FileSet;
 use shared::model::ModelVariant;
 use shared::outcome::Observables;
 
+use crate::discovery::{InvestigationError, Models};
 use crate::fact::{EvaluationRow, Fact, Fingerprint, Kept};
 use crate::lease::{Completion, Queue};
-use crate::discovery::{InvestigationError, Models};
 use crate::spec::{Method, Spec};
 
 pub use computed::{Computed, result_of};

@@ -92,11 +92,7 @@ impl Investigation {
     ///
     /// # Errors
     /// [`InvestigationError`].
-    pub fn tell(
-        &mut self,
-        particle: usize,
-        values: Option<&[f64]>,
-    ) -> Result<Progress, InvestigationError> {
+    pub fn tell(&mut self, particle: usize, values: Option<&[f64]>) -> Result<Progress, InvestigationError> {
         let progress = self.inquiry.tell(particle, values)?;
         if progress == Progress::NextRound {
             self.prepare()?;

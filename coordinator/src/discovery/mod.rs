@@ -10,11 +10,11 @@
 pub mod candidate;
 pub mod curve;
 mod design;
-mod investigation;
 pub mod form;
+mod investigation;
 mod models;
-pub mod range;
 mod other_tests;
+pub mod range;
 mod record;
 pub mod scan;
 mod told;

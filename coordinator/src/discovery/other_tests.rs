@@ -58,7 +58,11 @@ pub(super) fn deciding(open: &[&str], verdict: Verdict) -> Vec<String> {
         let own = open.iter().filter(|name| test.decides.contains(&name.as_str()));
         own.count() > 0
     };
-    TESTS.iter().filter(decided).map(|test| test.what.to_owned()).collect()
+    TESTS
+        .iter()
+        .filter(decided)
+        .map(|test| test.what.to_owned())
+        .collect()
 }
 
 #[cfg(test)]

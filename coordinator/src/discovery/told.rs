@@ -61,9 +61,20 @@ pub(super) fn told(models: &Models, answer: &Answer) -> Discovery {
         })
     });
     Discovery {
-        given: models.base.fit_variant.effects.iter().map(|e| e.name.clone()).collect(),
+        given: models
+            .base
+            .fit_variant
+            .effects
+            .iter()
+            .map(|e| e.name.clone())
+            .collect(),
         verdict,
-        text: sentence(models, answer, &effects, outside.as_ref().map(|(outside, _)| outside)),
+        text: sentence(
+            models,
+            answer,
+            &effects,
+            outside.as_ref().map(|(outside, _)| outside),
+        ),
         extension,
         drop: drop.map(|((effect, _), _)| effect.clone()).collect(),
         other_tests: other_tests::deciding(&open, verdict),
@@ -82,7 +93,9 @@ pub(super) fn told(models: &Models, answer: &Answer) -> Discovery {
 fn chi_square(chi: Option<inquiry::ChiSquare>, models: &Models) -> ChiSquare {
     ChiSquare {
         value: chi.map(|chi| chi.value),
-        degrees_of_freedom: chi.map_or(models.base.likelihood.data().len() as f64, |chi| chi.degrees_of_freedom),
+        degrees_of_freedom: chi.map_or(models.base.likelihood.data().len() as f64, |chi| {
+            chi.degrees_of_freedom
+        }),
         p: chi.map(|chi| chi.p()),
     }
 }
@@ -91,7 +104,13 @@ fn chi_square(chi: Option<inquiry::ChiSquare>, models: &Models) -> ChiSquare {
 fn effects(models: &Models, answer: &Answer) -> Vec<JudgedEffect> {
     let judged = |judgement: &Judgement| {
         let entry = judgement.candidate.and_then(|k| models.entry(k));
-        let own = entry.map(|entry| entry.names.iter().cloned().zip(judgement.parameters.iter().copied()));
+        let own = entry.map(|entry| {
+            entry
+                .names
+                .iter()
+                .cloned()
+                .zip(judgement.parameters.iter().copied())
+        });
         JudgedEffect {
             name: entry.map_or(NONE.to_owned(), |entry| entry.explanation.name.clone()),
             log_bayes_factor: judgement.log_bayes_factor,
@@ -171,8 +190,18 @@ fn outside(models: &Models, found: &inquiry::Outside) -> Option<(Outside, Extens
 /// What can be said, for a test engineer.
 fn sentence(models: &Models, answer: &Answer, effects: &[JudgedEffect], outside: Option<&Outside>) -> String {
     let kind = models.base.model.kind.name();
-    let library = || effects.iter().filter(|e| e.name != NONE && e.name != NOT_IN_LIBRARY);
-    let best = library().reduce(|a, b| if b.log_bayes_factor > a.log_bayes_factor { b } else { a });
+    let library = || {
+        effects
+            .iter()
+            .filter(|e| e.name != NONE && e.name != NOT_IN_LIBRARY)
+    };
+    let best = library().reduce(|a, b| {
+        if b.log_bayes_factor > a.log_bayes_factor {
+            b
+        } else {
+            a
+        }
+    });
     match (answer.verdict, outside) {
         (inquiry::Verdict::NothingDetectable, _) => {
             let best = best.map_or(String::new(), |best| {
@@ -183,7 +212,9 @@ fn sentence(models: &Models, answer: &Answer, effects: &[JudgedEffect], outside:
             )
         }
         (inquiry::Verdict::Named(k), _) => {
-            let name = models.entry(k).map_or("", |entry| entry.explanation.name.as_str());
+            let name = models
+                .entry(k)
+                .map_or("", |entry| entry.explanation.name.as_str());
             let own = effects.iter().find(|e| e.name == name);
             let summary = formula::catalogue::find(name.split('.').next().unwrap_or_default());
             format!(
@@ -216,7 +247,12 @@ fn sentence(models: &Models, answer: &Answer, effects: &[JudgedEffect], outside:
             ),
             _ => format!(
                 "something is missing, and these data do not say what: the 95 % set holds {}",
-                list(effects.iter().filter(|e| e.in_credible_set).map(|e| e.name.as_str()))
+                list(
+                    effects
+                        .iter()
+                        .filter(|e| e.in_credible_set)
+                        .map(|e| e.name.as_str())
+                )
             ),
         },
     }

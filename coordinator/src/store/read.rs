@@ -336,10 +336,11 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn discovery(&self, calibration: i64) -> Result<Option<Discovery>, StoreError> {
-        let record: Option<String> = sqlx::query_scalar("SELECT record FROM discoveries WHERE calibration = ?")
-            .bind(calibration)
-            .fetch_optional(&self.pool)
-            .await?;
+        let record: Option<String> =
+            sqlx::query_scalar("SELECT record FROM discoveries WHERE calibration = ?")
+                .bind(calibration)
+                .fetch_optional(&self.pool)
+                .await?;
         let read = |json: String| {
             serde_json::from_str(&json)
                 .map_err(|e| StoreError::Corrupt(format!("record of search {calibration}: {e}")))

@@ -7,6 +7,7 @@ use super::found::{Law, Set};
 use super::left_out::LeftOut;
 use super::next_run::NextRuns;
 use super::search::Search;
+use crate::discovery::depth::{FORMS, QUICK};
 use crate::discovery::engine::Engine;
 use crate::discovery::evidence::log_sum_exp;
 use crate::discovery::settings::{Settings, Starts};
@@ -160,6 +161,7 @@ impl Inquiry {
                 evidence + set.log_bayes_factor,
                 self.task.likelihood.clone(),
                 candidates,
+                &QUICK,
                 self.task.settings.seed,
             );
             Search::new(set.effects.clone(), others, engine)
@@ -224,6 +226,7 @@ impl Inquiry {
             evidence,
             likelihood.clone(),
             candidates,
+            &QUICK,
             self.task.settings.seed,
         );
         Step::Curves(Search::new(Vec::new(), positions.collect(), engine))
@@ -257,7 +260,14 @@ impl Inquiry {
             .collect();
         let candidates = forms.iter().map(|&k| self.found.candidates[k].clone()).collect();
         let seed = self.task.settings.seed;
-        let engine = Engine::beyond(base, evidence, self.task.likelihood.clone(), candidates, seed);
+        let engine = Engine::beyond(
+            base,
+            evidence,
+            self.task.likelihood.clone(),
+            candidates,
+            &FORMS,
+            seed,
+        );
         Step::Forms(Search::new(Vec::new(), forms, engine))
     }
 
@@ -300,8 +310,13 @@ impl Inquiry {
             return self.next_runs();
         }
         let best = self.found.best_set();
-        let library = best.map_or((Vec::new(), base), |set| (set.effects.clone(), &set.fit));
-        let fits = [(Vec::new(), base), library, (vec![own.candidate], &own.fit)];
+        let parameters = |k: usize| self.found.candidates[k].parameters.len();
+        let library = best.map_or((Vec::new(), 0, base), |set| {
+            let last = set.effects.last().map_or(0, |&k| parameters(k));
+            (set.effects.clone(), last, &set.fit)
+        });
+        let law_fit = (vec![own.candidate], parameters(own.candidate), &own.fit);
+        let fits = [(Vec::new(), 0, base), library, law_fit];
         Step::LeftOut(law, LeftOut::new(&self.task.likelihood, &self.task.levels, &fits))
     }
 
