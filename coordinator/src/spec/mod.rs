@@ -2,6 +2,7 @@
 
 mod bevameter;
 mod errors;
+mod extended_job;
 mod job_file;
 mod method;
 mod noise;
@@ -23,6 +24,7 @@ use shared::predicted::Predicted;
 
 pub use bevameter::{Bevameter, PLATE, RING, Reading};
 pub use errors::LikelihoodSettings;
+pub use extended_job::extended_job;
 pub use job_file::Job;
 pub use method::{Method, MethodError};
 pub(crate) use noise::repeat_scatter;
