@@ -3,6 +3,8 @@
 //! # Layout
 //! - `record`: what a search found, as it is stored and shown.
 
+#[cfg(test)]
+pub(crate) mod fixture;
 mod record;
 
 pub use record::{

@@ -27,7 +27,7 @@ use shared::api::{CalibrationState, CalibrationStatus};
 use shared::outcome::SimulatedHistory;
 
 use crate::service::ServiceError;
-use crate::spec::{Method, Spec};
+use crate::spec::{Method, Spec, is_discovery};
 use crate::store::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Reader, Sample, StageRow, Subchains};
 
 pub use comparison::{Comparison, ComparisonRow};
@@ -87,6 +87,9 @@ impl Outcome {
                 state: row.state,
             }
             .into());
+        }
+        if is_discovery(&row.job.toml) {
+            return Err(ServiceError::Search(row.id));
         }
         let stages = reader.stages(row.id).await?;
         let spec = spec_of(reader, row).await?;

@@ -1,6 +1,8 @@
 //! Turns the text of a job and its experiment into everything a calibration needs.
 
 mod bevameter;
+mod discovery_job;
+mod discovery_settings;
 mod errors;
 mod job_file;
 mod method;
@@ -22,6 +24,10 @@ use shared::parameters;
 use shared::predicted::Predicted;
 
 pub use bevameter::{Bevameter, PLATE, RING, Reading};
+pub use discovery_job::{
+    DISCOVERY, continued_job, discovery_job, effect_name, is_discovery, without_effects,
+};
+pub use discovery_settings::{Apply, DiscoverySettings};
 pub use errors::LikelihoodSettings;
 pub use job_file::Job;
 pub use method::{Method, MethodError};
@@ -64,6 +70,8 @@ pub struct Spec {
     pub likelihood_settings: LikelihoodSettings,
     /// The measured readings of plates and rings; all are fitted.
     pub bevameter: Bevameter,
+    /// Whether its study looks for missing effects.
+    pub discovery: DiscoverySettings,
 }
 
 /// A calibration was begun with other files of its effects than this program has.
@@ -240,6 +248,7 @@ impl Spec {
             reference: job.reference,
             likelihood_settings: job.likelihood,
             bevameter,
+            discovery: job.discovery,
         })
     }
 

