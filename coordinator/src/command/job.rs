@@ -7,7 +7,7 @@ use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet, read_beside, read_text, sibling};
 
 use crate::config::JobFile;
-use crate::spec::{Job, Spec};
+use crate::spec::{Job, Spec, extended_job};
 
 /// A job with everything it names, read and validated.
 pub(super) struct JobOnDisk {
@@ -42,7 +42,7 @@ pub(super) fn read(file: &JobFile) -> Result<JobOnDisk, FileError> {
     files.extend(added);
     // Messages name the lines of the file as it is; what is kept has the additions.
     let spec = Spec::of(&job_name, job, &files, &experiment_name, &experiment)?;
-    let toml = with_effects(toml, &file.effect, &names).map_err(|e| FileError::whole(&job_name, e))?;
+    let toml = extended_job(&job_name, &toml, &file.effect, &names, &[])?;
     // An extension has a folder of its own beside its base's.
     let mut name = name(path);
     for more in file
@@ -80,32 +80,6 @@ fn added_files(paths: &[PathBuf]) -> Result<BTreeMap<String, String>, FileError>
     Ok(files)
 }
 
-/// The text of a job with further effects under `[model]`; everything else stays as it is written.
-fn with_effects(toml: String, effects: &[String], files: &[String]) -> Result<String, String> {
-    if effects.is_empty() && files.is_empty() {
-        return Ok(toml);
-    }
-    let mut document: toml_edit::DocumentMut =
-        toml.parse().map_err(|e: toml_edit::TomlError| e.to_string())?;
-    let model = document
-        .get_mut("model")
-        .and_then(toml_edit::Item::as_table_like_mut);
-    let model = model.ok_or("[model] is missing")?;
-    for (key, names) in [("effects", effects), ("effect_files", files)] {
-        if names.is_empty() {
-            continue;
-        }
-        let list = model
-            .entry(key)
-            .or_insert(toml_edit::value(toml_edit::Array::new()));
-        let list = list
-            .as_array_mut()
-            .ok_or_else(|| format!("{key} must be a list"))?;
-        list.extend(names.iter().map(String::as_str));
-    }
-    Ok(document.to_string())
-}
-
 /// The job's name: its file's, or its folder's where the file is just `job.toml`.
 fn name(path: &Path) -> String {
     let text = |s: Option<&std::ffi::OsStr>| s.map(|s| s.to_string_lossy().into_owned());
@@ -120,21 +94,4 @@ fn name(path: &Path) -> String {
 /// The name of a file without its ending.
 fn stem(file: &str) -> &str {
     file.strip_suffix(".toml").unwrap_or(file)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn effects_of_the_command_line_join_those_of_the_job_and_leave_the_rest_as_it_is() {
-        let job = "# why\n[model]\nkind = \"scm\" # here\neffects = [\"hard_pan\"]\n\n[priors]\nn = 1.1\n";
-        let added = with_effects(job.into(), &["adhesion".into()], &["mine.toml".into()]).unwrap();
-        let expected = job.replace(
-            "[\"hard_pan\"]",
-            "[\"hard_pan\", \"adhesion\"]\neffect_files = [\"mine.toml\"]",
-        );
-        assert_eq!(added, expected);
-        assert_eq!(with_effects(job.into(), &[], &[]).unwrap(), job);
-    }
 }

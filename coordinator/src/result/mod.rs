@@ -7,6 +7,7 @@ mod comparison;
 mod coverage;
 mod csv;
 pub mod diagnostics;
+pub mod discovery;
 mod entangled;
 mod errors;
 pub mod figure;
@@ -33,6 +34,7 @@ use crate::store::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Reader, S
 pub use comparison::{Comparison, ComparisonRow};
 pub use csv::PosteriorTable;
 pub use diagnostics::Diagnostics;
+pub use discovery::{DiscoverySummary, Round};
 pub use errors::{ChannelError, ErrorTable};
 pub use figure::{ChannelHistory, Figures, ModelSeries, Series};
 pub use flags::Flag;

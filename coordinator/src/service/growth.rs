@@ -6,13 +6,14 @@ use std::time::Duration;
 
 use shared::api::{CalibrationCreated, RunsAdded};
 use shared::experiment::Experiment;
-use shared::file::{FileError, FileSet};
+use shared::file::FileSet;
 
 use super::{Service, ServiceError, file_json, now_ms};
 use crate::calibration::{Calibration, Identity};
 use crate::discovery::Extension;
+use crate::discovery::candidate::extended;
 use crate::farm::dispatch::Stopped;
-use crate::spec::{Job, Method, Spec, continued_job, discovery_job, is_discovery, without_effects};
+use crate::spec::{Method, Spec, continued_job, discovery_job, is_discovery, without_effects};
 use crate::store::{CalibrationRow, NewCalibrationRow};
 use crate::study::{Step, effect_of, next_step_of, search_of};
 
@@ -237,51 +238,4 @@ impl Service {
             point_estimates: Vec::new(),
         })
     }
-}
-
-/// The text of a job with a further effect; everything else stays as it is written.
-fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<FileSet, FileError> {
-    let mut parsed = Job::parse(name, &job.toml)?.model;
-    let fail = |message: String| FileError::whole(name, message);
-    let mut files = job.files.clone();
-    let (mut effects, mut named) = (Vec::new(), Vec::new());
-    for extension in extensions {
-        match extension {
-            Extension::Effect(effect) => effects.push(effect.clone()),
-            Extension::OnWheel { wheel, .. } => {
-                return Err(fail(format!(
-                    "an effect on wheel {wheel} alone is not available in this version"
-                )));
-            }
-            Extension::File { name, text } => {
-                files.insert(name.clone(), text.clone());
-                named.push(name.clone());
-            }
-        }
-    }
-    parsed.add_effects(&effects, &named).map_err(fail)?;
-    let toml = with_effects(&job.toml, &effects, &named).map_err(fail)?;
-    Ok(FileSet { toml, files })
-}
-
-fn with_effects(toml: &str, effects: &[String], files: &[String]) -> Result<String, String> {
-    let mut document: toml_edit::DocumentMut =
-        toml.parse().map_err(|e: toml_edit::TomlError| e.to_string())?;
-    let model = document
-        .get_mut("model")
-        .and_then(toml_edit::Item::as_table_like_mut);
-    let model = model.ok_or("[model] is missing")?;
-    for (key, names) in [("effects", effects), ("effect_files", files)] {
-        if names.is_empty() {
-            continue;
-        }
-        let list = model
-            .entry(key)
-            .or_insert(toml_edit::value(toml_edit::Array::new()));
-        let list = list
-            .as_array_mut()
-            .ok_or_else(|| format!("{key} must be a list"))?;
-        list.extend(names.iter().map(String::as_str));
-    }
-    Ok(document.to_string())
 }

@@ -4,6 +4,7 @@ mod bevameter;
 mod discovery_job;
 mod discovery_settings;
 mod errors;
+mod extended_job;
 mod job_file;
 mod method;
 mod noise;
@@ -29,6 +30,7 @@ pub use discovery_job::{
 };
 pub use discovery_settings::{Apply, DiscoverySettings};
 pub use errors::LikelihoodSettings;
+pub use extended_job::extended_job;
 pub use job_file::Job;
 pub use method::{Method, MethodError};
 pub(crate) use noise::repeat_scatter;

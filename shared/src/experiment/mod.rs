@@ -27,7 +27,7 @@ pub use mesh::{MOST_BYTES, MOST_TRIANGLES, SurfaceMesh};
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
 pub use scatter::{Scatter, ScatterSd};
 pub use settings::{Noise, NoiseSd, Protocol, ProtocolKind, Rig, Soil};
-pub use wheel::Wheel;
+pub use wheel::{Wheel, rim_speed_m_s};
 
 use crate::channel::Channel;
 use crate::file::{FileError, FileSet, read_text, sibling};

@@ -5,6 +5,16 @@ use serde::{Deserialize, Serialize};
 use super::mesh::{self, SurfaceMesh};
 use super::settings::positive;
 
+/// Speed of the rim `[m/s]` by the rig's radius: `v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the sled speed `[m/s]`.
+/// 0 for a locked wheel.
+pub fn rim_speed_m_s(slip: f64, sled_speed_m_s: f64) -> f64 {
+    if slip < 0.0 {
+        sled_speed_m_s * (1.0 + slip)
+    } else {
+        sled_speed_m_s / (1.0 - slip)
+    }
+}
+
 /// A rigid wheel. `quasi_static` models its smooth rim alone: grousers enter through a radius of its own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Wheel {
@@ -48,11 +58,7 @@ impl Wheel {
     ///
     /// `None` without grousers that are counted, and for a wheel that does not turn. A surface mesh counts none.
     pub fn grouser_period_s(&self, slip: f64, sled_speed_m_s: f64) -> Option<f64> {
-        let rim_speed_m_s = if slip < 0.0 {
-            sled_speed_m_s * (1.0 + slip)
-        } else {
-            sled_speed_m_s / (1.0 - slip)
-        };
+        let rim_speed_m_s = rim_speed_m_s(slip, sled_speed_m_s);
         let turns = self.grouser_count > 0 && rim_speed_m_s > 0.0;
         turns.then(|| {
             std::f64::consts::TAU * self.rig_radius_m / (f64::from(self.grouser_count) * rim_speed_m_s)

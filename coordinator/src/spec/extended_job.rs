@@ -1,0 +1,110 @@
+//! The job of a model with more effects: the same job, and what is added to it.
+
+use shared::file::FileError;
+
+/// The text of a job with further effects and effect files under `[model]` and further lines under `[priors]`; everything
+/// else stays as it is written.
+///
+/// # Arguments
+/// - `name`: how messages call the job.
+/// - `priors`: full names of parameters, each with its number or its distribution.
+///
+/// # Errors
+/// [`FileError`] where the text is no job with a table `[model]`, or where a line of `[priors]` is there already.
+pub fn extended_job(
+    name: &str,
+    toml: &str,
+    effects: &[String],
+    files: &[String],
+    priors: &[(String, toml::Value)],
+) -> Result<String, FileError> {
+    if effects.is_empty() && files.is_empty() && priors.is_empty() {
+        return Ok(toml.to_owned());
+    }
+    let fail = |message: String| FileError::whole(name, message);
+    let mut document: toml_edit::DocumentMut = toml
+        .parse()
+        .map_err(|e: toml_edit::TomlError| fail(e.to_string()))?;
+    let model = document
+        .get_mut("model")
+        .and_then(toml_edit::Item::as_table_like_mut);
+    let model = model.ok_or_else(|| fail("[model] is missing".into()))?;
+    for (key, names) in [("effects", effects), ("effect_files", files)] {
+        if names.is_empty() {
+            continue;
+        }
+        let list = model
+            .entry(key)
+            .or_insert(toml_edit::value(toml_edit::Array::new()));
+        let list = list
+            .as_array_mut()
+            .ok_or_else(|| fail(format!("{key} must be a list")))?;
+        list.extend(names.iter().map(String::as_str));
+    }
+    if !priors.is_empty() {
+        let table = document.entry("priors").or_insert(toml_edit::table());
+        let table = table
+            .as_table_like_mut()
+            .ok_or_else(|| fail("[priors] must be a table".into()))?;
+        for (parameter, prior) in priors {
+            // As TOML writes it on one line, which is how a prior stands in a job.
+            let prior: toml_edit::Value = prior
+                .to_string()
+                .parse()
+                .map_err(|e: toml_edit::TomlError| fail(format!("{parameter}: {e}")))?;
+            if table.insert(parameter, toml_edit::value(prior)).is_some() {
+                return Err(fail(format!("{parameter} stands under [priors] already")));
+            }
+        }
+    }
+    Ok(document.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const JOB: &str = "# why\n[model]\nkind = \"scm\" # here\neffects = [\"hard_pan\"]\n\n[priors]\nn = 1.1\n\n[sampler]\nseed = 3\n";
+
+    fn extended(toml: &str, priors: &[(&str, &str)]) -> Result<String, String> {
+        let read = |(name, value): &(&str, &str)| {
+            let table: toml::Table = format!("x = {value}").parse().unwrap();
+            ((*name).to_owned(), table["x"].clone())
+        };
+        let priors: Vec<(String, toml::Value)> = priors.iter().map(read).collect();
+        extended_job(
+            "job.toml",
+            toml,
+            &["adhesion".into()],
+            &["mine.toml".into()],
+            &priors,
+        )
+        .map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn additions_join_those_of_the_job_and_leave_the_rest_as_it_is() {
+        let added = extended(JOB, &[("hard_pan.x.w", "{ half_normal = 25.0 }"), ("a.b", "0.5")]).unwrap();
+        let expected = JOB
+            .replace(
+                "[\"hard_pan\"]",
+                "[\"hard_pan\", \"adhesion\"]\neffect_files = [\"mine.toml\"]",
+            )
+            .replace(
+                "n = 1.1\n",
+                "n = 1.1\n\"hard_pan.x.w\" = { half_normal = 25.0 }\n\"a.b\" = 0.5\n",
+            );
+        assert_eq!(added, expected);
+        assert_eq!(extended_job("job.toml", JOB, &[], &[], &[]).unwrap(), JOB);
+    }
+
+    #[test]
+    fn what_cannot_be_added_is_said() {
+        let twice = extended(JOB, &[("n", "1.2")]).unwrap_err();
+        assert_eq!(twice, "job.toml: n stands under [priors] already");
+        let none = extended("[priors]\nn = 1.1\n", &[]).unwrap_err();
+        assert_eq!(none, "job.toml: [model] is missing");
+        let no_list = extended("[model]\neffects = 1\n", &[]).unwrap_err();
+        assert_eq!(no_list, "job.toml: effects must be a list");
+    }
+}
