@@ -13,6 +13,8 @@
 pub mod candidate;
 pub mod curve;
 mod design;
+#[cfg(test)]
+pub(crate) mod fixture;
 pub mod form;
 mod investigation;
 mod models;

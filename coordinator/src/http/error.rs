@@ -72,7 +72,9 @@ impl From<ServiceError> for HttpError {
         let kind = match &error {
             ServiceError::File(_) | ServiceError::Begin(_) => ErrorKind::InvalidFile,
             ServiceError::NotFound { .. } => ErrorKind::NotFound,
-            ServiceError::Control(_) | ServiceError::Effects(_) => ErrorKind::Conflict,
+            ServiceError::Control(_) | ServiceError::Effects(_) | ServiceError::Search(_) => {
+                ErrorKind::Conflict
+            }
             ServiceError::Busy(_) => ErrorKind::Busy,
             ServiceError::Store(_) | ServiceError::Thread(_) | ServiceError::Stopped(_) => {
                 ErrorKind::Internal

@@ -7,6 +7,7 @@ mod comparison;
 mod coverage;
 mod csv;
 pub mod diagnostics;
+pub mod discovery;
 mod entangled;
 mod errors;
 pub mod figure;
@@ -27,12 +28,13 @@ use shared::api::{CalibrationState, CalibrationStatus};
 use shared::outcome::SimulatedHistory;
 
 use crate::service::ServiceError;
-use crate::spec::{Method, Spec};
+use crate::spec::{Method, Spec, is_discovery};
 use crate::store::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Reader, Sample, StageRow, Subchains};
 
 pub use comparison::{Comparison, ComparisonRow};
 pub use csv::PosteriorTable;
 pub use diagnostics::Diagnostics;
+pub use discovery::{DiscoverySummary, Round};
 pub use errors::{ChannelError, ErrorTable};
 pub use figure::{ChannelHistory, Figures, ModelSeries, Series};
 pub use flags::Flag;
@@ -87,6 +89,9 @@ impl Outcome {
                 state: row.state,
             }
             .into());
+        }
+        if is_discovery(&row.job.toml) {
+            return Err(ServiceError::Search(row.id));
         }
         let stages = reader.stages(row.id).await?;
         let spec = spec_of(reader, row).await?;

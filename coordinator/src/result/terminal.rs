@@ -158,7 +158,7 @@ fn width<'a>(names: impl Iterator<Item = &'a String>) -> usize {
 
 /// The results of a study, one calibration after the other.
 pub fn study(study: &Study) -> String {
-    let results: Vec<String> = study.outcomes().map(summary).collect();
+    let results: Vec<String> = study.all().map(summary).collect();
     let mut text = results.join("\n");
     for flag in study.missed_modes() {
         let _ = writeln!(text, "\nflag {}: {}", flag.kind, flag.text);

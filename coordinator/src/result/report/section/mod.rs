@@ -3,6 +3,7 @@
 mod beside;
 mod comparison;
 mod diagnostics;
+mod discovery;
 mod errors;
 mod estimate;
 mod figures;
@@ -15,6 +16,7 @@ mod verdict;
 pub(super) use beside::beside;
 pub(super) use comparison::comparison;
 pub(super) use diagnostics::diagnostics;
+pub(super) use discovery::discovery;
 pub(super) use errors::errors;
 pub(super) use estimate::{estimate, fit};
 pub(super) use figures::figures;

@@ -1,4 +1,9 @@
-//! Store and farm together: submit, recover, control.
+//! Store and farm together: submit, recover, control, grow.
+//!
+//! # Layout
+//! - `growth`: what is added to a study that is there.
+
+mod growth;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -31,6 +36,9 @@ pub enum ServiceError {
     /// The effects are not those that the calibration was computed with.
     #[error(transparent)]
     Effects(#[from] EffectsChanged),
+    /// A search has nothing to extend, and no search of its own.
+    #[error("calibration {0} is a search for a missing effect: name the calibration that it searches")]
+    Search(i64),
     /// No such thing.
     #[error("there is no {what} {id}")]
     NotFound {
@@ -62,6 +70,8 @@ pub struct Service {
     store: Store,
     dispatcher: Dispatcher,
     left_alone: Arc<BTreeMap<i64, String>>,
+    /// Held by whoever adds to a study: each sees what the one before has added.
+    growing: Arc<tokio::sync::Mutex<()>>,
 }
 
 impl Service {
@@ -77,6 +87,7 @@ impl Service {
             store,
             dispatcher,
             left_alone: Arc::default(),
+            growing: Arc::default(),
         };
         service.left_alone = Arc::new(service.recover().await?);
         Ok(service)
@@ -128,9 +139,10 @@ impl Service {
                 study: row.study,
                 experiment: row.experiment,
             };
+            let (job, experiment) = (row.job.clone(), self.experiment(row.experiment).await?);
             // Replaying is seconds of CPU for a long calibration: not on the async runtime.
             let replayed = tokio::task::spawn_blocking(move || {
-                let mut calibration = Calibration::new(identity, spec)?;
+                let mut calibration = Calibration::of(identity, spec, &job, &experiment)?;
                 let facts = calibration.replay(stored).map_err(|e| e.to_string());
                 Ok::<_, ServiceError>((calibration, facts))
             })
