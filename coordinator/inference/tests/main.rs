@@ -14,3 +14,4 @@ mod metamodel;
 mod priors;
 mod problems;
 mod search;
+mod trends;

@@ -11,6 +11,7 @@ mod entangled;
 mod errors;
 pub mod figure;
 mod flags;
+mod level;
 mod point_estimate;
 mod predictive;
 mod readings;
