@@ -90,8 +90,9 @@ impl<'a> TrendTest<'a> {
         let whitening = likelihood.whitening(&mean.values, &mean.theta)?;
         let whitened: Vec<Vec<f64>> = sensitivities.iter().map(|x| whitening.apply(x)).collect();
         let count = whitened.len();
-        let information =
-            DMatrix::from_fn(count, count, |j, k| whitening.curvature(&whitened[j], &whitened[k]));
+        let information = DMatrix::from_fn(count, count, |j, k| {
+            whitening.curvature(&whitened[j], &whitened[k])
+        });
         let Some(precision) = Cholesky::new(DMatrix::identity(count, count) + information) else {
             return Ok(None);
         };

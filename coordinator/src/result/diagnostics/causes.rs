@@ -45,7 +45,12 @@ pub(super) fn trend_flags(trends: &[TrendDiagnostics]) -> Vec<Flag> {
     let alarming = alarming(trends);
     let causes = causes(&alarming);
     let flag = |(trend, p): (&TrendDiagnostics, f64)| {
-        let mut text = format!("{} ({} among {} tests)", sentence(trend), p_words(p), trends.len());
+        let mut text = format!(
+            "{} ({} among {} tests)",
+            sentence(trend),
+            p_words(p),
+            trends.len()
+        );
         for cause in causes.iter().filter(|c| c.channels.contains(&&*trend.channel)) {
             text.push_str(": ");
             text.push_str(cause.words);
@@ -253,12 +258,27 @@ mod tests {
     #[test]
     fn each_known_pattern_has_its_cause() {
         for (channel, against, z, ending) in [
-            (SINKAGE, Against::SledSpeed, -6.0, "carry more where the wheel is faster"),
-            (SINKAGE, Against::SledSpeed, 6.0, "carry less where the wheel is faster"),
+            (
+                SINKAGE,
+                Against::SledSpeed,
+                -6.0,
+                "carry more where the wheel is faster",
+            ),
+            (
+                SINKAGE,
+                Against::SledSpeed,
+                6.0,
+                "carry less where the wheel is faster",
+            ),
             (SINKAGE, Against::Slip, 6.0, "as it slips (slip-sinkage)"),
             (SINKAGE, Against::Slip, -6.0, "weaker than the model has it"),
             (PULL, Against::Constant, 6.0, "(its tare) may be off"),
-            (TORQUE, Against::Constant, 6.0, "in all runs (p = 2e-9 among 1 tests)"),
+            (
+                TORQUE,
+                Against::Constant,
+                6.0,
+                "in all runs (p = 2e-9 among 1 tests)",
+            ),
             (PULL, Against::SlipXSledSpeed, 6.0, "(p = 2e-9 among 1 tests)"),
         ] {
             let found = texts(&[trend(channel, against, z)]);
