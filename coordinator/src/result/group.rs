@@ -6,6 +6,9 @@ use super::comparison::ComparisonRow;
 use super::level::{Level, few_levels};
 use super::report::number;
 
+/// Reads a condition from a row.
+type Condition = fn(&ComparisonRow) -> f64;
+
 /// The errors of the rows at one level of a condition, or of one wheel.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ErrorGroup {
@@ -61,7 +64,7 @@ impl GroupError {
 
 /// Fitted rows, then the others, each by slip, load, speed and wheel; conditions on one level only are left out.
 pub(super) fn error_groups(rows: &[ComparisonRow]) -> Vec<ErrorGroup> {
-    let conditions: [(&str, fn(&ComparisonRow) -> f64); 3] = [
+    let conditions: [(&str, Condition); 3] = [
         ("slip", |r| r.slip),
         ("wheel_load", |r| r.wheel_load_n),
         ("sled_speed", |r| r.sled_speed_m_s),
