@@ -15,3 +15,4 @@ mod metamodel;
 mod priors;
 mod problems;
 mod search;
+mod trends;

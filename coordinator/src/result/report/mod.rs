@@ -52,7 +52,7 @@ pub fn page(study: &Study) -> String {
         (
             "errors",
             "Errors by channel",
-            section::errors(outcome, &comparison),
+            html! { (section::errors(outcome, &comparison)) (section::groups(&comparison)) },
         ),
         ("parameters", "Parameters", parameters),
         method,
