@@ -7,7 +7,6 @@ use anyhow::{Context, bail};
 use shared::api::CalibrationState;
 use shared::model::equations_of;
 use tokio::net::TcpListener;
-use tokio::sync::Mutex;
 
 use super::Stop;
 use super::output::{note, say};
@@ -36,7 +35,7 @@ pub(super) struct Folder {
     /// Its store, and a farm for it.
     pub(super) service: Service,
     local_workers: Option<usize>,
-    listener: Mutex<Option<TcpListener>>,
+    listener: Option<TcpListener>,
 }
 
 impl Folder {
@@ -51,7 +50,7 @@ impl Folder {
             out: out.to_owned(),
             service: Service::open(&store, LEASE_MS).await?,
             local_workers,
-            listener: Mutex::new(listener),
+            listener,
         })
     }
 
@@ -89,8 +88,8 @@ impl Folder {
         Ok(())
     }
 
-    /// Brings a study to its end, writes its results and prints them.
-    pub(super) async fn finish(&self, study: i64) -> anyhow::Result<()> {
+    /// Brings a study to its end, writes its results and prints them; of its searches the one of a calibration, or the last.
+    pub(super) async fn finish(mut self, study: i64, searched: Option<i64>) -> anyhow::Result<()> {
         let reader = self.service.store().reader();
         let rows = reader.study(study).await?;
         let is_over = rows.iter().all(|row| row.state.is_final());
@@ -111,7 +110,7 @@ impl Folder {
                 "\nin {}: summary.json, posterior.csv, report.html, grouser.db\n",
                 self.out.display()
             );
-            say(&(terminal::study(&study) + &self.found(&study) + &files))?;
+            say(&(terminal::study(&study) + &self.found(&study, searched) + &files))?;
         }
         match rows.iter().find(|row| row.state != CalibrationState::Finished) {
             None => Ok(()),
@@ -124,9 +123,10 @@ impl Folder {
         }
     }
 
-    /// What the last search found, and how it is added; what it found before was added.
-    fn found(&self, study: &Study) -> String {
-        let Some(round) = study.rounds.last() else {
+    /// What a search found, and how it is added.
+    fn found(&self, study: &Study, searched: Option<i64>) -> String {
+        let meant = study.rounds.iter().find(|r| Some(r.calibration) == searched);
+        let Some(round) = meant.or(study.rounds.last()) else {
             return String::new();
         };
         let place = format!("--out {}", self.out.display());
@@ -137,11 +137,10 @@ impl Folder {
     }
 
     /// Simulates until the study is over, or until ^C.
-    async fn calibrate(&self, study: i64) -> anyhow::Result<End> {
+    async fn calibrate(&mut self, study: i64) -> anyhow::Result<End> {
+        let listener = self.listener.take();
         let service = &self.service;
         let stop = Stop::new();
-        // A listener serves once.
-        let listener = self.listener.lock().await.take();
         let server = listener.map(|listener| {
             if let Ok(address) = listener.local_addr() {
                 note(&format!(

@@ -126,13 +126,14 @@ async fn grow(
     add: impl AsyncFn(&Service) -> Result<(), ServiceError>,
 ) -> anyhow::Result<()> {
     let folder = Folder::open(out, local_workers, None).await?;
+    let service = folder.service.clone();
     let result = async {
         let study = folder.service.calibration_row(id).await?.study;
         folder.go_on(study).await?;
         add(&folder.service).await?;
-        folder.finish(study).await
+        folder.finish(study, Some(id)).await
     };
     let result = result.await;
-    folder.service.close().await;
+    service.close().await;
     result
 }

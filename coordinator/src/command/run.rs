@@ -32,12 +32,13 @@ pub(super) async fn run(config: Run) -> anyhow::Result<()> {
     };
     std::fs::create_dir_all(&out).with_context(|| format!("--out {}", out.display()))?;
     let folder = Folder::open(&out, config.local_workers, listener).await?;
+    let service = folder.service.clone();
     let result = async {
         let study = take_up(&job, &folder).await?;
-        folder.finish(study).await
+        folder.finish(study, None).await
     };
     let result = result.await;
-    folder.service.close().await;
+    service.close().await;
     result
 }
 
