@@ -115,7 +115,10 @@ impl Models {
         let mut reductions = Vec::new();
         for effect in own {
             // An effect that the others, or the data, need in order to mean anything stays.
-            if let Ok(without) = spec(&without_effects(JOB, job, std::slice::from_ref(&effect))?, experiment) {
+            if let Ok(without) = spec(
+                &without_effects(JOB, job, std::slice::from_ref(&effect))?,
+                experiment,
+            ) {
                 let names = without.parameters.into_iter().map(|p| p.name).collect();
                 reductions.push((effect, names));
             }
@@ -207,7 +210,9 @@ impl Models {
                 let extensions: Vec<&Extension> = entries.map(|e| &e.explanation.extension).collect();
                 extended(JOB, &self.job, &extensions)?
             }
-            Model::Without(k) => without_effects(JOB, &self.job, std::slice::from_ref(&self.reductions[*k].0))?,
+            Model::Without(k) => {
+                without_effects(JOB, &self.job, std::slice::from_ref(&self.reductions[*k].0))?
+            }
         };
         Ok(spec(&job, &self.experiment)?.fit_variant)
     }

@@ -339,6 +339,10 @@ fn members(
     let parsed = Job::parse(file, &job.toml)?;
     parsed.check_files(file, &job.files)?;
     let spec = Spec::of(file, parsed, &job.files, "experiment.toml", experiment)?;
+    if matches!(spec.method, Method::Discover { .. }) {
+        let message = "[sampler] algorithm = \"discovery\" is a search that a study runs by itself: say apply = \"ask\" or \"auto\" under [discovery]";
+        return Err(FileError::whole(file, message).into());
+    }
     let point_estimates = spec.point_estimates.clone();
     let mut members = vec![(Calibration::new(identity.clone(), Arc::new(spec))?, job.clone())];
     for method in &point_estimates {
