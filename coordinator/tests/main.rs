@@ -1,3 +1,4 @@
 //! The coordinator's parts together, without HTTP and store.
 
+mod hidden_effect;
 mod sbc;

@@ -1,40 +1,53 @@
 //! How well the missing effect is found, on experiments whose truth is known.
 //!
-//! `cargo bench -p coordinator --bench hidden_effect [-- EXPERIMENTS [SEED [LINES]]]`: as many experiments with one hidden effect of
-//! the catalogue as without, 200 of each where nothing is said, with a line for each where LINES is 1; then the four experiments of
-//! `tests/data`.
+//! `cargo bench -p coordinator --bench hidden_effect [-- KIND [COUNT [SEED]]]`, a line for each experiment and then the targets of
+//! the project beside what came out. KIND is
+//! - `one`: one effect of the catalogue, each in turn; `none`: nothing; `two`, `three`: several, each worth 10 nats beside the others.
+//! - `outside`: one of the laws of `laws/`, which are in nobody's library.
+//! - `one+none`, or another list: COUNT of each. `all`: of each of these.
+//! - `scm`: one effect, of the three-dimensional model on a coarse grid.
+//! - `ambiguous`: one effect, at one load and one speed: whether the proposed runs, made and measured, tell what it is.
+//! - `tmcmc`: one effect; the search's log Bayes factor beside that of full evidences by the sampler.
+//! - `data`: the experiments of `tests/data`.
+//!
+//! A truth is drawn from the priors of the job and of the effect's file, and run at the conditions of a plan; noise of 3 % of each
+//! channel's root mean square is added, and the search is given the texts of job and experiment, nothing else. Rates count where,
+//! without noise, the best rival outside the truth's class falls short by 10 nats. The held-out error is that of 16 runs in between
+//! and a little beyond, against the truth without noise.
 
-mod models;
-mod pipeline;
+mod ambiguous;
+mod data;
 mod study;
-mod tally;
+mod tmcmc;
 
 use std::process::ExitCode;
 
-use models::Models;
-use shared::file::FileSet;
-use tally::{Fate, Tally};
+use study::each;
+use study::fate::Fate;
+use study::kind::Kind;
+use study::targets::Tally;
 
-/// The experiments of another implementation of the model, with what it hid.
-const SYNTHETIC: [&str; 4] = [
-    "nothing-hidden",
-    "shear-mobilisation",
-    "undetectable",
-    "outside-the-catalogue",
-];
+/// Experiments of a kind where nothing is said.
+const USUAL: u64 = 100;
 
 fn main() -> ExitCode {
-    let numbers: Result<Vec<u64>, _> = std::env::args()
+    let arguments: Vec<String> = std::env::args()
         .skip(1)
         .filter(|a| !a.starts_with("--"))
-        .map(|a| a.parse())
         .collect();
-    let Ok(numbers) = numbers else {
-        eprintln!("error: EXPERIMENTS, SEED and LINES are whole numbers");
+    let number = |k: usize, usual: u64| arguments.get(k).map_or(Ok(usual), |a| a.parse::<u64>());
+    let (Ok(count), Ok(seed)) = (number(1, USUAL), number(2, 1)) else {
+        eprintln!("error: COUNT and SEED are whole numbers");
         return ExitCode::FAILURE;
     };
-    let number = |i: usize, usual: u64| numbers.get(i).copied().unwrap_or(usual);
-    match drawn(number(0, 200), number(1, 1), number(2, 0) == 1).and_then(|()| synthetic()) {
+    let done = match arguments.first().map_or("one", String::as_str) {
+        "ambiguous" => ambiguous::run(count, seed),
+        "tmcmc" => tmcmc::run(count, seed),
+        "data" => data::run(),
+        "all" => tables("one+none+outside+two+three", count, seed),
+        kinds => tables(kinds, count, seed),
+    };
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             eprintln!("error: {message}");
@@ -43,101 +56,33 @@ fn main() -> ExitCode {
     }
 }
 
-/// Experiments drawn from the priors, each effect in turn.
-fn drawn(count: u64, seed: u64, has_lines: bool) -> Result<(), String> {
-    let models = Models::new(study::JOB, &study::experiment())?;
-    let effects = models.candidates.len();
-    println!(
-        "{effects} candidates; {} slips, {} loads, {} speeds; noise {} of each channel's rms; seed {seed}",
-        study::SLIPS.len(),
-        study::LOADS_N.len(),
-        study::SPEEDS_M_S.len(),
-        study::NOISE
-    );
-    for (name, reason) in &models.left_out {
-        println!("left out: {name}: {reason}");
+/// Runs so many experiments of each kind, and prints the targets.
+fn tables(kinds: &str, count: u64, seed: u64) -> Result<(), String> {
+    let mut all = Vec::new();
+    for name in kinds.split('+') {
+        let kind = Kind::ALL.into_iter().find(|kind| kind.name() == name);
+        all.extend(fates(
+            kind.ok_or(format!("unknown kind \"{name}\""))?,
+            count,
+            seed,
+        )?);
     }
-    let mut tally = Tally::default();
-    for k in 0..2 * count {
-        let hidden = (k % 2 == 0).then_some((k / 2) as usize % effects);
-        let case = study::draw(&models, hidden, seed, k)?;
-        let finding = study::search(&models, &case.measured)?;
-        let separation = match hidden {
-            None => None,
-            Some(effect) => {
-                let clear = study::search(&models, &case.noise_free)?;
-                tally::separation(effect, &clear, &case.noise_free)
-            }
-        };
-        let fate = Fate::new(hidden, &finding, separation);
-        if has_lines {
-            println!("{}", fate.line(&models, &case, &finding));
-        }
-        tally.add(fate);
-    }
-    println!("{tally}");
+    println!("{}", Tally(&all));
     Ok(())
 }
 
-/// The experiments of `tests/data`.
-fn synthetic() -> Result<(), String> {
-    for name in SYNTHETIC {
-        let folder = format!("{}/../tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
-        let read = |file: &str| {
-            let path = format!("{folder}/{file}");
-            std::fs::read_to_string(&path).map_err(|e| format!("{path}: {e}"))
-        };
-        let experiment = FileSet {
-            toml: read("experiment.toml")?,
-            files: [("runs.csv".to_owned(), read("runs.csv")?)].into(),
-        };
-        let job = FileSet {
-            toml: read("job.toml")?,
-            files: Default::default(),
-        };
-        let begin = std::time::Instant::now();
-        let made = coordinator::discovery::Models::new(&job, &experiment, 3).map_err(|e| e.to_string())?;
-        println!("models {:?}", begin.elapsed());
-        drop(made);
-        let (models, answer) = pipeline::inquire(&job, &experiment)?;
-        println!("\n{name}: {:?} {:?}", answer.verdict, begin.elapsed());
-        println!(
-            "  {:?} {:?} to name {} all {}",
-            answer.chi_square.map(|c| (c.value, c.p())),
-            answer.chi_square_best.map(|c| (c.value, c.p())),
-            answer.evaluations_to_name,
-            answer.evaluations
-        );
-        let mut judged = answer.judged.clone();
-        judged.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-        let name_of =
-            |k: Option<usize>| k.map_or("none".to_owned(), |k| models.task().candidates()[k].name.clone());
-        for j in judged.iter().take(6) {
-            println!(
-                "  {:<28} ln BF {:8.2} P {:.3} class {} {:?} {:?}",
-                name_of(j.candidate),
-                j.log_bayes_factor,
-                j.probability,
-                j.class,
-                j.method,
-                j.parameters
-            );
+/// How so many experiments of a kind fared, each printed as soon as it is over.
+fn fates(kind: Kind, count: u64, seed: u64) -> Result<Vec<Fate>, String> {
+    let one = |number: u64| {
+        let fate = kind
+            .draw(seed, number)
+            .and_then(|case| kind.search(&case, number))
+            .map_err(|e| format!("{} {number}: {e}", kind.name()));
+        match &fate {
+            Ok(fate) => println!("{fate}"),
+            Err(message) => println!("failed: {message}"),
         }
-        println!(
-            "  not in library {:?}; best set {:?}",
-            answer.not_in_library,
-            answer
-                .best_set
-                .iter()
-                .map(|k| name_of(Some(*k)))
-                .collect::<Vec<_>>()
-        );
-        if let Some(o) = &answer.outside {
-            println!("  outside {} {:?}", name_of(Some(o.candidate)), o);
-        }
-        for n in &answer.next_runs {
-            println!("  next {:?}", n);
-        }
-    }
-    Ok(())
+        fate
+    };
+    each(count, one)?.into_iter().collect()
 }

@@ -187,7 +187,12 @@ impl Models {
         if !self.variants.contains_key(&key) {
             let mut variant = self.made(&key.0)?;
             if asked.is_proposed {
+                // The soil's density is there only if an effect of this variant asks for it.
+                let density_kg_m3 = variant.conditions.first().and_then(|c| c.density_kg_m3);
                 variant.conditions.clone_from(&self.design);
+                for condition in &mut variant.conditions {
+                    condition.density_kg_m3 = density_kg_m3;
+                }
                 variant.stiffness_sensitivity = false;
                 variant.plates.clear();
                 variant.rings.clear();

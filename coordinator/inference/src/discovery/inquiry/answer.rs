@@ -2,9 +2,10 @@
 
 use super::chi_square::ChiSquare;
 use super::found::{Found, Law, Set};
-use super::next_run::{Explanation, NextRun};
+use super::next_run::{Explanation, NextRun, draws};
 use super::steps::{DETECTED, WRONG};
 use super::task::Task;
+use crate::discovery::descent::Descent;
 use crate::discovery::evidence::log_sum_exp;
 use crate::discovery::finding::Method;
 
@@ -16,6 +17,10 @@ const NAMED: f64 = 0.9;
 const CREDIBLE: f64 = 0.95;
 /// Explanations with less probability are not told apart by further runs.
 const OPEN: f64 = 0.02;
+/// Draws of what the data leave of a model's parameters, and their streams, behind those of the explanations that remain open.
+const DRAWS: usize = 33;
+const OF_BASE: u64 = 1000;
+const OF_BEST: u64 = 1001;
 /// Most explanations that further runs are to tell apart.
 const MOST_OPEN: usize = 5;
 
@@ -51,6 +56,15 @@ pub struct Judgement {
     pub method: Method,
     /// Its own most probable parameters.
     pub parameters: Vec<f64>,
+}
+
+/// A model with what the data leave of its parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fitted {
+    /// Its effects beyond the base.
+    pub effects: Vec<usize>,
+    /// Draws of the base's parameters and theirs by Laplace's approximation, the most probable ones first.
+    pub draws: Vec<Vec<f64>>,
 }
 
 /// A law outside the library.
@@ -91,10 +105,16 @@ pub struct Answer {
     pub chi_square: Option<ChiSquare>,
     /// How well the best explanation does.
     pub chi_square_best: Option<ChiSquare>,
+    /// The base.
+    pub base: Fitted,
+    /// What the verdict would add to it: the law, or the best set.
+    pub best: Fitted,
     /// Runs to make next.
     pub next_runs: Vec<NextRun>,
     /// Evaluations until the effect had a name.
     pub evaluations_to_name: usize,
+    /// And until that was confirmed.
+    pub evaluations_to_confirm: usize,
     /// All evaluations.
     pub evaluations: usize,
 }
@@ -284,6 +304,17 @@ impl Answer {
             parameters: law.fit.frame.theta(&law.fit.point.position)[own..].to_vec(),
             left_out_nats: law.left_out.unwrap_or([0.0; 2]),
         });
+        let best_set = found.best_set().filter(|set| set.log_bayes_factor > DETECTED);
+        let fitted = |effects: Vec<usize>, fit: Option<&Descent>, number: u64| {
+            let seed = task.settings.seed;
+            let draws = fit.map_or(Vec::new(), |fit| draws(fit, &task.likelihood, seed, number, DRAWS));
+            Fitted { effects, draws }
+        };
+        let (effects, fit) = match (verdict, law, best_set) {
+            (Verdict::Outside, Some(law), _) => (vec![law.candidate], Some(&law.fit)),
+            (_, _, Some(set)) => (set.effects.clone(), Some(&set.fit)),
+            _ => (Vec::new(), found.fit()),
+        };
         let chi_square_best = match (verdict, law) {
             (Verdict::Outside, Some(law)) => ChiSquare::of(&law.fit, &task.likelihood),
             _ => of_library,
@@ -293,17 +324,17 @@ impl Answer {
             judged: weighed.judged,
             not_in_library: weighed.not_in_library,
             outside: outside.filter(|_| verdict == Verdict::Outside),
-            best_set: found
-                .best_set()
-                .filter(|set| set.log_bayes_factor > DETECTED)
-                .map_or(Vec::new(), |set| set.effects.clone()),
+            best_set: best_set.map_or(Vec::new(), |set| set.effects.clone()),
             gains: found.gains.clone(),
             cannot_exclude: singles.map_or(Vec::new(), |f| f.cannot_exclude.clone()),
             refused: singles.map_or(Vec::new(), |f| f.refused.clone()),
             chi_square: found.fit().and_then(|fit| ChiSquare::of(fit, &task.likelihood)),
             chi_square_best,
+            base: fitted(Vec::new(), found.fit(), OF_BASE),
+            best: fitted(effects, fit, OF_BEST),
             next_runs,
             evaluations_to_name: found.to_name,
+            evaluations_to_confirm: singles.map_or(0, |finding| finding.spent.to_confirm()),
             evaluations,
         }
     }

@@ -24,7 +24,7 @@ mod search;
 mod steps;
 mod task;
 
-pub use answer::{Answer, Judgement, Outside, Verdict};
+pub use answer::{Answer, Fitted, Judgement, Outside, Verdict};
 pub use asked::{Asked, Model};
 pub use chi_square::ChiSquare;
 pub use next_run::NextRun;

@@ -6,6 +6,7 @@ use super::asked::{Asked, Model};
 use super::task::{Proposed, Task};
 use crate::discovery::descent::Descent;
 use crate::discovery::evidence::log_sum_exp;
+use crate::likelihood::Likelihood;
 use crate::rng::Stream;
 
 /// Draws of each explanation.
@@ -78,6 +79,28 @@ impl Predicted {
     }
 }
 
+/// Draws of a fit's posterior by Laplace's approximation, those that the prior allows. The mode itself is the first: where few draws
+/// are possible it still speaks.
+pub(super) fn draws(
+    fit: &Descent,
+    likelihood: &Likelihood,
+    seed: u64,
+    number: u64,
+    count: usize,
+) -> Vec<Vec<f64>> {
+    let factor = Cholesky::new(fit.parabola(likelihood).hessian).map(|c| c.inverse());
+    let factor = factor.and_then(Cholesky::new).map(|c| c.l());
+    let mode = DVector::from_column_slice(&fit.point.position);
+    let draw = |k: usize| {
+        let z = Stream::new(seed, STAGE, number, k as u64).normals(mode.len());
+        let moved = factor.as_ref().map(|l| l * DVector::from_vec(z))?;
+        let position: Vec<f64> = (&mode + moved).iter().copied().collect();
+        fit.frame.holds(&position).then(|| fit.frame.theta(&position))
+    };
+    let first = std::iter::once(fit.frame.theta(&fit.point.position));
+    first.chain((1..count).filter_map(draw)).collect()
+}
+
 impl NextRuns {
     /// `None` where nothing is open: fewer than two explanations, or no run that could be made.
     pub(super) fn new(task: &Task, explanations: Vec<Explanation>) -> Option<Self> {
@@ -87,21 +110,10 @@ impl NextRuns {
         let seed = task.settings.seed;
         let drawn = explanations.into_iter().enumerate().map(|(number, explanation)| {
             let fit = explanation.fit;
-            let factor = Cholesky::new(fit.parabola(&task.likelihood).hessian).map(|c| c.inverse());
-            let factor = factor.and_then(Cholesky::new).map(|c| c.l());
-            let mode = DVector::from_column_slice(&fit.point.position);
-            let draw = |k: usize| {
-                let z = Stream::new(seed, STAGE, number as u64, k as u64).normals(mode.len());
-                let moved = factor.as_ref().map(|l| l * DVector::from_vec(z))?;
-                let position: Vec<f64> = (&mode + moved).iter().copied().collect();
-                fit.frame.holds(&position).then(|| fit.frame.theta(&position))
-            };
-            // The mode itself is the first: where few draws are possible it still speaks.
-            let mode = std::iter::once(fit.frame.theta(&fit.point.position));
             Drawn {
                 effects: explanation.effects,
                 probability: explanation.probability,
-                thetas: mode.chain((1..DRAWS).filter_map(draw)).collect(),
+                thetas: draws(fit, &task.likelihood, seed, number as u64, DRAWS),
                 values: Vec::new(),
             }
         });

@@ -1,0 +1,144 @@
+//! An experiment whose truth is known: drawn from the priors, run, measured with noise.
+
+use coordinator::discovery::Extension;
+use coordinator::discovery::candidate::extended;
+use coordinator::embedded::Evaluate;
+use coordinator::spec::Spec;
+use inference::rng::Stream;
+use shared::channel::Channel;
+use shared::file::FileSet;
+use shared::model::ModelVariant;
+use shared::outcome::{Observables, Outcome};
+
+use super::design::{CHANNELS, Plan, Row, experiment};
+
+/// Streams of this study, far from those of any sampler and of any search.
+const STAGE: u64 = 1 << 41;
+/// Vectors of the prior that the model may refuse in a row.
+const MOST_REFUSED: u64 = 1000;
+/// Noise of a channel, as a share of the root mean square of its noise-free values over the fitted runs.
+pub(crate) const NOISE: f64 = 0.03;
+
+/// What the values of a run are, in the order of the channels.
+type Values = [f64; CHANNELS];
+
+/// An experiment and its truth.
+#[derive(Debug, Clone)]
+pub(crate) struct Case {
+    pub(crate) plan: Plan,
+    /// What is hidden, and the job of the model that has it.
+    pub(crate) hidden: Vec<String>,
+    pub(crate) truth_job: FileSet,
+    pub(crate) theta: Vec<f64>,
+    pub(crate) rows: Vec<Row>,
+    pub(crate) noise_free: Vec<Values>,
+    pub(crate) measured: Vec<Values>,
+    pub(crate) sds: Values,
+}
+
+/// Parses a job and its experiment.
+pub(crate) fn spec(job: &FileSet, experiment: &FileSet) -> Result<Spec, String> {
+    Spec::new("job.toml", job, "experiment.toml", experiment).map_err(|e| e.to_string())
+}
+
+/// The values of each run.
+pub(crate) fn values(seen: &Observables, runs: usize) -> Vec<Values> {
+    let of = |channel: Channel, run: usize| seen.channel(channel)[run];
+    (0..runs)
+        .map(|run| [Channel::DrawbarPull, Channel::Torque, Channel::Sinkage].map(|c| of(c, run)))
+        .collect()
+}
+
+fn evaluated(variant: &ModelVariant, theta: &[f64]) -> Result<Option<Vec<Values>>, String> {
+    match Evaluate::new(variant)?.evaluate(theta) {
+        Outcome::Evaluated(seen) => Ok(Some(values(&seen, variant.conditions.len()))),
+        Outcome::Rejected(_) => Ok(None),
+        Outcome::Fault(fault) => Err(format!("{fault:?}")),
+    }
+}
+
+/// Values that stand in until the rig has run; a wheel that stands above its soil is as good as any.
+pub(crate) fn blank(rows: &[Row]) -> FileSet {
+    experiment(rows, &vec![[0.0; CHANNELS]; rows.len()], [1.0; CHANNELS])
+}
+
+/// Runs a model that is known; `None` where it refuses one of the rows.
+pub(crate) fn run(job: &FileSet, rows: &[Row], theta: &[f64]) -> Result<Option<Vec<Values>>, String> {
+    let spec = spec(job, &blank(rows))?;
+    let theta = spec.model_theta(theta);
+    let Some(mut all) = evaluated(&spec.fit_variant, theta)? else {
+        return Ok(None);
+    };
+    if let Some(variant) = &spec.holdout_variant {
+        let Some(holdout) = evaluated(variant, theta)? else {
+            return Ok(None);
+        };
+        all.extend(holdout);
+    }
+    Ok(Some(all))
+}
+
+impl Case {
+    /// Draws a truth from the priors of the base and what is hidden, and measures it.
+    ///
+    /// # Arguments
+    /// - `hidden`: the name of each explanation with what it adds to the job. `attempt`: another truth of the same number.
+    pub(crate) fn draw(
+        plan: Plan,
+        hidden: &[(String, Extension)],
+        seed: u64,
+        number: u64,
+        attempt: u64,
+    ) -> Result<Self, String> {
+        let extensions: Vec<&Extension> = hidden.iter().map(|(_, extension)| extension).collect();
+        let truth_job = extended("job.toml", &plan.job(), &extensions).map_err(|e| e.to_string())?;
+        let rows = plan.rows();
+        let prior = spec(&truth_job, &blank(&rows))?.prior();
+        for refused in 0..MOST_REFUSED {
+            let stage = STAGE + 2 * attempt;
+            let theta = prior.sample(&mut Stream::new(seed, stage, number, refused));
+            let Some(noise_free) = run(&truth_job, &rows, &theta)? else {
+                continue;
+            };
+            let mut sds = [0.0; CHANNELS];
+            for (channel, sd) in sds.iter_mut().enumerate() {
+                let fitted = rows.iter().zip(&noise_free).filter(|(row, _)| !row.is_holdout);
+                let squares: Vec<f64> = fitted.map(|(_, v)| v[channel] * v[channel]).collect();
+                *sd = NOISE * (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+            }
+            let mut noise = Stream::new(seed, stage + 1, number, 0)
+                .normals(CHANNELS * rows.len())
+                .into_iter();
+            let mut noisy = |v: &Values| {
+                let mut measured = *v;
+                for (x, sd) in measured.iter_mut().zip(sds) {
+                    *x += sd * noise.next().unwrap_or(0.0);
+                }
+                measured
+            };
+            return Ok(Self {
+                plan,
+                hidden: hidden.iter().map(|(name, _)| name.clone()).collect(),
+                measured: noise_free.iter().map(&mut noisy).collect(),
+                truth_job,
+                theta,
+                rows,
+                noise_free,
+                sds,
+            });
+        }
+        Err(format!(
+            "the model refused {MOST_REFUSED} draws of the prior in a row"
+        ))
+    }
+
+    /// What the search may see.
+    pub(crate) fn experiment(&self) -> FileSet {
+        experiment(&self.rows, &self.measured, self.sds)
+    }
+
+    /// The same without noise.
+    pub(crate) fn clear(&self) -> FileSet {
+        experiment(&self.rows, &self.noise_free, self.sds)
+    }
+}

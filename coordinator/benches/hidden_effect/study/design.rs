@@ -1,0 +1,150 @@
+//! What is run: the conditions of an experiment, and its files.
+
+use shared::file::FileSet;
+
+/// Channels that are measured: drawbar pull, torque, sinkage.
+pub(crate) const CHANNELS: usize = 3;
+/// Truths of the quasi-static model are drawn from these priors.
+const PRIORS: &str = "log10_p_ref = { uniform = [4.0, 5.6] }\nkappa = { normal = [0.0, 0.3], bounds = [-0.8, 2.0] }\nn = { normal = [1.1, 0.2], bounds = [0.8, 2.0] }\nfriction_angle_deg = { normal = [30.0, 5.7], bounds = [11.5, 37.3] }\n";
+/// The three-dimensional model costs seconds: soils in which the wheel does not drown, and no kappa, which one wheel hardly shows.
+const SPATIAL_PRIORS: &str = "log10_p_ref = { uniform = [4.6, 5.4] }\nkappa = 0.0\nn = { normal = [1.1, 0.1], bounds = [0.8, 2.0] }\nfriction_angle_deg = { normal = [30.0, 4.0], bounds = [15.0, 37.3] }\n";
+/// Rolling is short and coarse: a search is judged here, not the physics.
+const SPATIAL: &str = "kind = \"scm\"\ndem_spacing_m = 0.012\ntravel_step_m = 0.003\nsteady_travel_m = 0.3\nsteady_tolerance = 0.01\n";
+
+/// Which runs are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Plan {
+    /// Six slips, two loads, two speeds of the rim.
+    Full,
+    /// The same; every second run is a second pass.
+    Passes,
+    /// The same; every second run is that of a smaller wheel.
+    Wheels,
+    /// Six slips at one load and one speed: much stays ambiguous.
+    Narrow,
+    /// Four slips, two loads, two speeds of a wheel that rolls in three dimensions.
+    Spatial,
+}
+
+/// A run of the rig.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) wheel: &'static str,
+    pub(crate) slip: f64,
+    pub(crate) wheel_load_n: f64,
+    pub(crate) sled_speed_m_s: f64,
+    pub(crate) pass: u32,
+    pub(crate) is_holdout: bool,
+}
+
+impl Plan {
+    /// The plan in which an effect of the catalogue can be told from the soil's stiffness.
+    pub(crate) fn of(effect: &str) -> Self {
+        match effect {
+            "multipass_hardening" => Plan::Passes,
+            "small_diameter" | "edge_loss" | "reece_pressure" => Plan::Wheels,
+            _ => Plan::Full,
+        }
+    }
+
+    /// The fitted runs, then those held out: between them and a little beyond.
+    pub(crate) fn rows(self) -> Vec<Row> {
+        let [slips, loads, rims]: [&[f64]; 3] = match self {
+            Plan::Full | Plan::Passes | Plan::Wheels => {
+                [&[0.05, 0.1, 0.2, 0.3, 0.45, 0.6], &[60.0, 120.0], &[0.01, 0.05]]
+            }
+            Plan::Narrow => [&[0.05, 0.1, 0.2, 0.3, 0.45, 0.6], &[90.0], &[0.03]],
+            Plan::Spatial => [&[0.05, 0.15, 0.3, 0.5], &[60.0, 120.0], &[0.01, 0.05]],
+        };
+        let mut rows = self.grid([slips, loads, rims], false);
+        rows.extend(match self {
+            Plan::Narrow => Vec::new(),
+            Plan::Spatial => self.grid([&[0.1, 0.4], &[85.0], &[0.02, 0.06]], true),
+            _ => self.grid([&[0.07, 0.15, 0.38, 0.66], &[85.0, 132.0], &[0.02, 0.06]], true),
+        });
+        rows
+    }
+
+    fn grid(self, [slips, loads, rims]: [&[f64]; 3], is_holdout: bool) -> Vec<Row> {
+        let mut rows = Vec::new();
+        for (i, &slip) in slips.iter().enumerate() {
+            for (j, &wheel_load_n) in loads.iter().enumerate() {
+                for (k, &rim) in rims.iter().enumerate() {
+                    let is_second = (i + j + k) % 2 == 1;
+                    rows.push(Row {
+                        wheel: if is_second && self == Plan::Wheels {
+                            "small"
+                        } else {
+                            "wide"
+                        },
+                        slip,
+                        wheel_load_n,
+                        sled_speed_m_s: rim * (1.0 - slip),
+                        pass: if is_second && self == Plan::Passes { 2 } else { 1 },
+                        is_holdout,
+                    });
+                }
+            }
+        }
+        rows
+    }
+
+    /// The job of the base model.
+    pub(crate) fn job(self) -> FileSet {
+        let (model, priors) = match self {
+            Plan::Spatial => (SPATIAL, SPATIAL_PRIORS),
+            _ => ("kind = \"quasi_static\"\n", PRIORS),
+        };
+        let radii = match self {
+            // Grousers are modelled: the radius is that of the rim.
+            Plan::Spatial => "wheel_radius_m = { uniform = [0.124, 0.130] }\n",
+            Plan::Wheels => {
+                "\"wheel_radius_m.wide\" = { uniform = [0.125, 0.155] }\n\"wheel_radius_m.small\" = { uniform = [0.075, 0.09] }\n"
+            }
+            _ => "wheel_radius_m = { uniform = [0.125, 0.155] }\n",
+        };
+        FileSet {
+            toml: format!("experiment = \"experiment.toml\"\n[model]\n{model}[priors]\n{priors}{radii}"),
+            files: Default::default(),
+        }
+    }
+}
+
+/// The files of an experiment with its measured values and the noise's standard deviations.
+pub(crate) fn experiment(rows: &[Row], values: &[[f64; CHANNELS]], sds: [f64; CHANNELS]) -> FileSet {
+    let wheel = |name: &str, radius: f64, width: f64| {
+        format!(
+            "[wheel.{name}]\nradius_m = {radius}\nwidth_m = {width}\ngrouser_count = 12\ngrouser_height_m = 0.009\ngrouser_thickness_m = 0.002\n"
+        )
+    };
+    let mut toml = "runs = \"runs.csv\"\n".to_owned();
+    toml += &wheel("wide", 0.125, 0.112);
+    if rows.iter().any(|row| row.wheel == "small") {
+        toml += &wheel("small", 0.075, 0.06);
+    }
+    let [pull, torque, sinkage] = sds;
+    toml += &format!(
+        "[soil.s]\ndensity_kg_m3 = 1400.0\n[rig]\nbin_length_m = 1.5\n[noise]\ndrawbar_pull_n = {pull:?}\ntorque_n_m = {torque:?}\nsinkage_m = {sinkage:?}\n"
+    );
+    let mut runs =
+        "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,pass,drawbar_pull_n,torque_n_m,sinkage_m,use\n"
+            .to_owned();
+    for (number, (row, [pull, torque, sinkage])) in rows.iter().zip(values).enumerate() {
+        let Row {
+            wheel,
+            slip,
+            wheel_load_n,
+            sled_speed_m_s,
+            pass,
+            is_holdout,
+        } = row;
+        let usage = if *is_holdout { "holdout" } else { "fit" };
+        runs += &format!(
+            "r{number},{wheel},s,{slip:?},{wheel_load_n:?},{sled_speed_m_s:?},{pass},{pull:?},{torque:?},{sinkage:?},{usage}\n"
+        );
+    }
+    FileSet {
+        toml,
+        files: [("runs.csv".to_owned(), runs)].into(),
+    }
+}

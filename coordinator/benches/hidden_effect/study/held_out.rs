@@ -1,0 +1,95 @@
+//! How well what was found predicts runs that the search did not see.
+
+use std::fmt;
+
+use inference::discovery::inquiry::{Answer, Fitted};
+use shared::model::Condition;
+
+use super::case::{Case, spec, values};
+use super::design::CHANNELS;
+use super::pipeline::Asking;
+use super::rate::Rate;
+
+/// Two-sided 90 % of a normal distribution.
+const Z90: f64 = 1.644_853_626_951_473;
+
+/// Errors on runs held out.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HeldOut {
+    /// Root mean square of the most probable prediction less the noise-free truth, in units of the noise: of the base, and of what
+    /// was found; infinite where the model refuses a run.
+    pub(crate) before: f64,
+    pub(crate) after: f64,
+    /// Measurements within the 90 % interval of what was found.
+    pub(crate) covered: Rate,
+}
+
+impl HeldOut {
+    pub(crate) fn new(case: &Case, asking: &mut Asking, answer: &Answer) -> Result<Self, String> {
+        let Some(variant) = spec(&case.plan.job(), &case.experiment())?.holdout_variant else {
+            return Ok(Self {
+                before: 0.0,
+                after: 0.0,
+                covered: Rate { count: 0, of: 0 },
+            });
+        };
+        let conditions = &variant.conditions;
+        let first = Fitted {
+            effects: answer.base.effects.clone(),
+            draws: answer.base.draws[..1].to_vec(),
+        };
+        let before = predicted(asking, &first, conditions)?;
+        let after = predicted(asking, &answer.best, conditions)?;
+        let held_out = case.rows.iter().zip(case.noise_free.iter().zip(&case.measured));
+        let held_out = held_out.filter(|(row, _)| row.is_holdout);
+        let (truth, measured): (Predicted, Predicted) = held_out.map(|(_, (t, m))| (*t, *m)).unzip();
+        let error = |draws: &[Option<Predicted>]| -> f64 {
+            let Some(Some(mode)) = draws.first() else {
+                return f64::INFINITY;
+            };
+            let mut squares = 0.0;
+            for (p, t) in mode.iter().zip(&truth) {
+                for (k, sd) in case.sds.iter().enumerate() {
+                    squares += ((p[k] - t[k]) / sd).powi(2);
+                }
+            }
+            (squares / (CHANNELS * truth.len()) as f64).sqrt()
+        };
+        let mut covered = Vec::new();
+        let drawn: Vec<&Predicted> = after.iter().flatten().collect();
+        for (run, measured) in measured.iter().enumerate() {
+            for (k, sd) in case.sds.iter().enumerate() {
+                let mean = drawn.iter().map(|p| p[run][k]).sum::<f64>() / drawn.len() as f64;
+                let squares = drawn.iter().map(|p| (p[run][k] - mean) * (p[run][k] - mean));
+                let variance = squares.sum::<f64>() / (drawn.len() as f64 - 1.0).max(1.0);
+                covered.push((measured[k] - mean).abs() <= Z90 * (variance + sd * sd).sqrt());
+            }
+        }
+        Ok(Self {
+            before: error(&before),
+            after: error(&after),
+            covered: Rate::new(covered),
+        })
+    }
+}
+
+/// The channels of every run.
+type Predicted = Vec<[f64; CHANNELS]>;
+
+fn predicted(
+    asking: &mut Asking,
+    fitted: &Fitted,
+    conditions: &[Condition],
+) -> Result<Vec<Option<Predicted>>, String> {
+    let seen = asking.predict(&fitted.effects, conditions, &fitted.draws)?;
+    let seen = seen.into_iter();
+    Ok(seen
+        .map(|seen| seen.map(|s| values(&s, conditions.len())))
+        .collect())
+}
+
+impl fmt::Display for HeldOut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.2} to {:.2}", self.before, self.after)
+    }
+}
