@@ -35,6 +35,18 @@ pub(super) const QUICK: Depth = Depth {
     ..WHOLE
 };
 
+/// Curves outside the library, where it leaves little misfit: their screen is linear and sees that much.
+pub(super) const CURVES: Depth = Depth {
+    most_extended: 8,
+    ..QUICK
+};
+
+/// All of them, where the misfit is beyond what is linear.
+pub(super) const ALL_CURVES: Depth = Depth {
+    most_extended: usize::MAX,
+    ..QUICK
+};
+
 /// Simple forms, whose thresholds are tried at about every tenth of their priors.
 pub(super) const FORMS: Depth = Depth {
     most_extended: 12,
