@@ -3,7 +3,7 @@
 use farm_tests::http::Response;
 use farm_tests::job::{GAIN, Job};
 use farm_tests::service::Service;
-use serde_json::{Value, json};
+use serde_json::json;
 
 fn error(response: &Response) -> (u16, String, String) {
     let body = response.json();
