@@ -42,12 +42,12 @@ pub enum Command {
     Export(Export),
     /// Say how far a calibration can be trusted, and where its model fails.
     Diagnose(Target),
-    /// Find the missing effect (later).
-    Discover(Later),
-    /// Add an effect (later).
-    Extend(Later),
-    /// Add measurements to a study (later).
-    AddRuns(Later),
+    /// Find the effect that a calibration's model misses.
+    Discover(Discover),
+    /// Add to a study a calibration with an effect more.
+    Extend(Extend),
+    /// Add measurements to a study, and a calibration of all of them.
+    AddRuns(AddRuns),
     /// List the effects that a model may miss, or show one: its file, and what it does.
     Effects(Effects),
 }
@@ -206,10 +206,53 @@ pub enum Format {
     Json,
 }
 
-/// A verb that a later version brings.
+/// Find the effect that a calibration's model misses.
 #[derive(Debug, Args)]
-pub struct Later {
-    /// Whatever is said.
-    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
-    pub rest: Vec<String>,
+pub struct Discover {
+    /// Which calibration.
+    #[command(flatten)]
+    pub target: Target,
+    /// Threads that simulate here, for a folder; by default, one for each core.
+    #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
+    pub local_workers: Option<usize>,
+}
+
+/// Add to a study a calibration with an effect more.
+#[derive(Debug, Args)]
+pub struct Extend {
+    /// Which calibration is extended.
+    #[command(flatten)]
+    pub target: Target,
+    /// An effect of the catalogue.
+    #[arg(
+        long,
+        value_name = "NAME",
+        required_unless_present = "effect_file",
+        conflicts_with = "effect_file"
+    )]
+    pub effect: Option<String>,
+    /// The effect of a file.
+    #[arg(long, value_name = "FILE")]
+    pub effect_file: Option<PathBuf>,
+    /// The effect acts on this wheel alone, of several.
+    #[arg(long, value_name = "NAME", requires = "effect")]
+    pub wheel: Option<String>,
+    /// Threads that simulate here, for a folder; by default, one for each core.
+    #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
+    pub local_workers: Option<usize>,
+}
+
+/// Add measurements to a study.
+#[derive(Debug, Args)]
+pub struct AddRuns {
+    /// A calibration of the study.
+    pub id: i64,
+    /// Rows with a header, as in runs.csv.
+    pub runs: PathBuf,
+    /// Where it is.
+    #[command(flatten)]
+    pub source: Source,
+    /// Threads that simulate here, for a folder; by default, one for each core.
+    #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
+    pub local_workers: Option<usize>,
 }

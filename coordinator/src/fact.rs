@@ -6,6 +6,7 @@ use shared::api::CalibrationState;
 use shared::outcome::Observables;
 
 use crate::calibration::Computed;
+use crate::discovery::Discovery;
 
 /// Something that must survive a restart.
 #[derive(Debug, Clone)]
@@ -50,6 +51,13 @@ pub enum Fact {
         calibration: i64,
         /// The most probable parameters.
         estimate: Box<Estimate>,
+    },
+    /// A search for a missing effect ended.
+    Discovery {
+        /// The calibration.
+        calibration: i64,
+        /// What it found.
+        record: Box<Discovery>,
     },
     /// A calibration changed its state.
     State {

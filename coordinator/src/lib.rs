@@ -7,7 +7,8 @@
 //! - [`farm`]: all calibrations and workers at hand; [`farm::dispatch`] gives it a thread.
 //! - [`fact`]: what must survive a restart.
 //! - [`store`]: the SQLite file; the only place that knows SQL.
-//! - [`service`]: store and farm together: submit, recover, control.
+//! - [`study`]: how a study grows: its next step from where it stands.
+//! - [`service`]: store and farm together: submit, recover, control, grow.
 //! - [`http`]: the REST interface; the only place that knows axum.
 //! - [`discovery`]: the search for a missing effect: candidates, and what is said in the end.
 //! - [`effect`]: the effects as users meet them: cards and signatures.
@@ -30,3 +31,4 @@ pub mod result;
 pub mod service;
 pub mod spec;
 pub mod store;
+pub mod study;

@@ -51,6 +51,50 @@ pub struct CalibrationCreated {
     pub point_estimates: Vec<i64>,
 }
 
+/// `POST /v1/calibrations/ID/extend`: an effect of the catalogue, or an effect file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewExtension {
+    /// An effect of the catalogue.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effect: Option<String>,
+    /// Acts on this wheel alone, of several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wheel: Option<String>,
+    /// An effect of one's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effect_file: Option<NamedText>,
+}
+
+/// A file with its name.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NamedText {
+    /// Name without folders.
+    pub name: String,
+    /// Content.
+    pub text: String,
+}
+
+/// `POST /v1/studies/ID/runs`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewRuns {
+    /// Rows with a header, as in `runs.csv`.
+    pub runs: String,
+}
+
+/// Answer to further runs.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct RunsAdded {
+    /// The calibration of all runs.
+    pub id: i64,
+    /// Its study.
+    pub study: i64,
+    /// The enlarged experiment.
+    pub experiment: i64,
+}
+
 /// Where a calibration stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]

@@ -35,9 +35,28 @@ fn a_job_with_nothing_wrong_has_no_flag_and_says_what_it_knows() {
         "equilibrium was reached in every stage",
         "the declared errors explain the misfit",
         "the data know n least",
+        "torque         slip_x_sled_speed",
     ] {
         assert!(text.contains(words), "{words} in\n{text}");
     }
+}
+
+/// The soil of these runs yields only after some shear displacement; the model's does so at once.
+#[test]
+fn shear_that_is_mobilised_late_leaves_a_trend_in_pull_or_torque() {
+    let job = Job {
+        runs: include_str!("../data/shear-mobilisation/runs.csv").into(),
+        ..Job::small()
+    };
+    let (flags, text) = flags(job.in_job("normal = [30.0, 5.7]", "normal = [30.0, 1.5]"));
+    let trends: Vec<_> = flags.iter().filter(|f| f.0 == "trend").collect();
+    let words = ["at low slip", "at low speed", "slip times speed"];
+    assert!(
+        trends
+            .iter()
+            .any(|f| ["drawbar_pull", "torque"].contains(&&*f.1) && words.iter().any(|w| f.2.contains(w))),
+        "{flags:?}\n{text}"
+    );
 }
 
 #[test]

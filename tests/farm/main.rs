@@ -6,6 +6,7 @@ mod bevameter;
 mod bit_identity;
 mod conformance;
 mod diagnostics;
+mod discovery;
 mod effects;
 mod end_to_end;
 mod forward;

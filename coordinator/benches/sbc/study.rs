@@ -152,7 +152,9 @@ impl Study {
         loop {
             match calibration.engine().finding() {
                 None => {}
-                Some(Finding::Estimate(_)) => return Err("an estimate is no posterior".into()),
+                Some(Finding::Estimate(_) | Finding::Discovery(_)) => {
+                    return Err("what was found is no posterior".into());
+                }
                 Some(Finding::Posterior(posterior)) => {
                     let draws = |parameter: usize| -> Vec<f64> {
                         posterior.particles.iter().map(|p| p.theta[parameter]).collect()

@@ -4,11 +4,12 @@ use inference::lm::Optimiser;
 use inference::point::Estimate;
 use inference::search::Search;
 use inference::{
-    Answer, Likelihood, LogLikelihood, Metamodel, Pair, Posterior, Prior, Progress, Proposal, Sampler,
-    StageRecord, SubchainEnd, TellError,
+    Answer, LogLikelihood, Metamodel, Pair, Posterior, Progress, Proposal, Sampler, StageRecord, SubchainEnd,
+    TellError,
 };
 
-use crate::spec::{Method, MethodError};
+use crate::discovery::{Discovery, Investigation, InvestigationError, Models};
+use crate::spec::{Method, MethodError, Spec};
 
 /// What asks for evaluations and is told their results.
 #[derive(Debug)]
@@ -19,6 +20,33 @@ pub enum Engine {
     Fit(Box<Optimiser>),
     /// Searches the most probable parameters by generations; told log-likelihoods.
     Search(Box<Search>),
+    /// Searches for what the model is missing; told predicted values.
+    Discovery(Box<Investigation>),
+}
+
+/// Why a calibration cannot begin.
+#[derive(Debug, thiserror::Error)]
+pub enum BeginError {
+    /// The settings do not fit the prior.
+    #[error("[sampler] {0}")]
+    Method(#[from] MethodError),
+    /// The search has a model that cannot be made.
+    #[error(transparent)]
+    Search(#[from] InvestigationError),
+    /// A search for a missing effect needs the models that it asks.
+    #[error("a search for a missing effect needs the texts of its job and experiment")]
+    NoModels,
+}
+
+/// A result that an engine cannot take.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum EngineError {
+    /// It answers nothing that was asked.
+    #[error(transparent)]
+    Tell(#[from] TellError),
+    /// What follows cannot be asked.
+    #[error(transparent)]
+    Investigation(#[from] InvestigationError),
 }
 
 /// The result of an evaluation, scored.
@@ -53,29 +81,43 @@ impl Scored<'_> {
 }
 
 /// What an engine ends with.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub enum Finding<'a> {
     /// A sample of the posterior.
     Posterior(&'a Posterior),
     /// The most probable parameters.
     Estimate(&'a Estimate),
+    /// What the model is missing.
+    Discovery(Box<Discovery>),
 }
 
 impl Engine {
     /// An engine whose first round is pending.
     ///
+    /// # Arguments
+    /// - `models`: what a search for a missing effect asks; nothing else needs them.
+    ///
     /// # Errors
-    /// [`MethodError`] where the settings do not fit the prior.
-    pub(super) fn new(prior: Prior, likelihood: &Likelihood, method: Method) -> Result<Self, MethodError> {
-        Ok(match method {
+    /// [`BeginError`] where the settings do not fit the prior, or a search has no models.
+    pub(super) fn new(spec: &Spec, models: Option<Models>) -> Result<Self, BeginError> {
+        let (prior, likelihood) = (spec.prior(), &spec.likelihood);
+        Ok(match spec.method {
             Method::Sample(settings) => {
-                let sampler = Sampler::with_metamodel(prior, settings, likelihood.clone())?;
+                let sampler = Sampler::with_metamodel(prior, settings, likelihood.clone());
+                let sampler = sampler.map_err(MethodError::from)?;
                 Engine::Sampler(Box::new(sampler))
             }
             Method::Fit(settings) => {
-                Engine::Fit(Box::new(Optimiser::new(prior, likelihood.clone(), settings)?))
+                let fit = Optimiser::new(prior, likelihood.clone(), settings);
+                Engine::Fit(Box::new(fit.map_err(MethodError::from)?))
             }
-            Method::Search(settings) => Engine::Search(Box::new(Search::new(prior, settings)?)),
+            Method::Search(settings) => {
+                Engine::Search(Box::new(Search::new(prior, settings).map_err(MethodError::from)?))
+            }
+            Method::Discover { .. } => {
+                let models = models.ok_or(BeginError::NoModels)?;
+                Engine::Discovery(Box::new(Investigation::new(models)?))
+            }
         })
     }
 
@@ -85,6 +127,7 @@ impl Engine {
             Engine::Sampler(sampler) => sampler.round(),
             Engine::Fit(fit) => fit.round(),
             Engine::Search(search) => search.round(),
+            Engine::Discovery(investigation) => investigation.round(),
         }
     }
 
@@ -94,15 +137,25 @@ impl Engine {
             Engine::Sampler(sampler) => sampler.pending(),
             Engine::Fit(fit) => fit.pending(),
             Engine::Search(search) => search.pending(),
+            Engine::Discovery(investigation) => investigation.pending(),
         }
     }
 
     /// Takes the result of a pending particle.
-    pub(super) fn tell(&mut self, particle: usize, scored: Scored) -> Result<Progress, TellError> {
+    pub(super) fn tell(&mut self, particle: usize, scored: Scored) -> Result<Progress, EngineError> {
+        Ok(match self {
+            Engine::Sampler(sampler) => sampler.tell(particle, scored.answer())?,
+            Engine::Fit(fit) => fit.tell(particle, scored.fitted)?,
+            Engine::Search(search) => search.tell(particle, scored.log_likelihood)?,
+            Engine::Discovery(investigation) => investigation.tell(particle, scored.fitted)?,
+        })
+    }
+
+    /// The search for a missing effect, if this is one.
+    pub(super) fn investigation(&self) -> Option<&Investigation> {
         match self {
-            Engine::Sampler(sampler) => sampler.tell(particle, scored.answer()),
-            Engine::Fit(fit) => fit.tell(particle, scored.fitted),
-            Engine::Search(search) => search.tell(particle, scored.log_likelihood),
+            Engine::Discovery(investigation) => Some(investigation),
+            Engine::Sampler(_) | Engine::Fit(_) | Engine::Search(_) => None,
         }
     }
 
@@ -110,7 +163,7 @@ impl Engine {
     pub(super) fn metamodel(&self) -> Option<&Metamodel> {
         match self {
             Engine::Sampler(sampler) => sampler.metamodel(),
-            Engine::Fit(_) | Engine::Search(_) => None,
+            Engine::Fit(_) | Engine::Search(_) | Engine::Discovery(_) => None,
         }
     }
 
@@ -118,7 +171,7 @@ impl Engine {
     pub fn stages(&self) -> &[StageRecord] {
         match self {
             Engine::Sampler(sampler) => sampler.stages(),
-            Engine::Fit(_) | Engine::Search(_) => &[],
+            Engine::Fit(_) | Engine::Search(_) | Engine::Discovery(_) => &[],
         }
     }
 
@@ -128,6 +181,10 @@ impl Engine {
             Engine::Sampler(sampler) => sampler.posterior().map(Finding::Posterior),
             Engine::Fit(fit) => fit.estimate().map(Finding::Estimate),
             Engine::Search(search) => search.estimate().map(Finding::Estimate),
+            Engine::Discovery(investigation) => {
+                let record = investigation.record();
+                record.map(|record| Finding::Discovery(Box::new(record)))
+            }
         }
     }
 }

@@ -13,18 +13,23 @@ use std::sync::Arc;
 
 use inference::{LogLikelihood, Metamodel, Posterior, Proposal, Subchain};
 use shared::api::CalibrationState;
+use shared::file::FileSet;
 use shared::model::ModelVariant;
 use shared::outcome::Observables;
 
+use crate::discovery::{InvestigationError, Models};
 use crate::fact::{EvaluationRow, Fact, Fingerprint, Kept};
 use crate::lease::{Completion, Queue};
-use crate::spec::{MethodError, Spec};
+use crate::spec::{Method, Spec};
 
 pub use computed::{Computed, result_of};
 use engine::Scored;
-pub use engine::{Engine, Finding};
+pub use engine::{BeginError, Engine, Finding};
 pub use identity::{EvaluationKey, HISTORIES, PREDICTIONS_FROM};
 pub use replay::{ReplayError, Stored, StoredEvaluation};
+
+/// Most effects that a search looks for together.
+const EFFECTS_TOGETHER: usize = 3;
 
 /// What the farm needs to know of a calibration besides its specification.
 #[derive(Debug, Clone)]
@@ -118,9 +123,33 @@ impl Calibration {
     /// A fresh calibration; its first evaluations are draws from the prior.
     ///
     /// # Errors
-    /// The settings do not fit the prior.
-    pub fn new(identity: Identity, spec: Arc<Spec>) -> Result<Self, MethodError> {
-        let engine = Engine::new(spec.prior(), &spec.likelihood, spec.method)?;
+    /// [`BeginError`]: the settings do not fit the prior, or this is a search, which [`Calibration::of`] begins.
+    pub fn new(identity: Identity, spec: Arc<Spec>) -> Result<Self, BeginError> {
+        Self::begin(identity, spec, None)
+    }
+
+    /// The same, with the texts that a search for a missing effect makes its models from.
+    ///
+    /// # Errors
+    /// As those of [`Calibration::new`], or a model of a search cannot be made.
+    pub fn of(
+        identity: Identity,
+        spec: Arc<Spec>,
+        job: &FileSet,
+        experiment: &FileSet,
+    ) -> Result<Self, BeginError> {
+        let models = match spec.method {
+            Method::Discover { .. } => {
+                let models = Models::new(job, experiment, EFFECTS_TOGETHER);
+                Some(models.map_err(InvestigationError::from)?)
+            }
+            Method::Sample(_) | Method::Fit(_) | Method::Search(_) => None,
+        };
+        Self::begin(identity, spec, models)
+    }
+
+    fn begin(identity: Identity, spec: Arc<Spec>, models: Option<Models>) -> Result<Self, BeginError> {
+        let engine = Engine::new(&spec, models)?;
         let mut calibration = Calibration {
             identity,
             fit_hash: spec.fit_variant.hash(),
@@ -160,6 +189,13 @@ impl Calibration {
     /// What an evaluation is leased with.
     pub fn question(&self, evaluation: u64) -> Option<Question<'_>> {
         let theta = self.theta(evaluation)?;
+        if let Some((variant, theta)) = self.searched(evaluation) {
+            return Some(Question {
+                variant,
+                theta,
+                subchain: None,
+            });
+        }
         if let Some(subchain) = self.subchain(evaluation) {
             let (_, (variant, _)) = self.stage_variant.as_ref()?;
             return Some(Question {
@@ -180,6 +216,12 @@ impl Calibration {
         })
     }
 
+    /// What an evaluation of a search is leased with; `None` of anything else.
+    fn searched(&self, evaluation: u64) -> Option<(&str, &[f64])> {
+        let particle = self.proposal(evaluation)?.particle;
+        self.engine.investigation()?.lease(particle)
+    }
+
     /// What an evaluation is for.
     fn key(&self, evaluation: u64) -> EvaluationKey {
         EvaluationKey::of(evaluation, self.spec.method.width())
@@ -193,7 +235,11 @@ impl Calibration {
             h => {
                 let of_stage = self.stage_variant.iter().map(|(_, variant)| variant);
                 let mut others = of_stage.chain(&self.histories);
-                others.find(|(own, _)| own == h).map(|(_, variant)| variant)
+                let searched = || self.engine.investigation()?.variant(h);
+                others
+                    .find(|(own, _)| own == h)
+                    .map(|(_, variant)| variant)
+                    .or_else(searched)
             }
         }
     }
@@ -308,7 +354,7 @@ impl Calibration {
         let fingerprint = Fingerprint::of(&computed);
         let rejected = computed.is_refused();
         let Computed { end, outcome } = computed;
-        let scored = if self.draws.is_some() {
+        let scored = if self.draws.is_some() || self.engine.investigation().is_some() {
             Ok(None)
         } else {
             outcome.as_ref().map(|o| self.score(o, &theta)).transpose()
@@ -325,7 +371,7 @@ impl Calibration {
             Some(Ok(observables)) if self.draws.is_none() => observables.coarse.clone(),
             _ => None,
         };
-        let kept = self.kept(outcome);
+        let kept = self.kept(evaluation, outcome);
         let fitted = match &kept {
             Kept::Fitted(values) => Some(values.as_slice()),
             Kept::Whole(_) | Kept::Refused(_) => None,
@@ -367,7 +413,9 @@ impl Calibration {
         if !computed.answers(subchain, moves, || self.spec.prior()) {
             return Err(ResultError::OtherQuestion { evaluation });
         }
+        let searched = self.searched(evaluation).and_then(|(hash, _)| self.variant(hash));
         let variant = match (self.key(evaluation), &self.spec.holdout_variant, &self.histories) {
+            _ if searched.is_some() => searched.unwrap_or(&self.spec.fit_variant),
             (EvaluationKey::Prediction { holdout: true, .. }, Some(variant), _) => variant,
             (EvaluationKey::Histories, _, Some((_, variant))) => variant,
             _ => &self.spec.fit_variant,
@@ -446,6 +494,10 @@ impl Calibration {
                             estimate: Box::new(estimate.clone()),
                         });
                     }
+                    Some(Finding::Discovery(record)) => {
+                        facts.push(Fact::Discovery { calibration, record });
+                        return self.finish(CalibrationState::Finished, None, facts);
+                    }
                     None => {}
                 }
                 self.ask();
@@ -521,12 +573,18 @@ impl Calibration {
         self.change_state(CalibrationState::Running, None, facts);
     }
 
-    fn kept(&self, outcome: Option<Result<Observables, String>>) -> Kept {
+    fn kept(&self, evaluation: u64, outcome: Option<Result<Observables, String>>) -> Kept {
+        let searched = |observables: &Observables| {
+            let particle = self.proposal(evaluation)?.particle;
+            self.engine.investigation()?.values(particle, observables)
+        };
         match outcome {
             None => Kept::Fitted(Vec::new()),
             Some(Err(reason)) => Kept::Refused(reason),
             Some(Ok(observables)) if self.draws.is_some() => Kept::Whole(Box::new(observables)),
-            Some(Ok(observables)) => Kept::Fitted(self.spec.predicted_values(&observables)),
+            Some(Ok(observables)) => Kept::Fitted(
+                searched(&observables).unwrap_or_else(|| self.spec.predicted_values(&observables)),
+            ),
         }
     }
 }

@@ -2,6 +2,8 @@
 
 mod check;
 mod effects;
+mod folder;
+mod growth;
 mod job;
 mod output;
 mod progress;
@@ -10,7 +12,6 @@ mod serve;
 mod source;
 mod verbs;
 
-use anyhow::bail;
 use tokio::sync::watch;
 
 use crate::config::Command;
@@ -34,9 +35,9 @@ pub async fn execute(command: Command) -> anyhow::Result<()> {
         Command::Report(report) => verbs::report(&report).await,
         Command::Export(export) => verbs::export(&export).await,
         Command::Diagnose(target) => verbs::diagnose(&target).await,
-        Command::Discover(_) => bail!("discover is not available in this version"),
-        Command::Extend(_) => bail!("extend is not available in this version"),
-        Command::AddRuns(_) => bail!("add-runs is not available in this version"),
+        Command::Discover(discover) => growth::discover(&discover).await,
+        Command::Extend(extend) => growth::extend(&extend).await,
+        Command::AddRuns(runs) => growth::add_runs(&runs).await,
         Command::Effects(config) => effects::effects(&config).await,
     }
 }

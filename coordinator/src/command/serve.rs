@@ -25,6 +25,7 @@ pub(super) async fn serve(config: Serve) -> anyhow::Result<()> {
     let server = tokio::spawn(crate::http::serve(listener, service.clone(), stop.wait()));
     let signal = super::stop_signal()?;
     tokio::select! {
+        () = service.keep_growing() => {}
         () = signal => tracing::info!("stopping; workers will find us again"),
         () = service.store().writer().stopped() => bail!("the store can no longer be written; the log says why"),
     }

@@ -63,7 +63,9 @@ pub(super) async fn control(target: &Target, verb: &str) -> anyhow::Result<()> {
 pub(super) async fn compare(target: &Target) -> anyhow::Result<()> {
     let place = Place::open(&target.source).await?;
     let comparison = place.comparison(place.id(target).await?).await?;
-    Ok(say(&terminal::comparison(&comparison))?)
+    Ok(say(
+        &(terminal::comparison(&comparison) + &terminal::groups(&comparison))
+    )?)
 }
 
 pub(super) async fn diagnose(target: &Target) -> anyhow::Result<()> {

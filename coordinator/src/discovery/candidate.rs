@@ -55,8 +55,10 @@ pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<
     Ok(FileSet { toml, files })
 }
 
-/// The explanations of the library for an experiment: every effect of the catalogue that the job does not have yet, in the order
-/// of the catalogue; then, where fitted runs have several wheels, each on each of these wheels alone.
+/// The explanations of the library for an experiment.
+///
+/// First every effect of the catalogue that the job does not have yet, in the order of the catalogue; then, where fitted runs have
+/// several wheels, each on each of these wheels alone. Checked by `tests::of_several_wheels_each_may_have_an_effect_alone`.
 ///
 /// # Returns
 /// The explanations, and the names of those that cannot be one here with the reason: the model cannot express the effect in this
@@ -207,7 +209,7 @@ mod tests {
         let twice = extended("job.toml", &with, &[&file]).unwrap_err();
         assert_eq!(twice.to_string(), "job.toml: file \"mine.toml\" is there already");
         assert!(extended("job.toml", &with, &[&digging]).is_err());
-        let unknown = extended("job.toml", &job, &[&on_wheel("slip_sinking")]).unwrap_err();
+        let unknown = extended("job.toml", &job, &[&on_wheel("slip_sinkage_")]).unwrap_err();
         assert!(unknown.to_string().contains("slip_sinkage"), "{unknown}");
     }
 }

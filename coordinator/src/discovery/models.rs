@@ -13,7 +13,7 @@ use shared::outcome::Observables;
 use super::candidate::{Explanation, extended, library};
 use super::form::Form;
 use super::{Extension, design, scan};
-use crate::spec::{FreeParameter, Spec, free_parameters, reduced_job};
+use crate::spec::{FreeParameter, Spec, free_parameters, without_effects};
 
 const JOB: &str = "job.toml";
 const EXPERIMENT: &str = "experiment.toml";
@@ -115,7 +115,10 @@ impl Models {
         let mut reductions = Vec::new();
         for effect in own {
             // An effect that the others, or the data, need in order to mean anything stays.
-            if let Ok(without) = spec(&reduced_job(JOB, job, &[&effect])?, experiment) {
+            if let Ok(without) = spec(
+                &without_effects(JOB, job, std::slice::from_ref(&effect))?,
+                experiment,
+            ) {
                 let names = without.parameters.into_iter().map(|p| p.name).collect();
                 reductions.push((effect, names));
             }
@@ -212,7 +215,9 @@ impl Models {
                 let extensions: Vec<&Extension> = entries.map(|e| &e.explanation.extension).collect();
                 extended(JOB, &self.job, &extensions)?
             }
-            Model::Without(k) => reduced_job(JOB, &self.job, &[&self.reductions[*k].0])?,
+            Model::Without(k) => {
+                without_effects(JOB, &self.job, std::slice::from_ref(&self.reductions[*k].0))?
+            }
         };
         Ok(spec(&job, &self.experiment)?.fit_variant)
     }

@@ -102,7 +102,7 @@ pub struct JudgedEffect {
     pub strength_prior: Option<String>,
     /// Its own most probable parameters, SI.
     pub parameters: BTreeMap<String, f64>,
-    /// How the evidence was computed: screen, rank_one, polished, confirmed, sampled.
+    /// How the evidence was computed: `screen`, `rank_one`, `polished`, `confirmed` or `sampled`.
     pub method: String,
 }
 

@@ -316,8 +316,11 @@ pub(super) mod tests {
             assert_eq!(effect.hooks().collect::<Vec<_>>(), [pair.acts_on.hook()]);
             let with = extended("job.toml", &job, &[&curve.extension]).unwrap();
             assert_eq!(predicted(&with, &files, &[]), base, "{} at zero", pair.name());
-            let bent = format!("{}.a2", effect.name);
-            let changed = predicted(&with, &files, &[(&bent, 0.1)]);
+            let bent: Vec<(String, f64)> = (0..KNOTS)
+                .map(|i| (format!("{}.a{i}", effect.name), 0.001 * (i + 1) as f64))
+                .collect();
+            let bent: Vec<(&str, f64)> = bent.iter().map(|(n, v)| (n.as_str(), *v)).collect();
+            let changed = predicted(&with, &files, &bent);
             assert_ne!(changed, base, "{}", pair.name());
         }
     }

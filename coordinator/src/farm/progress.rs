@@ -50,6 +50,7 @@ pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> Cal
         }
         Engine::Fit(fit) => (fit.current().steps, 1.0, 0, None),
         Engine::Search(search) => (search.current().generations, 1.0, 0, None),
+        Engine::Discovery(search) => (search.round() as usize, 1.0, 0, None),
     };
     let queue = &calibration.queue;
     let per_second = pace.per_second(calibration.evaluations, now_ms);

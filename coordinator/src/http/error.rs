@@ -70,9 +70,11 @@ impl IntoResponse for HttpError {
 impl From<ServiceError> for HttpError {
     fn from(error: ServiceError) -> Self {
         let kind = match &error {
-            ServiceError::File(_) | ServiceError::Settings(_) => ErrorKind::InvalidFile,
+            ServiceError::File(_) | ServiceError::Begin(_) => ErrorKind::InvalidFile,
             ServiceError::NotFound { .. } => ErrorKind::NotFound,
-            ServiceError::Control(_) | ServiceError::Effects(_) => ErrorKind::Conflict,
+            ServiceError::Control(_) | ServiceError::Effects(_) | ServiceError::Search(_) => {
+                ErrorKind::Conflict
+            }
             ServiceError::Busy(_) => ErrorKind::Busy,
             ServiceError::Store(_) | ServiceError::Thread(_) | ServiceError::Stopped(_) => {
                 ErrorKind::Internal

@@ -7,7 +7,7 @@ mod effects;
 mod error;
 mod events;
 mod experiments;
-mod later;
+mod growth;
 mod metrics;
 mod studies;
 mod work;
@@ -48,7 +48,7 @@ pub fn router(service: Service) -> Router {
                 .merge(events::routes())
                 .merge(studies::routes())
                 .merge(work::routes())
-                .merge(later::routes()),
+                .merge(growth::routes()),
         )
         .merge(metrics::routes())
         .split_for_parts();

@@ -9,12 +9,10 @@ use utoipa_axum::routes;
 use super::error::{HttpError, Id};
 use crate::result::{CalibrationSummary, Outcome, PointEstimate};
 use crate::service::Service;
+use crate::spec::is_discovery;
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
-    OpenApiRouter::new()
-        .routes(routes!(list))
-        .routes(routes!(ledger))
-        .routes(routes!(add_runs))
+    OpenApiRouter::new().routes(routes!(list)).routes(routes!(ledger))
 }
 
 /// A study.
@@ -61,7 +59,7 @@ async fn ledger(State(service): State<Service>, Id(id): Id) -> Result<Json<Ledge
     let (mut ledger, mut point_estimates) = (Vec::new(), Vec::new());
     for &calibration in &calibrations {
         let row = service.calibration_row(calibration).await?;
-        if row.state == CalibrationState::Finished {
+        if row.state == CalibrationState::Finished && !is_discovery(&row.job.toml) {
             let outcome = Outcome::load(&reader, &row).await?;
             ledger.extend(outcome.calibration_summary());
             point_estimates.extend(outcome.point_estimate());
@@ -74,11 +72,4 @@ async fn ledger(State(service): State<Service>, Id(id): Id) -> Result<Json<Ledge
         ledger,
         point_estimates,
     }))
-}
-
-/// Adds measurements to a study. Not available in this version.
-#[utoipa::path(post, path = "/studies/{id}/runs", params(("id" = i64, Path)), responses(
-    (status = 501, body = ErrorBody)))]
-async fn add_runs() -> HttpError {
-    HttpError::not_available("adding runs to a study")
 }

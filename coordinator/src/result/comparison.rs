@@ -6,6 +6,7 @@ use shared::experiment::RunUse;
 use super::Outcome;
 use super::baseline::Baseline;
 use super::errors::ErrorTable;
+use super::group::{ErrorGroup, error_groups};
 use super::predictive::{Levels, predictive};
 
 /// Model against measurement.
@@ -19,6 +20,8 @@ pub struct Comparison {
     pub holdout: Option<ErrorTable>,
     /// Errors of interpolating the fitted measurements in slip, without physics, on the holdout runs.
     pub baseline_holdout: Option<ErrorTable>,
+    /// Errors by level of slip, load and speed, and by wheel, of fitted runs and of the others.
+    pub groups: Vec<ErrorGroup>,
 }
 
 /// A run and channel.
@@ -108,6 +111,7 @@ impl Outcome {
             fit: errors("fit"),
             holdout: errors("holdout"),
             baseline_holdout: ErrorTable::of_baseline(rows.iter().filter(|r| r.usage == "holdout")),
+            groups: error_groups(&rows),
             rows,
         }
     }

@@ -9,12 +9,12 @@ use super::summary::ParameterSummary;
 /// Something that deserves attention.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Flag {
-    /// `chi2`, `outlier`, `conflict`, `bound`, `not_equilibrated`, `no_information`, `rejections`; later versions add
-    /// others.
+    /// `trend`, `chi2`, `outlier`, `conflict`, `bound`, `not_equilibrated`, `no_information`, `rejections`; later versions
+    /// add others.
     pub kind: String,
     /// The channel it is about.
     pub channel: Option<String>,
-    /// The condition it varies with.
+    /// The condition it varies with: `constant`, `slip`, `wheel_load`, `sled_speed`, `slip_x_sled_speed`.
     pub against: Option<String>,
     /// Probability of the observation if nothing were wrong.
     pub p: Option<f64>,

@@ -7,10 +7,13 @@ mod comparison;
 mod coverage;
 mod csv;
 pub mod diagnostics;
+pub mod discovery;
 mod entangled;
 mod errors;
 pub mod figure;
 mod flags;
+mod group;
+mod level;
 mod point_estimate;
 mod predictive;
 mod readings;
@@ -27,15 +30,17 @@ use shared::api::{CalibrationState, CalibrationStatus};
 use shared::outcome::SimulatedHistory;
 
 use crate::service::ServiceError;
-use crate::spec::{Method, Spec};
+use crate::spec::{Method, Spec, is_discovery};
 use crate::store::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Reader, Sample, StageRow, Subchains};
 
 pub use comparison::{Comparison, ComparisonRow};
 pub use csv::PosteriorTable;
 pub use diagnostics::Diagnostics;
+pub use discovery::{DiscoverySummary, Round};
 pub use errors::{ChannelError, ErrorTable};
 pub use figure::{ChannelHistory, Figures, ModelSeries, Series};
 pub use flags::Flag;
+pub use group::{ErrorGroup, GroupError};
 pub use point_estimate::PointEstimate;
 pub use predictive::Predictive;
 pub use study::Study;
@@ -88,6 +93,9 @@ impl Outcome {
             }
             .into());
         }
+        if is_discovery(&row.job.toml) {
+            return Err(ServiceError::Search(row.id));
+        }
         let stages = reader.stages(row.id).await?;
         let spec = spec_of(reader, row).await?;
         // Parameters and texts would be shown that the result was not computed with.
@@ -95,12 +103,12 @@ impl Outcome {
             spec.check_effects(pinned)?;
         }
         let estimate = match spec.method {
-            Method::Sample(_) => None,
+            Method::Sample(_) | Method::Discover { .. } => None,
             Method::Fit(_) | Method::Search(_) => reader.estimate(row.id).await?,
         };
         let prior_draws = match spec.method {
             Method::Sample(_) => reader.prior_draws(row.id, spec.method.width()).await?,
-            Method::Fit(_) | Method::Search(_) => Vec::new(),
+            Method::Fit(_) | Method::Search(_) | Method::Discover { .. } => Vec::new(),
         };
         let mut populations = reader.populations(row.id).await?;
         let posterior = populations.pop().unwrap_or_default();

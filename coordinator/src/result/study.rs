@@ -3,11 +3,14 @@
 use shared::api::CalibrationState;
 
 use super::Outcome;
+use super::discovery::{DiscoverySummary, Round};
 use super::flags::Flag;
 use super::point_estimate::PointEstimate;
 use super::summary::{CalibrationSummary, Summary};
 use crate::service::ServiceError;
+use crate::spec::{discovery_job, is_discovery};
 use crate::store::{CalibrationRow, Reader};
+use crate::study::next_step_of;
 
 /// The best of a thousand draws lies some nats below the mode, and more in many dimensions; this is beyond chance.
 const MISSED_NATS: f64 = 15.0;
@@ -15,12 +18,16 @@ const MISSED_NATS: f64 = 15.0;
 /// The finished calibrations of a study, oldest first. There is at least one.
 #[derive(Debug)]
 pub struct Study {
-    /// Where the study stands: finished, or the state of its first calibration that is not.
+    /// Where the study stands: finished where it takes no further step, or the state of its first calibration that is not.
     pub state: CalibrationState,
     /// The first: the job as it was submitted.
     pub lead: Outcome,
-    /// Those beside it: the point estimates that the job asks for.
+    /// Those of the same model and measurements beside it: the point estimates that the job asks for.
     pub beside: Vec<Outcome>,
+    /// Those of other models or measurements: extended by effects, or by runs.
+    pub extensions: Vec<Outcome>,
+    /// The searches for missing effects.
+    pub rounds: Vec<Round>,
 }
 
 impl Study {
@@ -31,42 +38,81 @@ impl Study {
     pub async fn load(reader: &Reader, row: &CalibrationRow) -> Result<Study, ServiceError> {
         let rows = reader.study(row.study).await?;
         let unfinished = rows.iter().find(|r| r.state != CalibrationState::Finished);
-        let mut finished = rows.iter().filter(|r| r.state == CalibrationState::Finished);
+        let finished = rows.iter().filter(|r| r.state == CalibrationState::Finished);
+        let (searches, calibrations): (Vec<_>, Vec<_>) = finished.partition(|r| is_discovery(&r.job.toml));
+        let mut calibrations = calibrations.into_iter();
         // Without any, the calibration that was asked for says why there is nothing to show.
-        let lead = Outcome::load(reader, finished.next().unwrap_or(row)).await?;
-        let mut beside = Vec::new();
-        for row in finished {
-            beside.push(Outcome::load(reader, row).await?);
+        let lead = Outcome::load(reader, calibrations.next().unwrap_or(row)).await?;
+        let (mut beside, mut extensions) = (Vec::new(), Vec::new());
+        for row in calibrations {
+            let outcome = Outcome::load(reader, row).await?;
+            let is_same =
+                outcome.row.experiment == lead.row.experiment && outcome.effects() == lead.effects();
+            if is_same { &mut beside } else { &mut extensions }.push(outcome);
         }
+        let mut rounds = Vec::new();
+        for search in searches {
+            if let Some(record) = reader.discovery(search.id).await? {
+                let calibration = searched_by(search, &rows)?.unwrap_or(lead.row.id);
+                rounds.push(Round { calibration, record });
+            }
+        }
+        let state = match unfinished {
+            Some(row) => row.state,
+            // What is decided but not yet begun is work to come.
+            None if next_step_of(reader, row.study).await?.is_some() => CalibrationState::Running,
+            None => CalibrationState::Finished,
+        };
         Ok(Study {
-            state: unfinished.map_or(CalibrationState::Finished, |r| r.state),
+            state,
             lead,
             beside,
+            extensions,
+            rounds,
         })
     }
 
-    /// Every finished calibration, oldest first.
+    /// Every finished calibration of the submitted model and measurements, oldest first.
     pub fn outcomes(&self) -> impl Iterator<Item = &Outcome> {
         std::iter::once(&self.lead).chain(&self.beside)
     }
 
     /// The error ledger: the calibrations that have a posterior.
     pub fn calibrations(&self) -> Vec<CalibrationSummary> {
-        self.outcomes().filter_map(Outcome::calibration_summary).collect()
+        self.all().filter_map(Outcome::calibration_summary).collect()
     }
 
     /// What fits and searches found.
     pub fn point_estimates(&self) -> Vec<PointEstimate> {
-        self.outcomes().filter_map(Outcome::point_estimate).collect()
+        self.all().filter_map(Outcome::point_estimate).collect()
     }
 
-    /// What deserves attention; of a calibration beside the first, under the name of its algorithm.
+    /// Every finished calibration: the submitted one, those beside it, then the extensions.
+    pub fn all(&self) -> impl Iterator<Item = &Outcome> {
+        self.outcomes().chain(&self.extensions)
+    }
+
+    /// The lines of the error ledger: the calibrations that have a posterior.
+    pub fn ledger(&self) -> impl Iterator<Item = &Outcome> {
+        self.all().filter(|outcome| outcome.estimate.is_none())
+    }
+
+    /// Effects at the end of the ledger that the first calibration did not have.
+    fn added(&self) -> Vec<String> {
+        let had = self.lead.effects();
+        let last = self.ledger().last().map(Outcome::effects).unwrap_or_default();
+        last.into_iter().filter(|effect| !had.contains(effect)).collect()
+    }
+
+    /// What deserves attention; of a calibration beside the first, under the name of its algorithm, of an extension under its
+    /// own.
     pub fn flags(&self) -> Vec<Flag> {
         let of = |outcome: &Outcome| outcome.diagnostics(&outcome.comparison()).flags;
         let mut flags = self.missed_modes();
         flags.extend(of(&self.lead));
-        for outcome in &self.beside {
-            let name = outcome.spec.method.name();
+        let beside = self.beside.iter().map(|o| (o.spec.method.name(), o));
+        let extensions = self.extensions.iter().map(|o| (o.experiment.as_str(), o));
+        for (name, outcome) in beside.chain(extensions) {
             flags.extend(of(outcome).into_iter().map(|flag| Flag {
                 text: format!("{name}: {}", flag.text),
                 ..flag
@@ -116,9 +162,19 @@ impl Study {
             calibrations: self.calibrations(),
             point_estimates: self.point_estimates(),
             flags: self.flags(),
-            discovery: None,
+            discovery: DiscoverySummary::of(&self.rounds, self.added()),
         }
     }
+}
+
+/// The calibration whose model a search is about: the first of those that have the same.
+fn searched_by(search: &CalibrationRow, study: &[CalibrationRow]) -> Result<Option<i64>, ServiceError> {
+    for row in study.iter().filter(|row| !is_discovery(&row.job.toml)) {
+        if row.experiment == search.experiment && discovery_job("job.toml", &row.job)? == search.job {
+            return Ok(Some(row.id));
+        }
+    }
+    Ok(None)
 }
 
 #[cfg(test)]
@@ -128,6 +184,8 @@ impl From<Outcome> for Study {
             state: lead.row.state,
             lead,
             beside: Vec::new(),
+            extensions: Vec::new(),
+            rounds: Vec::new(),
         }
     }
 }

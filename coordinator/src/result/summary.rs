@@ -7,6 +7,7 @@ use shared::channel::Channel;
 
 use super::comparison::{Comparison, ComparisonRow};
 use super::coverage::Coverage;
+use super::discovery::DiscoverySummary;
 use super::errors::ErrorTable;
 use super::flags::Flag;
 use super::point_estimate::PointEstimate;
@@ -31,9 +32,8 @@ pub struct Summary {
     pub point_estimates: Vec<PointEstimate>,
     /// What deserves attention.
     pub flags: Vec<Flag>,
-    /// Discovery. Null in this version.
-    #[schema(value_type = Option<Object>)]
-    pub discovery: Option<serde_json::Value>,
+    /// What is known of effects that the model misses; null where no search is finished.
+    pub discovery: Option<DiscoverySummary>,
 }
 
 /// A calibration of the ledger.
@@ -155,6 +155,12 @@ pub struct CoverageSummary {
 }
 
 impl Outcome {
+    /// Names of the effects of its model.
+    pub fn effects(&self) -> Vec<String> {
+        let effects = &self.spec.fit_variant.effects;
+        effects.iter().map(|e| e.name.clone()).collect()
+    }
+
     /// The calibration's line of the ledger; `None` for a fit: point estimates stand apart.
     pub fn calibration_summary(&self) -> Option<CalibrationSummary> {
         if self.estimate.is_some() {
@@ -173,13 +179,7 @@ impl Outcome {
             })
             .collect();
         Some(CalibrationSummary {
-            effects: self
-                .spec
-                .fit_variant
-                .effects
-                .iter()
-                .map(|e| e.name.clone())
-                .collect(),
+            effects: self.effects(),
             algorithm: self.spec.method.name().to_owned(),
             log_evidence: self.row.log_evidence,
             log_evidence_se: self.row.log_evidence_se,

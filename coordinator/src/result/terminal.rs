@@ -156,9 +156,29 @@ fn width<'a>(names: impl Iterator<Item = &'a String>) -> usize {
     names.map(String::len).fold(28, usize::max)
 }
 
+/// Errors by level of each condition, in noise sds.
+pub fn groups(comparison: &Comparison) -> String {
+    if comparison.groups.is_empty() {
+        return String::new();
+    }
+    let mut text = format!(
+        "\n{:<8} {:<28} {:>18} {:>18} {:>18} {:>18}\n",
+        "use", "sigma: rmse (mean) runs", "pull", "torque", "sinkage", "lateral"
+    );
+    for group in &comparison.groups {
+        let _ = write!(text, "{:<8} {:<28}", group.usage, group.words());
+        for channel in Channel::ALL {
+            let error = group.channels.get(channel.name());
+            let _ = write!(text, " {:>18}", error.map_or("-".into(), |e| e.words()));
+        }
+        text.push('\n');
+    }
+    text
+}
+
 /// The results of a study, one calibration after the other.
 pub fn study(study: &Study) -> String {
-    let results: Vec<String> = study.outcomes().map(summary).collect();
+    let results: Vec<String> = study.all().map(summary).collect();
     let mut text = results.join("\n");
     for flag in study.missed_modes() {
         let _ = writeln!(text, "\nflag {}: {}", flag.kind, flag.text);

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use shared::file::{FileError, parse_toml, unknown_word};
 use shared::model::ModelSettings;
 
+use super::discovery_settings::{DiscoverySettings, RawDiscovery};
 use super::errors::{LikelihoodSettings, RawLikelihood};
 use super::method::{Method, RawSampler};
 use super::posterior::PosteriorPrior;
@@ -30,6 +31,8 @@ pub struct Job {
     pub reference: BTreeMap<String, f64>,
     /// How measurements scatter around the model.
     pub likelihood: LikelihoodSettings,
+    /// Whether its study looks for missing effects.
+    pub discovery: DiscoverySettings,
 }
 
 #[derive(Deserialize)]
@@ -55,24 +58,6 @@ struct RawFigures {
     reference: BTreeMap<String, f64>,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct RawDiscovery {
-    apply: String,
-    max_effects: u32,
-}
-
-impl Default for RawDiscovery {
-    fn default() -> Self {
-        RawDiscovery {
-            apply: "off".into(),
-            max_effects: 3,
-        }
-    }
-}
-
-pub(super) const LATER: &str = "is not available in this version";
-
 impl Job {
     /// Parses a job file; `name` is how messages call it.
     ///
@@ -81,9 +66,6 @@ impl Job {
     pub fn parse(name: &str, toml: &str) -> Result<Job, FileError> {
         let mut raw: RawJob = parse_toml(name, toml)?;
         let fail = |message: String| FileError::whole(name, message);
-        raw.discovery
-            .check()
-            .map_err(|e| fail(format!("[discovery] {e}")))?;
         let likelihood = raw
             .likelihood
             .settings()
@@ -92,6 +74,10 @@ impl Job {
         let in_sampler = |e: String| fail(format!("[sampler] {e}"));
         let method = raw.sampler.method().map_err(in_sampler)?;
         let point_estimates = raw.sampler.point_estimates(method.seed()).map_err(in_sampler)?;
+        let discovery = raw
+            .discovery
+            .settings(&method)
+            .map_err(|e| fail(format!("[discovery] {e}")))?;
         let posterior = PosteriorPrior::take(|key| raw.priors.remove(key).map(toml::Spanned::into_inner))
             .map_err(|e| fail(format!("[priors] {e}")))?;
         let mut priors: Vec<_> = raw.priors.into_iter().collect();
@@ -116,6 +102,7 @@ impl Job {
             point_estimates,
             reference: raw.figures.reference,
             likelihood,
+            discovery,
         })
     }
 
@@ -137,17 +124,6 @@ impl Job {
                 let message = unknown_word("file", file, named.iter().map(String::as_str));
                 Err(FileError::whole(name, message))
             }
-        }
-    }
-}
-
-impl RawDiscovery {
-    fn check(&self) -> Result<(), String> {
-        match self.apply.as_str() {
-            "off" if self.max_effects <= 10 => Ok(()),
-            "off" => Err(format!("max_effects = {} must be at most 10", self.max_effects)),
-            later @ ("ask" | "auto") => Err(format!("apply = \"{later}\" {LATER}")),
-            other => Err(unknown_word("value of apply", other, ["off", "ask", "auto"])),
         }
     }
 }

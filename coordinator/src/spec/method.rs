@@ -15,7 +15,15 @@ pub enum Method {
     Fit(lm::Settings),
     /// The most probable parameters, by generations.
     Search(search::Settings),
+    /// What the model is missing.
+    Discover {
+        /// Seed of the draws.
+        seed: u64,
+    },
 }
+
+/// No round of a search for a missing effect has more questions.
+const DISCOVERY_WIDTH: usize = 100_000;
 
 /// Settings that do not fit the prior.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -43,6 +51,7 @@ impl Method {
             Method::Fit(_) => "lm",
             Method::Search(search::Settings::Ga(_)) => "ga",
             Method::Search(search::Settings::CmaEs(_)) => "cma-es",
+            Method::Discover { .. } => "discovery",
         }
     }
 
@@ -59,6 +68,7 @@ impl Method {
             | Method::Search(search::Settings::CmaEs(cma_es::Settings { max_evaluations, .. })) => {
                 format!("{name} with at most {max_evaluations} evaluations")
             }
+            Method::Discover { .. } => name.to_owned(),
         }
     }
 
@@ -71,14 +81,14 @@ impl Method {
     pub fn metamodel_moves(&self) -> usize {
         match self {
             Method::Sample(settings) => settings.metamodel_moves,
-            Method::Fit(_) | Method::Search(_) => 0,
+            Method::Fit(_) | Method::Search(_) | Method::Discover { .. } => 0,
         }
     }
 
     /// The key of the budget that a longer run needs more of.
     pub fn budget_key(&self) -> &'static str {
         match self {
-            Method::Sample(_) => "particles",
+            Method::Sample(_) | Method::Discover { .. } => "particles",
             Method::Search(search::Settings::Ga(_)) => "generations",
             Method::Fit(_) | Method::Search(search::Settings::CmaEs(_)) => "max_evaluations",
         }
@@ -90,6 +100,7 @@ impl Method {
             Method::Sample(settings) => settings.seed,
             Method::Fit(settings) => settings.seed,
             Method::Search(settings) => settings.seed(),
+            Method::Discover { seed } => *seed,
         }
     }
 
@@ -100,13 +111,14 @@ impl Method {
             Method::Fit(settings) => settings.max_evaluations,
             Method::Search(search::Settings::Ga(settings)) => settings.population,
             Method::Search(search::Settings::CmaEs(settings)) => settings.max_evaluations,
+            Method::Discover { .. } => DISCOVERY_WIDTH,
         }
     }
 
     /// Most evaluations, where the job says so.
     pub fn max_evaluations(&self) -> Option<usize> {
         match self {
-            Method::Sample(_) => None,
+            Method::Sample(_) | Method::Discover { .. } => None,
             Method::Fit(settings) => Some(settings.max_evaluations),
             Method::Search(settings) => Some(settings.max_evaluations()),
         }
@@ -121,6 +133,7 @@ impl Method {
             Method::Sample(settings) => settings.check(dimension)?,
             Method::Fit(settings) => settings.check(dimension)?,
             Method::Search(settings) => settings.check(dimension)?,
+            Method::Discover { .. } => {}
         }
         Ok(())
     }
@@ -171,6 +184,9 @@ impl RawSampler {
             "lm" => self.fit(),
             "ga" => self.ga(),
             "cma-es" => self.cma_es(),
+            "discovery" => Method::Discover {
+                seed: self.seed.unwrap_or(inference::Settings::default().seed),
+            },
             _ => self.sample(Algorithm::Tmcmc),
         })
     }

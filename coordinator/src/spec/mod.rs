@@ -1,6 +1,8 @@
 //! Turns the text of a job and its experiment into everything a calibration needs.
 
 mod bevameter;
+mod discovery_job;
+mod discovery_settings;
 mod errors;
 mod extended_job;
 mod job_file;
@@ -10,7 +12,6 @@ mod point_job;
 mod posterior;
 mod predicted;
 mod priors;
-mod reduced_job;
 mod sampler_keys;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,6 +25,10 @@ use shared::parameters;
 use shared::predicted::Predicted;
 
 pub use bevameter::{Bevameter, PLATE, RING, Reading};
+pub use discovery_job::{
+    DISCOVERY, continued_job, discovery_job, effect_name, is_discovery, without_effects,
+};
+pub use discovery_settings::{Apply, DiscoverySettings};
 pub use errors::LikelihoodSettings;
 pub use extended_job::extended_job;
 pub use job_file::Job;
@@ -33,7 +38,6 @@ pub use point_job::point_job;
 pub use posterior::{ImpliedModuli, JointPrior, PosteriorPrior};
 use predicted::predicted;
 pub use priors::{FreeParameter, check_own, free_parameters};
-pub use reduced_job::reduced_job;
 
 /// A calibration as its files determine it; equal files give an equal specification.
 #[derive(Debug, Clone)]
@@ -68,6 +72,8 @@ pub struct Spec {
     pub likelihood_settings: LikelihoodSettings,
     /// The measured readings of plates and rings; all are fitted.
     pub bevameter: Bevameter,
+    /// Whether its study looks for missing effects.
+    pub discovery: DiscoverySettings,
 }
 
 /// A calibration was begun with other files of its effects than this program has.
@@ -244,6 +250,7 @@ impl Spec {
             reference: job.reference,
             likelihood_settings: job.likelihood,
             bevameter,
+            discovery: job.discovery,
         })
     }
 

@@ -1,6 +1,7 @@
-//! The job of a point estimate beside a sample: the same job with another algorithm.
+//! The jobs that follow from a job of a study: a point estimate beside a sample, the search of its model.
 
 use shared::file::FileError;
+use toml_edit::{DocumentMut, Item};
 
 use super::Method;
 
@@ -9,24 +10,44 @@ use super::Method;
 /// So a point estimate is stored, taken up again and shown like any other calibration.
 ///
 /// # Errors
-/// [`FileError`] where the text is no job with a table `[sampler]`.
+/// [`FileError`] where the text is no job.
 pub fn point_job(name: &str, toml: &str, method: &Method) -> Result<String, FileError> {
+    with_algorithm(name, toml, method.name())
+}
+
+/// The same with another algorithm by its usual settings. The table `[discovery]` goes: what follows from a job asks for
+/// nothing itself.
+pub(super) fn with_algorithm(name: &str, toml: &str, algorithm: &str) -> Result<String, FileError> {
+    edited(name, toml, |document| {
+        let sampler = document
+            .entry("sampler")
+            .or_insert(Item::Table(toml_edit::Table::new()));
+        let sampler = sampler.as_table_like_mut().ok_or("[sampler] must be a table")?;
+        let foreign: Vec<String> = sampler
+            .iter()
+            .map(|(key, _)| key.to_owned())
+            .filter(|key| key != "seed")
+            .collect();
+        for key in foreign {
+            sampler.remove(&key);
+        }
+        sampler.insert("algorithm", toml_edit::value(algorithm));
+        document.remove("discovery");
+        Ok(())
+    })
+}
+
+/// The text of a job with a change; what the change leaves alone stays as it is written.
+pub(super) fn edited(
+    name: &str,
+    toml: &str,
+    change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static str>,
+) -> Result<String, FileError> {
     let fail = |message: String| FileError::whole(name, message);
-    let mut document: toml_edit::DocumentMut = toml
+    let mut document: DocumentMut = toml
         .parse()
         .map_err(|e: toml_edit::TomlError| fail(e.to_string()))?;
-    let sampler = document.get_mut("sampler");
-    let sampler = sampler.and_then(toml_edit::Item::as_table_like_mut);
-    let sampler = sampler.ok_or_else(|| fail("[sampler] is missing".into()))?;
-    let foreign: Vec<String> = sampler
-        .iter()
-        .map(|(key, _)| key.to_owned())
-        .filter(|key| key != "seed")
-        .collect();
-    for key in foreign {
-        sampler.remove(&key);
-    }
-    sampler.insert("algorithm", toml_edit::value(method.name()));
+    change(&mut document).map_err(|e| fail(e.to_owned()))?;
     Ok(document.to_string())
 }
 

@@ -10,7 +10,7 @@ pub(super) struct Keys {
     keys: &'static [&'static str],
 }
 
-const ALL: [Keys; 6] = [
+const ALL: [Keys; 7] = [
     Keys {
         algorithm: "tmcmc",
         keys: &["particles", "moves", "metamodel_moves", "seed", "point_estimates"],
@@ -34,6 +34,10 @@ const ALL: [Keys; 6] = [
     Keys {
         algorithm: "cma-es",
         keys: &["population", "max_evaluations", "restarts", "seed"],
+    },
+    Keys {
+        algorithm: "discovery",
+        keys: &["seed"],
     },
 ];
 

@@ -55,6 +55,14 @@ pub(super) async fn write(
             calibration,
             estimate,
         } => self::estimate(connection, calibration, &estimate).await,
+        Fact::Discovery { calibration, record } => {
+            sqlx::query("INSERT OR REPLACE INTO discoveries (calibration, record) VALUES (?, ?)")
+                .bind(calibration)
+                .bind(json(&*record))
+                .execute(connection)
+                .await
+                .map(drop)
+        }
         Fact::State {
             calibration,
             state,

@@ -11,6 +11,7 @@ use sqlx::sqlite::SqliteRow;
 
 use super::{Reader, StoreError, blob, numbers};
 use crate::calibration::{EvaluationKey, HISTORIES, PREDICTIONS_FROM};
+use crate::discovery::Discovery;
 
 /// A stored experiment.
 #[derive(Debug, Clone)]
@@ -136,7 +137,8 @@ pub struct Subchains {
     pub moved: u64,
 }
 
-const CALIBRATION: &str = "SELECT c.*, s.experiment FROM calibrations c JOIN studies s ON s.id = c.study";
+const CALIBRATION: &str = "SELECT c.*, coalesce(c.experiment, s.experiment) AS on_experiment
+     FROM calibrations c JOIN studies s ON s.id = c.study";
 
 impl Reader {
     /// An experiment.
@@ -217,6 +219,23 @@ impl Reader {
                 Ok((row.get("id"), row.get("experiment"), ids))
             })
             .collect()
+    }
+
+    /// The studies whose members are all over, each with their number.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn settled_studies(&self) -> Result<Vec<(i64, i64)>, StoreError> {
+        let rows = sqlx::query(
+            "SELECT study, count(*) AS members FROM calibrations GROUP BY study
+             HAVING sum(state NOT IN ('finished', 'failed', 'cancelled')) = 0 ORDER BY study",
+        )
+        .fetch_all(&self.pool)
+        .await?;
+        Ok(rows
+            .iter()
+            .map(|row| (row.get("study"), row.get("members")))
+            .collect())
     }
 
     /// The stages of a calibration, in order.
@@ -330,6 +349,23 @@ impl Reader {
         .transpose()
     }
 
+    /// What a search for a missing effect found.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn discovery(&self, calibration: i64) -> Result<Option<Discovery>, StoreError> {
+        let record: Option<String> =
+            sqlx::query_scalar("SELECT record FROM discoveries WHERE calibration = ?")
+                .bind(calibration)
+                .fetch_optional(&self.pool)
+                .await?;
+        let read = |json: String| {
+            serde_json::from_str(&json)
+                .map_err(|e| StoreError::Corrupt(format!("record of search {calibration}: {e}")))
+        };
+        record.map(read).transpose()
+    }
+
     /// The final draws of a calibration; the first is the most probable particle, of a fit the only one.
     ///
     /// # Errors
@@ -441,7 +477,7 @@ fn calibration_row(row: &SqliteRow) -> Result<CalibrationRow, StoreError> {
     Ok(CalibrationRow {
         id: row.get("id"),
         study: row.get("study"),
-        experiment: row.get("experiment"),
+        experiment: row.get("on_experiment"),
         name: row.get("name"),
         job: FileSet {
             toml: row.get("toml"),

@@ -32,6 +32,13 @@ enum Write {
         new: NewStudy,
         reply: oneshot::Sender<StudyIds>,
     },
+    Member {
+        study: i64,
+        experiment: i64,
+        row: NewCalibrationRow,
+        now_ms: i64,
+        reply: oneshot::Sender<i64>,
+    },
     Close,
 }
 
@@ -248,6 +255,32 @@ impl Writer {
             .await
             .map_err(|_| StoreError::Stopped)
     }
+
+    /// Stores a calibration of a study that is there, on its experiment or on another; its id.
+    ///
+    /// # Errors
+    /// [`StoreError::Stopped`].
+    pub async fn add_member(
+        &self,
+        study: i64,
+        experiment: i64,
+        row: NewCalibrationRow,
+        now_ms: i64,
+    ) -> Result<i64, StoreError> {
+        let (reply, answer) = oneshot::channel();
+        let write = Write::Member {
+            study,
+            experiment,
+            row,
+            now_ms,
+            reply,
+        };
+        self.sender.send(write).map_err(|_| StoreError::Stopped)?;
+        self.waiting
+            .while_urgent(answer)
+            .await
+            .map_err(|_| StoreError::Stopped)
+    }
 }
 
 async fn run(
@@ -289,14 +322,14 @@ async fn run(
 /// Answers that may only be given after the commit.
 #[derive(Default)]
 struct Replies {
-    experiments: Vec<(oneshot::Sender<i64>, i64)>,
+    ids: Vec<(oneshot::Sender<i64>, i64)>,
     studies: Vec<(oneshot::Sender<StudyIds>, StudyIds)>,
 }
 
 impl Replies {
     fn send(self) {
         // An asker that has gone away finds what it stored in the list.
-        for (reply, id) in self.experiments {
+        for (reply, id) in self.ids {
             let _ = reply.send(id);
         }
         for (reply, ids) in self.studies {
@@ -340,11 +373,21 @@ async fn write_group(
                 .bind(now_ms)
                 .fetch_one(&mut *connection)
                 .await?;
-                replies.experiments.push((reply, id));
+                replies.ids.push((reply, id));
             }
             Write::Study { new, reply } => replies
                 .studies
                 .push((reply, insert_study(connection, new).await?)),
+            Write::Member {
+                study,
+                experiment,
+                row,
+                now_ms,
+                reply,
+            } => {
+                let id = insert_calibration(connection, study, Some(experiment), row, now_ms).await?;
+                replies.ids.push((reply, id));
+            }
         }
     }
     insert_evaluations(connection, &mut rows).await?;
@@ -358,20 +401,33 @@ async fn insert_study(connection: &mut SqliteConnection, new: NewStudy) -> Resul
         .await?;
     let mut calibrations = Vec::new();
     for row in new.calibrations {
-        let id = sqlx::query_scalar(
-            "INSERT INTO calibrations (study, name, toml, files, state, created_at_ms)
-             VALUES (?, ?, ?, ?, 'queued', ?) RETURNING id",
-        )
-        .bind(study)
-        .bind(row.name)
-        .bind(row.toml)
-        .bind(row.files)
-        .bind(new.now_ms)
-        .fetch_one(&mut *connection)
-        .await?;
+        let id = insert_calibration(connection, study, None, row, new.now_ms).await?;
         calibrations.push(id);
     }
     Ok(StudyIds { study, calibrations })
+}
+
+/// Inserts a calibration, on the experiment of its study where none is named.
+async fn insert_calibration(
+    connection: &mut SqliteConnection,
+    study: i64,
+    experiment: Option<i64>,
+    row: NewCalibrationRow,
+    now_ms: i64,
+) -> Result<i64, sqlx::Error> {
+    sqlx::query_scalar(
+        "INSERT INTO calibrations (study, experiment, name, toml, files, state, created_at_ms)
+         VALUES (?1, nullif(?2, (SELECT experiment FROM studies WHERE id = ?1)), ?3, ?4, ?5, 'queued', ?6)
+         RETURNING id",
+    )
+    .bind(study)
+    .bind(experiment)
+    .bind(row.name)
+    .bind(row.toml)
+    .bind(row.files)
+    .bind(now_ms)
+    .fetch_one(connection)
+    .await
 }
 
 /// Inserts evaluations, many rows to a statement: SQLite through sqlx costs by the statement.

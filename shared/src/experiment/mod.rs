@@ -4,12 +4,14 @@
 //! - `settings`: the tables of `experiment.toml`; `wheel`: those of the wheels; `scatter`: relative noise.
 //! - `mesh`: a wheel given as a surface of triangles.
 //! - `runs`: the rows of `runs.csv`; `history`: what a run recorded over time, and its averages.
+//! - `more_runs`: an experiment with further runs.
 //! - `bevameter`: the rows of `plates.csv` and `shear.csv`.
 //! - `table`: rows of a CSV file whose columns are known by name.
 
 mod bevameter;
 mod history;
 mod mesh;
+mod more_runs;
 mod runs;
 mod scatter;
 mod settings;

@@ -31,6 +31,15 @@ impl Columns<'_> {
     }
 }
 
+/// Reads a file's records.
+pub(super) fn reader(text: &str) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .flexible(true)
+        .from_reader(text.as_bytes())
+}
+
 /// Parses the rows of a file with `row`, which also gets the line, counted from 1.
 ///
 /// # Errors
@@ -41,11 +50,7 @@ pub(super) fn rows<T>(
     columns: &Columns<'_>,
     mut row: impl FnMut(&Row<'_>, usize) -> Result<T, String>,
 ) -> Result<Vec<T>, FileError> {
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .flexible(true)
-        .from_reader(text.as_bytes());
+    let mut reader = reader(text);
     let header = reader
         .headers()
         .map_err(|e| FileError::at(file, 1, e.to_string()))?
@@ -71,7 +76,7 @@ pub(super) fn rows<T>(
 }
 
 /// The line in which a record stands, counted from 1: its position is that of the comments before it.
-fn line_of(text: &str, record: &csv::StringRecord) -> usize {
+pub(super) fn line_of(text: &str, record: &csv::StringRecord) -> usize {
     let Some(position) = record.position() else {
         return 1;
     };

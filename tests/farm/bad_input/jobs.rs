@@ -180,26 +180,18 @@ fn settings_of_the_sampler_that_cannot_work_are_refused() {
 }
 
 #[test]
-fn what_a_later_version_brings_says_so() {
-    let later = |job: Job, what: &str| {
-        let message = refusal(&job);
-        assert!(
-            message.contains(what) && message.contains("not available in this version"),
-            "{message}"
-        );
-    };
-    let small = Job::small;
+fn a_discovery_that_means_nothing_is_refused() {
     let section = |text: &str| Job {
-        job: small().job + text,
-        ..small()
+        job: format!("{}[discovery]\n{text}\n", Job::small().job),
+        ..Job::small()
     };
-    later(
-        section("[discovery]\napply = \"auto\"\n"),
-        "[discovery] apply = \"auto\"",
+    refused(
+        section("apply = \"aks\""),
+        "job.toml: [discovery] unknown value of apply \"aks\"; the nearest known is \"ask\"",
     );
-    later(
-        section("[discovery]\napply = \"ask\"\n"),
-        "[discovery] apply = \"ask\"",
+    refused(
+        section("max_effects = 11"),
+        "job.toml: [discovery] max_effects = 11 must lie in [1, 10]",
     );
 }
 

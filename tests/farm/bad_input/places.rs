@@ -179,10 +179,6 @@ fn a_calibration_that_is_not_there_or_not_ready_is_named() {
     service.submit(&Job::small());
     assert_eq!(verb(&["status"]), "there are 2 calibrations: name one by its id");
     assert_eq!(service.status(id)["state"], "queued");
-    for later in ["discover", "extend", "add-runs"] {
-        let message = run(coordinator([later])).refusal();
-        assert!(message.contains("not available in this version"), "{message}");
-    }
     let folder = tempfile::tempdir().unwrap();
     let message = run(coordinator(["status", "--out", &text(folder.path())])).refusal();
     assert!(

@@ -8,7 +8,7 @@
 //! - `conflict`: prior against posterior.
 //! - `density`, `density_of_pairs`: kernel densities, and the levels that hold most of a sample.
 //! - `predicted`: draws with their predictions. `information`: what a channel can say. `residual`: what the fit leaves,
-//!   one by one and in sum.
+//!   one by one and in sum. `trend`: whether it follows a condition.
 //! - `region`: where in the prior failures concentrate.
 //! - `tail`: probabilities of tests.
 
@@ -25,6 +25,7 @@ mod region;
 mod residual;
 mod spectrum;
 mod tail;
+mod trend;
 
 pub use bound::at_bound;
 pub use conflict::{Conflict, conflict};
@@ -39,3 +40,4 @@ pub use region::{BINS, Region, Side, bin, concentration};
 pub use residual::{ChiSquare, Residual, chi_square, residuals};
 pub use spectrum::{Direction, principal_directions};
 pub use tail::chi_square_tail;
+pub use trend::{Trend, TrendTest};

@@ -106,7 +106,7 @@ pub fn residuals(likelihood: &Likelihood, draws: &[Predicted]) -> Result<Vec<Res
 }
 
 /// The parameter that is the sd of a datum, where other data can tell it as well.
-fn own_scale(likelihood: &Likelihood, i: usize) -> Option<usize> {
+pub(super) fn own_scale(likelihood: &Likelihood, i: usize) -> Option<usize> {
     match likelihood.data()[i].sd {
         Sd::Inferred { parameter } if likelihood.is_alone(i) && likelihood.law() == ErrorLaw::Gaussian => {
             Some(parameter)

@@ -62,6 +62,8 @@ impl Point {
 /// What a descent does, one after the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Step {
+    /// Coordinates that were held move from here on.
+    Release,
     /// A fresh Jacobian.
     Differences,
     /// At most so many steps, each an evaluation.
@@ -81,6 +83,8 @@ pub(super) struct Descent {
     plan: VecDeque<Step>,
     damping: f64,
     failures: usize,
+    /// Coordinates that do not move.
+    held: Vec<bool>,
     /// No step was tried since the Jacobian of a round.
     is_fresh: bool,
     asked: Asked,
@@ -101,6 +105,7 @@ enum Asked {
 impl Descent {
     pub(super) fn new(frame: Frame, point: Point, columns: Vec<Vec<f64>>, plan: &[Step]) -> Self {
         Self {
+            held: vec![false; frame.dimension()],
             frame,
             point,
             columns,
@@ -113,6 +118,13 @@ impl Descent {
         }
     }
 
+    /// Lets some coordinates stay where they are until they are released.
+    pub(super) fn hold(&mut self, coordinates: impl Iterator<Item = usize>) {
+        for k in coordinates {
+            self.held[k] = true;
+        }
+    }
+
     /// The positions to be evaluated next; none when the plan is done.
     pub(super) fn ask(&mut self, likelihood: &Likelihood) -> Vec<Vec<f64>> {
         if let Asked::Differences(again, _) = &self.asked {
@@ -120,6 +132,11 @@ impl Descent {
         }
         while let Some(step) = self.plan.pop_front() {
             match step {
+                Step::Release => {
+                    self.held.fill(false);
+                    self.damping = 0.0;
+                    self.failures = 0;
+                }
                 Step::Differences => {
                     let (_, upper) = self.frame.room(&self.point.position);
                     let uncertainty = self.parabola(likelihood).uncertainty();
@@ -132,7 +149,7 @@ impl Descent {
                     let noise = noise::coordinates(likelihood);
                     let is_noise = |k: usize| noise.iter().any(|(own, _)| *own == k);
                     let wanted: Vec<(usize, f64)> = (0..self.frame.dimension())
-                        .filter(|k| !is_noise(*k))
+                        .filter(|k| !is_noise(*k) && !self.held[*k])
                         .map(|k| (k, offset(k)))
                         .collect();
                     let positions = self.offset(&wanted);
@@ -281,7 +298,10 @@ impl Descent {
 
     /// The parabola of f at the point.
     pub(super) fn parabola(&self, likelihood: &Likelihood) -> Quadratic {
-        parabola(&self.frame, likelihood, &self.point, &self.columns)
+        Quadratic {
+            held: self.held.clone(),
+            ..parabola(&self.frame, likelihood, &self.point, &self.columns)
+        }
     }
 
     /// ln evidence by the parabola at the point; `None` where it has no least.

@@ -3,6 +3,7 @@
 use super::base;
 use super::candidate::{Candidate, CandidateError, Request};
 use super::coordinate::Frame;
+use super::depth::{Depth, WHOLE};
 use super::descent::Descent;
 use super::finding::{Finding, Method, Spent};
 use super::fleet::Fleet;
@@ -28,8 +29,7 @@ pub struct Engine {
     pub(super) asked: Vec<(Option<usize>, Vec<f64>)>,
     pub(super) phase: Phase,
     pub(super) seed: u64,
-    /// How many candidates are fitted: all, or the first of the screen where the search is a quick one.
-    pub(super) most_extended: usize,
+    pub(super) depth: &'static Depth,
     pub(super) base: Option<(Descent, f64)>,
     pub(super) screened: Vec<Option<Screened>>,
     pub(super) judgements: Vec<Option<Judgement>>,
@@ -37,9 +37,6 @@ pub struct Engine {
     /// Evaluations of each candidate.
     pub(super) own: Vec<usize>,
 }
-
-/// How many candidates a quick search fits.
-pub(super) const QUICK: usize = 6;
 
 /// What is known of a candidate so far.
 #[derive(Debug, Clone)]
@@ -102,11 +99,12 @@ impl Engine {
         log_evidence: f64,
         likelihood: Likelihood,
         candidates: Vec<Candidate>,
+        depth: &'static Depth,
         seed: u64,
     ) -> Self {
         let count = candidates.len();
         let mut engine = Self::unasked(fitted.frame.clone(), likelihood, candidates, seed);
-        engine.most_extended = QUICK;
+        engine.depth = depth;
         engine.base = Some((fitted, log_evidence));
         engine.screen(0, (0..count).collect());
         engine
@@ -123,7 +121,7 @@ impl Engine {
             asked: Vec::new(),
             phase: Phase::Starts,
             seed,
-            most_extended: usize::MAX,
+            depth: &WHOLE,
             base: None,
             screened: vec![None; count],
             judgements: vec![None; count],

@@ -1,6 +1,7 @@
 //! Fit the base with one effect added, from what the screen knows.
 
 use super::coordinate::Frame;
+use super::depth::Depth;
 use super::descent::{Descent, Point, Step};
 use super::screen::Screened;
 use crate::likelihood::Likelihood;
@@ -8,21 +9,25 @@ use crate::likelihood::Likelihood;
 /// Broyden's steps alone, the first to the linear solution.
 pub(super) const PLAN: [Step; 1] = [Step::Trials(9)];
 
+/// The same at shapes that are held, then with them.
+pub(super) const HELD: [Step; 4] = [Step::Trials(6), Step::Release, Step::Differences, Step::Trials(6)];
+
 /// Begins at the fitted base or at the screen's point, whichever is more probable.
 pub(super) fn descent(
     frame: &Frame,
     base: &Descent,
     screened: &Screened,
     likelihood: &Likelihood,
+    depth: &Depth,
 ) -> Option<Descent> {
     let position = frame.without(&screened.point.position);
     let absent = Point::new(frame, likelihood, position, base.point.values.clone())?;
     let is_present = screened.point.value < absent.value;
+    let is_strength = |k: usize| frame.strengths.iter().any(|(strength, _)| *strength == k);
     let mut columns = base.columns.clone();
     columns.extend_from_slice(&screened.columns[base.columns.len()..]);
     if !is_present {
         // Where an effect is absent its shape changes nothing.
-        let is_strength = |k: usize| frame.strengths.iter().any(|(strength, _)| *strength == k);
         for k in (base.columns.len()..columns.len()).filter(|k| !is_strength(*k)) {
             columns[k].fill(0.0);
         }
@@ -32,5 +37,9 @@ pub(super) fn descent(
     } else {
         absent
     };
-    Some(Descent::new(frame.clone(), point, columns, &PLAN))
+    let mut descent = Descent::new(frame.clone(), point, columns, depth.plan);
+    if depth.holds_shapes {
+        descent.hold((base.columns.len()..frame.dimension()).filter(|k| !is_strength(*k)));
+    }
+    Some(descent)
 }

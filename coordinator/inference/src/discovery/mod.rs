@@ -24,6 +24,7 @@ mod candidate;
 mod classes;
 mod confirm;
 mod coordinate;
+mod depth;
 mod descent;
 mod engine;
 mod evidence;

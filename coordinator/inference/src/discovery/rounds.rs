@@ -81,7 +81,7 @@ impl Engine {
         let mut asked = Vec::new();
         for k in wanted {
             let frame = &self.frames[k];
-            let at = screen::positions(frame, &base.point.position, STRENGTHS[level]);
+            let at = screen::positions(frame, &base.point.position, self.depth.shapes, STRENGTHS[level]);
             asked.extend(at.into_iter().map(|position| (Some(k), position)));
         }
         if asked.is_empty() {
@@ -129,9 +129,9 @@ impl Engine {
 
     fn extend(&mut self) {
         let Some((base, _)) = &self.base else { return };
-        let descents = self.best(self.most_extended).into_iter().filter_map(|k| {
+        let descents = self.best(self.depth.most_extended).into_iter().filter_map(|k| {
             let screened = self.screened[k].as_ref()?;
-            let descent = extension::descent(&self.frames[k], base, screened, &self.likelihood)?;
+            let descent = extension::descent(&self.frames[k], base, screened, &self.likelihood, self.depth)?;
             Some((Some(k), descent))
         });
         let fleet = Fleet::new(descents.collect());
@@ -158,7 +158,7 @@ impl Engine {
         };
         self.spent.polish += fleet.evaluations();
         self.take(fleet, Method::Polished);
-        if self.most_extended < usize::MAX {
+        if !self.depth.confirms {
             return self.finish();
         }
         let Some((base, _)) = &self.base else { return };

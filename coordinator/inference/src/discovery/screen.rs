@@ -10,9 +10,6 @@ use crate::likelihood::{Likelihood, Whitening};
 
 /// Steps of the strength that are tried, in standard deviations of its prior: each where the model refuses the one before.
 pub(super) const STRENGTHS: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
-/// Coordinates of the shape parameters that are tried.
-const SHAPES: [f64; 3] = [0.0, -1.0, 1.0];
-
 /// The fitted base with its curvature: what changes of the predictions it can absorb.
 pub(super) struct Absorbed {
     whitening: Whitening,
@@ -55,14 +52,14 @@ impl Absorbed {
 }
 
 /// Where a candidate is asked: at every shape that is tried, or along each of its strengths.
-pub(super) fn positions(frame: &Frame, base: &[f64], strength: f64) -> Vec<Vec<f64>> {
+pub(super) fn positions(frame: &Frame, base: &[f64], shapes: &[f64], strength: f64) -> Vec<Vec<f64>> {
     let Some((k, neutral)) = frame.strength() else {
         return block::positions(frame, base, strength);
     };
     let shapes = if frame.dimension() > base.len() + 1 {
-        &SHAPES[..]
+        shapes
     } else {
-        &SHAPES[..1]
+        &shapes[..1]
     };
     let at = |&shape: &f64| {
         let mut position = base.to_vec();

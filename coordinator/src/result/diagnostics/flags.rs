@@ -1,15 +1,17 @@
 //! What of the diagnostics deserves attention. Each family of tests is corrected for their number (Bonferroni), so that
 //! in a calibration where nothing is wrong a family raises a flag once in a hundred times.
 
+use super::causes::trend_flags;
 use super::datum::size;
 use super::{ChiSquareTest, Diagnostics, LEVEL, ResidualDiagnostics, p_words};
 use crate::result::Flag;
 use crate::result::report::number;
 
-/// Flags of channels, misfit, residuals and prior.
+/// Flags of channels, misfit, trends, residuals and prior.
 pub(in crate::result) fn findings_that_alarm(diagnostics: &Diagnostics) -> Vec<Flag> {
     silent_channels(diagnostics)
         .chain(misfits(diagnostics))
+        .chain(trend_flags(&diagnostics.trends))
         .chain(outliers(&diagnostics.residuals))
         .chain(conflicts(diagnostics))
         .collect()
@@ -144,6 +146,9 @@ mod tests {
             parameter.conflict_p = Some(0.5);
         }
         (diagnostics.chi_square, diagnostics.conflict) = (None, None);
+        for trend in &mut diagnostics.trends {
+            trend.p = 0.5;
+        }
         diagnostics
     }
 

@@ -3,7 +3,8 @@
 //! # Layout
 //! - `sampler`: stages, equilibrium, effective sample size.
 //! - `channels`: what each channel can say, how well it is met, how its intervals hold.
-//! - `residuals`: every fitted measurement beside its prediction.
+//! - `residuals`: every fitted measurement beside its prediction. `trends`: whether they follow a condition of the runs;
+//!   `causes`: what that looks like, and what it may come from.
 //! - `parameters`: contraction, bounds, conflict with the prior. `directions`: what is known only together.
 //! - `rejections`: refusals and faults by region of the prior.
 //! - `datum`: names and units of data. `flags`: what of it deserves attention. `terminal`: all of it as text.
@@ -11,6 +12,7 @@
 //! The statistics are [`inference::diagnostics`]'s. Nothing here but the coverage of holdout rows, which decides nothing,
 //! reads a holdout row.
 
+mod causes;
 mod channels;
 mod datum;
 mod directions;
@@ -20,6 +22,7 @@ mod rejections;
 mod residuals;
 mod sampler;
 pub mod terminal;
+mod trends;
 
 use inference::diagnostics::Predicted;
 
@@ -33,6 +36,7 @@ pub use parameters::{ParameterDiagnostics, PriorConflict};
 pub use rejections::{Bin, BinnedParameter, PriorRegion, RegionSide, RejectionDiagnostics};
 pub use residuals::ResidualDiagnostics;
 pub use sampler::SamplerDiagnostics;
+pub use trends::{Against, TrendDiagnostics};
 
 /// A test with a smaller probability raises a flag.
 pub(super) const LEVEL: f64 = 0.01;
@@ -48,6 +52,8 @@ pub struct Diagnostics {
     pub chi_square: Option<ChiSquareTest>,
     /// Every fitted measurement beside its prediction.
     pub residuals: Vec<ResidualDiagnostics>,
+    /// The residuals of each channel against each condition that its runs vary.
+    pub trends: Vec<TrendDiagnostics>,
     /// What the data did to each parameter, in the order of the job.
     pub parameters: Vec<ParameterDiagnostics>,
     /// The prior of all parameters together against the data.
@@ -70,6 +76,7 @@ impl Outcome {
     pub fn diagnostics(&self, comparison: &Comparison) -> Diagnostics {
         let posterior = posterior_draws(self);
         let residuals = residuals::residuals(self, &posterior);
+        let trends = trends::trends(self, &posterior);
         let (parameters, conflict) = parameters::parameters(self);
         let directions = directions::directions(self);
         let rejections = rejections::rejections(self);
@@ -79,6 +86,7 @@ impl Outcome {
             .iter()
             .filter_map(|channel| channel.silence.clone())
             .chain(chi_square.as_ref().map(ChiSquareTest::words))
+            .chain(causes::shared_causes(&trends))
             .chain(directions::worst_known(self, &directions))
             .chain(rejections.words())
             .collect();
@@ -87,6 +95,7 @@ impl Outcome {
             channels,
             chi_square,
             residuals,
+            trends,
             parameters,
             conflict,
             directions,
@@ -150,6 +159,7 @@ mod tests {
         assert_eq!(diagnostics.sampler, None);
         assert_eq!(diagnostics.chi_square, None);
         assert!(diagnostics.residuals.is_empty() && diagnostics.directions.is_empty());
+        assert_eq!(diagnostics.trends, []);
         assert!(diagnostics.findings.is_empty(), "{:?}", diagnostics.findings);
         assert!(diagnostics.parameters.iter().all(|p| p.contraction.is_none()));
         assert!(diagnostics.parameters[1].at_bound);

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{ChannelDiagnostics, CoverageCount, Diagnostics, DirectionDiagnostics, RejectionDiagnostics};
-use super::{ResidualDiagnostics, SamplerDiagnostics, probability, shown};
+use super::{ResidualDiagnostics, SamplerDiagnostics, TrendDiagnostics, probability, shown};
 use crate::result::report::number;
 use crate::result::terminal::number as four;
 
@@ -21,6 +21,9 @@ pub fn text(diagnostics: &Diagnostics) -> String {
     parts.push(channels(&diagnostics.channels));
     if !diagnostics.residuals.is_empty() {
         parts.push(residuals(&diagnostics.residuals));
+    }
+    if !diagnostics.trends.is_empty() {
+        parts.push(trends(&diagnostics.trends));
     }
     parts.push(parameters(diagnostics));
     if !diagnostics.directions.is_empty() {
@@ -165,6 +168,28 @@ fn residuals(all: &[ResidualDiagnostics]) -> String {
             r.leverage,
             short(r.studentised),
             p_cell(r.p)
+        );
+    }
+    text
+}
+
+fn trends(all: &[TrendDiagnostics]) -> String {
+    let mut text = format!(
+        "{:<14} {:<18} {:<4} {:>10} {:>10} {:>10} {:>9}\n",
+        "trend of", "against", "unit", "change", "sd", "share left", "p"
+    );
+    for t in all {
+        let (scale, unit) = shown(&t.channel);
+        let _ = writeln!(
+            text,
+            "{:<14} {:<18} {:<4} {:>10} {:>10} {:>10.2} {:>9}",
+            t.channel,
+            t.against.name(),
+            unit,
+            four(scale * t.change),
+            four(scale * t.change_sd),
+            t.share_left,
+            probability(t.p)
         );
     }
     text

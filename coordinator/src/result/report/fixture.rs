@@ -8,7 +8,8 @@ use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
 
-use crate::result::{Outcome, Study};
+use crate::discovery::Outside;
+use crate::result::{Outcome, Round, Study};
 use crate::spec::{Method, Spec};
 use crate::store::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Sample, StageRow};
 
@@ -122,6 +123,30 @@ pub(in crate::result) fn study() -> Study {
     Study {
         beside: vec![search()],
         ..Study::from(outcome())
+    }
+}
+
+/// A sample that was searched and extended.
+pub(in crate::result) fn grown() -> Study {
+    let mut extension = outcome();
+    (extension.row.id, extension.experiment) = (3, "<script>sand+slip_sinkage".into());
+    let mut record = crate::discovery::fixture::discovery();
+    record.outside = Some(Outside {
+        acts_on: "shear".into(),
+        depends_on: "slip".into(),
+        form: "step".into(),
+        log_bayes_factor: 12.0,
+        effect_file: "name = \"<script>\"\n".into(),
+        curve: vec![[0.0, 1.0], [0.3, 1.0], [0.31, 1.2], [0.6, 1.2]],
+        left_out_nats: [8.0, 3.0],
+    });
+    Study {
+        extensions: vec![extension],
+        rounds: vec![Round {
+            calibration: 1,
+            record,
+        }],
+        ..study()
     }
 }
 

@@ -52,7 +52,7 @@ pub fn page(study: &Study) -> String {
         (
             "errors",
             "Errors by channel",
-            section::errors(outcome, &comparison),
+            html! { (section::errors(outcome, &comparison)) (section::groups(&comparison)) },
         ),
         ("parameters", "Parameters", parameters),
         method,
@@ -71,6 +71,9 @@ pub fn page(study: &Study) -> String {
     }
     if !study.beside.is_empty() {
         sections.push(("beside", "Point estimates", section::beside(&study.beside)));
+    }
+    if let Some(discovery) = section::discovery(study) {
+        sections.push(("discovery", "Missing effects", discovery));
     }
     let figures = study.figures();
     if !figures.is_empty() {
@@ -212,6 +215,28 @@ mod tests {
         let page = page(fixture::outcome());
         assert!(page.contains("Grousers are not modelled here"));
         assert!(page.contains("lack 1/sigma"));
+    }
+
+    #[test]
+    fn a_grown_study_shows_its_ledger_and_its_searches() {
+        let study = fixture::grown();
+        let page = super::page(&study);
+        let (_, discovery) = page.split_once("id=\"discovery\"").unwrap();
+        for words in [
+            "sand+slip_sinkage",
+            "The data name slip_sinkage.",
+            "coordinator extend 1 --effect slip_sinkage",
+            "shear depends on slip (step",
+            "aria-label=\"correction of shear by slip\"",
+            "a plate test at 80 N",
+        ] {
+            assert!(discovery.contains(words), "{words}");
+        }
+        assert_eq!(page.matches("<script").count(), 2, "names are escaped here, too");
+        let summary = study.summary();
+        assert_eq!(summary.calibrations.len(), 2);
+        assert_eq!(summary.discovery.unwrap().rounds.len(), 1);
+        assert!(!super::page(&fixture::study()).contains("id=\"discovery\""));
     }
 
     #[test]

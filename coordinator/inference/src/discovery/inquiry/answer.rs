@@ -13,6 +13,8 @@ use crate::discovery::finding::Method;
 const PRIOR_OF_NONE: f64 = 0.5;
 /// A class or an effect with more probability is named.
 const NAMED: f64 = 0.9;
+/// A law outside the library may leave so much of the misfit that the library leaves.
+const MOST_LEFT: f64 = 0.25;
 /// Probability that the credible set holds.
 const CREDIBLE: f64 = 0.95;
 /// Explanations with less probability are not told apart by further runs.
@@ -209,15 +211,27 @@ fn weigh(task: &Task, found: &Found) -> Weighed {
     }
 }
 
-/// What can be said of weighed explanations.
+/// Whether a law explains most of what the best of the library leaves, or leaves nothing that chance would not.
+fn explains(task: &Task, of_library: Option<ChiSquare>, law: &Law) -> bool {
+    let excess = |chi: ChiSquare| chi.value - chi.degrees_of_freedom;
+    match (of_library, ChiSquare::of(&law.fit, &task.likelihood)) {
+        (Some(library), Some(own)) => own.p() > WRONG || excess(own) < MOST_LEFT * excess(library),
+        _ => true,
+    }
+}
+
+/// What can be said of weighed explanations; the law is one that was confirmed and explains the misfit.
 fn verdict(weighed: &Weighed, found: &Found, misfit_p: Option<f64>, law: Option<&Law>) -> Verdict {
     let judged = &weighed.judged;
     let best_set = found.best_set();
     let library = best_set.map_or(0.0, |set| set.log_bayes_factor);
     let detected = library > DETECTED;
     let is_wrong = misfit_p.is_some_and(|p| p < WRONG);
+    let probability = weighed.not_in_library.map_or(0.0, |(_, probability)| probability);
     if let Some(law) = law
         && (is_wrong || law.log_bayes_factor - library.max(0.0) > DETECTED)
+        // Where the library sees nothing, one of many laws may fit by chance: its probability counts the choice.
+        && probability > if detected { 0.5 } else { NAMED }
     {
         return Verdict::Outside;
     }
@@ -295,6 +309,7 @@ impl Answer {
         let singles = found.singles.as_ref();
         let law = found.laws.as_ref().zip(found.confirmed).map(|(laws, k)| &laws[k]);
         let of_library = found.best_chi_square(&task.likelihood, DETECTED);
+        let law = law.filter(|law| explains(task, of_library, law));
         let verdict = verdict(&weighed, found, of_library.map(|chi| chi.p()), law);
         let own = task.prior.len();
         let outside = law.map(|law| Outside {
@@ -307,7 +322,9 @@ impl Answer {
         let best_set = found.best_set().filter(|set| set.log_bayes_factor > DETECTED);
         let fitted = |effects: Vec<usize>, fit: Option<&Descent>, number: u64| {
             let seed = task.settings.seed;
-            let draws = fit.map_or(Vec::new(), |fit| draws(fit, &task.likelihood, seed, number, DRAWS));
+            let draws = fit.map_or(Vec::new(), |fit| {
+                draws(fit, &task.likelihood, seed, number, DRAWS)
+            });
             Fitted { effects, draws }
         };
         let (effects, fit) = match (verdict, law, best_set) {

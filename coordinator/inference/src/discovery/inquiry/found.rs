@@ -52,7 +52,7 @@ pub(super) struct Law {
 }
 
 /// Each further effect must be worth so much \[nats\]: what the choice among the library costs.
-const COST_OF_CHOICE: f64 = 3.0;
+const COST_OF_CHOICE: f64 = 5.0;
 
 impl Found {
     pub(super) fn new(candidates: Vec<Candidate>) -> Self {

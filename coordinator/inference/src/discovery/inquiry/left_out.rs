@@ -39,10 +39,13 @@ pub(super) struct LeftOut(Vec<Level>);
 
 impl LeftOut {
     /// Levels that hold all data, or that leave models without any, say nothing.
+    ///
+    /// # Arguments
+    /// - `fits`: of each model its effects, how many parameters its last one has, and the fit to all data.
     pub(super) fn new(
         likelihood: &Likelihood,
         levels: &[Vec<usize>],
-        fits: &[(Vec<usize>, &Descent); MODELS],
+        fits: &[(Vec<usize>, usize, &Descent); MODELS],
     ) -> Self {
         let count = likelihood.data().len();
         let level = |left: &Vec<usize>| {
@@ -51,7 +54,7 @@ impl LeftOut {
                 return None;
             }
             let (part, places) = likelihood.part(&kept).ok()?;
-            let refit = |(model, (effects, fit)): (usize, &(Vec<usize>, &Descent))| {
+            let refit = |(model, (effects, own, fit)): (usize, &(Vec<usize>, usize, &Descent))| {
                 let taken = |values: &[f64]| places.iter().map(|&i| values[i]).collect::<Vec<f64>>();
                 let point = Point::new(
                     &fit.frame,
@@ -60,10 +63,15 @@ impl LeftOut {
                     taken(&fit.point.values),
                 )?;
                 let columns = fit.columns.iter().map(|column| taken(column)).collect();
+                let mut descent = Descent::new(fit.frame.clone(), point, columns, &PLAN);
+                // Shapes are what is tested: a law whose threshold moves with every level is none.
+                let first = fit.frame.dimension() - own;
+                let is_strength = |k: &usize| fit.frame.strengths.iter().any(|(s, _)| s == k);
+                descent.hold((first..fit.frame.dimension()).filter(|k| !is_strength(k)));
                 Some(Refit {
                     model,
                     effects: effects.clone(),
-                    descent: Descent::new(fit.frame.clone(), point, columns, &PLAN),
+                    descent,
                     part: part.clone(),
                     places: places.clone(),
                     all_values: fit.point.values.clone(),

@@ -7,6 +7,7 @@ use super::found::{Law, Set};
 use super::left_out::LeftOut;
 use super::next_run::NextRuns;
 use super::search::Search;
+use crate::discovery::depth::{ALL_CURVES, CURVES, FORMS, QUICK};
 use crate::discovery::engine::Engine;
 use crate::discovery::evidence::log_sum_exp;
 use crate::discovery::settings::{Settings, Starts};
@@ -17,7 +18,7 @@ pub(super) const DETECTED: f64 = 3.0;
 /// From so many sets one more effect is looked for.
 const BEAM: usize = 3;
 /// A fit with less chance than this leaves room for a further effect, and for a law outside the library.
-const MISFIT: [f64; 2] = [0.2, 0.05];
+const MISFIT: [f64; 2] = [0.5, 0.05];
 /// A fit with less chance than this is wrong \[DISCOVERY 2\].
 pub(super) const WRONG: f64 = 0.001;
 /// The simple forms of so many pairs are fitted.
@@ -160,6 +161,7 @@ impl Inquiry {
                 evidence + set.log_bayes_factor,
                 self.task.likelihood.clone(),
                 candidates,
+                &QUICK,
                 self.task.settings.seed,
             );
             Search::new(set.effects.clone(), others, engine)
@@ -205,9 +207,15 @@ impl Inquiry {
             .found
             .best_set()
             .is_some_and(|set| set.log_bayes_factor > DETECTED);
-        let misfit = match self.found.best_chi_square(likelihood, DETECTED) {
-            Some(chi) => chi.p() < if detected { MISFIT[1] } else { WRONG },
-            None => detected,
+        let p = self
+            .found
+            .best_chi_square(likelihood, DETECTED)
+            .map(|chi| chi.p());
+        let misfit = p.map_or(detected, |p| p < MISFIT[1]);
+        let depth = if p.is_some_and(|p| p < WRONG) {
+            &ALL_CURVES
+        } else {
+            &CURVES
         };
         let Some((base, evidence)) = self
             .found
@@ -224,6 +232,7 @@ impl Inquiry {
             evidence,
             likelihood.clone(),
             candidates,
+            depth,
             self.task.settings.seed,
         );
         Step::Curves(Search::new(Vec::new(), positions.collect(), engine))
@@ -257,7 +266,14 @@ impl Inquiry {
             .collect();
         let candidates = forms.iter().map(|&k| self.found.candidates[k].clone()).collect();
         let seed = self.task.settings.seed;
-        let engine = Engine::beyond(base, evidence, self.task.likelihood.clone(), candidates, seed);
+        let engine = Engine::beyond(
+            base,
+            evidence,
+            self.task.likelihood.clone(),
+            candidates,
+            &FORMS,
+            seed,
+        );
         Step::Forms(Search::new(Vec::new(), forms, engine))
     }
 
@@ -300,8 +316,13 @@ impl Inquiry {
             return self.next_runs();
         }
         let best = self.found.best_set();
-        let library = best.map_or((Vec::new(), base), |set| (set.effects.clone(), &set.fit));
-        let fits = [(Vec::new(), base), library, (vec![own.candidate], &own.fit)];
+        let parameters = |k: usize| self.found.candidates[k].parameters.len();
+        let library = best.map_or((Vec::new(), 0, base), |set| {
+            let last = set.effects.last().map_or(0, |&k| parameters(k));
+            (set.effects.clone(), last, &set.fit)
+        });
+        let law_fit = (vec![own.candidate], parameters(own.candidate), &own.fit);
+        let fits = [(Vec::new(), 0, base), library, law_fit];
         Step::LeftOut(law, LeftOut::new(&self.task.likelihood, &self.task.levels, &fits))
     }
 

@@ -2,6 +2,7 @@
 
 mod axis;
 mod comparison;
+mod curve;
 mod frame;
 mod marginal;
 mod pair;
@@ -9,6 +10,7 @@ mod scale;
 mod stages;
 
 pub(super) use comparison::{ComparisonChart, shared_range};
+pub(super) use curve::curve;
 pub(super) use frame::{Marker, glyph};
 pub(super) use marginal::marginal;
 pub(super) use pair::pair;

@@ -4,7 +4,9 @@ use maud::{Markup, html};
 
 use crate::result::Diagnostics;
 use crate::result::diagnostics::terminal::{largest, loadings};
-use crate::result::diagnostics::{ChannelDiagnostics, ResidualDiagnostics, probability, shown};
+use crate::result::diagnostics::{
+    ChannelDiagnostics, ResidualDiagnostics, TrendDiagnostics, probability, shown,
+};
 use crate::result::report::number;
 
 /// So many of the worst-known directions are shown.
@@ -23,6 +25,7 @@ pub(in crate::result::report) fn diagnostics(diagnostics: &Diagnostics) -> Marku
             "How many rows lie in their intervals stands under the errors by channel."
         }
         (residuals(&diagnostics.residuals))
+        (trends(&diagnostics.trends))
         h3 { "What the data did to the prior" }
         div.scroll { (parameters(diagnostics)) }
         p.note {
@@ -97,6 +100,29 @@ fn residuals(all: &[ResidualDiagnostics]) -> Markup {
             p.note {
                 "Leverage: the share of the error's variance that the fit takes up. Studentised: the residual over what is left of its standard deviation. "
                 "p: probability of one so large by itself; the smallest of " (number::count(all.len(), "residual")) " is usually about " (number::significant(1.0 / all.len() as f64, 1)) "."
+            }
+        }
+    }
+}
+
+fn trends(all: &[TrendDiagnostics]) -> Markup {
+    html! {
+        @if !all.is_empty() {
+            h3 { "Trends of the residuals" }
+            div.scroll { table {
+                thead { tr {
+                    th.text { "channel" } th.text { "against" } th { "change" } th.text { "unit" } th { "share left" } th { "p" }
+                } }
+                tbody { @for (i, t) in all.iter().enumerate() { @let (scale, unit) = shown(&t.channel); tr.first[i == 0 || all[i - 1].channel != t.channel] {
+                    td.text { (t.channel.replace('_', " ")) } td.text { (t.against.name().replace('_', " ")) }
+                    td { (number::with_spread(scale * t.change, scale * t.change_sd)) } td.text { (unit) }
+                    td { (number::fixed(t.share_left, 2)) } td { (probability(t.p)) }
+                } } }
+            } }
+            p.note {
+                "Change: by how much the measurements rise beyond the model from the least to the largest value of the condition (constant: lie above it), "
+                "had the fit not bent towards them, \u{b1} its standard deviation where there is no trend. "
+                "Share left: how much of such a pattern the parameters cannot imitate; what they imitate fully is not listed."
             }
         }
     }

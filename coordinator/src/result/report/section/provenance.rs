@@ -58,7 +58,7 @@ pub(in crate::result::report) fn provenance(outcome: &Outcome) -> Markup {
                     Method::Fit(s) => {
                         ", " (number::count(s.starts, "start")) ", differences of at least " (number::as_written(s.difference_step)) " prior widths"
                     }
-                    Method::Search(search::Settings::Ga(_)) => {}
+                    Method::Search(search::Settings::Ga(_)) | Method::Discover { .. } => {}
                     Method::Search(search::Settings::CmaEs(s)) => {
                         ", " (s.first_population(spec.parameters.len())) " individuals and at most " (number::count(s.restarts, "restart")) " with twice as many each"
                     }

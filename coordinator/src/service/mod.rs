@@ -1,4 +1,9 @@
-//! Store and farm together: submit, recover, control.
+//! Store and farm together: submit, recover, control, grow.
+//!
+//! # Layout
+//! - `growth`: what is added to a study that is there.
+
+mod growth;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -8,10 +13,10 @@ use shared::api::{CalibrationCreated, CalibrationState, CalibrationStatus, NewCa
 use shared::exchange::{ExchangeRequest, ExchangeResponse};
 use shared::file::{FileError, FileSet};
 
-use crate::calibration::{Calibration, Identity};
+use crate::calibration::{BeginError, Calibration, Identity};
 use crate::farm::dispatch::{Dispatcher, Stopped};
 use crate::farm::{Control, ControlError, Farm};
-use crate::spec::{EffectsChanged, Job, Method, MethodError, Spec, point_job};
+use crate::spec::{EffectsChanged, Job, Method, Spec, point_job};
 use crate::store::{CalibrationRow, NewCalibrationRow, NewStudy, Store, StoreError, StudyIds};
 
 /// A lease lasts so long without renewal `[ms]`.
@@ -25,12 +30,15 @@ pub enum ServiceError {
     /// A file is malformed.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The settings do not fit the prior.
-    #[error("[sampler] {0}")]
-    Settings(#[from] MethodError),
+    /// A calibration cannot begin.
+    #[error(transparent)]
+    Begin(#[from] BeginError),
     /// The effects are not those that the calibration was computed with.
     #[error(transparent)]
     Effects(#[from] EffectsChanged),
+    /// A search has nothing to extend, and no search of its own.
+    #[error("calibration {0} is a search for a missing effect: name the calibration that it searches")]
+    Search(i64),
     /// No such thing.
     #[error("there is no {what} {id}")]
     NotFound {
@@ -62,6 +70,8 @@ pub struct Service {
     store: Store,
     dispatcher: Dispatcher,
     left_alone: Arc<BTreeMap<i64, String>>,
+    /// Held by whoever adds to a study: each sees what the one before has added.
+    growing: Arc<tokio::sync::Mutex<()>>,
 }
 
 impl Service {
@@ -77,6 +87,7 @@ impl Service {
             store,
             dispatcher,
             left_alone: Arc::default(),
+            growing: Arc::default(),
         };
         service.left_alone = Arc::new(service.recover().await?);
         Ok(service)
@@ -118,7 +129,8 @@ impl Service {
                     continue;
                 }
             };
-            let fitted = matches!(spec.method, Method::Fit(_)) || spec.method.has_metamodel();
+            let fitted = matches!(spec.method, Method::Fit(_) | Method::Discover { .. })
+                || spec.method.has_metamodel();
             let stored = reader.stored(id, fitted).await?;
             let evaluations = stored.evaluations.len();
             let identity = Identity {
@@ -127,9 +139,10 @@ impl Service {
                 study: row.study,
                 experiment: row.experiment,
             };
+            let (job, experiment) = (row.job.clone(), self.experiment(row.experiment).await?);
             // Replaying is seconds of CPU for a long calibration: not on the async runtime.
             let replayed = tokio::task::spawn_blocking(move || {
-                let mut calibration = Calibration::new(identity, spec)?;
+                let mut calibration = Calibration::of(identity, spec, &job, &experiment)?;
                 let facts = calibration.replay(stored).map_err(|e| e.to_string());
                 Ok::<_, ServiceError>((calibration, facts))
             })
@@ -326,6 +339,10 @@ fn members(
     let parsed = Job::parse(file, &job.toml)?;
     parsed.check_files(file, &job.files)?;
     let spec = Spec::of(file, parsed, &job.files, "experiment.toml", experiment)?;
+    if matches!(spec.method, Method::Discover { .. }) {
+        let message = "[sampler] algorithm = \"discovery\" is a search that a study runs by itself: say apply = \"ask\" or \"auto\" under [discovery]";
+        return Err(FileError::whole(file, message).into());
+    }
     let point_estimates = spec.point_estimates.clone();
     let mut members = vec![(Calibration::new(identity.clone(), Arc::new(spec))?, job.clone())];
     for method in &point_estimates {

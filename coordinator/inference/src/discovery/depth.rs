@@ -1,0 +1,57 @@
+//! How deep a search goes.
+
+use super::descent::Step;
+use super::extension;
+
+/// How deep a search goes.
+#[derive(Debug)]
+pub(super) struct Depth {
+    /// How many candidates are fitted, the most promising of the screen.
+    pub(super) most_extended: usize,
+    /// Coordinates of shape parameters that the screen tries.
+    pub(super) shapes: &'static [f64],
+    /// How an extension is fitted.
+    pub(super) plan: &'static [Step],
+    /// Whether shapes stay where the screen has them at first: between two levels of a design a threshold changes nothing, so a
+    /// difference of shapes leads nowhere.
+    pub(super) holds_shapes: bool,
+    /// Whether the best are confirmed from several starts, and by draws.
+    pub(super) confirms: bool,
+}
+
+/// Every candidate, confirmed.
+pub(super) const WHOLE: Depth = Depth {
+    most_extended: usize::MAX,
+    shapes: &[0.0, -1.0, 1.0],
+    plan: &extension::PLAN,
+    holds_shapes: false,
+    confirms: true,
+};
+
+/// The most promising, fitted and polished.
+pub(super) const QUICK: Depth = Depth {
+    most_extended: 6,
+    confirms: false,
+    ..WHOLE
+};
+
+/// Curves outside the library, where it leaves little misfit: their screen is linear and sees that much.
+pub(super) const CURVES: Depth = Depth {
+    most_extended: 8,
+    ..QUICK
+};
+
+/// All of them, where the misfit is beyond what is linear.
+pub(super) const ALL_CURVES: Depth = Depth {
+    most_extended: usize::MAX,
+    ..QUICK
+};
+
+/// Simple forms, whose thresholds are tried at about every tenth of their priors.
+pub(super) const FORMS: Depth = Depth {
+    most_extended: 12,
+    shapes: &[0.0, -0.25, 0.25, -0.55, 0.55, -0.85, 0.85, -1.3, 1.3],
+    plan: &extension::HELD,
+    holds_shapes: true,
+    confirms: false,
+};

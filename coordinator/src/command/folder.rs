@@ -1,0 +1,243 @@
+//! The folder of a run: its store, opened and worked on here until its study is over; its results, written and printed.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, bail};
+use shared::api::CalibrationState;
+use shared::model::equations_of;
+use tokio::net::TcpListener;
+
+use super::Stop;
+use super::output::{note, say};
+use super::progress::Display;
+use crate::embedded::{LocalWorkers, model_version};
+use crate::farm::Control;
+use crate::result::discovery::{effect_file, terminal as discovery};
+use crate::result::{Study, report, terminal};
+use crate::service::{LEASE_MS, Service};
+use crate::store::CalibrationRow;
+use crate::study::next_step_of;
+
+/// How often the display looks.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// How the work ended.
+enum End {
+    Over,
+    Stopped,
+}
+
+/// A folder with its store open.
+pub(super) struct Folder {
+    /// Where it is.
+    pub(super) out: PathBuf,
+    /// Its store, and a farm for it.
+    pub(super) service: Service,
+    local_workers: Option<usize>,
+    listener: Option<TcpListener>,
+}
+
+impl Folder {
+    /// Opens the store of a folder that is there; workers elsewhere may join at the listener.
+    pub(super) async fn open(
+        out: &Path,
+        local_workers: Option<usize>,
+        listener: Option<TcpListener>,
+    ) -> anyhow::Result<Folder> {
+        let store = out.join("grouser.db").display().to_string();
+        Ok(Folder {
+            out: out.to_owned(),
+            service: Service::open(&store, LEASE_MS).await?,
+            local_workers,
+            listener,
+        })
+    }
+
+    /// Lets the calibrations of a study go on, where this program can.
+    pub(super) async fn go_on(&self, study: i64) -> anyhow::Result<()> {
+        for row in self.service.store().reader().study(study).await? {
+            self.go_on_with(&row).await?;
+        }
+        Ok(())
+    }
+
+    async fn go_on_with(&self, row: &CalibrationRow) -> anyhow::Result<()> {
+        let (service, out) = (&self.service, &self.out);
+        if let Some(reason) = service.left_alone(row.id) {
+            bail!(
+                "{} holds a calibration that cannot go on: {reason}",
+                out.display()
+            );
+        }
+        if let Some(pinned) = row
+            .model_version
+            .as_deref()
+            .map(equations_of)
+            .filter(|v| *v != model_version() && !row.state.is_final())
+        {
+            bail!(
+                "{} holds a calibration begun with model version {pinned}, this program computes {}: give another --out, or finish it with the older program",
+                out.display(),
+                model_version()
+            );
+        }
+        if row.state == CalibrationState::Paused {
+            service.control(row.id, Control::Resume).await?;
+        }
+        Ok(())
+    }
+
+    /// Brings a study to its end, writes its results and prints them; of its searches the one of a calibration, or the last.
+    pub(super) async fn finish(mut self, study: i64, searched: Option<i64>) -> anyhow::Result<()> {
+        let reader = self.service.store().reader();
+        let rows = reader.study(study).await?;
+        let is_over = rows.iter().all(|row| row.state.is_final());
+        if !is_over || next_step_of(&reader, study).await?.is_some() {
+            match self.calibrate(study).await? {
+                End::Over => {}
+                End::Stopped => {
+                    note("stopped; the same command goes on from here");
+                    return Ok(());
+                }
+            }
+        }
+        let rows = reader.study(study).await?;
+        if let Some(row) = rows.iter().find(|row| row.state == CalibrationState::Finished) {
+            let study = Study::load(&reader, row).await?;
+            self.write_results(&study)?;
+            let files = format!(
+                "\nin {}: summary.json, posterior.csv, report.html, grouser.db\n",
+                self.out.display()
+            );
+            say(&(terminal::study(&study) + &self.found(&study, searched) + &files))?;
+        }
+        match rows.iter().find(|row| row.state != CalibrationState::Finished) {
+            None => Ok(()),
+            Some(row) => bail!(
+                "calibration {} {}: {}",
+                row.name,
+                row.state.name(),
+                row.message.as_deref().unwrap_or_default()
+            ),
+        }
+    }
+
+    /// What a search found, and how it is added.
+    fn found(&self, study: &Study, searched: Option<i64>) -> String {
+        let meant = study.rounds.iter().find(|r| Some(r.calibration) == searched);
+        let Some(round) = meant.or(study.rounds.last()) else {
+            return String::new();
+        };
+        let place = format!("--out {}", self.out.display());
+        format!(
+            "\n{}",
+            discovery::text(&round.record, round.calibration, &place, &self.out)
+        )
+    }
+
+    /// Simulates until the study is over, or until ^C.
+    async fn calibrate(&mut self, study: i64) -> anyhow::Result<End> {
+        let listener = self.listener.take();
+        let service = &self.service;
+        let stop = Stop::new();
+        let server = listener.map(|listener| {
+            if let Ok(address) = listener.local_addr() {
+                note(&format!(
+                    "workers may join: worker --coordinator http://{address}"
+                ));
+            }
+            tokio::spawn(crate::http::serve(listener, service.clone(), stop.wait()))
+        });
+        let cores = std::thread::available_parallelism().map_or(1, Into::into);
+        let threads = self.local_workers.unwrap_or(cores);
+        if threads == 0 && server.is_none() {
+            bail!("--local-workers 0 needs --listen: nobody would simulate");
+        }
+        let began = Instant::now();
+        let workers =
+            (threads > 0).then(|| LocalWorkers::start(service.dispatcher().clone(), threads, stop.wait()));
+        let failure = workers.as_ref().map(LocalWorkers::failure);
+        let end = watch_until_over(study, service, failure).await;
+        let wall_s = began.elapsed().as_secs_f64();
+        stop.now();
+        if let Some(workers) = workers {
+            let share = workers.simulated_s() / (wall_s * workers.threads as f64);
+            note(&format!(
+                "{} local workers simulated {:.1} % of {wall_s:.1} s",
+                workers.threads,
+                100.0 * share
+            ));
+            workers.join().await;
+        }
+        if let Some(server) = server {
+            // Workers elsewhere may be waiting in a poll; they are not waited for.
+            server.abort();
+        }
+        end
+    }
+
+    /// Writes every result beside its final name first, so that a half-written file never takes that name.
+    fn write_results(&self, study: &Study) -> anyhow::Result<()> {
+        let summary = serde_json::to_string_pretty(&study.summary())?;
+        let mut files: Vec<(String, String)> = vec![
+            ("summary.json".into(), summary + "\n"),
+            ("posterior.csv".into(), study.lead.posterior_table().to_csv()),
+            ("report.html".into(), report::page(study)),
+        ];
+        files.extend(study.rounds.iter().filter_map(|round| effect_file(&round.record)));
+        for (name, text) in files {
+            let path: PathBuf = self.out.join(&name);
+            let partial = self.out.join(format!("{name}.part"));
+            std::fs::write(&partial, text).with_context(|| partial.display().to_string())?;
+            std::fs::rename(&partial, &path).with_context(|| path.display().to_string())?;
+        }
+        Ok(())
+    }
+}
+
+/// Shows progress until every calibration of the study is over and it takes no further step, or until ^C.
+async fn watch_until_over(
+    study: i64,
+    service: &Service,
+    failure: Option<impl Future<Output = String>>,
+) -> anyhow::Result<End> {
+    let failure = async {
+        match failure {
+            Some(failure) => failure.await,
+            None => std::future::pending().await,
+        }
+    };
+    tokio::pin!(failure);
+    let stop = super::stop_signal()?;
+    tokio::pin!(stop);
+    let store_fails = service.store().writer().stopped();
+    tokio::pin!(store_fails);
+    let mut display = Display::new();
+    loop {
+        tokio::select! {
+            () = &mut stop => { display.finish(); return Ok(End::Stopped); }
+            () = &mut store_fails => bail!("the store can no longer be written; its log line says why"),
+            reason = &mut failure => bail!("the local workers ended: {reason}"),
+            () = tokio::time::sleep(LOOK) => {}
+        }
+        let mut statuses = service.list().await?;
+        statuses.retain(|status| status.study == study && !status.state.is_final());
+        let paused = statuses.iter().find(|s| s.state == CalibrationState::Paused);
+        if let Some(status) = paused {
+            display.finish();
+            bail!(
+                "paused: {}; the same command goes on from here",
+                status.message.as_deref().unwrap_or_default()
+            );
+        }
+        let Some(status) = statuses.first() else {
+            if service.advance(study).await? {
+                continue;
+            }
+            display.finish();
+            return Ok(End::Over);
+        };
+        display.show(status);
+    }
+}

@@ -1,0 +1,88 @@
+//! Tests without a rolling wheel, and which effects they decide about (PHYSICS 4.4).
+
+use super::Verdict;
+
+/// A test, and the effects that it sees apart from others.
+struct Test {
+    what: &'static str,
+    decides: &'static [&'static str],
+}
+
+const TESTS: [Test; 6] = [
+    Test {
+        what: "tare run: move the sled without soil under the wheel; what the force sensor shows is the rig's",
+        decides: &["sled_tare", "sled_drag", "bulldozing", "bin_slope", "end_wall"],
+    },
+    Test {
+        what: "free-spin run: turn the wheel in the air; what the torque sensor shows is the bearing's",
+        decides: &["bearing_torque", "bearing_friction"],
+    },
+    Test {
+        what: "static calibration of the sensors with weights: gains of pull and torque, the load at the wheel itself",
+        decides: &[
+            "drawbar_pull_gain",
+            "torque_gain",
+            "load_scale",
+            "load_transfer",
+            "sinkage_offset",
+        ],
+    },
+    Test {
+        what: "ring-shear test in the same soil: friction angle, cohesion and the displacement that mobilises them",
+        decides: &[
+            "janosi_hanamoto",
+            "interface_friction",
+            "adhesion",
+            "friction_rate_weakening",
+            "stress_dependent_friction",
+        ],
+    },
+    Test {
+        what: "run of a rough wheel (glue soil to the rim): rim against soil becomes soil against soil",
+        decides: &["interface_friction", "stick_slip", "adhesion"],
+    },
+    Test {
+        what: "measure the radius that the rig's encoder uses, and the rim's flattening under load",
+        decides: &["slip_radius_error", "wheel_flexibility"],
+    },
+];
+
+/// The tests that decide between the explanations that are still open; none where one is named.
+pub(super) fn deciding(open: &[&str], verdict: Verdict) -> Vec<String> {
+    if matches!(verdict, Verdict::Named | Verdict::NothingDetectable) {
+        return Vec::new();
+    }
+    let effect = |name: &&str| name.split('.').next().unwrap_or_default().to_owned();
+    let open: Vec<String> = open.iter().map(effect).collect();
+    let decided = |test: &&Test| {
+        let own = open.iter().filter(|name| test.decides.contains(&name.as_str()));
+        own.count() > 0
+    };
+    TESTS
+        .iter()
+        .filter(decided)
+        .map(|test| test.what.to_owned())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_effects_of_the_catalogue_are_decided_about() {
+        for name in TESTS.iter().flat_map(|test| test.decides) {
+            assert!(formula::catalogue::find(name).is_some(), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_test_is_proposed_for_what_is_open_and_for_nothing_else() {
+        let open = ["sled_tare", "bulldozing.smooth"];
+        let tests = deciding(&open, Verdict::Undecided);
+        assert_eq!(tests.len(), 1);
+        assert!(tests[0].starts_with("tare run"), "{tests:?}");
+        assert!(deciding(&open, Verdict::Named).is_empty());
+        assert!(deciding(&["slip_sinkage"], Verdict::Class).is_empty());
+    }
+}

@@ -1,0 +1,85 @@
+//! How a study grows: extensions of calibrations, searches for missing effects, further runs.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::StatusCode;
+use shared::api::{CalibrationCreated, ErrorBody, ErrorKind, NewExtension, NewRuns, RunsAdded};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::error::{Body, HttpError, Id};
+use crate::discovery::{Discovery, Extension};
+use crate::service::Service;
+use crate::study;
+
+pub(super) fn routes() -> OpenApiRouter<Service> {
+    OpenApiRouter::new()
+        .routes(routes!(extend))
+        .routes(routes!(discovery, discover))
+        .routes(routes!(add_runs))
+}
+
+/// Adds a calibration to the study of another: the same job with an effect more.
+#[utoipa::path(post, path = "/calibrations/{id}/extend", params(("id" = i64, Path)), request_body = NewExtension, responses(
+    (status = 201, body = CalibrationCreated), (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody, description = "the calibration is a search"),
+    (status = 422, body = ErrorBody, description = "the effect is unknown, malformed, or there already"),
+))]
+async fn extend(
+    State(service): State<Service>,
+    Id(id): Id,
+    Body(new): Body<NewExtension>,
+) -> Result<(StatusCode, Json<CalibrationCreated>), HttpError> {
+    let created = service.extend(id, extension(new)?).await?;
+    Ok((StatusCode::CREATED, Json(created)))
+}
+
+fn extension(new: NewExtension) -> Result<Extension, HttpError> {
+    match (new.effect, new.wheel, new.effect_file) {
+        (Some(effect), None, None) => Ok(Extension::Effect(effect)),
+        (Some(effect), Some(wheel), None) => Ok(Extension::OnWheel { effect, wheel }),
+        (None, None, Some(file)) => Ok(Extension::File {
+            name: file.name,
+            text: file.text,
+        }),
+        _ => Err(HttpError::new(
+            ErrorKind::InvalidBody,
+            "an extension is {\"effect\": NAME}, with \"wheel\": NAME on one wheel alone, or {\"effect_file\": {\"name\": NAME, \"text\": TEXT}}",
+        )),
+    }
+}
+
+/// Starts the search of a calibration's model for a missing effect, unless there is one.
+#[utoipa::path(post, path = "/calibrations/{id}/discovery", params(("id" = i64, Path)), responses(
+    (status = 201, body = CalibrationCreated, description = "the search"), (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody, description = "the calibration is a search itself"),
+))]
+async fn discover(
+    State(service): State<Service>,
+    Id(id): Id,
+) -> Result<(StatusCode, Json<CalibrationCreated>), HttpError> {
+    Ok((StatusCode::CREATED, Json(service.discover(id).await?)))
+}
+
+/// What the search of a calibration's model found.
+#[utoipa::path(get, path = "/calibrations/{id}/discovery", params(("id" = i64, Path)), responses(
+    (status = 200, body = Discovery), (status = 404, body = ErrorBody, description = "no search was asked for"),
+    (status = 409, body = ErrorBody, description = "the search is not finished"),
+))]
+async fn discovery(State(service): State<Service>, Id(id): Id) -> Result<Json<Discovery>, HttpError> {
+    let row = service.calibration_row(id).await?;
+    Ok(Json(study::record(&service.store().reader(), &row).await?))
+}
+
+/// Adds measurements to a study, and a calibration of all of them with the job at the end of its ledger.
+#[utoipa::path(post, path = "/studies/{id}/runs", params(("id" = i64, Path)), request_body = NewRuns, responses(
+    (status = 201, body = RunsAdded), (status = 404, body = ErrorBody),
+    (status = 422, body = ErrorBody, description = "a row is malformed, or its run is there already"),
+))]
+async fn add_runs(
+    State(service): State<Service>,
+    Id(id): Id,
+    Body(new): Body<NewRuns>,
+) -> Result<(StatusCode, Json<RunsAdded>), HttpError> {
+    Ok((StatusCode::CREATED, Json(service.add_runs(id, new.runs).await?)))
+}

@@ -1,0 +1,108 @@
+//! The block `discovery` of `summary.json`.
+
+use formula::catalogue::find;
+
+use super::Round;
+use crate::discovery::{Discovery, JudgedEffect, NextRun, Outside, Verdict};
+use crate::study::effect_of;
+
+/// What is known of the effects that a study's model misses.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct DiscoverySummary {
+    /// Of the whole study: what was added, or what the first search says.
+    pub verdict: Verdict,
+    /// The effects that were added; where none was, the one that the first search would add.
+    pub chosen: Vec<String>,
+    /// Every explanation of the first search.
+    pub effects: Vec<JudgedEffect>,
+    /// What acts, where no effect of the library does.
+    pub outside: Option<Outside>,
+    /// Effects that the last search could not have seen.
+    pub cannot_exclude: Vec<String>,
+    /// Test runs that would tell what the last search left open.
+    pub next_runs: Vec<NextRun>,
+    /// Tests without a rolling wheel that would.
+    pub other_tests: Vec<String>,
+    /// Evaluations of all searches.
+    pub evaluations: u64,
+    /// Every search.
+    pub rounds: Vec<Discovery>,
+}
+
+impl DiscoverySummary {
+    /// The block of a study; `added` are the effects at the end of its ledger that the first calibration did not have.
+    /// `None` where nothing was searched.
+    pub(in crate::result) fn of(rounds: &[Round], added: Vec<String>) -> Option<DiscoverySummary> {
+        let records: Vec<Discovery> = rounds.iter().map(|round| round.record.clone()).collect();
+        let (first, last) = (records.first()?, records.last()?);
+        let verdict = match added.as_slice() {
+            [] => first.verdict,
+            added if added.iter().any(|effect| find(effect).is_some()) => Verdict::Named,
+            _ => Verdict::NotInLibrary,
+        };
+        let chosen = match added.is_empty() {
+            true => first.extension.iter().map(effect_of).collect(),
+            false => added,
+        };
+        Some(DiscoverySummary {
+            verdict,
+            chosen,
+            effects: first.effects.clone(),
+            outside: records.iter().find_map(|record| record.outside.clone()),
+            cannot_exclude: last.cannot_exclude.clone(),
+            next_runs: last.next_runs.clone(),
+            other_tests: last.other_tests.clone(),
+            evaluations: records.iter().map(|record| record.evaluations).sum(),
+            rounds: records,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::discovery::fixture;
+
+    fn rounds() -> Vec<Round> {
+        let of = |calibration, record| Round { calibration, record };
+        let last = Discovery {
+            given: vec!["slip_sinkage".into()],
+            verdict: Verdict::NothingDetectable,
+            extension: None,
+            cannot_exclude: vec!["adhesion".into()],
+            next_runs: Vec::new(),
+            ..fixture::discovery()
+        };
+        vec![of(1, fixture::discovery()), of(3, last)]
+    }
+
+    #[test]
+    fn a_study_without_searches_says_nothing() {
+        assert!(DiscoverySummary::of(&[], vec!["slip_sinkage".into()]).is_none());
+    }
+
+    #[test]
+    fn what_was_added_is_the_verdict_of_the_study() {
+        let of = |added: &[&str]| {
+            let added = added.iter().map(|&e| e.to_owned()).collect();
+            let summary = DiscoverySummary::of(&rounds(), added).unwrap();
+            (summary.verdict, summary.chosen)
+        };
+        assert_eq!(of(&[]), (Verdict::Named, vec!["slip_sinkage".to_owned()]));
+        assert_eq!(of(&["adhesion"]), (Verdict::Named, vec!["adhesion".to_owned()]));
+        let file = ["shear_slip_step"];
+        assert_eq!(
+            of(&file),
+            (Verdict::NotInLibrary, file.map(String::from).to_vec())
+        );
+    }
+
+    #[test]
+    fn explanations_are_the_first_search_s_and_open_questions_the_last_one_s() {
+        let summary = DiscoverySummary::of(&rounds(), vec!["slip_sinkage".into()]).unwrap();
+        assert_eq!(summary.effects, fixture::discovery().effects);
+        assert_eq!(summary.cannot_exclude, ["adhesion"]);
+        assert!(summary.next_runs.is_empty());
+        assert_eq!((summary.evaluations, summary.rounds.len()), (8000, 2));
+    }
+}

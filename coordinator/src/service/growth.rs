@@ -1,0 +1,242 @@
+//! What is added to a study that is there: extensions, further runs, searches, and the steps that follow from these.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+use shared::api::{CalibrationCreated, RunsAdded};
+use shared::experiment::Experiment;
+use shared::file::FileSet;
+
+use super::{Service, ServiceError, file_json, now_ms};
+use crate::calibration::{Calibration, Identity};
+use crate::discovery::Extension;
+use crate::discovery::candidate::extended;
+use crate::farm::dispatch::Stopped;
+use crate::spec::{Method, Spec, continued_job, discovery_job, is_discovery, without_effects};
+use crate::store::{CalibrationRow, NewCalibrationRow};
+use crate::study::{Step, effect_of, next_step_of, search_of};
+
+/// How job and experiment are called in messages.
+const FILES: [&str; 2] = ["job.toml", "experiment.toml"];
+/// How often a service looks for studies that may grow.
+const LOOK: Duration = Duration::from_millis(500);
+
+impl Service {
+    /// Adds a calibration to the study of another: its job with an effect more.
+    ///
+    /// # Errors
+    /// [`ServiceError`]: the effect is unknown, or stands there already.
+    pub async fn extend(&self, id: i64, extension: Extension) -> Result<CalibrationCreated, ServiceError> {
+        let _growing = self.growing.lock().await;
+        self.extended(id, &extension).await
+    }
+
+    async fn extended(&self, id: i64, extension: &Extension) -> Result<CalibrationCreated, ServiceError> {
+        let row = self.searchable(id).await?;
+        let job = extended(FILES[0], &row.job, &[extension])?;
+        let job = continued_job(FILES[0], &job)?;
+        let name = match extension {
+            Extension::OnWheel { wheel, .. } => format!("{}+{}.{wheel}", row.name, effect_of(extension)),
+            _ => format!("{}+{}", row.name, effect_of(extension)),
+        };
+        self.add_member(&row, row.experiment, name, job).await
+    }
+
+    /// Adds measurements to a study: an experiment with the rows of a CSV more, and the job of the end of its ledger on it.
+    ///
+    /// # Errors
+    /// [`ServiceError`]: a row is malformed, or its run stands there already.
+    pub async fn add_runs(&self, study: i64, csv: String) -> Result<RunsAdded, ServiceError> {
+        let _growing = self.growing.lock().await;
+        let rows = self.store.reader().study(study).await?;
+        let (mut ledger, mut beside) = (None, None);
+        for row in rows.iter().filter(|row| !is_discovery(&row.job.toml)) {
+            match self.spec_of(row).await?.method {
+                Method::Sample(_) => ledger = Some(row),
+                _ => beside = Some(row),
+            }
+        }
+        let (Some(last), Some(newest)) = (ledger.or(beside), rows.last()) else {
+            return Err(ServiceError::NotFound {
+                what: "study",
+                id: study.to_string(),
+            });
+        };
+        let experiment = self.experiment(newest.experiment).await?;
+        let enlarged =
+            tokio::task::spawn_blocking(move || Experiment::with_runs(FILES[1], &experiment, &csv));
+        let (enlarged, runs) = enlarged.await.map_err(|_| Stopped)??;
+        let job = continued_job(FILES[0], &last.job)?;
+        // Refused before anything is stored.
+        let name = format!("{} ({runs} runs)", last.name);
+        let member = self.prepared(last, 0, name, job, enlarged.clone()).await?;
+        let json = file_json(&enlarged.files);
+        let writer = self.store.writer();
+        let experiment = writer.add_experiment(enlarged.toml, json, now_ms()).await?;
+        let created = self.take_in(member, experiment).await?;
+        Ok(RunsAdded {
+            id: created.id,
+            study,
+            experiment,
+        })
+    }
+
+    /// Adds the search of a calibration's model for a missing effect; one that is there already, unless it ended without a
+    /// record, is meant.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn discover(&self, id: i64) -> Result<CalibrationCreated, ServiceError> {
+        let _growing = self.growing.lock().await;
+        self.searched(id).await
+    }
+
+    async fn searched(&self, id: i64) -> Result<CalibrationCreated, ServiceError> {
+        use shared::api::CalibrationState::{Cancelled, Failed};
+        let row = self.searchable(id).await?;
+        match search_of(&self.store.reader(), &row).await? {
+            Some(search) if !matches!(search.state, Failed | Cancelled) => Ok(CalibrationCreated {
+                id: search.id,
+                study: search.study,
+                point_estimates: Vec::new(),
+            }),
+            _ => {
+                let job = discovery_job(FILES[0], &row.job)?;
+                let name = format!("{} (discovery)", row.name);
+                self.add_member(&row, row.experiment, name, job).await
+            }
+        }
+    }
+
+    /// Takes the next step of a study, if there is one; whether there was.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn advance(&self, study: i64) -> Result<bool, ServiceError> {
+        let _growing = self.growing.lock().await;
+        let Some(step) = next_step_of(&self.store.reader(), study).await? else {
+            return Ok(false);
+        };
+        match step {
+            Step::Search(id) => self.searched(id).await?,
+            Step::Extend(id, extension) => self.extended(id, &extension).await?,
+            Step::Drop(id, effects) => {
+                let row = self.calibration_row(id).await?;
+                let job = without_effects(FILES[0], &row.job, &effects)?;
+                let name = format!("{}-{}", row.name, effects.join("-"));
+                self.add_member(&row, row.experiment, name, job).await?
+            }
+        };
+        Ok(true)
+    }
+
+    /// Lets every study take its next steps, for ever.
+    pub async fn keep_growing(&self) {
+        // Members of each study when it was last seen to have no next step.
+        let mut at_rest: BTreeMap<i64, i64> = BTreeMap::new();
+        loop {
+            tokio::time::sleep(LOOK).await;
+            let settled = match self.store.reader().settled_studies().await {
+                Ok(settled) => settled,
+                Err(error) => {
+                    tracing::error!(%error, "studies cannot be looked at");
+                    continue;
+                }
+            };
+            for (study, members) in settled {
+                if at_rest.get(&study) == Some(&members) {
+                    continue;
+                }
+                match self.advance(study).await {
+                    Ok(true) => {}
+                    Ok(false) => drop(at_rest.insert(study, members)),
+                    Err(error) => {
+                        tracing::error!(study, %error, "the study cannot grow");
+                        at_rest.insert(study, members);
+                    }
+                }
+            }
+        }
+    }
+
+    /// A calibration that can be extended and searched.
+    async fn searchable(&self, id: i64) -> Result<CalibrationRow, ServiceError> {
+        let row = self.calibration_row(id).await?;
+        match is_discovery(&row.job.toml) {
+            true => Err(ServiceError::Search(id)),
+            false => Ok(row),
+        }
+    }
+
+    pub(super) async fn experiment(&self, id: i64) -> Result<FileSet, ServiceError> {
+        let experiment = self.store.reader().experiment(id).await?;
+        let experiment = experiment.ok_or_else(|| ServiceError::NotFound {
+            what: "experiment",
+            id: id.to_string(),
+        })?;
+        Ok(experiment.files)
+    }
+
+    /// Stores a calibration beside another of its study, and takes it in hand.
+    async fn add_member(
+        &self,
+        beside: &CalibrationRow,
+        experiment: i64,
+        name: String,
+        job: FileSet,
+    ) -> Result<CalibrationCreated, ServiceError> {
+        let files = self.experiment(experiment).await?;
+        let member = self.prepared(beside, experiment, name, job, files).await?;
+        self.take_in(member, experiment).await
+    }
+
+    /// A calibration of the study of another, validated but not stored.
+    async fn prepared(
+        &self,
+        beside: &CalibrationRow,
+        experiment: i64,
+        name: String,
+        job: FileSet,
+        files: FileSet,
+    ) -> Result<(Calibration, FileSet), ServiceError> {
+        let identity = Identity {
+            id: 0,
+            name,
+            study: beside.study,
+            experiment,
+        };
+        let member = tokio::task::spawn_blocking(move || {
+            let spec = Spec::new(FILES[0], &job, FILES[1], &files)?;
+            let calibration = Calibration::of(identity, Arc::new(spec), &job, &files)?;
+            Ok::<_, ServiceError>((calibration, job))
+        });
+        member.await.map_err(|_| Stopped)?
+    }
+
+    async fn take_in(
+        &self,
+        (mut calibration, job): (Calibration, FileSet),
+        experiment: i64,
+    ) -> Result<CalibrationCreated, ServiceError> {
+        let identity = &mut calibration.identity;
+        let row = NewCalibrationRow {
+            name: identity.name.clone(),
+            toml: job.toml,
+            files: file_json(&job.files),
+        };
+        let study = identity.study;
+        let id = self
+            .store
+            .writer()
+            .add_member(study, experiment, row, now_ms())
+            .await?;
+        (identity.id, identity.experiment) = (id, experiment);
+        self.dispatcher.add(calibration, Vec::new()).await?;
+        Ok(CalibrationCreated {
+            id,
+            study,
+            point_estimates: Vec::new(),
+        })
+    }
+}

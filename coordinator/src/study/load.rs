@@ -1,0 +1,97 @@
+//! Where a study stands, from what is stored of it.
+
+use shared::api::CalibrationState;
+use shared::file::FileSet;
+
+use super::next_step::{Member, Part, Step, next_step};
+use crate::discovery::Discovery;
+use crate::farm::ControlError;
+use crate::result::spec_of;
+use crate::service::ServiceError;
+use crate::spec::{Apply, Job, Method, discovery_job, is_discovery};
+use crate::store::{CalibrationRow, Reader};
+
+/// The next step of a study.
+///
+/// # Errors
+/// [`ServiceError`] where a member cannot be read.
+pub async fn next_step_of(reader: &Reader, study: i64) -> Result<Option<Step>, ServiceError> {
+    let rows = reader.study(study).await?;
+    let Some(lead) = rows.first() else { return Ok(None) };
+    let settings = Job::parse("job.toml", &lead.job.toml)?.discovery;
+    // Most studies grow by their users alone, and reading every member's files is work.
+    if settings.apply == Apply::Off || rows.iter().any(|row| row.state != CalibrationState::Finished) {
+        return Ok(None);
+    }
+    let mut members = Vec::new();
+    for row in &rows {
+        members.push(Member {
+            id: row.id,
+            state: row.state,
+            part: part(reader, row, &rows).await?,
+        });
+    }
+    Ok(next_step(settings, &members))
+}
+
+async fn part(reader: &Reader, row: &CalibrationRow, study: &[CalibrationRow]) -> Result<Part, ServiceError> {
+    if is_discovery(&row.job.toml) {
+        return Ok(Part::Search(reader.discovery(row.id).await?.map(Box::new)));
+    }
+    let spec = spec_of(reader, row).await?;
+    Ok(match spec.method {
+        Method::Sample(_) => Part::Ledger {
+            effects: spec.fit_variant.effects.iter().map(|e| e.name.clone()).collect(),
+            search: find_search(row, study)?.map(|row| row.id),
+        },
+        _ => Part::Beside,
+    })
+}
+
+/// The search of a calibration's model among the members of its study; of several, which can only be where one failed, the
+/// last. A search is its own.
+fn find_search<'a>(
+    row: &'a CalibrationRow,
+    study: &'a [CalibrationRow],
+) -> Result<Option<&'a CalibrationRow>, ServiceError> {
+    if is_discovery(&row.job.toml) {
+        return Ok(Some(row));
+    }
+    let search: FileSet = discovery_job("job.toml", &row.job)?;
+    Ok(study
+        .iter()
+        .rev()
+        .find(|other| other.experiment == row.experiment && other.job == search))
+}
+
+/// The search of a calibration's model, if there is one.
+///
+/// # Errors
+/// [`ServiceError`].
+pub async fn search_of(
+    reader: &Reader,
+    row: &CalibrationRow,
+) -> Result<Option<CalibrationRow>, ServiceError> {
+    let study = reader.study(row.study).await?;
+    Ok(find_search(row, &study)?.cloned())
+}
+
+/// What the search of a calibration's model found.
+///
+/// # Errors
+/// [`ServiceError::NotFound`] where none was asked for, [`ServiceError::Control`] where it is not finished.
+pub async fn record(reader: &Reader, row: &CalibrationRow) -> Result<Discovery, ServiceError> {
+    let none = || ServiceError::NotFound {
+        what: "search for a missing effect of calibration",
+        id: row.id.to_string(),
+    };
+    let search = search_of(reader, row).await?.ok_or_else(none)?;
+    if search.state != CalibrationState::Finished {
+        return Err(ControlError::NotFinished {
+            id: search.id,
+            state: search.state,
+        }
+        .into());
+    }
+    reader.discovery(search.id).await?.ok_or_else(none)
+}

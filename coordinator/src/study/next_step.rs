@@ -1,0 +1,237 @@
+//! What a study does next, decided from where it stands alone: so a restart goes on with the same step.
+
+use std::collections::BTreeSet;
+
+use shared::api::CalibrationState;
+
+use crate::discovery::{Discovery, Extension};
+use crate::spec::{Apply, DiscoverySettings, effect_name};
+
+/// A calibration of a study.
+#[derive(Debug, Clone)]
+pub struct Member {
+    /// Its id.
+    pub id: i64,
+    /// Where it stands.
+    pub state: CalibrationState,
+    /// What it is in the study.
+    pub part: Part,
+}
+
+/// What a calibration is in its study.
+#[derive(Debug, Clone)]
+pub enum Part {
+    /// A line of the error ledger.
+    Ledger {
+        /// Names of its model's effects.
+        effects: Vec<String>,
+        /// The search of its model, if there is one.
+        search: Option<i64>,
+    },
+    /// A point estimate.
+    Beside,
+    /// A search for a missing effect, with its record once it is finished.
+    Search(Option<Box<Discovery>>),
+}
+
+/// What is added to a study next.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step {
+    /// The search of a calibration's model.
+    Search(i64),
+    /// A calibration extended by what its search names.
+    Extend(i64, Extension),
+    /// A calibration without effects that it no longer gains by.
+    Drop(i64, Vec<String>),
+}
+
+/// The name of the effect that an extension adds.
+pub fn effect_of(extension: &Extension) -> String {
+    match extension {
+        Extension::Effect(effect) | Extension::OnWheel { effect, .. } => effect.clone(),
+        Extension::File { name, text } => effect_name(text).unwrap_or_else(|| name.clone()),
+    }
+}
+
+/// The next step of a study; `None` where it is over, or has members that are not.
+///
+/// A failed or cancelled member ends its growth. With `ask` each end of the ledger is searched once, and the rest is the
+/// user's; with `auto` it is extended by what its search names, as long as there are fewer effects than allowed beyond those
+/// of the first member, and what was once dropped neither comes back by itself nor is dropped again.
+pub fn next_step(settings: DiscoverySettings, members: &[Member]) -> Option<Step> {
+    if settings.apply == Apply::Off || members.iter().any(|m| m.state != CalibrationState::Finished) {
+        return None;
+    }
+    let ledger: Vec<(i64, BTreeSet<&str>, Option<i64>)> = members
+        .iter()
+        .filter_map(|member| match &member.part {
+            Part::Ledger { effects, search } => {
+                Some((member.id, effects.iter().map(String::as_str).collect(), *search))
+            }
+            Part::Beside | Part::Search(_) => None,
+        })
+        .collect();
+    let (last, has, search) = ledger.last()?;
+    let Some(search) = search else {
+        return Some(Step::Search(*last));
+    };
+    if settings.apply == Apply::Ask {
+        return None;
+    }
+    let found = members.iter().find_map(|member| match &member.part {
+        Part::Search(record) if member.id == *search => record.as_deref(),
+        _ => None,
+    })?;
+    let dropped: BTreeSet<&str> = ledger
+        .windows(2)
+        .flat_map(|pair| pair[0].1.difference(&pair[1].1))
+        .copied()
+        .collect();
+    let added = has.difference(&ledger[0].1).count();
+    if let Some(extension) = &found.extension {
+        let effect = effect_of(extension);
+        if added < settings.max_effects && !dropped.contains(&*effect) && !has.contains(&*effect) {
+            return Some(Step::Extend(*last, extension.clone()));
+        }
+    }
+    let drop: Vec<String> = found
+        .drop
+        .iter()
+        .filter(|effect| {
+            let effect = effect.as_str();
+            // What the job itself asks for is the user's.
+            has.contains(effect) && !ledger[0].1.contains(effect) && !dropped.contains(effect)
+        })
+        .cloned()
+        .collect();
+    (!drop.is_empty()).then_some(Step::Drop(*last, drop))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::discovery::fixture;
+
+    fn ledger(id: i64, effects: &[&str], search: Option<i64>) -> Member {
+        Member {
+            id,
+            state: CalibrationState::Finished,
+            part: Part::Ledger {
+                effects: effects.iter().map(|&e| e.to_owned()).collect(),
+                search,
+            },
+        }
+    }
+
+    fn search(id: i64, names: Option<&str>, drop: &[&str]) -> Member {
+        let record = Discovery {
+            extension: names.map(|name| Extension::Effect(name.to_owned())),
+            drop: drop.iter().map(|&e| e.to_owned()).collect(),
+            ..fixture::discovery()
+        };
+        Member {
+            id,
+            state: CalibrationState::Finished,
+            part: Part::Search(Some(Box::new(record))),
+        }
+    }
+
+    fn beside(id: i64) -> Member {
+        Member {
+            id,
+            state: CalibrationState::Finished,
+            part: Part::Beside,
+        }
+    }
+
+    fn step(apply: Apply, members: &[Member]) -> Option<Step> {
+        let settings = DiscoverySettings {
+            apply,
+            max_effects: 2,
+        };
+        next_step(settings, members)
+    }
+
+    fn extend(id: i64, effect: &str) -> Option<Step> {
+        Some(Step::Extend(id, Extension::Effect(effect.to_owned())))
+    }
+
+    #[test]
+    fn nothing_is_looked_for_unless_the_job_says_so() {
+        let members = [ledger(1, &[], None), beside(2)];
+        assert_eq!(step(Apply::Off, &members), None);
+        assert_eq!(step(Apply::Ask, &members), Some(Step::Search(1)));
+        assert_eq!(step(Apply::Auto, &members), Some(Step::Search(1)));
+    }
+
+    #[test]
+    fn a_member_that_is_not_finished_is_waited_for_and_one_that_failed_ends_the_growth() {
+        for state in CalibrationState::ALL {
+            let members = [ledger(1, &[], None), Member { state, ..beside(2) }];
+            let expected = (state == CalibrationState::Finished).then_some(Step::Search(1));
+            assert_eq!(step(Apply::Auto, &members), expected, "{state:?}");
+        }
+    }
+
+    #[test]
+    fn ask_searches_once_and_leaves_the_rest_to_the_user() {
+        let base = [ledger(1, &[], Some(2)), search(2, Some("lug_thrust"), &[])];
+        assert_eq!(step(Apply::Ask, &base), None);
+        let extended = [base.to_vec(), vec![ledger(3, &["lug_thrust"], None)]].concat();
+        assert_eq!(step(Apply::Ask, &extended), Some(Step::Search(3)));
+    }
+
+    #[test]
+    fn auto_adds_what_is_named_until_nothing_is() {
+        let mut members = vec![ledger(1, &["hard_pan"], Some(2)), search(2, Some("a"), &[])];
+        assert_eq!(step(Apply::Auto, &members), extend(1, "a"));
+        members.push(ledger(3, &["hard_pan", "a"], None));
+        assert_eq!(step(Apply::Auto, &members), Some(Step::Search(3)));
+        members.pop();
+        members.extend([ledger(3, &["hard_pan", "a"], Some(4)), search(4, None, &[])]);
+        assert_eq!(step(Apply::Auto, &members), None);
+        members.pop();
+        members.push(search(4, Some("b"), &[]));
+        assert_eq!(step(Apply::Auto, &members), extend(3, "b"));
+        members.extend([
+            ledger(5, &["hard_pan", "a", "b"], Some(6)),
+            search(6, Some("c"), &[]),
+        ]);
+        assert_eq!(
+            step(Apply::Auto, &members),
+            None,
+            "two are added, the job's own does not count"
+        );
+    }
+
+    #[test]
+    fn an_effect_is_dropped_once_and_does_not_come_back() {
+        let mut members = vec![
+            ledger(1, &[], Some(2)),
+            search(2, Some("a"), &[]),
+            ledger(3, &["a"], Some(4)),
+            search(4, Some("b"), &[]),
+            ledger(5, &["a", "b"], Some(6)),
+            search(6, None, &["a"]),
+        ];
+        assert_eq!(step(Apply::Auto, &members), Some(Step::Drop(5, vec!["a".into()])));
+        members.extend([ledger(7, &["b"], Some(8)), search(8, Some("a"), &[])]);
+        assert_eq!(step(Apply::Auto, &members), None, "it was dropped before");
+        // the user insists
+        members.extend([ledger(9, &["a", "b"], Some(10)), search(10, None, &["a"])]);
+        assert_eq!(step(Apply::Auto, &members), None, "and is not dropped twice");
+    }
+
+    #[test]
+    fn a_file_s_effect_has_the_name_that_stands_in_it() {
+        let file = |text: &str| Extension::File {
+            name: "mine.toml".into(),
+            text: text.into(),
+        };
+        assert_eq!(
+            effect_of(&file("name = \"shear_slip_step\"\n")),
+            "shear_slip_step"
+        );
+        assert_eq!(effect_of(&file("nothing")), "mine.toml");
+    }
+}

@@ -1,0 +1,263 @@
+//! How a study grows: extended by effects, by further runs; what is refused; what a restart makes of it.
+
+use farm_tests::job::{GAIN, Job};
+use farm_tests::programs::{coordinator, run};
+use farm_tests::service::Service;
+use farm_tests::text::same;
+use farm_tests::workspace::text;
+use serde_json::{Value, json};
+
+/// Two runs more, a column fewer than the experiment has.
+const MORE: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,torque_n_m,use
+later-1,WHEEL,SOIL,0.25,100,0.01,30.0,6.0,fit
+later-2,WHEEL,SOIL,0.35,100,0.01,33.0,6.4,holdout
+";
+
+/// [`MORE`] for the wheel and the soil of the small job.
+fn more() -> String {
+    let small = Job::small();
+    let mut lines = small.runs.lines().filter(|line| !line.starts_with('#'));
+    let first: Vec<&str> = lines.nth(1).expect("a run").split(',').collect();
+    MORE.replace("WHEEL", first[1]).replace("SOIL", first[2])
+}
+
+fn summary(service: &Service, id: i64) -> Value {
+    let mut summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
+    for calibration in summary["calibrations"].as_array_mut().expect("a list") {
+        calibration["wall_s"] = Value::Null;
+    }
+    summary
+}
+
+#[track_caller]
+fn created(service: &Service, path: &str, body: &Value) -> i64 {
+    let response = service.client.post(path, body);
+    assert_eq!(response.status, 201, "{}", response.body);
+    response.json()["id"].as_i64().expect("an id")
+}
+
+/// Effects of each line of the ledger.
+fn ledger(summary: &Value) -> Vec<String> {
+    let calibrations = summary["calibrations"].as_array().into_iter().flatten();
+    calibrations.map(|c| c["effects"].to_string()).collect()
+}
+
+#[test]
+fn a_study_grows_by_effects_and_by_runs() {
+    let service = Service::start(&["--local-workers", "2"]);
+    let job = Job::small().in_job("seed = 1", "seed = 1\npoint_estimates = [\"lm\"]");
+    let base = service.submit(&job);
+    let path = |id: i64| format!("/v1/calibrations/{id}/extend");
+    let named = created(&service, &path(base), &json!({"effect": "torque_gain"}));
+    let file = json!({"effect_file": {"name": "gain.toml", "text": GAIN}});
+    let both = created(&service, &path(named), &file);
+    let enlarged = created(&service, "/v1/studies/1/runs", &json!({"runs": more()}));
+    for id in [base, base + 1, named, both, enlarged] {
+        service.wait_for(id, "finished");
+    }
+    let summary = summary(&service, enlarged);
+    assert_eq!(summary["status"], "finished");
+    let two = "[\"torque_gain\",\"my_gain\"]";
+    assert_eq!(ledger(&summary), ["[]", "[\"torque_gain\"]", two, two]);
+    let runs = |i: usize| {
+        let table = &summary["calibrations"][i]["error"];
+        (
+            table["fit"]["torque"]["runs"].as_u64(),
+            table["holdout"]["torque"]["runs"].as_u64(),
+            table["fit"]["sinkage"]["runs"].as_u64(),
+        )
+    };
+    assert_eq!(runs(2), (Some(24), Some(16), Some(24)));
+    assert_eq!(runs(3), (Some(25), Some(17), Some(24)), "their sinkage is blank");
+    assert_eq!(
+        summary["point_estimates"].as_array().map(Vec::len),
+        Some(1),
+        "the submitted job's"
+    );
+    assert_eq!(summary["discovery"], Value::Null, "nobody has searched");
+    let experiments: Vec<Value> = [base, both, enlarged]
+        .map(|id| service.status(id)["experiment"].clone())
+        .to_vec();
+    assert!(experiments[0] == experiments[1] && experiments[0] != experiments[2]);
+    let ledger = service.client.json("/v1/studies/1");
+    assert_eq!(ledger["ledger"].as_array().map(Vec::len), Some(4));
+}
+
+#[test]
+fn an_extension_is_the_calibration_of_the_same_job_submitted_alone() {
+    let service = Service::start(&["--local-workers", "2"]);
+    let base = service.submit(&Job::small());
+    let path = format!("/v1/calibrations/{base}/extend");
+    let extended = created(&service, &path, &json!({"effect": "torque_gain"}));
+    let job = Job::small().in_job(
+        "shear_velocity_m_s = 0.001",
+        "shear_velocity_m_s = 0.001\neffects = [\"torque_gain\"]",
+    );
+    let alone = service.submit(&job);
+    for id in [base, extended, alone] {
+        service.wait_for(id, "finished");
+    }
+    same(&service.posterior_csv(extended), &service.posterior_csv(alone));
+}
+
+#[test]
+fn killed_behind_the_answer_an_extension_goes_on_to_the_same_bits() {
+    let expected = {
+        let service = Service::start(&["--local-workers", "2"]);
+        let base = service.submit(&Job::small());
+        let path = format!("/v1/calibrations/{base}/extend");
+        let extended = created(&service, &path, &json!({"effect": "torque_gain"}));
+        service.wait_for(extended, "finished");
+        service.wait_for(base, "finished");
+        summary(&service, base)
+    };
+    let mut service = Service::start(&[]);
+    let base = service.submit(&Job::small());
+    let path = format!("/v1/calibrations/{base}/extend");
+    let extended = created(&service, &path, &json!({"effect": "torque_gain"}));
+    service.kill();
+    service.restart();
+    let mut worker = service.worker("worker", 1);
+    service.wait_for(base, "finished");
+    service.kill();
+    worker.kill();
+    service.restart();
+    let _worker = service.worker("worker", 2);
+    service.wait_for(extended, "finished");
+    same(
+        &format!("{:#}", summary(&service, base)),
+        &format!("{expected:#}"),
+    );
+    let studies = service.client.json("/v1/studies");
+    assert_eq!(
+        studies[0]["calibrations"],
+        json!([base, extended]),
+        "and nothing else was added"
+    );
+}
+
+#[test]
+fn what_cannot_be_added_says_why() {
+    let service = Service::start(&[]);
+    let id = service.submit(&Job::small());
+    let refused = |path: String, body: Value, status: u16, words: &str| {
+        let response = service.client.post(&path, &body);
+        let message = response.json()["error"]["message"].clone();
+        assert_eq!(response.status, status, "{message}");
+        assert!(
+            message.as_str().is_some_and(|m| m.contains(words)),
+            "{words} in {message}"
+        );
+    };
+    let extend = |id: i64| format!("/v1/calibrations/{id}/extend");
+    let effect = |name: &str| json!({ "effect": name });
+    refused(
+        extend(id),
+        effect("bulldosing"),
+        422,
+        "unknown effect \"bulldosing\"; the nearest known is \"bulldozing\"",
+    );
+    refused(extend(9), effect("bulldozing"), 404, "there is no calibration 9");
+    refused(extend(id), json!({}), 400, "an extension is");
+    let both = json!({"effect": "bulldozing", "effect_file": {"name": "gain.toml", "text": GAIN}});
+    refused(extend(id), both, 400, "an extension is");
+    let broken = GAIN.replace("shift_n\"", "shift\"");
+    let file = json!({"effect_file": {"name": "gain.toml", "text": broken}});
+    refused(extend(id), file, 422, "gain.toml line");
+    let extended = created(&service, &extend(id), &effect("torque_gain"));
+    refused(
+        extend(extended),
+        effect("torque_gain"),
+        422,
+        "\"torque_gain\" stands twice",
+    );
+
+    let runs = "/v1/studies/1/runs".to_owned();
+    let with = |old: &str, new: &str| json!({"runs": more().replace(old, new)});
+    refused(
+        runs.clone(),
+        with("0.35,", "1.35,"),
+        422,
+        "runs.csv line 3: slip 1.35 must lie in [-1, 1)",
+    );
+    refused(
+        runs.clone(),
+        with("later-2", "later-1"),
+        422,
+        "line 3: run \"later-1\" stands twice",
+    );
+    refused(
+        runs.clone(),
+        with("torque_n_m", "torque"),
+        422,
+        "unknown column \"torque\"",
+    );
+    refused(
+        "/v1/studies/9/runs".into(),
+        with("", ""),
+        404,
+        "there is no study 9",
+    );
+    created(&service, &runs, &json!({"runs": more()}));
+    refused(
+        runs,
+        json!({"runs": more()}),
+        422,
+        "runs.csv line 2: run \"later-1\" stands in the study already",
+    );
+
+    let discovery = service.client.get(&format!("/v1/calibrations/{id}/discovery"));
+    assert_eq!(discovery.status, 404, "{}", discovery.body);
+    assert!(
+        discovery
+            .body
+            .contains("no search for a missing effect of calibration 1"),
+        "{}",
+        discovery.body
+    );
+    let list = service.client.json("/v1/calibrations");
+    assert_eq!(
+        list.as_array().map(Vec::len),
+        Some(3),
+        "what was refused left nothing behind"
+    );
+}
+
+#[test]
+fn a_folder_grows_and_its_run_knows_it_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = Job::small()
+        .write(&folder.path().join("job"))
+        .display()
+        .to_string();
+    let out = folder.path().join("out").display().to_string();
+    let runs = folder.path().join("more.csv");
+    std::fs::write(&runs, more()).expect("a file");
+    let go = |words: &[&str]| run(coordinator(words.iter().copied().chain(["--out", &out])));
+    go(&["run", &path]).success();
+    let refusal = go(&["extend", "--effect", "bulldosing"]).refusal();
+    assert!(
+        refusal.contains("the nearest known is \"bulldozing\""),
+        "{refusal}"
+    );
+    let printed = go(&["extend", "--effect", "torque_gain"]).success();
+    assert!(
+        printed.contains("model quasi_static with torque_gain"),
+        "{printed}"
+    );
+    let enlarged = go(&["add-runs", "1", &runs.display().to_string()]).success();
+    assert!(enlarged.contains("(42 runs)"), "{enlarged}");
+    assert_eq!(
+        go(&["run", &path]).success(),
+        enlarged,
+        "a grown study is printed again"
+    );
+    let file = text(&folder.path().join("out/summary.json"));
+    let summary: Value = serde_json::from_str(&file).expect("JSON");
+    assert_eq!(ledger(&summary), ["[]", "[\"torque_gain\"]", "[\"torque_gain\"]"]);
+    let report = text(&folder.path().join("out/report.html"));
+    assert!(
+        report.contains("id=\"discovery\""),
+        "the ledger stands in the report"
+    );
+}
