@@ -82,6 +82,9 @@ pub struct NamedText {
 pub struct NewRuns {
     /// Rows with a header, as in `runs.csv`.
     pub runs: String,
+    /// The calibration of the study whose model is fitted to all runs; the last of its ledger where nothing is said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<i64>,
 }
 
 /// Answer to further runs.

@@ -155,6 +155,7 @@ fn task(values: &[f64]) -> Task {
             .collect(),
         proposed: Proposed {
             runs: PROPOSED.len(),
+            groups: (0..PROPOSED.len()).collect(),
             noise_sds: vec![SD],
         },
         max_effects: 3,

@@ -4,6 +4,7 @@
 //! living worker and a replay from the store, so a restart cannot take another path.
 
 mod computed;
+mod draws;
 mod engine;
 mod identity;
 mod replay;
@@ -11,7 +12,7 @@ mod replay;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use inference::{LogLikelihood, Metamodel, Posterior, Proposal, Subchain};
+use inference::{LogLikelihood, Metamodel, Proposal, Subchain};
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::model::ModelVariant;
@@ -23,6 +24,7 @@ use crate::lease::{Completion, Queue};
 use crate::spec::{Method, Spec};
 
 pub use computed::{Computed, result_of};
+use draws::{FinalDraws, final_draws};
 use engine::Scored;
 pub use engine::{BeginError, Engine, Finding};
 pub use identity::{EvaluationKey, HISTORIES, PREDICTIONS_FROM};
@@ -78,15 +80,6 @@ pub struct Calibration {
     done: BTreeSet<u64>,
     /// Failed leases by evaluation, kept over a restart.
     failed: BTreeMap<u64, u32>,
-}
-
-/// What is simulated once the posterior, or the estimate, is known.
-#[derive(Debug)]
-struct FinalDraws {
-    /// To simulate on fitted and holdout runs.
-    thetas: Vec<Vec<f64>>,
-    /// The one of the highest likelihood, to simulate with its histories.
-    likeliest: Vec<f64>,
 }
 
 /// A message that is no result: the calibration and the reason.
@@ -586,24 +579,5 @@ impl Calibration {
                 searched(&observables).unwrap_or_else(|| self.spec.predicted_values(&observables)),
             ),
         }
-    }
-}
-
-/// The draws that are simulated on every run: the most probable particle, then evenly spaced ones; beside, the likeliest.
-fn final_draws(posterior: &Posterior) -> FinalDraws {
-    let particles = &posterior.particles;
-    let highest = |score: &dyn Fn(usize) -> f64| {
-        (0..particles.len()).reduce(|a, b| if score(b) > score(a) { b } else { a })
-    };
-    let log_likelihood = |i: usize| particles[i].log_likelihood.value();
-    let best = highest(&|i| log_likelihood(i) + particles[i].log_prior);
-    let likeliest = highest(&log_likelihood);
-    let spread = crate::spec::PREDICTION_DRAWS - 1;
-    let count = particles.len().min(spread);
-    let even = (0..count).map(|k| k * particles.len() / count);
-    let theta = |i: usize| particles[i].theta.clone();
-    FinalDraws {
-        thetas: best.into_iter().chain(even).map(theta).collect(),
-        likeliest: likeliest.map(theta).unwrap_or_default(),
     }
 }

@@ -126,13 +126,16 @@ impl Folder {
     /// What a search found, and how it is added.
     fn found(&self, study: &Study, searched: Option<i64>) -> String {
         let meant = study.rounds.iter().find(|r| Some(r.calibration) == searched);
-        let Some(round) = meant.or(study.rounds.last()) else {
+        // Of a study that has grown, the search that said how; the story tells the others.
+        let telling = study.rounds.iter().find(|r| r.record.extension.is_some());
+        let Some(round) = meant.or(telling).or(study.rounds.last()) else {
             return String::new();
         };
         let place = format!("--out {}", self.out.display());
         format!(
-            "\n{}",
-            discovery::text(&round.record, round.calibration, &place, &self.out)
+            "\n{}\n{}",
+            discovery::text(&round.record, round.calibration, &place, &self.out),
+            discovery::story(study)
         )
     }
 

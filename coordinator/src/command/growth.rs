@@ -105,12 +105,19 @@ pub(super) async fn add_runs(config: &AddRuns) -> anyhow::Result<()> {
     let study = Place::open(source).await?.status(*id).await?.study;
     if let Some(out) = &source.out {
         return grow(out, *id, config.local_workers, async |service| {
-            service.add_runs(study, runs.clone()).await.map(drop)
+            let last = Some(*id);
+            service.add_runs(study, runs.clone(), last).await.map(drop)
         })
         .await;
     }
     let added: RunsAdded = Client::new(&source.url())?
-        .post(&format!("/v1/studies/{study}/runs"), &NewRuns { runs })
+        .post(
+            &format!("/v1/studies/{study}/runs"),
+            &NewRuns {
+                runs,
+                calibration: Some(*id),
+            },
+        )
         .await?;
     Ok(say(&format!(
         "calibration {} of study {} on experiment {}\n",

@@ -38,6 +38,7 @@ impl Display {
         let message = match p.algorithm.as_str() {
             "lm" => format!("{} steps taken | {pace}", p.stage),
             "ga" | "cma-es" => format!("{} generations | {pace}", p.stage),
+            "discovery" => format!("search, round {} | {pace}", p.stage),
             _ => format!(
                 "stage {} exponent {:.3e} step {} acceptance {:.2} | {pace} | {time}",
                 p.stage, p.tempering_exponent, p.step, p.acceptance

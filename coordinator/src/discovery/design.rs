@@ -91,11 +91,11 @@ pub(super) fn proposed(spec: &Spec) -> Vec<Condition> {
     for slip in SLIPS.into_iter().chain(braked.then_some(BRAKED)) {
         for &wheel_load_n in &loads {
             for &rim in &rims {
-                let sled_speed_m_s = if slip < 0.0 {
+                let sled_speed_m_s = two_digits(if slip < 0.0 {
                     rim / (1.0 + slip)
                 } else {
                     rim * (1.0 - slip)
-                };
+                });
                 proposed.push(Condition {
                     slip,
                     wheel_load_n,

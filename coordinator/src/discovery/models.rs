@@ -159,6 +159,7 @@ impl Models {
             levels: design::levels(base),
             proposed: Proposed {
                 runs: self.design.len(),
+                groups: self.slips(),
                 noise_sds: self.channels.iter().map(|(_, sd)| *sd).collect(),
             },
             max_effects: self.max_effects,
@@ -167,6 +168,12 @@ impl Models {
                 seed: base.method.seed(),
             },
         }
+    }
+
+    /// The slip of each proposed run, numbered: of runs that differ in load and speed alone one is proposed.
+    fn slips(&self) -> Vec<usize> {
+        let same = |slip: f64| self.design.iter().position(|c| (c.slip - slip).abs() < 1e-9);
+        self.design.iter().filter_map(|c| same(c.slip)).collect()
     }
 
     /// The candidate of a position: the library, then for each law its curve and its forms.

@@ -14,6 +14,8 @@ use super::{
 
 /// An effect of the model that gains it less is dropped \[nats\].
 const EARNS: f64 = 3.0;
+/// Members of a class with less probability are too weak to be what is missing.
+const LEAST_NAMED: f64 = 0.005;
 /// Most names in a sentence.
 const NAMES: usize = 6;
 
@@ -143,7 +145,8 @@ fn effects(models: &Models, answer: &Answer) -> Vec<JudgedEffect> {
             method: "polished".to_owned(),
         });
     }
-    effects.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let by_factor = |a: &JudgedEffect, b: &JudgedEffect| b.log_bayes_factor.total_cmp(&a.log_bayes_factor);
+    effects.sort_by(|a, b| b.probability.total_cmp(&a.probability).then(by_factor(a, b)));
     effects
 }
 
@@ -189,7 +192,7 @@ fn outside(models: &Models, found: &inquiry::Outside) -> Option<(Outside, Extens
 
 /// What can be said, for a test engineer.
 fn sentence(models: &Models, answer: &Answer, effects: &[JudgedEffect], outside: Option<&Outside>) -> String {
-    let kind = models.base.model.kind.name();
+    let kind = models.base.model_words();
     let library = || {
         effects
             .iter()
@@ -225,7 +228,7 @@ fn sentence(models: &Models, answer: &Answer, effects: &[JudgedEffect], outside:
             )
         }
         (inquiry::Verdict::Class(class), _) => {
-            let own = || library().filter(|e| e.class as usize == class);
+            let own = || library().filter(|e| e.class as usize == class && e.probability > LEAST_NAMED);
             format!(
                 "one of {} is missing (together with probability {:.3}); these data cannot tell them apart",
                 list(own().map(|e| e.name.as_str())),

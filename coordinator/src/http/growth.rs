@@ -81,5 +81,8 @@ async fn add_runs(
     Id(id): Id,
     Body(new): Body<NewRuns>,
 ) -> Result<(StatusCode, Json<RunsAdded>), HttpError> {
-    Ok((StatusCode::CREATED, Json(service.add_runs(id, new.runs).await?)))
+    Ok((
+        StatusCode::CREATED,
+        Json(service.add_runs(id, new.runs, new.calibration).await?),
+    ))
 }

@@ -97,11 +97,18 @@ impl Study {
         self.all().filter(|outcome| outcome.estimate.is_none())
     }
 
-    /// Effects at the end of the ledger that the first calibration did not have.
+    /// Effects that the first calibration did not have, of the line of the ledger with the most evidence on the newest data.
     fn added(&self) -> Vec<String> {
         let had = self.lead.effects();
-        let last = self.ledger().last().map(Outcome::effects).unwrap_or_default();
-        last.into_iter().filter(|effect| !had.contains(effect)).collect()
+        let newest = self.ledger().map(|o| o.row.experiment).max();
+        let of_newest = self.ledger().filter(|o| Some(o.row.experiment) == newest);
+        let evidence = |o: &Outcome| o.row.log_evidence.unwrap_or(f64::NEG_INFINITY);
+        let best = of_newest.reduce(|a, b| if evidence(b) > evidence(a) { b } else { a });
+        best.map(Outcome::effects)
+            .unwrap_or_default()
+            .into_iter()
+            .filter(|effect| !had.contains(effect))
+            .collect()
     }
 
     /// What deserves attention; of a calibration beside the first, under the name of its algorithm, of an extension under its

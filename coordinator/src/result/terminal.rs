@@ -176,9 +176,12 @@ pub fn groups(comparison: &Comparison) -> String {
     text
 }
 
-/// The results of a study, one calibration after the other.
+/// The results of a study, one calibration after the other; of one that has grown without the tables of their runs.
 pub fn study(study: &Study) -> String {
-    let results: Vec<String> = study.all().map(summary).collect();
+    let results: Vec<String> = match study.rounds.as_slice() {
+        [] => study.all().map(summary).collect(),
+        _ => study.all().map(brief).collect(),
+    };
     let mut text = results.join("\n");
     for flag in study.missed_modes() {
         let _ = writeln!(text, "\nflag {}: {}", flag.kind, flag.text);
@@ -188,6 +191,22 @@ pub fn study(study: &Study) -> String {
 
 /// The result of a run: parameters, errors, table of model against measurement, flags.
 pub fn summary(outcome: &Outcome) -> String {
+    let compared = outcome.comparison();
+    let table = if outcome.spec.experiment.runs.is_empty() {
+        String::new()
+    } else {
+        comparison(&compared)
+    };
+    told(outcome, &compared, &table)
+}
+
+/// The same without the table.
+fn brief(outcome: &Outcome) -> String {
+    let compared = outcome.comparison();
+    told(outcome, &compared, &errors(&compared))
+}
+
+fn told(outcome: &Outcome, compared: &Comparison, table: &str) -> String {
     let mut text = String::new();
     let row = &outcome.row;
     let how = match &outcome.estimate {
@@ -226,10 +245,7 @@ pub fn summary(outcome: &Outcome) -> String {
         let _ = writeln!(text, "{words}");
     }
     text.push('\n');
-    let compared = outcome.comparison();
-    if !outcome.spec.experiment.runs.is_empty() {
-        text.push_str(&comparison(&compared));
-    }
+    text.push_str(table);
     for error in reading_errors(outcome) {
         let _ = writeln!(text, "{}", error.words());
     }
@@ -237,7 +253,7 @@ pub fn summary(outcome: &Outcome) -> String {
         Some(estimate) => point(outcome, estimate),
         None => parameters(outcome),
     });
-    let diagnostics = outcome.diagnostics(&compared);
+    let diagnostics = outcome.diagnostics(compared);
     for words in [findings(&diagnostics), flags(&diagnostics)] {
         if !words.is_empty() {
             let _ = write!(text, "\n{words}");
@@ -334,9 +350,17 @@ pub fn comparison(comparison: &Comparison) -> String {
             row.residual_sigma.map_or("-".into(), |r| format!("{r:+.1}"))
         );
     }
+    text.push('\n');
+    text.push_str(&errors(comparison));
+    text
+}
+
+/// Errors by channel, and how many measurements lie within their intervals.
+fn errors(comparison: &Comparison) -> String {
+    let mut text = String::new();
     let _ = writeln!(
         text,
-        "\n{:<28} {:>16} {:>16} {:>16} {:>14} {:>8}",
+        "{:<28} {:>16} {:>16} {:>16} {:>14} {:>8}",
         "root mean square error", "pull N", "torque N m", "sinkage mm", "lateral N", "sigma"
     );
     for (name, table) in [

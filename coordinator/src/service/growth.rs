@@ -43,15 +43,26 @@ impl Service {
         self.add_member(&row, row.experiment, name, job).await
     }
 
-    /// Adds measurements to a study: an experiment with the rows of a CSV more, and the job of the end of its ledger on it.
+    /// Adds measurements to a study: an experiment with the rows of a CSV more, and the job of a calibration on it, of the last of
+    /// its ledger where none is named.
     ///
     /// # Errors
     /// [`ServiceError`]: a row is malformed, or its run stands there already.
-    pub async fn add_runs(&self, study: i64, csv: String) -> Result<RunsAdded, ServiceError> {
+    pub async fn add_runs(
+        &self,
+        study: i64,
+        csv: String,
+        calibration: Option<i64>,
+    ) -> Result<RunsAdded, ServiceError> {
         let _growing = self.growing.lock().await;
         let rows = self.store.reader().study(study).await?;
         let (mut ledger, mut beside) = (None, None);
-        for row in rows.iter().filter(|row| !is_discovery(&row.job.toml)) {
+        let meant = |row: &&CalibrationRow| calibration.is_none_or(|id| id == row.id);
+        for row in rows
+            .iter()
+            .filter(|row| !is_discovery(&row.job.toml))
+            .filter(meant)
+        {
             match self.spec_of(row).await?.method {
                 Method::Sample(_) => ledger = Some(row),
                 _ => beside = Some(row),

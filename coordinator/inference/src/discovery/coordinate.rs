@@ -5,7 +5,7 @@ use crate::prior::{Marginal, normal};
 use super::candidate::Candidate;
 
 /// Nothing is looked for beyond so many standard deviations of the prior.
-const FARTHEST: f64 = 6.0;
+const FARTHEST: f64 = 7.5;
 
 /// How a parameter becomes a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

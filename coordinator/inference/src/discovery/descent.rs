@@ -305,8 +305,19 @@ impl Descent {
     }
 
     /// ln evidence by the parabola at the point; `None` where it has no least.
+    ///
+    /// A slope is left only where a half-normal coordinate is at its bound. What a parabola promises beyond the steps that were tried
+    /// is not counted: far from the least, or at the end of what is looked at, it has no end.
     pub(super) fn log_evidence(&self, likelihood: &Likelihood) -> Option<f64> {
-        log_evidence(&self.parabola(likelihood), self.point.value, &self.frame.halves())
+        let halves = self.frame.halves();
+        let mut parabola = self.parabola(likelihood);
+        for (k, slope) in parabola.gradient.iter_mut().enumerate() {
+            let is_at_bound = halves.contains(&k) && parabola.lower[k] >= 0.0 && *slope > 0.0;
+            if !is_at_bound {
+                *slope = 0.0;
+            }
+        }
+        log_evidence(&parabola, self.point.value, &halves)
     }
 }
 

@@ -166,6 +166,11 @@ impl Engine {
         for k in self.best(confirm::COUNT) {
             let starts = confirm::starts(&self.frames[k], base).into_iter();
             asked.extend(starts.map(|position| (Some(k), position)));
+            // Where an extension has found its way the base may find one, too: a factor compares their best.
+            if let Some(fitted) = self.fit_of(k) {
+                let own = fitted.point.position[..self.base_frame.dimension()].to_vec();
+                asked.push((None, own));
+            }
         }
         if asked.is_empty() {
             return self.finish();
@@ -179,8 +184,7 @@ impl Engine {
         self.spent.confirm += answers.len();
         let mut descents = Vec::new();
         for ((candidate, position), values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
-            let Some(k) = candidate else { continue };
-            let frame = &self.frames[k];
+            let frame = self.frame(candidate);
             let point = values.and_then(|v| Point::new(frame, &self.likelihood, position, v));
             if let Some(point) = point {
                 let columns = vec![vec![0.0; base.point.values.len()]; frame.dimension()];
@@ -201,6 +205,7 @@ impl Engine {
             return;
         };
         self.spent.confirm += fleet.evaluations();
+        self.take_base(&fleet);
         self.take(fleet, Method::Confirmed);
         let models = self.to_be_sampled();
         self.sample(models);

@@ -57,6 +57,27 @@ impl Engine {
         }
     }
 
+    /// Replaces the base's fit by a more probable one, and weighs all that was fitted against it.
+    pub(super) fn take_base(&mut self, fleet: &Fleet) {
+        let of_base = fleet.descents.iter().filter(|(candidate, _)| candidate.is_none());
+        let best = of_base
+            .map(|(_, descent)| descent)
+            .reduce(|a, b| if b.point.value < a.point.value { b } else { a });
+        let (Some(found), Some((base, evidence))) = (best, &mut self.base) else {
+            return;
+        };
+        let Some(own) = found.log_evidence(&self.likelihood) else {
+            return;
+        };
+        if found.point.value < base.point.value && own > *evidence {
+            let gain = own - *evidence;
+            (*base, *evidence) = (found.clone(), own);
+            for judgement in self.judgements.iter_mut().flatten() {
+                judgement.log_bayes_factor -= gain;
+            }
+        }
+    }
+
     /// The candidates with the highest Bayes factors; where fits have learnt their derivatives only from their own steps, what the
     /// screen promised counts if it is more: such a fit may have stuck.
     pub(super) fn best(&self, count: usize) -> Vec<usize> {

@@ -132,7 +132,7 @@ pub(super) fn probability(p: f64) -> String {
 }
 
 /// The same in a sentence: `p = 0.012`, `p < 1e-12`.
-pub(super) fn p_words(p: f64) -> String {
+pub(in crate::result) fn p_words(p: f64) -> String {
     let value = probability(p);
     let relation = if value.starts_with('<') { "p" } else { "p =" };
     format!("{relation} {value}")

@@ -1,7 +1,5 @@
 //! The block `discovery` of `summary.json`.
 
-use formula::catalogue::find;
-
 use super::Round;
 use crate::discovery::{Discovery, JudgedEffect, NextRun, Outside, Verdict};
 use crate::study::effect_of;
@@ -11,7 +9,7 @@ use crate::study::effect_of;
 pub struct DiscoverySummary {
     /// Of the whole study: what was added, or what the first search says.
     pub verdict: Verdict,
-    /// The effects that were added; where none was, the one that the first search would add.
+    /// The effects that were added; where none was, the one that a search would add.
     pub chosen: Vec<String>,
     /// Every explanation of the first search.
     pub effects: Vec<JudgedEffect>,
@@ -30,18 +28,31 @@ pub struct DiscoverySummary {
 }
 
 impl DiscoverySummary {
-    /// The block of a study; `added` are the effects at the end of its ledger that the first calibration did not have.
+    /// The block of a study; `added` are the effects of its best calibration that the first one did not have.
     /// `None` where nothing was searched.
     pub(in crate::result) fn of(rounds: &[Round], added: Vec<String>) -> Option<DiscoverySummary> {
         let records: Vec<Discovery> = rounds.iter().map(|round| round.record.clone()).collect();
         let (first, last) = (records.first()?, records.last()?);
-        let verdict = match added.as_slice() {
-            [] => first.verdict,
-            added if added.iter().any(|effect| find(effect).is_some()) => Verdict::Named,
-            _ => Verdict::NotInLibrary,
+        // The search that named what was added; else the last one that saw something: further runs may have told more.
+        let named = records.iter().find(|record| {
+            record
+                .extension
+                .as_ref()
+                .is_some_and(|e| added.contains(&effect_of(e)))
+        });
+        let seeing = || {
+            records
+                .iter()
+                .rev()
+                .find(|r| r.verdict != Verdict::NothingDetectable)
         };
+        let verdict = named.or_else(seeing).unwrap_or(first).verdict;
         let chosen = match added.is_empty() {
-            true => first.extension.iter().map(effect_of).collect(),
+            true => seeing()
+                .and_then(|r| r.extension.as_ref())
+                .map(effect_of)
+                .into_iter()
+                .collect(),
             false => added,
         };
         Some(DiscoverySummary {

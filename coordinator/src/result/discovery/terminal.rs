@@ -5,9 +5,50 @@ use std::path::Path;
 
 use super::{arguments, effect_file, word};
 use crate::discovery::{ChiSquare, Discovery};
+use crate::result::diagnostics::p_words;
+use crate::result::{ErrorTable, Study};
 
 /// Most explanations that are shown.
-const SHOWN: usize = 10;
+const SHOWN: usize = 8;
+/// Most effects in a list that could not be seen.
+const UNSEEN: usize = 20;
+
+/// The story of a study that was searched: what each search said, and how the error fell.
+pub fn story(study: &Study) -> String {
+    let mut text = String::new();
+    for round in &study.rounds {
+        let given = match round.record.given.as_slice() {
+            [] => "the model as it is".to_owned(),
+            given => format!("with {}", given.join(", ")),
+        };
+        let _ = writeln!(text, "search, {given}: {}", round.record.text);
+    }
+    let _ = writeln!(
+        text,
+        "\n{:<40} {:>16} {:>20} {:>20} {:>10}",
+        "error ledger", "ln evidence", "fit, sigma", "held out, sigma", "intervals"
+    );
+    for line in study.calibrations() {
+        let effects = match line.effects.as_slice() {
+            [] => "base".to_owned(),
+            effects => format!("with {}", effects.join(", ")),
+        };
+        let number = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.2}"));
+        let sigma = |table: &Option<ErrorTable>| number(table.as_ref().and_then(|t| t.all.rmse_sigma));
+        let _ = writeln!(
+            text,
+            "{effects:<40} {:>16} {:>20} {:>20} {:>10}",
+            number(line.log_evidence),
+            sigma(&line.error.fit),
+            sigma(&line.error.holdout),
+            line.coverage90
+                .holdout
+                .or(line.coverage90.fit)
+                .map_or("-".to_owned(), |c| format!("{:.0} %", 100.0 * c))
+        );
+    }
+    text
+}
 
 /// What a search found, and the command that adds it.
 ///
@@ -60,7 +101,15 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
         ("refused by the model at every strength", &record.refused),
     ] {
         if !effects.is_empty() {
-            let _ = writeln!(text, "{words}: {}", effects.join(", "));
+            let effects = folded(effects);
+            let more = effects.len().saturating_sub(UNSEEN);
+            let shown = effects[..effects.len() - more].join(", ");
+            let rest = if more > 0 {
+                format!(" and {more} more")
+            } else {
+                String::new()
+            };
+            let _ = writeln!(text, "{words}: {shown}{rest}");
         }
     }
     for run in &record.next_runs {
@@ -91,10 +140,19 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
     text
 }
 
+/// Names without those on one wheel of effects that are in the list themselves.
+fn folded(names: &[String]) -> Vec<&str> {
+    let is_own = |name: &&String| match name.split_once('.') {
+        Some((effect, _)) => !names.iter().any(|other| other == effect),
+        None => true,
+    };
+    names.iter().filter(is_own).map(String::as_str).collect()
+}
+
 /// `210.0 on 68 degrees of freedom (p 1e-9)`.
 fn chi_square(chi2: ChiSquare) -> String {
     let value = chi2.value.map_or("unknown".into(), |value| format!("{value:.1}"));
-    let p = chi2.p.map_or(String::new(), |p| format!(" (p {p:.1e})"));
+    let p = chi2.p.map_or(String::new(), |p| format!(" ({})", p_words(p)));
     format!("{value} on {:.0} degrees of freedom{p}", chi2.degrees_of_freedom)
 }
 

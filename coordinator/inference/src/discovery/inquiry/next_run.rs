@@ -157,6 +157,13 @@ impl NextRuns {
             .collect();
         runs.sort_by(|a, b| b.information_nats.total_cmp(&a.information_nats));
         runs.retain(|run| run.information_nats >= LEAST);
+        let mut groups = Vec::new();
+        runs.retain(|run| {
+            let group = self.proposed.groups[run.run];
+            let is_new = !groups.contains(&group);
+            groups.push(group);
+            is_new
+        });
         runs.truncate(MOST);
         runs
     }

@@ -49,6 +49,8 @@ pub struct Reduction {
 pub struct Proposed {
     /// How many.
     pub runs: usize,
+    /// Which runs are much alike: of each group at most one is proposed. One entry for each run.
+    pub groups: Vec<usize>,
     /// Noise sd of each channel that the rig measures, in its unit.
     pub noise_sds: Vec<f64>,
 }

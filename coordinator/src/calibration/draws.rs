@@ -1,0 +1,31 @@
+//! What is simulated once a sampler or a fit has ended.
+
+use inference::Posterior;
+
+/// What is simulated once the posterior, or the estimate, is known.
+#[derive(Debug)]
+pub(super) struct FinalDraws {
+    /// To simulate on fitted and holdout runs.
+    pub(super) thetas: Vec<Vec<f64>>,
+    /// The one of the highest likelihood, to simulate with its histories.
+    pub(super) likeliest: Vec<f64>,
+}
+
+/// The draws that are simulated on every run: the most probable particle, then evenly spaced ones; beside, the likeliest.
+pub(super) fn final_draws(posterior: &Posterior) -> FinalDraws {
+    let particles = &posterior.particles;
+    let highest = |score: &dyn Fn(usize) -> f64| {
+        (0..particles.len()).reduce(|a, b| if score(b) > score(a) { b } else { a })
+    };
+    let log_likelihood = |i: usize| particles[i].log_likelihood.value();
+    let best = highest(&|i| log_likelihood(i) + particles[i].log_prior);
+    let likeliest = highest(&log_likelihood);
+    let spread = crate::spec::PREDICTION_DRAWS - 1;
+    let count = particles.len().min(spread);
+    let even = (0..count).map(|k| k * particles.len() / count);
+    let theta = |i: usize| particles[i].theta.clone();
+    FinalDraws {
+        thetas: best.into_iter().chain(even).map(theta).collect(),
+        likeliest: likeliest.map(theta).unwrap_or_default(),
+    }
+}
