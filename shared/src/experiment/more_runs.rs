@@ -140,8 +140,11 @@ mod tests {
             assert!(error.to_string().starts_with(message), "{error}");
         }
         let plates = FileSet {
-            toml: TOML.replace("runs = \"runs.csv\"\n", ""),
-            files: BTreeMap::new(),
+            toml: TOML.replace("runs = \"runs.csv\"", "plates = \"plates.csv\""),
+            files: BTreeMap::from([(
+                "plates.csv".into(),
+                "test,plate_radius_m,sinkage_m,pressure_pa\na,0.03,0.01,8000\n".into(),
+            )]),
         };
         let error = Experiment::with_runs("experiment.toml", &plates, MORE).unwrap_err();
         assert!(
