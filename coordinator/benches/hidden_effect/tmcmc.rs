@@ -7,16 +7,19 @@ use coordinator::discovery::Extension;
 use coordinator::discovery::candidate::extended;
 use coordinator::embedded::Evaluate;
 use shared::file::FileSet;
+use shared::outcome::Outcome;
 
 use crate::study::case::{Case, spec};
 use crate::study::design::Plan;
 use crate::study::each;
 use crate::study::kind::draw_clear;
 use crate::study::pipeline::Asking;
-use crate::study::rate::mean;
+use crate::study::rate::{mean, median};
 
 /// Fewer repeat worse than the factors are read to \[DISCOVERY 1\].
 const SAMPLER: &str = "[sampler]\nparticles = 1000\nmoves = [5, 10]\n";
+/// Differences that no verdict turns on \[nats\].
+const CLOSE: f64 = 1.0;
 /// The truths are others than those of the other kinds.
 const FIRST: u64 = 2_000_000;
 
@@ -33,7 +36,11 @@ pub(crate) fn run(count: u64, seed: u64) -> Result<(), String> {
     let differences: Vec<f64> = compared.iter().map(|c| c.search - c.sampler).collect();
     let [bias, error] = mean(&differences);
     let sd = error * (differences.len() as f64).sqrt();
-    println!("search less sampler: mean {bias:.2} ± {error:.2} nats, sd {sd:.2}, of {count}");
+    let close = differences.iter().filter(|d| d.abs() <= CLOSE).count();
+    println!(
+        "search less sampler: mean {bias:.2} ± {error:.2} nats, sd {sd:.2}, median {:.2}; {close} of {count} within {CLOSE}",
+        median(&differences)
+    );
     Ok(())
 }
 
@@ -54,50 +61,87 @@ fn one(seed: u64, number: u64) -> Result<Compared, String> {
         .candidate
         .map(|k| asking.models.task().library[k].name.clone());
     let name = name.ok_or("the best has no name")?;
-    let base = evidence(&case, &case.plan.job(), seed)?;
+    let base = Sampled::new(&case, &case.plan.job(), seed)?;
     let added = Extension::Effect(name.clone());
     let job = extended("job.toml", &case.plan.job(), &[&added]).map_err(|e| e.to_string())?;
+    let with = Sampled::new(&case, &job, seed)?;
     let compared = Compared {
         search: best.log_bayes_factor,
-        sampler: evidence(&case, &job, seed)? - base,
+        sampler: with.log_evidence - base.log_evidence,
     };
+    let own = answer.best.effects.as_slice() == best.candidate.as_slice();
+    let fitted = own.then(|| answer.best.draws.first()).flatten();
     println!(
-        "tmcmc {number} {} hidden, {name} best: search {:.2} ({:?}), sampler {:.2}",
-        case.hidden[0], compared.search, best.method, compared.sampler
+        "tmcmc {number} {} hidden, {name} best: search {:.2} ({:?}), sampler {:.2}; highest ln L of the base {:.1} and {:.1}, with it {:.1} and {:.1}",
+        case.hidden[0],
+        compared.search,
+        best.method,
+        compared.sampler,
+        log_likelihood(&case, &case.plan.job(), answer.base.draws.first())?,
+        base.highest,
+        log_likelihood(&case, &job, fitted)?,
+        with.highest
     );
     Ok(compared)
 }
 
-/// The log-evidence of a job by the sampler.
-fn evidence(case: &Case, job: &FileSet, seed: u64) -> Result<f64, String> {
-    let job = FileSet {
-        toml: format!("{}{SAMPLER}seed = {seed}\n", job.toml),
-        files: job.files.clone(),
+/// ln p(data | theta) where the search ended; NaN where it ended elsewhere.
+fn log_likelihood(case: &Case, job: &FileSet, theta: Option<&Vec<f64>>) -> Result<f64, String> {
+    let spec = spec(job, &case.experiment())?;
+    let Some(theta) = theta else {
+        return Ok(f64::NAN);
     };
-    let spec = spec(&job, &case.experiment())?;
-    let model = Evaluate::new(&spec.fit_variant)?;
-    let identity = Identity {
-        id: 0,
-        name: "hidden effect".into(),
-        study: 0,
-        experiment: 0,
+    let Outcome::Evaluated(seen) = Evaluate::new(&spec.fit_variant)?.evaluate(spec.model_theta(theta)) else {
+        return Ok(f64::NAN);
     };
-    let mut calibration = Calibration::new(identity, Arc::new(spec)).map_err(|e| e.to_string())?;
-    loop {
-        if let Some(Finding::Posterior(posterior)) = calibration.engine().finding() {
-            return Ok(posterior.log_evidence);
-        }
-        if let Some(message) = &calibration.message {
-            return Err(message.clone());
-        }
-        for evaluation in calibration.queue.asked() {
-            let Some(question) = calibration.question(evaluation) else {
-                break;
-            };
-            let outcome = result_of(model.evaluate(question.theta))?;
-            calibration
-                .complete(evaluation, outcome, "hidden effect")
-                .map_err(|e| e.to_string())?;
+    let scored = spec
+        .likelihood
+        .log_likelihood(&spec.predicted_values(&seen), theta);
+    scored.map(|s| s.value()).map_err(|e| e.to_string())
+}
+
+/// What the sampler says of a job.
+struct Sampled {
+    log_evidence: f64,
+    /// The highest ln p(data | theta) among the particles.
+    highest: f64,
+}
+
+impl Sampled {
+    fn new(case: &Case, job: &FileSet, seed: u64) -> Result<Self, String> {
+        let job = FileSet {
+            toml: format!("{}{SAMPLER}seed = {seed}\n", job.toml),
+            files: job.files.clone(),
+        };
+        let spec = spec(&job, &case.experiment())?;
+        let model = Evaluate::new(&spec.fit_variant)?;
+        let identity = Identity {
+            id: 0,
+            name: "hidden effect".into(),
+            study: 0,
+            experiment: 0,
+        };
+        let mut calibration = Calibration::new(identity, Arc::new(spec)).map_err(|e| e.to_string())?;
+        loop {
+            if let Some(Finding::Posterior(posterior)) = calibration.engine().finding() {
+                let particles = posterior.particles.iter().map(|p| p.log_likelihood.value());
+                return Ok(Self {
+                    log_evidence: posterior.log_evidence,
+                    highest: particles.fold(f64::NEG_INFINITY, f64::max),
+                });
+            }
+            if let Some(message) = &calibration.message {
+                return Err(message.clone());
+            }
+            for evaluation in calibration.queue.asked() {
+                let Some(question) = calibration.question(evaluation) else {
+                    break;
+                };
+                let outcome = result_of(model.evaluate(question.theta))?;
+                calibration
+                    .complete(evaluation, outcome, "hidden effect")
+                    .map_err(|e| e.to_string())?;
+            }
         }
     }
 }
