@@ -126,9 +126,7 @@ impl Folder {
     /// What a search found, and how it is added.
     fn found(&self, study: &Study, searched: Option<i64>) -> String {
         let meant = study.rounds.iter().find(|r| Some(r.calibration) == searched);
-        // Of a study that has grown, the search that said how; the story tells the others.
-        let telling = study.rounds.iter().find(|r| r.record.extension.is_some());
-        let Some(round) = meant.or(telling).or(study.rounds.last()) else {
+        let Some(round) = meant.or(study.rounds.last()) else {
             return String::new();
         };
         let place = format!("--out {}", self.out.display());

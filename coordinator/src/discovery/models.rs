@@ -7,7 +7,7 @@ use inference::discovery::inquiry::{Asked, Model, Pair, Proposed, Reduction, Tas
 use inference::discovery::{Candidate, Settings, Starts};
 use shared::channel::Channel;
 use shared::file::{FileError, FileSet};
-use shared::model::{Condition, ModelVariant};
+use shared::model::{Condition, ModelKind, ModelVariant};
 use shared::outcome::Observables;
 
 use super::candidate::{Explanation, extended, library};
@@ -17,6 +17,8 @@ use crate::spec::{FreeParameter, Spec, free_parameters, without_effects};
 
 const JOB: &str = "job.toml";
 const EXPERIMENT: &str = "experiment.toml";
+/// The three-dimensional model is rough on its grid: over shorter differences than this share of a prior's sd it shows no slope.
+const ROUGH: f64 = 0.15;
 /// Starts of the base's fit.
 const STARTS: usize = 32;
 
@@ -166,6 +168,10 @@ impl Models {
             settings: Settings {
                 starts: Starts::Even(STARTS),
                 seed: base.method.seed(),
+                least_difference: match base.model.kind {
+                    ModelKind::QuasiStatic => Settings::default().least_difference,
+                    ModelKind::Scm => ROUGH,
+                },
             },
         }
     }

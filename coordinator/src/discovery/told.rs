@@ -207,11 +207,12 @@ fn sentence(models: &Models, answer: &Answer, effects: &[JudgedEffect], outside:
     });
     match (answer.verdict, outside) {
         (inquiry::Verdict::NothingDetectable, _) => {
-            let best = best.map_or(String::new(), |best| {
+            let near = best.filter(|best| best.log_bayes_factor > 0.05);
+            let best = near.map_or(String::new(), |best| {
                 format!("; {} comes nearest with {:.1}", best.name, best.log_bayes_factor)
             });
             format!(
-                "nothing detectable with these data: no effect of the library beats {kind} as it is by more than 3 nats{best}"
+                "nothing detectable with these data: no effect of the library beats {kind} by more than 3 nats{best}"
             )
         }
         (inquiry::Verdict::Named(k), _) => {
@@ -221,7 +222,7 @@ fn sentence(models: &Models, answer: &Answer, effects: &[JudgedEffect], outside:
             let own = effects.iter().find(|e| e.name == name);
             let summary = formula::catalogue::find(name.split('.').next().unwrap_or_default());
             format!(
-                "{name} is missing: {} (probability {:.3}, {:.1} nats over {kind} as it is)",
+                "{name} is missing: {} (probability {:.3}, {:.1} nats over {kind})",
                 summary.map_or("", |effect| effect.summary.as_str()),
                 own.map_or(0.0, |e| e.probability),
                 own.map_or(0.0, |e| e.log_bayes_factor),
@@ -236,7 +237,7 @@ fn sentence(models: &Models, answer: &Answer, effects: &[JudgedEffect], outside:
             )
         }
         (inquiry::Verdict::Outside, Some(law)) => format!(
-            "not in the library: what is missing acts on {} and depends on {}, like a {} ({:.1} nats over {kind} as it is; levels that were left out are predicted better by {:.1} nats)",
+            "not in the library: what is missing acts on {} and depends on {}, like a {} ({:.1} nats over {kind}; levels that were left out are predicted better by {:.1} nats)",
             law.acts_on.replace('_', " "),
             law.depends_on.replace('_', " "),
             law.form,

@@ -35,7 +35,7 @@ pub(crate) fn shortfall(case: &Case, effects: &[&Extension]) -> Result<f64, Stri
     let start = start.collect();
     let settings = Settings {
         starts: Starts::Draws(vec![start]),
-        seed: 1,
+        ..Settings::default()
     };
     let prior: Vec<_> = spec.parameters.iter().map(|p| p.marginal.clone()).collect();
     let engine = Engine::new(&prior, spec.likelihood.clone(), Vec::new(), &settings);

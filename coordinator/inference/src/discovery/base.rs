@@ -62,7 +62,7 @@ mod tests {
     #[test]
     fn starts_fill_the_prior() {
         let uniform = |lower, upper| Marginal::new(Distribution::Uniform { lower, upper }, None).unwrap();
-        let frame = Frame::base(&[uniform(0.0, 1.0), uniform(0.0, 4.0)]);
+        let frame = Frame::base(&[uniform(0.0, 1.0), uniform(0.0, 4.0)], 0.03);
         let thetas: Vec<Vec<f64>> = starts(&frame, 32).iter().map(|t| frame.theta(t)).collect();
         for quarter in 0..4 {
             let low = f64::from(quarter);

@@ -6,6 +6,11 @@ use super::descent::{Descent, Step};
 /// How many extensions are confirmed.
 pub(super) const COUNT: usize = 4;
 
+/// Starts anywhere in the prior, where the best fit so far is wrong.
+pub(super) const ANYWHERE: usize = 16;
+/// Most starts of a model that are gone on from, the most probable.
+pub(super) const MOST_STARTS: usize = 6;
+
 /// As thorough as the base's fit.
 pub(super) const PLAN: [Step; 1] = [Step::Rounds { most: 3, trials: 12 }];
 

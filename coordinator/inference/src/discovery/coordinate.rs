@@ -29,6 +29,8 @@ pub(super) struct Coordinate {
 #[derive(Debug, Clone)]
 pub(super) struct Frame {
     pub(super) coordinates: Vec<Coordinate>,
+    /// The shortest difference that derivatives are taken over.
+    pub(super) least_difference: f64,
     /// Where the strengths of the last candidate stand, and their coordinates at which it is absent.
     pub(super) strengths: Vec<(usize, f64)>,
 }
@@ -75,9 +77,10 @@ impl Coordinate {
 }
 
 impl Frame {
-    pub(super) fn base(prior: &[Marginal]) -> Self {
+    pub(super) fn base(prior: &[Marginal], least_difference: f64) -> Self {
         Self {
             coordinates: prior.iter().map(Coordinate::whole).collect(),
+            least_difference,
             strengths: Vec::new(),
         }
     }
@@ -104,6 +107,7 @@ impl Frame {
         let strengths = candidate.strengths.iter().map(&mut neutral).collect();
         Self {
             coordinates,
+            least_difference: self.least_difference,
             strengths,
         }
     }
@@ -192,7 +196,7 @@ mod tests {
             strengths: vec![0],
             neutral: 0.0,
         };
-        let frame = Frame::base(&[]).with(&effect);
+        let frame = Frame::base(&[], 0.03).with(&effect);
         for t in [0.0, 0.1, 1.0, 2.5, 5.0] {
             let x = frame.theta(&[t])[0];
             assert!((x - 3.0 * t).abs() < 1e-6, "{x} at {t}");
@@ -210,7 +214,7 @@ mod tests {
             strengths: vec![0],
             neutral: 0.0,
         };
-        let frame = Frame::base(&[]).with(&effect);
+        let frame = Frame::base(&[], 0.03).with(&effect);
         let (_, neutral) = frame.strength().unwrap();
         assert!((neutral + 0.5).abs() < 1e-12 && !frame.is_one_sided());
     }

@@ -11,10 +11,9 @@ use crate::likelihood::Likelihood;
 use crate::lm::Quadratic;
 use crate::log_likelihood::LogLikelihood;
 
-/// Longest and shortest step of a difference, in standard deviations of the prior; between them it is as long as the coordinate is
+/// Longest step of a difference, in standard deviations of the prior; down to the shortest it is as long as the coordinate is
 /// uncertain by what is known so far. Long steps survive the noise of a model on a grid, short ones follow a sharp valley.
 const DIFFERENCE: f64 = 0.15;
-const SHORT_DIFFERENCE: f64 = 0.03;
 /// A step that gains, or promises, less than this ends the trials `[nats]`: far below what a Bayes factor is read to.
 const LEAST_GAIN: f64 = 0.01;
 /// The damping after the first step without gain, and how dampings follow each other.
@@ -142,7 +141,7 @@ impl Descent {
                     let uncertainty = self.parabola(likelihood).uncertainty();
                     let offset = |k: usize| {
                         let length = uncertainty[k].unwrap_or(DIFFERENCE);
-                        let length = length.clamp(SHORT_DIFFERENCE, DIFFERENCE);
+                        let length = length.clamp(self.frame.least_difference.min(DIFFERENCE), DIFFERENCE);
                         if upper[k] >= length { length } else { -length }
                     };
                     // Noise changes no prediction.

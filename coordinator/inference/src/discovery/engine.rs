@@ -80,7 +80,12 @@ impl Engine {
             return Err(CandidateError::NoBase);
         }
         candidates.iter().try_for_each(Candidate::check)?;
-        let mut engine = Self::unasked(Frame::base(prior), likelihood, candidates, settings.seed);
+        let mut engine = Self::unasked(
+            Frame::base(prior, settings.least_difference),
+            likelihood,
+            candidates,
+            settings.seed,
+        );
         let positions = match &settings.starts {
             Starts::Draws(draws) => draws
                 .iter()

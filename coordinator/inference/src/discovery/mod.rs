@@ -15,12 +15,15 @@
 //! - `candidate`: an effect and what is asked about it. `coordinate`: parameters as standard normal numbers.
 //! - `descent`: a fit of one model. `fleet`: several side by side.
 //! - `base`, `screen`, `extension`, `polish`, `confirm`, `importance`: one step each.
+//! - `depth`: how deep a search goes. `chi_square`: how well a fit does. `noise`: sds that are inferred.
+//! - `block`: the screen of a curve.
 //! - `evidence`: the integral over a parabola. `classes`: effects that the data cannot tell apart. `finding`: what is said in the end.
 //! - `settings`. `engine`: the state of a search; `rounds`: what each leads to; `verdict`: what is kept and what is said.
 
 mod base;
 mod block;
 mod candidate;
+mod chi_square;
 mod classes;
 mod confirm;
 mod coordinate;
@@ -41,6 +44,7 @@ mod settings;
 mod verdict;
 
 pub use candidate::{Candidate, CandidateError, Request};
+pub use chi_square::ChiSquare;
 pub use engine::Engine;
 pub use finding::{Finding, Judged, Method, Spent};
 pub use settings::{Settings, Starts};

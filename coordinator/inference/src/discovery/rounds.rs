@@ -1,5 +1,7 @@
 //! Go from round to round: what the results of one lead to.
 
+use std::collections::BTreeMap;
+
 use super::descent::{Descent, Point};
 use super::engine::{Engine, Judgement, Phase};
 use super::finding::Method;
@@ -162,10 +164,16 @@ impl Engine {
             return self.finish();
         }
         let Some((base, _)) = &self.base else { return };
+        // A base that is far off was driven to an end of its prior, and is no place to begin.
+        let is_wrong = self.leaves_misfit();
         let mut asked = Vec::new();
         for k in self.best(confirm::COUNT) {
             let starts = confirm::starts(&self.frames[k], base).into_iter();
             asked.extend(starts.map(|position| (Some(k), position)));
+            if is_wrong {
+                let anywhere = base::starts(&self.frames[k], confirm::ANYWHERE);
+                asked.extend(anywhere.into_iter().map(|position| (Some(k), position)));
+            }
             // Where an extension has found its way the base may find one, too: a factor compares their best.
             if let Some(fitted) = self.fit_of(k) {
                 let own = fitted.point.position[..self.base_frame.dimension()].to_vec();
@@ -182,11 +190,18 @@ impl Engine {
     fn after_confirm_starts(&mut self, answers: Vec<Option<Vec<f64>>>) {
         let Some((base, _)) = &self.base else { return };
         self.spent.confirm += answers.len();
-        let mut descents = Vec::new();
+        let mut points: BTreeMap<Option<usize>, Vec<Point>> = BTreeMap::new();
         for ((candidate, position), values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
             let frame = self.frame(candidate);
             let point = values.and_then(|v| Point::new(frame, &self.likelihood, position, v));
-            if let Some(point) = point {
+            points.entry(candidate).or_default().extend(point);
+        }
+        let mut descents = Vec::new();
+        for (candidate, mut points) in points {
+            points.sort_by(|a, b| a.value.total_cmp(&b.value));
+            points.truncate(confirm::MOST_STARTS);
+            let frame = self.frame(candidate);
+            for point in points {
                 let columns = vec![vec![0.0; base.point.values.len()]; frame.dimension()];
                 let descent = Descent::new(frame.clone(), point, columns, &confirm::PLAN);
                 descents.push((candidate, descent));

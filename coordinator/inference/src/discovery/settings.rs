@@ -16,14 +16,18 @@ pub struct Settings {
     pub starts: Starts,
     /// Seed of the draws.
     pub seed: u64,
+    /// The shortest difference that derivatives are taken over, in standard deviations of the prior: over shorter ones a model on a
+    /// grid shows its roughness.
+    pub least_difference: f64,
 }
 
 impl Default for Settings {
-    /// 32 starts that fill the prior, seed 1.
+    /// 32 starts that fill the prior, seed 1, differences for a smooth model.
     fn default() -> Self {
         Self {
             starts: Starts::Even(32),
             seed: 1,
+            least_difference: 0.03,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::chi_square::{ChiSquare, WRONG};
 use super::classes::classes;
 use super::descent::Descent;
 use super::engine::{Engine, Judgement, Phase};
@@ -55,6 +56,13 @@ impl Engine {
                 });
             }
         }
+    }
+
+    /// Whether the best fit so far leaves misfit that chance does not explain.
+    pub(super) fn leaves_misfit(&self) -> bool {
+        let best = self.best(1).into_iter().find_map(|k| self.fit_of(k));
+        let chi_square = best.and_then(|fit| ChiSquare::of(fit, &self.likelihood));
+        chi_square.is_some_and(|chi| chi.p() < WRONG)
     }
 
     /// Replaces the base's fit by a more probable one, and weighs all that was fitted against it.

@@ -28,11 +28,15 @@ pub fn story(study: &Study) -> String {
         "\n{:<40} {:>16} {:>20} {:>20} {:>10}",
         "error ledger", "ln evidence", "fit, sigma", "held out, sigma", "intervals"
     );
-    for line in study.calibrations() {
-        let effects = match line.effects.as_slice() {
+    let lines = study.ledger().filter_map(|o| Some((o, o.calibration_summary()?)));
+    for (outcome, line) in lines {
+        let mut effects = match line.effects.as_slice() {
             [] => "base".to_owned(),
             effects => format!("with {}", effects.join(", ")),
         };
+        if outcome.row.experiment != study.lead.row.experiment {
+            let _ = write!(effects, ", {} fitted runs", outcome.spec.fit_runs.len());
+        }
         let number = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.2}"));
         let sigma = |table: &Option<ErrorTable>| number(table.as_ref().and_then(|t| t.all.rmse_sigma));
         let _ = writeln!(

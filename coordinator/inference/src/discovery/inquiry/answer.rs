@@ -1,10 +1,10 @@
 //! What is said in the end.
 
-use super::chi_square::ChiSquare;
 use super::found::{Found, Law, Set};
 use super::next_run::{Explanation, NextRun, draws};
-use super::steps::{DETECTED, WRONG};
+use super::steps::DETECTED;
 use super::task::Task;
+use crate::discovery::chi_square::{ChiSquare, WRONG};
 use crate::discovery::descent::Descent;
 use crate::discovery::evidence::log_sum_exp;
 use crate::discovery::finding::Method;
@@ -249,7 +249,8 @@ fn verdict(weighed: &Weighed, found: &Found, misfit_p: Option<f64>, law: Option<
         .iter()
         .reduce(|a, b| if b.probability > a.probability { b } else { a });
     match best {
-        Some(best) if best.probability > NAMED => {
+        // What is most probably nothing is not said to be something.
+        Some(best) if best.probability > NAMED || best.candidate.is_none() => {
             best.candidate.map_or(Verdict::NothingDetectable, Verdict::Named)
         }
         Some(_) => {

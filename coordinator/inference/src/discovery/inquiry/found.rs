@@ -1,7 +1,7 @@
 //! Sets of effects and laws outside the library, as they are found.
 
-use super::chi_square::ChiSquare;
 use crate::discovery::candidate::Candidate;
+use crate::discovery::chi_square::ChiSquare;
 use crate::discovery::descent::Descent;
 use crate::discovery::finding::Finding;
 use crate::likelihood::Likelihood;

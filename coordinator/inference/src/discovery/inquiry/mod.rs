@@ -11,12 +11,11 @@
 //! # Layout
 //! - `task`: what is to be searched. `asked`: what the model is asked.
 //! - `search`: an engine that goes on from a set of effects. `left_out`: fits without some of the data.
-//! - `next_run`: the information of runs not made yet. `chi_square`: how well a fit does.
+//! - `next_run`: the information of runs not made yet.
 //! - `steps`: from one step to the next. `found`: sets and curves as they are found. `answer`: what is said in the end.
 
 mod answer;
 mod asked;
-mod chi_square;
 mod found;
 mod left_out;
 mod next_run;
@@ -26,9 +25,10 @@ mod task;
 
 pub use answer::{Answer, Fitted, Judgement, Outside, Verdict};
 pub use asked::{Asked, Model};
-pub use chi_square::ChiSquare;
 pub use next_run::NextRun;
 pub use task::{Pair, Proposed, Reduction, Task};
+
+pub use super::chi_square::ChiSquare;
 
 use super::candidate::CandidateError;
 use super::engine::Engine;

@@ -7,6 +7,7 @@ use super::found::{Law, Set};
 use super::left_out::LeftOut;
 use super::next_run::NextRuns;
 use super::search::Search;
+use crate::discovery::chi_square::WRONG;
 use crate::discovery::depth::{ALL_CURVES, CURVES, FORMS, QUICK};
 use crate::discovery::engine::Engine;
 use crate::discovery::evidence::log_sum_exp;
@@ -19,8 +20,6 @@ pub(super) const DETECTED: f64 = 3.0;
 const BEAM: usize = 3;
 /// A fit with less chance than this leaves room for a further effect, and for a law outside the library.
 const MISFIT: [f64; 2] = [0.5, 0.05];
-/// A fit with less chance than this is wrong \[DISCOVERY 2\].
-pub(super) const WRONG: f64 = 0.001;
 /// The simple forms of so many pairs are fitted.
 const PAIRS: usize = 3;
 /// A curve is kept where it beats the best simple form by more \[nats\].
@@ -114,7 +113,7 @@ impl Inquiry {
                 let prior: Vec<_> = kept.clone().map(|&i| self.task.prior[i].clone()).collect();
                 let settings = Settings {
                     starts: Starts::Draws(vec![kept.map(|&i| theta[i]).collect()]),
-                    seed: self.task.settings.seed,
+                    ..self.task.settings.clone()
                 };
                 let engine = Engine::new(&prior, self.task.likelihood.clone(), Vec::new(), &settings).ok()?;
                 Some(Search::without(k, engine))

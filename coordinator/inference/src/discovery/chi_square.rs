@@ -1,8 +1,11 @@
 //! How well a fit does.
 
+use super::descent::Descent;
 use crate::diagnostics::chi_square_tail;
-use crate::discovery::descent::Descent;
 use crate::likelihood::{Discrepancy, ErrorLaw, Likelihood, Sd, Size};
+
+/// A fit with less chance than this is wrong.
+pub(super) const WRONG: f64 = 0.001;
 
 /// Squared residuals in units of the noise, against the data less what the fit used up.
 #[derive(Debug, Clone, Copy, PartialEq)]
