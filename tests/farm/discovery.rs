@@ -2,8 +2,10 @@
 
 use farm_tests::job::{GAIN, Job};
 use farm_tests::programs::{coordinator, run};
+use farm_tests::random::Random;
 use farm_tests::service::Service;
 use farm_tests::text::same;
+use farm_tests::wait::until;
 use farm_tests::workspace::text;
 use serde_json::{Value, json};
 
@@ -259,5 +261,77 @@ fn a_folder_grows_and_its_run_knows_it_again() {
     assert!(
         report.contains("id=\"discovery\""),
         "the ledger stands in the report"
+    );
+}
+
+/// Runs whose soil yields only after some shear displacement, to be searched and extended by itself.
+fn hidden() -> Job {
+    let job = Job {
+        runs: include_str!("../data/shear-mobilisation/runs.csv").into(),
+        ..Job::small()
+    };
+    job.in_job("normal = [30.0, 5.7]", "normal = [30.0, 1.5]")
+        .in_job("[sampler]", "[discovery]\napply = \"auto\"\n[sampler]")
+        .sampler(120, [2, 6], 1)
+}
+
+/// The calibrations of the service that are in progress: id, name, evaluations.
+fn in_progress(service: &Service) -> Option<Vec<(i64, String, u64)>> {
+    let response = service.client.try_get("/v1/calibrations").ok()?;
+    let list = (response.status == 200).then(|| response.json())?;
+    let open = list.as_array()?.iter().filter_map(|status| {
+        let evaluations = status["progress"]["evaluations"].as_u64()?;
+        let name = status["name"].as_str()?.to_owned();
+        Some((status["id"].as_i64()?, name, evaluations))
+    });
+    Some(open.collect())
+}
+
+/// The summary once the study takes no further step.
+fn over(service: &Service) -> Value {
+    until("the end of the study", || {
+        let response = service.client.try_get("/v1/calibrations/1/summary").ok()?;
+        let finished = response.status == 200 && response.json()["status"] == "finished";
+        finished.then(|| summary(service, 1))
+    })
+}
+
+#[test]
+fn killing_coordinator_and_workers_while_a_study_is_searched_changes_nothing() {
+    let quiet = Service::start(&["--local-workers", "2"]);
+    quiet.submit(&hidden());
+    let expected = over(&quiet);
+    assert_eq!(expected["discovery"]["chosen"], json!(["janosi_hanamoto"]));
+    assert_eq!(expected["calibrations"].as_array().map(Vec::len), Some(2));
+    drop(quiet);
+    let mut service = Service::start(&["--lease-ms", "500"]);
+    service.submit(&hidden());
+    let mut worker = service.worker("worker", 2);
+    let mut random = Random::new(7);
+    let mut kills = 0;
+    for moment in [60, 250, 500, 800] {
+        let reached = until("the search", || {
+            let open = in_progress(&service)?;
+            let search = open.iter().find(|(_, name, _)| name.ends_with("(discovery)"));
+            // The first search, or what comes after it.
+            match search {
+                Some((_, _, evaluations)) if *evaluations >= moment => Some(true),
+                None if open.iter().any(|(_, name, _)| name.contains('+')) => Some(false),
+                _ => None,
+            }
+        });
+        kills += u32::from(reached);
+        if random.below(2) == 0 {
+            worker.kill();
+            worker = service.worker("worker", 2);
+        }
+        service.kill();
+        service.restart();
+    }
+    assert!(kills >= 2, "{kills} kills fell within a search");
+    let found = over(&service);
+    same(
+        &serde_json::to_string_pretty(&found).expect("JSON"),
+        &serde_json::to_string_pretty(&expected).expect("JSON"),
     );
 }

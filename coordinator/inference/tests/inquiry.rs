@@ -66,10 +66,12 @@ fn pairs() -> Vec<Pair> {
         Pair {
             curve: curve("x"),
             forms: vec![candidate("x step", vec![normal(1.0), threshold], vec![0])],
+            is_description: false,
         },
         Pair {
             curve: curve("w"),
             forms: vec![candidate("w line", vec![normal(1.0)], vec![0])],
+            is_description: false,
         },
     ]
 }

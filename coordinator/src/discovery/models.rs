@@ -151,6 +151,7 @@ impl Models {
         let law = |law: &Law| Pair {
             curve: law.curve.candidate.clone(),
             forms: law.forms.iter().map(|(_, form)| form.candidate.clone()).collect(),
+            is_description: law.pair.acts_on.channel().is_some(),
         };
         Task {
             prior: base.parameters.iter().map(|p| p.marginal.clone()).collect(),

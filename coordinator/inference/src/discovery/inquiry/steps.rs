@@ -299,8 +299,10 @@ impl Inquiry {
                 (law.candidate, law.log_bayes_factor, law.fit) = (candidate, factor, fit.clone());
             }
         }
+        let handicap = |law: &Law| f64::from(u8::from(self.task.pairs[law.pair].is_description)) * DETECTED;
+        let score = |law: &Law| law.log_bayes_factor - handicap(law);
         if let Some(laws) = &mut self.found.laws {
-            laws.sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
+            laws.sort_by(|a, b| score(b).total_cmp(&score(a)));
         }
         self.leave_out(0)
     }

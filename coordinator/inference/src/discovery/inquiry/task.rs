@@ -35,6 +35,8 @@ pub struct Pair {
     pub curve: Candidate,
     /// The same by simple forms.
     pub forms: Vec<Candidate>,
+    /// Whether it changes what is measured and not what brings it about: a description, and no explanation where there is one.
+    pub is_description: bool,
 }
 
 /// The model without one of its effects.
