@@ -247,7 +247,7 @@ fn a_folder_grows_and_its_run_knows_it_again() {
         printed.contains("model quasi_static with torque_gain"),
         "{printed}"
     );
-    let enlarged = go(&["add-runs", "1", &runs.display().to_string()]).success();
+    let enlarged = go(&["add-runs", "2", &runs.display().to_string()]).success();
     assert!(enlarged.contains("(42 runs)"), "{enlarged}");
     assert_eq!(
         go(&["run", &path]).success(),
@@ -301,7 +301,8 @@ fn killing_coordinator_and_workers_while_a_study_is_searched_changes_nothing() {
     let quiet = Service::start(&["--local-workers", "2"]);
     quiet.submit(&hidden());
     let expected = over(&quiet);
-    assert_eq!(expected["discovery"]["chosen"], json!(["janosi_hanamoto"]));
+    let chosen = &expected["discovery"]["chosen"];
+    assert_eq!(chosen, &json!(["janosi_hanamoto"]), "{expected:#}");
     assert_eq!(expected["calibrations"].as_array().map(Vec::len), Some(2));
     drop(quiet);
     let mut service = Service::start(&["--lease-ms", "500"]);

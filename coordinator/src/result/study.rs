@@ -10,7 +10,7 @@ use super::summary::{CalibrationSummary, Summary};
 use crate::service::ServiceError;
 use crate::spec::{discovery_job, is_discovery};
 use crate::store::{CalibrationRow, Reader};
-use crate::study::next_step_of;
+use crate::study::next_step_from;
 
 /// The best of a thousand draws lies some nats below the mode, and more in many dimensions; this is beyond chance.
 const MISSED_NATS: f64 = 15.0;
@@ -60,7 +60,7 @@ impl Study {
         let state = match unfinished {
             Some(row) => row.state,
             // What is decided but not yet begun is work to come.
-            None if next_step_of(reader, row.study).await?.is_some() => CalibrationState::Running,
+            None if next_step_from(reader, &rows).await?.is_some() => CalibrationState::Running,
             None => CalibrationState::Finished,
         };
         Ok(Study {

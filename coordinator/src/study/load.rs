@@ -16,7 +16,14 @@ use crate::store::{CalibrationRow, Reader};
 /// # Errors
 /// [`ServiceError`] where a member cannot be read.
 pub async fn next_step_of(reader: &Reader, study: i64) -> Result<Option<Step>, ServiceError> {
-    let rows = reader.study(study).await?;
+    next_step_from(reader, &reader.study(study).await?).await
+}
+
+/// The same from members that were read: a member that joins meanwhile is no part of the answer.
+///
+/// # Errors
+/// As those of [`next_step_of`].
+pub async fn next_step_from(reader: &Reader, rows: &[CalibrationRow]) -> Result<Option<Step>, ServiceError> {
     let Some(lead) = rows.first() else { return Ok(None) };
     let settings = Job::parse("job.toml", &lead.job.toml)?.discovery;
     // Most studies grow by their users alone, and reading every member's files is work.
@@ -24,11 +31,11 @@ pub async fn next_step_of(reader: &Reader, study: i64) -> Result<Option<Step>, S
         return Ok(None);
     }
     let mut members = Vec::new();
-    for row in &rows {
+    for row in rows {
         members.push(Member {
             id: row.id,
             state: row.state,
-            part: part(reader, row, &rows).await?,
+            part: part(reader, row, rows).await?,
         });
     }
     Ok(next_step(settings, &members))

@@ -1,7 +1,7 @@
 //! How deep a search goes.
 
 use super::descent::Step;
-use super::extension;
+use super::{extension, polish};
 
 /// How deep a search goes.
 #[derive(Debug)]
@@ -15,6 +15,9 @@ pub(super) struct Depth {
     /// Whether shapes stay where the screen has them at first: between two levels of a design a threshold changes nothing, so a
     /// difference of shapes leads nowhere.
     pub(super) holds_shapes: bool,
+    /// How many of the best are polished, and how.
+    pub(super) polished: usize,
+    pub(super) polish: &'static [Step],
     /// Whether the best are confirmed from several starts, and by draws.
     pub(super) confirms: bool,
 }
@@ -25,12 +28,17 @@ pub(super) const WHOLE: Depth = Depth {
     shapes: &[0.0, -1.0, 1.0],
     plan: &extension::PLAN,
     holds_shapes: false,
+    polished: 3,
+    polish: &polish::PLAN,
     confirms: true,
 };
 
 /// The most promising, fitted and polished.
 pub(super) const QUICK: Depth = Depth {
-    most_extended: 6,
+    most_extended: 8,
+    // Nothing is confirmed, so that what is kept must have come to its end.
+    polished: 5,
+    polish: &polish::TWICE,
     confirms: false,
     ..WHOLE
 };
@@ -54,4 +62,5 @@ pub(super) const FORMS: Depth = Depth {
     plan: &extension::HELD,
     holds_shapes: true,
     confirms: false,
+    ..WHOLE
 };

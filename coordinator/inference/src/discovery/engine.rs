@@ -115,6 +115,13 @@ impl Engine {
         engine
     }
 
+    /// A fit of one model from one start; there is nothing to search for.
+    pub(super) fn refit(frame: Frame, start: Vec<f64>, likelihood: Likelihood, seed: u64) -> Self {
+        let mut engine = Self::unasked(frame, likelihood, Vec::new(), seed);
+        engine.ask(vec![(None, start)]);
+        engine
+    }
+
     fn unasked(base_frame: Frame, likelihood: Likelihood, candidates: Vec<Candidate>, seed: u64) -> Self {
         let count = candidates.len();
         Self {

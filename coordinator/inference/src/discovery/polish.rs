@@ -2,18 +2,18 @@
 
 use super::descent::{Descent, Step};
 
-/// How many extensions are polished.
-pub(super) const COUNT: usize = 3;
-
 /// A fresh Jacobian, and what steps it shows; the evidence is read from the last.
-const PLAN: [Step; 2] = [Step::Differences, Step::Trials(6)];
+pub(super) const PLAN: [Step; 2] = [Step::Differences, Step::Trials(6)];
+
+/// The same again, as long as steps gain.
+pub(super) const TWICE: [Step; 1] = [Step::Rounds { most: 3, trials: 8 }];
 
 /// The same fit, gone on with.
-pub(super) fn descent(fitted: &Descent) -> Descent {
+pub(super) fn descent(fitted: &Descent, plan: &[Step]) -> Descent {
     Descent::new(
         fitted.frame.clone(),
         fitted.point.clone(),
         fitted.columns.clone(),
-        &PLAN,
+        plan,
     )
 }

@@ -146,9 +146,9 @@ impl Engine {
         };
         self.spent.extension += fleet.evaluations();
         self.take(fleet, Method::RankOne);
-        let descents = self.best(polish::COUNT).into_iter().filter_map(|k| {
+        let descents = self.best(self.depth.polished).into_iter().filter_map(|k| {
             let fitted = self.judgements[k].as_ref()?.fitted.as_ref()?;
-            Some((Some(k), polish::descent(fitted)))
+            Some((Some(k), polish::descent(fitted, self.depth.polish)))
         });
         let fleet = Fleet::new(descents.collect());
         self.polish(fleet);

@@ -8,6 +8,7 @@ use super::left_out::LeftOut;
 use super::next_run::NextRuns;
 use super::search::Search;
 use crate::discovery::chi_square::WRONG;
+use crate::discovery::coordinate::Frame;
 use crate::discovery::depth::{ALL_CURVES, CURVES, FORMS, QUICK};
 use crate::discovery::engine::Engine;
 use crate::discovery::evidence::log_sum_exp;
@@ -31,6 +32,8 @@ pub(super) enum Step {
     Reductions(Vec<Search>),
     /// Beyond sets of so many effects.
     Beyond(usize, Vec<Search>),
+    /// The best set without each of its effects.
+    Without(Vec<Search>),
     Curves(Search),
     Forms(Search),
     /// Of the law of that place.
@@ -45,7 +48,7 @@ impl Inquiry {
     pub(super) fn wanted(&mut self) -> Vec<Asked> {
         match &mut self.step {
             Step::Singles(search) | Step::Curves(search) | Step::Forms(search) => search.wanted(),
-            Step::Reductions(searches) | Step::Beyond(_, searches) => {
+            Step::Reductions(searches) | Step::Beyond(_, searches) | Step::Without(searches) => {
                 searches.iter().flat_map(Search::wanted).collect()
             }
             Step::LeftOut(_, left_out) => left_out.wanted(),
@@ -58,7 +61,7 @@ impl Inquiry {
     pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
         match &mut self.step {
             Step::Singles(search) | Step::Curves(search) | Step::Forms(search) => search.take(answers),
-            Step::Reductions(searches) | Step::Beyond(_, searches) => {
+            Step::Reductions(searches) | Step::Beyond(_, searches) | Step::Without(searches) => {
                 let mut answers = answers.into_iter();
                 for search in searches {
                     let count = search.wanted().len();
@@ -78,6 +81,7 @@ impl Inquiry {
             Step::Singles(search) => self.after_singles(&search),
             Step::Reductions(searches) => self.after_reductions(&searches),
             Step::Beyond(size, searches) => self.after_beyond(size, &searches),
+            Step::Without(searches) => self.after_without(&searches),
             Step::Curves(search) => self.after_curves(&search),
             Step::Forms(search) => self.after_forms(&search),
             Step::LeftOut(law, left_out) => self.after_left_out(law, &left_out),
@@ -147,7 +151,7 @@ impl Inquiry {
             .best_chi_square(&self.task.likelihood, DETECTED)
             .is_none_or(|chi| chi.p() < MISFIT[0]);
         if size >= self.task.max_effects || best.is_empty() || !leaves_room {
-            return self.curves();
+            return self.without();
         }
         let evidence = self.found.base.as_ref().map_or(0.0, |(_, evidence)| *evidence);
         let searches = best.into_iter().map(|set| {
@@ -178,8 +182,50 @@ impl Inquiry {
         if grown {
             self.beyond(size + 1)
         } else {
-            self.curves()
+            self.without()
         }
+    }
+
+    /// Fits the best set again without each of its effects, from where it stands: the way up may have gone over one that the others
+    /// do not need.
+    fn without(&mut self) -> Step {
+        let Some(best) = self.found.best_set().filter(|set| set.effects.len() > 1) else {
+            return self.curves();
+        };
+        let searches = best.effects.iter().map(|&dropped| {
+            let mut frame = Frame::base(&self.task.prior, self.task.settings.least_difference);
+            let (own, mut rest) = best.fit.point.position.split_at(self.task.prior.len());
+            let mut start = own.to_vec();
+            let mut effects = Vec::new();
+            for &k in &best.effects {
+                let candidate = &self.found.candidates[k];
+                let (its, others) = rest.split_at(candidate.parameters.len());
+                rest = others;
+                if k != dropped {
+                    frame = frame.with(candidate);
+                    start.extend_from_slice(its);
+                    effects.push(k);
+                }
+            }
+            let seed = self.task.settings.seed;
+            let engine = Engine::refit(frame, start, self.task.likelihood.clone(), seed);
+            Search::new(effects, Vec::new(), engine)
+        });
+        Step::Without(searches.collect())
+    }
+
+    fn after_without(&mut self, searches: &[Search]) -> Step {
+        let base = self.found.base.as_ref().map_or(0.0, |(_, evidence)| *evidence);
+        for search in searches {
+            if let Some((fit, evidence)) = search.engine.base_fit() {
+                self.found.add(Set {
+                    effects: search.set.clone(),
+                    log_bayes_factor: evidence - base,
+                    fit: fit.clone(),
+                });
+            }
+        }
+        self.curves()
     }
 
     /// Keeps what a search found: every effect of the first, of the others those that are worth their choice.
