@@ -1,5 +1,7 @@
 //! Tests without a rolling wheel, and which effects they decide about (PHYSICS 4.4).
 
+use std::collections::BTreeSet;
+
 use super::Verdict;
 
 /// A test, and the effects that it sees apart from others.
@@ -47,6 +49,16 @@ const TESTS: [Test; 6] = [
     },
 ];
 
+/// The line of a job that says what a test has measured of an effect's strength.
+fn prior_line(effect: &str) -> Option<String> {
+    let effect = formula::catalogue::find(effect)?;
+    let strength = effect.parameters.iter().find(|p| p.neutral.is_some())?;
+    Some(format!(
+        "\"{}.{}\" = {{ normal = [VALUE, SD] }}",
+        effect.name, strength.name
+    ))
+}
+
 /// The tests that decide between the explanations that are still open; none where one is named.
 pub(super) fn deciding(open: &[&str], verdict: Verdict) -> Vec<String> {
     if matches!(verdict, Verdict::Named | Verdict::NothingDetectable) {
@@ -54,15 +66,19 @@ pub(super) fn deciding(open: &[&str], verdict: Verdict) -> Vec<String> {
     }
     let effect = |name: &&str| name.split('.').next().unwrap_or_default().to_owned();
     let open: Vec<String> = open.iter().map(effect).collect();
-    let decided = |test: &&Test| {
+    let told = |test: &Test| {
         let own = open.iter().filter(|name| test.decides.contains(&name.as_str()));
-        own.count() > 0
+        let lines: BTreeSet<String> = own.filter_map(|name| prior_line(name)).collect();
+        let lines: Vec<String> = lines.into_iter().collect();
+        (!lines.is_empty()).then(|| {
+            format!(
+                "{}. Its result goes under [priors]: {}",
+                test.what,
+                lines.join(", ")
+            )
+        })
     };
-    TESTS
-        .iter()
-        .filter(decided)
-        .map(|test| test.what.to_owned())
-        .collect()
+    TESTS.iter().filter_map(told).collect()
 }
 
 #[cfg(test)]
@@ -82,6 +98,10 @@ mod tests {
         let tests = deciding(&open, Verdict::Undecided);
         assert_eq!(tests.len(), 1);
         assert!(tests[0].starts_with("tare run"), "{tests:?}");
+        assert!(
+            tests[0].contains("\"sled_tare.tare_n\" = { normal = [VALUE, SD] }"),
+            "{tests:?}"
+        );
         assert!(deciding(&open, Verdict::Named).is_empty());
         assert!(deciding(&["slip_sinkage"], Verdict::Class).is_empty());
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use maud::{Markup, html};
 
-use crate::discovery::{Discovery, Outside};
+use crate::discovery::{Discovery, JudgedEffect, Outside};
 use crate::result::discovery::arguments;
 use crate::result::report::chart;
 use crate::result::report::number;
@@ -114,7 +114,21 @@ fn search(study: &Study, round: &Round) -> Markup {
     }
 }
 
+/// Explanations that are shown at once.
+const SHOWN: usize = 10;
+
 fn explanations(record: &Discovery) -> Markup {
+    let (shown, others) = record.effects.split_at(SHOWN.min(record.effects.len()));
+    html! {
+        (table(shown))
+        p.note { "The data cannot tell explanations of one class apart. Bayes factors are against the model that was searched." }
+        @if !others.is_empty() {
+            details { summary { (number::count(others.len(), "less probable explanation")) } (table(others)) }
+        }
+    }
+}
+
+fn table(effects: &[JudgedEffect]) -> Markup {
     html! {
         div.scroll { table {
             thead { tr {
@@ -122,7 +136,7 @@ fn explanations(record: &Discovery) -> Markup {
                 th.text { "95 % set" } th.text { "prior of its strength" }
             } }
             tbody {
-                @for effect in &record.effects {
+                @for effect in effects {
                     tr {
                         td.text { (effect.name) }
                         td { (number::fixed(effect.log_bayes_factor, 2)) }
@@ -134,7 +148,6 @@ fn explanations(record: &Discovery) -> Markup {
                 }
             }
         } }
-        p.note { "The data cannot tell explanations of one class apart. Bayes factors are against the model as it is." }
     }
 }
 
