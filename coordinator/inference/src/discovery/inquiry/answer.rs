@@ -7,7 +7,7 @@ use super::task::Task;
 use crate::discovery::chi_square::{ChiSquare, WRONG};
 use crate::discovery::descent::Descent;
 use crate::discovery::evidence::log_sum_exp;
-use crate::discovery::finding::Method;
+use crate::discovery::finding::{Judged, Method};
 
 /// Prior probability that nothing is missing.
 const PRIOR_OF_NONE: f64 = 0.5;
@@ -127,11 +127,25 @@ struct Weighed {
     not_in_library: Option<(f64, f64)>,
 }
 
+/// What was found of one effect, by the better fit where the way back from a set has led to one.
+fn refitted(judged: &Judged, found: &Found) -> Judged {
+    let alone = |k: usize| found.sets.iter().find(|set| set.effects == [k]);
+    let better = judged.candidate.and_then(alone);
+    match better.filter(|set| set.log_bayes_factor > judged.log_bayes_factor) {
+        Some(set) => Judged {
+            log_bayes_factor: set.log_bayes_factor,
+            theta: set.fit.frame.theta(&set.fit.point.position),
+            ..judged.clone()
+        },
+        None => judged.clone(),
+    }
+}
+
 /// Log prior odds of each explanation: 1/2 for nothing missing, the rest equal over classes and what is not in the library, and
 /// within a class over its members. A set has the prior of its leader times, for each further effect, that of one among all.
 fn weigh(task: &Task, found: &Found) -> Weighed {
-    let singles = found.singles.as_ref();
-    let judged = singles.map_or(&[][..], |finding| &finding.judged);
+    let singles = found.singles.iter().flat_map(|finding| &finding.judged);
+    let judged: Vec<Judged> = singles.map(|judged| refitted(judged, found)).collect();
     let classes = judged.iter().map(|j| j.class).max().unwrap_or(0);
     let outside = usize::from(found.laws.is_some());
     let each = (1.0 - PRIOR_OF_NONE) / (classes + outside).max(1) as f64;
