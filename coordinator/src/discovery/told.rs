@@ -208,12 +208,18 @@ fn sentence(models: &Models, answer: &Answer, effects: &[JudgedEffect], outside:
     match (answer.verdict, outside) {
         (inquiry::Verdict::NothingDetectable, _) => {
             let near = best.filter(|best| best.log_bayes_factor > 0.05);
-            let best = near.map_or(String::new(), |best| {
+            let nearest = near.map_or(String::new(), |best| {
                 format!("; {} comes nearest with {:.1}", best.name, best.log_bayes_factor)
             });
-            format!(
-                "nothing detectable with these data: no effect of the library beats {kind} by more than 3 nats{best}"
-            )
+            let is_beaten = best.is_some_and(|best| best.log_bayes_factor > 3.0);
+            let reason = match effects.iter().find(|e| e.name == NONE).filter(|_| is_beaten) {
+                Some(none) => format!(
+                    "that {kind} misses nothing is the most probable explanation ({:.2})",
+                    none.probability
+                ),
+                None => format!("no effect of the library beats {kind} by more than 3 nats"),
+            };
+            format!("nothing detectable with these data: {reason}{nearest}")
         }
         (inquiry::Verdict::Named(k), _) => {
             let name = models
