@@ -3,10 +3,10 @@
 use std::future::Future;
 use std::sync::Arc;
 
-use inference::{Subchain, SubchainEnd};
 use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
 use shared::model::ModelVariant;
 use shared::outcome::Outcome;
+use statistics::{Subchain, SubchainEnd};
 use tokio::sync::watch;
 use worker::evaluator::SimulationClock;
 use worker::pull::{Coordinator, ExchangeError, Settings, run};

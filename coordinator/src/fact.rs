@@ -1,12 +1,13 @@
 //! What the store is told: facts, in the order in which they came about.
 
 use inference::point::Estimate;
-use inference::{Posterior, StageRecord, SubchainEnd};
+use inference::{Posterior, StageRecord};
 use shared::api::CalibrationState;
 use shared::outcome::Observables;
+use statistics::SubchainEnd;
 
 use crate::calibration::Computed;
-use crate::discovery::Discovery;
+use crate::missing_effect::Discovery;
 
 /// Something that must survive a restart.
 #[derive(Debug, Clone)]

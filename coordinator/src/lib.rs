@@ -1,7 +1,7 @@
 //! The coordinator: runs calibrations on a farm of workers and keeps what comes out.
 //!
 //! # Layout
-//! - [`spec`]: a job and its experiment, validated: priors, data, model variants.
+//! - [`job`]: a job and its experiment, validated: priors, data, model variants.
 //! - [`calibration`]: a calibration in progress: the one place where sampler, likelihood and leases meet. Pure.
 //! - [`lease`]: the rules of leasing. Pure.
 //! - [`farm`]: all calibrations and workers at hand; [`farm::dispatch`] gives it a thread.
@@ -10,7 +10,7 @@
 //! - [`study`]: how a study grows: its next step from where it stands.
 //! - [`service`]: store and farm together: submit, recover, control, grow.
 //! - [`http`]: the REST interface; the only place that knows axum.
-//! - [`discovery`]: the search for a missing effect: candidates, and what is said in the end.
+//! - [`missing_effect`]: the search for a missing effect: candidates, and what is said in the end.
 //! - [`effect`]: the effects as users meet them: cards and signatures.
 //! - [`embedded`]: local workers in this process; the only place that knows the worker.
 //! - [`result`]: tables, summary, flags and report of a calibration, from what the store kept.
@@ -20,15 +20,15 @@
 pub mod calibration;
 pub mod command;
 pub mod config;
-pub mod discovery;
 pub mod effect;
 pub mod embedded;
 pub mod fact;
 pub mod farm;
 pub mod http;
+pub mod job;
 pub mod lease;
+pub mod missing_effect;
 pub mod result;
 pub mod service;
-pub mod spec;
 pub mod store;
 pub mod study;

@@ -4,7 +4,7 @@
 #[path = "../benches/hidden_effect/study/mod.rs"]
 mod study;
 
-use inference::discovery::inquiry::Verdict;
+use discovery::inquiry::Verdict;
 
 use study::clear::CLEAR;
 use study::each;

@@ -1,7 +1,7 @@
 //! The messages between worker and coordinator: one long-polled exchange, and the fetch of a variant.
 
-use inference::{Subchain, SubchainEnd};
 use serde::{Deserialize, Serialize};
+use statistics::{Subchain, SubchainEnd};
 use utoipa::ToSchema;
 
 use crate::outcome::Outcome;

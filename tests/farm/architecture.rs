@@ -5,22 +5,26 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 8] = [
+const CRATES: [&str; 10] = [
     "shared",
     "shared/formula",
     "shared/signal",
+    "shared/statistics",
     "coordinator",
     "coordinator/inference",
+    "coordinator/discovery",
     "worker",
     "worker/scm",
     "tests",
 ];
-const OURS: [&str; 8] = [
+const OURS: [&str; 10] = [
     "shared",
     "formula",
     "signal",
+    "statistics",
     "coordinator",
     "inference",
+    "discovery",
     "worker",
     "scm",
     "farm-tests",
@@ -127,16 +131,26 @@ fn manifests_keep_the_direction_of_dependencies() {
     };
     assert_eq!(ours("shared/formula"), set(&[]));
     assert_eq!(ours("shared/signal"), set(&[]));
-    assert_eq!(ours("shared"), set(&["formula", "inference", "signal"]));
+    assert_eq!(ours("shared/statistics"), set(&[]));
+    assert_eq!(ours("shared"), set(&["formula", "signal", "statistics"]));
     assert_eq!(ours("worker/scm"), set(&["formula", "signal"]));
-    assert_eq!(ours("coordinator/inference"), set(&[]));
+    assert_eq!(ours("coordinator/inference"), set(&["statistics"]));
+    assert_eq!(ours("coordinator/discovery"), set(&["inference", "statistics"]));
     assert_eq!(
         ours("worker"),
-        set(&["formula", "inference", "scm", "shared", "signal"])
+        set(&["formula", "scm", "shared", "signal", "statistics"])
     );
     assert_eq!(
         ours("coordinator"),
-        set(&["formula", "inference", "shared", "signal", "worker"])
+        set(&[
+            "discovery",
+            "formula",
+            "inference",
+            "shared",
+            "signal",
+            "statistics",
+            "worker"
+        ])
     );
     for krate in CRATES {
         assert!(!ours(krate).contains("farm-tests"), "{krate} imports the tests");
@@ -160,8 +174,10 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         "shared",
         "shared/formula",
         "shared/signal",
+        "shared/statistics",
         "worker/scm",
         "coordinator/inference",
+        "coordinator/discovery",
     ] {
         let dependencies = dependencies(krate);
         let found: Vec<&str> = impure.into_iter().filter(|d| dependencies.contains(*d)).collect();
@@ -175,9 +191,13 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         );
     }
     nowhere(
-        &["coordinator/inference/src"],
+        &[
+            "shared/statistics/src",
+            "coordinator/inference/src",
+            "coordinator/discovery/src",
+        ],
         &["rand::", "rand_chacha::"],
-        &["coordinator/inference/src/rng.rs"],
+        &["shared/statistics/src/rng.rs"],
     );
     nowhere(
         &["worker/scm/src", "shared/formula/src", "shared/signal/src"],
@@ -198,12 +218,12 @@ fn the_coordinator_knows_no_physics_and_the_worker_in_one_file() {
     // A worker takes the moves of a metamodel; nothing else that is statistical is its business.
     nowhere(
         &["worker/src"],
-        &["inference::"],
+        &["statistics::"],
         &["worker/src/model/companion.rs"],
     );
     nowhere(
         &["shared/src"],
-        &["inference::"],
+        &["statistics::"],
         &["shared/src/model/metamodel.rs", "shared/src/exchange.rs"],
     );
 }
@@ -264,7 +284,9 @@ fn pure_rooms_read_no_clock() {
     let pure = [
         "worker/scm/src",
         "coordinator/inference/src",
+        "coordinator/discovery/src",
         "shared/src",
+        "shared/statistics/src",
         "coordinator/src/calibration",
         "coordinator/src/spec",
         "coordinator/src/result",

@@ -3,7 +3,6 @@
 use farm_tests::fake_worker::{FakeWorker, evaluated};
 use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::service::Service;
-use inference::{Subchain, SubchainEnd};
 use serde_json::{Value, json};
 use shared::api::{
     CalibrationState, CalibrationStatus, ErrorBody, ErrorDetail, ErrorKind, NewCalibration, Progress,
@@ -14,6 +13,7 @@ use shared::model::{
     Condition, EffectText, ModelKind, ModelVariant, PlateCondition, RingCondition, SpatialSettings,
 };
 use shared::outcome::{Fault, Observables, Outcome, Rejection, SimulatedHistory};
+use statistics::{Subchain, SubchainEnd};
 
 /// A message has one form: it is written so, and read back to the same.
 #[track_caller]

@@ -1,8 +1,8 @@
 //! Whether the runs that are proposed tell apart what the first could not.
 
-use coordinator::discovery::Models;
-use inference::discovery::inquiry::{Answer, Asked, Model, Verdict};
-use inference::rng::Stream;
+use coordinator::missing_effect::Models;
+use discovery::inquiry::{Answer, Asked, Model, Verdict};
+use statistics::rng::Stream;
 
 use crate::study::case::{Case, run as run_truth};
 use crate::study::design::{CHANNELS, Plan, Row};

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use coordinator::calibration::{Calibration, Finding, Identity, result_of};
-use coordinator::discovery::Extension;
-use coordinator::discovery::candidate::extended;
 use coordinator::embedded::Evaluate;
+use coordinator::missing_effect::Extension;
+use coordinator::missing_effect::candidate::extended;
 use shared::file::FileSet;
 use shared::outcome::Outcome;
 

@@ -16,13 +16,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use coordinator::calibration::{Calibration, Finding, Identity, result_of};
 use coordinator::embedded::Evaluate;
-use coordinator::spec::Spec;
+use coordinator::job::Spec;
 use inference::diagnostics::chi_square_tail;
 use inference::diagnostics::quantile;
-use inference::rng::Stream;
 use shared::channel::Channel;
 use shared::file::FileSet;
 use shared::outcome::Outcome;
+use statistics::rng::Stream;
 
 /// Draws of a posterior that the truth is ranked among: evenly spaced, because particles beside one another may be copies.
 pub(crate) const RANKED: usize = 19;

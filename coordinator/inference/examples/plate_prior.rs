@@ -11,7 +11,8 @@
 use std::collections::BTreeMap;
 
 use inference::diagnostics::summary;
-use inference::{Distribution, LogLikelihood, Marginal, Prior, Progress, Sampler, Settings};
+use inference::{Progress, Sampler, Settings};
+use statistics::{Distribution, LogLikelihood, Marginal, Prior};
 
 /// Depth and radius at which `p_ref` and `kappa` are defined [m].
 const Z_REF: f64 = 0.010;

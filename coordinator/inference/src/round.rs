@@ -1,7 +1,7 @@
 //! Hold a round: proposals that can be evaluated at the same time, and their results in any order.
 
-use crate::likelihood::LikelihoodError;
-use crate::tmcmc::Subchain;
+use statistics::Subchain;
+use statistics::likelihood::LikelihoodError;
 
 /// A parameter vector that awaits its evaluation.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +16,8 @@ pub struct Proposal {
 
 impl Proposal {
     /// A proposal to be evaluated where it is.
-    pub(crate) fn plain(particle: usize, theta: Vec<f64>) -> Self {
+    #[must_use]
+    pub fn plain(particle: usize, theta: Vec<f64>) -> Self {
         Self {
             particle,
             theta,
@@ -27,7 +28,7 @@ impl Proposal {
 
 /// The proposals of a round with the results told so far, and the count of completed rounds.
 #[derive(Debug, Clone)]
-pub(crate) struct Round<A> {
+pub struct Round<A> {
     number: u64,
     /// By ascending particle.
     pending: Vec<Proposal>,
@@ -48,14 +49,17 @@ impl<A> Default for Round<A> {
 
 impl<A> Round<A> {
     /// Lists proposals, by ascending particle.
-    pub(crate) fn ask(&mut self, proposals: Vec<Proposal>) {
+    pub fn ask(&mut self, proposals: Vec<Proposal>) {
         self.missing = proposals.len();
         self.answers = proposals.iter().map(|_| None).collect();
         self.pending = proposals;
     }
 
     /// Takes the result of a pending particle; whether it was the last one of the round.
-    pub(crate) fn tell(&mut self, particle: usize, answer: A) -> Result<bool, TellError> {
+    ///
+    /// # Errors
+    /// [`TellError::NotPending`], [`TellError::AlreadyTold`].
+    pub fn tell(&mut self, particle: usize, answer: A) -> Result<bool, TellError> {
         let round = self.number;
         let slot = self
             .slot(particle)
@@ -69,35 +73,40 @@ impl<A> Round<A> {
     }
 
     /// Completes the round: its proposals with their results, in the order of the proposals.
-    pub(crate) fn complete(&mut self) -> (Vec<Proposal>, Vec<A>) {
+    pub fn complete(&mut self) -> (Vec<Proposal>, Vec<A>) {
         self.number += 1;
         let answers = self.answers.drain(..).flatten().collect();
         (std::mem::take(&mut self.pending), answers)
     }
 
     /// Number of completed rounds.
-    pub(crate) fn number(&self) -> u64 {
+    #[must_use]
+    pub fn number(&self) -> u64 {
         self.number
     }
 
     /// The proposals, told or not.
-    pub(crate) fn pending(&self) -> &[Proposal] {
+    #[must_use]
+    pub fn pending(&self) -> &[Proposal] {
         &self.pending
     }
 
     /// How many of them have been told.
-    pub(crate) fn told(&self) -> usize {
+    #[must_use]
+    pub fn told(&self) -> usize {
         self.pending.len() - self.missing
     }
 
     /// Whether a pending particle has been told.
-    pub(crate) fn is_told(&self, particle: usize) -> bool {
+    #[must_use]
+    pub fn is_told(&self, particle: usize) -> bool {
         self.slot(particle)
             .is_some_and(|slot| self.answers[slot].is_some())
     }
 
     /// The proposal of a pending particle.
-    pub(crate) fn proposal(&self, particle: usize) -> Option<&Proposal> {
+    #[must_use]
+    pub fn proposal(&self, particle: usize) -> Option<&Proposal> {
         self.slot(particle).map(|slot| &self.pending[slot])
     }
 

@@ -1,7 +1,8 @@
 //! Check evidence and moments on problems with known answers.
 
 use crate::problems::{self, Problem};
-use inference::{Distribution, Marginal, Settings};
+use inference::Settings;
+use statistics::{Distribution, Marginal};
 
 const SEEDS: u64 = 4;
 
@@ -158,13 +159,13 @@ fn the_jacobian_of_log_coordinates_is_accounted_for() {
     .unwrap();
     let sd = 0.2_f64;
     let mut sampler =
-        inference::Sampler::new(inference::Prior::new(vec![prior]), Settings::default()).unwrap();
+        inference::Sampler::new(statistics::Prior::new(vec![prior]), Settings::default()).unwrap();
     while sampler.posterior().is_none() {
         for proposal in sampler.pending().to_vec() {
             let z = libm::log(proposal.theta[0]) / sd;
             let value = -0.5 * z * z - libm::log(sd) - 0.5 * libm::log(std::f64::consts::TAU);
             sampler
-                .tell(proposal.particle, inference::LogLikelihood::new(value).unwrap())
+                .tell(proposal.particle, statistics::LogLikelihood::new(value).unwrap())
                 .unwrap();
         }
     }

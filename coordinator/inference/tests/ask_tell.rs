@@ -1,11 +1,9 @@
 //! Check the protocol: order, refusals, impossible likelihoods, rounds without proposals.
 
 use crate::problems;
-use inference::rng::Stream;
-use inference::{
-    Algorithm, Distribution, Failure, LogLikelihood, Marginal, Prior, Progress, Sampler, Settings,
-    SettingsError, TellError,
-};
+use inference::{Algorithm, Failure, Progress, Sampler, Settings, SettingsError, TellError};
+use statistics::rng::Stream;
+use statistics::{Distribution, LogLikelihood, Marginal, Prior};
 
 fn small() -> Settings {
     Settings {

@@ -1,11 +1,11 @@
 //! Check diagnostics on linear models with normal errors, where every answer is known.
 
 use inference::diagnostics::{self, BINS, Predicted, Region, Side};
-use inference::rng::Stream;
-use inference::{
+use nalgebra::{Cholesky, DMatrix, DVector};
+use statistics::rng::Stream;
+use statistics::{
     CommonError, Datum, Discrepancy, Distribution, ErrorLaw, Likelihood, Marginal, Prior, Sd, Size,
 };
-use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// `y = X theta + sd e`, every parameter standard normal before the data.
 struct Linear {
@@ -292,7 +292,7 @@ fn what_a_joint_prior_forbids_is_contradicted() {
     );
     let draws: Vec<[f64; 2]> = (0..4000)
         .map(|k| {
-            let (x, y) = inference::rng::Stream::new(8, 0, k, 0).normal_pair();
+            let (x, y) = statistics::rng::Stream::new(8, 0, k, 0).normal_pair();
             let (sum, difference) = (x * (2.0 * (1.0 + rho)).sqrt(), mean + sd * y);
             [0.5 * (sum + difference), 0.5 * (sum - difference)]
         })

@@ -2,10 +2,9 @@
 
 use inference::lm::{Optimiser, Settings, SettingsError};
 use inference::point::{Estimate, Stop};
-use inference::{
-    Datum, Distribution, Failure, Likelihood, LikelihoodError, Marginal, Prior, Progress, Sd, TellError,
-};
+use inference::{Failure, Progress, TellError};
 use nalgebra::{DMatrix, DVector};
+use statistics::{Datum, Distribution, Likelihood, LikelihoodError, Marginal, Prior, Sd};
 
 /// A model: one predicted value for each datum, or none.
 type Model<'a> = &'a dyn Fn(&[f64]) -> Option<Vec<f64>>;

@@ -4,15 +4,11 @@
 
 mod answers;
 mod ask_tell;
-mod bevameter;
+mod correlated_prior;
 mod diagnostics;
-mod discovery;
 mod flags;
-mod inquiry;
-mod likelihood;
 mod lm;
 mod metamodel;
-mod priors;
 mod problems;
 mod search;
 mod trends;

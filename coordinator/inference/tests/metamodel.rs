@@ -1,10 +1,8 @@
 //! A metamodel saves evaluations and leaves the posterior as it is.
 
 use inference::diagnostics::mean_and_sd;
-use inference::{
-    Answer, Datum, Distribution, Likelihood, LogLikelihood, Marginal, Metamodel, Pair, Posterior, Prior,
-    Sampler, Sd, Settings,
-};
+use inference::{Answer, Posterior, Sampler, Settings};
+use statistics::{Datum, Distribution, Likelihood, LogLikelihood, Marginal, Metamodel, ModelPair, Prior, Sd};
 
 const MEASURED: [f64; 2] = [1.2, 0.9];
 const NOISE: f64 = 0.25;
@@ -41,10 +39,13 @@ fn run(settings: Settings, coarse: fn(&[f64]) -> Option<Vec<f64>>) -> (Sampler, 
     let likelihood = likelihood();
     let mut sampler = Sampler::with_metamodel(prior(), settings, likelihood.clone()).unwrap();
     let [mut moves, mut subchains, mut found_out] = [0; 3];
-    let score = |theta: &[f64]| -> (LogLikelihood, Option<Pair>) {
+    let score = |theta: &[f64]| -> (LogLikelihood, Option<ModelPair>) {
         let fine = fine(theta);
         let log_likelihood = likelihood.log_likelihood(&fine, theta).unwrap();
-        (log_likelihood, coarse(theta).map(|coarse| Pair { fine, coarse }))
+        (
+            log_likelihood,
+            coarse(theta).map(|coarse| ModelPair { fine, coarse }),
+        )
     };
     while sampler.posterior().is_none() {
         // as it travels
@@ -187,7 +188,7 @@ fn subchains_that_never_move_ask_for_nothing() {
 #[test]
 fn an_answer_to_another_question_is_refused() {
     let mut sampler = Sampler::with_metamodel(prior(), settings(1, 5), likelihood()).unwrap();
-    let end = inference::SubchainEnd {
+    let end = statistics::SubchainEnd {
         theta: vec![0.0, 0.0],
         log_gain: 0.0,
         moves: 5,

@@ -1,7 +1,8 @@
 //! Hold sampler problems with known evidence and moments, for tests and bench.
 
 use inference::search::{self, Search};
-use inference::{Distribution, LogLikelihood, Marginal, Prior, Progress, Sampler, Settings};
+use inference::{Progress, Sampler, Settings};
+use statistics::{Distribution, LogLikelihood, Marginal, Prior};
 
 /// A function of the parameters, its posterior mean and sd.
 pub(crate) type Derived = (fn(&[f64]) -> f64, f64, f64);

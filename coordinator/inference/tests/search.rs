@@ -2,9 +2,10 @@
 
 use crate::problems::{self, Problem};
 use inference::point::{Estimate, Stop};
-use inference::rng::Stream;
 use inference::search::{Search, Settings, SettingsError};
-use inference::{Distribution, Failure, LogLikelihood, Marginal, Prior, Progress, TellError, cma_es, ga};
+use inference::{Failure, Progress, TellError, cma_es, ga};
+use statistics::rng::Stream;
+use statistics::{Distribution, LogLikelihood, Marginal, Prior};
 
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=4;
 

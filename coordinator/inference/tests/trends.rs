@@ -1,9 +1,9 @@
 //! Check the test for trends in residuals on linear models with normal errors, where every answer is known.
 
 use inference::diagnostics::{Predicted, Trend, TrendTest};
-use inference::rng::Stream;
-use inference::{Datum, Distribution, Likelihood, Marginal, Prior, Sd};
 use nalgebra::{Cholesky, DMatrix, DVector};
+use statistics::rng::Stream;
+use statistics::{Datum, Distribution, Likelihood, Marginal, Prior, Sd};
 
 const CHANNELS: usize = 3;
 const SLIPS: [f64; 4] = [0.05, 0.2, 0.4, 0.6];

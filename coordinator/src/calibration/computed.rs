@@ -1,8 +1,8 @@
 //! What came out of an evaluation that no machine failed at.
 
-use inference::{Prior, SubchainEnd};
 use shared::exchange::WorkResult;
 use shared::outcome::{Observables, Outcome};
+use statistics::{Prior, SubchainEnd};
 
 /// What a model said, or that it had not to be asked.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,7 +74,7 @@ pub fn result_of(outcome: Outcome) -> Result<Result<Observables, String>, String
 
 #[cfg(test)]
 mod tests {
-    use inference::{Distribution, Marginal};
+    use statistics::{Distribution, Marginal};
 
     use super::*;
 

@@ -3,13 +3,11 @@
 use inference::lm::Optimiser;
 use inference::point::Estimate;
 use inference::search::Search;
-use inference::{
-    Answer, LogLikelihood, Metamodel, Pair, Posterior, Progress, Proposal, Sampler, StageRecord, SubchainEnd,
-    TellError,
-};
+use inference::{Answer, Posterior, Progress, Proposal, Sampler, StageRecord, TellError};
+use statistics::{LogLikelihood, Metamodel, ModelPair, SubchainEnd};
 
-use crate::discovery::{Discovery, Investigation, InvestigationError, Models};
-use crate::spec::{Method, MethodError, Spec};
+use crate::job::{Method, MethodError, Spec};
+use crate::missing_effect::{Discovery, Investigation, InvestigationError, Models};
 
 /// What asks for evaluations and is told their results.
 #[derive(Debug)]
@@ -66,7 +64,7 @@ impl Scored<'_> {
     /// What a sampler is told.
     fn answer(&self) -> Answer {
         let log_likelihood = self.log_likelihood;
-        let pair = self.fitted.zip(self.coarse).map(|(fine, coarse)| Pair {
+        let pair = self.fitted.zip(self.coarse).map(|(fine, coarse)| ModelPair {
             fine: fine.to_vec(),
             coarse: coarse.to_vec(),
         });

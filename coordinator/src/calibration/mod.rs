@@ -12,16 +12,17 @@ mod replay;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use inference::{LogLikelihood, Metamodel, Proposal, Subchain};
+use inference::Proposal;
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::model::ModelVariant;
 use shared::outcome::Observables;
+use statistics::{LogLikelihood, Metamodel, Subchain};
 
-use crate::discovery::{InvestigationError, Models};
 use crate::fact::{EvaluationRow, Fact, Fingerprint, Kept};
+use crate::job::{Method, Spec};
 use crate::lease::{Completion, Queue};
-use crate::spec::{Method, Spec};
+use crate::missing_effect::{InvestigationError, Models};
 
 pub use computed::{Computed, result_of};
 use draws::{FinalDraws, final_draws};
@@ -431,7 +432,7 @@ impl Calibration {
         &self,
         outcome: &Result<Observables, String>,
         theta: &[f64],
-    ) -> Result<LogLikelihood, inference::LikelihoodError> {
+    ) -> Result<LogLikelihood, statistics::LikelihoodError> {
         let Ok(observables) = outcome else {
             return Ok(LogLikelihood::Impossible);
         };

@@ -9,8 +9,8 @@ use super::output::say;
 use crate::calibration::{Calibration, Computed, Engine, Identity, result_of};
 use crate::config::JobFile;
 use crate::embedded::Evaluate;
+use crate::job::Method;
 use crate::result::terminal;
-use crate::spec::Method;
 
 /// Particles of the pilot: enough to find the number of stages, which hardly depends on them.
 const PILOT_PARTICLES: usize = 100;
@@ -117,7 +117,7 @@ impl Pilot {
 }
 
 /// The same calibration in memory, a sampler in small.
-fn pilot(mut spec: crate::spec::Spec) -> anyhow::Result<Pilot> {
+fn pilot(mut spec: crate::job::Spec) -> anyhow::Result<Pilot> {
     let least = PILOT_PARTICLES.max(2 * spec.parameters.len() + 2);
     if let Method::Sample(settings) = &mut spec.method {
         settings.particles = settings.particles.min(least);

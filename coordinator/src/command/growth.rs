@@ -14,7 +14,7 @@ use super::folder::Folder;
 use super::output::say;
 use super::source::{Client, Place};
 use crate::config::{AddRuns, Discover, Extend};
-use crate::discovery::{Discovery, Extension};
+use crate::missing_effect::{Discovery, Extension};
 use crate::result::discovery::{effect_file, terminal};
 use crate::service::{Service, ServiceError};
 

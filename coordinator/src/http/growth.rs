@@ -8,7 +8,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{Body, HttpError, Id};
-use crate::discovery::{Discovery, Extension};
+use crate::missing_effect::{Discovery, Extension};
 use crate::service::Service;
 use crate::study;
 

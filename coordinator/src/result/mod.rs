@@ -25,12 +25,12 @@ pub mod terminal;
 
 use std::collections::BTreeMap;
 
-use inference::Marginal;
 use shared::api::{CalibrationState, CalibrationStatus};
 use shared::outcome::SimulatedHistory;
+use statistics::Marginal;
 
+use crate::job::{Method, Spec, is_discovery};
 use crate::service::ServiceError;
-use crate::spec::{Method, Spec, is_discovery};
 use crate::store::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Reader, Sample, StageRow, Subchains};
 
 pub use comparison::{Comparison, ComparisonRow};
@@ -220,7 +220,7 @@ pub async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, Serv
 /// Where a calibration stands that nobody has in hand.
 pub fn stored_status(row: &CalibrationRow) -> CalibrationStatus {
     // A job that this version does not understand still has a line in every list.
-    let model = crate::spec::Job::parse("job.toml", &row.job.toml).map(|job| job.model);
+    let model = crate::job::Job::parse("job.toml", &row.job.toml).map(|job| job.model);
     CalibrationStatus {
         id: row.id,
         name: row.name.clone(),
@@ -236,7 +236,7 @@ pub fn stored_status(row: &CalibrationRow) -> CalibrationStatus {
 
 #[cfg(test)]
 mod tests {
-    use inference::Distribution;
+    use statistics::Distribution;
 
     use super::*;
 

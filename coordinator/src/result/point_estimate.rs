@@ -6,7 +6,7 @@ use inference::point::Generation;
 
 use super::Outcome;
 use super::summary::{BaselineSummary, ErrorSummary};
-use crate::spec::FreeParameter;
+use crate::job::FreeParameter;
 use crate::store::EstimateRow;
 
 /// Deterministic updating.

@@ -1,13 +1,13 @@
 //! The posterior predictive distribution of every run and channel.
 
-use inference::{Discrepancy, ErrorLaw, Sd, Size};
 use shared::channel::Channel;
 use shared::experiment::NoiseSd;
 use shared::outcome::Observables;
 use shared::parameters::noise_parameter;
+use statistics::{Discrepancy, ErrorLaw, Sd, Size};
 
 use super::Outcome;
-use crate::spec::Spec;
+use crate::job::Spec;
 use crate::store::Prediction;
 
 /// What the calibrated model predicts for one run and channel.
@@ -37,7 +37,7 @@ fn noise_source(outcome: &Outcome, run: usize, channel: Channel) -> Option<Sd> {
         }
         // Pooled from the fitted repeats: every fitted datum of the channel without an sd of its own has it.
         (None, Some(NoiseSd::Replicates)) => {
-            let shares = |d: &&inference::Datum| {
+            let shares = |d: &&statistics::Datum| {
                 d.channel == c && spec.experiment.runs[spec.fit_runs[d.run]].sd[c].is_none()
             };
             spec.likelihood.data().iter().find(shares).map(|d| d.sd)
@@ -236,7 +236,7 @@ fn mixture_quantile(draws: &[Component], law: ErrorLaw, p: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use inference::ErrorLaw;
+    use statistics::ErrorLaw;
 
     use super::{Component, mixture_quantile, widened};
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::Outcome;
-use crate::spec::{PLATE, RING};
+use crate::job::{PLATE, RING};
 
 /// How well the model meets the readings of plates, or of rings.
 #[derive(Debug, Clone, PartialEq)]

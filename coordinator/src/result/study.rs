@@ -7,8 +7,8 @@ use super::discovery::{DiscoverySummary, Round};
 use super::flags::Flag;
 use super::point_estimate::PointEstimate;
 use super::summary::{CalibrationSummary, Summary};
+use crate::job::{discovery_job, is_discovery};
 use crate::service::ServiceError;
-use crate::spec::{discovery_job, is_discovery};
 use crate::store::{CalibrationRow, Reader};
 use crate::study::next_step_from;
 

@@ -15,7 +15,7 @@ use super::errors::ErrorTable;
 use super::readings::{error_model, reading_errors};
 use super::settling::unsettled;
 use super::{Outcome, Study, prior_mean};
-use crate::spec::{FreeParameter, JointPrior, Spec};
+use crate::job::{FreeParameter, JointPrior, Spec};
 use crate::store::EstimateRow;
 
 /// What a reader of the result should know of the model before it runs.

@@ -16,7 +16,7 @@ use shared::file::{FileError, FileSet};
 use crate::calibration::{BeginError, Calibration, Identity};
 use crate::farm::dispatch::{Dispatcher, Stopped};
 use crate::farm::{Control, ControlError, Farm};
-use crate::spec::{EffectsChanged, Job, Method, Spec, point_job};
+use crate::job::{EffectsChanged, Job, Method, Spec, point_job};
 use crate::store::{CalibrationRow, NewCalibrationRow, NewStudy, Store, StoreError, StudyIds};
 
 /// A lease lasts so long without renewal `[ms]`.

@@ -11,7 +11,7 @@ use sqlx::sqlite::SqliteRow;
 
 use super::{Reader, StoreError, blob, numbers};
 use crate::calibration::{EvaluationKey, HISTORIES, PREDICTIONS_FROM};
-use crate::discovery::Discovery;
+use crate::missing_effect::Discovery;
 
 /// A stored experiment.
 #[derive(Debug, Clone)]

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use inference::SubchainEnd;
 use shared::api::CalibrationState;
 use sqlx::Row;
+use statistics::SubchainEnd;
 
 use super::{Reader, StoreError, blob, numbers};
 use crate::calibration::{Stored, StoredEvaluation};

@@ -4,11 +4,11 @@ use shared::api::CalibrationState;
 use shared::file::FileSet;
 
 use super::next_step::{Member, Part, Step, next_step};
-use crate::discovery::Discovery;
 use crate::farm::ControlError;
+use crate::job::{Apply, Job, Method, discovery_job, is_discovery};
+use crate::missing_effect::Discovery;
 use crate::result::spec_of;
 use crate::service::ServiceError;
-use crate::spec::{Apply, Job, Method, discovery_job, is_discovery};
 use crate::store::{CalibrationRow, Reader};
 
 /// The next step of a study.

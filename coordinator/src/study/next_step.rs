@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use shared::api::CalibrationState;
 
-use crate::discovery::{Discovery, Extension};
-use crate::spec::{Apply, DiscoverySettings, effect_name};
+use crate::job::{Apply, DiscoverySettings, effect_name};
+use crate::missing_effect::{Discovery, Extension};
 
 /// A calibration of a study.
 #[derive(Debug, Clone)]
@@ -110,7 +110,7 @@ pub fn next_step(settings: DiscoverySettings, members: &[Member]) -> Option<Step
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::discovery::fixture;
+    use crate::missing_effect::fixture;
 
     fn ledger(id: i64, effects: &[&str], search: Option<i64>) -> Member {
         Member {

@@ -1,7 +1,7 @@
 //! The cheap model beside the one that counts: what a worker needs to take a metamodel's moves.
 
-use inference::Metamodel;
 use serde::{Deserialize, Serialize};
+use statistics::Metamodel;
 use utoipa::ToSchema;
 
 use super::{ModelKind, ModelVariant};

@@ -1,9 +1,9 @@
 //! The quasi-static model beside the three-dimensional one: what a metamodel compares, and its subchains.
 
-use inference::{Metamodel, Subchain, SubchainEnd};
 use shared::model::ModelVariant;
 use shared::outcome::{Fault, Observables, Outcome};
 use shared::predicted::Predicted;
+use statistics::{Metamodel, Subchain, SubchainEnd};
 
 use super::CompiledVariant;
 

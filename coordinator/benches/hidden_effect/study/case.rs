@@ -1,14 +1,14 @@
 //! An experiment whose truth is known: drawn from the priors, run, measured with noise.
 
-use coordinator::discovery::Extension;
-use coordinator::discovery::candidate::extended;
 use coordinator::embedded::Evaluate;
-use coordinator::spec::Spec;
-use inference::rng::Stream;
+use coordinator::job::Spec;
+use coordinator::missing_effect::Extension;
+use coordinator::missing_effect::candidate::extended;
 use shared::channel::Channel;
 use shared::file::FileSet;
 use shared::model::ModelVariant;
 use shared::outcome::{Observables, Outcome};
+use statistics::rng::Stream;
 
 use super::design::{CHANNELS, Plan, Row, experiment};
 

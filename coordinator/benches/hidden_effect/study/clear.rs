@@ -1,11 +1,11 @@
 //! What the measurements could say without noise: by how much the truth beats what is not the truth.
 
-use coordinator::discovery::Extension;
-use coordinator::discovery::candidate::extended;
 use coordinator::embedded::Evaluate;
-use inference::discovery::{Engine, Finding, Settings, Starts};
-use inference::{Likelihood, LogLikelihood};
+use coordinator::missing_effect::Extension;
+use coordinator::missing_effect::candidate::extended;
+use discovery::{Engine, Finding, Settings, Starts};
 use shared::outcome::Outcome;
+use statistics::{Likelihood, LogLikelihood};
 
 use super::case::{Case, spec};
 use super::pipeline::{Asking, run};

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use inference::discovery::inquiry::{Answer, Task, Verdict};
+use discovery::inquiry::{Answer, Task, Verdict};
 
 use super::case::Case;
 use super::clear::CLEAR;

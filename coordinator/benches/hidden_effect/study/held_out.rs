@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use inference::discovery::inquiry::{Answer, Fitted};
+use discovery::inquiry::{Answer, Fitted};
 use shared::model::Condition;
 
 use super::case::{Case, spec, values};

@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use coordinator::discovery::Extension;
-use coordinator::discovery::candidate::library;
-use inference::rng::Stream;
+use coordinator::missing_effect::Extension;
+use coordinator::missing_effect::candidate::library;
+use statistics::rng::Stream;
 
 use super::case::{Case, blank};
 use super::clear::{CLEAR, Clear, shortfall};

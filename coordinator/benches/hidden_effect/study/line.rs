@@ -1,6 +1,6 @@
 //! One experiment in one line: what was hidden, what was said, what it cost.
 
-use inference::discovery::inquiry::{Answer, Task};
+use discovery::inquiry::{Answer, Task};
 
 use super::case::Case;
 use super::fate::Fate;

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use coordinator::discovery::Models;
 use coordinator::embedded::Evaluate;
-use inference::Likelihood;
-use inference::discovery::inquiry::{Answer, Asked, Inquiry, Model};
-use inference::discovery::{Engine, Finding};
+use coordinator::missing_effect::Models;
+use discovery::inquiry::{Answer, Asked, Inquiry, Model};
+use discovery::{Engine, Finding};
 use shared::file::FileSet;
 use shared::model::Condition;
 use shared::outcome::{Observables, Outcome};
+use statistics::Likelihood;
 
 /// The models of a job and an experiment, ready to be asked.
 pub(crate) struct Asking {

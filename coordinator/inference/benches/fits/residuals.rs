@@ -2,7 +2,7 @@
 
 use inference::lm::{Optimiser, Settings};
 use inference::point::Estimate;
-use inference::{Datum, Distribution, Likelihood, Marginal, Prior, Sd};
+use statistics::{Datum, Distribution, Likelihood, Marginal, Prior, Sd};
 
 use crate::problems::{self, LOG_PRESSURE, SINKAGE};
 

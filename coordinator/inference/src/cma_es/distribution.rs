@@ -124,7 +124,7 @@ impl Distribution {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::Stream;
+    use statistics::rng::Stream;
 
     /// `f = 1/2 sum 10^(6 k / (n-1)) t_k^2`: the covariance becomes that of the inverse Hessian.
     #[test]

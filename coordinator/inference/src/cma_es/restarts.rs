@@ -3,8 +3,8 @@
 use super::run::{End, Run};
 use super::settings::Settings;
 use crate::point::{Individual, Space, Stop};
-use crate::rng::Stream;
 use crate::search::Next;
+use statistics::rng::Stream;
 
 /// Stream of a restart's start; individuals never reach this number.
 const START: u64 = u64::MAX;

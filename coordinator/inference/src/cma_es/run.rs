@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use super::distribution::Distribution;
 use super::rates::Rates;
 use crate::point::{Individual, Space};
-use crate::rng::Stream;
+use statistics::rng::Stream;
 
 /// First standard deviation along every axis, in prior widths: 0.3 of the range of a uniform prior.
 const FIRST_STEP: f64 = 1.0;

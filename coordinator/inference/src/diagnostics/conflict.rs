@@ -2,8 +2,8 @@
 
 use super::spectrum::{mean_and_covariance, principal_directions};
 use super::tail::chi_square_tail;
-use crate::likelihood::ErrorLaw;
-use crate::prior::Prior;
+use statistics::likelihood::ErrorLaw;
+use statistics::prior::Prior;
 
 /// A variance of the scores above this share of the prior's says too little to contradict anything.
 const INFORMED: f64 = 0.75;

@@ -84,7 +84,7 @@ fn images(x: f64, (lower, upper): (f64, f64)) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::prior::{Distribution, Marginal};
+    use statistics::prior::{Distribution, Marginal};
 
     const FREE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 

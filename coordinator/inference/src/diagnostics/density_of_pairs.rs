@@ -155,7 +155,7 @@ pub fn highest_density_levels(density: &[f64], shares: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::prior::{Distribution, Marginal};
+    use statistics::prior::{Distribution, Marginal};
 
     const FREE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::predicted::Predicted;
-use crate::likelihood::Datum;
+use statistics::likelihood::Datum;
 
 /// What the prior allows the data of a channel to vary, beside their errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +29,7 @@ impl Signal {
 /// The signal of every channel that has data; empty with fewer than two draws.
 ///
 /// # Arguments
-/// - `error_variances`: of each datum, as [`Likelihood::error_variances`](crate::Likelihood::error_variances) gives them.
+/// - `error_variances`: of each datum, as [`Likelihood::error_variances`](statistics::Likelihood::error_variances) gives them.
 /// - `prior_draws`: predictions at draws from the prior that the model took.
 ///
 /// Checked by `diagnostics::the_signal_of_a_linear_model_is_its_slope`.

@@ -3,7 +3,7 @@
 //! An empty slice has no mean: such questions answer `None`.
 //!
 //! # Layout
-//! - `moments`, `quantile`, `ess`, `bound`: draws of one parameter.
+//! - `moments`, `quantile`, `ess`: draws of one parameter.
 //! - `spectrum`: combinations of parameters that the data know best and worst.
 //! - `conflict`: prior against posterior.
 //! - `density`, `density_of_pairs`: kernel densities, and the levels that hold most of a sample.
@@ -12,7 +12,6 @@
 //! - `region`: where in the prior failures concentrate.
 //! - `tail`: probabilities of tests.
 
-mod bound;
 mod conflict;
 mod density;
 mod density_of_pairs;
@@ -27,7 +26,6 @@ mod spectrum;
 mod tail;
 mod trend;
 
-pub use bound::at_bound;
 pub use conflict::{Conflict, conflict};
 pub use density::{bandwidth, density};
 pub use density_of_pairs::{density_of_pairs, highest_density_levels};

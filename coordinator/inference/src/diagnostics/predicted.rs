@@ -5,7 +5,7 @@
 pub struct Predicted {
     /// Parameters, inferred standard deviations among them.
     pub theta: Vec<f64>,
-    /// One for each datum, then the sensitivities, as [`Likelihood::values`](crate::Likelihood::values) counts them.
+    /// One for each datum, then the sensitivities, as [`Likelihood::values`](statistics::Likelihood::values) counts them.
     pub values: Vec<f64>,
 }
 

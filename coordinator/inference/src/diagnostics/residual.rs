@@ -2,7 +2,7 @@
 
 use super::predicted::Predicted;
 use super::tail::chi_square_tail;
-use crate::likelihood::{ErrorLaw, Likelihood, LikelihoodError, Sd};
+use statistics::likelihood::{ErrorLaw, Likelihood, LikelihoodError, Sd};
 
 /// A measured value beside the posterior's mean prediction.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,8 +5,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use super::predicted::Predicted;
 use super::residual::own_scale;
 use super::spectrum::mean_and_covariance;
-use crate::likelihood::{ErrorLaw, Likelihood, LikelihoodError, Whitening};
-use crate::prior::Prior;
+use statistics::likelihood::{ErrorLaw, Likelihood, LikelihoodError, Whitening};
+use statistics::prior::Prior;
 
 /// Where the fit takes up all but so much of a regressor, the rest is an error of the linear model rather than a test.
 const LEAST_SHARE: f64 = 0.02;

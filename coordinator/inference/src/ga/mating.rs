@@ -1,6 +1,6 @@
 //! Make two children of two parents.
 
-use crate::rng::Stream;
+use statistics::rng::Stream;
 
 /// Share of pairs that are crossed; the others are only mutated.
 const CROSSED: f64 = 0.9;

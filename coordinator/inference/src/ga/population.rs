@@ -3,8 +3,8 @@
 use super::mating::{Pair, children};
 use super::settings::Settings;
 use crate::point::{Individual, Space, Stop};
-use crate::rng::Stream;
 use crate::search::Next;
+use statistics::rng::Stream;
 
 /// Individuals of a tournament; the best of them becomes a parent.
 const TOURNAMENT: usize = 3;

@@ -5,8 +5,8 @@ use super::objective::Point;
 use super::optimiser::{Answer, Optimiser, Phase};
 use super::stencil::{Sides, Stencil};
 use crate::point::Stop;
-use crate::rng::Stream;
 use crate::round::{Failure, Proposal};
+use statistics::rng::Stream;
 
 /// A step so much longer is worth another Jacobian.
 const MUCH_LONGER: f64 = 1.5;

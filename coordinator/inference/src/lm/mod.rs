@@ -45,6 +45,6 @@ mod stencil;
 mod view;
 
 pub use optimiser::Optimiser;
-pub(crate) use quadratic::Quadratic;
+pub use quadratic::Quadratic;
 pub use settings::{Settings, SettingsError};
 pub use view::Current;

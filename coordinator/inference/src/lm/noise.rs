@@ -1,7 +1,7 @@
 //! Find the most probable noise sd for given residuals.
 
-use crate::likelihood::{Likelihood, Sd};
-use crate::prior::{Marginal, Prior};
+use statistics::likelihood::{Likelihood, Sd};
+use statistics::prior::{Marginal, Prior};
 
 /// Where the prior reaches down to 0, a noise sd ends at this share of the prior's: residuals that vanish would
 /// else have none.

@@ -4,10 +4,10 @@ use nalgebra::DMatrix;
 
 use super::noise::{Noise, Profiled};
 use super::quadratic::Quadratic;
-use crate::likelihood::Likelihood;
-use crate::log_likelihood::LogLikelihood;
 use crate::point::Axis;
-use crate::prior::Prior;
+use statistics::likelihood::Likelihood;
+use statistics::log_likelihood::LogLikelihood;
+use statistics::prior::Prior;
 
 /// A column of the Jacobian: the change of every predicted value along one axis; `None` where it is not known.
 pub(super) type Column = Option<Vec<f64>>;
@@ -106,7 +106,7 @@ impl Objective {
 
     /// The parabola of f along the axes around a point: slopes
     /// `-sum_i J_ik r_i / sd_i^2 + (-ln p_k)'`, curvatures `sum_i J_ik J_il / sd_i^2 + (-ln p_k)''`; of correlated or
-    /// heavy-tailed data with [`Whitening`](crate::likelihood::Whitening) in the place of the sds.
+    /// heavy-tailed data with [`Whitening`](statistics::likelihood::Whitening) in the place of the sds.
     ///
     /// The model's own curvature is left out, as Gauss and Newton do; so is the change of the noise sds, whose mixed
     /// curvature with the axes has expectation zero. Axes without a column do not move.

@@ -4,10 +4,10 @@ use super::damping::Damping;
 use super::objective::{Column, Objective, Point};
 use super::settings::{Settings, SettingsError};
 use super::stencil::{Sides, Stencil};
-use crate::likelihood::Likelihood;
 use crate::point::{Estimate, Stop};
-use crate::prior::Prior;
 use crate::round::{Failure, Progress, Proposal, Round, TellError};
+use statistics::likelihood::Likelihood;
+use statistics::prior::Prior;
 
 /// Predicted values in the order of the data; `None` where the model rejected the parameters.
 pub(super) type Answer = Option<Vec<f64>>;

@@ -4,13 +4,17 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// g' p + p' H p / 2 for steps p between `lower` and `upper`, 0 among them.
 #[derive(Debug, Clone)]
-pub(crate) struct Quadratic {
-    pub(crate) gradient: Vec<f64>,
-    pub(crate) hessian: DMatrix<f64>,
-    pub(crate) lower: Vec<f64>,
-    pub(crate) upper: Vec<f64>,
+pub struct Quadratic {
+    /// Of the function, by axis.
+    pub gradient: Vec<f64>,
+    /// Second derivatives, symmetric.
+    pub hessian: DMatrix<f64>,
+    /// How far each axis may move down: 0 or less.
+    pub lower: Vec<f64>,
+    /// How far each axis may move up: 0 or more.
+    pub upper: Vec<f64>,
     /// Axes that do not move.
-    pub(crate) held: Vec<bool>,
+    pub held: Vec<bool>,
 }
 
 impl Quadratic {
@@ -21,7 +25,7 @@ impl Quadratic {
     ///
     /// The active set: an axis at a bound from which the slope points outwards does not move. Of those that the step
     /// would carry over a bound, the one that gets there first is put there, and the others are solved again.
-    pub(crate) fn step(&self, damping: f64) -> Option<Vec<f64>> {
+    pub fn step(&self, damping: f64) -> Option<Vec<f64>> {
         let count = self.gradient.len();
         let mut step = vec![0.0; count];
         let mut free: Vec<usize> = (0..count)
@@ -89,7 +93,7 @@ impl Quadratic {
 
     /// Standard deviation along each axis that the curvature stands for, the others free; `None` for axes that do not
     /// move, and where the parabola has no least.
-    pub(crate) fn uncertainty(&self) -> Vec<Option<f64>> {
+    pub fn uncertainty(&self) -> Vec<Option<f64>> {
         let moving: Vec<usize> = (0..self.held.len()).filter(|&k| !self.held[k]).collect();
         let mut uncertainty = vec![None; self.held.len()];
         let matrix = DMatrix::from_fn(moving.len(), moving.len(), |i, j| {
@@ -105,7 +109,7 @@ impl Quadratic {
     }
 
     /// How far the undamped parabola lies lower at a step.
-    pub(crate) fn decrease(&self, step: &[f64]) -> f64 {
+    pub fn decrease(&self, step: &[f64]) -> f64 {
         let mut decrease = 0.0;
         for (k, own) in step.iter().enumerate() {
             let pull: f64 = (0..step.len()).map(|l| self.hessian[(k, l)] * step[l]).sum();

@@ -3,8 +3,8 @@
 use super::optimiser::{Optimiser, Phase};
 use super::settings::Settings;
 use crate::point::Estimate;
-use crate::prior::Prior;
 use crate::round::{Failure, Proposal};
+use statistics::prior::Prior;
 
 /// A fit in progress, for display.
 #[derive(Debug, Clone, Copy, PartialEq)]

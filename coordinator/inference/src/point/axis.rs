@@ -1,6 +1,6 @@
 //! Move one parameter in units of its prior's width.
 
-use crate::prior::Marginal;
+use statistics::prior::Marginal;
 
 /// One parameter that the model takes, with t = u / width; u is the sampling coordinate of its marginal.
 #[derive(Debug, Clone)]

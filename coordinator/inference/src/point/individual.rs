@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::log_likelihood::LogLikelihood;
+use statistics::log_likelihood::LogLikelihood;
 
 /// An evaluated point.
 #[derive(Debug, Clone)]

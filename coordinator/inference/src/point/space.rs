@@ -2,9 +2,9 @@
 
 use super::axis::Axis;
 use super::individual::Individual;
-use crate::log_likelihood::LogLikelihood;
-use crate::prior::Prior;
-use crate::rng::Stream;
+use statistics::log_likelihood::LogLikelihood;
+use statistics::prior::Prior;
+use statistics::rng::Stream;
 
 /// Nearer to a bound than this is at the bound, in prior widths: rounding must not decide whether a parameter is.
 const NEAR: f64 = 1e-9;

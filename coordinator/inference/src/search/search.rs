@@ -2,10 +2,10 @@
 
 use super::settings::{Settings, SettingsError};
 use super::strategy::{Next, Strategy};
-use crate::log_likelihood::LogLikelihood;
 use crate::point::{Estimate, Generation, Individual, Space, Stop};
-use crate::prior::Prior;
 use crate::round::{Failure, Progress, Proposal, Round, TellError};
+use statistics::log_likelihood::LogLikelihood;
+use statistics::prior::Prior;
 
 /// An ask/tell search for the most probable parameters.
 ///

@@ -3,8 +3,8 @@
 use super::search::{Phase, Search};
 use super::settings::Settings;
 use crate::point::{Estimate, Individual};
-use crate::prior::Prior;
 use crate::round::{Failure, Proposal};
+use statistics::prior::Prior;
 
 /// A search in progress, for display.
 #[derive(Debug, Clone, Copy, PartialEq)]

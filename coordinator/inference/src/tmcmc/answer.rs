@@ -1,7 +1,7 @@
 //! Tell a sampler what an evaluation gave.
 
-use super::metamodel::{Pair, SubchainEnd};
-use crate::log_likelihood::LogLikelihood;
+use statistics::log_likelihood::LogLikelihood;
+use statistics::metamodel::{ModelPair, SubchainEnd};
 
 /// What the evaluation of a proposal gave.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,14 +11,14 @@ pub enum Answer {
         /// ln p(data | theta) there.
         log_likelihood: LogLikelihood,
         /// What both models say there, where a metamodel is to learn from it.
-        pair: Option<Pair>,
+        pair: Option<ModelPair>,
     },
     /// The model was asked at the end of a subchain.
     Moved {
         /// The end.
         end: SubchainEnd,
         /// ln p(data | theta) and the pair there; `None` where no move was accepted, so that nothing had to be asked.
-        found: Option<(LogLikelihood, Option<Pair>)>,
+        found: Option<(LogLikelihood, Option<ModelPair>)>,
     },
 }
 

@@ -113,7 +113,7 @@ fn cluster_sums(values: impl Iterator<Item = f64>, clusters: &[usize]) -> Vec<f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::Stream;
+    use statistics::rng::Stream;
 
     #[test]
     fn z_of_independent_changes_is_the_usual_one() {

@@ -1,7 +1,7 @@
 //! Add up the log-evidence and its standard error.
 
 use super::bridge::Bridge;
-use super::population::Pool;
+use statistics::metamodel::Pool;
 
 /// The log-evidence so far.
 ///
@@ -104,9 +104,9 @@ impl Evidence {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log_likelihood::LogLikelihood;
-    use crate::rng::Stream;
-    use crate::tmcmc::population::State;
+    use statistics::log_likelihood::LogLikelihood;
+    use statistics::metamodel::State;
+    use statistics::rng::Stream;
 
     fn pool(log_likelihoods: &[f64]) -> Pool {
         let mut pool = Pool::default();

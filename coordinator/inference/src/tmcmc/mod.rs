@@ -18,15 +18,13 @@
 mod answer;
 mod bridge;
 mod ching_chen;
-mod covariance;
 mod equilibrium;
 mod evidence;
-mod metamodel;
 mod population;
-mod proposal;
 mod record;
 mod resample;
 mod sampler;
+mod scale;
 mod schedule;
 mod settings;
 mod stage;
@@ -35,7 +33,6 @@ mod view;
 mod weights;
 
 pub use answer::Answer;
-pub use metamodel::{Metamodel, Pair, Subchain, SubchainEnd};
 pub use population::Particle;
 pub use record::{Current, Posterior, StageRecord};
 pub use sampler::Sampler;

@@ -5,16 +5,16 @@ use std::sync::Arc;
 use super::answer::Answer;
 use super::equilibrium::{Drift, is_alarming, pooled_z};
 use super::evidence::Evidence;
-use super::metamodel::{Metamodel, Purpose};
-use super::population::{Pool, State};
+use super::population::Particle;
 use super::record::{Posterior, StageRecord};
 use super::settings::{Algorithm, Settings, SettingsError};
 use super::stage::Stage;
 use super::transition::Transition;
-use crate::likelihood::Likelihood;
-use crate::prior::Prior;
-use crate::rng::Stream;
 use crate::round::{Failure, Progress, Proposal, Round, TellError};
+use statistics::likelihood::Likelihood;
+use statistics::metamodel::{Metamodel, MetamodelStage, Pool, State};
+use statistics::prior::Prior;
+use statistics::rng::Stream;
 
 /// Steps between two looks at a stage's equilibrium; one with a metamodel, whose steps hold many moves.
 const BLOCK: usize = 5;
@@ -227,7 +227,7 @@ impl Sampler {
         let Some(likelihood) = &self.likelihood else {
             return Ok(None);
         };
-        let purpose = Purpose {
+        let purpose = MetamodelStage {
             seed: self.settings.seed,
             stage: stage.index,
             exponent: stage.exponent,
@@ -331,7 +331,7 @@ impl Sampler {
             equilibrated: drift.is_equilibrated(),
             population: population
                 .into_iter()
-                .map(|state| state.particle(&self.prior))
+                .map(|state| Particle::new(state, &self.prior))
                 .collect(),
         });
     }

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use super::answer::Answer;
-use super::metamodel::{Metamodel, PLAIN_STEPS, Pair, Subchain, SubchainEnd};
-use super::population::{Pool, State};
-use super::proposal::{Candidate, Mixture, target_acceptance};
-use crate::log_likelihood::LogLikelihood;
-use crate::prior::Prior;
-use crate::rng::Stream;
+use super::scale::target_acceptance;
 use crate::round::Proposal;
+use statistics::log_likelihood::LogLikelihood;
+use statistics::metamodel::{
+    Metamodel, ModelPair, PLAIN_STEPS, Pool, ProposalMixture, ProposedMove, State, Subchain, SubchainEnd,
+};
+use statistics::prior::Prior;
+use statistics::rng::Stream;
 
 /// One chain of a stage.
 #[derive(Debug, Clone)]
@@ -37,7 +38,7 @@ enum Kind {
     /// Outside the prior's support: nothing is asked.
     Outside { scaled: bool },
     /// One proposal.
-    Plain { candidate: Candidate, log_prior: f64 },
+    Plain { candidate: ProposedMove, log_prior: f64 },
     /// Moves of the metamodel.
     Delayed,
 }
@@ -57,7 +58,7 @@ pub(super) struct Stage {
     pub(super) chains: Vec<Chain>,
     /// Every state that a chain took after its start.
     pub(super) pool: Pool,
-    pub(super) mixture: Mixture,
+    pub(super) mixture: ProposalMixture,
     /// What takes moves between evaluations, if there is one.
     pub(super) metamodel: Option<Arc<Metamodel>>,
     pub(super) scale: f64,
@@ -74,7 +75,7 @@ impl Stage {
         index: usize,
         exponent: f64,
         chains: Vec<Chain>,
-        mixture: Mixture,
+        mixture: ProposalMixture,
         scale: f64,
         adaptive: bool,
     ) -> Self {
@@ -237,7 +238,7 @@ fn decide(
 }
 
 /// The state at the end of a subchain.
-fn moved(prior: &Prior, end: &SubchainEnd, log_likelihood: LogLikelihood, pair: Option<Pair>) -> State {
+fn moved(prior: &Prior, end: &SubchainEnd, log_likelihood: LogLikelihood, pair: Option<ModelPair>) -> State {
     let coordinates = prior.coordinates(&end.theta);
     State {
         log_prior: prior.log_density_of_coordinates(&coordinates),

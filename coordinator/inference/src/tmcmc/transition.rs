@@ -1,16 +1,15 @@
 //! Pass from the pool of one stage to the chains of the next.
 
 use super::ching_chen;
-use super::covariance::Factor;
-use super::population::Pool;
-use super::proposal::{Mixture, initial_scale};
 use super::resample::systematic;
+use super::scale::initial_scale;
 use super::schedule::exponent_step;
 use super::settings::{Algorithm, Settings};
 use super::stage::{Chain, Stage};
 use super::weights::Weights;
-use crate::rng::Stream;
 use crate::round::Failure;
+use statistics::metamodel::{CovarianceFactor, Pool, ProposalMixture};
+use statistics::rng::Stream;
 
 /// Stream of a stage's resampling; particles never reach this number.
 const RESAMPLING: u64 = u64::MAX;
@@ -48,7 +47,7 @@ impl Transition {
             .iter()
             .map(|state| state.coordinates.as_slice())
             .collect();
-        let factor = Factor::new(&views, &normalised);
+        let factor = CovarianceFactor::new(&views, &normalised);
         let tooth = Stream::new(settings.seed, index as u64, RESAMPLING, 0).uniform();
         let indices = systematic(&normalised, settings.particles, tooth);
         let chain = |(from, length): (usize, usize)| {
@@ -68,14 +67,21 @@ impl Transition {
                     .map(|&from| chain((from, settings.moves[1])))
                     .collect();
                 let scale = scale.unwrap_or_else(|| initial_scale(factor.dimension()));
-                Stage::new(index, next, chains, Mixture { factor, frozen }, scale, true)
+                Stage::new(
+                    index,
+                    next,
+                    chains,
+                    ProposalMixture { factor, frozen },
+                    scale,
+                    true,
+                )
             }
             original @ (Algorithm::ChingChen2007 | Algorithm::Basis) => {
                 let chains = match original {
                     Algorithm::Basis => indices.iter().map(|&from| chain((from, 1))).collect(),
                     _ => ching_chen::leaders(&indices).into_iter().map(chain).collect(),
                 };
-                let mixture = Mixture {
+                let mixture = ProposalMixture {
                     factor,
                     frozen: Vec::new(),
                 };

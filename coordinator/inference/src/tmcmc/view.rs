@@ -1,11 +1,11 @@
 //! Show a sampler's state to the outside.
 
-use super::metamodel::Metamodel;
 use super::record::{Current, Posterior, StageRecord};
 use super::sampler::{Phase, Sampler};
 use super::settings::Settings;
-use crate::prior::Prior;
 use crate::round::{Failure, Proposal};
+use statistics::Metamodel;
+use statistics::prior::Prior;
 
 impl Sampler {
     /// The prior.

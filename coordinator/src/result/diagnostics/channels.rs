@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use inference::Sd;
 use inference::diagnostics::{self, Predicted, Signal};
+use statistics::Sd;
 
 use super::datum::{DataChannel, size};
 use super::residuals::ResidualDiagnostics;

@@ -1,10 +1,10 @@
 //! Names and units of fitted data: channels of the wheel, plates, rings.
 
-use inference::Datum;
 use shared::channel::Channel;
+use statistics::Datum;
 
+use crate::job::{PLATE, RING, Spec};
 use crate::result::report::number;
-use crate::spec::{PLATE, RING, Spec};
 
 /// A channel of the likelihood.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 
 use inference::diagnostics::{self, Conflict};
 
+use crate::job::FreeParameter;
 use crate::result::Outcome;
-use crate::spec::FreeParameter;
 
 /// A parameter after the data, beside its prior.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -94,7 +94,7 @@ fn spread(free: &FreeParameter, values: impl Iterator<Item = f64>) -> Option<f64
 
 #[cfg(test)]
 mod tests {
-    use inference::{Distribution, Marginal};
+    use statistics::{Distribution, Marginal};
 
     use super::*;
     use crate::result::report::fixture;

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use inference::diagnostics::{self, BINS, Region, Side};
 
 use super::{LEVEL, p_words};
+use crate::job::{FreeParameter, Spec};
 use crate::result::Outcome;
 use crate::result::report::number;
-use crate::spec::{FreeParameter, Spec};
 use crate::store::PriorDraw;
 
 /// What the model refused and which leases failed.

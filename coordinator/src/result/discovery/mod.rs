@@ -9,8 +9,8 @@ pub mod terminal;
 
 pub use summary::DiscoverySummary;
 
-use crate::discovery::{Discovery, Extension, Verdict};
-use crate::spec::effect_name;
+use crate::job::effect_name;
+use crate::missing_effect::{Discovery, Extension, Verdict};
 
 /// A finished search of a study.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! The block `discovery` of `summary.json`.
 
 use super::Round;
-use crate::discovery::{Discovery, JudgedEffect, NextRun, Outside, Verdict};
+use crate::missing_effect::{Discovery, JudgedEffect, NextRun, Outside, Verdict};
 use crate::study::effect_of;
 
 /// What is known of the effects that a study's model misses.
@@ -72,7 +72,7 @@ impl DiscoverySummary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::discovery::fixture;
+    use crate::missing_effect::fixture;
 
     fn rounds() -> Vec<Round> {
         let of = |calibration, record| Round { calibration, record };

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::{arguments, effect_file, word};
-use crate::discovery::{ChiSquare, Discovery};
+use crate::missing_effect::{ChiSquare, Discovery};
 use crate::result::diagnostics::p_words;
 use crate::result::{ErrorTable, Study};
 
@@ -163,7 +163,7 @@ fn chi_square(chi2: ChiSquare) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::discovery::{Extension, fixture};
+    use crate::missing_effect::{Extension, fixture};
 
     #[test]
     fn a_search_says_what_it_found_and_how_to_add_it() {

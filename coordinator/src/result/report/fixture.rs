@@ -8,9 +8,9 @@ use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
 
-use crate::discovery::Outside;
+use crate::job::{Method, Spec};
+use crate::missing_effect::Outside;
 use crate::result::{Outcome, Round, Study};
-use crate::spec::{Method, Spec};
 use crate::store::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Sample, StageRow};
 
 const JOB: &str = r#"
@@ -130,7 +130,7 @@ pub(in crate::result) fn study() -> Study {
 pub(in crate::result) fn grown() -> Study {
     let mut extension = outcome();
     (extension.row.id, extension.experiment) = (3, "<script>sand+slip_sinkage".into());
-    let mut record = crate::discovery::fixture::discovery();
+    let mut record = crate::missing_effect::fixture::discovery();
     record.outside = Some(Outside {
         acts_on: "shear".into(),
         depends_on: "slip".into(),

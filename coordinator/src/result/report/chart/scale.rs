@@ -1,7 +1,7 @@
 //! Whether a parameter is drawn against equal steps or equal ratios.
 
 use super::axis::Scale;
-use crate::spec::FreeParameter;
+use crate::job::FreeParameter;
 
 /// Draws over more than this factor are drawn against equal ratios, where the prior is made of ratios too.
 const WIDE: f64 = 10.0;
@@ -21,7 +21,7 @@ pub(super) fn scale(parameter: &FreeParameter, draws: &[f64]) -> Scale {
 
 #[cfg(test)]
 mod tests {
-    use inference::{Distribution, Marginal};
+    use statistics::{Distribution, Marginal};
 
     use super::*;
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use maud::{Markup, html};
 
-use crate::discovery::{Discovery, JudgedEffect, Outside};
+use crate::missing_effect::{Discovery, JudgedEffect, Outside};
 use crate::result::discovery::arguments;
 use crate::result::report::chart;
 use crate::result::report::number;

@@ -1,12 +1,12 @@
 //! Parameters after and before the data: table, densities, and the pairs that the data leave entangled.
 
-use inference::Distribution;
 use maud::{Markup, html};
+use statistics::Distribution;
 
+use crate::job::FreeParameter;
 use crate::result::entangled::{LEAST_CORRELATION, most_correlated};
 use crate::result::report::{chart, number};
 use crate::result::{Outcome, ParameterSummary};
-use crate::spec::FreeParameter;
 
 /// A bound so many standard deviations from the mean needs no mention.
 const FAR: f64 = 6.0;
@@ -143,7 +143,7 @@ fn correlation_se(r: f64, n: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use inference::Marginal;
+    use statistics::Marginal;
 
     use super::*;
 

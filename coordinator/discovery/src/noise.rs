@@ -1,0 +1,48 @@
+//! The slope and curvature along noise sds that are inferred: the model's values do not change with them.
+
+use nalgebra::DMatrix;
+
+use crate::coordinate::Frame;
+use crate::descent::Point;
+use statistics::likelihood::{Likelihood, Sd};
+
+/// Half the difference that slopes are taken over: the density is smooth and exact to the last digits.
+const DIFFERENCE: f64 = 1e-3;
+
+/// The coordinates that are noise sds, each with how many data it is the sd of.
+pub(crate) fn coordinates(likelihood: &Likelihood) -> Vec<(usize, usize)> {
+    let inferred = |sd: Sd| match sd {
+        Sd::Inferred { parameter } => Some(parameter),
+        Sd::Known(_) => None,
+    };
+    let mut parameters: Vec<usize> = likelihood.data().iter().filter_map(|d| inferred(d.sd)).collect();
+    parameters.sort_unstable();
+    let groups = parameters.chunk_by(|a, b| a == b);
+    groups.map(|group| (group[0], group.len())).collect()
+}
+
+/// Adds the slope of `-log-likelihood` along the noise sds, and the curvature that is expected: `2 N (d ln sd / dt)^2` of N data.
+pub(crate) fn add(
+    frame: &Frame,
+    likelihood: &Likelihood,
+    point: &Point,
+    gradient: &mut [f64],
+    hessian: &mut DMatrix<f64>,
+) {
+    for (k, count) in coordinates(likelihood) {
+        let at = |offset: f64| {
+            let mut position = point.position.clone();
+            position[k] += offset;
+            let theta = frame.theta(&position);
+            let scored = likelihood.log_likelihood(&point.values, &theta);
+            (theta[k], scored.map_or(f64::NEG_INFINITY, |s| s.value()))
+        };
+        let ((low, before), (high, after)) = (at(-DIFFERENCE), at(DIFFERENCE));
+        let slope = (after - before) / (2.0 * DIFFERENCE);
+        let stretch = libm::log(high / low) / (2.0 * DIFFERENCE);
+        if slope.is_finite() && stretch.is_finite() {
+            gradient[k] -= slope;
+            hessian[(k, k)] += 2.0 * count as f64 * stretch * stretch;
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Readings of plates and rings as data: logarithms of stresses, with a shift that each test has of its own.
+
+use shared::experiment::{Experiment, Scatter};
+use shared::model::{ModelVariant, PlateCondition, RingCondition};
+use shared::parameters::RING_TRANSFER;
+use statistics::{Datum, Distribution, Marginal, Sd};
+
+use super::priors::FreeParameter;
+
+/// The channel of plates among the data, behind those of the wheel.
+pub const PLATE: usize = 4;
+/// The channel of rings.
+pub const RING: usize = 5;
+
+/// Prior sd of the logarithm of the transfer of tan(phi) from ring to wheel.
+const TRANSFER_SD: f64 = 0.1;
+
+/// One measured reading.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading<C> {
+    /// The test that it belongs to.
+    pub test: String,
+    /// Plate or ring.
+    pub condition: C,
+    /// Measured pressure or shear stress `[Pa]`, > 0.
+    pub stress_pa: f64,
+}
+
+/// The measured readings of an experiment.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Bevameter {
+    /// Of plates, in the order of the file.
+    pub plates: Vec<Reading<PlateCondition>>,
+    /// Of rings.
+    pub rings: Vec<Reading<RingCondition>>,
+}
+
+/// Readings of one kind, as data.
+pub(super) struct Table<'a> {
+    channel: usize,
+    readings: Vec<(&'a str, f64)>,
+    /// Scatter of its readings within a test.
+    pub(super) between_readings: Scatter,
+    /// Scatter of its tests.
+    pub(super) between_tests: Scatter,
+}
+
+impl Bevameter {
+    /// The readings that were measured.
+    ///
+    /// # Errors
+    /// A stress or a way of zero, which has no logarithm.
+    pub(super) fn new(experiment: &Experiment) -> Result<Self, String> {
+        let loaded = |test: &str, stress: (&str, f64), way: (&str, f64)| {
+            if stress.1 > 0.0 && way.1 > 0.0 {
+                return Ok(());
+            }
+            Err(format!(
+                "test \"{test}\": {} {} Pa at {} {} m has no logarithm: both must be > 0, or the reading be left out or blank",
+                stress.0, stress.1, way.0, way.1
+            ))
+        };
+        let mut readings = Bevameter::default();
+        for row in &experiment.plates {
+            let Some(stress_pa) = row.pressure_pa else {
+                continue;
+            };
+            loaded(
+                &row.test,
+                ("pressure_pa", stress_pa),
+                ("sinkage_m", row.sinkage_m),
+            )?;
+            readings.plates.push(Reading {
+                test: row.test.clone(),
+                condition: PlateCondition {
+                    plate_radius_m: row.plate_radius_m,
+                    sinkage_m: row.sinkage_m,
+                },
+                stress_pa,
+            });
+        }
+        for row in &experiment.shear {
+            let Some(stress_pa) = row.shear_stress_pa else {
+                continue;
+            };
+            let way = ("shear_displacement_m", row.shear_displacement_m);
+            loaded(&row.test, ("shear_stress_pa", stress_pa), way)?;
+            readings.rings.push(Reading {
+                test: row.test.clone(),
+                condition: RingCondition {
+                    normal_stress_pa: row.normal_stress_pa,
+                    shear_displacement_m: row.shear_displacement_m,
+                },
+                stress_pa,
+            });
+        }
+        Ok(readings)
+    }
+
+    /// Asks a variant to predict the readings too.
+    pub(super) fn ask(&self, variant: &mut ModelVariant) {
+        variant.plates = self.plates.iter().map(|r| r.condition.clone()).collect();
+        variant.rings = self.rings.iter().map(|r| r.condition.clone()).collect();
+    }
+
+    /// Adds the transfer of tan(phi) from ring to wheel, where a ring was measured and the job does not say of it.
+    ///
+    /// # Errors
+    /// The job says of it without a ring, or a ring has no single shear modulus.
+    pub(super) fn add_transfer(
+        &self,
+        fixed: &std::collections::BTreeMap<String, f64>,
+        parameters: &mut Vec<FreeParameter>,
+    ) -> Result<(), String> {
+        let said = |name: &str| fixed.contains_key(name) || parameters.iter().any(|p| p.name == name);
+        if self.rings.is_empty() {
+            return match said(RING_TRANSFER) {
+                true => Err(format!(
+                    "{RING_TRANSFER} is given, but the experiment has no measured reading of a ring"
+                )),
+                false => Ok(()),
+            };
+        }
+        let of_one_wheel = "janosi_hanamoto.shear_modulus_m.";
+        let free = parameters.iter().map(|p| &p.name);
+        if let Some(name) = free.chain(fixed.keys()).find(|n| n.starts_with(of_one_wheel)) {
+            return Err(format!(
+                "{name} belongs to one wheel: a ring feels janosi_hanamoto.shear_modulus_m, which all share"
+            ));
+        }
+        if !said(RING_TRANSFER) {
+            let (mean, sd) = (0.0, TRANSFER_SD);
+            parameters.push(FreeParameter {
+                name: RING_TRANSFER.to_owned(),
+                unit: "1".to_owned(),
+                marginal: Marginal::new(Distribution::Normal { mean, sd }, None)
+                    .map_err(|e| e.to_string())?,
+            });
+        }
+        Ok(())
+    }
+
+    /// Plates and rings, where there are any.
+    pub(super) fn tables(&self) -> Vec<Table<'_>> {
+        let plates = Table {
+            channel: PLATE,
+            readings: self.plates.iter().map(|r| (&*r.test, r.stress_pa)).collect(),
+            between_readings: Scatter::PlateReading,
+            between_tests: Scatter::PlateTest,
+        };
+        let rings = Table {
+            channel: RING,
+            readings: self.rings.iter().map(|r| (&*r.test, r.stress_pa)).collect(),
+            between_readings: Scatter::RingReading,
+            between_tests: Scatter::RingTest,
+        };
+        [plates, rings]
+            .into_iter()
+            .filter(|table| !table.readings.is_empty())
+            .collect()
+    }
+
+    /// Whether something of this kind was measured.
+    pub(super) fn scatters(&self, scatter: Scatter) -> bool {
+        let tables = self.tables();
+        tables
+            .iter()
+            .any(|t| t.between_readings == scatter || t.between_tests == scatter)
+    }
+}
+
+impl Table<'_> {
+    /// The readings as data: logarithms of stresses `[ln Pa]`, so that their sd is relative.
+    pub(super) fn data(&self, sd: Sd) -> impl Iterator<Item = Datum> {
+        let readings = self.readings.iter().enumerate();
+        readings.map(move |(run, (_, stress))| Datum {
+            run,
+            channel: self.channel,
+            value: libm::log(*stress),
+            sd,
+        })
+    }
+
+    /// The readings of each test, tests in the order of the file.
+    pub(super) fn tests(&self) -> Vec<Vec<usize>> {
+        let mut tests: Vec<(&str, Vec<usize>)> = Vec::new();
+        for (i, (name, _)) in self.readings.iter().enumerate() {
+            match tests.iter_mut().find(|(known, _)| known == name) {
+                Some((_, readings)) => readings.push(i),
+                None => tests.push((name, vec![i])),
+            }
+        }
+        tests.into_iter().map(|(_, readings)| readings).collect()
+    }
+}

@@ -1,0 +1,199 @@
+//! The jobs by which a study looks for missing effects: the search of a calibration's model, and what is added or dropped.
+
+use std::collections::BTreeMap;
+
+use shared::file::{FileError, FileSet};
+use toml_edit::{DocumentMut, Item, TableLike};
+
+use super::point_job::{edited, with_algorithm};
+
+/// Name of the search for a missing effect among the algorithms.
+pub const DISCOVERY: &str = "discovery";
+
+/// The job that searches the model of another for missing effects; equal jobs have equal searches.
+///
+/// # Errors
+/// [`FileError`] where the text is no job.
+pub fn discovery_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
+    Ok(FileSet {
+        toml: with_algorithm(name, &job.toml, DISCOVERY)?,
+        files: job.files.clone(),
+    })
+}
+
+/// Whether a job is such a search.
+pub fn is_discovery(toml: &str) -> bool {
+    let job: Option<toml::Table> = toml.parse().ok();
+    let sampler = job.as_ref().and_then(|job| job.get("sampler"));
+    sampler.and_then(|sampler| sampler.get("algorithm")?.as_str()) == Some(DISCOVERY)
+}
+
+/// A job as its study goes on with it: it asks for no point estimates and no search of its own.
+///
+/// # Errors
+/// [`FileError`] where the text is no job.
+pub fn continued_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
+    let toml = edited(name, &job.toml, |document| {
+        if let Some(sampler) = table(document, "sampler") {
+            sampler.remove("point_estimates");
+        }
+        document.remove("discovery");
+        Ok(())
+    })?;
+    Ok(FileSet {
+        toml,
+        files: job.files.clone(),
+    })
+}
+
+/// A job without some of its effects: their names, their files and every line about their parameters go.
+///
+/// # Errors
+/// [`FileError`] where the text is no job.
+pub fn without_effects(name: &str, job: &FileSet, effects: &[String]) -> Result<FileSet, FileError> {
+    let is_dropped = |file: &str| {
+        let effect = job.files.get(file).and_then(|text| effect_name(text));
+        effect.is_some_and(|effect| effects.contains(&effect))
+    };
+    let toml = edited(name, &job.toml, |document| {
+        let of_dropped = |key: &str| {
+            key.split_once('.')
+                .is_some_and(|(effect, _)| effects.iter().any(|e| e == effect))
+        };
+        if let Some(model) = table(document, "model") {
+            keep(model, "effects", |effect| !effects.iter().any(|e| e == effect));
+            keep(model, "effect_files", |file| !is_dropped(file));
+        }
+        for part in ["model", "priors"] {
+            if let Some(table) = table(document, part) {
+                let keys: Vec<String> = table.iter().map(|(key, _)| key.to_owned()).collect();
+                // A dotted key without quotes is a table under the effect's name.
+                for key in keys.iter().filter(|key| of_dropped(key) || effects.contains(key)) {
+                    table.remove(key);
+                }
+            }
+        }
+        Ok(())
+    })?;
+    let files: BTreeMap<String, String> = job
+        .files
+        .iter()
+        .filter(|(file, _)| !is_dropped(file))
+        .map(|(file, text)| (file.clone(), text.clone()))
+        .collect();
+    Ok(FileSet { toml, files })
+}
+
+/// The name that an effect file gives its effect.
+pub fn effect_name(text: &str) -> Option<String> {
+    let file: toml::Table = text.parse().ok()?;
+    Some(file.get("name")?.as_str()?.to_owned())
+}
+
+fn table<'a>(document: &'a mut DocumentMut, name: &str) -> Option<&'a mut dyn TableLike> {
+    document.get_mut(name).and_then(Item::as_table_like_mut)
+}
+
+/// Keeps the words of a list that satisfy a condition.
+fn keep(table: &mut dyn TableLike, list: &str, condition: impl Fn(&str) -> bool) {
+    if let Some(words) = table.get_mut(list).and_then(Item::as_array_mut) {
+        words.retain(|word| word.as_str().is_none_or(&condition));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Job;
+
+    const JOB: &str = r#"# why
+[model]
+kind = "scm" # here
+effects = ["hard_pan", "slip_sinkage"]
+effect_files = ["mine.toml", "yours.toml"]
+[priors]
+n = 1.1
+"slip_sinkage.exponent_slope" = { uniform = [0.0, 1.0] }
+"mine.a.front" = 0.5
+[sampler]
+particles = 50
+seed = 7
+point_estimates = ["ga"]
+[discovery]
+apply = "auto"
+"#;
+
+    fn job() -> FileSet {
+        let file = |name: &str| format!("name = \"{name}\"\nshear = \"tau\"\n");
+        FileSet {
+            toml: JOB.into(),
+            files: [("mine.toml", "mine"), ("yours.toml", "yours")]
+                .map(|(file_name, effect)| (file_name.to_owned(), file(effect)))
+                .into(),
+        }
+    }
+
+    #[test]
+    fn a_search_has_the_seed_and_the_model_and_asks_for_nothing() {
+        let search = discovery_job("job.toml", &job()).unwrap();
+        let expected = JOB
+            .replace("particles = 50\n", "")
+            .replace("point_estimates = [\"ga\"]\n", "algorithm = \"discovery\"\n")
+            .replace("[discovery]\napply = \"auto\"\n", "");
+        assert_eq!(search.toml, expected);
+        assert!(is_discovery(&search.toml) && !is_discovery(JOB));
+        assert_eq!(search.files, job().files);
+        let of_continued = discovery_job("job.toml", &continued_job("job.toml", &job()).unwrap()).unwrap();
+        assert_eq!(of_continued.toml, expected, "equal models have equal searches");
+    }
+
+    #[test]
+    fn a_job_without_a_sampler_table_can_be_searched() {
+        let job = FileSet {
+            toml: "[model]\nkind = \"scm\"\n".into(),
+            files: BTreeMap::new(),
+        };
+        let search = discovery_job("job.toml", &job).unwrap();
+        assert!(
+            search.toml.contains("[sampler]\nalgorithm = \"discovery\"\n"),
+            "{}",
+            search.toml
+        );
+    }
+
+    #[test]
+    fn what_goes_on_asks_for_nothing_beside_itself() {
+        let continued = continued_job("job.toml", &job()).unwrap();
+        let parsed = Job::parse("job.toml", &continued.toml).unwrap();
+        assert!(parsed.point_estimates.is_empty());
+        assert_eq!(
+            parsed.discovery,
+            Job::parse("job.toml", "[model]\nkind = \"scm\"\n")
+                .unwrap()
+                .discovery
+        );
+        assert!(
+            continued.toml.contains("particles = 50\nseed = 7\n"),
+            "{}",
+            continued.toml
+        );
+    }
+
+    #[test]
+    fn a_dropped_effect_leaves_no_line_behind() {
+        let names = ["slip_sinkage", "mine"].map(String::from);
+        let without = without_effects("job.toml", &job(), &names).unwrap();
+        for name in names {
+            assert!(!without.toml.contains(&name), "{}", without.toml);
+        }
+        let parsed = Job::parse("job.toml", &without.toml).unwrap();
+        assert_eq!(parsed.model.effects, ["hard_pan"]);
+        assert_eq!(parsed.named_files(), ["yours.toml"]);
+        assert_eq!(without.files.keys().collect::<Vec<_>>(), ["yours.toml"]);
+        assert!(
+            without
+                .toml
+                .starts_with("# why\n[model]\nkind = \"scm\" # here\n")
+        );
+    }
+}

@@ -1,0 +1,117 @@
+//! The table `[discovery]`: whether a study looks for the effects that its model misses, and adds them.
+
+use serde::Deserialize;
+use shared::file::unknown_word;
+
+use super::Method;
+
+/// Most effects that a job may allow: as many as a model takes.
+const MOST_EFFECTS: usize = 10;
+
+/// What a study does about effects that its model misses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DiscoverySettings {
+    /// Who decides.
+    pub apply: Apply,
+    /// Most effects that are added to the job's own.
+    pub max_effects: usize,
+}
+
+/// Who decides whether a missing effect is added.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Apply {
+    /// Nobody: it is not looked for.
+    Off,
+    /// The user: it is looked for, and the study ends with what was found.
+    Ask,
+    /// The study: what is named is added, until nothing more is.
+    Auto,
+}
+
+/// The table as written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawDiscovery {
+    apply: String,
+    max_effects: usize,
+}
+
+impl Default for RawDiscovery {
+    fn default() -> Self {
+        RawDiscovery {
+            apply: "off".into(),
+            max_effects: 3,
+        }
+    }
+}
+
+impl RawDiscovery {
+    /// The settings of a job with this algorithm.
+    pub(super) fn settings(&self, method: &Method) -> Result<DiscoverySettings, String> {
+        let max_effects = self.max_effects;
+        if !(1..=MOST_EFFECTS).contains(&max_effects) {
+            return Err(format!(
+                "max_effects = {max_effects} must lie in [1, {MOST_EFFECTS}]"
+            ));
+        }
+        let apply = match self.apply.as_str() {
+            "off" => Apply::Off,
+            "ask" => Apply::Ask,
+            "auto" => Apply::Auto,
+            other => return Err(unknown_word("value of apply", other, ["off", "ask", "auto"])),
+        };
+        if apply != Apply::Off && !matches!(method, Method::Sample(_)) {
+            return Err(format!(
+                "apply = \"{}\" needs a sampler: {} keeps no ledger of errors",
+                self.apply,
+                method.name()
+            ));
+        }
+        Ok(DiscoverySettings { apply, max_effects })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Job;
+
+    fn parse(sampler: &str, discovery: &str) -> Result<DiscoverySettings, String> {
+        let job = format!("[model]\nkind = \"scm\"\n[sampler]\n{sampler}\n{discovery}\n");
+        Job::parse("job.toml", &job)
+            .map(|job| job.discovery)
+            .map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn a_job_says_who_decides() {
+        let settings = |apply, max_effects| Ok(DiscoverySettings { apply, max_effects });
+        assert_eq!(parse("", ""), settings(Apply::Off, 3));
+        assert_eq!(parse("", "[discovery]\napply = \"ask\""), settings(Apply::Ask, 3));
+        assert_eq!(
+            parse("", "[discovery]\napply = \"auto\"\nmax_effects = 10"),
+            settings(Apply::Auto, 10)
+        );
+    }
+
+    #[test]
+    fn what_means_nothing_is_refused() {
+        for (sampler, table, reason) in [
+            (
+                "",
+                "apply = \"aut\"",
+                "unknown value of apply \"aut\"; the nearest known is \"auto\"",
+            ),
+            ("", "max_effects = 0", "max_effects = 0 must lie in [1, 10]"),
+            ("", "max_effects = 11", "max_effects = 11 must lie in [1, 10]"),
+            (
+                "algorithm = \"lm\"",
+                "apply = \"ask\"",
+                "apply = \"ask\" needs a sampler: lm keeps no ledger",
+            ),
+        ] {
+            let error = parse(sampler, &format!("[discovery]\n{table}")).unwrap_err();
+            assert!(error.contains(&format!("[discovery] {reason}")), "{error}");
+        }
+    }
+}

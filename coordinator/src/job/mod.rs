@@ -1,0 +1,350 @@
+//! Turns the text of a job and its experiment into everything a calibration needs.
+
+mod bevameter;
+mod discovery_job;
+mod discovery_settings;
+mod errors;
+mod extended_job;
+mod job_file;
+mod method;
+mod noise;
+mod point_job;
+mod posterior;
+mod predicted;
+mod priors;
+mod sampler_keys;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use shared::experiment::{Experiment, RunUse};
+use shared::file::{FileError, FileSet, number};
+use shared::model::{Companion, EffectSet, ModelKind, ModelSettings, ModelVariant, equations_of};
+use shared::outcome::Observables;
+use shared::parameters;
+use shared::predicted::Predicted;
+use statistics::{Likelihood, Prior, PriorError};
+
+pub use bevameter::{Bevameter, PLATE, RING, Reading};
+pub use discovery_job::{
+    DISCOVERY, continued_job, discovery_job, effect_name, is_discovery, without_effects,
+};
+pub use discovery_settings::{Apply, DiscoverySettings};
+pub use errors::LikelihoodSettings;
+pub use extended_job::extended_job;
+pub use job_file::Job;
+pub use method::{Method, MethodError};
+pub(crate) use noise::repeat_scatter;
+pub use point_job::point_job;
+pub use posterior::{ImpliedModuli, JointPrior, PosteriorPrior};
+use predicted::predicted;
+pub use priors::{FreeParameter, check_own, free_parameters};
+
+/// A calibration as its files determine it; equal files give an equal specification.
+#[derive(Debug, Clone)]
+pub struct Spec {
+    /// The measured data set.
+    pub experiment: Experiment,
+    /// Which forward model, with its fixed parameters.
+    pub model: ModelSettings,
+    /// The free parameters with their priors, in the order of every parameter vector.
+    pub parameters: Vec<FreeParameter>,
+    /// The posterior of another calibration that is the prior of the first of them, if there is one.
+    pub joint_prior: Option<JointPrior>,
+    /// The algorithm with its settings.
+    pub method: Method,
+    /// The fits and searches that stand beside the sample in its study.
+    pub point_estimates: Vec<Method>,
+    /// The fitted runs, as positions in the experiment.
+    pub fit_runs: Vec<usize>,
+    /// The runs that are not fitted, as positions in the experiment.
+    pub holdout_runs: Vec<usize>,
+    /// What workers evaluate while sampling: the fitted runs alone.
+    pub fit_variant: ModelVariant,
+    /// What workers evaluate for the final draws besides: the holdout runs, if there are any.
+    pub holdout_variant: Option<ModelVariant>,
+    /// The likelihood of the measurements that are fitted; runs count within [`Spec::fit_runs`].
+    pub likelihood: Likelihood,
+    /// Which of the observables it takes.
+    predicted: Vec<Predicted>,
+    /// What an independent test says of parameters; the figures show it, nothing else reads it.
+    pub reference: BTreeMap<String, f64>,
+    /// What the job says of the errors.
+    pub likelihood_settings: LikelihoodSettings,
+    /// The measured readings of plates and rings; all are fitted.
+    pub bevameter: Bevameter,
+    /// Whether its study looks for missing effects.
+    pub discovery: DiscoverySettings,
+}
+
+/// A calibration was begun with other files of its effects than this program has.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the effects' files have changed since: it was begun with model version {begun}, this program has {now}"
+)]
+pub struct EffectsChanged {
+    /// The version that it is pinned to.
+    pub begun: String,
+    /// The same equations with the effects as they are now.
+    pub now: String,
+}
+
+/// At most so many final draws are simulated on every run, holdout included.
+pub const PREDICTION_DRAWS: usize = 200;
+
+impl Spec {
+    /// Builds and validates a specification.
+    ///
+    /// # Errors
+    /// [`FileError`] names the file, the line or field, the value, the unit and the bound.
+    pub fn new(
+        job_name: &str,
+        job: &FileSet,
+        experiment_name: &str,
+        files: &FileSet,
+    ) -> Result<Spec, FileError> {
+        let parsed = Job::parse(job_name, &job.toml)?;
+        Spec::of(job_name, parsed, &job.files, experiment_name, files)
+    }
+
+    /// The same of a job that is parsed, with the texts of the files that it names.
+    ///
+    /// # Errors
+    /// As those of [`Spec::new`].
+    pub fn of(
+        job_name: &str,
+        job: Job,
+        texts: &BTreeMap<String, String>,
+        experiment_name: &str,
+        files: &FileSet,
+    ) -> Result<Spec, FileError> {
+        let experiment = Experiment::parse(experiment_name, files)?;
+        let in_job = |message: String| FileError::whole(job_name, message);
+        let in_experiment = |message: String| FileError::whole(experiment_name, message);
+        let bevameter = Bevameter::new(&experiment).map_err(in_experiment)?;
+        let wheels = experiment.wheel_names();
+        let mut model = job.model;
+        let named = job.priors.iter().map(|entry| entry.name.as_str());
+        let named = named.filter(|name| !name.starts_with(parameters::NOISE_PREFIX));
+        let fixed = model.fixed.keys().map(String::as_str);
+        let of_effects = named
+            .chain(fixed)
+            .filter(|name| *name != parameters::RING_TRANSFER);
+        let effects = EffectSet::choose(job_name, &model, of_effects, texts)?;
+        let mut parameters = Vec::new();
+        let mut joint_prior = None;
+        if let Some(posterior) = job.posterior {
+            let text = texts.get(&posterior.file).ok_or_else(|| {
+                in_job(format!(
+                    "file \"{}\" is named but was not sent along",
+                    posterior.file
+                ))
+            })?;
+            let entry = |name: &str| job.priors.iter().find(|entry| entry.name == name);
+            let fixed = |name: &str| {
+                let stated = || entry(name).and_then(|entry| number(&entry.value));
+                model.fixed.get(name).copied().or_else(stated)
+            };
+            let is_said = |name: &str| entry(name).is_some() || model.fixed.contains_key(name);
+            let (joint, covered) = posterior.fit(text, fixed, is_said, &wheels, &effects)?;
+            joint_prior = Some(joint);
+            parameters = covered;
+        }
+        for entry in job.priors {
+            match entry
+                .parse(&wheels, &effects)
+                .map_err(|e| FileError::at(job_name, entry.line, e))?
+            {
+                priors::Parsed::Fixed(value) => {
+                    if model.fixed.insert(entry.name.clone(), value).is_some() {
+                        let message = format!(
+                            "{} is fixed under [model] and stands again under [priors]",
+                            entry.name
+                        );
+                        return Err(FileError::at(job_name, entry.line, message));
+                    }
+                }
+                priors::Parsed::Free(parameter) => parameters.push(parameter),
+            }
+        }
+        for (name, &value) in &job.reference {
+            parameters::lookup(name, &wheels, &effects)
+                .and_then(|quantity| parameters::check_value(&quantity, name, value))
+                .map_err(|e| in_job(format!("[figures] reference: {e}")))?;
+        }
+        add_unsaid(job_name, &effects, &wheels, &mut model, &mut parameters)?;
+        let (fit_runs, holdout_runs): (Vec<usize>, Vec<usize>) =
+            (0..experiment.runs.len()).partition(|&i| experiment.runs[i].usage == RunUse::Fit);
+        bevameter
+            .add_transfer(&model.fixed, &mut parameters)
+            .map_err(in_job)?;
+        noise::add_unknown_sds(&experiment, &bevameter, &mut parameters);
+        noise::check_names(&experiment, &bevameter, &parameters).map_err(in_job)?;
+        if joint_prior.is_some() {
+            joint(&joint_prior, &parameters).map_err(|e| in_job(format!("[priors] posterior: {e}")))?;
+        }
+        let likelihood = errors::likelihood(&experiment, &fit_runs, &bevameter, &parameters, job.likelihood)
+            .map_err(in_experiment)?;
+        if parameters.is_empty() {
+            return Err(in_job(
+                "[priors] leaves no parameter free: there is nothing to calibrate".into(),
+            ));
+        }
+        for method in std::iter::once(&job.method).chain(&job.point_estimates) {
+            method
+                .check(parameters.len())
+                .map_err(|e| in_job(format!("[sampler] {e}")))?;
+            if matches!(method, Method::Fit(_)) && likelihood.entangles_unknown_sds() {
+                return Err(in_job(format!(
+                    "[sampler] {}",
+                    inference::lm::SettingsError::EntangledNoise
+                )));
+            }
+        }
+        let model_parameters: Vec<String> = parameters
+            .iter()
+            .filter(|p| !p.name.starts_with(parameters::NOISE_PREFIX))
+            .map(|p| p.name.clone())
+            .collect();
+        let variant = |runs: &[usize]| {
+            let runs = runs.iter().map(|&i| &experiment.runs[i]);
+            let mut variant =
+                ModelVariant::new(&experiment, &model, &effects, model_parameters.clone(), runs)
+                    .map_err(in_job)?;
+            variant.stiffness_sensitivity = !likelihood.sensitive().is_empty();
+            Ok(variant)
+        };
+        let mut fit_variant = variant(&fit_runs)?;
+        bevameter.ask(&mut fit_variant);
+        let predicted = predicted(&likelihood);
+        if job.method.has_metamodel() {
+            if model.kind == ModelKind::QuasiStatic {
+                return Err(in_job(
+                    "metamodel_moves under [sampler]: the metamodel is made of quasi_static, and needs kind = \"scm\" to save runs of"
+                        .into(),
+                ));
+            }
+            let coarse = fit_variant.coarse();
+            coarse.map_err(|e| in_job(format!("metamodel_moves under [sampler]: {e}")))?;
+            fit_variant.companion = Some(Companion {
+                values: predicted.clone(),
+                metamodel: None,
+            });
+        }
+        let holdout_variant = match holdout_runs.as_slice() {
+            [] => None,
+            runs => Some(variant(runs)?),
+        };
+        Ok(Spec {
+            experiment,
+            model,
+            parameters,
+            joint_prior,
+            method: job.method,
+            point_estimates: job.point_estimates,
+            fit_runs,
+            holdout_runs,
+            fit_variant,
+            holdout_variant,
+            likelihood,
+            predicted,
+            reference: job.reference,
+            likelihood_settings: job.likelihood,
+            bevameter,
+            discovery: job.discovery,
+        })
+    }
+
+    /// The predicted values that the likelihood takes, of an evaluation of the fitted runs.
+    pub fn predicted_values(&self, observables: &Observables) -> Vec<f64> {
+        self.predicted.iter().map(|value| value.of(observables)).collect()
+    }
+
+    /// The measurements of wheels that are fitted.
+    pub fn wheel_data(&self) -> usize {
+        self.likelihood
+            .data()
+            .iter()
+            .filter(|d| d.channel < PLATE)
+            .count()
+    }
+
+    /// Whether another specification means the same calibration; comments and the order of keys do not count.
+    pub fn same_as(&self, other: &Spec) -> bool {
+        // Debug output shows every number to the last bit.
+        format!("{self:?}") == format!("{other:?}")
+    }
+
+    /// Checks that the effects are those of the version that a calibration is pinned to; its equations are the
+    /// workers' concern.
+    ///
+    /// # Errors
+    /// [`EffectsChanged`].
+    pub fn check_effects(&self, pinned: &str) -> Result<(), EffectsChanged> {
+        let now = self.fit_variant.model_version(equations_of(pinned));
+        if now == pinned {
+            return Ok(());
+        }
+        let begun = pinned.to_owned();
+        Err(EffectsChanged { begun, now })
+    }
+
+    /// The model with its effects: `quasi_static with janosi_hanamoto, mine`.
+    pub fn model_words(&self) -> String {
+        let kind = self.model.kind.name();
+        let effects: Vec<&str> = self.fit_variant.effects.iter().map(|e| e.name.as_str()).collect();
+        match effects.as_slice() {
+            [] => kind.to_owned(),
+            effects => format!("{kind} with {}", effects.join(", ")),
+        }
+    }
+
+    /// The joint prior, in parameter order.
+    pub fn prior(&self) -> Prior {
+        joint(&self.joint_prior, &self.parameters).expect("checked when the specification was made")
+    }
+
+    /// The part of a parameter vector that the model takes: everything but the noise sds.
+    ///
+    /// Noise parameters stand behind the model's, so this is a prefix.
+    pub fn model_theta<'a>(&self, theta: &'a [f64]) -> &'a [f64] {
+        &theta[..self.fit_variant.parameters.len()]
+    }
+}
+
+/// The prior of parameters, of which the first may be jointly normal.
+fn joint(joint: &Option<JointPrior>, parameters: &[FreeParameter]) -> Result<Prior, PriorError> {
+    let prior = Prior::new(parameters.iter().map(|p| p.marginal.clone()).collect());
+    match joint {
+        None => Ok(prior),
+        Some(joint) => prior.correlated((0..joint.parameters.len()).collect(), &joint.correlations),
+    }
+}
+
+/// Adds what a job does not say of its effects: the number or the prior that the effect's file has.
+fn add_unsaid(
+    job_name: &str,
+    effects: &EffectSet,
+    wheels: &BTreeSet<&str>,
+    model: &mut ModelSettings,
+    parameters: &mut Vec<FreeParameter>,
+) -> Result<(), FileError> {
+    let free = parameters.iter().map(|p| p.name.clone());
+    let said: Vec<String> = free.chain(model.fixed.keys().cloned()).collect();
+    let said = said.iter().map(String::as_str).collect();
+    for unsaid in effects.unsaid(&said, wheels) {
+        let parsed = priors::Parsed::of_effect(&unsaid.name, unsaid.parameter).map_err(|e| match &unsaid
+            .chosen
+            .file
+        {
+            Some(file) => FileError::at(file, unsaid.parameter.line, e),
+            None => FileError::whole(job_name, format!("effect {}: {e}", unsaid.chosen.effect.name)),
+        })?;
+        match parsed {
+            priors::Parsed::Fixed(value) => {
+                model.fixed.insert(unsaid.name.clone(), value);
+            }
+            priors::Parsed::Free(parameter) => parameters.push(parameter),
+        }
+    }
+    Ok(())
+}

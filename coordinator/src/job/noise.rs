@@ -1,0 +1,233 @@
+//! Where each measurement's noise standard deviation comes from.
+
+use shared::channel::Channel;
+use shared::experiment::{Experiment, NoiseSd, RunUse, Scatter, ScatterSd, TestRun};
+use shared::parameters::{NOISE_PREFIX, noise_parameter, scatter_parameter};
+use statistics::{Datum, Distribution, Marginal, Sd};
+
+use super::bevameter::Bevameter;
+use super::priors::FreeParameter;
+
+/// Prior scale of an unknown noise sd where the job states none: the run-to-run scatter that is usual
+/// on single-wheel rigs, 2 N, 0.2 N m, 1 mm, 2 N.
+const USUAL_SD: [f64; 4] = [2.0, 0.2, 0.001, 2.0];
+
+/// Adds a half-normal prior for every unknown noise sd and scatter that the job does not mention, and moves all noise
+/// parameters behind the model's.
+pub(super) fn add_unknown_sds(
+    experiment: &Experiment,
+    bevameter: &Bevameter,
+    parameters: &mut Vec<FreeParameter>,
+) {
+    for scatter in Scatter::ALL {
+        let name = scatter_parameter(scatter);
+        let unknown = experiment.noise.scatter(scatter) == ScatterSd::Unknown;
+        if unknown
+            && needs_scatter(experiment, bevameter, scatter)
+            && !parameters.iter().any(|p| p.name == name)
+        {
+            let scale = scatter.prior_scale();
+            let marginal = Marginal::new(Distribution::HalfNormal { scale }, None)
+                .expect("the usual scales are positive and finite");
+            parameters.push(FreeParameter {
+                name,
+                unit: "1".to_owned(),
+                marginal,
+            });
+        }
+    }
+    for channel in Channel::ALL {
+        let unknown = experiment.noise.sd[channel.index()] == Some(NoiseSd::Unknown);
+        let name = noise_parameter(channel);
+        let stated = parameters.iter().any(|p| p.name == name);
+        if unknown && !stated && needs_experiment_sd(experiment, channel) {
+            let scale = USUAL_SD[channel.index()];
+            let marginal = Marginal::new(Distribution::HalfNormal { scale }, None)
+                .expect("the usual scales are positive and finite");
+            parameters.push(FreeParameter {
+                name,
+                unit: channel.unit().to_owned(),
+                marginal,
+            });
+        }
+    }
+    // A stable sort keeps the order of the file within each part.
+    parameters.sort_by_key(|p| p.name.starts_with(NOISE_PREFIX));
+}
+
+/// Refuses a prior for a noise sd that is not inferred.
+pub(super) fn check_names(
+    experiment: &Experiment,
+    bevameter: &Bevameter,
+    parameters: &[FreeParameter],
+) -> Result<(), String> {
+    for scatter in Scatter::ALL {
+        let (name, key) = (scatter_parameter(scatter), scatter.key());
+        if !parameters.iter().any(|p| p.name == name) {
+            continue;
+        }
+        if experiment.noise.scatter(scatter) != ScatterSd::Unknown {
+            return Err(format!(
+                "{name} has a prior, but the experiment does not say {key} = \"unknown\" under [noise]"
+            ));
+        }
+        if !needs_scatter(experiment, bevameter, scatter) {
+            return Err(format!("{name} has a prior, but nothing that is fitted needs it"));
+        }
+    }
+    for channel in Channel::ALL {
+        let name = noise_parameter(channel);
+        let stated = parameters.iter().any(|p| p.name == name);
+        if stated && experiment.noise.sd[channel.index()] != Some(NoiseSd::Unknown) {
+            let column = channel.column();
+            return Err(format!(
+                "{name} has a prior, but the experiment does not say {column} = \"unknown\" under [noise]"
+            ));
+        }
+        if stated && !needs_experiment_sd(experiment, channel) {
+            return Err(format!("{name} has a prior, but no fit run needs it"));
+        }
+    }
+    Ok(())
+}
+
+/// Whether anything that is fitted scatters so.
+fn needs_scatter(experiment: &Experiment, bevameter: &Bevameter, scatter: Scatter) -> bool {
+    let fitted = || Channel::ALL.iter().any(|&c| experiment.measures(c, RunUse::Fit));
+    bevameter.scatters(scatter) || (scatter == Scatter::Run && fitted())
+}
+
+/// Whether any fitted measurement of the channel lacks a standard deviation of its own.
+fn needs_experiment_sd(experiment: &Experiment, channel: Channel) -> bool {
+    let c = channel.index();
+    experiment
+        .runs
+        .iter()
+        .any(|r| r.usage == RunUse::Fit && r.measured[c].is_some() && r.sd[c].is_none())
+}
+
+/// The fitted measurements with their standard deviations.
+pub(super) fn data(
+    experiment: &Experiment,
+    fit_runs: &[usize],
+    parameters: &[FreeParameter],
+) -> Result<Vec<Datum>, String> {
+    let mut data = Vec::new();
+    for channel in Channel::ALL {
+        let c = channel.index();
+        let mut pooled = None;
+        for (position, &run_index) in fit_runs.iter().enumerate() {
+            let run = &experiment.runs[run_index];
+            let Some(value) = run.measured[c] else { continue };
+            let sd = match (run.sd[c], experiment.noise.sd[c]) {
+                (Some(sd), _) | (None, Some(NoiseSd::Known(sd))) => Sd::Known(sd),
+                (None, Some(NoiseSd::Replicates)) => match pooled {
+                    Some(sd) => Sd::Known(sd),
+                    None => {
+                        let sd = pooled_sd(experiment, fit_runs, channel)?;
+                        pooled = Some(sd);
+                        Sd::Known(sd)
+                    }
+                },
+                (None, Some(NoiseSd::Unknown)) => {
+                    let name = noise_parameter(channel);
+                    let parameter = parameters.iter().position(|p| p.name == name);
+                    Sd::Inferred {
+                        parameter: parameter.ok_or(format!("{name} has no prior"))?,
+                    }
+                }
+                (None, None) => {
+                    let column = channel.column();
+                    return Err(format!(
+                        "[noise] {column} is missing: {column} of run \"{}\" is measured, so its sd in {}, \"replicates\" or \"unknown\" must stand there",
+                        run.name,
+                        channel.unit()
+                    ));
+                }
+            };
+            data.push(Datum {
+                run: position,
+                channel: c,
+                value,
+                sd,
+            });
+        }
+    }
+    Ok(data)
+}
+
+/// The least number of repeats that says something of the scatter.
+const LEAST_FREEDOM: usize = 3;
+
+/// The scatter of fitted repeats with its degrees of freedom; `None` with fewer than three.
+pub(crate) fn repeat_scatter(
+    experiment: &Experiment,
+    fit_runs: &[usize],
+    channel: Channel,
+) -> Option<(f64, usize)> {
+    let (sd, freedom) = pooled(experiment, fit_runs, channel);
+    (freedom >= LEAST_FREEDOM).then_some((sd, freedom))
+}
+
+fn pooled_sd(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> Result<f64, String> {
+    let column = channel.column();
+    match pooled(experiment, fit_runs, channel) {
+        (_, freedom) if freedom < LEAST_FREEDOM => Err(format!(
+            "[noise] {column} = \"replicates\": the fit runs repeat conditions only {freedom} times, at least {LEAST_FREEDOM} repeats are needed"
+        )),
+        (sd, _) if sd > 0.0 => Ok(sd),
+        _ => Err(format!(
+            "[noise] {column} = \"replicates\": all repeats are equal"
+        )),
+    }
+}
+
+/// `sqrt(sum (y - mean of its repeats)^2 / freedom)` over the groups of repeated conditions, with
+/// freedom = values - groups; not a number where that is 0.
+fn pooled(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> (f64, usize) {
+    let c = channel.index();
+    let mut groups: Vec<(&TestRun, Vec<f64>)> = Vec::new();
+    for &i in fit_runs {
+        let run = &experiment.runs[i];
+        let Some(value) = run.measured[c] else { continue };
+        match groups.iter_mut().find(|(first, _)| repeats(first, run)) {
+            Some((_, values)) => values.push(value),
+            None => groups.push((run, vec![value])),
+        }
+    }
+    let count: usize = groups.iter().map(|(_, values)| values.len()).sum();
+    let freedom = count - groups.len();
+    let sum: f64 = groups
+        .iter()
+        .map(|(_, values)| {
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>()
+        })
+        .sum();
+    ((sum / freedom as f64).sqrt(), freedom)
+}
+
+/// The fitted runs by condition, as positions among them; a run joins the first condition that it repeats.
+pub(super) fn conditions(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Vec<usize>> {
+    let mut conditions: Vec<(&TestRun, Vec<usize>)> = Vec::new();
+    for (position, &i) in fit_runs.iter().enumerate() {
+        let run = &experiment.runs[i];
+        match conditions.iter_mut().find(|(first, _)| repeats(first, run)) {
+            Some((_, positions)) => positions.push(position),
+            None => conditions.push((run, vec![position])),
+        }
+    }
+    conditions.into_iter().map(|(_, positions)| positions).collect()
+}
+
+/// Whether two runs repeat one condition, within what a rig can hold: slip to 0.02, load to 15 %, speed to 5 %.
+fn repeats(a: &TestRun, b: &TestRun) -> bool {
+    let close = |x: f64, y: f64, share: f64| (x - y).abs() <= share * x.abs().max(y.abs());
+    a.wheel == b.wheel
+        && a.soil == b.soil
+        && a.pass == b.pass
+        && (a.slip - b.slip).abs() <= 0.02
+        && (a.slip_angle_deg - b.slip_angle_deg).abs() <= 0.5
+        && close(a.wheel_load_n, b.wheel_load_n, 0.15)
+        && close(a.sled_speed_m_s, b.sled_speed_m_s, 0.05)
+}

@@ -1,0 +1,25 @@
+//! Which of the observables a likelihood takes, and in which order.
+
+use shared::channel::Channel;
+use shared::predicted::Predicted;
+use statistics::{Datum, Likelihood};
+
+use super::{PLATE, RING};
+
+/// The predicted values of a likelihood: one for each datum, then one for each sensitive datum.
+pub(super) fn predicted(likelihood: &Likelihood) -> Vec<Predicted> {
+    let data = likelihood.data();
+    let value = |d: &Datum| match d.channel {
+        PLATE => Predicted::LnPlatePressure { reading: d.run },
+        RING => Predicted::LnShearStress { reading: d.run },
+        channel => Predicted::Average {
+            channel: Channel::ALL[channel],
+            run: d.run,
+        },
+    };
+    let sensitive = likelihood.sensitive().iter().map(|&i| Predicted::Sensitivity {
+        channel: Channel::ALL[data[i].channel],
+        run: data[i].run,
+    });
+    data.iter().map(value).chain(sensitive).collect()
+}

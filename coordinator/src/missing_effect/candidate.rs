@@ -1,0 +1,215 @@
+//! Explanations as additions to a job, and those that the library offers.
+
+use std::collections::BTreeSet;
+
+use formula::Effect;
+use formula::catalogue::{catalogue, find};
+use shared::experiment::RunUse;
+use shared::file::{FileError, FileSet, unknown_word};
+use shared::model::effects::parameter_name;
+
+use super::Extension;
+use crate::job::{Spec, extended_job};
+
+/// An explanation as a job takes it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Explanation {
+    /// The effect; `EFFECT.WHEEL` on one wheel of several, `pressure_z` for a curve, `pressure_z_power` for a form.
+    pub name: String,
+    /// What is added to the job.
+    pub extension: Extension,
+}
+
+/// The job with further explanations.
+///
+/// Effects of the catalogue join those under `[model]`, effect files come with the job, and an effect on one wheel is a line
+/// under `[priors]` for each of its strengths, with the prior of the effect's file.
+///
+/// # Errors
+/// [`FileError`] of the job: an effect is unknown, a file or a line is there already, the text is no job. Whether the model can
+/// express the result is for [`Spec::new`] to say.
+pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<FileSet, FileError> {
+    let fail = |message: String| FileError::whole(name, message);
+    let (mut effects, mut named, mut priors) = (Vec::new(), Vec::new(), Vec::new());
+    let mut files = job.files.clone();
+    for extension in extensions {
+        match extension {
+            Extension::Effect(effect) => effects.push(effect.clone()),
+            Extension::OnWheel { effect, wheel } => {
+                let known = find(effect).ok_or_else(|| {
+                    let known = catalogue().iter().map(|e| e.name.as_str());
+                    fail(unknown_word("effect", effect, known))
+                })?;
+                let strengths = known.parameters.iter().filter(|p| p.neutral.is_some());
+                priors.extend(strengths.map(|p| (parameter_name(known, p, Some(wheel)), p.prior.clone())));
+            }
+            Extension::File { name: file, text } => {
+                if files.insert(file.clone(), text.clone()).is_some() {
+                    return Err(fail(format!("file \"{file}\" is there already")));
+                }
+                named.push(file.clone());
+            }
+        }
+    }
+    let toml = extended_job(name, &job.toml, &effects, &named, &priors)?;
+    Ok(FileSet { toml, files })
+}
+
+/// The explanations of the library for an experiment.
+///
+/// First every effect of the catalogue that the job does not have yet, in the order of the catalogue; then, where fitted runs have
+/// several wheels, each on each of these wheels alone. Checked by `tests::of_several_wheels_each_may_have_an_effect_alone`.
+///
+/// # Returns
+/// The explanations, and the names of those that cannot be one here with the reason: the model cannot express the effect in this
+/// experiment, or it has no strength that is free.
+pub fn library(job: &FileSet, experiment: &FileSet) -> (Vec<Explanation>, Vec<(String, String)>) {
+    let (mut had, mut wheels) = (BTreeSet::new(), BTreeSet::new());
+    // A job that is none is refused with every effect, each time with the reason.
+    if let Ok(base) = spec(job, experiment) {
+        had.extend(base.fit_variant.effects.into_iter().map(|e| e.name));
+        let fitted = base
+            .experiment
+            .runs
+            .into_iter()
+            .filter(|r| r.usage == RunUse::Fit);
+        wheels.extend(fitted.map(|run| run.wheel));
+    }
+    let missing = || catalogue().iter().filter(|e| !had.contains(&e.name));
+    let everywhere = missing().map(|effect| (effect, None));
+    let on_one = missing()
+        .flat_map(|effect| wheels.iter().map(move |wheel| (effect, Some(wheel.as_str()))))
+        .filter(|_| wheels.len() > 1);
+    let (mut explanations, mut left_out) = (Vec::new(), Vec::new());
+    for (effect, wheel) in everywhere.chain(on_one) {
+        let explanation = explanation(effect, wheel);
+        match check(job, experiment, &explanation.extension, effect, wheel) {
+            Ok(()) => explanations.push(explanation),
+            Err(reason) => left_out.push((explanation.name, reason)),
+        }
+    }
+    (explanations, left_out)
+}
+
+fn explanation(effect: &Effect, wheel: Option<&str>) -> Explanation {
+    let effect = effect.name.clone();
+    match wheel {
+        None => Explanation {
+            name: effect.clone(),
+            extension: Extension::Effect(effect),
+        },
+        Some(wheel) => Explanation {
+            name: format!("{effect}.{wheel}"),
+            extension: Extension::OnWheel {
+                effect,
+                wheel: wheel.to_owned(),
+            },
+        },
+    }
+}
+
+/// Whether the job can have an effect, with a strength to be found.
+fn check(
+    job: &FileSet,
+    experiment: &FileSet,
+    extension: &Extension,
+    effect: &Effect,
+    wheel: Option<&str>,
+) -> Result<(), String> {
+    let with = extended(JOB, job, &[extension]).map_err(|e| e.to_string())?;
+    let spec = spec(&with, experiment).map_err(|e| e.to_string())?;
+    let strengths = effect.parameters.iter().filter(|p| p.neutral.is_some());
+    let mut strengths = strengths.map(|p| parameter_name(effect, p, wheel));
+    let is_free = |name: String| spec.parameters.iter().any(|p| p.name == name);
+    if strengths.any(is_free) {
+        Ok(())
+    } else {
+        Err("no strength is free".into())
+    }
+}
+
+const JOB: &str = "job.toml";
+
+fn spec(job: &FileSet, experiment: &FileSet) -> Result<Spec, FileError> {
+    Spec::new(JOB, job, "experiment.toml", experiment)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::missing_effect::scan::tests::read;
+
+    #[test]
+    fn the_library_is_the_catalogue_less_what_the_job_has_and_the_model_cannot_say() {
+        let (mut job, files, _) = read("tests/data/shear-mobilisation");
+        job.toml = job
+            .toml
+            .replacen("[model]\n", "[model]\neffects = [\"sled_tare\"]\n", 1);
+        let (explanations, left_out) = library(&job, &files);
+        assert_eq!(explanations.len() + left_out.len(), catalogue().len() - 1);
+        let names: Vec<&str> = explanations.iter().map(|e| e.name.as_str()).collect();
+        assert!(names.contains(&"janosi_hanamoto") && !names.contains(&"sled_tare"));
+        // one wheel: none on a wheel of several
+        assert!(names.iter().all(|name| !name.contains('.')), "{names:?}");
+        let reason = |name: &str| left_out.iter().find(|(n, _)| n == name).unwrap().1.as_str();
+        assert!(
+            reason("end_wall").contains("bin_length_m"),
+            "{}",
+            reason("end_wall")
+        );
+    }
+
+    #[test]
+    fn of_several_wheels_each_may_have_an_effect_alone() {
+        let (job, files, _) = read("examples/cmu-sand");
+        let (explanations, left_out) = library(&job, &files);
+        assert_eq!(explanations.len() + left_out.len(), 3 * catalogue().len());
+        let of = |name: &str| explanations.iter().find(|e| e.name == name);
+        let digging = of("slip_sinkage.grousered").unwrap();
+        let with = extended("job.toml", &job, &[&digging.extension]).unwrap();
+        assert!(
+            with.toml
+                .contains("\"slip_sinkage.exponent_per_slip.grousered\" = { half_normal = 0.5 }\n"),
+            "{}",
+            with.toml
+        );
+        let names = spec(&with, &files).unwrap().parameters;
+        assert!(
+            names
+                .iter()
+                .any(|p| p.name == "slip_sinkage.exponent_per_slip.grousered")
+        );
+        assert!(
+            names
+                .iter()
+                .all(|p| p.name != "slip_sinkage.exponent_per_slip.smooth")
+        );
+        let smooth = left_out.iter().find(|(name, _)| name == "lug_thrust.smooth");
+        assert!(smooth.is_some_and(|(_, reason)| reason.contains("needs a wheel with grousers")));
+    }
+
+    #[test]
+    fn several_explanations_join_a_job_and_none_twice() {
+        let (job, files, _) = read("examples/cmu-sand");
+        let file = Extension::File {
+            name: "mine.toml".into(),
+            text: "name = \"mine\"\nsummary = \"s\"\nsource = \"s\"\nshear = \"tau * (1 + a)\"\n[parameters.a]\n\
+                   unit = \"1\"\nneutral = 0.0\nprior = { normal = [0.0, 0.1] }\n"
+                .into(),
+        };
+        let on_wheel = |effect: &str| Extension::OnWheel {
+            effect: effect.into(),
+            wheel: "smooth".into(),
+        };
+        let (tare, digging) = (Extension::Effect("sled_tare".into()), on_wheel("slip_sinkage"));
+        let with = extended("job.toml", &job, &[&tare, &file, &digging]).unwrap();
+        let effects = spec(&with, &files).unwrap().fit_variant.effects;
+        let names: Vec<&str> = effects.iter().map(|e| e.name.as_str()).collect();
+        assert_eq!(names, ["slip_sinkage", "sled_tare", "mine"]);
+        let twice = extended("job.toml", &with, &[&file]).unwrap_err();
+        assert_eq!(twice.to_string(), "job.toml: file \"mine.toml\" is there already");
+        assert!(extended("job.toml", &with, &[&digging]).is_err());
+        let unknown = extended("job.toml", &job, &[&on_wheel("slip_sinkage_")]).unwrap_err();
+        assert!(unknown.to_string().contains("slip_sinkage"), "{unknown}");
+    }
+}

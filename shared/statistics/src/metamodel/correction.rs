@@ -1,0 +1,168 @@
+//! Regress what the fine model says beyond the coarse one on the parameters.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+use super::{CovarianceFactor, ModelPair, Pool};
+
+/// Effective number of states for each coefficient of a regression.
+const STATES_PER_COEFFICIENT: f64 = 4.0;
+/// Added to the diagonal of the normal equations, whose features have about unit size: a direction in which the pool
+/// has no width gets no slope.
+const RIDGE: f64 = 1e-9;
+
+/// The mean of fine less coarse, as a polynomial in whitened coordinates, for each predicted value.
+///
+/// The whitened coordinates are `w = A^-1 (u - m)`, m and A A' mean and covariance of the pool. Beyond
+/// `|w| = sqrt(d) + 2`, where nothing was seen, the correction is that of the border: a polynomial grows without bound
+/// where it was not fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Correction {
+    degree: Degree,
+    /// By predicted value, a coefficient for each feature.
+    coefficients: Vec<Vec<f64>>,
+    /// Standard deviation that the regression leaves, by predicted value.
+    residual_sd: Vec<f64>,
+}
+
+/// Highest power of the polynomial.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+enum Degree {
+    Constant,
+    Linear,
+    Quadratic,
+}
+
+impl Degree {
+    fn features(self, w: &[f64]) -> Vec<f64> {
+        let mut features = vec![1.0];
+        if self != Self::Constant {
+            features.extend_from_slice(w);
+        }
+        if self == Self::Quadratic {
+            for (i, a) in w.iter().enumerate() {
+                features.extend(w[i..].iter().map(|b| a * b));
+            }
+        }
+        features
+    }
+
+    fn count(self, dimension: usize) -> usize {
+        match self {
+            Self::Constant => 1,
+            Self::Linear => 1 + dimension,
+            Self::Quadratic => 1 + dimension + dimension * (dimension + 1) / 2,
+        }
+    }
+}
+
+/// A pair with its place and its weight.
+type Seen<'a> = (Vec<f64>, &'a ModelPair, f64);
+
+impl Correction {
+    /// Weighted least squares of the highest degree that the pool can bear; `None` if it bears none.
+    ///
+    /// Checked by `metamodel::a_quadratic_difference_is_found` and `metamodel::the_posterior_is_that_of_the_fine_model`.
+    pub(super) fn fit(pool: &Pool, weights: &[f64], factor: &CovarianceFactor) -> Option<Self> {
+        let seen: Vec<Seen> = pool
+            .states
+            .iter()
+            .zip(weights)
+            .filter_map(|(state, &weight)| {
+                let pair = state.pair.as_deref()?;
+                Some((within(factor.whiten(&state.coordinates)?), pair, weight))
+            })
+            .collect();
+        let squares: f64 = seen.iter().map(|(_, _, w)| w * w).sum();
+        let sum: f64 = seen.iter().map(|(_, _, w)| w).sum();
+        // Many states of a pool are one state that its chain kept.
+        let effective = if squares > 0.0 { sum * sum / squares } else { 0.0 };
+        [Degree::Quadratic, Degree::Linear, Degree::Constant]
+            .into_iter()
+            .filter(|degree| STATES_PER_COEFFICIENT * degree.count(factor.dimension()) as f64 <= effective)
+            .find_map(|degree| Self::of_degree(degree, &seen, sum, effective))
+    }
+
+    fn of_degree(degree: Degree, seen: &[Seen], sum: f64, effective: f64) -> Option<Self> {
+        let features: Vec<Vec<f64>> = seen.iter().map(|(w, _, _)| degree.features(w)).collect();
+        let count = features.first()?.len();
+        let values = seen.first()?.1.fine.len();
+        let mut normal = DMatrix::<f64>::zeros(count, count);
+        for (row, (_, _, weight)) in features.iter().zip(seen) {
+            for i in 0..count {
+                let scaled = weight / sum * row[i];
+                for j in 0..=i {
+                    normal[(i, j)] += scaled * row[j];
+                }
+            }
+        }
+        for i in 0..count {
+            normal[(i, i)] += RIDGE;
+        }
+        // Only the lower triangle is read.
+        let cholesky = Cholesky::new(normal)?;
+        let mut coefficients = Vec::with_capacity(values);
+        let mut residual_sd = Vec::with_capacity(values);
+        let freedom = effective / (effective - count as f64);
+        for value in 0..values {
+            let mut right = DVector::<f64>::zeros(count);
+            for (row, (_, pair, weight)) in features.iter().zip(seen) {
+                let scaled = weight / sum * (pair.fine[value] - pair.coarse[value]);
+                for (target, feature) in right.iter_mut().zip(row) {
+                    *target += scaled * feature;
+                }
+            }
+            let solution: Vec<f64> = cholesky.solve(&right).iter().copied().collect();
+            let left: f64 = features
+                .iter()
+                .zip(seen)
+                .map(|(row, (_, pair, weight))| {
+                    let off = pair.fine[value] - pair.coarse[value] - dot(row, &solution);
+                    weight / sum * off * off
+                })
+                .sum();
+            coefficients.push(solution);
+            residual_sd.push((left * freedom).sqrt());
+        }
+        let finite = coefficients
+            .iter()
+            .flatten()
+            .chain(&residual_sd)
+            .all(|x| x.is_finite());
+        finite.then_some(Self {
+            degree,
+            coefficients,
+            residual_sd,
+        })
+    }
+
+    /// Standard deviation that the regression leaves, by predicted value.
+    pub(super) fn residual_sd(&self) -> &[f64] {
+        &self.residual_sd
+    }
+
+    /// Corrects the coarse model's values at these coordinates.
+    pub(super) fn apply(&self, factor: &CovarianceFactor, coordinates: &[f64], values: &mut [f64]) {
+        let Some(whitened) = factor.whiten(coordinates) else {
+            return;
+        };
+        let features = self.degree.features(&within(whitened));
+        for (value, coefficients) in values.iter_mut().zip(&self.coefficients) {
+            *value += dot(&features, coefficients);
+        }
+    }
+}
+
+/// Moves what lies beyond the region to its border.
+fn within(mut whitened: Vec<f64>) -> Vec<f64> {
+    let radius = whitened.iter().map(|w| w * w).sum::<f64>().sqrt();
+    let border = (whitened.len() as f64).sqrt() + 2.0;
+    if radius > border {
+        whitened.iter_mut().for_each(|w| *w *= border / radius);
+    }
+    whitened
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

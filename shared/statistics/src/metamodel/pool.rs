@@ -1,0 +1,55 @@
+//! Evaluated states, and what both models say there.
+
+use std::sync::Arc;
+
+use crate::log_likelihood::LogLikelihood;
+
+/// What both models say at one parameter vector.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelPair {
+    /// Predicted values of the fine model.
+    pub fine: Vec<f64>,
+    /// The same of the coarse one.
+    pub coarse: Vec<f64>,
+}
+
+/// A state in sampling coordinates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Sampling coordinates, in the order of theta.
+    pub coordinates: Vec<f64>,
+    /// Log-density of the coordinates, Jacobian included.
+    pub log_prior: f64,
+    /// ln p(data | theta).
+    pub log_likelihood: LogLikelihood,
+    /// What fine and coarse model say here, where a metamodel is to learn from it.
+    pub pair: Option<Arc<ModelPair>>,
+}
+
+/// States that share one target density, each from one of several chains.
+///
+/// Every log-likelihood is finite.
+#[derive(Debug, Clone, Default)]
+pub struct Pool {
+    /// The states, in the order in which they were visited.
+    pub states: Vec<State>,
+    /// The chain of each state.
+    pub chains: Vec<usize>,
+}
+
+impl Pool {
+    /// Adds a state of a chain.
+    pub fn push(&mut self, chain: usize, state: State) {
+        self.chains.push(chain);
+        self.states.push(state);
+    }
+
+    /// The log-likelihood of each state.
+    #[must_use]
+    pub fn log_likelihoods(&self) -> Vec<f64> {
+        self.states
+            .iter()
+            .map(|state| state.log_likelihood.value())
+            .collect()
+    }
+}

@@ -1,0 +1,137 @@
+//! Let some of the parameters be jointly normal.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::{Marginal, PriorError};
+
+/// Correlations of parameters whose marginals are normal and untruncated: together they are jointly normal.
+///
+/// With z the standardised values, R the correlations and d their number, the joint density is the product of the
+/// marginals times `|R|^(-1/2) exp(-z' (R^-1 - I) z / 2)`.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Correlation {
+    /// Which parameters, ascending.
+    parameters: Vec<usize>,
+    /// R.
+    correlations: Vec<Vec<f64>>,
+    /// L of R = L L'.
+    factor: DMatrix<f64>,
+    /// R^-1 - I.
+    excess: DMatrix<f64>,
+    /// -ln|R| / 2.
+    log_volume: f64,
+}
+
+/// Slope and curvature by parameter, in units of the marginals' standard deviations.
+#[derive(Debug, Default)]
+pub struct Slopes {
+    /// Of parameters, by position.
+    pub slopes: Vec<(usize, f64)>,
+    /// Of pairs of parameters, by positions.
+    pub curvatures: Vec<(usize, usize, f64)>,
+}
+
+impl Correlation {
+    /// Correlations of some of the marginals.
+    ///
+    /// # Errors
+    /// [`PriorError::NotNormal`], [`PriorError::NotACorrelation`].
+    pub(super) fn new(
+        marginals: &[Marginal],
+        parameters: Vec<usize>,
+        correlations: &[Vec<f64>],
+    ) -> Result<Self, PriorError> {
+        let count = parameters.len();
+        let ascending = parameters.windows(2).all(|pair| pair[0] < pair[1]);
+        let square = correlations.len() == count && correlations.iter().all(|row| row.len() == count);
+        if !ascending || !square {
+            return Err(PriorError::NotACorrelation);
+        }
+        for &parameter in &parameters {
+            let normal = marginals.get(parameter).and_then(Marginal::untruncated_normal);
+            if normal.is_none() {
+                return Err(PriorError::NotNormal { parameter });
+            }
+        }
+        let matrix = DMatrix::from_fn(count, count, |i, j| correlations[i][j]);
+        let symmetric =
+            (0..count).all(|i| (0..i).all(|j| matrix[(i, j)].to_bits() == matrix[(j, i)].to_bits()));
+        let of_itself = (0..count).all(|i| (matrix[(i, i)] - 1.0).abs() < 1e-12);
+        if !symmetric || !of_itself {
+            return Err(PriorError::NotACorrelation);
+        }
+        let cholesky = Cholesky::new(matrix).ok_or(PriorError::NotACorrelation)?;
+        let factor = cholesky.l();
+        let log_volume = -(0..count).map(|i| libm::log(factor[(i, i)])).sum::<f64>();
+        let excess = cholesky.inverse() - DMatrix::identity(count, count);
+        if !(log_volume.is_finite() && excess.iter().all(|x| x.is_finite())) {
+            return Err(PriorError::NotACorrelation);
+        }
+        Ok(Self {
+            parameters,
+            correlations: correlations.to_vec(),
+            factor,
+            excess,
+            log_volume,
+        })
+    }
+
+    /// The parameters and their correlations, as they were given.
+    pub(super) fn given(self) -> (Vec<usize>, Vec<Vec<f64>>) {
+        (self.parameters, self.correlations)
+    }
+
+    /// What the correlations add to the sum of the marginals' log-densities at sampling coordinates.
+    pub(super) fn log_density(&self, marginals: &[Marginal], coordinates: &[f64]) -> f64 {
+        let z = self.standardised(marginals, coordinates);
+        self.log_volume - 0.5 * z.dot(&(&self.excess * &z))
+    }
+
+    /// Replaces the normal scores of the correlated parameters by independent ones, `L^-1 z`.
+    pub(super) fn whiten(&self, scores: &mut [f64]) {
+        let mut z = DVector::from_iterator(self.parameters.len(), self.parameters.iter().map(|&p| scores[p]));
+        // The factor of a positive definite matrix has no zero on its diagonal.
+        self.factor.solve_lower_triangular_mut(&mut z);
+        for (&parameter, z) in self.parameters.iter().zip(z.iter()) {
+            scores[parameter] = *z;
+        }
+    }
+
+    /// Replaces independent draws of the correlated parameters by dependent ones.
+    pub(super) fn correlate(&self, marginals: &[Marginal], theta: &mut [f64]) {
+        let coordinates: Vec<f64> = marginals
+            .iter()
+            .zip(&*theta)
+            .map(|(m, &x)| m.coordinate(x))
+            .collect();
+        let z = &self.factor * self.standardised(marginals, &coordinates);
+        for (&parameter, z) in self.parameters.iter().zip(z.iter()) {
+            if let Some((mean, sd)) = marginals[parameter].untruncated_normal() {
+                theta[parameter] = marginals[parameter].value(mean + sd * z);
+            }
+        }
+    }
+
+    /// What the correlations add to the slope of -ln p along each parameter, and to its curvature between two, at sampling
+    /// coordinates; both in units of the marginals' standard deviations.
+    pub(super) fn slopes(&self, marginals: &[Marginal], coordinates: &[f64]) -> Slopes {
+        let slope = &self.excess * self.standardised(marginals, coordinates);
+        let own = self.parameters.iter().copied();
+        let others = |(i, k): (usize, usize)| {
+            let pairs = self.parameters.iter().enumerate();
+            pairs.map(move |(j, &l)| (k, l, self.excess[(i, j)]))
+        };
+        Slopes {
+            slopes: own.clone().zip(slope.iter().copied()).collect(),
+            curvatures: own.enumerate().flat_map(others).collect(),
+        }
+    }
+
+    fn standardised(&self, marginals: &[Marginal], coordinates: &[f64]) -> DVector<f64> {
+        let z = |&parameter: &usize| {
+            let (mean, sd) = marginals[parameter].untruncated_normal().unwrap_or((0.0, 1.0));
+            (coordinates[parameter] - mean) / sd
+        };
+        DVector::from_iterator(self.parameters.len(), self.parameters.iter().map(z))
+    }
+}

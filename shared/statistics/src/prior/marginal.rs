@@ -1,0 +1,442 @@
+//! Truncate and renormalise a distribution, and give it the coordinate in which the sampler moves.
+
+use serde::{Deserialize, Serialize};
+
+use super::bound::at_bound;
+use super::distribution::{Distribution, ordered};
+use super::normal::{self, LN_SQRT_TAU};
+use super::{PriorError, moments};
+use crate::rng::Stream;
+
+/// Exponent below the peak at which the moments' integrals are cut: exp(-45) = 3e-20.
+const TAIL_NATS: f64 = 45.0;
+
+/// The prior of one parameter: a distribution, truncated to its bounds and renormalised.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Written", into = "Written")]
+pub struct Marginal {
+    distribution: Distribution,
+    /// Support of x.
+    lower: f64,
+    upper: f64,
+    coordinate: Coordinate,
+    density: Density,
+    mean: f64,
+    sd: f64,
+}
+
+/// A marginal as it travels: what it is made from.
+#[derive(Serialize, Deserialize)]
+struct Written {
+    distribution: Distribution,
+    /// Where the support was cut off; JSON has no infinite numbers.
+    lower: Option<f64>,
+    upper: Option<f64>,
+}
+
+impl From<Marginal> for Written {
+    fn from(marginal: Marginal) -> Self {
+        let (lower, upper) = marginal.distribution.support();
+        Self {
+            distribution: marginal.distribution,
+            lower: (marginal.lower > lower).then_some(marginal.lower),
+            upper: (marginal.upper < upper).then_some(marginal.upper),
+        }
+    }
+}
+
+impl TryFrom<Written> for Marginal {
+    type Error = PriorError;
+
+    fn try_from(written: Written) -> Result<Self, PriorError> {
+        let (lower, upper) = written.distribution.support();
+        let ends = [written.lower.unwrap_or(lower), written.upper.unwrap_or(upper)];
+        Self::new(written.distribution, Some(ends))
+    }
+}
+
+/// u(x): the coordinate in which the prior is uniform or normal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Coordinate {
+    Identity,
+    Log,
+}
+
+/// The density of u, on the truncated support.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Density {
+    Uniform {
+        lower: f64,
+        width: f64,
+    },
+    /// `low` and `high` are the standardised ends, `mass` the probability between them.
+    Normal {
+        mean: f64,
+        sd: f64,
+        low: f64,
+        high: f64,
+        mass: f64,
+    },
+}
+
+impl Coordinate {
+    fn of(self, x: f64) -> f64 {
+        match self {
+            Self::Identity => x,
+            Self::Log => libm::log(x),
+        }
+    }
+
+    fn value(self, u: f64) -> f64 {
+        match self {
+            Self::Identity => u,
+            Self::Log => libm::exp(u),
+        }
+    }
+}
+
+impl Marginal {
+    /// A distribution, truncated to `bounds` and renormalised.
+    ///
+    /// # Errors
+    /// [`PriorError`] names the number, its value and its bound: ends out of order, sd or scale <= 0, factor
+    /// <= 1, anything that must be finite and is not, bounds outside the support or without probability.
+    /// Nothing is adjusted.
+    pub fn new(distribution: Distribution, bounds: Option<[f64; 2]>) -> Result<Self, PriorError> {
+        distribution.check()?;
+        let (mut lower, mut upper) = distribution.support();
+        if let Some([low, high]) = bounds {
+            ordered(low, high)?;
+            if low < lower || high > upper {
+                let (support_lower, support_upper) = (lower, upper);
+                return Err(PriorError::OutsideSupport {
+                    lower: low,
+                    upper: high,
+                    support_lower,
+                    support_upper,
+                });
+            }
+            (lower, upper) = (low, high);
+        }
+        let coordinate = match distribution {
+            Distribution::Loguniform { .. } | Distribution::Lognormal { .. } => Coordinate::Log,
+            _ => Coordinate::Identity,
+        };
+        let (low, high) = (coordinate.of(lower), coordinate.of(upper));
+        let gaussian = |mean: f64, sd: f64| {
+            let (low, high) = ((low - mean) / sd, (high - mean) / sd);
+            Density::Normal {
+                mean,
+                sd,
+                low,
+                high,
+                mass: normal::mass(low, high),
+            }
+        };
+        let density = match distribution {
+            Distribution::Uniform { .. } | Distribution::Loguniform { .. } => Density::Uniform {
+                lower: low,
+                width: high - low,
+            },
+            Distribution::Normal { mean, sd } => gaussian(mean, sd),
+            Distribution::Lognormal { median, factor } => gaussian(libm::log(median), libm::log(factor)),
+            Distribution::HalfNormal { scale } => gaussian(0.0, scale),
+        };
+        let has_mass = match density {
+            Density::Uniform { width, .. } => width > 0.0,
+            // Beyond 37 standard deviations the normal's tail is no longer a normal number.
+            Density::Normal { mass, .. } => mass >= f64::MIN_POSITIVE,
+        };
+        if !has_mass {
+            return Err(PriorError::NoMass { lower, upper });
+        }
+        let mut marginal = Self {
+            distribution,
+            lower,
+            upper,
+            coordinate,
+            density,
+            mean: 0.0,
+            sd: 0.0,
+        };
+        (marginal.mean, marginal.sd) = marginal.moments();
+        for (name, value) in [("prior mean", marginal.mean), ("prior sd", marginal.sd)] {
+            if !value.is_finite() {
+                return Err(PriorError::NotFinite { name, value });
+            }
+        }
+        Ok(marginal)
+    }
+
+    /// The distribution before truncation.
+    #[must_use]
+    pub fn distribution(&self) -> Distribution {
+        self.distribution
+    }
+
+    /// The interval outside which the density is zero; ends may be infinite.
+    #[must_use]
+    pub fn support(&self) -> (f64, f64) {
+        (self.lower, self.upper)
+    }
+
+    /// Mean of the truncated distribution.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        self.mean
+    }
+
+    /// Standard deviation of the truncated distribution.
+    #[must_use]
+    pub fn sd(&self) -> f64 {
+        self.sd
+    }
+
+    /// ln p(x); minus infinity outside the support.
+    #[must_use]
+    pub fn log_density(&self, x: f64) -> f64 {
+        if !(self.lower <= x && x <= self.upper) || (self.coordinate == Coordinate::Log && x <= 0.0) {
+            return f64::NEG_INFINITY;
+        }
+        let u = self.coordinate.of(x);
+        let jacobian = if self.coordinate == Coordinate::Log {
+            -u
+        } else {
+            0.0
+        };
+        self.density.log_at(u) + jacobian
+    }
+
+    /// The x below which a share `p` of the probability lies; the ends of the support for `p` <= 0 and >= 1.
+    #[must_use]
+    pub fn quantile(&self, p: f64) -> f64 {
+        if p >= 1.0 {
+            self.upper
+        } else if p > 0.0 {
+            // Rounding of exp(ln x) may step over an end by one unit in the last place.
+            self.inside(self.density.quantile(p))
+        } else {
+            self.lower
+        }
+    }
+
+    /// The share of the probability below x; 0 and 1 outside the support.
+    #[must_use]
+    pub fn cumulative(&self, x: f64) -> f64 {
+        self.tails(x)[0]
+    }
+
+    /// The standard normal number with as much probability below it as x has: `Phi^-1(P(X < x))`.
+    ///
+    /// Scores of draws from this distribution are standard normal, whatever it is. An x on an end of the support, or
+    /// outside, has the score of the least probability that a number can hold, +-37.5. Checked by
+    /// `priors::scores_are_normal_quantiles`.
+    #[must_use]
+    pub fn normal_score(&self, x: f64) -> f64 {
+        let [below, above] = self.tails(x).map(|p| p.max(f64::MIN_POSITIVE));
+        if below < above {
+            normal::lower_quantile(below)
+        } else {
+            -normal::lower_quantile(above)
+        }
+    }
+
+    /// Mean and standard deviation of the sampling coordinate.
+    #[must_use]
+    pub fn coordinate_moments(&self) -> (f64, f64) {
+        match self.density {
+            Density::Uniform { lower, width } => (lower + 0.5 * width, width / 12.0_f64.sqrt()),
+            Density::Normal {
+                mean, sd, low, high, ..
+            } => {
+                let (from, to) = window(low, high, 0.0);
+                let peak = 0.0_f64.max(low).min(high);
+                let log_density = |z: f64| 0.5 * (peak - z) * (peak + z);
+                moments::mean_and_sd(from, to, log_density, |z| mean + sd * z)
+            }
+        }
+    }
+
+    /// The probabilities below and above x, each with its digits.
+    pub fn tails(&self, x: f64) -> [f64; 2] {
+        if x <= self.lower {
+            [0.0, 1.0]
+        } else if x >= self.upper {
+            [1.0, 0.0]
+        } else {
+            self.density.tails(self.coordinate.of(x))
+        }
+    }
+
+    /// One independent draw, by inversion.
+    pub fn sample(&self, stream: &mut Stream) -> f64 {
+        self.quantile(stream.uniform())
+    }
+
+    /// The sampling coordinate of x: ln x for lognormal and log-uniform marginals, else x.
+    #[must_use]
+    pub fn coordinate(&self, x: f64) -> f64 {
+        self.coordinate.of(x)
+    }
+
+    /// Whether an interval from `q05` to `q95` touches a bound: nearer than 2 % of the range, in the sampling
+    /// coordinate. False where the range is not finite.
+    #[must_use]
+    pub fn at_bound(&self, q05: f64, q95: f64) -> bool {
+        let u = |x| self.coordinate.of(x);
+        at_bound(u(q05), u(q95), (u(self.lower), u(self.upper)))
+    }
+
+    /// Slope and curvature of -ln p(x(u)) along the sampling coordinate u; p is the density of x, not of u.
+    ///
+    /// In its coordinate every distribution here is a parabola or a straight line, so the curvature is constant
+    /// and never negative. A log coordinate adds u, because ln p(x) = ln p(u) - u there.
+    pub fn slope(&self, u: f64) -> (f64, f64) {
+        let jacobian = if self.coordinate == Coordinate::Log {
+            1.0
+        } else {
+            0.0
+        };
+        match self.density {
+            Density::Uniform { .. } => (jacobian, 0.0),
+            Density::Normal { mean, sd, .. } => ((u - mean) / sd / sd + jacobian, 1.0 / sd / sd),
+        }
+    }
+
+    /// Mean and standard deviation of the sampling coordinate, where that is normal and not truncated.
+    pub(super) fn untruncated_normal(&self) -> Option<(f64, f64)> {
+        match self.density {
+            Density::Normal {
+                mean, sd, low, high, ..
+            } if low == f64::NEG_INFINITY && high == f64::INFINITY => Some((mean, sd)),
+            _ => None,
+        }
+    }
+
+    /// Spread of the sampling coordinate: its standard deviation, or that of a uniform density between the
+    /// bounds where they cut off more.
+    pub fn width(&self) -> f64 {
+        match self.density {
+            Density::Uniform { width, .. } => width / 12.0_f64.sqrt(),
+            Density::Normal { sd, low, high, .. } => sd * ((high - low) / 12.0_f64.sqrt()).min(1.0),
+        }
+    }
+
+    /// Whether the sampling coordinate is ln x.
+    pub fn is_logarithmic(&self) -> bool {
+        self.coordinate == Coordinate::Log
+    }
+
+    /// dx/du.
+    pub fn rate(&self, x: f64) -> f64 {
+        match self.coordinate {
+            Coordinate::Identity => 1.0,
+            Coordinate::Log => x,
+        }
+    }
+
+    /// x of a sampling coordinate inside the support; rounding does not step over an end.
+    pub fn inside(&self, u: f64) -> f64 {
+        self.coordinate.value(u).max(self.lower).min(self.upper)
+    }
+
+    /// x of a sampling coordinate.
+    pub fn value(&self, u: f64) -> f64 {
+        self.coordinate.value(u)
+    }
+
+    /// Log-density of the sampling coordinate; minus infinity where u or its x leaves the support.
+    pub(super) fn log_density_of_coordinate(&self, u: f64) -> f64 {
+        let x = self.coordinate.value(u);
+        if self.lower <= x && x <= self.upper {
+            self.density.log_at(u)
+        } else {
+            f64::NEG_INFINITY
+        }
+    }
+
+    /// Mean and sd of x by quadrature over the part of the support that matters.
+    fn moments(&self) -> (f64, f64) {
+        match self.density {
+            Density::Uniform { lower, width } => {
+                moments::mean_and_sd(lower, lower + width, |_| 0.0, |u| self.coordinate.value(u))
+            }
+            Density::Normal {
+                mean, sd, low, high, ..
+            } => {
+                // x^2 = exp(2u) moves the peak of the integrand up by two standard deviations' worth of sd.
+                let shift = if self.coordinate == Coordinate::Log {
+                    2.0 * sd
+                } else {
+                    0.0
+                };
+                let (from, to) = (window(low, high, 0.0).0, window(low, high, shift).1);
+                let peak = 0.0_f64.max(low).min(high);
+                let log_density = |z: f64| 0.5 * (peak - z) * (peak + z);
+                moments::mean_and_sd(from, to, log_density, |z| self.coordinate.value(mean + sd * z))
+            }
+        }
+    }
+}
+
+impl Density {
+    fn log_at(&self, u: f64) -> f64 {
+        match *self {
+            Self::Uniform { width, .. } => -libm::log(width),
+            Self::Normal { mean, sd, mass, .. } => {
+                let z = (u - mean) / sd;
+                -0.5 * z * z - LN_SQRT_TAU - libm::log(sd) - libm::log(mass)
+            }
+        }
+    }
+
+    /// The probabilities below and above u, which lies inside.
+    fn tails(&self, u: f64) -> [f64; 2] {
+        match *self {
+            Self::Uniform { lower, width } => [(u - lower) / width, (lower + width - u) / width],
+            Self::Normal {
+                mean,
+                sd,
+                low,
+                high,
+                mass,
+            } => {
+                let z = (u - mean) / sd;
+                [normal::mass(low, z) / mass, normal::mass(z, high) / mass]
+            }
+        }
+    }
+
+    /// For 0 < p < 1.
+    fn quantile(&self, p: f64) -> f64 {
+        match *self {
+            Self::Uniform { lower, width } => lower + width * p,
+            Self::Normal {
+                mean,
+                sd,
+                low,
+                high,
+                mass,
+            } => {
+                // Work from the nearer tail, where the probability keeps its digits.
+                let below = normal::cdf(low) + p * mass;
+                let above = normal::cdf(-high) + (1.0 - p) * mass;
+                let z = if below < above {
+                    normal::lower_quantile(below)
+                } else {
+                    -normal::lower_quantile(above)
+                };
+                mean + sd * z
+            }
+        }
+    }
+}
+
+/// The part of [low, high] where a unit normal around `centre` lies within [`TAIL_NATS`] of its highest value
+/// there.
+fn window(low: f64, high: f64, centre: f64) -> (f64, f64) {
+    let peak = centre.max(low).min(high);
+    let offset = (peak - centre).abs();
+    let reach = (offset * offset + 2.0 * TAIL_NATS).sqrt() - offset;
+    (low.max(peak - reach), high.min(peak + reach))
+}

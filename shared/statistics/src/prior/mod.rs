@@ -1,0 +1,189 @@
+//! Describe what is known of the parameters before the measurements.
+
+mod bound;
+mod correlation;
+mod distribution;
+mod error;
+mod marginal;
+mod moments;
+pub mod normal;
+
+pub use correlation::Slopes;
+pub use distribution::Distribution;
+pub use error::PriorError;
+pub use marginal::Marginal;
+pub use normal::LN_SQRT_TAU;
+
+use serde::{Deserialize, Serialize};
+
+use crate::rng::Stream;
+use correlation::Correlation;
+
+/// One marginal per parameter, independent but for parameters that are jointly normal.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Written", into = "Written")]
+pub struct Prior {
+    marginals: Vec<Marginal>,
+    correlation: Option<Correlation>,
+}
+
+/// A prior as it travels: what it is made from.
+#[derive(Serialize, Deserialize)]
+struct Written {
+    marginals: Vec<Marginal>,
+    correlated: Vec<usize>,
+    correlations: Vec<Vec<f64>>,
+}
+
+impl From<Prior> for Written {
+    fn from(prior: Prior) -> Self {
+        let (correlated, correlations) = prior.correlation.map(Correlation::given).unwrap_or_default();
+        Self {
+            marginals: prior.marginals,
+            correlated,
+            correlations,
+        }
+    }
+}
+
+impl TryFrom<Written> for Prior {
+    type Error = PriorError;
+
+    fn try_from(written: Written) -> Result<Self, PriorError> {
+        let prior = Self::new(written.marginals);
+        if written.correlated.is_empty() {
+            return Ok(prior);
+        }
+        prior.correlated(written.correlated, &written.correlations)
+    }
+}
+
+impl Prior {
+    /// The product of the marginals, in the order of theta.
+    #[must_use]
+    pub fn new(marginals: Vec<Marginal>) -> Self {
+        Self {
+            marginals,
+            correlation: None,
+        }
+    }
+
+    /// The same with correlations between some parameters, whose marginals are normal in their sampling coordinates and
+    /// untruncated, so that they are jointly normal there.
+    ///
+    /// # Arguments
+    /// - `parameters`: which, as ascending positions in theta. `correlations`: one row for each, symmetric, 1 on the diagonal.
+    ///
+    /// # Errors
+    /// [`PriorError::NotNormal`] for a marginal that is not; [`PriorError::NotACorrelation`] for a matrix that is not
+    /// positive definite, or of another size. Checked by `priors::correlated_parameters_have_the_closed_form`.
+    pub fn correlated(self, parameters: Vec<usize>, correlations: &[Vec<f64>]) -> Result<Self, PriorError> {
+        let correlation = Correlation::new(&self.marginals, parameters, correlations)?;
+        Ok(Self {
+            correlation: Some(correlation),
+            ..self
+        })
+    }
+
+    /// The marginals, in the order of theta.
+    #[must_use]
+    pub fn marginals(&self) -> &[Marginal] {
+        &self.marginals
+    }
+
+    /// The number of parameters.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.marginals.len()
+    }
+
+    /// ln p(theta); minus infinity outside the support and for a vector of the wrong length.
+    #[must_use]
+    pub fn log_density(&self, theta: &[f64]) -> f64 {
+        if theta.len() != self.marginals.len() {
+            return f64::NEG_INFINITY;
+        }
+        let independent: f64 = self
+            .marginals
+            .iter()
+            .zip(theta)
+            .map(|(marginal, &x)| marginal.log_density(x))
+            .sum();
+        self.with_correlation(independent, || self.coordinates(theta))
+    }
+
+    /// Adds what the correlations are worth where the marginals allow a vector at all.
+    fn with_correlation(&self, independent: f64, coordinates: impl FnOnce() -> Vec<f64>) -> f64 {
+        match &self.correlation {
+            Some(correlation) if independent.is_finite() => {
+                independent + correlation.log_density(&self.marginals, &coordinates())
+            }
+            _ => independent,
+        }
+    }
+
+    /// Turns the marginals' normal scores into numbers that the prior makes independent: of correlated parameters, each given
+    /// those before it.
+    pub fn make_independent(&self, scores: &mut [f64]) {
+        if let Some(correlation) = &self.correlation {
+            correlation.whiten(scores);
+        }
+    }
+
+    /// Whether some parameters are correlated.
+    #[must_use]
+    pub fn is_correlated(&self) -> bool {
+        self.correlation.is_some()
+    }
+
+    /// One independent draw of theta.
+    pub fn sample(&self, stream: &mut Stream) -> Vec<f64> {
+        let mut theta: Vec<f64> = self
+            .marginals
+            .iter()
+            .map(|marginal| marginal.sample(stream))
+            .collect();
+        if let Some(correlation) = &self.correlation {
+            correlation.correlate(&self.marginals, &mut theta);
+        }
+        theta
+    }
+
+    /// What the correlations add to the slope and the curvature of -ln p at theta.
+    pub fn slopes_of_correlation(&self, theta: &[f64]) -> Slopes {
+        self.correlation
+            .as_ref()
+            .map_or_else(Slopes::default, |correlation| {
+                correlation.slopes(&self.marginals, &self.coordinates(theta))
+            })
+    }
+
+    /// Log-density of sampling coordinates, Jacobian included; minus infinity outside the support.
+    pub fn log_density_of_coordinates(&self, coordinates: &[f64]) -> f64 {
+        let independent: f64 = self
+            .marginals
+            .iter()
+            .zip(coordinates)
+            .map(|(marginal, &u)| marginal.log_density_of_coordinate(u))
+            .sum();
+        self.with_correlation(independent, || coordinates.to_vec())
+    }
+
+    /// Sampling coordinates of theta.
+    pub fn coordinates(&self, theta: &[f64]) -> Vec<f64> {
+        self.marginals
+            .iter()
+            .zip(theta)
+            .map(|(marginal, &x)| marginal.coordinate(x))
+            .collect()
+    }
+
+    /// Theta of sampling coordinates.
+    pub fn theta(&self, coordinates: &[f64]) -> Vec<f64> {
+        self.marginals
+            .iter()
+            .zip(coordinates)
+            .map(|(marginal, &u)| marginal.value(u))
+            .collect()
+    }
+}

@@ -1,0 +1,360 @@
+//! Check the likelihood against hand numbers.
+
+use nalgebra::{DMatrix, DVector};
+use statistics::likelihood::{HIGHEST, LEVELS, LOWEST};
+use statistics::{
+    CommonError, Datum, Discrepancy, ErrorLaw, Likelihood, LikelihoodError, LogLikelihood, Sd, Size,
+};
+
+fn datum(run: usize, channel: usize, value: f64, sd: Sd) -> Datum {
+    Datum {
+        run,
+        channel,
+        value,
+        sd,
+    }
+}
+
+#[test]
+fn hand_numbers() {
+    let data = vec![
+        datum(0, 0, 10.0, Sd::Known(2.0)),
+        datum(0, 1, 1.0, Sd::Inferred { parameter: 1 }),
+        datum(3, 0, 7.0, Sd::Known(2.0)),
+    ];
+    let likelihood = Likelihood::new(data).unwrap();
+    // Residuals in sd: (10 - 8) / 2 = 1, (1 - 0.5) / 0.25 = 2, (7 - 7) / 2 = 0.
+    let value = likelihood
+        .log_likelihood(&[8.0, 0.5, 7.0], &[9.0, 0.25])
+        .unwrap()
+        .value();
+    let expected = -1.5 * (2.0 * std::f64::consts::PI).ln() - 2.0 * 2.0_f64.ln() - 0.25_f64.ln() - 2.5;
+    assert!((value - expected).abs() < 1e-12, "{value} {expected}");
+}
+
+/// The normalisation lets an inferred noise find its level: the best sd of residuals 1 and -1 is 1.
+#[test]
+fn the_best_noise_is_the_residuals_rms() {
+    let noise = Sd::Inferred { parameter: 0 };
+    let likelihood = Likelihood::new(vec![datum(0, 0, 1.0, noise), datum(1, 0, -1.0, noise)]).unwrap();
+    let value = |sd: f64| likelihood.log_likelihood(&[0.0, 0.0], &[sd]).unwrap().value();
+    assert!(value(1.0) > value(0.9) && value(1.0) > value(1.1) && value(1.0) > value(100.0));
+}
+
+#[test]
+fn what_is_not_a_number_is_refused() {
+    assert!(Likelihood::new(vec![datum(0, 0, f64::NAN, Sd::Known(1.0))]).is_err());
+    assert!(Likelihood::new(vec![datum(0, 0, 1.0, Sd::Known(0.0))]).is_err());
+    let likelihood = Likelihood::new(vec![datum(2, 1, 1.0, Sd::Inferred { parameter: 0 })]).unwrap();
+    let error = likelihood.log_likelihood(&[f64::NAN], &[1.0]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "prediction NaN of run 2, channel 1 is not finite"
+    );
+    assert!(matches!(
+        likelihood.log_likelihood(&[0.0], &[]),
+        Err(LikelihoodError::MissingParameter { .. })
+    ));
+    assert!(matches!(
+        likelihood.log_likelihood(&[0.0], &[-1.0]),
+        Err(LikelihoodError::Noise { .. })
+    ));
+    assert_eq!(
+        likelihood.log_likelihood(&[1e300], &[1e-10]),
+        Ok(LogLikelihood::Impossible)
+    );
+}
+
+const T5: ErrorLaw = ErrorLaw::StudentT {
+    degrees_of_freedom: 5.0,
+};
+
+/// The declared sd is the scale: f(0) of t with 5 degrees of freedom is 8 / (3 sqrt(5) pi) over the scale.
+#[test]
+fn a_t_of_one_datum_has_its_hand_number() {
+    let data = vec![datum(0, 0, 1.0, Sd::Known(2.0)), datum(1, 0, 1.0, Sd::Known(2.0))];
+    let likelihood = Likelihood::with_common(data, T5, Vec::new(), Discrepancy::None).unwrap();
+    let value = |m: f64| likelihood.log_likelihood(&[m, 1.0], &[]).unwrap().value();
+    let centre = (8.0 / (3.0 * 5.0_f64.sqrt() * std::f64::consts::PI) / 2.0).ln();
+    assert!((value(1.0) - 2.0 * centre).abs() < 1e-12);
+    // Three scales off: (1 + 9/5)^-3.
+    assert!((value(7.0) - 2.0 * centre + 3.0 * 2.8_f64.ln()).abs() < 1e-12);
+}
+
+/// Three runs of two channels: runs 0 and 1 repeat a condition, run 2 stands alone. Data: channel 0 of every run, then
+/// channel 1 of every run. Each run has a sensitivity, each (condition, channel) a discrepancy.
+fn three_runs(scatter: Sd) -> (Vec<Datum>, Vec<CommonError>) {
+    let sds = [0.5, 0.7, 0.5, 0.1, 0.1, 0.2];
+    let values = [10.0, 11.0, 7.0, 1.0, 1.3, 0.8];
+    let data = (0..6)
+        .map(|i| datum(i % 3, i / 3, values[i], Sd::Known(sds[i])))
+        .collect();
+    let common = |data: &[usize], size: Size| CommonError {
+        data: data.to_vec(),
+        size,
+    };
+    let mut errors = Vec::new();
+    for run in 0..3 {
+        errors.push(common(&[run, run + 3], Size::Sensitivity(scatter)));
+    }
+    for members in [&[0, 1][..], &[2], &[3, 4], &[5]] {
+        errors.push(common(members, Size::Discrepancy));
+    }
+    (data, errors)
+}
+
+const PREDICTED: [f64; 6] = [10.4, 10.4, 6.5, 1.1, 1.1, 0.9];
+const SENSITIVITIES: [f64; 6] = [-3.0, -3.5, -2.0, 0.4, 0.5, 0.3];
+
+/// The covariance, written down term by term.
+fn dense(data: &[Datum], tau: f64, m: f64) -> DMatrix<f64> {
+    let sd = |i: usize| match data[i].sd {
+        Sd::Known(sd) => sd,
+        Sd::Inferred { .. } => f64::NAN,
+    };
+    let condition = |i: usize| data[i].run / 2;
+    DMatrix::from_fn(6, 6, |i, j| {
+        let mut s = if i == j { sd(i) * sd(i) } else { 0.0 };
+        if data[i].run == data[j].run {
+            s += tau * tau * SENSITIVITIES[i] * SENSITIVITIES[j];
+        }
+        if condition(i) == condition(j) && data[i].channel == data[j].channel {
+            let members: Vec<usize> = (0..6)
+                .filter(|&k| condition(k) == condition(i) && data[k].channel == data[i].channel)
+                .collect();
+            let squares: f64 = members.iter().map(|&k| sd(k) * sd(k)).sum();
+            s += m * m * squares / members.len() as f64;
+        }
+        s
+    })
+}
+
+/// Normal density of the whole, and t density of some of the data, by determinant and inverse.
+fn density(covariance: &DMatrix<f64>, data: &[Datum], members: &[usize], nu: Option<f64>) -> f64 {
+    let k = members.len();
+    let part = DMatrix::from_fn(k, k, |i, j| covariance[(members[i], members[j])]);
+    let r = DVector::from_fn(k, |i, _| data[members[i]].value - PREDICTED[members[i]]);
+    let q = (r.transpose() * part.clone().try_inverse().unwrap() * &r)[(0, 0)];
+    let (count, pi) = (k as f64, std::f64::consts::PI);
+    match nu {
+        None => -0.5 * (count * (2.0 * pi).ln() + part.determinant().ln() + q),
+        Some(nu) => {
+            let gamma = |x: f64| libm::lgamma(x);
+            gamma(0.5 * (nu + count))
+                - gamma(0.5 * nu)
+                - 0.5 * count * (nu * pi).ln()
+                - 0.5 * part.determinant().ln()
+                - 0.5 * (nu + count) * (1.0 + q / nu).ln()
+        }
+    }
+}
+
+fn values() -> Vec<f64> {
+    [PREDICTED, SENSITIVITIES].concat()
+}
+
+#[test]
+fn blocks_match_a_dense_density() {
+    for (law, nu) in [(ErrorLaw::Gaussian, None), (T5, Some(5.0))] {
+        let (data, common) = three_runs(Sd::Inferred { parameter: 1 });
+        let covariance = dense(&data, 0.3, 2.0);
+        // The condition of runs 0 and 1 with both channels is one block, run 2 another.
+        let expected: f64 = [&[0, 1, 3, 4][..], &[2, 5]]
+            .iter()
+            .map(|members| density(&covariance, &data, members, nu))
+            .sum();
+        let likelihood = Likelihood::with_common(data.clone(), law, common, Discrepancy::Known(2.0)).unwrap();
+        assert_eq!(likelihood.sensitive(), [0, 1, 2, 3, 4, 5]);
+        let value = likelihood.log_likelihood(&values(), &[9.0, 0.3]).unwrap().value();
+        assert!((value - expected).abs() < 1e-10, "{value} {expected}");
+        if nu.is_none() {
+            let whole = density(&covariance, &data, &[0, 1, 2, 3, 4, 5], None);
+            assert!((value - whole).abs() < 1e-10, "{value} {whole}");
+        }
+    }
+}
+
+#[test]
+fn an_unknown_discrepancy_is_the_mean_over_its_values() {
+    let (data, common) = three_runs(Sd::Known(0.3));
+    let of = |discrepancy| {
+        Likelihood::with_common(data.clone(), ErrorLaw::Gaussian, common.clone(), discrepancy).unwrap()
+    };
+    let unknown = of(Discrepancy::Unknown);
+    let levels = Discrepancy::Unknown.levels();
+    assert_eq!(levels.len(), LEVELS);
+    assert!((levels[0] - LOWEST).abs() < 1e-12 && (levels[LEVELS - 1] - HIGHEST).abs() < 1e-12);
+    let all = [0, 1, 2, 3, 4, 5];
+    let densities: Vec<f64> = levels
+        .iter()
+        .map(|&m| density(&dense(&data, 0.3, m), &data, &all, None).exp())
+        .collect();
+    let sum: f64 = densities.iter().sum();
+    let value = unknown.log_likelihood(&values(), &[]).unwrap().value();
+    assert!((value - (sum / LEVELS as f64).ln()).abs() < 1e-10);
+    for ((m, weight), (level, density)) in unknown
+        .discrepancy_weights(&values(), &[])
+        .unwrap()
+        .into_iter()
+        .zip(levels.iter().zip(&densities))
+    {
+        assert!((m - level).abs() < 1e-15 && (weight - density / sum).abs() < 1e-10);
+    }
+}
+
+#[test]
+fn errors_of_size_zero_are_the_independent_ones() {
+    let (data, mut common) = three_runs(Sd::Known(0.0));
+    common.truncate(3);
+    let plain = Likelihood::new(data.clone()).unwrap();
+    let zero = Likelihood::with_common(data, ErrorLaw::Gaussian, common, Discrepancy::None).unwrap();
+    let expected = plain.log_likelihood(&PREDICTED, &[]).unwrap().value();
+    let value = zero.log_likelihood(&values(), &[]).unwrap().value();
+    assert!((value - expected).abs() < 1e-12, "{value} {expected}");
+}
+
+/// A test's common shift leaves one fact: forty readings that agree say no more of the level than the shift lets them.
+#[test]
+fn a_shift_in_common_bounds_what_readings_can_say() {
+    let data: Vec<Datum> = (0..40).map(|i| datum(i, 0, 0.3, Sd::Known(0.03))).collect();
+    let shift = CommonError {
+        data: (0..40).collect(),
+        size: Size::Shift(Sd::Inferred { parameter: 0 }),
+    };
+    let likelihood =
+        Likelihood::with_common(data, ErrorLaw::Gaussian, vec![shift], Discrepancy::None).unwrap();
+    let value = |level: f64| likelihood.log_likelihood(&[level; 40], &[0.1]).unwrap().value();
+    let variance = 0.1 * 0.1 + 0.03 * 0.03 / 40.0;
+    assert!((value(0.3) - value(0.0) - 0.5 * 0.09 / variance).abs() < 1e-9);
+}
+
+#[test]
+fn whitened_slopes_are_those_of_the_density() {
+    let (data, common) = three_runs(Sd::Known(0.3));
+    let mut loose = data.clone();
+    loose.push(datum(9, 0, 2.0, Sd::Known(0.4)));
+    let direction = [0.3, -0.2, 0.5, 0.1, -0.4, 0.2, 0.7];
+    let at = |t: f64| {
+        let mut v: Vec<f64> = PREDICTED.iter().copied().chain([1.5]).collect();
+        for (value, d) in v.iter_mut().zip(direction) {
+            *value += t * d;
+        }
+        v.extend(SENSITIVITIES);
+        v
+    };
+    for law in [ErrorLaw::Gaussian, T5] {
+        for discrepancy in [Discrepancy::Known(2.0), Discrepancy::Unknown] {
+            let likelihood =
+                Likelihood::with_common(loose.clone(), law, common.clone(), discrepancy).unwrap();
+            let value = |t: f64| likelihood.log_likelihood(&at(t), &[]).unwrap().value();
+            let slope = (value(1e-5) - value(-1e-5)) / 2e-5;
+            let whitening = likelihood.whitening(&at(0.0), &[]).unwrap();
+            let applied = whitening.apply(&direction);
+            let own = whitening.slope(&applied);
+            assert!(
+                (own - slope).abs() < 1e-6 * slope.abs().max(1.0),
+                "{law:?} {discrepancy:?}: {own} {slope}"
+            );
+            assert!(whitening.curvature(&applied, &applied) > 0.0);
+        }
+    }
+}
+
+#[test]
+fn error_models_that_mean_nothing_are_refused() {
+    let (data, common) = three_runs(Sd::Known(0.3));
+    let refused = |law, common: Vec<CommonError>, discrepancy| {
+        Likelihood::with_common(data.clone(), law, common, discrepancy)
+            .unwrap_err()
+            .to_string()
+    };
+    let none = ErrorLaw::StudentT {
+        degrees_of_freedom: 0.0,
+    };
+    assert_eq!(
+        refused(none, Vec::new(), Discrepancy::None),
+        "degrees_of_freedom = 0 is not a finite number above 0"
+    );
+    assert_eq!(
+        refused(ErrorLaw::Gaussian, common.clone(), Discrepancy::Known(-1.0)),
+        "discrepancy = -1 is not a finite number above 0"
+    );
+    let beyond = CommonError {
+        data: vec![2, 6],
+        size: Size::Discrepancy,
+    };
+    assert_eq!(
+        refused(ErrorLaw::Gaussian, vec![beyond], Discrepancy::None),
+        "a common error names datum 6 of 6, or names it twice"
+    );
+    let likelihood =
+        Likelihood::with_common(data.clone(), ErrorLaw::Gaussian, common, Discrepancy::Known(1.0)).unwrap();
+    assert_eq!(
+        likelihood
+            .log_likelihood(&PREDICTED, &[])
+            .unwrap_err()
+            .to_string(),
+        "6 predicted values, 12 are expected"
+    );
+    let mut infinite = values();
+    infinite[7] = f64::INFINITY;
+    assert!(likelihood.log_likelihood(&infinite, &[]).is_err());
+    infinite[7] = 1e200;
+    assert_eq!(
+        likelihood.log_likelihood(&infinite, &[]),
+        Ok(LogLikelihood::Impossible)
+    );
+}
+
+/// Five data: one alone, a shift over two, a derivative over two others, a discrepancy over the first of these pairs.
+fn entangled(discrepancy: Discrepancy) -> Likelihood {
+    let data = (0..5)
+        .map(|i| datum(i, i % 2, i as f64, Sd::Known(0.5 + 0.1 * i as f64)))
+        .collect();
+    let common = [
+        (vec![1, 2], Size::Shift(Sd::Inferred { parameter: 0 })),
+        (vec![3, 4], Size::Sensitivity(Sd::Known(0.3))),
+        (vec![1], Size::Discrepancy),
+    ];
+    let common = common.map(|(data, size)| CommonError { data, size });
+    Likelihood::with_common(data, ErrorLaw::Gaussian, common.to_vec(), discrepancy).unwrap()
+}
+
+const ENTANGLED: [f64; 7] = [0.1, 0.9, 2.3, 3.0, 3.5, 2.0, -1.5];
+
+#[test]
+fn variances_are_the_diagonal_of_the_covariance() {
+    let known = entangled(Discrepancy::Known(2.0));
+    let found = known.error_variances(&ENTANGLED, &[0.7]).unwrap();
+    // Noise 0.5 ... 0.9; shift 0.7; twice the noise of datum 1; 0.3 times the derivatives 2 and -1.5.
+    let expected = [0.25, 0.36 + 0.49 + 1.44, 0.49 + 0.49, 0.64 + 0.36, 0.81 + 0.2025];
+    for (a, b) in found.iter().zip(expected) {
+        assert!((a - b).abs() < 1e-12, "{found:?}");
+    }
+    let unknown = entangled(Discrepancy::Unknown);
+    let weights = unknown.discrepancy_weights(&ENTANGLED, &[0.7]).unwrap();
+    let squares: f64 = weights.iter().map(|(m, w)| w * m * m).sum();
+    let found = unknown.error_variances(&ENTANGLED, &[0.7]).unwrap();
+    assert!((found[1] - (0.36 + 0.49 + 0.36 * squares)).abs() < 1e-12);
+}
+
+#[test]
+fn a_part_has_the_density_of_its_data_alone() {
+    let whole = entangled(Discrepancy::Known(2.0));
+    let (part, places) = whole.part(&[0, 2, 4]).unwrap();
+    assert_eq!(places, [0, 2, 4, 6]);
+    let values: Vec<f64> = places.iter().map(|&p| ENTANGLED[p]).collect();
+    // Nothing is shared any more: three independent normals with the variances of the whole.
+    let density = |variance: f64, residual: f64| {
+        -0.5 * (2.0 * std::f64::consts::PI * variance).ln() - 0.5 * residual * residual / variance
+    };
+    let expected = density(0.25, -0.1) + density(0.98, -0.3) + density(1.0125, 0.5);
+    let found = part.log_likelihood(&values, &[0.7]).unwrap().value();
+    assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    let all: Vec<usize> = (0..5).collect();
+    assert_eq!(whole.part(&all).unwrap().0, whole);
+    assert!(matches!(
+        whole.part(&[5]),
+        Err(LikelihoodError::Membership { datum: 5, data: 5 })
+    ));
+}

@@ -1,0 +1,7 @@
+//! Check priors and likelihood against known answers.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests may panic as tests do")]
+
+mod bevameter;
+mod likelihood;
+mod priors;
