@@ -1,7 +1,6 @@
 //! The coordinator: runs calibrations on a farm of workers and keeps what comes out.
 //!
 //! # Layout
-//! - [`job`]: a job and its experiment, validated: priors, data, model variants.
 //! - [`calibration`]: a calibration in progress: the one place where sampler, likelihood and leases meet. Pure.
 //! - [`lease`]: the rules of leasing. Pure.
 //! - [`farm`]: all calibrations and workers at hand; [`farm::dispatch`] gives it a thread.
@@ -25,7 +24,6 @@ pub mod embedded;
 pub mod fact;
 pub mod farm;
 pub mod http;
-pub mod job;
 pub mod lease;
 pub mod missing_effect;
 pub mod result;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 10] = [
+const CRATES: [&str; 11] = [
     "shared",
     "shared/formula",
     "shared/signal",
@@ -13,11 +13,12 @@ const CRATES: [&str; 10] = [
     "coordinator",
     "coordinator/inference",
     "coordinator/discovery",
+    "coordinator/job",
     "worker",
     "worker/scm",
     "tests",
 ];
-const OURS: [&str; 10] = [
+const OURS: [&str; 11] = [
     "shared",
     "formula",
     "signal",
@@ -25,6 +26,7 @@ const OURS: [&str; 10] = [
     "coordinator",
     "inference",
     "discovery",
+    "job",
     "worker",
     "scm",
     "farm-tests",
@@ -137,6 +139,10 @@ fn manifests_keep_the_direction_of_dependencies() {
     assert_eq!(ours("coordinator/inference"), set(&["statistics"]));
     assert_eq!(ours("coordinator/discovery"), set(&["inference", "statistics"]));
     assert_eq!(
+        ours("coordinator/job"),
+        set(&["formula", "inference", "shared", "statistics"])
+    );
+    assert_eq!(
         ours("worker"),
         set(&["formula", "scm", "shared", "signal", "statistics"])
     );
@@ -146,6 +152,7 @@ fn manifests_keep_the_direction_of_dependencies() {
             "discovery",
             "formula",
             "inference",
+            "job",
             "shared",
             "signal",
             "statistics",
@@ -178,6 +185,7 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         "worker/scm",
         "coordinator/inference",
         "coordinator/discovery",
+        "coordinator/job",
     ] {
         let dependencies = dependencies(krate);
         let found: Vec<&str> = impure.into_iter().filter(|d| dependencies.contains(*d)).collect();

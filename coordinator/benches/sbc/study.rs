@@ -16,9 +16,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use coordinator::calibration::{Calibration, Finding, Identity, result_of};
 use coordinator::embedded::Evaluate;
-use coordinator::job::Spec;
 use inference::diagnostics::chi_square_tail;
 use inference::diagnostics::quantile;
+use job::Spec;
 use shared::channel::Channel;
 use shared::file::FileSet;
 use shared::outcome::Outcome;

@@ -20,7 +20,7 @@ pub(super) fn final_draws(posterior: &Posterior) -> FinalDraws {
     let log_likelihood = |i: usize| particles[i].log_likelihood.value();
     let best = highest(&|i| log_likelihood(i) + particles[i].log_prior);
     let likeliest = highest(&log_likelihood);
-    let spread = crate::job::PREDICTION_DRAWS - 1;
+    let spread = job::PREDICTION_DRAWS - 1;
     let count = particles.len().min(spread);
     let even = (0..count).map(|k| k * particles.len() / count);
     let theta = |i: usize| particles[i].theta.clone();

@@ -6,8 +6,8 @@ use inference::search::Search;
 use inference::{Answer, Posterior, Progress, Proposal, Sampler, StageRecord, TellError};
 use statistics::{LogLikelihood, Metamodel, ModelPair, SubchainEnd};
 
-use crate::job::{Method, MethodError, Spec};
 use crate::missing_effect::{Discovery, Investigation, InvestigationError, Models};
+use job::{Method, MethodError, Spec};
 
 /// What asks for evaluations and is told their results.
 #[derive(Debug)]

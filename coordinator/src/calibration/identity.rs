@@ -12,7 +12,7 @@ pub const HISTORIES: u64 = 2 * PREDICTIONS_FROM;
 pub enum EvaluationKey {
     /// A proposal of the sampler or the fit: number = round x width + particle, the width of [`Method::width`].
     ///
-    /// [`Method::width`]: crate::job::Method::width
+    /// [`Method::width`]: job::Method::width
     Sampling {
         /// The round, counted from 0.
         round: u64,

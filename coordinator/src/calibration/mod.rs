@@ -20,9 +20,9 @@ use shared::outcome::Observables;
 use statistics::{LogLikelihood, Metamodel, Subchain};
 
 use crate::fact::{EvaluationRow, Fact, Fingerprint, Kept};
-use crate::job::{Method, Spec};
 use crate::lease::{Completion, Queue};
 use crate::missing_effect::{InvestigationError, Models};
+use job::{Method, Spec};
 
 pub use computed::{Computed, result_of};
 use draws::{FinalDraws, final_draws};

@@ -7,7 +7,7 @@ use statistics::{LogLikelihood, SubchainEnd};
 
 use super::{Calibration, Scored};
 use crate::fact::Fact;
-use crate::job::EffectsChanged;
+use job::EffectsChanged;
 
 /// What the store kept of a calibration that is not over.
 #[derive(Debug, Default)]
@@ -162,7 +162,7 @@ mod tests {
     use super::super::{HISTORIES, Identity, PREDICTIONS_FROM};
     use super::*;
     use crate::fact::{EvaluationRow, Kept};
-    use crate::job::Spec;
+    use job::Spec;
 
     const JOB: &str = "[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = { uniform = [4.0, 5.6] }\nkappa = 0.0\nn = { uniform = [0.8, 1.4] }\nfriction_angle_deg = 30.0\n[sampler]\nparticles = 20\nmoves = [2, 4]\n";
     const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 0.05\n";

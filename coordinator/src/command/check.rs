@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::job;
+use super::job_on_disk;
 use super::output::say;
 use crate::calibration::{Calibration, Computed, Engine, Identity, result_of};
 use crate::config::JobFile;
 use crate::embedded::Evaluate;
-use crate::job::Method;
 use crate::result::terminal;
+use job::Method;
 
 /// Particles of the pilot: enough to find the number of stages, which hardly depends on them.
 const PILOT_PARTICLES: usize = 100;
@@ -18,7 +18,7 @@ const PILOT_PARTICLES: usize = 100;
 const PILOT_S: f64 = 30.0;
 
 pub(super) async fn check(file: &JobFile) -> anyhow::Result<()> {
-    let job = job::read(file)?;
+    let job = job_on_disk::read(file)?;
     let mut text = terminal::specification(&job.spec);
     for note in terminal::notes(&job.spec) {
         text += &format!("note: {note}\n");
@@ -117,7 +117,7 @@ impl Pilot {
 }
 
 /// The same calibration in memory, a sampler in small.
-fn pilot(mut spec: crate::job::Spec) -> anyhow::Result<Pilot> {
+fn pilot(mut spec: job::Spec) -> anyhow::Result<Pilot> {
     let least = PILOT_PARTICLES.max(2 * spec.parameters.len() + 2);
     if let Method::Sample(settings) = &mut spec.method {
         settings.particles = settings.particles.min(least);

@@ -14,7 +14,7 @@ use super::output::say;
 use crate::config::{Effects, Model};
 use crate::effect::signature::{ChannelSignature, Signature, signature};
 use crate::effect::{EffectCard, Group};
-use crate::job::check_own;
+use job::check_own;
 
 /// Columns of a terminal that every line fits into.
 const COLUMNS: usize = 100;

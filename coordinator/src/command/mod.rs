@@ -4,7 +4,7 @@ mod check;
 mod effects;
 mod folder;
 mod growth;
-mod job;
+mod job_on_disk;
 mod output;
 mod progress;
 mod run;

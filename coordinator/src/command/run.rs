@@ -7,13 +7,13 @@ use shared::api::{NewCalibration, NewExperiment};
 use tokio::net::TcpListener;
 
 use super::folder::Folder;
-use super::job::{self, JobOnDisk};
+use super::job_on_disk::{self, JobOnDisk};
 use super::output::note;
 use crate::config::Run;
 use crate::result::terminal;
 
 pub(super) async fn run(config: Run) -> anyhow::Result<()> {
-    let job = job::read(&config.file)?;
+    let job = job_on_disk::read(&config.file)?;
     for text in terminal::notes(&job.spec) {
         note(&format!("note: {text}"));
     }

@@ -6,14 +6,14 @@ use anyhow::{Context, bail};
 use serde_json::json;
 use shared::api::{CalibrationCreated, ExperimentCreated, NewCalibration, NewExperiment};
 
-use super::job;
+use super::job_on_disk;
 use super::output::say;
 use super::source::{Client, Place};
 use crate::config::{Export, Format, Report, Source, Submit, Target};
 use crate::result::{self, terminal};
 
 pub(super) async fn submit(config: &Submit) -> anyhow::Result<()> {
-    let job = job::read(&config.file)?;
+    let job = job_on_disk::read(&config.file)?;
     let client = Client::new(&config.url)?;
     let experiment = NewExperiment {
         toml: job.experiment.toml,

@@ -7,9 +7,9 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{HttpError, Id};
-use crate::job::is_discovery;
 use crate::result::{CalibrationSummary, Outcome, PointEstimate};
 use crate::service::Service;
+use job::is_discovery;
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(ledger))

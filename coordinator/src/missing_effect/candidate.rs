@@ -9,7 +9,7 @@ use shared::file::{FileError, FileSet, unknown_word};
 use shared::model::effects::parameter_name;
 
 use super::Extension;
-use crate::job::{Spec, extended_job};
+use job::{Spec, extended_job};
 
 /// An explanation as a job takes it.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use shared::experiment::{TestRun, rim_speed_m_s};
 use shared::model::Condition;
 use statistics::Likelihood;
 
-use crate::job::{PLATE, Spec};
+use job::{PLATE, Spec};
 
 /// Values closer than this share of their range are one level.
 const SAME_LEVEL: f64 = 0.02;

@@ -269,11 +269,11 @@ mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
-    use crate::job::Spec;
     use crate::missing_effect::candidate::extended;
     use crate::missing_effect::curve::{curve, written};
     use crate::missing_effect::scan::pairs;
     use crate::missing_effect::scan::tests::{read, text};
+    use job::Spec;
 
     fn pair(folder: &str, name: &str) -> Pair {
         let mut pairs = pairs(&read(folder).2).into_iter();

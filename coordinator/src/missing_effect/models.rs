@@ -13,7 +13,7 @@ use shared::outcome::Observables;
 use super::candidate::{Explanation, extended, library};
 use super::form::Form;
 use super::{Extension, design, scan};
-use crate::job::{FreeParameter, Spec, free_parameters, without_effects};
+use job::{FreeParameter, Spec, free_parameters, without_effects};
 
 const JOB: &str = "job.toml";
 const EXPERIMENT: &str = "experiment.toml";

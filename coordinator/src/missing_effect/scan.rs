@@ -244,9 +244,9 @@ pub(super) mod tests {
 
     use super::*;
     use crate::embedded::Evaluate;
-    use crate::job::{Spec, check_own};
     use crate::missing_effect::candidate::extended;
     use crate::missing_effect::curve::curve;
+    use job::{Spec, check_own};
 
     /// An experiment of the repository, with the job beside it.
     pub(in crate::missing_effect) fn read(folder: &str) -> (FileSet, FileSet, Experiment) {

@@ -29,9 +29,9 @@ use shared::api::{CalibrationState, CalibrationStatus};
 use shared::outcome::SimulatedHistory;
 use statistics::Marginal;
 
-use crate::job::{Method, Spec, is_discovery};
 use crate::service::ServiceError;
 use crate::store::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Reader, Sample, StageRow, Subchains};
+use job::{Method, Spec, is_discovery};
 
 pub use comparison::{Comparison, ComparisonRow};
 pub use csv::PosteriorTable;
@@ -220,7 +220,7 @@ pub async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, Serv
 /// Where a calibration stands that nobody has in hand.
 pub fn stored_status(row: &CalibrationRow) -> CalibrationStatus {
     // A job that this version does not understand still has a line in every list.
-    let model = crate::job::Job::parse("job.toml", &row.job.toml).map(|job| job.model);
+    let model = job::Job::parse("job.toml", &row.job.toml).map(|job| job.model);
     CalibrationStatus {
         id: row.id,
         name: row.name.clone(),

@@ -6,8 +6,8 @@ use inference::point::Generation;
 
 use super::Outcome;
 use super::summary::{BaselineSummary, ErrorSummary};
-use crate::job::FreeParameter;
 use crate::store::EstimateRow;
+use job::FreeParameter;
 
 /// Deterministic updating.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]

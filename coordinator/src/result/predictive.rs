@@ -7,8 +7,8 @@ use shared::parameters::noise_parameter;
 use statistics::{Discrepancy, ErrorLaw, Sd, Size};
 
 use super::Outcome;
-use crate::job::Spec;
 use crate::store::Prediction;
+use job::Spec;
 
 /// What the calibrated model predicts for one run and channel.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::Outcome;
-use crate::job::{PLATE, RING};
+use job::{PLATE, RING};
 
 /// How well the model meets the readings of plates, or of rings.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,10 +7,10 @@ use super::discovery::{DiscoverySummary, Round};
 use super::flags::Flag;
 use super::point_estimate::PointEstimate;
 use super::summary::{CalibrationSummary, Summary};
-use crate::job::{discovery_job, is_discovery};
 use crate::service::ServiceError;
 use crate::store::{CalibrationRow, Reader};
 use crate::study::next_step_from;
+use job::{discovery_job, is_discovery};
 
 /// The best of a thousand draws lies some nats below the mode, and more in many dimensions; this is beyond chance.
 const MISSED_NATS: f64 = 15.0;

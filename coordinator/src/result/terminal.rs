@@ -15,8 +15,8 @@ use super::errors::ErrorTable;
 use super::readings::{error_model, reading_errors};
 use super::settling::unsettled;
 use super::{Outcome, Study, prior_mean};
-use crate::job::{FreeParameter, JointPrior, Spec};
 use crate::store::EstimateRow;
+use job::{FreeParameter, JointPrior, Spec};
 
 /// What a reader of the result should know of the model before it runs.
 pub fn notes(spec: &Spec) -> Vec<String> {

@@ -16,8 +16,8 @@ use shared::file::{FileError, FileSet};
 use crate::calibration::{BeginError, Calibration, Identity};
 use crate::farm::dispatch::{Dispatcher, Stopped};
 use crate::farm::{Control, ControlError, Farm};
-use crate::job::{EffectsChanged, Job, Method, Spec, point_job};
 use crate::store::{CalibrationRow, NewCalibrationRow, NewStudy, Store, StoreError, StudyIds};
+use job::{EffectsChanged, Job, Method, Spec, point_job};
 
 /// A lease lasts so long without renewal `[ms]`.
 pub const LEASE_MS: u64 = 15_000;

@@ -5,11 +5,11 @@ use shared::file::FileSet;
 
 use super::next_step::{Member, Part, Step, next_step};
 use crate::farm::ControlError;
-use crate::job::{Apply, Job, Method, discovery_job, is_discovery};
 use crate::missing_effect::Discovery;
 use crate::result::spec_of;
 use crate::service::ServiceError;
 use crate::store::{CalibrationRow, Reader};
+use job::{Apply, Job, Method, discovery_job, is_discovery};
 
 /// The next step of a study.
 ///

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use shared::api::CalibrationState;
 
-use crate::job::{Apply, DiscoverySettings, effect_name};
 use crate::missing_effect::{Discovery, Extension};
+use job::{Apply, DiscoverySettings, effect_name};
 
 /// A calibration of a study.
 #[derive(Debug, Clone)]

@@ -3,8 +3,8 @@
 use shared::channel::Channel;
 use statistics::Datum;
 
-use crate::job::{PLATE, RING, Spec};
 use crate::result::report::number;
+use job::{PLATE, RING, Spec};
 
 /// A channel of the likelihood.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

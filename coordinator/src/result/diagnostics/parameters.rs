@@ -2,8 +2,8 @@
 
 use inference::diagnostics::{self, Conflict};
 
-use crate::job::FreeParameter;
 use crate::result::Outcome;
+use job::FreeParameter;
 
 /// A parameter after the data, beside its prior.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use inference::diagnostics::{self, BINS, Region, Side};
 
 use super::{LEVEL, p_words};
-use crate::job::{FreeParameter, Spec};
 use crate::result::Outcome;
 use crate::result::report::number;
 use crate::store::PriorDraw;
+use job::{FreeParameter, Spec};
 
 /// What the model refused and which leases failed.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]

@@ -9,8 +9,8 @@ pub mod terminal;
 
 pub use summary::DiscoverySummary;
 
-use crate::job::effect_name;
 use crate::missing_effect::{Discovery, Extension, Verdict};
+use job::effect_name;
 
 /// A finished search of a study.
 #[derive(Debug, Clone)]

@@ -4,8 +4,8 @@ use inference::diagnostics;
 use shared::channel::Channel;
 
 use super::mark::{Mark, MarkKind};
-use crate::job::Spec;
 use crate::result::{Outcome, Study};
+use job::Spec;
 
 /// Points of the grid.
 const GRID: usize = 160;

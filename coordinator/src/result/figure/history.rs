@@ -8,7 +8,7 @@ use signal::{INTERVAL_S, LowPass};
 use utoipa::ToSchema;
 
 use super::super::{Outcome, Study};
-use crate::job::Method;
+use job::Method;
 
 /// One channel of one fitted run over time.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]

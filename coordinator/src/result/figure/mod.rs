@@ -23,7 +23,7 @@ pub use mark::{Mark, MarkKind, Place};
 pub use posterior::{Line, Posterior};
 
 use super::{Outcome, Study};
-use crate::job::FreeParameter;
+use job::FreeParameter;
 
 /// What the figures of a study show.
 #[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use inference::diagnostics::mean;
 
-use crate::job::{Bevameter, Spec};
+use job::{Bevameter, Spec};
 
 /// Values of parameters by name: those that the job states, then what the readings of plates and rings say.
 pub(super) fn values(spec: &Spec) -> BTreeMap<String, f64> {
@@ -58,7 +58,7 @@ mod tests {
     use shared::model::{PlateCondition, RingCondition};
 
     use super::*;
-    use crate::job::Reading;
+    use job::Reading;
 
     #[test]
     fn plates_give_the_exponent_and_rings_the_angle() {

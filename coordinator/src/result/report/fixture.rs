@@ -8,10 +8,10 @@ use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
 
-use crate::job::{Method, Spec};
 use crate::missing_effect::Outside;
 use crate::result::{Outcome, Round, Study};
 use crate::store::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Sample, StageRow};
+use job::{Method, Spec};
 
 const JOB: &str = r#"
 # <i>bold & brave</i>

@@ -5,8 +5,8 @@ use maud::{Markup, html};
 use super::axis::{Axis, Scale};
 use super::frame::{Frame, px};
 use super::scale::scale;
-use crate::job::FreeParameter;
 use crate::result::ParameterSummary;
+use job::FreeParameter;
 
 const WIDTH: f64 = 320.0;
 const HEIGHT: f64 = 210.0;

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::axis::Axis;
 use super::frame::{Frame, px};
 use super::scale::scale;
-use crate::job::FreeParameter;
+use job::FreeParameter;
 
 const WIDTH: f64 = 320.0;
 const HEIGHT: f64 = 280.0;

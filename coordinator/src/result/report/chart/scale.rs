@@ -1,7 +1,7 @@
 //! Whether a parameter is drawn against equal steps or equal ratios.
 
 use super::axis::Scale;
-use crate::job::FreeParameter;
+use job::FreeParameter;
 
 /// Draws over more than this factor are drawn against equal ratios, where the prior is made of ratios too.
 const WIDE: f64 = 10.0;

@@ -3,10 +3,10 @@
 use maud::{Markup, html};
 use statistics::Distribution;
 
-use crate::job::FreeParameter;
 use crate::result::entangled::{LEAST_CORRELATION, most_correlated};
 use crate::result::report::{chart, number};
 use crate::result::{Outcome, ParameterSummary};
+use job::FreeParameter;
 
 /// A bound so many standard deviations from the mean needs no mention.
 const FAR: f64 = 6.0;

@@ -4,10 +4,10 @@ use inference::search;
 use maud::{Markup, html};
 use shared::experiment::RunUse;
 
-use crate::job::Method;
 use crate::result::Outcome;
 use crate::result::readings::error_model;
 use crate::result::report::number;
+use job::Method;
 
 /// One line under the title: model, data, sampler.
 pub(in crate::result::report) fn subtitle(outcome: &Outcome) -> String {

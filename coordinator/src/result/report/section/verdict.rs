@@ -8,12 +8,12 @@ use shared::model::ModelKind;
 use shared::parameters::noise_parameter;
 
 use super::estimate::reason;
-use crate::job::repeat_scatter;
 use crate::result::coverage::Coverage;
 use crate::result::report::number;
 use crate::result::report::quantity::Quantity;
 use crate::result::settling::unsettled;
 use crate::result::{Comparison, ErrorTable, Outcome, Study, terminal};
+use job::repeat_scatter;
 
 /// Flags first, then the verdict, then what a reader must know of the model.
 pub(in crate::result::report) fn verdict(study: &Study, comparison: &Comparison) -> Markup {

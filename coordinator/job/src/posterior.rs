@@ -331,8 +331,8 @@ mod tests {
 
     use shared::file::FileSet;
 
-    use super::super::Spec;
     use super::*;
+    use crate::Spec;
 
     const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 1.0\n";
     const RUNS: &str =

@@ -104,7 +104,7 @@ fn keep(table: &mut dyn TableLike, list: &str, condition: impl Fn(&str) -> bool)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::Job;
+    use crate::Job;
 
     const JOB: &str = r#"# why
 [model]

@@ -160,11 +160,7 @@ pub(super) fn data(
 const LEAST_FREEDOM: usize = 3;
 
 /// The scatter of fitted repeats with its degrees of freedom; `None` with fewer than three.
-pub(crate) fn repeat_scatter(
-    experiment: &Experiment,
-    fit_runs: &[usize],
-    channel: Channel,
-) -> Option<(f64, usize)> {
+pub fn repeat_scatter(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> Option<(f64, usize)> {
     let (sd, freedom) = pooled(experiment, fit_runs, channel);
     (freedom >= LEAST_FREEDOM).then_some((sd, freedom))
 }

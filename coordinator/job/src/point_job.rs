@@ -54,7 +54,7 @@ pub(super) fn edited(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::Job;
+    use crate::Job;
 
     const JOB: &str = "# why\n[model]\nkind = \"scm\" # here\n[sampler]\nparticles = 50\nmoves = [2, 4]\nseed = 7\npoint_estimates = [\"ga\", \"lm\"]\n";
 

@@ -7,7 +7,7 @@ use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet, read_beside, read_text, sibling};
 
 use crate::config::JobFile;
-use crate::job::{Job, Spec, extended_job};
+use job::{Job, Spec, extended_job};
 
 /// A job with everything it names, read and validated.
 pub(super) struct JobOnDisk {

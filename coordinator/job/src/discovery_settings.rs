@@ -74,7 +74,7 @@ impl RawDiscovery {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::Job;
+    use crate::Job;
 
     fn parse(sampler: &str, discovery: &str) -> Result<DiscoverySettings, String> {
         let job = format!("[model]\nkind = \"scm\"\n[sampler]\n{sampler}\n{discovery}\n");

@@ -1,18 +1,4 @@
-//! Turns the text of a job and its experiment into everything a calibration needs.
-
-mod bevameter;
-mod discovery_job;
-mod discovery_settings;
-mod errors;
-mod extended_job;
-mod job_file;
-mod method;
-mod noise;
-mod point_job;
-mod posterior;
-mod predicted;
-mod priors;
-mod sampler_keys;
+//! A calibration as its files determine it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,20 +10,15 @@ use shared::parameters;
 use shared::predicted::Predicted;
 use statistics::{Likelihood, Prior, PriorError};
 
-pub use bevameter::{Bevameter, PLATE, RING, Reading};
-pub use discovery_job::{
-    DISCOVERY, continued_job, discovery_job, effect_name, is_discovery, without_effects,
-};
-pub use discovery_settings::{Apply, DiscoverySettings};
-pub use errors::LikelihoodSettings;
-pub use extended_job::extended_job;
-pub use job_file::Job;
-pub use method::{Method, MethodError};
-pub(crate) use noise::repeat_scatter;
-pub use point_job::point_job;
-pub use posterior::{ImpliedModuli, JointPrior, PosteriorPrior};
-use predicted::predicted;
-pub use priors::{FreeParameter, check_own, free_parameters};
+use crate::bevameter::{Bevameter, PLATE};
+use crate::discovery_settings::DiscoverySettings;
+use crate::errors::{self, LikelihoodSettings};
+use crate::job_file::Job;
+use crate::method::Method;
+use crate::noise;
+use crate::posterior::JointPrior;
+use crate::predicted::predicted;
+use crate::priors::{self, FreeParameter};
 
 /// A calibration as its files determine it; equal files give an equal specification.
 #[derive(Debug, Clone)]
