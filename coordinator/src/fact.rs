@@ -1,7 +1,7 @@
 //! What the store is told: facts, in the order in which they came about.
 
-use inference::point::Estimate;
-use inference::{Posterior, StageRecord};
+use inference::point_estimate::ModeEstimate;
+use inference::{PosteriorSample, StageRecord};
 use shared::api::CalibrationState;
 use shared::outcome::Observables;
 use statistics::SubchainEnd;
@@ -44,14 +44,14 @@ pub enum Fact {
         /// The calibration.
         calibration: i64,
         /// Evidence and counts; the draws are the last stage's population.
-        posterior: Box<Posterior>,
+        posterior: Box<PosteriorSample>,
     },
     /// The fit ended.
     Estimate {
         /// The calibration.
         calibration: i64,
         /// The most probable parameters.
-        estimate: Box<Estimate>,
+        estimate: Box<ModeEstimate>,
     },
     /// A search for a missing effect ended.
     Discovery {

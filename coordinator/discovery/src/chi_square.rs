@@ -2,7 +2,7 @@
 
 use crate::descent::Descent;
 use inference::diagnostics::chi_square_tail;
-use statistics::likelihood::{Discrepancy, ErrorLaw, Likelihood, Sd, Size};
+use statistics::likelihood::{CommonErrorSize, Discrepancy, ErrorLaw, ErrorSd, Likelihood};
 
 /// A fit with less chance than this is wrong.
 pub(crate) const WRONG: f64 = 0.001;
@@ -19,13 +19,13 @@ pub struct ChiSquare {
 impl ChiSquare {
     /// Of a fit; `None` where the noise was inferred from the misfit, has heavy tails, or the model may miss by a discrepancy.
     pub(crate) fn of(fit: &Descent, likelihood: &Likelihood) -> Option<Self> {
-        let unknown = |sd: Sd| matches!(sd, Sd::Inferred { .. });
+        let unknown = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { .. });
         let is_known = likelihood.law() == ErrorLaw::Gaussian
             && likelihood.discrepancy() == Discrepancy::None
             && !likelihood.data().iter().any(|d| unknown(d.sd))
             && !likelihood.common().iter().any(|error| match error.size {
-                Size::Shift(sd) | Size::Sensitivity(sd) => unknown(sd),
-                Size::Discrepancy => true,
+                CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity(sd) => unknown(sd),
+                CommonErrorSize::Discrepancy => true,
             });
         if !is_known {
             return None;

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use crate::coordinate::Frame;
 use crate::evidence::log_evidence;
 use crate::noise;
-use inference::lm::Quadratic;
+use inference::lm::QuadraticModel;
 use statistics::likelihood::Likelihood;
 use statistics::log_likelihood::LogLikelihood;
 
@@ -296,8 +296,8 @@ impl Descent {
     }
 
     /// The parabola of f at the point.
-    pub(crate) fn parabola(&self, likelihood: &Likelihood) -> Quadratic {
-        Quadratic {
+    pub(crate) fn parabola(&self, likelihood: &Likelihood) -> QuadraticModel {
+        QuadraticModel {
             held: self.held.clone(),
             ..parabola(&self.frame, likelihood, &self.point, &self.columns)
         }
@@ -326,7 +326,7 @@ pub(crate) fn parabola(
     likelihood: &Likelihood,
     point: &Point,
     columns: &[Vec<f64>],
-) -> Quadratic {
+) -> QuadraticModel {
     let count = point.position.len();
     let mut gradient = point.position.clone();
     let mut hessian = DMatrix::identity(count, count);
@@ -342,7 +342,7 @@ pub(crate) fn parabola(
     }
     noise::add(frame, likelihood, point, &mut gradient, &mut hessian);
     let (lower, upper) = frame.room(&point.position);
-    Quadratic {
+    QuadraticModel {
         gradient,
         hessian,
         lower,

@@ -10,7 +10,7 @@ use crate::fleet::Fleet;
 use crate::importance::Importance;
 use crate::screen::Screened;
 use crate::settings::{Settings, Starts};
-use inference::round::{Failure, Progress, Proposal, Round, TellError};
+use inference::round::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
 use statistics::likelihood::Likelihood;
 use statistics::prior::Marginal;
 
@@ -24,7 +24,7 @@ pub struct Engine {
     /// Of the base, then of each candidate.
     pub(crate) base_frame: Frame,
     pub(crate) frames: Vec<Frame>,
-    pub(crate) round: Round<Option<Vec<f64>>>,
+    pub(crate) round: ProposalRound<Option<Vec<f64>>>,
     /// Whose each request of the round is, and where.
     pub(crate) asked: Vec<(Option<usize>, Vec<f64>)>,
     pub(crate) phase: Phase,
@@ -59,7 +59,7 @@ pub(crate) enum Phase {
     /// The models that are drawn from, and how many draws each waits for.
     Sample(Vec<(Option<usize>, Importance)>, Vec<usize>),
     Done(Box<Finding>),
-    Failed(Failure),
+    Failed(InferenceFailure),
 }
 
 impl Engine {
@@ -129,7 +129,7 @@ impl Engine {
             frames: candidates.iter().map(|c| base_frame.with(c)).collect(),
             candidates,
             base_frame,
-            round: Round::default(),
+            round: ProposalRound::default(),
             asked: Vec::new(),
             phase: Phase::Starts,
             seed,
@@ -168,7 +168,7 @@ impl Engine {
     ///
     /// # Errors
     /// [`TellError`]: told before, never asked for, not as many finite values as the likelihood takes. Nothing is changed then.
-    pub fn tell(&mut self, index: usize, values: Option<&[f64]>) -> Result<Progress, TellError> {
+    pub fn tell(&mut self, index: usize, values: Option<&[f64]>) -> Result<TellProgress, TellError> {
         if let Some(values) = values {
             let (expected, given) = (self.likelihood.values(), values.len());
             if expected != given {
@@ -182,16 +182,16 @@ impl Engine {
             self.advance(answers);
         }
         Ok(match &self.phase {
-            Phase::Done(_) => Progress::Finished,
-            Phase::Failed(failure) => Progress::Failed(*failure),
-            _ if complete => Progress::NextRound,
-            _ => Progress::Waiting,
+            Phase::Done(_) => TellProgress::Finished,
+            Phase::Failed(failure) => TellProgress::Failed(*failure),
+            _ if complete => TellProgress::NextRound,
+            _ => TellProgress::Waiting,
         })
     }
 
     /// Why the search failed, if it did.
     #[must_use]
-    pub fn failure(&self) -> Option<Failure> {
+    pub fn failure(&self) -> Option<InferenceFailure> {
         match self.phase {
             Phase::Failed(failure) => Some(failure),
             _ => None,

@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DVector};
 
-use inference::lm::Quadratic;
+use inference::lm::QuadraticModel;
 use statistics::prior::normal;
 
 /// ln of the integral of `N(t; 0, I) exp(log-likelihood)` where `-log-likelihood + |t|^2/2` is the parabola of value f:
@@ -18,7 +18,7 @@ use statistics::prior::normal;
 /// Exact for a linear model with normal errors, truncation of one coordinate included; else Laplace's approximation. At the least of the parabola
 /// the gradient is zero but for a strength at its bound, whose slope is what is left of it. Checked by
 /// `discovery::evidence_of_a_linear_extension_is_exact`.
-pub(crate) fn log_evidence(parabola: &Quadratic, value: f64, halves: &[usize]) -> Option<f64> {
+pub(crate) fn log_evidence(parabola: &QuadraticModel, value: f64, halves: &[usize]) -> Option<f64> {
     let cholesky = Cholesky::new(parabola.hessian.clone())?;
     let gradient = DVector::from_column_slice(&parabola.gradient);
     let to_least = cholesky.solve(&gradient);

@@ -4,16 +4,16 @@ use nalgebra::DMatrix;
 
 use crate::coordinate::Frame;
 use crate::descent::Point;
-use statistics::likelihood::{Likelihood, Sd};
+use statistics::likelihood::{ErrorSd, Likelihood};
 
 /// Half the difference that slopes are taken over: the density is smooth and exact to the last digits.
 const DIFFERENCE: f64 = 1e-3;
 
 /// The coordinates that are noise sds, each with how many data it is the sd of.
 pub(crate) fn coordinates(likelihood: &Likelihood) -> Vec<(usize, usize)> {
-    let inferred = |sd: Sd| match sd {
-        Sd::Inferred { parameter } => Some(parameter),
-        Sd::Known(_) => None,
+    let inferred = |sd: ErrorSd| match sd {
+        ErrorSd::Inferred { parameter } => Some(parameter),
+        ErrorSd::Known(_) => None,
     };
     let mut parameters: Vec<usize> = likelihood.data().iter().filter_map(|d| inferred(d.sd)).collect();
     parameters.sort_unstable();

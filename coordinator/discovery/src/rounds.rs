@@ -9,7 +9,7 @@ use crate::fleet::Fleet;
 use crate::importance::Importance;
 use crate::screen::STRENGTHS;
 use crate::{base, confirm, extension, polish, screen};
-use inference::round::Failure;
+use inference::round::InferenceFailure;
 
 impl Engine {
     /// Asks what the descents want; gives them back when they want nothing more.
@@ -58,7 +58,7 @@ impl Engine {
         let evaluated = positions.zip(answers).collect();
         let descents = base::descents(&self.base_frame, &self.likelihood, evaluated);
         if descents.is_empty() {
-            self.phase = Phase::Failed(Failure::AllImpossible { draws });
+            self.phase = Phase::Failed(InferenceFailure::AllImpossible { draws });
         } else {
             self.fit_base(Fleet::new(descents.into_iter().map(|d| (None, d)).collect()));
         }

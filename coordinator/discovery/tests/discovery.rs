@@ -2,7 +2,7 @@
 
 use discovery::{Candidate, CandidateError, Engine, Finding, Method, Settings};
 use nalgebra::{DMatrix, DVector};
-use statistics::{Datum, Distribution, Likelihood, Marginal, Sd};
+use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal};
 
 const SD: f64 = 0.5;
 const DATA: usize = 12;
@@ -54,7 +54,7 @@ fn likelihood(values: &[f64]) -> Likelihood {
         run,
         channel: 0,
         value,
-        sd: Sd::Known(SD),
+        sd: ErrorSd::Known(SD),
     };
     Likelihood::new(values.iter().enumerate().map(datum).collect()).unwrap()
 }

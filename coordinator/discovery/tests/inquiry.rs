@@ -2,9 +2,9 @@
 
 use discovery::inquiry::{Answer, Asked, Inquiry, Model, Pair, Proposed, Reduction, Task, Verdict};
 use discovery::{Candidate, Settings};
-use inference::Progress;
+use inference::TellProgress;
 use statistics::rng::Stream;
-use statistics::{Datum, Distribution, Likelihood, Marginal, Sd};
+use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal};
 
 const SD: f64 = 0.1;
 /// Eight levels of x, each with three values of w.
@@ -143,7 +143,7 @@ fn task(values: &[f64]) -> Task {
         run,
         channel: 0,
         value,
-        sd: Sd::Known(SD),
+        sd: ErrorSd::Known(SD),
     };
     Task {
         prior: vec![normal(1.0), normal(1.0)],
@@ -180,7 +180,7 @@ fn inquire(task: Task, backwards: bool, answer: impl Fn(&Asked) -> Vec<f64>) -> 
         }
         for index in order {
             let progress = inquiry.tell(index, Some(&answer(&asked[index]))).unwrap();
-            assert!(!matches!(progress, Progress::Failed(_)));
+            assert!(!matches!(progress, TellProgress::Failed(_)));
         }
     }
 }
@@ -326,7 +326,7 @@ fn unknown_noise_is_fitted_beside() {
         .unwrap(),
     );
     let data = task.likelihood.data().iter().map(|d| Datum {
-        sd: Sd::Inferred { parameter: 2 },
+        sd: ErrorSd::Inferred { parameter: 2 },
         ..*d
     });
     task.likelihood = Likelihood::new(data.collect()).unwrap();

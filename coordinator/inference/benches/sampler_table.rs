@@ -15,18 +15,18 @@ mod problems;
 
 mod fits;
 
-use inference::{Algorithm, Settings};
+use inference::{Algorithm, TmcmcSettings};
 use problems::Problem;
 
 /// Errors of one problem over seeds.
-fn row(problem: &Problem, label: &str, settings: Settings, seeds: u64) {
+fn row(problem: &Problem, label: &str, settings: TmcmcSettings, seeds: u64) {
     let (mut evaluations, mut errors, mut se) = (0.0, Vec::new(), Vec::new());
     let (mut flagged, mut worst_z, mut silent) = (0, 0.0_f64, 0);
     let (mut ratios, mut shifts) = (vec![0.0; problem.sd.len() + 1], vec![0.0; problem.sd.len() + 1]);
     let (mut stages, mut steps) = (0, 0);
     let mut clean = Vec::new();
     for seed in 1..=seeds {
-        let sampler = problem.run(Settings { seed, ..settings });
+        let sampler = problem.run(TmcmcSettings { seed, ..settings });
         let Some(posterior) = sampler.posterior() else {
             println!("{} {label}: {:?}", problem.name, sampler.failure());
             return;
@@ -126,7 +126,7 @@ fn main() {
         "steps",
         "sd ratios"
     );
-    let base = Settings::default();
+    let base = TmcmcSettings::default();
     // With the settings that make about 20 000 evaluations (c3, c4: the flags are the point), and the
     // log-evidence rmse of prototypes of these samplers: Ching-Chen 2007, the best tempered variant, the goal.
     let problems = [
@@ -155,7 +155,7 @@ fn main() {
             continue;
         }
         if let (Some(particles), Some(least), Some(most)) = (number(1), number(2), number(3)) {
-            let settings = Settings {
+            let settings = TmcmcSettings {
                 particles,
                 moves: [least, most],
                 ..base
@@ -169,7 +169,7 @@ fn main() {
             continue;
         }
         println!("{:4} reference rmse at 20 000: {reference}", problem.name);
-        let lean = Settings {
+        let lean = TmcmcSettings {
             particles: *particles,
             moves: [*least, 60],
             ..base
@@ -180,7 +180,7 @@ fn main() {
             ("ching-chen-2007", Algorithm::ChingChen2007),
             ("basis", Algorithm::Basis),
         ] {
-            row(problem, label, Settings { algorithm, ..base }, seeds);
+            row(problem, label, TmcmcSettings { algorithm, ..base }, seeds);
         }
     }
     if arguments.len() < 2 {

@@ -11,7 +11,7 @@
 use std::collections::BTreeMap;
 
 use inference::diagnostics::summary;
-use inference::{Progress, Sampler, Settings};
+use inference::{Sampler, TellProgress, TmcmcSettings};
 use statistics::{Distribution, LogLikelihood, Marginal, Prior};
 
 /// Depth and radius at which `p_ref` and `kappa` are defined [m].
@@ -92,11 +92,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         scale(0.10)?,
         scale(0.05)?,
     ]);
-    let mut sampler = Sampler::new(prior, Settings::default())?;
+    let mut sampler = Sampler::new(prior, TmcmcSettings::default())?;
     let posterior = loop {
         for proposal in sampler.pending().to_vec() {
             let value = tests.iter().map(|t| log_density(t, &proposal.theta)).sum();
-            if let Progress::Failed(failure) = sampler.tell(proposal.particle, LogLikelihood::new(value)?)? {
+            if let TellProgress::Failed(failure) =
+                sampler.tell(proposal.particle, LogLikelihood::new(value)?)?
+            {
                 return Err(failure.into());
             }
         }

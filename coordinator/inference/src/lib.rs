@@ -12,16 +12,15 @@
 //! - [`search`]: the ask/tell search by generations; [`ga`], [`cma_es`]: how the next generation is made.
 //! - [`diagnostics`]: summaries of draws: moments, quantiles, densities, bounds, effective sizes.
 
-pub mod cma_es;
 pub mod diagnostics;
-pub mod ga;
+pub mod evolution;
 pub mod lm;
-pub mod point;
+pub mod point_estimate;
 pub mod round;
-pub mod search;
 pub mod tmcmc;
 
-pub use round::{Failure, Progress, Proposal, TellError};
+pub use round::{InferenceFailure, Proposal, TellError, TellProgress};
 pub use tmcmc::{
-    Algorithm, Answer, Current, Particle, Posterior, Sampler, Settings, SettingsError, StageRecord,
+    Algorithm, EvaluationResult, Particle, PosteriorSample, Sampler, StageProgress, StageRecord,
+    TmcmcSettings, TmcmcSettingsError,
 };

@@ -28,7 +28,7 @@ impl Proposal {
 
 /// The proposals of a round with the results told so far, and the count of completed rounds.
 #[derive(Debug, Clone)]
-pub struct Round<A> {
+pub struct ProposalRound<A> {
     number: u64,
     /// By ascending particle.
     pending: Vec<Proposal>,
@@ -36,7 +36,7 @@ pub struct Round<A> {
     missing: usize,
 }
 
-impl<A> Default for Round<A> {
+impl<A> Default for ProposalRound<A> {
     fn default() -> Self {
         Self {
             number: 0,
@@ -47,7 +47,7 @@ impl<A> Default for Round<A> {
     }
 }
 
-impl<A> Round<A> {
+impl<A> ProposalRound<A> {
     /// Lists proposals, by ascending particle.
     pub fn ask(&mut self, proposals: Vec<Proposal>) {
         self.missing = proposals.len();
@@ -120,7 +120,7 @@ impl<A> Round<A> {
 
 /// What a told result led to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Progress {
+pub enum TellProgress {
     /// The round still waits for others.
     Waiting,
     /// New proposals are pending.
@@ -130,12 +130,12 @@ pub enum Progress {
     /// The result is there.
     Finished,
     /// It cannot go on.
-    Failed(Failure),
+    Failed(InferenceFailure),
 }
 
 /// Why a sampler or a fit cannot go on.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum Failure {
+pub enum InferenceFailure {
     /// No prior draw was possible.
     #[error("all {draws} prior draws were rejected by the model")]
     AllImpossible {

@@ -1,7 +1,7 @@
 //! Check evidence and moments on problems with known answers.
 
 use crate::problems::{self, Problem};
-use inference::Settings;
+use inference::TmcmcSettings;
 use statistics::{Distribution, Marginal};
 
 const SEEDS: u64 = 4;
@@ -15,12 +15,12 @@ const K: f64 = 4.0;
 /// Means over seeds must agree with the answer within `K` Monte-Carlo errors: the evidence by its own
 /// standard error, moments by the number of independent draws.
 fn check(problem: &Problem) {
-    let settings = Settings::default();
+    let settings = TmcmcSettings::default();
     let columns = problem.mean.len() + usize::from(problem.derived.is_some());
     let (mut error, mut variance) = (0.0, 0.0);
     let (mut shifts, mut ratios) = (vec![0.0; columns], vec![0.0; columns]);
     for seed in 1..=SEEDS {
-        let sampler = problem.run(Settings { seed, ..settings });
+        let sampler = problem.run(TmcmcSettings { seed, ..settings });
         let posterior = sampler.posterior().unwrap();
         error += (posterior.log_evidence - problem.log_evidence) / SEEDS as f64;
         variance += posterior.log_evidence_se.powi(2) / (SEEDS * SEEDS) as f64;
@@ -109,9 +109,9 @@ fn skew_target() {
 /// Kolmogorov's distance of draws of the skew problem from the posterior under ln L = -rate x, times sqrt(n).
 fn kolmogorov(rate: f64) -> f64 {
     let problem = problems::skew();
-    let sampler = problem.run(Settings {
+    let sampler = problem.run(TmcmcSettings {
         particles: 4000,
-        ..Settings::default()
+        ..TmcmcSettings::default()
     });
     let mut draws: Vec<f64> = sampler
         .posterior()
@@ -159,7 +159,7 @@ fn the_jacobian_of_log_coordinates_is_accounted_for() {
     .unwrap();
     let sd = 0.2_f64;
     let mut sampler =
-        inference::Sampler::new(statistics::Prior::new(vec![prior]), Settings::default()).unwrap();
+        inference::Sampler::new(statistics::Prior::new(vec![prior]), TmcmcSettings::default()).unwrap();
     while sampler.posterior().is_none() {
         for proposal in sampler.pending().to_vec() {
             let z = libm::log(proposal.theta[0]) / sd;
@@ -189,10 +189,10 @@ fn reported_standard_error_matches_the_scatter_over_seeds() {
     let problem = problems::shear_building();
     let (mut squares, mut variance) = (0.0, 0.0);
     for seed in 1..=40 {
-        let sampler = problem.run(Settings {
+        let sampler = problem.run(TmcmcSettings {
             seed,
             particles: 200,
-            ..Settings::default()
+            ..TmcmcSettings::default()
         });
         let posterior = sampler.posterior().unwrap();
         squares += (posterior.log_evidence - problem.log_evidence).powi(2);

@@ -1,15 +1,17 @@
 //! Check the protocol: order, refusals, impossible likelihoods, rounds without proposals.
 
 use crate::problems;
-use inference::{Algorithm, Failure, Progress, Sampler, Settings, SettingsError, TellError};
+use inference::{
+    Algorithm, InferenceFailure, Sampler, TellError, TellProgress, TmcmcSettings, TmcmcSettingsError,
+};
 use statistics::rng::Stream;
 use statistics::{Distribution, LogLikelihood, Marginal, Prior};
 
-fn small() -> Settings {
-    Settings {
+fn small() -> TmcmcSettings {
+    TmcmcSettings {
         particles: 60,
         moves: [3, 8],
-        ..Settings::default()
+        ..TmcmcSettings::default()
     }
 }
 
@@ -26,7 +28,7 @@ fn unit_prior(dimension: usize) -> Prior {
 }
 
 /// Runs to the end, telling each round in an order of its own.
-fn run(prior: Prior, settings: Settings, score: impl Fn(&[f64]) -> f64, shuffle: u64) -> Sampler {
+fn run(prior: Prior, settings: TmcmcSettings, score: impl Fn(&[f64]) -> f64, shuffle: u64) -> Sampler {
     let mut sampler = Sampler::new(prior, settings).unwrap();
     loop {
         let mut proposals = sampler.pending().to_vec();
@@ -36,9 +38,9 @@ fn run(prior: Prior, settings: Settings, score: impl Fn(&[f64]) -> f64, shuffle:
                 proposals.swap(last, stream.below(last + 1));
             }
         }
-        let mut progress = Progress::Waiting;
+        let mut progress = TellProgress::Waiting;
         for proposal in proposals {
-            assert_eq!(progress, Progress::Waiting);
+            assert_eq!(progress, TellProgress::Waiting);
             progress = sampler
                 .tell(
                     proposal.particle,
@@ -47,9 +49,9 @@ fn run(prior: Prior, settings: Settings, score: impl Fn(&[f64]) -> f64, shuffle:
                 .unwrap();
         }
         match progress {
-            Progress::NextRound | Progress::StageFinished => assert!(!sampler.pending().is_empty()),
-            Progress::Finished | Progress::Failed(_) => return sampler,
-            Progress::Waiting => panic!("a completed round left the sampler waiting"),
+            TellProgress::NextRound | TellProgress::StageFinished => assert!(!sampler.pending().is_empty()),
+            TellProgress::Finished | TellProgress::Failed(_) => return sampler,
+            TellProgress::Waiting => panic!("a completed round left the sampler waiting"),
         }
     }
 }
@@ -58,7 +60,7 @@ fn run(prior: Prior, settings: Settings, score: impl Fn(&[f64]) -> f64, shuffle:
 fn the_order_of_tells_is_irrelevant() {
     let problem = problems::shear_building();
     for algorithm in [Algorithm::Tmcmc, Algorithm::ChingChen2007, Algorithm::Basis] {
-        let settings = Settings { algorithm, ..small() };
+        let settings = TmcmcSettings { algorithm, ..small() };
         let score = |theta: &[f64]| problem.score(theta).value();
         let [straight, shuffled] = [0, 99].map(|shuffle| run(problem.prior(), settings, score, shuffle));
         let bits = |sampler: &Sampler| {
@@ -83,7 +85,7 @@ fn the_seed_matters() {
     let problem = problems::shear_building();
     let run = |seed| {
         problem
-            .run(Settings { seed, ..small() })
+            .run(TmcmcSettings { seed, ..small() })
             .posterior()
             .unwrap()
             .log_evidence
@@ -96,7 +98,7 @@ fn pending_holds_still_and_refuses_what_it_did_not_ask() {
     let mut sampler = Sampler::new(unit_prior(2), small()).unwrap();
     let before = sampler.pending().to_vec();
     let value = LogLikelihood::new(-1.0).unwrap();
-    assert_eq!(sampler.tell(7, value), Ok(Progress::Waiting));
+    assert_eq!(sampler.tell(7, value), Ok(TellProgress::Waiting));
     assert_eq!(sampler.pending(), before);
     assert!(sampler.is_told(7) && !sampler.is_told(8));
     assert_eq!((sampler.current().told, sampler.current().proposals), (1, 60));
@@ -119,9 +121,9 @@ fn pending_holds_still_and_refuses_what_it_did_not_ask() {
 #[test]
 fn most_of_the_prior_may_be_impossible() {
     // L = 1 on the tenth x < 0.1, impossible elsewhere: Z = 0.1 and the posterior is uniform on it.
-    let settings = Settings {
+    let settings = TmcmcSettings {
         particles: 1000,
-        ..Settings::default()
+        ..TmcmcSettings::default()
     };
     let score = |theta: &[f64]| if theta[0] < 0.1 { 0.0 } else { f64::NEG_INFINITY };
     let sampler = run(unit_prior(2), settings, score, 0);
@@ -153,7 +155,7 @@ fn most_of_the_prior_may_be_impossible() {
 fn a_model_that_rejects_everything_is_reported() {
     let sampler = run(unit_prior(2), small(), |_| f64::NEG_INFINITY, 0);
     let failure = sampler.failure().unwrap();
-    assert_eq!(failure, Failure::AllImpossible { draws: 60 });
+    assert_eq!(failure, InferenceFailure::AllImpossible { draws: 60 });
     assert_eq!(
         failure.to_string(),
         "all 60 prior draws were rejected by the model"
@@ -167,7 +169,7 @@ fn a_model_that_rejects_everything_is_reported() {
     );
     assert!(matches!(
         few.failure(),
-        Some(Failure::TooFewPossible {
+        Some(InferenceFailure::TooFewPossible {
             draws: 60,
             needed: 5,
             ..
@@ -184,10 +186,10 @@ fn log_likelihoods_too_far_apart_are_reported() {
 /// In a corner of ten dimensions nearly every proposal of a small population leaves the prior.
 #[test]
 fn rounds_without_proposals_inside_the_prior_advance_by_themselves() {
-    let settings = Settings {
+    let settings = TmcmcSettings {
         particles: 22,
         moves: [1, 3],
-        ..Settings::default()
+        ..TmcmcSettings::default()
     };
     let sampler = run(
         unit_prior(10),
@@ -211,11 +213,11 @@ fn a_flat_likelihood_gives_back_the_prior() {
 #[test]
 fn settings_that_cannot_work_are_refused() {
     let refuse = |prior: Prior, settings| Sampler::new(prior, settings).map(|_| ()).unwrap_err();
-    assert_eq!(refuse(unit_prior(0), small()), SettingsError::NoParameters);
+    assert_eq!(refuse(unit_prior(0), small()), TmcmcSettingsError::NoParameters);
     assert_eq!(
         refuse(
             unit_prior(5),
-            Settings {
+            TmcmcSettings {
                 particles: 11,
                 ..small()
             }
@@ -226,7 +228,7 @@ fn settings_that_cannot_work_are_refused() {
     assert_eq!(
         refuse(
             unit_prior(1),
-            Settings {
+            TmcmcSettings {
                 moves: [5, 4],
                 ..small()
             }
@@ -237,11 +239,11 @@ fn settings_that_cannot_work_are_refused() {
     assert!(matches!(
         refuse(
             unit_prior(1),
-            Settings {
+            TmcmcSettings {
                 target_cov: f64::NAN,
                 ..small()
             }
         ),
-        SettingsError::TargetCov { .. }
+        TmcmcSettingsError::TargetCov { .. }
     ));
 }

@@ -1,6 +1,6 @@
 //! Check the sampler under a correlated prior against the conjugate normal.
 
-use inference::{Sampler, Settings};
+use inference::{Sampler, TmcmcSettings};
 use statistics::{Distribution, LogLikelihood, Marginal, Prior};
 
 /// A normal prior N(0, R) and one datum d of a + b with sd e: the posterior is normal, the evidence N(d; 0, 2 (1 + rho) + e^2).
@@ -11,10 +11,10 @@ fn a_correlated_prior_is_updated_as_on_paper() {
     let prior = Prior::new(vec![normal.clone(), normal])
         .correlated(vec![0, 1], &[vec![1.0, rho], vec![rho, 1.0]])
         .unwrap();
-    let settings = Settings {
+    let settings = TmcmcSettings {
         particles: 2000,
         seed: 4,
-        ..Settings::default()
+        ..TmcmcSettings::default()
     };
     let mut sampler = Sampler::new(prior, settings).unwrap();
     while !sampler.pending().is_empty() {

@@ -1,10 +1,11 @@
 //! Check diagnostics on linear models with normal errors, where every answer is known.
 
-use inference::diagnostics::{self, BINS, Predicted, Region, Side};
+use inference::diagnostics::{self, BINS, PredictedDraw, Region, Side};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use statistics::rng::Stream;
 use statistics::{
-    CommonError, Datum, Discrepancy, Distribution, ErrorLaw, Likelihood, Marginal, Prior, Sd, Size,
+    CommonError, CommonErrorSize, Datum, Discrepancy, Distribution, ErrorLaw, ErrorSd, Likelihood, Marginal,
+    Prior,
 };
 
 /// `y = X theta + sd e`, every parameter standard normal before the data.
@@ -42,10 +43,10 @@ impl Linear {
 
     fn likelihood(&self, y: &DVector<f64>) -> Likelihood {
         let sd = match self.inferred {
-            true => Sd::Inferred {
+            true => ErrorSd::Inferred {
                 parameter: self.design.ncols(),
             },
-            false => Sd::Known(self.sd),
+            false => ErrorSd::Known(self.sd),
         };
         let datum = |(run, value): (usize, &f64)| Datum {
             run,
@@ -56,17 +57,17 @@ impl Linear {
         Likelihood::new(y.iter().enumerate().map(datum).collect()).unwrap()
     }
 
-    fn predicted(&self, theta: DVector<f64>) -> Predicted {
+    fn predicted(&self, theta: DVector<f64>) -> PredictedDraw {
         let values = (&self.design * &theta).iter().copied().collect();
         let noise = self.inferred.then_some(self.sd);
-        Predicted {
+        PredictedDraw {
             theta: theta.iter().copied().chain(noise).collect(),
             values,
         }
     }
 
     /// Draws whose sample mean and covariance are the posterior's exactly: two on each axis of its ellipsoid.
-    fn posterior(&self, y: &DVector<f64>) -> Vec<Predicted> {
+    fn posterior(&self, y: &DVector<f64>) -> Vec<PredictedDraw> {
         let covariance = self.covariance();
         let mean = &covariance * self.design.transpose() * y / (self.sd * self.sd);
         let root = Cholesky::new(covariance).unwrap().unpack();
@@ -98,7 +99,7 @@ fn leverage_of_a_line_is_its_closed_form() {
     let draws = model.posterior(&y);
     let rows = diagnostics::residuals(&model.likelihood(&y), &draws).unwrap();
     let hat = &model.design * model.covariance() * model.design.transpose() / (model.sd * model.sd);
-    let mean = Predicted::mean(&draws).unwrap();
+    let mean = PredictedDraw::mean(&draws).unwrap();
     for (i, row) in rows.iter().enumerate() {
         let h = hat[(i, i)];
         let residual = y[i] - mean.values[i];
@@ -145,7 +146,7 @@ fn chi_square_knows_errors_in_common() {
     let data = model.likelihood(&y).data().to_vec();
     let shift = CommonError {
         data: vec![1, 2, 4],
-        size: Size::Shift(Sd::Known(0.8)),
+        size: CommonErrorSize::Shift(ErrorSd::Known(0.8)),
     };
     let likelihood =
         Likelihood::with_common(data, ErrorLaw::Gaussian, vec![shift], Discrepancy::None).unwrap();
@@ -155,7 +156,7 @@ fn chi_square_knows_errors_in_common() {
         errors[(i, j)] += 0.64;
     }
     let inverse = errors.clone().try_inverse().unwrap();
-    let mean = DVector::from_vec(Predicted::mean(&draws).unwrap().values);
+    let mean = DVector::from_vec(PredictedDraw::mean(&draws).unwrap().values);
     let spread = &model.design * model.covariance() * model.design.transpose();
     let found = diagnostics::chi_square(&likelihood, &draws, |_| true)
         .unwrap()

@@ -1,13 +1,13 @@
 //! Check that what is not right is flagged.
 
 use crate::problems::{self, Problem};
-use inference::{Algorithm, Settings};
+use inference::{Algorithm, TmcmcSettings};
 
 /// Every run is flagged, or its evidence is within four standard errors (and 0.3 nats for their own error).
-fn right_or_flagged(problem: &Problem, settings: Settings) -> usize {
+fn right_or_flagged(problem: &Problem, settings: TmcmcSettings) -> usize {
     let mut flagged = 0;
     for seed in 1..=4 {
-        let sampler = problem.run(Settings { seed, ..settings });
+        let sampler = problem.run(TmcmcSettings { seed, ..settings });
         let posterior = sampler.posterior().unwrap();
         let error = posterior.log_evidence - problem.log_evidence;
         flagged += usize::from(!posterior.equilibrated);
@@ -25,37 +25,37 @@ fn right_or_flagged(problem: &Problem, settings: Settings) -> usize {
 fn bekker_with_known_noise_is_right_or_flagged() {
     right_or_flagged(
         &problems::bekker_known_noise(),
-        Settings {
+        TmcmcSettings {
             particles: 400,
-            ..Settings::default()
+            ..TmcmcSettings::default()
         },
     );
 }
 
 #[test]
 fn bekker_with_unknown_noise_is_right_or_flagged() {
-    let settings = Settings {
+    let settings = TmcmcSettings {
         particles: 400,
-        ..Settings::default()
+        ..TmcmcSettings::default()
     };
     assert_eq!(right_or_flagged(&problems::bekker_unknown_noise(), settings), 4);
 }
 
 #[test]
 fn too_few_moves_are_flagged() {
-    let settings = Settings {
+    let settings = TmcmcSettings {
         particles: 200,
         moves: [1, 1],
-        ..Settings::default()
+        ..TmcmcSettings::default()
     };
     assert_eq!(right_or_flagged(&problems::correlated_gaussian(), settings), 4);
 }
 
 #[test]
 fn the_original_sampler_is_never_silently_wrong() {
-    let settings = Settings {
+    let settings = TmcmcSettings {
         algorithm: Algorithm::ChingChen2007,
-        ..Settings::default()
+        ..TmcmcSettings::default()
     };
     for problem in [problems::bekker_known_noise(), problems::bekker_unknown_noise()] {
         assert_eq!(right_or_flagged(&problem, settings), 4);
@@ -68,9 +68,9 @@ fn the_original_sampler_is_never_silently_wrong() {
 
 #[test]
 fn basis_is_never_silently_wrong() {
-    let settings = Settings {
+    let settings = TmcmcSettings {
         algorithm: Algorithm::Basis,
-        ..Settings::default()
+        ..TmcmcSettings::default()
     };
     for problem in [
         problems::correlated_gaussian(),

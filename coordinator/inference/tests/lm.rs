@@ -1,10 +1,10 @@
 //! Fits against closed forms, and on models as unpleasant as real ones.
 
-use inference::lm::{Optimiser, Settings, SettingsError};
-use inference::point::{Estimate, Stop};
-use inference::{Failure, Progress, TellError};
+use inference::lm::{LmFit, LmSettings, LmSettingsError};
+use inference::point_estimate::{ModeEstimate, StopReason};
+use inference::{InferenceFailure, TellError, TellProgress};
 use nalgebra::{DMatrix, DVector};
-use statistics::{Datum, Distribution, Likelihood, LikelihoodError, Marginal, Prior, Sd};
+use statistics::{Datum, Distribution, ErrorSd, Likelihood, LikelihoodError, Marginal, Prior};
 
 /// A model: one predicted value for each datum, or none.
 type Model<'a> = &'a dyn Fn(&[f64]) -> Option<Vec<f64>>;
@@ -17,7 +17,7 @@ fn normal(mean: f64, sd: f64) -> Marginal {
     Marginal::new(Distribution::Normal { mean, sd }, None).unwrap()
 }
 
-fn data(values: &[f64], sd: impl Fn(usize) -> Sd) -> Likelihood {
+fn data(values: &[f64], sd: impl Fn(usize) -> ErrorSd) -> Likelihood {
     let datum = |(run, &value): (usize, &f64)| Datum {
         run,
         channel: 0,
@@ -27,12 +27,12 @@ fn data(values: &[f64], sd: impl Fn(usize) -> Sd) -> Likelihood {
     Likelihood::new(values.iter().enumerate().map(datum).collect()).unwrap()
 }
 
-fn begin(prior: &[Marginal], likelihood: &Likelihood, settings: Settings) -> Optimiser {
-    Optimiser::new(Prior::new(prior.to_vec()), likelihood.clone(), settings).unwrap()
+fn begin(prior: &[Marginal], likelihood: &Likelihood, settings: LmSettings) -> LmFit {
+    LmFit::new(Prior::new(prior.to_vec()), likelihood.clone(), settings).unwrap()
 }
 
 /// Runs a fit to its end, each round's results told in an order of its own.
-fn end(mut fit: Optimiser, model: Model, order: impl Fn(u64, &mut Vec<usize>)) -> Optimiser {
+fn end(mut fit: LmFit, model: Model, order: impl Fn(u64, &mut Vec<usize>)) -> LmFit {
     while !fit.pending().is_empty() {
         let pending = fit.pending().to_vec();
         let mut indices: Vec<usize> = (0..pending.len()).collect();
@@ -46,7 +46,7 @@ fn end(mut fit: Optimiser, model: Model, order: impl Fn(u64, &mut Vec<usize>)) -
     fit
 }
 
-fn fit(prior: &[Marginal], likelihood: &Likelihood, settings: Settings, model: Model) -> Estimate {
+fn fit(prior: &[Marginal], likelihood: &Likelihood, settings: LmSettings, model: Model) -> ModeEstimate {
     let ended = end(begin(prior, likelihood, settings), model, |_, _| ());
     ended.estimate().unwrap().clone()
 }
@@ -87,8 +87,8 @@ fn a_linear_model_with_normal_priors_has_its_closed_form() {
     let (means, sds) = ([1.0, 0.0, 1.0], [2.0, 0.5, 3.0]);
     let prior: Vec<Marginal> = means.iter().zip(sds).map(|(&m, s)| normal(m, s)).collect();
     let sd = |i: usize| 0.1 + 0.02 * i as f64;
-    let likelihood = data(&measured(), |i| Sd::Known(sd(i)));
-    let estimate = fit(&prior, &likelihood, Settings::default(), &linear);
+    let likelihood = data(&measured(), |i| ErrorSd::Known(sd(i)));
+    let estimate = fit(&prior, &likelihood, LmSettings::default(), &linear);
 
     // Precision P = A' W A + S^-2, mean P^-1 (A' W y + S^-2 m).
     let a = design();
@@ -112,7 +112,7 @@ fn a_linear_model_with_normal_priors_has_its_closed_form() {
     }
     assert_eq!(
         (estimate.stop, estimate.at_bound.as_slice()),
-        (Stop::Decrease, &[false; 3][..])
+        (StopReason::Decrease, &[false; 3][..])
     );
     // Starts, differences, steps, differences at the optimum, and to both sides of it.
     assert_eq!(estimate.evaluations, 5 + 3 + 4 + 3 + 6);
@@ -131,15 +131,15 @@ fn a_linear_model_with_normal_priors_has_its_closed_form() {
 #[test]
 fn a_curved_valley_is_followed_to_its_end() {
     // Rosenbrock's valley as residuals: 10 (y - x^2) and 1 - x, from the far side of its bend.
-    let likelihood = data(&[0.0, 1.0], |_| Sd::Known(1.0));
+    let likelihood = data(&[0.0, 1.0], |_| ErrorSd::Known(1.0));
     let model = |theta: &[f64]| Some(vec![10.0 * (theta[1] - theta[0] * theta[0]), theta[0]]);
     let prior = [uniform(-4.4, 2.0), uniform(-2.0, 4.0)];
-    let settings = Settings {
+    let settings = LmSettings {
         starts: 1,
-        ..Settings::default()
+        ..LmSettings::default()
     };
     let estimate = fit(&prior, &likelihood, settings, &model);
-    assert_eq!(estimate.stop, Stop::Decrease);
+    assert_eq!(estimate.stop, StopReason::Decrease);
     near(estimate.theta[0], 1.0, 1e-3);
     near(estimate.theta[1], 1.0, 2e-3);
     // J = [[-20, 10], [1, 0]]: variances 1 and 4.01.
@@ -152,8 +152,8 @@ fn a_curved_valley_is_followed_to_its_end() {
 fn a_parameter_at_its_bound_is_reported_and_the_others_make_the_best_of_it() {
     // The data want -1 for the second parameter, the prior ends at -0.5.
     let prior = [normal(0.0, 10.0), uniform(-0.5, 3.0), normal(0.0, 10.0)];
-    let likelihood = data(&measured(), |_| Sd::Known(0.1));
-    let estimate = fit(&prior, &likelihood, Settings::default(), &linear);
+    let likelihood = data(&measured(), |_| ErrorSd::Known(0.1));
+    let estimate = fit(&prior, &likelihood, LmSettings::default(), &linear);
     assert_eq!(estimate.theta[1].to_bits(), (-0.5_f64).to_bits());
     assert_eq!(estimate.at_bound, [false, true, false]);
     assert_eq!(estimate.sd(1), None);
@@ -177,15 +177,15 @@ fn a_parameter_at_its_bound_is_reported_and_the_others_make_the_best_of_it() {
 #[test]
 fn a_bound_in_the_way_of_the_first_steps_is_left_again() {
     // From the far corner the first parabola points over the bound of y; the answer lies inside.
-    let likelihood = data(&[0.5, 1.3], |_| Sd::Known(0.01));
+    let likelihood = data(&[0.5, 1.3], |_| ErrorSd::Known(0.01));
     let model = |theta: &[f64]| Some(vec![theta[0] * theta[1], theta[0] + theta[1] * theta[1]]);
     let prior = [uniform(0.0, 4.0), uniform(0.0, 2.0)];
     let estimate = fit(
         &prior,
         &likelihood,
-        Settings {
+        LmSettings {
             starts: 1,
-            ..Settings::default()
+            ..LmSettings::default()
         },
         &model,
     );
@@ -203,8 +203,8 @@ fn noise_has_its_closed_form() {
     let count = 8.0;
     let noise = |distribution, bounds| {
         let prior = [normal(0.0, 1e-7), Marginal::new(distribution, bounds).unwrap()];
-        let likelihood = data(&values, |_| Sd::Inferred { parameter: 1 });
-        fit(&prior, &likelihood, Settings::default(), &model)
+        let likelihood = data(&values, |_| ErrorSd::Inferred { parameter: 1 });
+        fit(&prior, &likelihood, LmSettings::default(), &model)
     };
     let squares: f64 = values.iter().map(|v| v * v).sum();
     let flat = noise(
@@ -258,8 +258,8 @@ fn model_parameters_and_noise_are_fitted_together() {
         uniform(-10.0, 10.0),
         uniform(0.0, 5.0),
     ];
-    let likelihood = data(&measured(), |_| Sd::Inferred { parameter: 3 });
-    let estimate = fit(&prior, &likelihood, Settings::default(), &linear);
+    let likelihood = data(&measured(), |_| ErrorSd::Inferred { parameter: 3 });
+    let estimate = fit(&prior, &likelihood, LmSettings::default(), &linear);
     let a = design();
     let inverse = (a.transpose() * &a).try_inverse().unwrap();
     let least = &inverse * a.transpose() * DVector::from_vec(measured());
@@ -303,18 +303,20 @@ fn a_model_with_the_noise_of_a_grid_is_fitted_within_its_uncertainty() {
     let truth = [4.6, 1.1, 0.5];
     let prior = [uniform(4.0, 5.6), normal(1.1, 0.2), normal(0.55, 0.1)];
     let clean = wheel(&truth);
-    let sd = |i: usize| Sd::Known([1.0, 0.2, 0.4][i % 3]);
+    let sd = |i: usize| ErrorSd::Known([1.0, 0.2, 0.4][i % 3]);
     let values: Vec<f64> = (0..24)
         .map(|i| {
-            let Sd::Known(sd) = sd(i) else { panic!("known") };
+            let ErrorSd::Known(sd) = sd(i) else {
+                panic!("known")
+            };
             clean[i] + sd * libm::sin(1.9 * i as f64)
         })
         .collect();
     let likelihood = data(&values, sd);
-    let smooth = fit(&prior, &likelihood, Settings::default(), &|theta| {
+    let smooth = fit(&prior, &likelihood, LmSettings::default(), &|theta| {
         Some(wheel(theta))
     });
-    assert_eq!(smooth.stop, Stop::Decrease);
+    assert_eq!(smooth.stop, StopReason::Decrease);
     let score = |theta: &[f64]| {
         let likely = likelihood.log_likelihood(&wheel(theta), theta).unwrap().value();
         likely + Prior::new(prior.to_vec()).log_density(theta)
@@ -331,9 +333,9 @@ fn a_model_with_the_noise_of_a_grid_is_fitted_within_its_uncertainty() {
             )
         };
         for seed in 3..=8 {
-            let settings = Settings {
+            let settings = LmSettings {
                 seed,
-                ..Settings::default()
+                ..LmSettings::default()
             };
             let estimate = fit(&prior, &likelihood, settings, &noisy);
             let lost = score(&smooth.theta) - score(&estimate.theta);
@@ -352,7 +354,7 @@ fn a_model_with_the_noise_of_a_grid_is_fitted_within_its_uncertainty() {
 
 #[test]
 fn rejections_around_the_start_turn_differences_round_and_shorten_steps() {
-    let likelihood = data(&measured(), |_| Sd::Known(0.1));
+    let likelihood = data(&measured(), |_| ErrorSd::Known(0.1));
     let prior = [uniform(-3.0, 5.0), uniform(-4.0, 4.0), uniform(-3.0, 5.0)];
     // The prior mean is (1, 0, 1): right behind it on the first axis the model refuses; so it does further down the
     // second, where whole steps would lead, and close to the mean on both sides of the third.
@@ -362,10 +364,10 @@ fn rejections_around_the_start_turn_differences_round_and_shorten_steps() {
             || ((theta[2] - 1.0).abs() > 0.02 && (theta[2] - 1.0).abs() < 0.1);
         (!refused).then(|| linear(theta)).flatten()
     };
-    let free = fit(&prior, &likelihood, Settings::default(), &linear);
-    let settings = Settings {
+    let free = fit(&prior, &likelihood, LmSettings::default(), &linear);
+    let settings = LmSettings {
         starts: 1,
-        ..Settings::default()
+        ..LmSettings::default()
     };
     let estimate = fit(&prior, &likelihood, settings, &wall);
     assert!(estimate.rejected >= 3, "{estimate:?}");
@@ -376,15 +378,15 @@ fn rejections_around_the_start_turn_differences_round_and_shorten_steps() {
 
 #[test]
 fn a_fit_walled_in_on_one_axis_holds_it() {
-    let likelihood = data(&measured(), |_| Sd::Known(0.1));
+    let likelihood = data(&measured(), |_| ErrorSd::Known(0.1));
     let prior = [uniform(-3.0, 5.0), uniform(-4.0, 4.0), uniform(-3.0, 5.0)];
     let slit = |theta: &[f64]| ((theta[1]).abs() < 1e-6).then(|| linear(theta)).flatten();
     let estimate = fit(
         &prior,
         &likelihood,
-        Settings {
+        LmSettings {
             starts: 1,
-            ..Settings::default()
+            ..LmSettings::default()
         },
         &slit,
     );
@@ -395,13 +397,16 @@ fn a_fit_walled_in_on_one_axis_holds_it() {
 
 #[test]
 fn a_model_that_refuses_everything_fails_with_half_of_the_budget() {
-    let likelihood = data(&[1.0], |_| Sd::Known(0.1));
+    let likelihood = data(&[1.0], |_| ErrorSd::Known(0.1));
     let ended = end(
-        begin(&[uniform(0.0, 1.0)], &likelihood, Settings::default()),
+        begin(&[uniform(0.0, 1.0)], &likelihood, LmSettings::default()),
         &|_| None,
         |_, _| (),
     );
-    assert_eq!(ended.failure(), Some(Failure::AllImpossible { draws: 100 }));
+    assert_eq!(
+        ended.failure(),
+        Some(InferenceFailure::AllImpossible { draws: 100 })
+    );
     assert_eq!((ended.estimate(), ended.rejected()), (None, 100));
 }
 
@@ -422,8 +427,8 @@ fn the_order_within_a_round_does_not_matter() {
     ];
     let values = wheel(&[4.9, 1.0, 0.6]);
     let likelihood = data(&values, |i| match i % 3 {
-        0 => Sd::Inferred { parameter: 3 },
-        _ => Sd::Known(0.1),
+        0 => ErrorSd::Inferred { parameter: 3 },
+        _ => ErrorSd::Known(0.1),
     });
     let model = |theta: &[f64]| {
         let values = wheel(theta).into_iter().enumerate();
@@ -433,7 +438,7 @@ fn the_order_within_a_round_does_not_matter() {
         (theta[1] > 0.7).then_some(noisy)
     };
     let run = |order: &dyn Fn(u64, &mut Vec<usize>)| {
-        let fit = end(begin(&prior, &likelihood, Settings::default()), &model, order);
+        let fit = end(begin(&prior, &likelihood, LmSettings::default()), &model, order);
         format!("{:?}", fit.estimate().unwrap())
     };
     let forwards = run(&|_, _| ());
@@ -446,30 +451,30 @@ fn the_order_within_a_round_does_not_matter() {
         forwards
     );
     // Another seed starts elsewhere.
-    let other = Settings {
+    let other = LmSettings {
         seed: 2,
-        ..Settings::default()
+        ..LmSettings::default()
     };
     assert_ne!(
         begin(&prior, &likelihood, other).pending(),
-        begin(&prior, &likelihood, Settings::default()).pending()
+        begin(&prior, &likelihood, LmSettings::default()).pending()
     );
 }
 
 #[test]
 fn the_budget_is_never_exceeded_and_says_so() {
     let prior = [uniform(-4.4, 2.0), uniform(-2.0, 4.0)];
-    let likelihood = data(&[0.0, 1.0], |_| Sd::Known(1.0));
+    let likelihood = data(&[0.0, 1.0], |_| ErrorSd::Known(1.0));
     let model = |theta: &[f64]| Some(vec![10.0 * (theta[1] - theta[0] * theta[0]), theta[0]]);
     for max_evaluations in 4..40 {
-        let settings = Settings {
+        let settings = LmSettings {
             starts: 1,
             max_evaluations,
-            ..Settings::default()
+            ..LmSettings::default()
         };
         let estimate = fit(&prior, &likelihood, settings, &model);
         assert!(estimate.evaluations <= max_evaluations as u64);
-        assert_eq!(estimate.stop, Stop::Budget, "{max_evaluations}");
+        assert_eq!(estimate.stop, StopReason::Budget, "{max_evaluations}");
         // Differences were affordable, so there is an uncertainty.
         assert!((0..2).all(|k| estimate.sd(k).is_some()));
     }
@@ -477,8 +482,8 @@ fn the_budget_is_never_exceeded_and_says_so() {
 
 #[test]
 fn what_fits_no_datum_is_refused_and_changes_nothing() {
-    let likelihood = data(&[1.0, 2.0], |_| Sd::Known(0.1));
-    let mut fit = begin(&[uniform(0.0, 1.0)], &likelihood, Settings::default());
+    let likelihood = data(&[1.0, 2.0], |_| ErrorSd::Known(0.1));
+    let mut fit = begin(&[uniform(0.0, 1.0)], &likelihood, LmSettings::default());
     assert_eq!(
         fit.tell(0, Some(&[1.0])),
         Err(TellError::Length {
@@ -497,7 +502,7 @@ fn what_fits_no_datum_is_refused_and_changes_nothing() {
         .into())
     );
     assert!(!fit.is_told(0));
-    assert_eq!(fit.tell(0, None), Ok(Progress::Waiting));
+    assert_eq!(fit.tell(0, None), Ok(TellProgress::Waiting));
     assert_eq!(
         fit.tell(0, None),
         Err(TellError::AlreadyTold {
@@ -516,16 +521,19 @@ fn what_fits_no_datum_is_refused_and_changes_nothing() {
 
 #[test]
 fn settings_that_cannot_work_are_refused() {
-    let ok = Settings::default();
-    assert_eq!(ok.check(0), Err(SettingsError::NoParameters));
-    assert_eq!(Settings { starts: 0, ..ok }.check(2), Err(SettingsError::NoStart));
+    let ok = LmSettings::default();
+    assert_eq!(ok.check(0), Err(LmSettingsError::NoParameters));
     assert_eq!(
-        Settings {
+        LmSettings { starts: 0, ..ok }.check(2),
+        Err(LmSettingsError::NoStart)
+    );
+    assert_eq!(
+        LmSettings {
             max_evaluations: 13,
             ..ok
         }
         .check(8),
-        Err(SettingsError::TooFewEvaluations {
+        Err(LmSettingsError::TooFewEvaluations {
             max_evaluations: 13,
             least: 14,
             starts: 5,
@@ -533,7 +541,7 @@ fn settings_that_cannot_work_are_refused() {
         })
     );
     assert_eq!(
-        Settings {
+        LmSettings {
             max_evaluations: 14,
             ..ok
         }
@@ -542,12 +550,12 @@ fn settings_that_cannot_work_are_refused() {
     );
     for value in [0.0, -0.1, 0.6, f64::NAN] {
         assert!(matches!(
-            Settings {
+            LmSettings {
                 difference_step: value,
                 ..ok
             }
             .check(2),
-            Err(SettingsError::DifferenceStep { .. })
+            Err(LmSettingsError::DifferenceStep { .. })
         ));
     }
 }
@@ -559,12 +567,12 @@ fn a_correlated_prior_counts_as_on_paper() {
     let prior = Prior::new(vec![normal(0.0, 1.0), normal(0.0, 1.0)])
         .correlated(vec![0, 1], &[vec![1.0, rho], vec![rho, 1.0]])
         .unwrap();
-    let likelihood = data(&[datum], |_| Sd::Known(sd));
-    let settings = Settings {
+    let likelihood = data(&[datum], |_| ErrorSd::Known(sd));
+    let settings = LmSettings {
         starts: 2,
-        ..Settings::default()
+        ..LmSettings::default()
     };
-    let begun = Optimiser::new(prior, likelihood, settings).unwrap();
+    let begun = LmFit::new(prior, likelihood, settings).unwrap();
     let ended = end(begun, &|theta| Some(vec![theta[0] + 2.0 * theta[1]]), |_, _| ());
     let estimate = ended.estimate().unwrap();
     let covariance = [1.0 + 2.0 * rho, rho + 2.0];

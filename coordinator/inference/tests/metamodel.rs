@@ -1,8 +1,10 @@
 //! A metamodel saves evaluations and leaves the posterior as it is.
 
 use inference::diagnostics::mean_and_sd;
-use inference::{Answer, Posterior, Sampler, Settings};
-use statistics::{Datum, Distribution, Likelihood, LogLikelihood, Marginal, Metamodel, ModelPair, Prior, Sd};
+use inference::{EvaluationResult, PosteriorSample, Sampler, TmcmcSettings};
+use statistics::{
+    Datum, Distribution, ErrorSd, Likelihood, LogLikelihood, Marginal, Metamodel, ModelPair, Prior,
+};
 
 const MEASURED: [f64; 2] = [1.2, 0.9];
 const NOISE: f64 = 0.25;
@@ -24,7 +26,7 @@ fn likelihood() -> Likelihood {
         run,
         channel: 0,
         value: MEASURED[run],
-        sd: Sd::Known(NOISE),
+        sd: ErrorSd::Known(NOISE),
     };
     Likelihood::new(vec![datum(0), datum(1)]).unwrap()
 }
@@ -35,7 +37,7 @@ fn prior() -> Prior {
 }
 
 /// A sampler at its end, the metamodel's moves, and how many of them were accepted.
-fn run(settings: Settings, coarse: fn(&[f64]) -> Option<Vec<f64>>) -> (Sampler, [u64; 3]) {
+fn run(settings: TmcmcSettings, coarse: fn(&[f64]) -> Option<Vec<f64>>) -> (Sampler, [u64; 3]) {
     let likelihood = likelihood();
     let mut sampler = Sampler::with_metamodel(prior(), settings, likelihood.clone()).unwrap();
     let [mut moves, mut subchains, mut found_out] = [0; 3];
@@ -59,11 +61,11 @@ fn run(settings: Settings, coarse: fn(&[f64]) -> Option<Vec<f64>>) -> (Sampler, 
                     moves += u64::from(end.moves);
                     subchains += 1;
                     found_out += u64::from(found.is_some());
-                    Answer::Moved { end, found }
+                    EvaluationResult::Moved { end, found }
                 }
                 _ => {
                     let (log_likelihood, pair) = score(&proposal.theta);
-                    Answer::Here { log_likelihood, pair }
+                    EvaluationResult::Here { log_likelihood, pair }
                 }
             };
             sampler.tell(proposal.particle, answer).unwrap();
@@ -92,7 +94,7 @@ fn truth() -> ([f64; 4], f64) {
     ([1, 2, 3, 4].map(|k| sums[k] / sums[0]), libm::log(sums[0]))
 }
 
-fn moments(posterior: &Posterior) -> [f64; 4] {
+fn moments(posterior: &PosteriorSample) -> [f64; 4] {
     let mean = |of: fn(&[f64]) -> f64| {
         let values: Vec<f64> = posterior.particles.iter().map(|p| of(&p.theta)).collect();
         mean_and_sd(&values).unwrap().0
@@ -105,13 +107,13 @@ fn moments(posterior: &Posterior) -> [f64; 4] {
     ]
 }
 
-fn settings(seed: u64, metamodel_moves: usize) -> Settings {
-    Settings {
+fn settings(seed: u64, metamodel_moves: usize) -> TmcmcSettings {
+    TmcmcSettings {
         particles: 500,
         moves: if metamodel_moves > 0 { [4, 30] } else { [10, 60] },
         seed,
         metamodel_moves,
-        ..Settings::default()
+        ..TmcmcSettings::default()
     }
 }
 
@@ -196,13 +198,15 @@ fn an_answer_to_another_question_is_refused() {
         scaled: 4,
         scaled_accepted: 0,
     };
-    let error = sampler.tell(3, Answer::Moved { end, found: None }).unwrap_err();
+    let error = sampler
+        .tell(3, EvaluationResult::Moved { end, found: None })
+        .unwrap_err();
     assert!(error.to_string().contains("what was not asked"), "{error}");
 }
 
 #[test]
 fn the_algorithms_without_steps_take_no_metamodel() {
-    let settings = Settings {
+    let settings = TmcmcSettings {
         algorithm: inference::Algorithm::Basis,
         ..settings(1, 5)
     };

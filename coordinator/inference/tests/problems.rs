@@ -1,7 +1,7 @@
 //! Hold sampler problems with known evidence and moments, for tests and bench.
 
-use inference::search::{self, Search};
-use inference::{Progress, Sampler, Settings};
+use inference::evolution::{Evolution, EvolutionSettings};
+use inference::{Sampler, TellProgress, TmcmcSettings};
 use statistics::{Distribution, LogLikelihood, Marginal, Prior};
 
 /// A function of the parameters, its posterior mean and sd.
@@ -42,8 +42,8 @@ impl Problem {
     }
 
     /// Runs a search to its end.
-    pub(crate) fn search(&self, settings: search::Settings) -> Search {
-        let mut search = Search::new(self.prior(), settings).unwrap();
+    pub(crate) fn search(&self, settings: EvolutionSettings) -> Evolution {
+        let mut search = Evolution::new(self.prior(), settings).unwrap();
         while !search.pending().is_empty() {
             for proposal in search.pending().to_vec() {
                 let value = self.score(&proposal.theta);
@@ -54,18 +54,18 @@ impl Problem {
     }
 
     /// Runs a sampler to its end.
-    pub(crate) fn run(&self, settings: Settings) -> Sampler {
+    pub(crate) fn run(&self, settings: TmcmcSettings) -> Sampler {
         let mut sampler = Sampler::new(self.prior(), settings).unwrap();
         loop {
-            let mut last = Progress::Waiting;
+            let mut last = TellProgress::Waiting;
             for proposal in sampler.pending().to_vec() {
                 last = sampler
                     .tell(proposal.particle, self.score(&proposal.theta))
                     .unwrap();
             }
             match last {
-                Progress::NextRound | Progress::StageFinished => (),
-                Progress::Waiting | Progress::Finished | Progress::Failed(_) => return sampler,
+                TellProgress::NextRound | TellProgress::StageFinished => (),
+                TellProgress::Waiting | TellProgress::Finished | TellProgress::Failed(_) => return sampler,
             }
         }
     }

@@ -1,9 +1,9 @@
 //! Check the test for trends in residuals on linear models with normal errors, where every answer is known.
 
-use inference::diagnostics::{Predicted, Trend, TrendTest};
+use inference::diagnostics::{PredictedDraw, Trend, TrendTest};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use statistics::rng::Stream;
-use statistics::{Datum, Distribution, Likelihood, Marginal, Prior, Sd};
+use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
 
 const CHANNELS: usize = 3;
 const SLIPS: [f64; 4] = [0.05, 0.2, 0.4, 0.6];
@@ -96,10 +96,10 @@ impl Rig {
             channel: i / runs,
             value: *value,
             sd: match self.inferred {
-                true => Sd::Inferred {
+                true => ErrorSd::Inferred {
                     parameter: PARAMETERS + i / runs,
                 },
-                false => Sd::Known(SD),
+                false => ErrorSd::Known(SD),
             },
         };
         Likelihood::new(y.iter().enumerate().map(datum).collect()).unwrap()
@@ -113,7 +113,7 @@ impl Rig {
     }
 
     /// So many random draws of the posterior; noise sds that are inferred wander about the truth by a tenth.
-    fn posterior(&self, y: &DVector<f64>, draws: usize, stream: &mut Stream) -> Vec<Predicted> {
+    fn posterior(&self, y: &DVector<f64>, draws: usize, stream: &mut Stream) -> Vec<PredictedDraw> {
         let covariance = self.covariance();
         let mean = &covariance * self.design.transpose() * y / (SD * SD);
         let root = Cholesky::new(covariance).unwrap().unpack();
@@ -126,7 +126,7 @@ impl Rig {
                     let sds = stream.normals(CHANNELS);
                     theta.extend(sds.iter().map(|e| SD * libm::exp(0.1 * e)));
                 }
-                Predicted { theta, values }
+                PredictedDraw { theta, values }
             })
             .collect()
     }

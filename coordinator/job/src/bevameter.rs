@@ -3,7 +3,7 @@
 use shared::experiment::{Experiment, Scatter};
 use shared::model::{ModelVariant, PlateCondition, RingCondition};
 use shared::parameters::RING_TRANSFER;
-use statistics::{Datum, Distribution, Marginal, Sd};
+use statistics::{Datum, Distribution, ErrorSd, Marginal};
 
 use super::priors::FreeParameter;
 
@@ -171,7 +171,7 @@ impl Bevameter {
 
 impl Table<'_> {
     /// The readings as data: logarithms of stresses `[ln Pa]`, so that their sd is relative.
-    pub(super) fn data(&self, sd: Sd) -> impl Iterator<Item = Datum> {
+    pub(super) fn data(&self, sd: ErrorSd) -> impl Iterator<Item = Datum> {
         let readings = self.readings.iter().enumerate();
         readings.map(move |(run, (_, stress))| Datum {
             run,

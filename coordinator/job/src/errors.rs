@@ -4,8 +4,8 @@ use serde::Deserialize;
 use shared::experiment::{Experiment, Scatter, ScatterSd};
 use shared::file::unknown_word;
 use shared::parameters::scatter_parameter;
-use statistics::likelihood::{HIGHEST, LEVELS, LOWEST};
-use statistics::{CommonError, Datum, Discrepancy, ErrorLaw, Likelihood, Sd, Size};
+use statistics::likelihood::{DISCREPANCY_LEVELS, GREATEST_DISCREPANCY, LEAST_DISCREPANCY};
+use statistics::{CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood};
 
 use super::bevameter::{Bevameter, PLATE};
 use super::priors::FreeParameter;
@@ -38,7 +38,7 @@ impl LikelihoodSettings {
                 "the model may be off by {m} noise sds in each condition and channel, common to all repeats"
             )),
             Discrepancy::Unknown => words.push(format!(
-                "the model may be off by m noise sds in each condition and channel, common to all repeats; m is marginalised over {LEVELS} values from {LOWEST} to {HIGHEST}, uniform in log m: {}",
+                "the model may be off by m noise sds in each condition and channel, common to all repeats; m is marginalised over {DISCREPANCY_LEVELS} values from {LEAST_DISCREPANCY} to {GREATEST_DISCREPANCY}, uniform in log m: {}",
                 levels(self.discrepancy)
             )),
         }
@@ -146,14 +146,14 @@ pub(super) fn scatter_sd(
     experiment: &Experiment,
     parameters: &[FreeParameter],
     scatter: Scatter,
-) -> Result<Option<Sd>, String> {
+) -> Result<Option<ErrorSd>, String> {
     match experiment.noise.scatter(scatter) {
-        ScatterSd::Known(sd) => Ok((sd > 0.0).then_some(Sd::Known(sd))),
+        ScatterSd::Known(sd) => Ok((sd > 0.0).then_some(ErrorSd::Known(sd))),
         ScatterSd::Unknown => {
             let name = scatter_parameter(scatter);
             let parameter = parameters.iter().position(|p| p.name == name);
             let parameter = parameter.ok_or(format!("{name} has no prior"))?;
-            Ok(Some(Sd::Inferred { parameter }))
+            Ok(Some(ErrorSd::Inferred { parameter }))
         }
     }
 }
@@ -174,14 +174,14 @@ pub(super) fn likelihood(
     if let Some(sd) = scatter_sd(experiment, parameters, Scatter::Run)? {
         for run in 0..fit_runs.len() {
             let own = members(&data, &|d| d.run == run);
-            common.push((own, Size::Sensitivity(sd)));
+            common.push((own, CommonErrorSize::Sensitivity(sd)));
         }
     }
     if settings.discrepancy != Discrepancy::None {
         for condition in noise::conditions(experiment, fit_runs) {
             for channel in 0..PLATE {
                 let own = members(&data, &|d| d.channel == channel && condition.contains(&d.run));
-                common.push((own, Size::Discrepancy));
+                common.push((own, CommonErrorSize::Discrepancy));
             }
         }
     }
@@ -191,7 +191,10 @@ pub(super) fn likelihood(
         data.extend(table.data(sd.ok_or("readings without noise")?));
         if let Some(sd) = scatter_sd(experiment, parameters, table.between_tests)? {
             for test in table.tests() {
-                common.push((test.iter().map(|i| first + i).collect(), Size::Shift(sd)));
+                common.push((
+                    test.iter().map(|i| first + i).collect(),
+                    CommonErrorSize::Shift(sd),
+                ));
             }
         }
     }

@@ -1,6 +1,8 @@
 //! The table `[sampler]`: which algorithm, and its settings.
 
-use inference::{Algorithm, cma_es, ga, lm, search};
+use inference::evolution::{CmaEsSettings, EvolutionSettings, EvolutionSettingsError, GaSettings};
+use inference::lm::{LmSettings, LmSettingsError};
+use inference::{Algorithm, TmcmcSettings, TmcmcSettingsError};
 use serde::Deserialize;
 use shared::file::unknown_word;
 
@@ -10,11 +12,11 @@ use super::sampler_keys::Keys;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method {
     /// A sample of the posterior.
-    Sample(inference::Settings),
+    Sample(TmcmcSettings),
     /// The most probable parameters, by steps.
-    Fit(lm::Settings),
+    Fit(LmSettings),
     /// The most probable parameters, by generations.
-    Search(search::Settings),
+    Evolve(EvolutionSettings),
     /// What the model is missing.
     Discover {
         /// Seed of the draws.
@@ -30,13 +32,13 @@ const DISCOVERY_WIDTH: usize = 100_000;
 pub enum MethodError {
     /// The sampler's.
     #[error(transparent)]
-    Sample(#[from] inference::SettingsError),
+    Sample(#[from] TmcmcSettingsError),
     /// The fit's.
     #[error(transparent)]
-    Fit(#[from] lm::SettingsError),
-    /// The search's.
+    Fit(#[from] LmSettingsError),
+    /// The evolution's.
     #[error(transparent)]
-    Search(#[from] search::SettingsError),
+    Evolve(#[from] EvolutionSettingsError),
 }
 
 impl Method {
@@ -49,8 +51,8 @@ impl Method {
                 Algorithm::Basis => "basis",
             },
             Method::Fit(_) => "lm",
-            Method::Search(search::Settings::Ga(_)) => "ga",
-            Method::Search(search::Settings::CmaEs(_)) => "cma-es",
+            Method::Evolve(EvolutionSettings::Ga(_)) => "ga",
+            Method::Evolve(EvolutionSettings::CmaEs(_)) => "cma-es",
             Method::Discover { .. } => "discovery",
         }
     }
@@ -60,12 +62,12 @@ impl Method {
         let name = self.name();
         match self {
             Method::Sample(settings) => format!("{name} with {} particles", settings.particles),
-            Method::Search(search::Settings::Ga(settings)) => format!(
+            Method::Evolve(EvolutionSettings::Ga(settings)) => format!(
                 "{name} with at most {} generations of {}",
                 settings.generations, settings.population
             ),
-            Method::Fit(lm::Settings { max_evaluations, .. })
-            | Method::Search(search::Settings::CmaEs(cma_es::Settings { max_evaluations, .. })) => {
+            Method::Fit(LmSettings { max_evaluations, .. })
+            | Method::Evolve(EvolutionSettings::CmaEs(CmaEsSettings { max_evaluations, .. })) => {
                 format!("{name} with at most {max_evaluations} evaluations")
             }
             Method::Discover { .. } => name.to_owned(),
@@ -81,7 +83,7 @@ impl Method {
     pub fn metamodel_moves(&self) -> usize {
         match self {
             Method::Sample(settings) => settings.metamodel_moves,
-            Method::Fit(_) | Method::Search(_) | Method::Discover { .. } => 0,
+            Method::Fit(_) | Method::Evolve(_) | Method::Discover { .. } => 0,
         }
     }
 
@@ -89,8 +91,8 @@ impl Method {
     pub fn budget_key(&self) -> &'static str {
         match self {
             Method::Sample(_) | Method::Discover { .. } => "particles",
-            Method::Search(search::Settings::Ga(_)) => "generations",
-            Method::Fit(_) | Method::Search(search::Settings::CmaEs(_)) => "max_evaluations",
+            Method::Evolve(EvolutionSettings::Ga(_)) => "generations",
+            Method::Fit(_) | Method::Evolve(EvolutionSettings::CmaEs(_)) => "max_evaluations",
         }
     }
 
@@ -99,7 +101,7 @@ impl Method {
         match self {
             Method::Sample(settings) => settings.seed,
             Method::Fit(settings) => settings.seed,
-            Method::Search(settings) => settings.seed(),
+            Method::Evolve(settings) => settings.seed(),
             Method::Discover { seed } => *seed,
         }
     }
@@ -109,8 +111,8 @@ impl Method {
         match self {
             Method::Sample(settings) => settings.particles,
             Method::Fit(settings) => settings.max_evaluations,
-            Method::Search(search::Settings::Ga(settings)) => settings.population,
-            Method::Search(search::Settings::CmaEs(settings)) => settings.max_evaluations,
+            Method::Evolve(EvolutionSettings::Ga(settings)) => settings.population,
+            Method::Evolve(EvolutionSettings::CmaEs(settings)) => settings.max_evaluations,
             Method::Discover { .. } => DISCOVERY_WIDTH,
         }
     }
@@ -120,7 +122,7 @@ impl Method {
         match self {
             Method::Sample(_) | Method::Discover { .. } => None,
             Method::Fit(settings) => Some(settings.max_evaluations),
-            Method::Search(settings) => Some(settings.max_evaluations()),
+            Method::Evolve(settings) => Some(settings.max_evaluations()),
         }
     }
 
@@ -132,7 +134,7 @@ impl Method {
         match self {
             Method::Sample(settings) => settings.check(dimension)?,
             Method::Fit(settings) => settings.check(dimension)?,
-            Method::Search(settings) => settings.check(dimension)?,
+            Method::Evolve(settings) => settings.check(dimension)?,
             Method::Discover { .. } => {}
         }
         Ok(())
@@ -185,7 +187,7 @@ impl RawSampler {
             "ga" => self.ga(),
             "cma-es" => self.cma_es(),
             "discovery" => Method::Discover {
-                seed: self.seed.unwrap_or(inference::Settings::default().seed),
+                seed: self.seed.unwrap_or(TmcmcSettings::default().seed),
             },
             _ => self.sample(Algorithm::Tmcmc),
         })
@@ -212,7 +214,7 @@ impl RawSampler {
     }
 
     fn sample(&self, algorithm: Algorithm) -> Method {
-        let usual = inference::Settings::default();
+        let usual = TmcmcSettings::default();
         let metamodel_moves = self.metamodel_moves.unwrap_or(usual.metamodel_moves);
         // A step of many moves forgets more than one of one.
         let moves = if metamodel_moves > 0 {
@@ -220,7 +222,7 @@ impl RawSampler {
         } else {
             usual.moves
         };
-        Method::Sample(inference::Settings {
+        Method::Sample(TmcmcSettings {
             algorithm,
             particles: self.particles.unwrap_or(usual.particles),
             moves: self.moves.unwrap_or(moves),
@@ -231,8 +233,8 @@ impl RawSampler {
     }
 
     fn fit(&self) -> Method {
-        let usual = lm::Settings::default();
-        Method::Fit(lm::Settings {
+        let usual = LmSettings::default();
+        Method::Fit(LmSettings {
             starts: self.starts.unwrap_or(usual.starts),
             max_evaluations: self.max_evaluations.unwrap_or(usual.max_evaluations),
             difference_step: self.difference_step.unwrap_or(usual.difference_step),
@@ -242,8 +244,8 @@ impl RawSampler {
     }
 
     fn ga(&self) -> Method {
-        let usual = ga::Settings::default();
-        Method::Search(search::Settings::Ga(ga::Settings {
+        let usual = GaSettings::default();
+        Method::Evolve(EvolutionSettings::Ga(GaSettings {
             population: self.population.unwrap_or(usual.population),
             generations: self.generations.unwrap_or(usual.generations),
             seed: self.seed.unwrap_or(usual.seed),
@@ -252,8 +254,8 @@ impl RawSampler {
     }
 
     fn cma_es(&self) -> Method {
-        let usual = cma_es::Settings::default();
-        Method::Search(search::Settings::CmaEs(cma_es::Settings {
+        let usual = CmaEsSettings::default();
+        Method::Evolve(EvolutionSettings::CmaEs(CmaEsSettings {
             population: self.population,
             max_evaluations: self.max_evaluations.unwrap_or(usual.max_evaluations),
             restarts: self.restarts.unwrap_or(usual.restarts),

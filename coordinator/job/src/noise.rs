@@ -3,7 +3,7 @@
 use shared::channel::Channel;
 use shared::experiment::{Experiment, NoiseSd, RunUse, Scatter, ScatterSd, TestRun};
 use shared::parameters::{NOISE_PREFIX, noise_parameter, scatter_parameter};
-use statistics::{Datum, Distribution, Marginal, Sd};
+use statistics::{Datum, Distribution, ErrorSd, Marginal};
 
 use super::bevameter::Bevameter;
 use super::priors::FreeParameter;
@@ -120,19 +120,19 @@ pub(super) fn data(
             let run = &experiment.runs[run_index];
             let Some(value) = run.measured[c] else { continue };
             let sd = match (run.sd[c], experiment.noise.sd[c]) {
-                (Some(sd), _) | (None, Some(NoiseSd::Known(sd))) => Sd::Known(sd),
+                (Some(sd), _) | (None, Some(NoiseSd::Known(sd))) => ErrorSd::Known(sd),
                 (None, Some(NoiseSd::Replicates)) => match pooled {
-                    Some(sd) => Sd::Known(sd),
+                    Some(sd) => ErrorSd::Known(sd),
                     None => {
                         let sd = pooled_sd(experiment, fit_runs, channel)?;
                         pooled = Some(sd);
-                        Sd::Known(sd)
+                        ErrorSd::Known(sd)
                     }
                 },
                 (None, Some(NoiseSd::Unknown)) => {
                     let name = noise_parameter(channel);
                     let parameter = parameters.iter().position(|p| p.name == name);
-                    Sd::Inferred {
+                    ErrorSd::Inferred {
                         parameter: parameter.ok_or(format!("{name} has no prior"))?,
                     }
                 }

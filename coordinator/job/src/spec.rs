@@ -177,7 +177,7 @@ impl Spec {
             if matches!(method, Method::Fit(_)) && likelihood.entangles_unknown_sds() {
                 return Err(in_job(format!(
                     "[sampler] {}",
-                    inference::lm::SettingsError::EntangledNoise
+                    inference::lm::LmSettingsError::EntangledNoise
                 )));
             }
         }

@@ -1,6 +1,6 @@
 //! What is simulated once a sampler or a fit has ended.
 
-use inference::Posterior;
+use inference::PosteriorSample;
 
 /// What is simulated once the posterior, or the estimate, is known.
 #[derive(Debug)]
@@ -12,7 +12,7 @@ pub(super) struct FinalDraws {
 }
 
 /// The draws that are simulated on every run: the most probable particle, then evenly spaced ones; beside, the likeliest.
-pub(super) fn final_draws(posterior: &Posterior) -> FinalDraws {
+pub(super) fn final_draws(posterior: &PosteriorSample) -> FinalDraws {
     let particles = &posterior.particles;
     let highest = |score: &dyn Fn(usize) -> f64| {
         (0..particles.len()).reduce(|a, b| if score(b) > score(a) { b } else { a })

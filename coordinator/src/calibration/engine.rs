@@ -1,9 +1,9 @@
-//! The sampler, fit or search of a calibration: what asks for evaluations and is told their results.
+//! The sampler, fit, evolution or discovery of a calibration: what asks for evaluations and is told their results.
 
-use inference::lm::Optimiser;
-use inference::point::Estimate;
-use inference::search::Search;
-use inference::{Answer, Posterior, Progress, Proposal, Sampler, StageRecord, TellError};
+use inference::evolution::Evolution;
+use inference::lm::LmFit;
+use inference::point_estimate::ModeEstimate;
+use inference::{EvaluationResult, PosteriorSample, Proposal, Sampler, StageRecord, TellError, TellProgress};
 use statistics::{LogLikelihood, Metamodel, ModelPair, SubchainEnd};
 
 use crate::missing_effect::{Discovery, Investigation, InvestigationError, Models};
@@ -15,9 +15,9 @@ pub enum Engine {
     /// Samples the posterior; told log-likelihoods.
     Sampler(Box<Sampler>),
     /// Fits the most probable parameters by steps; told predicted values.
-    Fit(Box<Optimiser>),
-    /// Searches the most probable parameters by generations; told log-likelihoods.
-    Search(Box<Search>),
+    Fit(Box<LmFit>),
+    /// Finds the most probable parameters by generations; told log-likelihoods.
+    Evolution(Box<Evolution>),
     /// Searches for what the model is missing; told predicted values.
     Discovery(Box<Investigation>),
 }
@@ -62,15 +62,15 @@ pub(super) struct Scored<'a> {
 
 impl Scored<'_> {
     /// What a sampler is told.
-    fn answer(&self) -> Answer {
+    fn answer(&self) -> EvaluationResult {
         let log_likelihood = self.log_likelihood;
         let pair = self.fitted.zip(self.coarse).map(|(fine, coarse)| ModelPair {
             fine: fine.to_vec(),
             coarse: coarse.to_vec(),
         });
         match self.end {
-            None => Answer::Here { log_likelihood, pair },
-            Some(end) => Answer::Moved {
+            None => EvaluationResult::Here { log_likelihood, pair },
+            Some(end) => EvaluationResult::Moved {
                 found: (end.accepted > 0).then_some((log_likelihood, pair)),
                 end: end.clone(),
             },
@@ -82,9 +82,9 @@ impl Scored<'_> {
 #[derive(Debug, Clone)]
 pub enum Finding<'a> {
     /// A sample of the posterior.
-    Posterior(&'a Posterior),
+    Posterior(&'a PosteriorSample),
     /// The most probable parameters.
-    Estimate(&'a Estimate),
+    Estimate(&'a ModeEstimate),
     /// What the model is missing.
     Discovery(Box<Discovery>),
 }
@@ -106,12 +106,12 @@ impl Engine {
                 Engine::Sampler(Box::new(sampler))
             }
             Method::Fit(settings) => {
-                let fit = Optimiser::new(prior, likelihood.clone(), settings);
+                let fit = LmFit::new(prior, likelihood.clone(), settings);
                 Engine::Fit(Box::new(fit.map_err(MethodError::from)?))
             }
-            Method::Search(settings) => {
-                Engine::Search(Box::new(Search::new(prior, settings).map_err(MethodError::from)?))
-            }
+            Method::Evolve(settings) => Engine::Evolution(Box::new(
+                Evolution::new(prior, settings).map_err(MethodError::from)?,
+            )),
             Method::Discover { .. } => {
                 let models = models.ok_or(BeginError::NoModels)?;
                 Engine::Discovery(Box::new(Investigation::new(models)?))
@@ -124,7 +124,7 @@ impl Engine {
         match self {
             Engine::Sampler(sampler) => sampler.round(),
             Engine::Fit(fit) => fit.round(),
-            Engine::Search(search) => search.round(),
+            Engine::Evolution(evolution) => evolution.round(),
             Engine::Discovery(investigation) => investigation.round(),
         }
     }
@@ -134,17 +134,17 @@ impl Engine {
         match self {
             Engine::Sampler(sampler) => sampler.pending(),
             Engine::Fit(fit) => fit.pending(),
-            Engine::Search(search) => search.pending(),
+            Engine::Evolution(evolution) => evolution.pending(),
             Engine::Discovery(investigation) => investigation.pending(),
         }
     }
 
     /// Takes the result of a pending particle.
-    pub(super) fn tell(&mut self, particle: usize, scored: Scored) -> Result<Progress, EngineError> {
+    pub(super) fn tell(&mut self, particle: usize, scored: Scored) -> Result<TellProgress, EngineError> {
         Ok(match self {
             Engine::Sampler(sampler) => sampler.tell(particle, scored.answer())?,
             Engine::Fit(fit) => fit.tell(particle, scored.fitted)?,
-            Engine::Search(search) => search.tell(particle, scored.log_likelihood)?,
+            Engine::Evolution(evolution) => evolution.tell(particle, scored.log_likelihood)?,
             Engine::Discovery(investigation) => investigation.tell(particle, scored.fitted)?,
         })
     }
@@ -153,7 +153,7 @@ impl Engine {
     pub(super) fn investigation(&self) -> Option<&Investigation> {
         match self {
             Engine::Discovery(investigation) => Some(investigation),
-            Engine::Sampler(_) | Engine::Fit(_) | Engine::Search(_) => None,
+            Engine::Sampler(_) | Engine::Fit(_) | Engine::Evolution(_) => None,
         }
     }
 
@@ -161,15 +161,15 @@ impl Engine {
     pub(super) fn metamodel(&self) -> Option<&Metamodel> {
         match self {
             Engine::Sampler(sampler) => sampler.metamodel(),
-            Engine::Fit(_) | Engine::Search(_) | Engine::Discovery(_) => None,
+            Engine::Fit(_) | Engine::Evolution(_) | Engine::Discovery(_) => None,
         }
     }
 
-    /// The finished stages; a fit and a search have none.
+    /// The finished stages; only a sampler has any.
     pub fn stages(&self) -> &[StageRecord] {
         match self {
             Engine::Sampler(sampler) => sampler.stages(),
-            Engine::Fit(_) | Engine::Search(_) | Engine::Discovery(_) => &[],
+            Engine::Fit(_) | Engine::Evolution(_) | Engine::Discovery(_) => &[],
         }
     }
 
@@ -178,7 +178,7 @@ impl Engine {
         match self {
             Engine::Sampler(sampler) => sampler.posterior().map(Finding::Posterior),
             Engine::Fit(fit) => fit.estimate().map(Finding::Estimate),
-            Engine::Search(search) => search.estimate().map(Finding::Estimate),
+            Engine::Evolution(evolution) => evolution.estimate().map(Finding::Estimate),
             Engine::Discovery(investigation) => {
                 let record = investigation.record();
                 record.map(|record| Finding::Discovery(Box::new(record)))

@@ -137,7 +137,7 @@ impl Calibration {
                 let models = Models::new(job, experiment, EFFECTS_TOGETHER);
                 Some(models.map_err(InvestigationError::from)?)
             }
-            Method::Sample(_) | Method::Fit(_) | Method::Search(_) => None,
+            Method::Sample(_) | Method::Fit(_) | Method::Evolve(_) => None,
         };
         Self::begin(identity, spec, models)
     }
@@ -466,9 +466,9 @@ impl Calibration {
             });
         }
         match progress {
-            Ok(inference::Progress::Waiting) => {}
-            Ok(inference::Progress::NextRound | inference::Progress::StageFinished) => self.ask(),
-            Ok(inference::Progress::Finished) => {
+            Ok(inference::TellProgress::Waiting) => {}
+            Ok(inference::TellProgress::NextRound | inference::TellProgress::StageFinished) => self.ask(),
+            Ok(inference::TellProgress::Finished) => {
                 let calibration = self.identity.id;
                 match self.engine.finding() {
                     Some(Finding::Posterior(posterior)) => {
@@ -496,7 +496,7 @@ impl Calibration {
                 }
                 self.ask();
             }
-            Ok(inference::Progress::Failed(failure)) => {
+            Ok(inference::TellProgress::Failed(failure)) => {
                 self.finish(CalibrationState::Failed, Some(failure.to_string()), facts);
             }
             Err(error) => self.finish(CalibrationState::Failed, Some(error.to_string()), facts),

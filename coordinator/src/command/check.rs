@@ -39,7 +39,7 @@ pub(super) async fn check(file: &JobFile) -> anyhow::Result<()> {
                 s.particles, pilot.evaluations
             )
         }
-        Method::Fit(_) | Method::Search(_) | Method::Discover { .. } => format!(
+        Method::Fit(_) | Method::Evolve(_) | Method::Discover { .. } => format!(
             "\nThe {} itself took {} evaluations.\n",
             if matches!(pilot.method, Method::Fit(_)) {
                 "fit"
@@ -176,7 +176,7 @@ fn pilot(mut spec: job::Spec) -> anyhow::Result<Pilot> {
         rejected_share: calibration.rejected as f64 / evaluations as f64,
         exponent: match calibration.engine() {
             Engine::Sampler(sampler) => sampler.current().tempering_exponent,
-            Engine::Fit(_) | Engine::Search(_) | Engine::Discovery(_) => 1.0,
+            Engine::Fit(_) | Engine::Evolution(_) | Engine::Discovery(_) => 1.0,
         },
         complete: calibration.engine().finding().is_some(),
     })

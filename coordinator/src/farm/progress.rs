@@ -49,7 +49,7 @@ pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> Cal
             (now.stage, now.tempering_exponent, now.step, now.acceptance)
         }
         Engine::Fit(fit) => (fit.current().steps, 1.0, 0, None),
-        Engine::Search(search) => (search.current().generations, 1.0, 0, None),
+        Engine::Evolution(evolution) => (evolution.current().generations, 1.0, 0, None),
         Engine::Discovery(search) => (search.round() as usize, 1.0, 0, None),
     };
     let queue = &calibration.queue;

@@ -117,8 +117,8 @@ pub(super) fn channels(spec: &Spec, theta: &[f64]) -> Vec<(Channel, f64)> {
         let own = data.iter().filter(|d| d.channel == channel.index());
         let sds: Vec<f64> = own
             .filter_map(|d| match d.sd {
-                statistics::Sd::Known(sd) => Some(sd),
-                statistics::Sd::Inferred { parameter } => theta.get(parameter).copied(),
+                statistics::ErrorSd::Known(sd) => Some(sd),
+                statistics::ErrorSd::Inferred { parameter } => theta.get(parameter).copied(),
             })
             .collect();
         inference::diagnostics::mean(&sds).map(|sd| (*channel, sd))

@@ -1,7 +1,7 @@
 //! A search in progress: what it asks for as leases take it, and what it is told.
 
 use discovery::inquiry::Inquiry;
-use inference::{Progress, Proposal};
+use inference::{Proposal, TellProgress};
 use shared::file::FileError;
 use shared::model::ModelVariant;
 use shared::outcome::Observables;
@@ -92,9 +92,13 @@ impl Investigation {
     ///
     /// # Errors
     /// [`InvestigationError`].
-    pub fn tell(&mut self, particle: usize, values: Option<&[f64]>) -> Result<Progress, InvestigationError> {
+    pub fn tell(
+        &mut self,
+        particle: usize,
+        values: Option<&[f64]>,
+    ) -> Result<TellProgress, InvestigationError> {
         let progress = self.inquiry.tell(particle, values)?;
-        if progress == Progress::NextRound {
+        if progress == TellProgress::NextRound {
             self.prepare()?;
         }
         Ok(progress)

@@ -104,11 +104,11 @@ impl Outcome {
         }
         let estimate = match spec.method {
             Method::Sample(_) | Method::Discover { .. } => None,
-            Method::Fit(_) | Method::Search(_) => reader.estimate(row.id).await?,
+            Method::Fit(_) | Method::Evolve(_) => reader.estimate(row.id).await?,
         };
         let prior_draws = match spec.method {
             Method::Sample(_) => reader.prior_draws(row.id, spec.method.width()).await?,
-            Method::Fit(_) | Method::Search(_) | Method::Discover { .. } => Vec::new(),
+            Method::Fit(_) | Method::Evolve(_) | Method::Discover { .. } => Vec::new(),
         };
         let mut populations = reader.populations(row.id).await?;
         let posterior = populations.pop().unwrap_or_default();

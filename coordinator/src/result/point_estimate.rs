@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use inference::point::Generation;
+use inference::point_estimate::Generation;
 
 use super::Outcome;
 use super::summary::{BaselineSummary, ErrorSummary};

@@ -4,7 +4,7 @@ use shared::channel::Channel;
 use shared::experiment::NoiseSd;
 use shared::outcome::Observables;
 use shared::parameters::noise_parameter;
-use statistics::{Discrepancy, ErrorLaw, Sd, Size};
+use statistics::{CommonErrorSize, Discrepancy, ErrorLaw, ErrorSd};
 
 use super::Outcome;
 use crate::store::Prediction;
@@ -23,17 +23,17 @@ pub struct Predictive {
 }
 
 /// Where the noise sd of a channel of a run stands.
-fn noise_source(outcome: &Outcome, run: usize, channel: Channel) -> Option<Sd> {
+fn noise_source(outcome: &Outcome, run: usize, channel: Channel) -> Option<ErrorSd> {
     let spec = &outcome.spec;
     let c = channel.index();
     match (spec.experiment.runs[run].sd[c], spec.experiment.noise.sd[c]) {
-        (Some(sd), _) | (None, Some(NoiseSd::Known(sd))) => Some(Sd::Known(sd)),
+        (Some(sd), _) | (None, Some(NoiseSd::Known(sd))) => Some(ErrorSd::Known(sd)),
         (None, Some(NoiseSd::Unknown)) => {
             let name = noise_parameter(channel);
             spec.parameters
                 .iter()
                 .position(|p| p.name == name)
-                .map(|parameter| Sd::Inferred { parameter })
+                .map(|parameter| ErrorSd::Inferred { parameter })
         }
         // Pooled from the fitted repeats: every fitted datum of the channel without an sd of its own has it.
         (None, Some(NoiseSd::Replicates)) => {
@@ -65,8 +65,8 @@ pub(super) fn predictive(
     let mut sds = Vec::new();
     for (draw, theta, observables, position) in accepted(outcome, place) {
         let sd = source.map(|s| match s {
-            Sd::Known(sd) => sd,
-            Sd::Inferred { parameter } => theta[parameter],
+            ErrorSd::Known(sd) => sd,
+            ErrorSd::Inferred { parameter } => theta[parameter],
         });
         sds.extend(sd);
         let mean = observables.channel(channel)[position];
@@ -98,22 +98,22 @@ struct Component {
 }
 
 /// The scatter of the soil from run to run.
-struct Scatter(Option<Sd>);
+struct Scatter(Option<ErrorSd>);
 
 impl Scatter {
     fn of(spec: &Spec) -> Self {
         let common = spec.likelihood.common().iter();
         Scatter(common.into_iter().find_map(|error| match error.size {
-            Size::Sensitivity(sd) => Some(sd),
-            Size::Shift(_) | Size::Discrepancy => None,
+            CommonErrorSize::Sensitivity(sd) => Some(sd),
+            CommonErrorSize::Shift(_) | CommonErrorSize::Discrepancy => None,
         }))
     }
 
     fn sd(&self, theta: &[f64]) -> f64 {
         match self.0 {
             None => 0.0,
-            Some(Sd::Known(sd)) => sd,
-            Some(Sd::Inferred { parameter }) => theta[parameter],
+            Some(ErrorSd::Known(sd)) => sd,
+            Some(ErrorSd::Inferred { parameter }) => theta[parameter],
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::atomic::Ordering;
 
 use inference::StageRecord;
-use inference::point::Estimate;
+use inference::point_estimate::ModeEstimate;
 use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 
 use super::json;
@@ -162,7 +162,7 @@ async fn stage(
 async fn estimate(
     connection: &mut SqliteConnection,
     calibration: i64,
-    e: &Estimate,
+    e: &ModeEstimate,
 ) -> Result<(), sqlx::Error> {
     let history: Vec<(u64, Option<f64>, Option<f64>)> = e
         .history

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use inference::point::{Generation, Stop};
+use inference::point_estimate::{Generation, StopReason};
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::{Observables, SimulatedHistory};
@@ -110,7 +110,7 @@ pub struct EstimateRow {
     /// Whether each parameter lies at a bound of its prior.
     pub at_bound: Vec<bool>,
     /// Why the fit or the search ended.
-    pub stop: Stop,
+    pub stop: StopReason,
     /// How a search by generations came there.
     pub history: Vec<Generation>,
 }
@@ -342,7 +342,8 @@ impl Reader {
                 log_prior: row.get("log_prior"),
                 sd: row.get::<Option<&str>, _>("sd").map(array).transpose()?,
                 at_bound: array(row.get("at_bound"))?,
-                stop: Stop::from_name(stop).ok_or_else(|| StoreError::Corrupt(format!("stop {stop}")))?,
+                stop: StopReason::from_name(stop)
+                    .ok_or_else(|| StoreError::Corrupt(format!("stop {stop}")))?,
                 history: history.into_iter().map(generation).collect(),
             })
         })

@@ -16,7 +16,9 @@ pub mod metamodel;
 pub mod prior;
 pub mod rng;
 
-pub use likelihood::{CommonError, Datum, Discrepancy, ErrorLaw, Likelihood, LikelihoodError, Sd, Size};
+pub use likelihood::{
+    CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood, LikelihoodError,
+};
 pub use log_likelihood::{LogLikelihood, NotANumber};
 pub use metamodel::{Metamodel, ModelPair, Subchain, SubchainEnd};
 pub use prior::{Distribution, Marginal, Prior, PriorError};

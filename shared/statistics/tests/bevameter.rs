@@ -1,7 +1,7 @@
 //! Plates and rings as data: what they can say of the soil, against the table of another implementation.
 
 use nalgebra::DMatrix;
-use statistics::{CommonError, Datum, Discrepancy, ErrorLaw, Likelihood, Sd, Size};
+use statistics::{CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood};
 
 /// The logarithm of a stress by the parameters.
 type LogStress<'a> = &'a dyn Fn(&[f64]) -> f64;
@@ -18,7 +18,7 @@ fn posterior(tests: &[Vec<LogStress>], theta: &[f64], steps: &[f64], s_u: f64, s
             run,
             channel: 0,
             value: readings[run](theta),
-            sd: Sd::Known(s_e),
+            sd: ErrorSd::Known(s_e),
         })
         .collect();
     let mut first = 0;
@@ -27,7 +27,7 @@ fn posterior(tests: &[Vec<LogStress>], theta: &[f64], steps: &[f64], s_u: f64, s
         first += test.len();
         CommonError {
             data: members,
-            size: Size::Shift(Sd::Known(s_u)),
+            size: CommonErrorSize::Shift(ErrorSd::Known(s_u)),
         }
     });
     let common = common.collect();

@@ -1,12 +1,13 @@
 //! Check the likelihood against hand numbers.
 
 use nalgebra::{DMatrix, DVector};
-use statistics::likelihood::{HIGHEST, LEVELS, LOWEST};
+use statistics::likelihood::{DISCREPANCY_LEVELS, GREATEST_DISCREPANCY, LEAST_DISCREPANCY};
 use statistics::{
-    CommonError, Datum, Discrepancy, ErrorLaw, Likelihood, LikelihoodError, LogLikelihood, Sd, Size,
+    CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood, LikelihoodError,
+    LogLikelihood,
 };
 
-fn datum(run: usize, channel: usize, value: f64, sd: Sd) -> Datum {
+fn datum(run: usize, channel: usize, value: f64, sd: ErrorSd) -> Datum {
     Datum {
         run,
         channel,
@@ -18,9 +19,9 @@ fn datum(run: usize, channel: usize, value: f64, sd: Sd) -> Datum {
 #[test]
 fn hand_numbers() {
     let data = vec![
-        datum(0, 0, 10.0, Sd::Known(2.0)),
-        datum(0, 1, 1.0, Sd::Inferred { parameter: 1 }),
-        datum(3, 0, 7.0, Sd::Known(2.0)),
+        datum(0, 0, 10.0, ErrorSd::Known(2.0)),
+        datum(0, 1, 1.0, ErrorSd::Inferred { parameter: 1 }),
+        datum(3, 0, 7.0, ErrorSd::Known(2.0)),
     ];
     let likelihood = Likelihood::new(data).unwrap();
     // Residuals in sd: (10 - 8) / 2 = 1, (1 - 0.5) / 0.25 = 2, (7 - 7) / 2 = 0.
@@ -35,7 +36,7 @@ fn hand_numbers() {
 /// The normalisation lets an inferred noise find its level: the best sd of residuals 1 and -1 is 1.
 #[test]
 fn the_best_noise_is_the_residuals_rms() {
-    let noise = Sd::Inferred { parameter: 0 };
+    let noise = ErrorSd::Inferred { parameter: 0 };
     let likelihood = Likelihood::new(vec![datum(0, 0, 1.0, noise), datum(1, 0, -1.0, noise)]).unwrap();
     let value = |sd: f64| likelihood.log_likelihood(&[0.0, 0.0], &[sd]).unwrap().value();
     assert!(value(1.0) > value(0.9) && value(1.0) > value(1.1) && value(1.0) > value(100.0));
@@ -43,9 +44,9 @@ fn the_best_noise_is_the_residuals_rms() {
 
 #[test]
 fn what_is_not_a_number_is_refused() {
-    assert!(Likelihood::new(vec![datum(0, 0, f64::NAN, Sd::Known(1.0))]).is_err());
-    assert!(Likelihood::new(vec![datum(0, 0, 1.0, Sd::Known(0.0))]).is_err());
-    let likelihood = Likelihood::new(vec![datum(2, 1, 1.0, Sd::Inferred { parameter: 0 })]).unwrap();
+    assert!(Likelihood::new(vec![datum(0, 0, f64::NAN, ErrorSd::Known(1.0))]).is_err());
+    assert!(Likelihood::new(vec![datum(0, 0, 1.0, ErrorSd::Known(0.0))]).is_err());
+    let likelihood = Likelihood::new(vec![datum(2, 1, 1.0, ErrorSd::Inferred { parameter: 0 })]).unwrap();
     let error = likelihood.log_likelihood(&[f64::NAN], &[1.0]).unwrap_err();
     assert_eq!(
         error.to_string(),
@@ -72,7 +73,10 @@ const T5: ErrorLaw = ErrorLaw::StudentT {
 /// The declared sd is the scale: f(0) of t with 5 degrees of freedom is 8 / (3 sqrt(5) pi) over the scale.
 #[test]
 fn a_t_of_one_datum_has_its_hand_number() {
-    let data = vec![datum(0, 0, 1.0, Sd::Known(2.0)), datum(1, 0, 1.0, Sd::Known(2.0))];
+    let data = vec![
+        datum(0, 0, 1.0, ErrorSd::Known(2.0)),
+        datum(1, 0, 1.0, ErrorSd::Known(2.0)),
+    ];
     let likelihood = Likelihood::with_common(data, T5, Vec::new(), Discrepancy::None).unwrap();
     let value = |m: f64| likelihood.log_likelihood(&[m, 1.0], &[]).unwrap().value();
     let centre = (8.0 / (3.0 * 5.0_f64.sqrt() * std::f64::consts::PI) / 2.0).ln();
@@ -83,22 +87,22 @@ fn a_t_of_one_datum_has_its_hand_number() {
 
 /// Three runs of two channels: runs 0 and 1 repeat a condition, run 2 stands alone. Data: channel 0 of every run, then
 /// channel 1 of every run. Each run has a sensitivity, each (condition, channel) a discrepancy.
-fn three_runs(scatter: Sd) -> (Vec<Datum>, Vec<CommonError>) {
+fn three_runs(scatter: ErrorSd) -> (Vec<Datum>, Vec<CommonError>) {
     let sds = [0.5, 0.7, 0.5, 0.1, 0.1, 0.2];
     let values = [10.0, 11.0, 7.0, 1.0, 1.3, 0.8];
     let data = (0..6)
-        .map(|i| datum(i % 3, i / 3, values[i], Sd::Known(sds[i])))
+        .map(|i| datum(i % 3, i / 3, values[i], ErrorSd::Known(sds[i])))
         .collect();
-    let common = |data: &[usize], size: Size| CommonError {
+    let common = |data: &[usize], size: CommonErrorSize| CommonError {
         data: data.to_vec(),
         size,
     };
     let mut errors = Vec::new();
     for run in 0..3 {
-        errors.push(common(&[run, run + 3], Size::Sensitivity(scatter)));
+        errors.push(common(&[run, run + 3], CommonErrorSize::Sensitivity(scatter)));
     }
     for members in [&[0, 1][..], &[2], &[3, 4], &[5]] {
-        errors.push(common(members, Size::Discrepancy));
+        errors.push(common(members, CommonErrorSize::Discrepancy));
     }
     (data, errors)
 }
@@ -109,8 +113,8 @@ const SENSITIVITIES: [f64; 6] = [-3.0, -3.5, -2.0, 0.4, 0.5, 0.3];
 /// The covariance, written down term by term.
 fn dense(data: &[Datum], tau: f64, m: f64) -> DMatrix<f64> {
     let sd = |i: usize| match data[i].sd {
-        Sd::Known(sd) => sd,
-        Sd::Inferred { .. } => f64::NAN,
+        ErrorSd::Known(sd) => sd,
+        ErrorSd::Inferred { .. } => f64::NAN,
     };
     let condition = |i: usize| data[i].run / 2;
     DMatrix::from_fn(6, 6, |i, j| {
@@ -156,7 +160,7 @@ fn values() -> Vec<f64> {
 #[test]
 fn blocks_match_a_dense_density() {
     for (law, nu) in [(ErrorLaw::Gaussian, None), (T5, Some(5.0))] {
-        let (data, common) = three_runs(Sd::Inferred { parameter: 1 });
+        let (data, common) = three_runs(ErrorSd::Inferred { parameter: 1 });
         let covariance = dense(&data, 0.3, 2.0);
         // The condition of runs 0 and 1 with both channels is one block, run 2 another.
         let expected: f64 = [&[0, 1, 3, 4][..], &[2, 5]]
@@ -176,14 +180,17 @@ fn blocks_match_a_dense_density() {
 
 #[test]
 fn an_unknown_discrepancy_is_the_mean_over_its_values() {
-    let (data, common) = three_runs(Sd::Known(0.3));
+    let (data, common) = three_runs(ErrorSd::Known(0.3));
     let of = |discrepancy| {
         Likelihood::with_common(data.clone(), ErrorLaw::Gaussian, common.clone(), discrepancy).unwrap()
     };
     let unknown = of(Discrepancy::Unknown);
     let levels = Discrepancy::Unknown.levels();
-    assert_eq!(levels.len(), LEVELS);
-    assert!((levels[0] - LOWEST).abs() < 1e-12 && (levels[LEVELS - 1] - HIGHEST).abs() < 1e-12);
+    assert_eq!(levels.len(), DISCREPANCY_LEVELS);
+    assert!(
+        (levels[0] - LEAST_DISCREPANCY).abs() < 1e-12
+            && (levels[DISCREPANCY_LEVELS - 1] - GREATEST_DISCREPANCY).abs() < 1e-12
+    );
     let all = [0, 1, 2, 3, 4, 5];
     let densities: Vec<f64> = levels
         .iter()
@@ -191,7 +198,7 @@ fn an_unknown_discrepancy_is_the_mean_over_its_values() {
         .collect();
     let sum: f64 = densities.iter().sum();
     let value = unknown.log_likelihood(&values(), &[]).unwrap().value();
-    assert!((value - (sum / LEVELS as f64).ln()).abs() < 1e-10);
+    assert!((value - (sum / DISCREPANCY_LEVELS as f64).ln()).abs() < 1e-10);
     for ((m, weight), (level, density)) in unknown
         .discrepancy_weights(&values(), &[])
         .unwrap()
@@ -204,7 +211,7 @@ fn an_unknown_discrepancy_is_the_mean_over_its_values() {
 
 #[test]
 fn errors_of_size_zero_are_the_independent_ones() {
-    let (data, mut common) = three_runs(Sd::Known(0.0));
+    let (data, mut common) = three_runs(ErrorSd::Known(0.0));
     common.truncate(3);
     let plain = Likelihood::new(data.clone()).unwrap();
     let zero = Likelihood::with_common(data, ErrorLaw::Gaussian, common, Discrepancy::None).unwrap();
@@ -216,10 +223,10 @@ fn errors_of_size_zero_are_the_independent_ones() {
 /// A test's common shift leaves one fact: forty readings that agree say no more of the level than the shift lets them.
 #[test]
 fn a_shift_in_common_bounds_what_readings_can_say() {
-    let data: Vec<Datum> = (0..40).map(|i| datum(i, 0, 0.3, Sd::Known(0.03))).collect();
+    let data: Vec<Datum> = (0..40).map(|i| datum(i, 0, 0.3, ErrorSd::Known(0.03))).collect();
     let shift = CommonError {
         data: (0..40).collect(),
-        size: Size::Shift(Sd::Inferred { parameter: 0 }),
+        size: CommonErrorSize::Shift(ErrorSd::Inferred { parameter: 0 }),
     };
     let likelihood =
         Likelihood::with_common(data, ErrorLaw::Gaussian, vec![shift], Discrepancy::None).unwrap();
@@ -230,9 +237,9 @@ fn a_shift_in_common_bounds_what_readings_can_say() {
 
 #[test]
 fn whitened_slopes_are_those_of_the_density() {
-    let (data, common) = three_runs(Sd::Known(0.3));
+    let (data, common) = three_runs(ErrorSd::Known(0.3));
     let mut loose = data.clone();
-    loose.push(datum(9, 0, 2.0, Sd::Known(0.4)));
+    loose.push(datum(9, 0, 2.0, ErrorSd::Known(0.4)));
     let direction = [0.3, -0.2, 0.5, 0.1, -0.4, 0.2, 0.7];
     let at = |t: f64| {
         let mut v: Vec<f64> = PREDICTED.iter().copied().chain([1.5]).collect();
@@ -262,7 +269,7 @@ fn whitened_slopes_are_those_of_the_density() {
 
 #[test]
 fn error_models_that_mean_nothing_are_refused() {
-    let (data, common) = three_runs(Sd::Known(0.3));
+    let (data, common) = three_runs(ErrorSd::Known(0.3));
     let refused = |law, common: Vec<CommonError>, discrepancy| {
         Likelihood::with_common(data.clone(), law, common, discrepancy)
             .unwrap_err()
@@ -281,7 +288,7 @@ fn error_models_that_mean_nothing_are_refused() {
     );
     let beyond = CommonError {
         data: vec![2, 6],
-        size: Size::Discrepancy,
+        size: CommonErrorSize::Discrepancy,
     };
     assert_eq!(
         refused(ErrorLaw::Gaussian, vec![beyond], Discrepancy::None),
@@ -309,12 +316,15 @@ fn error_models_that_mean_nothing_are_refused() {
 /// Five data: one alone, a shift over two, a derivative over two others, a discrepancy over the first of these pairs.
 fn entangled(discrepancy: Discrepancy) -> Likelihood {
     let data = (0..5)
-        .map(|i| datum(i, i % 2, i as f64, Sd::Known(0.5 + 0.1 * i as f64)))
+        .map(|i| datum(i, i % 2, i as f64, ErrorSd::Known(0.5 + 0.1 * i as f64)))
         .collect();
     let common = [
-        (vec![1, 2], Size::Shift(Sd::Inferred { parameter: 0 })),
-        (vec![3, 4], Size::Sensitivity(Sd::Known(0.3))),
-        (vec![1], Size::Discrepancy),
+        (
+            vec![1, 2],
+            CommonErrorSize::Shift(ErrorSd::Inferred { parameter: 0 }),
+        ),
+        (vec![3, 4], CommonErrorSize::Sensitivity(ErrorSd::Known(0.3))),
+        (vec![1], CommonErrorSize::Discrepancy),
     ];
     let common = common.map(|(data, size)| CommonError { data, size });
     Likelihood::with_common(data, ErrorLaw::Gaussian, common.to_vec(), discrepancy).unwrap()

@@ -33,7 +33,7 @@ pub use crate::chi_square::ChiSquare;
 use crate::candidate::CandidateError;
 use crate::engine::Engine;
 use found::Found;
-use inference::round::{Failure, Progress, Proposal, Round, TellError};
+use inference::round::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
 use search::Search;
 use statistics::likelihood::LikelihoodError;
 use steps::Step;
@@ -46,7 +46,7 @@ pub struct Inquiry {
     task: Task,
     step: Step,
     found: Found,
-    round: Round<Option<Vec<f64>>>,
+    round: ProposalRound<Option<Vec<f64>>>,
     asked: Vec<Asked>,
     evaluations: usize,
 }
@@ -70,7 +70,7 @@ impl Inquiry {
             found: Found::new(all),
             step: Step::Singles(singles),
             task,
-            round: Round::default(),
+            round: ProposalRound::default(),
             asked: Vec::new(),
             evaluations: 0,
         };
@@ -114,7 +114,7 @@ impl Inquiry {
     ///
     /// # Errors
     /// [`TellError`]: told before, never asked for, not as many finite values as are expected. Nothing is changed then.
-    pub fn tell(&mut self, index: usize, values: Option<&[f64]>) -> Result<Progress, TellError> {
+    pub fn tell(&mut self, index: usize, values: Option<&[f64]>) -> Result<TellProgress, TellError> {
         if let (Some(values), Some(asked)) = (values, self.asked.get(index)) {
             let (expected, given) = (self.expected(asked), values.len());
             if expected != given {
@@ -142,10 +142,10 @@ impl Inquiry {
             self.go_on();
         }
         Ok(match self.step {
-            Step::Done(_) => Progress::Finished,
-            Step::Failed(failure) => Progress::Failed(failure),
-            _ if complete => Progress::NextRound,
-            _ => Progress::Waiting,
+            Step::Done(_) => TellProgress::Finished,
+            Step::Failed(failure) => TellProgress::Failed(failure),
+            _ if complete => TellProgress::NextRound,
+            _ => TellProgress::Waiting,
         })
     }
 
@@ -160,7 +160,7 @@ impl Inquiry {
 
     /// Why the inquiry failed, if it did.
     #[must_use]
-    pub fn failure(&self) -> Option<Failure> {
+    pub fn failure(&self) -> Option<InferenceFailure> {
         match self.step {
             Step::Failed(failure) => Some(failure),
             _ => None,

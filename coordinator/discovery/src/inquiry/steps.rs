@@ -13,7 +13,7 @@ use crate::depth::{ALL_CURVES, CURVES, FORMS, QUICK};
 use crate::engine::Engine;
 use crate::evidence::log_sum_exp;
 use crate::settings::{Settings, Starts};
-use inference::round::Failure;
+use inference::round::InferenceFailure;
 
 /// A log Bayes factor above this is a detection \[nats\].
 pub(super) const DETECTED: f64 = 3.0;
@@ -40,7 +40,7 @@ pub(super) enum Step {
     LeftOut(usize, LeftOut),
     Next(NextRuns),
     Done(Box<Answer>),
-    Failed(Failure),
+    Failed(InferenceFailure),
 }
 
 impl Inquiry {
@@ -76,7 +76,10 @@ impl Inquiry {
 
     /// What follows a step that wants nothing more.
     pub(super) fn next_step(&mut self) {
-        let step = std::mem::replace(&mut self.step, Step::Failed(Failure::AllImpossible { draws: 0 }));
+        let step = std::mem::replace(
+            &mut self.step,
+            Step::Failed(InferenceFailure::AllImpossible { draws: 0 }),
+        );
         self.step = match step {
             Step::Singles(search) => self.after_singles(&search),
             Step::Reductions(searches) => self.after_reductions(&searches),
@@ -102,7 +105,7 @@ impl Inquiry {
         self.found.to_name = search.engine.finding().map_or(0, |f| f.spent.to_name());
         self.add_sets(search, 0.0);
         let Some((base, _)) = self.found.base.clone() else {
-            return Step::Failed(Failure::AllImpossible {
+            return Step::Failed(InferenceFailure::AllImpossible {
                 draws: self.evaluations,
             });
         };

@@ -9,9 +9,8 @@
 
 mod residuals;
 
-use inference::point::Estimate;
-use inference::search::Settings;
-use inference::{cma_es, ga};
+use inference::evolution::{CmaEsSettings, EvolutionSettings, GaSettings};
+use inference::point_estimate::ModeEstimate;
 
 use crate::problems::{self, Problem};
 
@@ -19,10 +18,10 @@ use crate::problems::{self, Problem};
 const CLOSE: f64 = 0.1;
 
 /// A line of the table.
-fn row(name: &str, algorithm: &str, optimum: f64, runs: &[Estimate]) {
+fn row(name: &str, algorithm: &str, optimum: f64, runs: &[ModeEstimate]) {
     let close = |value: f64| value > optimum - CLOSE;
-    let hits: Vec<&Estimate> = runs.iter().filter(|run| close(run.log_posterior())).collect();
-    let reached = |run: &Estimate| {
+    let hits: Vec<&ModeEstimate> = runs.iter().filter(|run| close(run.log_posterior())).collect();
+    let reached = |run: &ModeEstimate| {
         let generation = run.history.iter().find(|g| g.best.is_some_and(close))?;
         Some(generation.evaluations)
     };
@@ -43,7 +42,7 @@ fn row(name: &str, algorithm: &str, optimum: f64, runs: &[Estimate]) {
     );
 }
 
-fn searched(problem: &Problem, settings: impl Fn(u64) -> Settings, seeds: u64) -> Vec<Estimate> {
+fn searched(problem: &Problem, settings: impl Fn(u64) -> EvolutionSettings, seeds: u64) -> Vec<ModeEstimate> {
     (1..=seeds)
         .map(|seed| problem.search(settings(seed)).estimate().unwrap().clone())
         .collect()
@@ -56,16 +55,16 @@ pub(crate) fn print(seeds: u64) {
         "", "algorithm", "close", "until", "to end", "short", "worst"
     );
     let genetic = |seed| {
-        Settings::Ga(ga::Settings {
+        EvolutionSettings::Ga(GaSettings {
             seed,
-            ..ga::Settings::default()
+            ..GaSettings::default()
         })
     };
     let adapting = |seed, restarts| {
-        Settings::CmaEs(cma_es::Settings {
+        EvolutionSettings::CmaEs(CmaEsSettings {
             seed,
             restarts,
-            ..cma_es::Settings::default()
+            ..CmaEsSettings::default()
         })
     };
     for problem in [
@@ -79,7 +78,8 @@ pub(crate) fn print(seeds: u64) {
         problems::eggbox(),
         problems::skew(),
     ] {
-        let print = |algorithm: &str, runs: &[Estimate]| row(problem.name, algorithm, problem.optimum, runs);
+        let print =
+            |algorithm: &str, runs: &[ModeEstimate]| row(problem.name, algorithm, problem.optimum, runs);
         print("ga", &searched(&problem, genetic, seeds));
         print("cma-es", &searched(&problem, |seed| adapting(seed, 4), seeds));
         print(

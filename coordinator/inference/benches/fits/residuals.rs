@@ -1,17 +1,17 @@
 //! The problems that are sums of squares, for the fit that is told residuals.
 
-use inference::lm::{Optimiser, Settings};
-use inference::point::Estimate;
-use statistics::{Datum, Distribution, Likelihood, Marginal, Prior, Sd};
+use inference::lm::{LmFit, LmSettings};
+use inference::point_estimate::ModeEstimate;
+use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
 
 use crate::problems::{self, LOG_PRESSURE, SINKAGE};
 
 type Model = fn(&[f64]) -> Vec<f64>;
 
 /// Name, prior, data with their noise, model.
-type Case = (&'static str, Prior, Vec<(f64, Sd)>, Model);
+type Case = (&'static str, Prior, Vec<(f64, ErrorSd)>, Model);
 
-fn fitted(prior: &Prior, data: &[(f64, Sd)], model: Model, seeds: u64) -> Vec<Estimate> {
+fn fitted(prior: &Prior, data: &[(f64, ErrorSd)], model: Model, seeds: u64) -> Vec<ModeEstimate> {
     let data = data.iter().enumerate().map(|(run, &(value, sd))| Datum {
         run,
         channel: 0,
@@ -20,11 +20,11 @@ fn fitted(prior: &Prior, data: &[(f64, Sd)], model: Model, seeds: u64) -> Vec<Es
     });
     let likelihood = Likelihood::new(data.collect()).unwrap();
     let fit = |seed| {
-        let settings = Settings {
+        let settings = LmSettings {
             seed,
-            ..Settings::default()
+            ..LmSettings::default()
         };
-        let mut fit = Optimiser::new(prior.clone(), likelihood.clone(), settings).unwrap();
+        let mut fit = LmFit::new(prior.clone(), likelihood.clone(), settings).unwrap();
         while !fit.pending().is_empty() {
             for proposal in fit.pending().to_vec() {
                 fit.tell(proposal.particle, Some(&model(&proposal.theta)))
@@ -38,16 +38,16 @@ fn fitted(prior: &Prior, data: &[(f64, Sd)], model: Model, seeds: u64) -> Vec<Es
 
 /// Prints a line for each; the optimum is the best that any seed found, which for a and b is the problem's own.
 pub(crate) fn print(seeds: u64) {
-    let unit = |value: f64| (value, Sd::Known(1.0));
+    let unit = |value: f64| (value, ErrorSd::Known(1.0));
     let tau = Distribution::Loguniform {
         lower: 1e-3,
         upper: libm::exp10(0.5),
     };
     let mut bekker = problems::bekker_reparametrised().prior().marginals()[..3].to_vec();
     bekker.push(Marginal::new(tau, None).unwrap());
-    let plates: Vec<(f64, Sd)> = LOG_PRESSURE
+    let plates: Vec<(f64, ErrorSd)> = LOG_PRESSURE
         .iter()
-        .map(|&value| (value, Sd::Inferred { parameter: 3 }))
+        .map(|&value| (value, ErrorSd::Inferred { parameter: 3 }))
         .collect();
     let cases: [Case; 3] = [
         (

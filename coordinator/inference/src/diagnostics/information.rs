@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::predicted::Predicted;
+use super::predicted_draw::PredictedDraw;
 use statistics::likelihood::Datum;
 
 /// What the prior allows the data of a channel to vary, beside their errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Signal {
+pub struct ChannelSignal {
     /// Data of the channel.
     pub data: usize,
     /// Root mean square over the data of the prior predictive standard deviation [unit of the channel].
@@ -18,7 +18,7 @@ pub struct Signal {
     pub ratio: f64,
 }
 
-impl Signal {
+impl ChannelSignal {
     /// Whether all data of the channel together, were they independent looks at one thing, would say as much as the prior.
     #[must_use]
     pub fn is_heard_together(&self) -> bool {
@@ -37,8 +37,8 @@ impl Signal {
 pub fn signals(
     data: &[Datum],
     error_variances: &[f64],
-    prior_draws: &[Predicted],
-) -> BTreeMap<usize, Signal> {
+    prior_draws: &[PredictedDraw],
+) -> BTreeMap<usize, ChannelSignal> {
     let mut sums: BTreeMap<usize, [f64; 4]> = BTreeMap::new();
     if prior_draws.len() < 2 {
         return BTreeMap::new();
@@ -56,7 +56,7 @@ pub fn signals(
     sums.into_iter()
         .map(|(channel, [count, prior, error, ratio])| {
             let rms = |sum: f64| (sum / count).sqrt();
-            let signal = Signal {
+            let signal = ChannelSignal {
                 data: count as usize,
                 prior_sd: rms(prior),
                 error_sd: rms(error),

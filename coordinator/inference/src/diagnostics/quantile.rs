@@ -4,7 +4,7 @@ use super::moments::mean_and_sd;
 
 /// A marginal posterior in five numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Summary {
+pub struct DrawSummary {
     /// Mean.
     pub mean: f64,
     /// Sample standard deviation.
@@ -19,12 +19,12 @@ pub struct Summary {
 
 /// Mean, sd and quantiles of equally weighted draws; `None` for an empty slice.
 #[must_use]
-pub fn summary(values: &[f64]) -> Option<Summary> {
+pub fn summary(values: &[f64]) -> Option<DrawSummary> {
     let (mean, sd) = mean_and_sd(values)?;
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let [q05, q50, q95] = [0.05, 0.5, 0.95].map(|p| of_sorted(&sorted, p));
-    Some(Summary {
+    Some(DrawSummary {
         mean,
         sd,
         q05,

@@ -1,8 +1,8 @@
 //! Judge residuals by what the fit leaves them, one by one and in sum.
 
-use super::predicted::Predicted;
+use super::predicted_draw::PredictedDraw;
 use super::tail::chi_square_tail;
-use statistics::likelihood::{ErrorLaw, Likelihood, LikelihoodError, Sd};
+use statistics::likelihood::{ErrorLaw, ErrorSd, Likelihood, LikelihoodError};
 
 /// A measured value beside the posterior's mean prediction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,7 +21,7 @@ pub struct Residual {
 
 /// The sum of squares of residuals that are made independent, of unit variance.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ChiSquare {
+pub struct ResidualChiSquare {
     /// The sum.
     pub value: f64,
     /// Data that count: those whose noise is known.
@@ -32,7 +32,7 @@ pub struct ChiSquare {
     pub p: Option<f64>,
 }
 
-impl ChiSquare {
+impl ResidualChiSquare {
     /// Data minus effective parameters.
     #[must_use]
     pub fn degrees_of_freedom(&self) -> f64 {
@@ -68,8 +68,8 @@ impl ChiSquare {
 /// Cook & Weisberg 1982, *Residuals and Influence in Regression*, section 2.2, with the posterior covariance S in place of
 /// `(X'X)^-1`. Checked by `diagnostics::leverage_of_a_line_is_its_closed_form` and
 /// `diagnostics::studentised_residuals_keep_their_level`.
-pub fn residuals(likelihood: &Likelihood, draws: &[Predicted]) -> Result<Vec<Residual>, LikelihoodError> {
-    let Some(mean) = Predicted::mean(draws) else {
+pub fn residuals(likelihood: &Likelihood, draws: &[PredictedDraw]) -> Result<Vec<Residual>, LikelihoodError> {
+    let Some(mean) = PredictedDraw::mean(draws) else {
         return Ok(Vec::new());
     };
     let variances = likelihood.error_variances(&mean.values, &mean.theta)?;
@@ -108,7 +108,9 @@ pub fn residuals(likelihood: &Likelihood, draws: &[Predicted]) -> Result<Vec<Res
 /// The parameter that is the sd of a datum, where other data can tell it as well.
 pub(super) fn own_scale(likelihood: &Likelihood, i: usize) -> Option<usize> {
     match likelihood.data()[i].sd {
-        Sd::Inferred { parameter } if likelihood.is_alone(i) && likelihood.law() == ErrorLaw::Gaussian => {
+        ErrorSd::Inferred { parameter }
+            if likelihood.is_alone(i) && likelihood.law() == ErrorLaw::Gaussian =>
+        {
             Some(parameter)
         }
         _ => None,
@@ -158,14 +160,14 @@ fn against_peers(row: Residual, peers: &[Residual]) -> Option<(f64, f64)> {
 /// `diagnostics::chi_square_of_a_line_is_its_closed_form` and `diagnostics::chi_square_keeps_its_level`.
 pub fn chi_square(
     likelihood: &Likelihood,
-    draws: &[Predicted],
+    draws: &[PredictedDraw],
     keep: impl Fn(usize) -> bool,
-) -> Result<Option<ChiSquare>, LikelihoodError> {
-    let known = |i: usize| matches!(likelihood.data()[i].sd, Sd::Known(_));
+) -> Result<Option<ResidualChiSquare>, LikelihoodError> {
+    let known = |i: usize| matches!(likelihood.data()[i].sd, ErrorSd::Known(_));
     let kept: Vec<usize> = (0..likelihood.data().len())
         .filter(|&i| known(i) && keep(i))
         .collect();
-    let Some(mean) = Predicted::mean(draws).filter(|_| likelihood.law() == ErrorLaw::Gaussian) else {
+    let Some(mean) = PredictedDraw::mean(draws).filter(|_| likelihood.law() == ErrorLaw::Gaussian) else {
         return Ok(None);
     };
     if kept.is_empty() {
@@ -194,7 +196,7 @@ pub fn chi_square(
         .sum();
     let value = squares(&residuals);
     let effective_parameters = spread / (draws.len() - 1) as f64;
-    Ok(Some(ChiSquare {
+    Ok(Some(ResidualChiSquare {
         value,
         data: kept.len(),
         effective_parameters,

@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::predicted::Predicted;
+use super::predicted_draw::PredictedDraw;
 use super::residual::own_scale;
 use super::spectrum::mean_and_covariance;
 use statistics::likelihood::{ErrorLaw, Likelihood, LikelihoodError, Whitening};
@@ -77,9 +77,9 @@ impl<'a> TrendTest<'a> {
     pub fn new(
         likelihood: &'a Likelihood,
         prior: &Prior,
-        draws: &[Predicted],
+        draws: &[PredictedDraw],
     ) -> Result<Option<Self>, LikelihoodError> {
-        let Some(mean) = Predicted::mean(draws) else {
+        let Some(mean) = PredictedDraw::mean(draws) else {
             return Ok(None);
         };
         let scores: Vec<Vec<f64>> = draws.iter().map(|draw| scores(prior, &draw.theta)).collect();
@@ -210,8 +210,8 @@ fn scores(prior: &Prior, theta: &[f64]) -> Vec<f64> {
 /// The mean scores of the draws and the regression of the predictions on them, a column for each score.
 fn sensitivities(
     scores: &[Vec<f64>],
-    draws: &[Predicted],
-    mean: &Predicted,
+    draws: &[PredictedDraw],
+    mean: &PredictedDraw,
 ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
     let (centre, covariance) = mean_and_covariance(scores)?;
     let covariance = Cholesky::new(covariance)?;

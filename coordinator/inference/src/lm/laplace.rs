@@ -2,12 +2,12 @@
 
 use nalgebra::{Cholesky, DMatrix};
 
-use super::objective::{Column, Objective, Point};
-use crate::point::{Estimate, Laplace, Stop};
+use super::objective::{Column, FitPoint, Objective};
+use crate::point_estimate::{Laplace, ModeEstimate, StopReason};
 
 impl Objective {
     /// The estimate at a point; evaluations are counted by the caller.
-    pub(super) fn estimate(&self, point: &Point, columns: &[Column], stop: Stop) -> Estimate {
+    pub(super) fn estimate(&self, point: &FitPoint, columns: &[Column], stop: StopReason) -> ModeEstimate {
         let dimension = self.prior.dimension();
         let mut at_bound = vec![false; dimension];
         let mut covariance = vec![vec![0.0; dimension]; dimension];
@@ -40,7 +40,7 @@ impl Objective {
                 sd[parameter(i)] = Some(rate(i) * inverse[(i, i)].sqrt());
             }
         }
-        Estimate {
+        ModeEstimate {
             theta: point.theta.clone(),
             log_likelihood: point.log_likelihood,
             log_prior: point.log_prior,

@@ -9,7 +9,7 @@
 //! with `p_k` the density of the parameter as the job declares it, not of the coordinate in which the fit moves:
 //! another way to write down the same prior (a lognormal x, a normal ln x) has another maximum.
 //!
-//! [`Optimiser`] never runs the model. It lists [`Proposal`](crate::Proposal)s of a round, which can be evaluated
+//! [`LmFit`] never runs the model. It lists [`Proposal`](crate::Proposal)s of a round, which can be evaluated
 //! at the same time, and is told their predicted values in any order:
 //! 1. Starts: the prior mean and some prior draws; the fit goes on from the best.
 //! 2. Differences: the columns of the Jacobian, one parameter moved in each.
@@ -24,9 +24,9 @@
 //!
 //! # Layout
 //! - `settings`: starts, budget, step of the differences.
-//! - `optimiser`: the rounds; `descent`: what each leads to; `view`: what the outside sees of them.
+//! - `fit`: the rounds. `iteration`: what each leads to. `progress`: what they show of themselves.
 //! - `noise`: one noise sd.
-//! - `objective`: f at a point, and its parabola there. `quadratic`: the least of a damped parabola in a box.
+//! - `objective`: f at a point, and its parabola there. `quadratic_model`: the least of a damped parabola in a box.
 //! - `stencil`: the differences. `damping`: how far to trust the parabola.
 //! - `laplace`: the result, with its covariance.
 //!
@@ -34,17 +34,17 @@
 //! Marquardt 1963, J. SIAM 11:431; the control of the damping after Nielsen 1999, IMM-REP-1999-05.
 
 mod damping;
-mod descent;
+mod fit;
+mod iteration;
 mod laplace;
 mod noise;
 mod objective;
-mod optimiser;
-mod quadratic;
+mod progress;
+mod quadratic_model;
 mod settings;
 mod stencil;
-mod view;
 
-pub use optimiser::Optimiser;
-pub use quadratic::Quadratic;
-pub use settings::{Settings, SettingsError};
-pub use view::Current;
+pub use fit::LmFit;
+pub use progress::FitProgress;
+pub use quadratic_model::QuadraticModel;
+pub use settings::{LmSettings, LmSettingsError};

@@ -1,6 +1,6 @@
 //! Find the most probable noise sd for given residuals.
 
-use statistics::likelihood::{Likelihood, Sd};
+use statistics::likelihood::{ErrorSd, Likelihood};
 use statistics::prior::{Marginal, Prior};
 
 /// Where the prior reaches down to 0, a noise sd ends at this share of the prior's: residuals that vanish would
@@ -13,7 +13,7 @@ const HALVINGS: u32 = 80;
 
 /// An inferred noise sd and the data that share it.
 #[derive(Debug, Clone)]
-pub(super) struct Noise {
+pub(super) struct InferredNoise {
     /// Index in theta.
     pub(super) parameter: usize,
     marginal: Marginal,
@@ -29,7 +29,7 @@ pub(super) struct Profiled {
     pub(super) uncertainty: Option<f64>,
 }
 
-impl Noise {
+impl InferredNoise {
     /// The inferred noise sds of a likelihood, by ascending parameter.
     pub(super) fn all(prior: &Prior, likelihood: &Likelihood) -> Vec<Self> {
         let data = likelihood.data();
@@ -38,7 +38,7 @@ impl Noise {
             .iter()
             .enumerate()
             .filter_map(|(parameter, marginal)| {
-                let own = Sd::Inferred { parameter };
+                let own = ErrorSd::Inferred { parameter };
                 let data: Vec<usize> = (0..data.len()).filter(|&i| data[i].sd == own).collect();
                 (!data.is_empty()).then(|| Self {
                     parameter,

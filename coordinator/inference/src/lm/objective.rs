@@ -2,9 +2,9 @@
 
 use nalgebra::DMatrix;
 
-use super::noise::{Noise, Profiled};
-use super::quadratic::Quadratic;
-use crate::point::Axis;
+use super::noise::{InferredNoise, Profiled};
+use super::quadratic_model::QuadraticModel;
+use crate::point_estimate::PriorAxis;
 use statistics::likelihood::Likelihood;
 use statistics::log_likelihood::LogLikelihood;
 use statistics::prior::Prior;
@@ -18,14 +18,14 @@ pub(super) struct Objective {
     pub(super) prior: Prior,
     pub(super) likelihood: Likelihood,
     /// The parameters that the model takes.
-    pub(super) axes: Vec<Axis>,
+    pub(super) axes: Vec<PriorAxis>,
     /// The others.
-    pub(super) noises: Vec<Noise>,
+    pub(super) noises: Vec<InferredNoise>,
 }
 
 /// An evaluated point, its noise sds the most probable ones there.
 #[derive(Debug, Clone)]
-pub(super) struct Point {
+pub(super) struct FitPoint {
     /// Position along every axis.
     pub(super) position: Vec<f64>,
     pub(super) theta: Vec<f64>,
@@ -40,13 +40,13 @@ pub(super) struct Point {
 
 impl Objective {
     pub(super) fn new(prior: Prior, likelihood: Likelihood) -> Self {
-        let noises = Noise::all(&prior, &likelihood);
+        let noises = InferredNoise::all(&prior, &likelihood);
         let axes = prior
             .marginals()
             .iter()
             .enumerate()
             .filter(|(parameter, _)| noises.iter().all(|noise| noise.parameter != *parameter))
-            .map(|(parameter, marginal)| Axis::new(parameter, marginal))
+            .map(|(parameter, marginal)| PriorAxis::new(parameter, marginal))
             .collect();
         Self {
             prior,
@@ -57,7 +57,7 @@ impl Objective {
     }
 
     /// The point of a parameter vector; its own noise sds are not looked at. `None` where f is infinite.
-    pub(super) fn point(&self, theta: &[f64], predicted: &[f64]) -> Option<Point> {
+    pub(super) fn point(&self, theta: &[f64], predicted: &[f64]) -> Option<FitPoint> {
         let residuals: Vec<f64> = self
             .likelihood
             .data()
@@ -80,7 +80,7 @@ impl Objective {
             return None;
         };
         let value = -(log_likelihood.get() + log_prior);
-        value.is_finite().then(|| Point {
+        value.is_finite().then(|| FitPoint {
             position: self
                 .axes
                 .iter()
@@ -96,7 +96,7 @@ impl Objective {
     }
 
     /// The parameter vector at a position, with the noise sds of a point.
-    pub(super) fn theta(&self, point: &Point, position: &[f64]) -> Vec<f64> {
+    pub(super) fn theta(&self, point: &FitPoint, position: &[f64]) -> Vec<f64> {
         let mut theta = point.theta.clone();
         for (axis, &t) in self.axes.iter().zip(position) {
             theta[axis.parameter] = axis.value(t);
@@ -110,7 +110,7 @@ impl Objective {
     ///
     /// The model's own curvature is left out, as Gauss and Newton do; so is the change of the noise sds, whose mixed
     /// curvature with the axes has expectation zero. Axes without a column do not move.
-    pub(super) fn quadratic(&self, point: &Point, columns: &[Column]) -> Quadratic {
+    pub(super) fn quadratic(&self, point: &FitPoint, columns: &[Column]) -> QuadraticModel {
         // What cannot be whitened has no finite f, and so no point.
         let whitening = self.likelihood.whitening(&point.predicted, &point.theta).ok();
         let scaled: Vec<Option<Vec<f64>>> = columns
@@ -147,7 +147,7 @@ impl Objective {
                 hessian[(k, l)] += curvature;
             }
         }
-        Quadratic {
+        QuadraticModel {
             gradient,
             hessian,
             lower: self.room(point, |axis| axis.lower),
@@ -156,7 +156,7 @@ impl Objective {
         }
     }
 
-    fn room(&self, point: &Point, bound: impl Fn(&Axis) -> f64) -> Vec<f64> {
+    fn room(&self, point: &FitPoint, bound: impl Fn(&PriorAxis) -> f64) -> Vec<f64> {
         self.axes
             .iter()
             .zip(&point.position)
@@ -165,7 +165,7 @@ impl Objective {
     }
 
     /// A position moved by a step; exactly at a bound where the step ends there.
-    pub(super) fn moved(&self, point: &Point, step: &[f64]) -> Vec<f64> {
+    pub(super) fn moved(&self, point: &FitPoint, step: &[f64]) -> Vec<f64> {
         self.axes
             .iter()
             .zip(point.position.iter().zip(step))

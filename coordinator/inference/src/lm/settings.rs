@@ -4,7 +4,7 @@ use super::stencil::Sides;
 
 /// Settings of a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct LmSettings {
     /// Points of the first round: the prior mean, then prior draws.
     pub starts: usize,
     /// Most evaluations, all rounds together.
@@ -28,7 +28,7 @@ pub struct Settings {
     pub step_tolerance: f64,
 }
 
-impl Default for Settings {
+impl Default for LmSettings {
     /// 5 starts, 200 evaluations, differences over 2 % of the prior's width, seed 1, tolerances 1e-6 and 1e-4.
     fn default() -> Self {
         Self {
@@ -54,7 +54,7 @@ const SHARE_TO_ONE_SIDE: f64 = 0.25;
 
 /// Settings that cannot work.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum SettingsError {
+pub enum LmSettingsError {
     /// The prior has no parameters.
     #[error("the prior has no parameters")]
     NoParameters,
@@ -102,7 +102,7 @@ pub enum SettingsError {
     },
 }
 
-impl Settings {
+impl LmSettings {
     /// Step of a difference in prior widths, along an axis of so much uncertainty in the same unit, if it is known.
     pub(super) fn difference(&self, sides: Sides, uncertainty: Option<f64>) -> f64 {
         let share = match sides {
@@ -118,8 +118,8 @@ impl Settings {
     /// Checks the settings for a prior of `dimension` parameters.
     ///
     /// # Errors
-    /// [`SettingsError`] with the setting, its value and its bound.
-    pub fn check(&self, dimension: usize) -> Result<(), SettingsError> {
+    /// [`LmSettingsError`] with the setting, its value and its bound.
+    pub fn check(&self, dimension: usize) -> Result<(), LmSettingsError> {
         let &Self {
             starts,
             max_evaluations,
@@ -128,13 +128,13 @@ impl Settings {
         } = self;
         let least = starts.saturating_add(dimension + 1);
         if dimension == 0 {
-            return Err(SettingsError::NoParameters);
+            return Err(LmSettingsError::NoParameters);
         }
         if starts == 0 {
-            return Err(SettingsError::NoStart);
+            return Err(LmSettingsError::NoStart);
         }
         if max_evaluations < least {
-            return Err(SettingsError::TooFewEvaluations {
+            return Err(LmSettingsError::TooFewEvaluations {
                 max_evaluations,
                 least,
                 starts,
@@ -142,17 +142,17 @@ impl Settings {
             });
         }
         if max_evaluations > MOST_EVALUATIONS {
-            return Err(SettingsError::TooManyEvaluations { max_evaluations });
+            return Err(LmSettingsError::TooManyEvaluations { max_evaluations });
         }
         if !(value > 0.0 && value <= LONGEST_DIFFERENCE) {
-            return Err(SettingsError::DifferenceStep { value });
+            return Err(LmSettingsError::DifferenceStep { value });
         }
         for (name, value) in [
             ("decrease_tolerance", self.decrease_tolerance),
             ("step_tolerance", self.step_tolerance),
         ] {
             if !(value.is_finite() && value > 0.0) {
-                return Err(SettingsError::Tolerance { name, value });
+                return Err(LmSettingsError::Tolerance { name, value });
             }
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! Ask for the differences that make a Jacobian.
 
 use super::objective::Column;
-use crate::point::Axis;
+use crate::point_estimate::PriorAxis;
 
 /// To which sides differences are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,8 +33,8 @@ struct Differences {
 
 impl Stencil {
     /// A stencil around a position, with a step for each axis.
-    pub(super) fn new(axes: &[Axis], position: &[f64], steps: &[f64]) -> Self {
-        let differences = |((axis, &t), &step): ((&Axis, &f64), &f64)| {
+    pub(super) fn new(axes: &[PriorAxis], position: &[f64], steps: &[f64]) -> Self {
+        let differences = |((axis, &t), &step): ((&PriorAxis, &f64), &f64)| {
             let inside = |offset: &f64| (axis.lower..=axis.upper).contains(&(t + offset));
             let untried = [step, -step, SHORTER * step, -SHORTER * step];
             Differences {

@@ -105,7 +105,7 @@ impl Evidence {
 mod tests {
     use super::*;
     use statistics::log_likelihood::LogLikelihood;
-    use statistics::metamodel::State;
+    use statistics::metamodel::ChainState;
     use statistics::rng::Stream;
 
     fn pool(log_likelihoods: &[f64]) -> Pool {
@@ -114,7 +114,7 @@ mod tests {
             let log_likelihood = LogLikelihood::new(value).unwrap();
             pool.push(
                 chain,
-                State {
+                ChainState {
                     coordinates: Vec::new(),
                     log_prior: 0.0,
                     log_likelihood,

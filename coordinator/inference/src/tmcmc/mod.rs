@@ -15,12 +15,13 @@
 //! - A stage ends when its particles have forgotten their start; one that cannot is flagged, and the result
 //!   with it.
 
-mod answer;
 mod bridge;
 mod ching_chen;
 mod equilibrium;
+mod evaluation;
 mod evidence;
-mod population;
+mod particle;
+mod progress;
 mod record;
 mod resample;
 mod sampler;
@@ -29,11 +30,10 @@ mod schedule;
 mod settings;
 mod stage;
 mod transition;
-mod view;
 mod weights;
 
-pub use answer::Answer;
-pub use population::Particle;
-pub use record::{Current, Posterior, StageRecord};
+pub use evaluation::EvaluationResult;
+pub use particle::Particle;
+pub use record::{PosteriorSample, StageProgress, StageRecord};
 pub use sampler::Sampler;
-pub use settings::{Algorithm, Settings, SettingsError};
+pub use settings::{Algorithm, TmcmcSettings, TmcmcSettingsError};

@@ -1,6 +1,6 @@
 //! Report what the sampler did.
 
-use super::population::Particle;
+use super::particle::Particle;
 
 /// A finished stage.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,7 +38,7 @@ pub struct StageRecord {
 
 /// The stage in progress.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Current {
+pub struct StageProgress {
     /// Index of the stage; 0 during the prior draws.
     pub stage: usize,
     /// Its tempering exponent.
@@ -57,7 +57,7 @@ pub struct Current {
 
 /// The result.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Posterior {
+pub struct PosteriorSample {
     /// Equally weighted draws.
     pub particles: Vec<Particle>,
     /// ln p(data).

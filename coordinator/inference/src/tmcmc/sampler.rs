@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use super::answer::Answer;
 use super::equilibrium::{Drift, is_alarming, pooled_z};
+use super::evaluation::EvaluationResult;
 use super::evidence::Evidence;
-use super::population::Particle;
-use super::record::{Posterior, StageRecord};
-use super::settings::{Algorithm, Settings, SettingsError};
+use super::particle::Particle;
+use super::record::{PosteriorSample, StageRecord};
+use super::settings::{Algorithm, TmcmcSettings, TmcmcSettingsError};
 use super::stage::Stage;
 use super::transition::Transition;
-use crate::round::{Failure, Progress, Proposal, Round, TellError};
+use crate::round::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
 use statistics::likelihood::Likelihood;
-use statistics::metamodel::{Metamodel, MetamodelStage, Pool, State};
+use statistics::metamodel::{ChainState, Metamodel, MetamodelStage, Pool};
 use statistics::prior::Prior;
 use statistics::rng::Stream;
 
@@ -26,15 +26,15 @@ const BLOCK: usize = 5;
 #[derive(Debug, Clone)]
 pub struct Sampler {
     pub(super) prior: Prior,
-    pub(super) settings: Settings,
+    pub(super) settings: TmcmcSettings,
     /// What a metamodel scores its predictions with; `None`: there is none.
     pub(super) likelihood: Option<Likelihood>,
-    pub(super) round: Round<Answer>,
-    pub(super) phase: Phase,
+    pub(super) round: ProposalRound<EvaluationResult>,
+    pub(super) phase: SamplerPhase,
     pub(super) evidence: Evidence,
     pub(super) passage: Passage,
     pub(super) stages: Vec<StageRecord>,
-    pub(super) posterior: Option<Posterior>,
+    pub(super) posterior: Option<PosteriorSample>,
     pub(super) evaluations: u64,
     pub(super) rejected: u64,
 }
@@ -51,20 +51,20 @@ pub(super) struct Passage {
 
 /// What the sampler is doing.
 #[derive(Debug, Clone)]
-pub(super) enum Phase {
+pub(super) enum SamplerPhase {
     /// Waiting for the prior draws, whose coordinates are held.
     Prior,
     Moving(Box<Stage>),
     Done,
-    Failed(Failure),
+    Failed(InferenceFailure),
 }
 
 impl Sampler {
     /// A sampler whose round 0 holds the prior draws.
     ///
     /// # Errors
-    /// [`SettingsError`] names the setting, its value and its bound.
-    pub fn new(prior: Prior, settings: Settings) -> Result<Self, SettingsError> {
+    /// [`TmcmcSettingsError`] names the setting, its value and its bound.
+    pub fn new(prior: Prior, settings: TmcmcSettings) -> Result<Self, TmcmcSettingsError> {
         settings.check(prior.dimension())?;
         let pending: Vec<Proposal> = (0..settings.particles)
             .map(|particle| {
@@ -76,8 +76,8 @@ impl Sampler {
             prior,
             settings,
             likelihood: None,
-            round: Round::default(),
-            phase: Phase::Prior,
+            round: ProposalRound::default(),
+            phase: SamplerPhase::Prior,
             evidence: Evidence::default(),
             passage: Passage::default(),
             stages: Vec::new(),
@@ -96,12 +96,12 @@ impl Sampler {
     /// - `likelihood`: scores what the metamodel predicts; the answers have to be scored by the same.
     ///
     /// # Errors
-    /// [`SettingsError`] names the setting, its value and its bound.
+    /// [`TmcmcSettingsError`] names the setting, its value and its bound.
     pub fn with_metamodel(
         prior: Prior,
-        settings: Settings,
+        settings: TmcmcSettings,
         likelihood: Likelihood,
-    ) -> Result<Self, SettingsError> {
+    ) -> Result<Self, TmcmcSettingsError> {
         let mut sampler = Self::new(prior, settings)?;
         sampler.likelihood = (settings.metamodel_moves > 0).then_some(likelihood);
         Ok(sampler)
@@ -112,9 +112,13 @@ impl Sampler {
     ///
     /// # Errors
     /// [`TellError::AlreadyTold`], [`TellError::NotPending`] and [`TellError::NotAsked`]; the sampler is then unchanged.
-    pub fn tell(&mut self, particle: usize, answer: impl Into<Answer>) -> Result<Progress, TellError> {
+    pub fn tell(
+        &mut self,
+        particle: usize,
+        answer: impl Into<EvaluationResult>,
+    ) -> Result<TellProgress, TellError> {
         let answer = answer.into();
-        let moved = matches!(answer, Answer::Moved { .. });
+        let moved = matches!(answer, EvaluationResult::Moved { .. });
         let asked = self.round.proposal(particle);
         if asked.is_some_and(|proposal| proposal.subchain.is_some() != moved) {
             let round = self.round.number();
@@ -123,39 +127,39 @@ impl Sampler {
         Ok(if self.round.tell(particle, answer)? {
             self.advance()
         } else {
-            Progress::Waiting
+            TellProgress::Waiting
         })
     }
 
     /// Completes rounds until proposals are pending or the sampler has ended.
-    fn advance(&mut self) -> Progress {
+    fn advance(&mut self) -> TellProgress {
         let stages = self.stages.len();
         loop {
             let (proposals, answers) = self.round.complete();
             self.evaluations += answers.iter().filter(|answer| answer.is_evaluated()).count() as u64;
             self.rejected += answers.iter().filter(|answer| answer.is_refused()).count() as u64;
-            let next = match std::mem::replace(&mut self.phase, Phase::Done) {
-                Phase::Prior => self.finish_prior(&proposals, answers),
-                Phase::Moving(mut stage) => {
+            let next = match std::mem::replace(&mut self.phase, SamplerPhase::Done) {
+                SamplerPhase::Prior => self.finish_prior(&proposals, answers),
+                SamplerPhase::Moving(mut stage) => {
                     stage.accept(&self.prior, answers);
                     self.after_step(stage)
                 }
-                ended @ (Phase::Done | Phase::Failed(_)) => Ok(ended),
+                ended @ (SamplerPhase::Done | SamplerPhase::Failed(_)) => Ok(ended),
             };
-            self.phase = next.unwrap_or_else(Phase::Failed);
+            self.phase = next.unwrap_or_else(SamplerPhase::Failed);
             match &mut self.phase {
-                Phase::Moving(stage) => {
+                SamplerPhase::Moving(stage) => {
                     let proposals = stage.propose(&self.prior, self.settings.seed);
                     self.round.ask(proposals);
                 }
-                Phase::Failed(failure) => return Progress::Failed(*failure),
-                Phase::Prior | Phase::Done => return Progress::Finished,
+                SamplerPhase::Failed(failure) => return TellProgress::Failed(*failure),
+                SamplerPhase::Prior | SamplerPhase::Done => return TellProgress::Finished,
             }
             if !self.round.pending().is_empty() {
                 return if self.stages.len() > stages {
-                    Progress::StageFinished
+                    TellProgress::StageFinished
                 } else {
-                    Progress::NextRound
+                    TellProgress::NextRound
                 };
             }
         }
@@ -163,18 +167,22 @@ impl Sampler {
 
     /// Turns the prior draws into the first stage; draws that the model rejected are dropped, and the
     /// evidence multiplied by the surviving fraction.
-    fn finish_prior(&mut self, proposals: &[Proposal], answers: Vec<Answer>) -> Result<Phase, Failure> {
+    fn finish_prior(
+        &mut self,
+        proposals: &[Proposal],
+        answers: Vec<EvaluationResult>,
+    ) -> Result<SamplerPhase, InferenceFailure> {
         let draws = answers.len();
         let mut pool = Pool::default();
         for (proposal, answer) in proposals.iter().zip(answers) {
-            if let Answer::Here { log_likelihood, pair } = answer
+            if let EvaluationResult::Here { log_likelihood, pair } = answer
                 && !log_likelihood.is_impossible()
             {
                 let coordinates = self.prior.coordinates(&proposal.theta);
                 let log_prior = self.prior.log_density_of_coordinates(&coordinates);
                 pool.push(
                     pool.states.len(),
-                    State {
+                    ChainState {
                         coordinates,
                         log_prior,
                         log_likelihood,
@@ -185,10 +193,10 @@ impl Sampler {
         }
         let (possible, needed) = (pool.states.len(), self.prior.dimension() + 2);
         if possible == 0 {
-            return Err(Failure::AllImpossible { draws });
+            return Err(InferenceFailure::AllImpossible { draws });
         }
         if possible < needed {
-            return Err(Failure::TooFewPossible {
+            return Err(InferenceFailure::TooFewPossible {
                 possible,
                 draws,
                 needed,
@@ -207,7 +215,7 @@ impl Sampler {
         exponent: f64,
         scale: Option<f64>,
         log_evidence: f64,
-    ) -> Result<Phase, Failure> {
+    ) -> Result<SamplerPhase, InferenceFailure> {
         let Transition {
             mut stage,
             weights,
@@ -219,11 +227,16 @@ impl Sampler {
             weight_cov: weights.cov,
             log_evidence,
         };
-        Ok(Phase::Moving(Box::new(stage)))
+        Ok(SamplerPhase::Moving(Box::new(stage)))
     }
 
     /// The metamodel of a stage, from the pool that it begins with.
-    fn learn(&self, stage: &Stage, pool: &Pool, weights: &[f64]) -> Result<Option<Arc<Metamodel>>, Failure> {
+    fn learn(
+        &self,
+        stage: &Stage,
+        pool: &Pool,
+        weights: &[f64],
+    ) -> Result<Option<Arc<Metamodel>>, InferenceFailure> {
         let Some(likelihood) = &self.likelihood else {
             return Ok(None);
         };
@@ -236,11 +249,11 @@ impl Sampler {
             likelihood,
         };
         let metamodel = Metamodel::learn(&purpose, pool, weights, &stage.mixture);
-        Ok(metamodel.map_err(Failure::Metamodel)?.map(Arc::new))
+        Ok(metamodel.map_err(InferenceFailure::Metamodel)?.map(Arc::new))
     }
 
     /// Goes on with a stage, or ends it and starts the next or the posterior.
-    fn after_step(&mut self, stage: Box<Stage>) -> Result<Phase, Failure> {
+    fn after_step(&mut self, stage: Box<Stage>) -> Result<SamplerPhase, InferenceFailure> {
         let [least, _] = self.settings.moves;
         let mut drift = None;
         if self.settings.algorithm == Algorithm::Tmcmc
@@ -250,7 +263,7 @@ impl Sampler {
             drift = Some(self.drift(&stage)).filter(|drift| drift.is_settled());
         }
         if drift.is_none() && !stage.is_exhausted() {
-            return Ok(Phase::Moving(stage));
+            return Ok(SamplerPhase::Moving(stage));
         }
         let drift = drift.unwrap_or_else(|| self.drift(&stage));
         self.record(&stage, drift);
@@ -265,7 +278,7 @@ impl Sampler {
         }
         let drift_z = pooled_z(self.stages.iter().map(|stage| stage.drift_z));
         let weight_drift_z = pooled_z(self.stages.iter().map(|stage| stage.weight_drift_z));
-        self.posterior = Some(Posterior {
+        self.posterior = Some(PosteriorSample {
             particles: self
                 .stages
                 .last()
@@ -281,7 +294,7 @@ impl Sampler {
             evaluations: self.evaluations,
             rejected: self.rejected,
         });
-        Ok(Phase::Done)
+        Ok(SamplerPhase::Done)
     }
 
     /// Drift of a stage: of its chains from start to end or, after Ching and Chen, of every particle from the
@@ -310,7 +323,7 @@ impl Sampler {
         } = self.passage;
         let ancestors = stage.chains.iter().map(|chain| chain.ancestor).collect();
         let log_evidence_increment = log_evidence + self.evidence.add(&stage.pool, ancestors, step);
-        let population: Vec<&State> = if self.settings.algorithm.keeps_every_step() {
+        let population: Vec<&ChainState> = if self.settings.algorithm.keeps_every_step() {
             stage.pool.states.iter().collect()
         } else {
             stage.chains.iter().map(|chain| &chain.current).collect()

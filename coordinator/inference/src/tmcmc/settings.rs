@@ -29,7 +29,7 @@ impl Algorithm {
 
 /// Settings of a sampler.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct TmcmcSettings {
     /// The algorithm.
     pub algorithm: Algorithm,
     /// Size of the population.
@@ -44,7 +44,7 @@ pub struct Settings {
     pub metamodel_moves: usize,
 }
 
-impl Default for Settings {
+impl Default for TmcmcSettings {
     /// TMCMC, 1000 particles, 10 to 60 moves, seed 1, coefficient of variation 1.
     fn default() -> Self {
         Self {
@@ -65,7 +65,7 @@ const MOST_MOVES: usize = 10_000;
 
 /// Settings that cannot work.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum SettingsError {
+pub enum TmcmcSettingsError {
     /// The prior has no parameters.
     #[error("the prior has no parameters")]
     NoParameters,
@@ -113,38 +113,38 @@ pub enum SettingsError {
     },
 }
 
-impl Settings {
+impl TmcmcSettings {
     /// Checks the settings for a prior of `dimension` parameters; at least `2 dimension + 2` particles.
     ///
     /// # Errors
-    /// [`SettingsError`] with the setting and its bound.
-    pub fn check(&self, dimension: usize) -> Result<(), SettingsError> {
+    /// [`TmcmcSettingsError`] with the setting and its bound.
+    pub fn check(&self, dimension: usize) -> Result<(), TmcmcSettingsError> {
         let least = 2 * dimension + 2;
         let [fewest, most] = self.moves;
         if dimension == 0 {
-            Err(SettingsError::NoParameters)
+            Err(TmcmcSettingsError::NoParameters)
         } else if self.particles < least {
-            Err(SettingsError::TooFewParticles {
+            Err(TmcmcSettingsError::TooFewParticles {
                 particles: self.particles,
                 dimension,
                 least,
             })
         } else if self.particles > MOST_PARTICLES {
-            Err(SettingsError::TooManyParticles {
+            Err(TmcmcSettingsError::TooManyParticles {
                 particles: self.particles,
             })
         } else if fewest == 0 || fewest > most || most > MOST_MOVES {
-            Err(SettingsError::Moves { least: fewest, most })
+            Err(TmcmcSettingsError::Moves { least: fewest, most })
         } else if self.metamodel_moves > MOST_MOVES {
-            Err(SettingsError::MetamodelMoves {
+            Err(TmcmcSettingsError::MetamodelMoves {
                 value: self.metamodel_moves,
             })
         } else if self.metamodel_moves > 0 && self.algorithm != Algorithm::Tmcmc {
-            Err(SettingsError::NoMetamodel {
+            Err(TmcmcSettingsError::NoMetamodel {
                 value: self.metamodel_moves,
             })
         } else if !(self.target_cov.is_finite() && self.target_cov > 0.0) {
-            Err(SettingsError::TargetCov {
+            Err(TmcmcSettingsError::TargetCov {
                 value: self.target_cov,
             })
         } else {

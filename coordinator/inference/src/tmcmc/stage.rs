@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use super::answer::Answer;
+use super::evaluation::EvaluationResult;
 use super::scale::target_acceptance;
 use crate::round::Proposal;
 use statistics::log_likelihood::LogLikelihood;
 use statistics::metamodel::{
-    Metamodel, ModelPair, PLAIN_STEPS, Pool, ProposalMixture, ProposedMove, State, Subchain, SubchainEnd,
+    ChainState, Metamodel, ModelPair, PLAIN_STEPS, Pool, ProposalMixture, ProposedMove, Subchain, SubchainEnd,
 };
 use statistics::prior::Prior;
 use statistics::rng::Stream;
@@ -16,7 +16,7 @@ use statistics::rng::Stream;
 #[derive(Debug, Clone)]
 pub(super) struct Chain {
     pub(super) start: LogLikelihood,
-    pub(super) current: State,
+    pub(super) current: ChainState,
     /// The chain of the previous stage that the start came from; its descendants are not independent.
     pub(super) ancestor: usize,
     /// Steps after which the chain ends.
@@ -45,7 +45,7 @@ enum Kind {
 
 /// What a step came to.
 struct Verdict {
-    state: Option<State>,
+    state: Option<ChainState>,
     scaled: u32,
     scaled_accepted: u32,
 }
@@ -146,7 +146,7 @@ impl Stage {
     }
 
     /// Accepts or rejects every step; `answers` are those of the last proposals, in their order.
-    pub(super) fn accept(&mut self, prior: &Prior, answers: Vec<Answer>) {
+    pub(super) fn accept(&mut self, prior: &Prior, answers: Vec<EvaluationResult>) {
         let mut answers = answers.into_iter();
         let (mut scaled, mut scaled_accepted) = (0_u64, 0_u64);
         for step in std::mem::take(&mut self.steps) {
@@ -154,7 +154,7 @@ impl Stage {
                 Kind::Outside { .. } => None,
                 Kind::Plain { .. } | Kind::Delayed => answers.next(),
             };
-            self.evaluations += u64::from(answer.as_ref().is_some_and(Answer::is_evaluated));
+            self.evaluations += u64::from(answer.as_ref().is_some_and(EvaluationResult::is_evaluated));
             let chain = &mut self.chains[step.chain];
             let verdict = decide(
                 step.kind,
@@ -190,20 +190,20 @@ impl Stage {
 fn decide(
     kind: Kind,
     log_uniform: f64,
-    answer: Option<Answer>,
-    current: &State,
+    answer: Option<EvaluationResult>,
+    current: &ChainState,
     exponent: f64,
     prior: &Prior,
 ) -> Verdict {
     let gain = |log_likelihood: LogLikelihood| log_likelihood.value() - current.log_likelihood.value();
     match (kind, answer) {
-        (Kind::Plain { candidate, log_prior }, Some(Answer::Here { log_likelihood, pair })) => {
+        (Kind::Plain { candidate, log_prior }, Some(EvaluationResult::Here { log_likelihood, pair })) => {
             let ratio =
                 exponent * gain(log_likelihood) + (log_prior - current.log_prior) + candidate.log_correction;
             let accepted = log_uniform < ratio;
             let scaled = u32::from(candidate.scaled);
             Verdict {
-                state: accepted.then(|| State {
+                state: accepted.then(|| ChainState {
                     coordinates: candidate.coordinates,
                     log_prior,
                     log_likelihood,
@@ -213,7 +213,7 @@ fn decide(
                 scaled_accepted: scaled * u32::from(accepted),
             }
         }
-        (Kind::Delayed, Some(Answer::Moved { end, found })) => Verdict {
+        (Kind::Delayed, Some(EvaluationResult::Moved { end, found })) => Verdict {
             scaled: end.scaled,
             scaled_accepted: end.scaled_accepted,
             state: found
@@ -238,9 +238,14 @@ fn decide(
 }
 
 /// The state at the end of a subchain.
-fn moved(prior: &Prior, end: &SubchainEnd, log_likelihood: LogLikelihood, pair: Option<ModelPair>) -> State {
+fn moved(
+    prior: &Prior,
+    end: &SubchainEnd,
+    log_likelihood: LogLikelihood,
+    pair: Option<ModelPair>,
+) -> ChainState {
     let coordinates = prior.coordinates(&end.theta);
-    State {
+    ChainState {
         log_prior: prior.log_density_of_coordinates(&coordinates),
         coordinates,
         log_likelihood,

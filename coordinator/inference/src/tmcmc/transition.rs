@@ -4,10 +4,10 @@ use super::ching_chen;
 use super::resample::systematic;
 use super::scale::initial_scale;
 use super::schedule::exponent_step;
-use super::settings::{Algorithm, Settings};
+use super::settings::{Algorithm, TmcmcSettings};
 use super::stage::{Chain, Stage};
 use super::weights::Weights;
-use crate::round::Failure;
+use crate::round::InferenceFailure;
 use statistics::metamodel::{CovarianceFactor, Pool, ProposalMixture};
 use statistics::rng::Stream;
 
@@ -31,14 +31,14 @@ impl Transition {
         index: usize,
         exponent: f64,
         scale: Option<f64>,
-        settings: &Settings,
-    ) -> Result<Self, Failure> {
+        settings: &TmcmcSettings,
+    ) -> Result<Self, InferenceFailure> {
         let log_likelihoods = pool.log_likelihoods();
         let remaining = 1.0 - exponent;
         let step = exponent_step(&log_likelihoods, remaining, settings.target_cov);
         let next = if step < remaining { exponent + step } else { 1.0 };
         if next <= exponent {
-            return Err(Failure::ExponentStuck { exponent, step });
+            return Err(InferenceFailure::ExponentStuck { exponent, step });
         }
         let weights = Weights::new(&log_likelihoods, step);
         let normalised = weights.normalised();

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use inference::diagnostics::{self, Predicted, Signal};
-use statistics::Sd;
+use inference::diagnostics::{self, ChannelSignal, PredictedDraw};
+use statistics::ErrorSd;
 
 use super::datum::{DataChannel, size};
 use super::residuals::ResidualDiagnostics;
@@ -112,14 +112,14 @@ impl CoverageCount {
 pub(super) fn channels(
     outcome: &Outcome,
     comparison: &Comparison,
-    posterior: &[Predicted],
+    posterior: &[PredictedDraw],
     residuals: &[ResidualDiagnostics],
 ) -> Vec<ChannelDiagnostics> {
     let data = outcome.spec.likelihood.data();
     let signals = signals(outcome, residuals);
     let is_inferred = |index: usize| {
         let mut own = data.iter().filter(|d| d.channel == index);
-        own.any(|d| matches!(d.sd, Sd::Inferred { .. }))
+        own.any(|d| matches!(d.sd, ErrorSd::Inferred { .. }))
     };
     let channel = |(index, channel): (usize, DataChannel)| {
         let own = || residuals.iter().filter(|r| r.channel == channel.name());
@@ -154,7 +154,7 @@ pub(super) fn channels(
 /// The chi-square of some of the data.
 pub(super) fn chi_square(
     outcome: &Outcome,
-    posterior: &[Predicted],
+    posterior: &[PredictedDraw],
     keep: impl Fn(usize) -> bool,
 ) -> Option<ChiSquareTest> {
     // These values were scored while sampling.
@@ -168,9 +168,9 @@ pub(super) fn chi_square(
 }
 
 /// What the prior allows each channel to vary; none of a fit, which has no draws from the prior.
-fn signals(outcome: &Outcome, residuals: &[ResidualDiagnostics]) -> BTreeMap<usize, Signal> {
+fn signals(outcome: &Outcome, residuals: &[ResidualDiagnostics]) -> BTreeMap<usize, ChannelSignal> {
     let prior = outcome.prior_draws.iter().filter_map(|draw| {
-        Some(Predicted {
+        Some(PredictedDraw {
             theta: draw.theta.clone(),
             values: draw.result.as_ref().ok()?.clone(),
         })
@@ -183,7 +183,7 @@ fn signals(outcome: &Outcome, residuals: &[ResidualDiagnostics]) -> BTreeMap<usi
     )
 }
 
-fn silence(channel: DataChannel, signal: &Signal, is_inferred: bool) -> Option<String> {
+fn silence(channel: DataChannel, signal: &ChannelSignal, is_inferred: bool) -> Option<String> {
     if signal.ratio >= 1.0 {
         return None;
     }
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn a_channel_that_is_drowned_says_so() {
-        let signal = |data, ratio| Signal {
+        let signal = |data, ratio| ChannelSignal {
             data,
             prior_sd: 1.43,
             error_sd: 20.0,

@@ -24,7 +24,7 @@ mod sampler;
 pub mod terminal;
 mod trends;
 
-use inference::diagnostics::Predicted;
+use inference::diagnostics::PredictedDraw;
 
 use super::{Comparison, Flag, Outcome};
 
@@ -109,10 +109,10 @@ impl Outcome {
 }
 
 /// The final draws with the values that the likelihood takes.
-fn posterior_draws(outcome: &Outcome) -> Vec<Predicted> {
+fn posterior_draws(outcome: &Outcome) -> Vec<PredictedDraw> {
     let draws = outcome.predictive_draws().iter();
     let predicted = draws.filter_map(|draw| {
-        Some(Predicted {
+        Some(PredictedDraw {
             theta: draw.theta.clone(),
             values: outcome.spec.predicted_values(draw.fit.as_ref().ok()?),
         })

@@ -1,6 +1,6 @@
 //! Every fitted measurement beside its prediction.
 
-use inference::diagnostics::{self, Predicted};
+use inference::diagnostics::{self, PredictedDraw};
 
 use super::datum::{DataChannel, run_name};
 use crate::result::Outcome;
@@ -27,7 +27,7 @@ pub struct ResidualDiagnostics {
 }
 
 /// In the order of the likelihood's data; empty of a fit.
-pub(super) fn residuals(outcome: &Outcome, posterior: &[Predicted]) -> Vec<ResidualDiagnostics> {
+pub(super) fn residuals(outcome: &Outcome, posterior: &[PredictedDraw]) -> Vec<ResidualDiagnostics> {
     let likelihood = &outcome.spec.likelihood;
     // These values were scored while sampling; what cannot be scored never became a final draw.
     let rows = diagnostics::residuals(likelihood, posterior).unwrap_or_default();

@@ -1,6 +1,6 @@
 //! Whether what the fit leaves follows a condition of the runs.
 
-use inference::diagnostics::{Predicted, TrendTest};
+use inference::diagnostics::{PredictedDraw, TrendTest};
 use shared::channel::Channel;
 use shared::experiment::TestRun;
 
@@ -98,7 +98,7 @@ pub struct TrendDiagnostics {
 }
 
 /// Every channel against every condition that its fitted runs vary and that the fit does not take up; empty of a fit.
-pub(super) fn trends(outcome: &Outcome, posterior: &[Predicted]) -> Vec<TrendDiagnostics> {
+pub(super) fn trends(outcome: &Outcome, posterior: &[PredictedDraw]) -> Vec<TrendDiagnostics> {
     let spec = &outcome.spec;
     // These values were scored while sampling.
     let Ok(Some(test)) = TrendTest::new(&spec.likelihood, &spec.prior(), posterior) else {

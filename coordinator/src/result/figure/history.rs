@@ -56,7 +56,7 @@ impl Outcome {
         let simulated = self.simulated_histories.as_ref()?;
         let label = match self.spec.method {
             Method::Sample(_) => "maximum likelihood".to_owned(),
-            Method::Fit(_) | Method::Search(_) | Method::Discover { .. } => {
+            Method::Fit(_) | Method::Evolve(_) | Method::Discover { .. } => {
                 format!("{} optimum", self.spec.method.name().to_uppercase())
             }
         };

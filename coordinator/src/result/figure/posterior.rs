@@ -101,7 +101,7 @@ fn posterior(
         let inner = (0..GRID - 1).map(|k| low + step * k as f64);
         inner.chain(std::iter::once(high)).collect()
     });
-    let density = diagnostics::density_of_pairs(values, support, [&grid[0], &grid[1]])?;
+    let density = diagnostics::joint_density(values, support, [&grid[0], &grid[1]])?;
     let highest = density.iter().copied().fold(0.0, f64::max);
     let levels = diagnostics::highest_density_levels(&density, &SHARES);
     let marks = marks(study, sample, pair, reference);

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use inference::point::{Generation, Stop};
-use inference::{ga, search};
+use inference::evolution::{EvolutionSettings, GaSettings};
+use inference::point_estimate::{Generation, StopReason};
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
@@ -76,7 +76,7 @@ pub(in crate::result) fn all_refused() -> Outcome {
 /// A fit of the same job, one parameter at a bound.
 pub(in crate::result) fn fit() -> Outcome {
     let mut outcome = outcome();
-    outcome.spec.method = Method::Fit(inference::lm::Settings::default());
+    outcome.spec.method = Method::Fit(inference::lm::LmSettings::default());
     let first = outcome.predictions.remove(0);
     let mut sd: Vec<Option<f64>> = first.theta.iter().map(|x| Some(0.1 * x)).collect();
     let mut at_bound = vec![false; sd.len()];
@@ -87,7 +87,7 @@ pub(in crate::result) fn fit() -> Outcome {
         log_prior: -1.0,
         sd: Some(sd),
         at_bound,
-        stop: Stop::Decrease,
+        stop: StopReason::Decrease,
         history: Vec::new(),
     });
     outcome.predictions = vec![first];
@@ -105,10 +105,10 @@ pub(in crate::result) fn fit() -> Outcome {
 /// A search of the same job that its generations cut short.
 pub(in crate::result) fn search() -> Outcome {
     let mut outcome = fit();
-    outcome.spec.method = Method::Search(search::Settings::Ga(ga::Settings::default()));
+    outcome.spec.method = Method::Evolve(EvolutionSettings::Ga(GaSettings::default()));
     if let Some(estimate) = &mut outcome.estimate {
         estimate.sd = None;
-        estimate.stop = Stop::Generations;
+        estimate.stop = StopReason::Generations;
         estimate.history = vec![Generation {
             evaluations: 100,
             best: Some(-21.0),

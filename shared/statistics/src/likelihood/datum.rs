@@ -6,7 +6,7 @@ use crate::log_likelihood::NotANumber;
 
 /// The size of an error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum Sd {
+pub enum ErrorSd {
     /// A known standard deviation, in the unit of the datum.
     Known(f64),
     /// An inferred standard deviation.
@@ -26,7 +26,7 @@ pub struct Datum {
     /// The measured value, in the unit of the channel.
     pub value: f64,
     /// Its noise.
-    pub sd: Sd,
+    pub sd: ErrorSd,
 }
 
 /// Data or predictions that cannot be scored.
@@ -101,12 +101,12 @@ pub enum LikelihoodError {
     NotANumber(#[from] NotANumber),
 }
 
-impl Sd {
+impl ErrorSd {
     /// Its value, known or in theta.
     pub(super) fn value(self, theta: &[f64]) -> Result<f64, LikelihoodError> {
         match self {
-            Sd::Known(sd) => Ok(sd),
-            Sd::Inferred { parameter } => {
+            ErrorSd::Known(sd) => Ok(sd),
+            ErrorSd::Inferred { parameter } => {
                 theta
                     .get(parameter)
                     .copied()
@@ -143,8 +143,8 @@ impl Datum {
             return Err(LikelihoodError::Value { run, channel, value });
         }
         match self.sd {
-            Sd::Known(_) => self.noise_sd(&[]).map(drop),
-            Sd::Inferred { .. } => Ok(()),
+            ErrorSd::Known(_) => self.noise_sd(&[]).map(drop),
+            ErrorSd::Inferred { .. } => Ok(()),
         }
     }
 

@@ -2,17 +2,17 @@
 
 /// L of `S = L L'`, row by row.
 #[derive(Debug, Clone)]
-pub(super) struct Factor {
+pub(super) struct CholeskyFactor {
     count: usize,
     rows: Vec<f64>,
 }
 
-impl Factor {
+impl CholeskyFactor {
     /// Factors `diag(d^2) + sum v v'`; `None` where that overflows.
     ///
     /// # Arguments
     /// - `sds`: d, each > 0.
-    /// - `common`: each v as a list of (position, value).
+    /// - `common_error`: each v as a list of (position, value).
     pub(super) fn new(sds: &[f64], common: &[Vec<(usize, f64)>]) -> Option<Self> {
         let count = sds.len();
         let mut rows = vec![0.0; count * count];

@@ -6,16 +6,16 @@
 //!
 //! # Layout
 //! - `datum`: a measured value with its noise. `law`: normal or Student's t.
-//! - `common`: errors in common, and the blocks that they make. `spread`: what they and the noise come to.
-//! - `factor`: the covariance of a block. `part`: some of the data alone.
+//! - `common_error`: errors in common, and the blocks that they make. `spread`: what they and the noise come to.
+//! - `factor`: the covariance of a block. `subset`: some of the data alone.
 //! - `whitening`: residuals and derivatives made independent, for least squares.
 
-mod common;
+mod common_error;
 mod datum;
 mod factor;
 mod law;
-mod part;
 mod spread;
+mod subset;
 mod whitening;
 
 use serde::{Deserialize, Serialize};
@@ -23,17 +23,19 @@ use serde::{Deserialize, Serialize};
 use crate::log_likelihood::LogLikelihood;
 use crate::prior::LN_SQRT_TAU;
 
-use common::Block;
-pub use common::{CommonError, Discrepancy, HIGHEST, LEVELS, LOWEST, Size};
-pub use datum::{Datum, LikelihoodError, Sd};
-use factor::Factor;
+use common_error::ErrorBlock;
+pub use common_error::{
+    CommonError, CommonErrorSize, DISCREPANCY_LEVELS, Discrepancy, GREATEST_DISCREPANCY, LEAST_DISCREPANCY,
+};
+pub use datum::{Datum, ErrorSd, LikelihoodError};
+use factor::CholeskyFactor;
 pub use law::ErrorLaw;
 use spread::Spread;
 pub use whitening::Whitening;
 
 /// Measured values and the law of their errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Written", into = "Written")]
+#[serde(try_from = "SerialisedLikelihood", into = "SerialisedLikelihood")]
 pub struct Likelihood {
     data: Vec<Datum>,
     law: ErrorLaw,
@@ -41,20 +43,20 @@ pub struct Likelihood {
     discrepancy: Discrepancy,
     /// Data that share no error.
     alone: Vec<usize>,
-    blocks: Vec<Block>,
+    blocks: Vec<ErrorBlock>,
     sensitive: Vec<usize>,
 }
 
 /// A likelihood as it travels: what it is made from.
 #[derive(Serialize, Deserialize)]
-struct Written {
+struct SerialisedLikelihood {
     data: Vec<Datum>,
     law: ErrorLaw,
     common: Vec<CommonError>,
     discrepancy: Discrepancy,
 }
 
-impl From<Likelihood> for Written {
+impl From<Likelihood> for SerialisedLikelihood {
     fn from(likelihood: Likelihood) -> Self {
         Self {
             data: likelihood.data,
@@ -65,17 +67,17 @@ impl From<Likelihood> for Written {
     }
 }
 
-impl TryFrom<Written> for Likelihood {
+impl TryFrom<SerialisedLikelihood> for Likelihood {
     type Error = LikelihoodError;
 
-    fn try_from(written: Written) -> Result<Self, LikelihoodError> {
+    fn try_from(written: SerialisedLikelihood) -> Result<Self, LikelihoodError> {
         Self::with_common(written.data, written.law, written.common, written.discrepancy)
     }
 }
 
 /// A factored block: its covariance and what is left of its residuals.
 struct Scored {
-    factor: Factor,
+    factor: CholeskyFactor,
     whitened: Vec<f64>,
     squared_distance: f64,
 }
@@ -92,7 +94,7 @@ impl Likelihood {
     /// Errors of a law, some of them in common.
     ///
     /// # Arguments
-    /// - `discrepancy`: m of the common errors that are [`Size::Discrepancy`].
+    /// - `discrepancy`: m of the common errors that are [`CommonErrorSize::Discrepancy`].
     ///
     /// # Errors
     /// [`LikelihoodError::Value`], [`LikelihoodError::Noise`], [`LikelihoodError::Setting`],
@@ -106,10 +108,10 @@ impl Likelihood {
         data.iter().try_for_each(Datum::check)?;
         law.check()?;
         discrepancy.check()?;
-        common::check(data.len(), &common)?;
-        let (alone, blocks) = common::blocks(&data, &common);
+        common_error::check(data.len(), &common)?;
+        let (alone, blocks) = common_error::blocks(&data, &common);
         Ok(Self {
-            sensitive: common::sensitive(&common),
+            sensitive: common_error::sensitive(&common),
             data,
             law,
             common,
@@ -159,12 +161,12 @@ impl Likelihood {
     /// in common.
     #[must_use]
     pub fn entangles_unknown_sds(&self) -> bool {
-        let inferred = |sd: Sd| matches!(sd, Sd::Inferred { .. });
+        let inferred = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { .. });
         let heavy = self.law != ErrorLaw::Gaussian && self.data.iter().any(|d| inferred(d.sd));
         let tied = self.blocks.iter().flat_map(|block| &block.data);
         let common = self.common.iter().any(|error| match error.size {
-            Size::Shift(sd) | Size::Sensitivity(sd) => inferred(sd),
-            Size::Discrepancy => false,
+            CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity(sd) => inferred(sd),
+            CommonErrorSize::Discrepancy => false,
         });
         heavy || common || tied.into_iter().any(|&i| inferred(self.data[i].sd))
     }
@@ -251,7 +253,7 @@ impl Likelihood {
 
     fn block_density(
         &self,
-        block: &Block,
+        block: &ErrorBlock,
         m: f64,
         values: &[f64],
         theta: &[f64],
@@ -274,13 +276,13 @@ impl Likelihood {
     /// Factors a block; `None` where its covariance overflows.
     fn score(
         &self,
-        block: &Block,
+        block: &ErrorBlock,
         m: f64,
         values: &[f64],
         theta: &[f64],
     ) -> Result<Option<Scored>, LikelihoodError> {
         let Spread { sds, common } = self.spread(block, m, values, theta)?;
-        Ok(Factor::new(&sds, &common).map(|factor| {
+        Ok(CholeskyFactor::new(&sds, &common).map(|factor| {
             let residuals = block.data.iter().map(|&i| self.data[i].value - values[i]);
             let whitened = factor.whiten(residuals.collect());
             Scored {

@@ -1,6 +1,6 @@
 //! How far errors reach: the noise of each datum, and what it shares with others.
 
-use super::common::{Block, CommonError, Size};
+use super::common_error::{CommonError, CommonErrorSize, ErrorBlock};
 use super::datum::LikelihoodError;
 use super::{Discrepancy, Likelihood};
 
@@ -64,7 +64,7 @@ impl Likelihood {
     /// The errors of a block.
     pub(super) fn spread(
         &self,
-        block: &Block,
+        block: &ErrorBlock,
         m: f64,
         values: &[f64],
         theta: &[f64],
@@ -78,16 +78,16 @@ impl Likelihood {
         for &c in &block.common {
             let CommonError { data, size } = &self.common[c];
             let error: Vec<(usize, f64)> = match *size {
-                Size::Shift(sd) => {
+                CommonErrorSize::Shift(sd) => {
                     let sd = sd.value(theta)?;
                     data.iter().map(|i| (position(i), sd)).collect()
                 }
-                Size::Discrepancy => {
+                CommonErrorSize::Discrepancy => {
                     let squares: f64 = data.iter().map(|i| sds[position(i)] * sds[position(i)]).sum();
                     let shift = m * (squares / data.len() as f64).sqrt();
                     data.iter().map(|i| (position(i), shift)).collect()
                 }
-                Size::Sensitivity(sd) => {
+                CommonErrorSize::Sensitivity(sd) => {
                     let sd = sd.value(theta)?;
                     let derivative = |i: &usize| {
                         let place = self.sensitive.binary_search(i).unwrap_or_default();

@@ -1,8 +1,8 @@
 //! Make residuals and derivatives independent, for a fit by least squares.
 
-use super::common::Block;
+use super::common_error::ErrorBlock;
 use super::datum::LikelihoodError;
-use super::factor::Factor;
+use super::factor::CholeskyFactor;
 use super::{Discrepancy, ErrorLaw, Likelihood};
 
 /// Turns residuals and derivatives of the data into those of independent errors of sd 1, at one point.
@@ -15,7 +15,7 @@ use super::{Discrepancy, ErrorLaw, Likelihood};
 #[derive(Debug, Clone)]
 pub struct Whitening {
     alone: Vec<(usize, f64)>,
-    blocks: Vec<(Vec<usize>, Factor)>,
+    blocks: Vec<(Vec<usize>, CholeskyFactor)>,
     residuals: Vec<f64>,
     slope_weights: Vec<f64>,
     curvature_weights: Vec<f64>,
@@ -58,7 +58,7 @@ impl Likelihood {
 
     fn whiten_block(
         &self,
-        block: &Block,
+        block: &ErrorBlock,
         m: f64,
         probability: f64,
         values: &[f64],

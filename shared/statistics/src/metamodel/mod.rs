@@ -25,10 +25,10 @@ use serde::{Deserialize, Serialize};
 
 pub use covariance::CovarianceFactor;
 pub use mixture::{ProposalMixture, ProposedMove};
-pub use pool::{ModelPair, Pool, State};
+pub use pool::{ChainState, ModelPair, Pool};
 pub use subchain::{Subchain, SubchainEnd};
 
-use crate::likelihood::{Datum, Likelihood, LikelihoodError, Sd};
+use crate::likelihood::{Datum, ErrorSd, Likelihood, LikelihoodError};
 use crate::prior::Prior;
 use correction::Correction;
 
@@ -89,8 +89,8 @@ impl Metamodel {
             .zip(correction.residual_sd())
             .map(|(datum, &left)| Datum {
                 sd: match datum.sd {
-                    Sd::Known(sd) => Sd::Known(libm::hypot(sd, left)),
-                    inferred @ Sd::Inferred { .. } => inferred,
+                    ErrorSd::Known(sd) => ErrorSd::Known(libm::hypot(sd, left)),
+                    inferred @ ErrorSd::Inferred { .. } => inferred,
                 },
                 ..*datum
             })

@@ -15,7 +15,7 @@ pub struct ModelPair {
 
 /// A state in sampling coordinates.
 #[derive(Debug, Clone, PartialEq)]
-pub struct State {
+pub struct ChainState {
     /// Sampling coordinates, in the order of theta.
     pub coordinates: Vec<f64>,
     /// Log-density of the coordinates, Jacobian included.
@@ -32,14 +32,14 @@ pub struct State {
 #[derive(Debug, Clone, Default)]
 pub struct Pool {
     /// The states, in the order in which they were visited.
-    pub states: Vec<State>,
+    pub states: Vec<ChainState>,
     /// The chain of each state.
     pub chains: Vec<usize>,
 }
 
 impl Pool {
     /// Adds a state of a chain.
-    pub fn push(&mut self, chain: usize, state: State) {
+    pub fn push(&mut self, chain: usize, state: ChainState) {
         self.chains.push(chain);
         self.states.push(state);
     }

@@ -24,7 +24,7 @@ pub(super) struct Correlation {
 
 /// Slope and curvature by parameter, in units of the marginals' standard deviations.
 #[derive(Debug, Default)]
-pub struct Slopes {
+pub struct CorrelationSlopes {
     /// Of parameters, by position.
     pub slopes: Vec<(usize, f64)>,
     /// Of pairs of parameters, by positions.
@@ -114,14 +114,14 @@ impl Correlation {
 
     /// What the correlations add to the slope of -ln p along each parameter, and to its curvature between two, at sampling
     /// coordinates; both in units of the marginals' standard deviations.
-    pub(super) fn slopes(&self, marginals: &[Marginal], coordinates: &[f64]) -> Slopes {
+    pub(super) fn slopes(&self, marginals: &[Marginal], coordinates: &[f64]) -> CorrelationSlopes {
         let slope = &self.excess * self.standardised(marginals, coordinates);
         let own = self.parameters.iter().copied();
         let others = |(i, k): (usize, usize)| {
             let pairs = self.parameters.iter().enumerate();
             pairs.map(move |(j, &l)| (k, l, self.excess[(i, j)]))
         };
-        Slopes {
+        CorrelationSlopes {
             slopes: own.clone().zip(slope.iter().copied()).collect(),
             curvatures: own.enumerate().flat_map(others).collect(),
         }

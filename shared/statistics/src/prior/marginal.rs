@@ -13,7 +13,7 @@ const TAIL_NATS: f64 = 45.0;
 
 /// The prior of one parameter: a distribution, truncated to its bounds and renormalised.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Written", into = "Written")]
+#[serde(try_from = "SerialisedMarginal", into = "SerialisedMarginal")]
 pub struct Marginal {
     distribution: Distribution,
     /// Support of x.
@@ -27,14 +27,14 @@ pub struct Marginal {
 
 /// A marginal as it travels: what it is made from.
 #[derive(Serialize, Deserialize)]
-struct Written {
+struct SerialisedMarginal {
     distribution: Distribution,
     /// Where the support was cut off; JSON has no infinite numbers.
     lower: Option<f64>,
     upper: Option<f64>,
 }
 
-impl From<Marginal> for Written {
+impl From<Marginal> for SerialisedMarginal {
     fn from(marginal: Marginal) -> Self {
         let (lower, upper) = marginal.distribution.support();
         Self {
@@ -45,10 +45,10 @@ impl From<Marginal> for Written {
     }
 }
 
-impl TryFrom<Written> for Marginal {
+impl TryFrom<SerialisedMarginal> for Marginal {
     type Error = PriorError;
 
-    fn try_from(written: Written) -> Result<Self, PriorError> {
+    fn try_from(written: SerialisedMarginal) -> Result<Self, PriorError> {
         let (lower, upper) = written.distribution.support();
         let ends = [written.lower.unwrap_or(lower), written.upper.unwrap_or(upper)];
         Self::new(written.distribution, Some(ends))

@@ -8,7 +8,7 @@ mod marginal;
 mod moments;
 pub mod normal;
 
-pub use correlation::Slopes;
+pub use correlation::CorrelationSlopes;
 pub use distribution::Distribution;
 pub use error::PriorError;
 pub use marginal::Marginal;
@@ -21,7 +21,7 @@ use correlation::Correlation;
 
 /// One marginal per parameter, independent but for parameters that are jointly normal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Written", into = "Written")]
+#[serde(try_from = "SerialisedPrior", into = "SerialisedPrior")]
 pub struct Prior {
     marginals: Vec<Marginal>,
     correlation: Option<Correlation>,
@@ -29,13 +29,13 @@ pub struct Prior {
 
 /// A prior as it travels: what it is made from.
 #[derive(Serialize, Deserialize)]
-struct Written {
+struct SerialisedPrior {
     marginals: Vec<Marginal>,
     correlated: Vec<usize>,
     correlations: Vec<Vec<f64>>,
 }
 
-impl From<Prior> for Written {
+impl From<Prior> for SerialisedPrior {
     fn from(prior: Prior) -> Self {
         let (correlated, correlations) = prior.correlation.map(Correlation::given).unwrap_or_default();
         Self {
@@ -46,10 +46,10 @@ impl From<Prior> for Written {
     }
 }
 
-impl TryFrom<Written> for Prior {
+impl TryFrom<SerialisedPrior> for Prior {
     type Error = PriorError;
 
-    fn try_from(written: Written) -> Result<Self, PriorError> {
+    fn try_from(written: SerialisedPrior) -> Result<Self, PriorError> {
         let prior = Self::new(written.marginals);
         if written.correlated.is_empty() {
             return Ok(prior);
@@ -150,10 +150,10 @@ impl Prior {
     }
 
     /// What the correlations add to the slope and the curvature of -ln p at theta.
-    pub fn slopes_of_correlation(&self, theta: &[f64]) -> Slopes {
+    pub fn slopes_of_correlation(&self, theta: &[f64]) -> CorrelationSlopes {
         self.correlation
             .as_ref()
-            .map_or_else(Slopes::default, |correlation| {
+            .map_or_else(CorrelationSlopes::default, |correlation| {
                 correlation.slopes(&self.marginals, &self.coordinates(theta))
             })
     }

@@ -1,6 +1,6 @@
 //! What a fit or a search found, in place of a posterior's parameters and a sampler's stages.
 
-use inference::point::Stop;
+use inference::point_estimate::StopReason;
 use maud::{Markup, html};
 
 use super::parameters::{fixed, prior_words};
@@ -62,14 +62,14 @@ pub(in crate::result::report) fn fit(outcome: &Outcome, estimate: &EstimateRow) 
 }
 
 /// Why a fit ended, in words.
-pub(super) fn reason(stop: Stop) -> &'static str {
+pub(super) fn reason(stop: StopReason) -> &'static str {
     match stop {
-        Stop::Decrease => "no step gains anything any more",
-        Stop::Step => {
+        StopReason::Decrease => "no step gains anything any more",
+        StopReason::Step => {
             "no step that was tried gained anything: nearer to the optimum the noise of the model does not let one see"
         }
-        Stop::Budget => "its budget of evaluations was spent; a better point may be near",
-        Stop::Stagnation => "for many generations it found nothing better",
-        Stop::Generations => "its generations had passed; a better point may be near",
+        StopReason::Budget => "its budget of evaluations was spent; a better point may be near",
+        StopReason::Stagnation => "for many generations it found nothing better",
+        StopReason::Generations => "its generations had passed; a better point may be near",
     }
 }

@@ -1,6 +1,6 @@
 //! Where the result comes from, enough to make it again.
 
-use inference::search;
+use inference::evolution::EvolutionSettings;
 use maud::{Markup, html};
 use shared::experiment::RunUse;
 
@@ -58,8 +58,8 @@ pub(in crate::result::report) fn provenance(outcome: &Outcome) -> Markup {
                     Method::Fit(s) => {
                         ", " (number::count(s.starts, "start")) ", differences of at least " (number::as_written(s.difference_step)) " prior widths"
                     }
-                    Method::Search(search::Settings::Ga(_)) | Method::Discover { .. } => {}
-                    Method::Search(search::Settings::CmaEs(s)) => {
+                    Method::Evolve(EvolutionSettings::Ga(_)) | Method::Discover { .. } => {}
+                    Method::Evolve(EvolutionSettings::CmaEs(s)) => {
                         ", " (s.first_population(spec.parameters.len())) " individuals and at most " (number::count(s.restarts, "restart")) " with twice as many each"
                     }
                 }

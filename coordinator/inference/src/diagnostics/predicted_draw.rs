@@ -1,0 +1,26 @@
+//! Draws with what the model predicts at them.
+
+/// A parameter vector and the predicted values that the likelihood takes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PredictedDraw {
+    /// Parameters, inferred standard deviations among them.
+    pub theta: Vec<f64>,
+    /// One for each datum, then the sensitivities, as [`Likelihood::values`](statistics::Likelihood::values) counts them.
+    pub values: Vec<f64>,
+}
+
+impl PredictedDraw {
+    /// The mean over draws; `None` with fewer than two.
+    #[must_use]
+    pub fn mean(draws: &[PredictedDraw]) -> Option<PredictedDraw> {
+        let first = draws.first().filter(|_| draws.len() > 1)?;
+        let mean = |count: usize, of: fn(&PredictedDraw) -> &[f64]| {
+            let average = |i: usize| draws.iter().map(|d| of(d)[i]).sum::<f64>() / draws.len() as f64;
+            (0..count).map(average).collect()
+        };
+        Some(PredictedDraw {
+            theta: mean(first.theta.len(), |d| &d.theta),
+            values: mean(first.values.len(), |d| &d.values),
+        })
+    }
+}

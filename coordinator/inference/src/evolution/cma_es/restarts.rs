@@ -1,0 +1,91 @@
+//! Run one search after the other, each with twice the population.
+
+use super::run::{CmaEsRun, End};
+use super::settings::CmaEsSettings;
+use crate::evolution::individual::Individual;
+use crate::evolution::next_generation::NextGeneration;
+use crate::evolution::prior_space::PriorSpace;
+use crate::point_estimate::StopReason;
+use statistics::rng::Stream;
+
+/// Stream of a restart's start; individuals never reach this number.
+const START: u64 = u64::MAX;
+
+/// The runs.
+#[derive(Debug, Clone)]
+pub(crate) struct Restarts {
+    settings: CmaEsSettings,
+    run: CmaEsRun,
+    /// Restarts after runs that found something.
+    restarts: usize,
+    /// Starts drawn from the prior.
+    starts: u64,
+    /// Generations asked for so far, over all runs.
+    generation: u64,
+    /// The best of the runs before this one, and whether a run that came to it has settled there.
+    found: (f64, bool),
+}
+
+impl Restarts {
+    pub(crate) fn new(settings: CmaEsSettings, space: &PriorSpace) -> Self {
+        let population = settings.first_population(space.dimension());
+        Self {
+            settings,
+            run: CmaEsRun::new(&space.centre(), population),
+            restarts: 0,
+            starts: 0,
+            generation: 0,
+            found: (f64::NEG_INFINITY, false),
+        }
+    }
+
+    /// The positions of the next generation, for as many evaluations as remain.
+    pub(crate) fn next(&mut self, space: &PriorSpace, remaining: usize) -> NextGeneration {
+        let mut population = self.run.population();
+        if self.run.end.is_some() {
+            // A run that found nothing possible was no run: another start takes its place.
+            let found = self.run.best > f64::NEG_INFINITY;
+            population *= if found { 2 } else { 1 };
+            if (found && self.restarts == self.settings.restarts) || population > remaining {
+                return NextGeneration::End(self.stop());
+            }
+            self.restarts += usize::from(found);
+            self.found = self.best();
+            self.starts += 1;
+            let mut stream = Stream::new(self.settings.seed, self.starts, START, 1);
+            self.run = CmaEsRun::new(&space.draw(&mut stream), population);
+        }
+        if population > remaining {
+            return NextGeneration::End(self.stop());
+        }
+        let positions = self.run.draw(space, self.settings.seed, self.generation);
+        self.generation += 1;
+        NextGeneration::Ask(positions)
+    }
+
+    /// Takes an evaluated generation.
+    pub(crate) fn accept(&mut self, generation: &[Individual]) {
+        self.run.accept(generation, self.settings.tolerance);
+    }
+
+    /// The best so far, and whether a run that came to it has settled there.
+    fn best(&self) -> (f64, bool) {
+        let (best, settled) = self.found;
+        let now = self.run.end == Some(End::Settled);
+        let tolerance = self.settings.tolerance;
+        if self.run.best > best + tolerance {
+            (self.run.best, now)
+        } else {
+            let same = self.run.best > best - tolerance;
+            (best.max(self.run.best), settled || (same && now))
+        }
+    }
+
+    fn stop(&self) -> StopReason {
+        if self.best().1 {
+            StopReason::Stagnation
+        } else {
+            StopReason::Budget
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Hold the settings of CMA-ES.
+
+use super::rates::usual_population;
+use crate::evolution::settings_error::{EvolutionSettingsError, check_population};
+
+/// Settings of CMA-ES.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CmaEsSettings {
+    /// Individuals of a generation of the first run; `None`: 4 + floor(3 ln d) for d parameters. More of them keep
+    /// more workers busy.
+    pub population: Option<usize>,
+    /// Most evaluations, all runs together.
+    pub max_evaluations: usize,
+    /// Most restarts, each with twice the population of the last.
+    pub restarts: usize,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// A run has settled when its best and its last generation lie so close together, in nats.
+    pub tolerance: f64,
+}
+
+impl Default for CmaEsSettings {
+    /// The usual population, 5000 evaluations, 4 restarts, seed 1, tolerance 0.001 nats.
+    fn default() -> Self {
+        Self {
+            population: None,
+            max_evaluations: 5000,
+            restarts: 4,
+            seed: 1,
+            tolerance: 1e-3,
+        }
+    }
+}
+
+/// Half of them, at least two, make the next mean.
+const LEAST_POPULATION: usize = 4;
+/// Most evaluations.
+const MOST_EVALUATIONS: usize = 1_000_000;
+/// Most restarts; the population doubles with each.
+const MOST_RESTARTS: usize = 20;
+
+impl CmaEsSettings {
+    /// Individuals of a generation of the first run.
+    #[must_use]
+    pub fn first_population(&self, dimension: usize) -> usize {
+        self.population.unwrap_or_else(|| usual_population(dimension))
+    }
+
+    pub(crate) fn check(&self, dimension: usize) -> Result<(), EvolutionSettingsError> {
+        let population = self.first_population(dimension);
+        check_population(population, LEAST_POPULATION)?;
+        let least = 2 * population;
+        if !(least..=MOST_EVALUATIONS).contains(&self.max_evaluations) {
+            return Err(EvolutionSettingsError::Evaluations {
+                max_evaluations: self.max_evaluations,
+                least,
+                most: MOST_EVALUATIONS,
+            });
+        }
+        if self.restarts > MOST_RESTARTS {
+            return Err(EvolutionSettingsError::Restarts {
+                restarts: self.restarts,
+                most: MOST_RESTARTS,
+            });
+        }
+        Ok(())
+    }
+}

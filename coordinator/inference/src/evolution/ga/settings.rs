@@ -1,0 +1,64 @@
+//! Hold the settings of a genetic algorithm.
+
+use crate::evolution::settings_error::{EvolutionSettingsError, check_population};
+
+/// Settings of a genetic algorithm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GaSettings {
+    /// Individuals of a generation.
+    pub population: usize,
+    /// Most generations, the prior draws among them.
+    pub generations: usize,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Best individuals that go on unchanged; they are not evaluated again.
+    pub elite: usize,
+    /// The search has settled after so many generations without a better best.
+    pub patience: usize,
+    /// What counts as better, in nats.
+    pub tolerance: f64,
+}
+
+impl Default for GaSettings {
+    /// 100 individuals, 200 generations, seed 1, 2 of the elite, 25 generations without a gain of 0.001 nats.
+    fn default() -> Self {
+        Self {
+            population: 100,
+            generations: 200,
+            seed: 1,
+            elite: 2,
+            patience: 25,
+            tolerance: 1e-3,
+        }
+    }
+}
+
+/// Tournaments need somebody to win against, and the elite must leave room for children.
+const LEAST_POPULATION: usize = 8;
+/// Most generations.
+const MOST_GENERATIONS: usize = 100_000;
+
+impl GaSettings {
+    /// Most evaluations, all generations together; the elite saves some.
+    #[must_use]
+    pub fn max_evaluations(&self) -> usize {
+        self.population.saturating_mul(self.generations)
+    }
+
+    pub(crate) fn check(&self) -> Result<(), EvolutionSettingsError> {
+        check_population(self.population, LEAST_POPULATION)?;
+        if !(2..=MOST_GENERATIONS).contains(&self.generations) {
+            return Err(EvolutionSettingsError::Generations {
+                generations: self.generations,
+                most: MOST_GENERATIONS,
+            });
+        }
+        if self.elite == 0 || 2 * self.elite > self.population {
+            return Err(EvolutionSettingsError::Elite {
+                elite: self.elite,
+                population: self.population,
+            });
+        }
+        Ok(())
+    }
+}

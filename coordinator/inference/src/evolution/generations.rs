@@ -1,0 +1,166 @@
+//! Run the rounds: list a generation, take its log-likelihoods, and say when it is over.
+
+use super::next_generation::NextGeneration;
+use super::settings::EvolutionSettings;
+use super::settings_error::EvolutionSettingsError;
+use super::strategy::Strategy;
+use crate::evolution::individual::Individual;
+use crate::evolution::prior_space::PriorSpace;
+use crate::point_estimate::{Generation, ModeEstimate, StopReason};
+use crate::round::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
+use statistics::log_likelihood::LogLikelihood;
+use statistics::prior::Prior;
+
+/// An ask/tell search for the most probable parameters.
+///
+/// Its state is a function of prior, settings and the told log-likelihoods, whatever their order within a round:
+/// checked by `evolution::the_order_within_a_generation_does_not_matter`.
+#[derive(Debug, Clone)]
+pub struct Evolution {
+    pub(super) space: PriorSpace,
+    pub(super) settings: EvolutionSettings,
+    pub(super) round: ProposalRound<LogLikelihood>,
+    pub(super) phase: EvolutionPhase,
+    /// The best so far; the first of equals.
+    pub(super) best: Option<Individual>,
+    pub(super) history: Vec<Generation>,
+    pub(super) evaluations: usize,
+    pub(super) rejected: usize,
+    strategy: Strategy,
+    /// Of the pending proposals.
+    positions: Vec<Vec<f64>>,
+}
+
+/// What the search waits for.
+#[derive(Debug, Clone)]
+pub(super) enum EvolutionPhase {
+    Generation,
+    Done(Box<ModeEstimate>),
+    Failed(InferenceFailure),
+}
+
+impl Evolution {
+    /// A search whose first generation is pending.
+    ///
+    /// # Errors
+    /// [`EvolutionSettingsError`] names the setting, its value and its bound.
+    pub fn new(prior: Prior, settings: EvolutionSettings) -> Result<Self, EvolutionSettingsError> {
+        settings.check(prior.dimension())?;
+        let space = PriorSpace::new(prior);
+        let mut search = Self {
+            strategy: Strategy::new(settings, &space),
+            space,
+            settings,
+            round: ProposalRound::default(),
+            phase: EvolutionPhase::Generation,
+            best: None,
+            history: Vec::new(),
+            evaluations: 0,
+            rejected: 0,
+            positions: Vec::new(),
+        };
+        search.ask();
+        Ok(search)
+    }
+
+    /// Takes the log-likelihood of a pending proposal; the last one of a round leads to the next generation.
+    ///
+    /// # Errors
+    /// [`TellError::AlreadyTold`] and [`TellError::NotPending`]; the search is then unchanged.
+    pub fn tell(&mut self, particle: usize, value: LogLikelihood) -> Result<TellProgress, TellError> {
+        let complete = self.round.tell(particle, value)?;
+        if complete {
+            self.advance();
+        }
+        Ok(match &self.phase {
+            EvolutionPhase::Done(_) => TellProgress::Finished,
+            EvolutionPhase::Failed(failure) => TellProgress::Failed(*failure),
+            EvolutionPhase::Generation if complete => TellProgress::NextRound,
+            EvolutionPhase::Generation => TellProgress::Waiting,
+        })
+    }
+
+    fn advance(&mut self) {
+        let (proposals, answers) = self.round.complete();
+        let positions = std::mem::take(&mut self.positions);
+        let generation: Vec<Individual> = proposals
+            .into_iter()
+            .zip(positions)
+            .zip(answers)
+            .map(|((proposal, position), answer)| self.space.individual(position, proposal.theta, answer))
+            .collect();
+        self.evaluations += generation.len();
+        self.rejected += generation
+            .iter()
+            .filter(|individual| individual.log_likelihood.is_impossible())
+            .count();
+        for individual in &generation {
+            let least = self
+                .best
+                .as_ref()
+                .map_or(f64::NEG_INFINITY, Individual::log_posterior);
+            if individual.log_posterior() > least {
+                self.best = Some(individual.clone());
+            }
+        }
+        self.remember(&generation);
+        self.strategy.accept(generation);
+        self.ask();
+    }
+
+    fn remember(&mut self, generation: &[Individual]) {
+        let taken: Vec<f64> = generation
+            .iter()
+            .filter(|individual| individual.is_possible())
+            .map(Individual::log_posterior)
+            .collect();
+        self.history.push(Generation {
+            evaluations: self.evaluations as u64,
+            best: self.best.as_ref().map(Individual::log_posterior),
+            mean: crate::diagnostics::mean(&taken),
+        });
+    }
+
+    /// Asks for the next generation, unless there is none; without anybody whom the model took, for half of the budget.
+    fn ask(&mut self) {
+        let budget = self.settings.max_evaluations();
+        match self.strategy.next(&self.space, budget - self.evaluations) {
+            NextGeneration::Ask(positions)
+                if self.best.is_some()
+                    || self.evaluations == 0
+                    || 2 * (self.evaluations + positions.len()) <= budget =>
+            {
+                let proposals = positions
+                    .iter()
+                    .enumerate()
+                    .map(|(particle, position)| Proposal::plain(particle, self.space.theta(position)));
+                self.round.ask(proposals.collect());
+                self.positions = positions;
+            }
+            NextGeneration::Ask(_) => self.fail(),
+            NextGeneration::End(stop) => self.finish(stop),
+        }
+    }
+
+    fn fail(&mut self) {
+        let draws = self.evaluations;
+        self.phase = EvolutionPhase::Failed(InferenceFailure::AllImpossible { draws });
+    }
+
+    fn finish(&mut self, stop: StopReason) {
+        let Some(best) = &self.best else {
+            return self.fail();
+        };
+        self.phase = EvolutionPhase::Done(Box::new(ModeEstimate {
+            theta: best.theta.clone(),
+            log_likelihood: best.log_likelihood.value(),
+            log_prior: best.log_prior,
+            at_bound: self.space.at_bound(&best.position),
+            laplace: None,
+            evaluations: self.evaluations as u64,
+            rejected: self.rejected as u64,
+            stop,
+            history: self.history.clone(),
+        }));
+    }
+}

@@ -1,0 +1,31 @@
+//! Find the most probable parameters by generations, asked and told from outside.
+//!
+//! [`Evolution`] never runs the model. A round is a generation: its [`Proposal`](crate::Proposal)s can be evaluated at the
+//! same time and are told their log-likelihoods in any order; rejected ones rank last. [`ga`] or [`cma_es`] makes the next
+//! generation.
+//!
+//! Neither knows the curvature at the optimum, so the [`ModeEstimate`](crate::point_estimate::ModeEstimate) has no standard
+//! deviations. It has the history of the generations instead.
+//!
+//! # Layout
+//! - `generations`: the rounds. `progress`: what they show of themselves.
+//! - `settings`, `settings_error`: those of either strategy. `strategy`: either of them, with its state.
+//! - `next_generation`: what a strategy wants. `individual`: an evaluated point. `prior_space`: all axes of the prior.
+
+pub mod cma_es;
+pub mod ga;
+mod generations;
+mod individual;
+mod next_generation;
+mod prior_space;
+mod progress;
+mod settings;
+mod settings_error;
+mod strategy;
+
+pub use cma_es::CmaEsSettings;
+pub use ga::GaSettings;
+pub use generations::Evolution;
+pub use progress::EvolutionProgress;
+pub use settings::EvolutionSettings;
+pub use settings_error::EvolutionSettingsError;

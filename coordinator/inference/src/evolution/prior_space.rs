@@ -1,0 +1,89 @@
+//! Move all parameters in units of their priors' widths.
+
+use super::individual::Individual;
+use crate::point_estimate::PriorAxis;
+use statistics::log_likelihood::LogLikelihood;
+use statistics::prior::Prior;
+use statistics::rng::Stream;
+
+/// Nearer to a bound than this is at the bound, in prior widths: rounding must not decide whether a parameter is.
+const NEAR: f64 = 1e-9;
+
+/// The support of a prior, every parameter on an axis of its own.
+#[derive(Debug, Clone)]
+pub(crate) struct PriorSpace {
+    pub(crate) prior: Prior,
+    axes: Vec<PriorAxis>,
+}
+
+impl PriorSpace {
+    pub(crate) fn new(prior: Prior) -> Self {
+        let marginals = prior.marginals().iter().enumerate();
+        let axes = marginals
+            .map(|(parameter, marginal)| PriorAxis::new(parameter, marginal))
+            .collect();
+        Self { prior, axes }
+    }
+
+    pub(crate) fn dimension(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// The position of the prior mean.
+    pub(crate) fn centre(&self) -> Vec<f64> {
+        let mean: Vec<f64> = self.prior.marginals().iter().map(|m| m.mean()).collect();
+        self.position(&mean)
+    }
+
+    /// The position of a prior draw.
+    pub(crate) fn draw(&self, stream: &mut Stream) -> Vec<f64> {
+        self.position(&self.prior.sample(stream))
+    }
+
+    fn position(&self, theta: &[f64]) -> Vec<f64> {
+        let pairs = self.axes.iter().zip(theta);
+        pairs.map(|(axis, &x)| axis.position(x)).collect()
+    }
+
+    /// The nearest position within the bounds; exactly a bound where that is all but reached.
+    pub(crate) fn inside(&self, position: &[f64]) -> Vec<f64> {
+        let inside = |(axis, &t): (&PriorAxis, &f64)| {
+            if t < axis.lower + NEAR {
+                axis.lower
+            } else if t > axis.upper - NEAR {
+                axis.upper
+            } else {
+                t
+            }
+        };
+        self.axes.iter().zip(position).map(inside).collect()
+    }
+
+    /// The parameters at a position; exactly a bound where the position is one.
+    pub(crate) fn theta(&self, position: &[f64]) -> Vec<f64> {
+        let pairs = self.axes.iter().zip(position);
+        pairs.map(|(axis, &t)| axis.value(t)).collect()
+    }
+
+    /// Which coordinates of a position are bounds.
+    pub(crate) fn at_bound(&self, position: &[f64]) -> Vec<bool> {
+        let pairs = self.axes.iter().zip(position);
+        pairs.map(|(axis, &t)| axis.is_bound(t)).collect()
+    }
+
+    /// An evaluated position.
+    pub(crate) fn individual(
+        &self,
+        position: Vec<f64>,
+        theta: Vec<f64>,
+        log_likelihood: LogLikelihood,
+    ) -> Individual {
+        let log_prior = self.prior.log_density(&theta);
+        Individual {
+            position,
+            theta,
+            log_likelihood,
+            log_prior,
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Why the settings of an evolutionary optimisation are refused.
+
+/// Largest population: more than any farm has workers.
+const MOST_INDIVIDUALS: usize = 100_000;
+
+/// Settings that cannot work.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum EvolutionSettingsError {
+    /// The prior has no parameters.
+    #[error("the prior has no parameters")]
+    NoParameters,
+    /// The population is too small or too large.
+    #[error("population = {population} is not from {least} to {MOST_INDIVIDUALS}")]
+    Population {
+        /// The setting.
+        population: usize,
+        /// The least population.
+        least: usize,
+    },
+    /// The generations are too few or too many.
+    #[error("generations = {generations} is not from 2 to {most}")]
+    Generations {
+        /// The setting.
+        generations: usize,
+        /// The most generations.
+        most: usize,
+    },
+    /// Nobody would survive, or hardly anybody be born.
+    #[error("elite = {elite} is not from 1 to half of the population, {population}")]
+    Elite {
+        /// The setting.
+        elite: usize,
+        /// The population.
+        population: usize,
+    },
+    /// The budget is beyond reason, or does not reach to a second generation.
+    #[error("max_evaluations = {max_evaluations} is not from {least} (two generations) to {most}")]
+    Evaluations {
+        /// The setting.
+        max_evaluations: usize,
+        /// The least budget.
+        least: usize,
+        /// The most evaluations.
+        most: usize,
+    },
+    /// The restarts double the population too often.
+    #[error("restarts = {restarts} is above {most}")]
+    Restarts {
+        /// The setting.
+        restarts: usize,
+        /// The most restarts.
+        most: usize,
+    },
+    /// The tolerance is not a finite number above 0.
+    #[error("tolerance = {value} is not a finite number above 0")]
+    Tolerance {
+        /// The setting.
+        value: f64,
+    },
+}
+
+/// Refuses a population out of bounds.
+pub(crate) fn check_population(population: usize, least: usize) -> Result<(), EvolutionSettingsError> {
+    if (least..=MOST_INDIVIDUALS).contains(&population) {
+        Ok(())
+    } else {
+        Err(EvolutionSettingsError::Population { population, least })
+    }
+}

@@ -1,0 +1,155 @@
+//! Run the rounds: list proposals, take their predicted values, and say when it is over.
+
+use super::damping::Damping;
+use super::objective::{Column, FitPoint, Objective};
+use super::settings::{LmSettings, LmSettingsError};
+use super::stencil::{Sides, Stencil};
+use crate::point_estimate::{ModeEstimate, StopReason};
+use crate::round::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
+use statistics::likelihood::Likelihood;
+use statistics::prior::Prior;
+
+/// Predicted values in the order of the data; `None` where the model rejected the parameters.
+pub(super) type PredictedValues = Option<Vec<f64>>;
+
+/// An ask/tell fit of the most probable parameters.
+///
+/// Its state is a function of prior, likelihood, settings and the told values, whatever their order within a round:
+/// checked by `lm::the_order_within_a_round_does_not_matter`.
+#[derive(Debug, Clone)]
+pub struct LmFit {
+    pub(super) objective: Objective,
+    pub(super) settings: LmSettings,
+    pub(super) round: ProposalRound<PredictedValues>,
+    pub(super) phase: FitPhase,
+    /// The best point so far.
+    pub(super) best: Option<FitPoint>,
+    /// The last known Jacobian: at the best point, or at one before it.
+    pub(super) columns: Vec<Column>,
+    /// Differences around the best point.
+    pub(super) stencil: Stencil,
+    /// To which sides they were last asked for.
+    pub(super) sides: Sides,
+    /// Their steps along the axes.
+    pub(super) lengths: Vec<f64>,
+    pub(super) damping: Damping,
+    /// The last step gained too little to go on.
+    pub(super) settled: bool,
+    pub(super) steps: usize,
+    pub(super) evaluations: usize,
+    pub(super) rejected: usize,
+}
+
+/// What the fit waits for.
+#[derive(Debug, Clone)]
+pub(super) enum FitPhase {
+    Starts,
+    Differences,
+    /// Dampings and promised decreases of the steps that are tried.
+    Trials(Vec<(f64, f64)>),
+    Done(Box<ModeEstimate>),
+    Failed(InferenceFailure),
+}
+
+impl LmFit {
+    /// A fit whose first round holds the prior mean and prior draws.
+    ///
+    /// # Arguments
+    /// - `likelihood`: the data; their order is that of the values that [`LmFit::tell`] takes. A parameter that it names
+    ///   as a noise sd is not the model's.
+    ///
+    /// # Errors
+    /// [`LmSettingsError`] names the setting, its value and its bound.
+    pub fn new(prior: Prior, likelihood: Likelihood, settings: LmSettings) -> Result<Self, LmSettingsError> {
+        settings.check(prior.dimension())?;
+        if likelihood.entangles_unknown_sds() {
+            return Err(LmSettingsError::EntangledNoise);
+        }
+        let objective = Objective::new(prior, likelihood);
+        let mut optimiser = Self {
+            columns: vec![None; objective.axes.len()],
+            stencil: Stencil::new(&[], &[], &[]),
+            objective,
+            settings,
+            round: ProposalRound::default(),
+            phase: FitPhase::Starts,
+            best: None,
+            sides: Sides::One,
+            lengths: Vec::new(),
+            damping: Damping::default(),
+            settled: false,
+            steps: 0,
+            evaluations: 0,
+            rejected: 0,
+        };
+        optimiser.ask_starts();
+        Ok(optimiser)
+    }
+
+    /// Takes the predicted values of a pending proposal; the last one of a round advances the fit.
+    ///
+    /// # Arguments
+    /// - `predicted`: the model's values as [`Likelihood::log_likelihood`] takes them; `None` where the model rejected the parameters.
+    ///
+    /// # Errors
+    /// [`TellError`]: told before, never asked for, not as many finite values as the likelihood takes. The fit is then unchanged.
+    pub fn tell(&mut self, particle: usize, predicted: Option<&[f64]>) -> Result<TellProgress, TellError> {
+        if let Some(values) = predicted {
+            self.check(values)?;
+        }
+        let complete = self.round.tell(particle, predicted.map(<[f64]>::to_vec))?;
+        if complete {
+            self.advance();
+        }
+        Ok(match &self.phase {
+            FitPhase::Done(_) => TellProgress::Finished,
+            FitPhase::Failed(failure) => TellProgress::Failed(*failure),
+            _ if complete => TellProgress::NextRound,
+            _ => TellProgress::Waiting,
+        })
+    }
+
+    fn check(&self, values: &[f64]) -> Result<(), TellError> {
+        let (expected, given) = (self.objective.likelihood.values(), values.len());
+        if expected != given {
+            return Err(TellError::Length { expected, given });
+        }
+        Ok(self.objective.likelihood.check_values(values)?)
+    }
+
+    /// Completes a round and asks for the next, unless the fit has ended.
+    fn advance(&mut self) {
+        let (proposals, answers) = self.round.complete();
+        self.evaluations += answers.len();
+        self.rejected += answers.iter().filter(|answer| answer.is_none()).count();
+        match std::mem::replace(&mut self.phase, FitPhase::Starts) {
+            FitPhase::Starts => self.after_starts(&proposals, &answers),
+            FitPhase::Differences => self.after_differences(answers),
+            FitPhase::Trials(trials) => self.after_trials(&trials, &proposals, &answers),
+            ended @ (FitPhase::Done(_) | FitPhase::Failed(_)) => self.phase = ended,
+        }
+    }
+
+    pub(super) fn remaining(&self) -> usize {
+        self.settings.max_evaluations - self.evaluations
+    }
+
+    pub(super) fn ask(&mut self, phase: FitPhase, thetas: impl Iterator<Item = Vec<f64>>) {
+        let proposals = thetas
+            .enumerate()
+            .map(|(particle, theta)| Proposal::plain(particle, theta))
+            .collect();
+        self.round.ask(proposals);
+        self.phase = phase;
+    }
+
+    pub(super) fn finish(&mut self, stop: StopReason) {
+        let Some(point) = &self.best else { return };
+        // A step that settled the fit ends it even where the budget has no room for another Jacobian.
+        let stop = if self.settled { StopReason::Decrease } else { stop };
+        let mut estimate = self.objective.estimate(point, &self.columns, stop);
+        estimate.evaluations = self.evaluations as u64;
+        estimate.rejected = self.rejected as u64;
+        self.phase = FitPhase::Done(Box::new(estimate));
+    }
+}

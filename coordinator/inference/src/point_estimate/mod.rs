@@ -1,0 +1,13 @@
+//! What every point estimate of the parameters shares: the axes it moves along, and its result.
+//!
+//! Maximised is ln p(data | theta) + ln p(theta), the second term the density of the parameters as declared: another
+//! parametrisation of the same prior (a lognormal x, a normal ln x) has another maximum.
+//!
+//! # Layout
+//! - `axis`: one parameter in units of its prior's width. `mode`: the result.
+
+mod axis;
+mod mode;
+
+pub(crate) use axis::PriorAxis;
+pub use mode::{Generation, Laplace, ModeEstimate, StopReason};

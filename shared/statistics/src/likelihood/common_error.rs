@@ -1,0 +1,159 @@
+//! Errors that several data share, and the blocks of data that they tie together.
+
+use serde::{Deserialize, Serialize};
+
+use super::datum::{Datum, ErrorSd, LikelihoodError};
+
+/// An error that several data have in common: it adds `v v'` to their covariance.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CommonError {
+    /// Indices of the data, ascending.
+    pub data: Vec<usize>,
+    /// What stands in v.
+    pub size: CommonErrorSize,
+}
+
+/// What a common error does to each of its data.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum CommonErrorSize {
+    /// Shifts all alike: `v_i` = this sd, in the unit of the data, >= 0.
+    Shift(ErrorSd),
+    /// Shifts all alike by what the model cannot reach: `v_i = m sigma`, sigma the root mean square of their noise
+    /// sds and m of [`Discrepancy`].
+    Discrepancy,
+    /// Moves each along its sensitivity: `v_i` = this sd times the derivative of the prediction, which the
+    /// predicted values bring along. A datum has one such error at most.
+    Sensitivity(ErrorSd),
+}
+
+/// How far off the model may be, in noise sds.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub enum Discrepancy {
+    /// Not at all.
+    #[default]
+    None,
+    /// m itself, > 0.
+    Known(f64),
+    /// m is marginalised over [`DISCREPANCY_LEVELS`] values from [`LEAST_DISCREPANCY`] to [`GREATEST_DISCREPANCY`], equally probable and equally spaced in
+    /// ln m.
+    Unknown,
+}
+
+/// Values of an unknown m.
+pub const DISCREPANCY_LEVELS: usize = 9;
+/// The least value of an unknown m.
+pub const LEAST_DISCREPANCY: f64 = 0.5;
+/// The largest value of an unknown m.
+pub const GREATEST_DISCREPANCY: f64 = 8.0;
+
+impl Discrepancy {
+    /// The values of m, each with the same prior probability; none without discrepancy.
+    #[must_use]
+    pub fn levels(self) -> Vec<f64> {
+        match self {
+            Self::None => Vec::new(),
+            Self::Known(m) => vec![m],
+            Self::Unknown => {
+                let step =
+                    libm::log(GREATEST_DISCREPANCY / LEAST_DISCREPANCY) / (DISCREPANCY_LEVELS - 1) as f64;
+                (0..DISCREPANCY_LEVELS)
+                    .map(|k| LEAST_DISCREPANCY * libm::exp(step * k as f64))
+                    .collect()
+            }
+        }
+    }
+
+    pub(super) fn check(self) -> Result<(), LikelihoodError> {
+        match self {
+            Self::Known(value) if !(value.is_finite() && value > 0.0) => Err(LikelihoodError::Setting {
+                name: "discrepancy",
+                value,
+                bound: "a finite number above 0",
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Data whose errors are correlated, all of them together.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ErrorBlock {
+    /// Indices of the data, ascending.
+    pub(super) data: Vec<usize>,
+    /// Indices of the common errors, ascending.
+    pub(super) common: Vec<usize>,
+    /// Whether a discrepancy is among them.
+    pub(super) has_discrepancy: bool,
+}
+
+/// Splits the data into those that stand alone and blocks, in the order of their first datum.
+pub(super) fn blocks(data: &[Datum], common: &[CommonError]) -> (Vec<usize>, Vec<ErrorBlock>) {
+    // The block of a datum goes by its least member; joining two renames the larger.
+    let mut least: Vec<usize> = (0..data.len()).collect();
+    for error in common {
+        let names: Vec<usize> = error.data.iter().map(|&i| least[i]).collect();
+        let Some(&first) = names.iter().min() else {
+            continue;
+        };
+        for name in &mut least {
+            if names.contains(name) {
+                *name = first;
+            }
+        }
+    }
+    let is_tied = |i: usize| common.iter().any(|error| error.data.contains(&i));
+    let alone = (0..data.len()).filter(|&i| !is_tied(i)).collect();
+    let blocks = (0..data.len())
+        .filter(|&i| least[i] == i && is_tied(i))
+        .map(|first| {
+            let own: Vec<usize> = (0..common.len())
+                .filter(|&c| common[c].data.first().is_some_and(|&i| least[i] == first))
+                .collect();
+            ErrorBlock {
+                data: (0..data.len()).filter(|&i| least[i] == first).collect(),
+                has_discrepancy: own
+                    .iter()
+                    .any(|&c| common[c].size == CommonErrorSize::Discrepancy),
+                common: own,
+            }
+        })
+        .collect();
+    (alone, blocks)
+}
+
+/// Data with a sensitivity, ascending.
+pub(super) fn sensitive(common: &[CommonError]) -> Vec<usize> {
+    let own = common
+        .iter()
+        .filter(|e| matches!(e.size, CommonErrorSize::Sensitivity(_)));
+    let mut data: Vec<usize> = own.flat_map(|error| error.data.iter().copied()).collect();
+    data.sort_unstable();
+    data
+}
+
+/// Refuses memberships that mean nothing.
+pub(super) fn check(count: usize, common: &[CommonError]) -> Result<(), LikelihoodError> {
+    let refuse = |datum| LikelihoodError::Membership { datum, data: count };
+    for error in common {
+        if let Some(&beyond) = error.data.iter().find(|&&i| i >= count) {
+            return Err(refuse(beyond));
+        }
+        if let Some(pair) = error.data.windows(2).find(|pair| pair[1] <= pair[0]) {
+            return Err(refuse(pair[1]));
+        }
+        if let CommonErrorSize::Shift(ErrorSd::Known(value))
+        | CommonErrorSize::Sensitivity(ErrorSd::Known(value)) = error.size
+            && !(value.is_finite() && value >= 0.0)
+        {
+            return Err(LikelihoodError::Setting {
+                name: "sd of a common error",
+                value,
+                bound: "a finite number of at least 0",
+            });
+        }
+    }
+    match sensitive(common).windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(refuse(pair[0])),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,52 @@
+//! Some of the data alone, with the errors that they still share.
+
+use super::Likelihood;
+use super::common_error::CommonError;
+use super::datum::LikelihoodError;
+
+impl Likelihood {
+    /// The likelihood of some of the data, the others unknown.
+    ///
+    /// # Arguments
+    /// - `kept`: indices of the data, ascending.
+    ///
+    /// # Returns
+    /// The likelihood, and the place of each of its predicted values among those of the whole.
+    ///
+    /// # Errors
+    /// [`LikelihoodError::Membership`] for an index without a datum.
+    ///
+    /// # Validity
+    /// A discrepancy keeps its size only where all data that share one are kept, or have the same noise sd. Checked by
+    /// `likelihood::a_part_has_the_density_of_its_data_alone`.
+    pub fn part(&self, kept: &[usize]) -> Result<(Likelihood, Vec<usize>), LikelihoodError> {
+        let count = self.data.len();
+        if let Some(&datum) = kept.iter().find(|&&i| i >= count) {
+            return Err(LikelihoodError::Membership { datum, data: count });
+        }
+        let data = kept.iter().map(|&i| self.data[i]).collect();
+        let common: Vec<CommonError> = self
+            .common
+            .iter()
+            .map(|error| CommonError {
+                data: (0..kept.len())
+                    .filter(|&k| error.data.contains(&kept[k]))
+                    .collect(),
+                size: error.size,
+            })
+            .filter(|error| !error.data.is_empty())
+            .collect();
+        let part = Self::with_common(data, self.law, common, self.discrepancy)?;
+        let places = self.places(kept, &part);
+        Ok((part, places))
+    }
+
+    fn places(&self, kept: &[usize], part: &Likelihood) -> Vec<usize> {
+        let derivative = |&k: &usize| {
+            let place = self.sensitive.binary_search(&kept[k]).unwrap_or_default();
+            self.data.len() + place
+        };
+        let derivatives = part.sensitive.iter().map(derivative);
+        kept.iter().copied().chain(derivatives).collect()
+    }
+}
