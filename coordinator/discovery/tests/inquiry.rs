@@ -249,7 +249,7 @@ fn what_is_open_is_told_apart_by_the_run_where_predictions_part() {
     // Square and cube are hard to tell apart on x >= 0 alone.
     let mut task = task(&measured(|x, _| 0.3 + 0.5 * x + 2.0 * x * x));
     let half: Vec<usize> = (DATA / 2..DATA).collect();
-    let (part, _) = task.likelihood.part(&half).unwrap();
+    let (part, _) = task.likelihood.subset(&half).unwrap();
     task.likelihood = part;
     task.levels.clear();
     let found = inquire(task, false, |asked| {

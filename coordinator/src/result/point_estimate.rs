@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use inference::point_estimate::Generation;
+use inference::point_estimate::{Generation, StopReason};
 
 use super::Outcome;
 use super::summary::{BaselineSummary, ErrorSummary};
@@ -35,7 +35,8 @@ pub struct PointEstimate {
     pub wall_s: f64,
     /// Why it ended: `decrease` (no step gains anything), `step` (none that is tried does), `budget`; of a search by
     /// generations `stagnation` (nobody better for many), `generations`, `budget`.
-    pub stop: String,
+    #[schema(value_type = String)]
+    pub stop: StopReason,
     /// How a search by generations came there; empty for a fit.
     pub history: Vec<GenerationSummary>,
 }
@@ -114,7 +115,7 @@ impl Outcome {
             evaluations: self.row.evaluations.unwrap_or(0),
             rejected: self.row.rejected.unwrap_or(0),
             wall_s: self.row.busy_ms as f64 / 1000.0,
-            stop: estimate.stop.name().to_owned(),
+            stop: estimate.stop,
             history: estimate.generations(),
         })
     }

@@ -351,7 +351,7 @@ fn variances_are_the_diagonal_of_the_covariance() {
 #[test]
 fn a_part_has_the_density_of_its_data_alone() {
     let whole = entangled(Discrepancy::Known(2.0));
-    let (part, places) = whole.part(&[0, 2, 4]).unwrap();
+    let (part, places) = whole.subset(&[0, 2, 4]).unwrap();
     assert_eq!(places, [0, 2, 4, 6]);
     let values: Vec<f64> = places.iter().map(|&p| ENTANGLED[p]).collect();
     // Nothing is shared any more: three independent normals with the variances of the whole.
@@ -362,9 +362,9 @@ fn a_part_has_the_density_of_its_data_alone() {
     let found = part.log_likelihood(&values, &[0.7]).unwrap().value();
     assert!((found - expected).abs() < 1e-12, "{found} {expected}");
     let all: Vec<usize> = (0..5).collect();
-    assert_eq!(whole.part(&all).unwrap().0, whole);
+    assert_eq!(whole.subset(&all).unwrap().0, whole);
     assert!(matches!(
-        whole.part(&[5]),
+        whole.subset(&[5]),
         Err(LikelihoodError::Membership { datum: 5, data: 5 })
     ));
 }

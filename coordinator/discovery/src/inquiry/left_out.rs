@@ -53,7 +53,7 @@ impl LeftOut {
             if kept.is_empty() || left.is_empty() {
                 return None;
             }
-            let (part, places) = likelihood.part(&kept).ok()?;
+            let (part, places) = likelihood.subset(&kept).ok()?;
             let refit = |(model, (effects, own, fit)): (usize, &(Vec<usize>, usize, &Descent))| {
                 let taken = |values: &[f64]| places.iter().map(|&i| values[i]).collect::<Vec<f64>>();
                 let point = Point::new(
@@ -79,7 +79,7 @@ impl LeftOut {
                 })
             };
             let refits = fits.iter().enumerate().map(refit).collect();
-            let (left, places) = likelihood.part(left).ok()?;
+            let (left, places) = likelihood.subset(left).ok()?;
             Some(Level { left, places, refits })
         };
         Self(levels.iter().filter_map(level).collect())

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::moments::mean_and_sd;
 use super::predicted_draw::PredictedDraw;
 use statistics::likelihood::Datum;
 
@@ -45,7 +46,7 @@ pub fn signals(
     }
     for (i, (datum, error)) in data.iter().zip(error_variances).enumerate() {
         let values: Vec<f64> = prior_draws.iter().map(|draw| draw.values[i]).collect();
-        let Some((_, sd)) = super::mean_and_sd(&values) else {
+        let Some((_, sd)) = mean_and_sd(&values) else {
             continue;
         };
         let sum = sums.entry(datum.channel).or_default();

@@ -173,7 +173,7 @@ pub fn chi_square(
     if kept.is_empty() {
         return Ok(None);
     }
-    let (part, places) = likelihood.part(&kept)?;
+    let (part, places) = likelihood.subset(&kept)?;
     let of = |values: &[f64]| -> Vec<f64> { places.iter().map(|&place| values[place]).collect() };
     let centre = of(&mean.values);
     let whitening = part.whitening(&centre, &mean.theta)?;

@@ -1,7 +1,10 @@
 //! Report where a search ended, how it came there, and how sharply that is known.
 
+use serde::{Deserialize, Serialize};
+
 /// Why a search ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum StopReason {
     /// No step gains more than the tolerance.
     Decrease,

@@ -1,8 +1,8 @@
 //! How far errors reach: the noise of each datum, and what it shares with others.
 
-use super::common_error::{CommonError, CommonErrorSize, ErrorBlock};
+use super::common_error::{CommonError, CommonErrorSize, Discrepancy, ErrorBlock};
 use super::datum::LikelihoodError;
-use super::{Discrepancy, Likelihood};
+use super::error_model::Likelihood;
 
 /// The errors of a block: the covariance is `diag(sds^2) + sum v v'`.
 pub(super) struct Spread {

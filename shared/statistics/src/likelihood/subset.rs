@@ -1,8 +1,8 @@
 //! Some of the data alone, with the errors that they still share.
 
-use super::Likelihood;
 use super::common_error::CommonError;
 use super::datum::LikelihoodError;
+use super::error_model::Likelihood;
 
 impl Likelihood {
     /// The likelihood of some of the data, the others unknown.
@@ -19,7 +19,7 @@ impl Likelihood {
     /// # Validity
     /// A discrepancy keeps its size only where all data that share one are kept, or have the same noise sd. Checked by
     /// `likelihood::a_part_has_the_density_of_its_data_alone`.
-    pub fn part(&self, kept: &[usize]) -> Result<(Likelihood, Vec<usize>), LikelihoodError> {
+    pub fn subset(&self, kept: &[usize]) -> Result<(Likelihood, Vec<usize>), LikelihoodError> {
         let count = self.data.len();
         if let Some(&datum) = kept.iter().find(|&&i| i >= count) {
             return Err(LikelihoodError::Membership { datum, data: count });

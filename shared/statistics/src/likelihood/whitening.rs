@@ -1,9 +1,10 @@
 //! Make residuals and derivatives independent, for a fit by least squares.
 
-use super::common_error::ErrorBlock;
+use super::common_error::{Discrepancy, ErrorBlock};
 use super::datum::LikelihoodError;
+use super::error_model::Likelihood;
 use super::factor::CholeskyFactor;
-use super::{Discrepancy, ErrorLaw, Likelihood};
+use super::law::ErrorLaw;
 
 /// Turns residuals and derivatives of the data into those of independent errors of sd 1, at one point.
 ///

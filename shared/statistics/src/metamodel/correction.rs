@@ -3,7 +3,8 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::{CovarianceFactor, ModelPair, Pool};
+use super::covariance::CovarianceFactor;
+use super::pool::{ModelPair, Pool};
 
 /// Effective number of states for each coefficient of a regression.
 const STATES_PER_COEFFICIENT: f64 = 4.0;

@@ -1,4 +1,4 @@
-//! CovarianceFactor the weighted covariance of a pool, however thin it is.
+//! The factor of the weighted covariance of a pool, however thin the pool is.
 
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::CovarianceFactor;
+use super::covariance::CovarianceFactor;
 use crate::rng::Stream;
 
 /// Tries to find two different members of the frozen population before a random-walk step is taken instead.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Metamodel;
+use super::stage_metamodel::Metamodel;
 use crate::likelihood::LikelihoodError;
 use crate::rng::Stream;
 

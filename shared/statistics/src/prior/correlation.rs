@@ -2,7 +2,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::{Marginal, PriorError};
+use super::error::PriorError;
+use super::marginal::Marginal;
 
 /// Correlations of parameters whose marginals are normal and untruncated: together they are jointly normal.
 ///

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::PriorError;
+use super::error::PriorError;
 
 /// A univariate distribution before truncation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::bound::at_bound;
 use super::distribution::{Distribution, ordered};
+use super::error::PriorError;
+use super::moments;
 use super::normal::{self, LN_SQRT_TAU};
-use super::{PriorError, moments};
 use crate::rng::Stream;
 
 /// Exponent below the peak at which the moments' integrals are cut: exp(-45) = 3e-20.

@@ -1,0 +1,171 @@
+//! The log-density of the data, and the probabilities of an unknown discrepancy.
+
+use super::common_error::{Discrepancy, ErrorBlock};
+use super::datum::LikelihoodError;
+use super::error_model::Likelihood;
+use super::factor::CholeskyFactor;
+use super::law::ErrorLaw;
+use super::spread::Spread;
+use crate::log_likelihood::LogLikelihood;
+use crate::prior::LN_SQRT_TAU;
+
+/// A factored block: its covariance and what is left of its residuals.
+pub(super) struct ScoredBlock {
+    pub(super) factor: CholeskyFactor,
+    pub(super) whitened: Vec<f64>,
+    pub(super) squared_distance: f64,
+}
+
+impl Likelihood {
+    /// ln p(data | theta), normalised: comparable between noise levels and between models.
+    ///
+    /// Of data that share no error, `sum_i [ -ln(sqrt(2 pi) sd_i) - (y_i - m_i)^2 / (2 sd_i^2) ]`; then the density of
+    /// each block; where the discrepancy is unknown, the logarithm of the mean over its values.
+    ///
+    /// # Arguments
+    /// - `values`: the model's value of each datum, in its unit and in their order, then the derivatives of the
+    ///   [`Likelihood::sensitive`] ones.
+    /// - `theta`: holds the inferred standard deviations, each > 0 (give them a positive prior).
+    ///
+    /// # Returns
+    /// The sum, in nats; [`LogLikelihood::Impossible`] if a residual or a derivative is so large that the sum
+    /// overflows.
+    ///
+    /// # Errors
+    /// [`LikelihoodError::Prediction`], [`LikelihoodError::Noise`], [`LikelihoodError::MissingParameter`],
+    /// [`LikelihoodError::Length`].
+    ///
+    /// # Source
+    /// The usual normal density. The paper's Eq. 13-15 lack the factor 1/sigma; without it an inferred sigma
+    /// grows without bound and evidences of different noise models cannot be compared, so we keep it.
+    /// Checked by `likelihood::hand_numbers` and `likelihood::blocks_match_a_dense_density`.
+    pub fn log_likelihood(&self, values: &[f64], theta: &[f64]) -> Result<LogLikelihood, LikelihoodError> {
+        self.check_values(values)?;
+        let mut sum = 0.0;
+        for &i in &self.alone {
+            let datum = &self.data[i];
+            let sd = datum.noise_sd(theta)?;
+            let residual = (datum.value - values[i]) / sd;
+            sum += match self.law {
+                ErrorLaw::Gaussian => -LN_SQRT_TAU - libm::log(sd) - 0.5 * residual * residual,
+                law => law.log_density(1, residual * residual, 2.0 * libm::log(sd)),
+            };
+        }
+        for block in self.blocks.iter().filter(|block| !block.has_discrepancy) {
+            sum += self.block_density(block, 0.0, values, theta)?;
+        }
+        if self.discrepancy != Discrepancy::None {
+            sum += log_mean_exp(&self.by_level(values, theta)?);
+        }
+        Ok(LogLikelihood::new(sum)?)
+    }
+
+    /// The values of m with their probabilities after the data, at these parameters; empty without discrepancy.
+    ///
+    /// # Errors
+    /// Those of [`Likelihood::log_likelihood`].
+    pub fn discrepancy_weights(
+        &self,
+        values: &[f64],
+        theta: &[f64],
+    ) -> Result<Vec<(f64, f64)>, LikelihoodError> {
+        self.check_values(values)?;
+        let levels = self.discrepancy.levels();
+        let densities = self.by_level(values, theta)?;
+        let highest = densities.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let weights: Vec<f64> = match highest.is_finite() {
+            true => densities.iter().map(|d| libm::exp(d - highest)).collect(),
+            // The data exclude every value: the prior is all there is.
+            false => vec![1.0; levels.len()],
+        };
+        let sum: f64 = weights.iter().sum();
+        Ok(levels
+            .into_iter()
+            .zip(weights)
+            .map(|(m, w)| (m, w / sum))
+            .collect())
+    }
+
+    /// Log-density of the blocks that have a discrepancy, for each value of m.
+    fn by_level(&self, values: &[f64], theta: &[f64]) -> Result<Vec<f64>, LikelihoodError> {
+        let blocks = || self.blocks.iter().filter(|block| block.has_discrepancy);
+        let density = |m: f64| {
+            blocks().try_fold(0.0, |sum, block| {
+                Ok(sum + self.block_density(block, m, values, theta)?)
+            })
+        };
+        self.discrepancy.levels().into_iter().map(density).collect()
+    }
+
+    fn block_density(
+        &self,
+        block: &ErrorBlock,
+        m: f64,
+        values: &[f64],
+        theta: &[f64],
+    ) -> Result<f64, LikelihoodError> {
+        let scored = self.score(block, m, values, theta)?;
+        Ok(scored.map_or(f64::NEG_INFINITY, |s| {
+            let log_determinant = s.factor.log_determinant();
+            let density = self
+                .law
+                .log_density(block.data.len(), s.squared_distance, log_determinant);
+            // A squared distance that overflows is a density of zero.
+            if density.is_nan() {
+                f64::NEG_INFINITY
+            } else {
+                density
+            }
+        }))
+    }
+
+    /// Factors a block; `None` where its covariance overflows.
+    pub(super) fn score(
+        &self,
+        block: &ErrorBlock,
+        m: f64,
+        values: &[f64],
+        theta: &[f64],
+    ) -> Result<Option<ScoredBlock>, LikelihoodError> {
+        let Spread { sds, common } = self.spread(block, m, values, theta)?;
+        Ok(CholeskyFactor::new(&sds, &common).map(|factor| {
+            let residuals = block.data.iter().map(|&i| self.data[i].value - values[i]);
+            let whitened = factor.whiten(residuals.collect());
+            ScoredBlock {
+                squared_distance: whitened.iter().map(|r| r * r).sum(),
+                factor,
+                whitened,
+            }
+        }))
+    }
+
+    /// Checks that there is one finite value for each datum and each sensitive datum.
+    ///
+    /// # Errors
+    /// [`LikelihoodError::Length`] and [`LikelihoodError::Prediction`].
+    pub fn check_values(&self, values: &[f64]) -> Result<(), LikelihoodError> {
+        if values.len() != self.values() {
+            return Err(LikelihoodError::Length {
+                expected: self.values(),
+                given: values.len(),
+            });
+        }
+        let owners = (0..self.data.len()).chain(self.sensitive.iter().copied());
+        owners
+            .zip(values)
+            .try_for_each(|(i, &value)| self.data[i].check_prediction(value))
+    }
+}
+
+/// `ln mean exp`, minus infinity where all are.
+fn log_mean_exp(values: &[f64]) -> f64 {
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if let [only] = values {
+        return *only;
+    }
+    if !highest.is_finite() {
+        return highest;
+    }
+    let sum: f64 = values.iter().map(|v| libm::exp(v - highest)).sum();
+    highest + libm::log(sum / values.len() as f64)
+}

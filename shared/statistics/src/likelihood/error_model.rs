@@ -1,0 +1,139 @@
+//! Measured values and the law of their errors.
+
+use serde::{Deserialize, Serialize};
+
+use super::common_error::{self, CommonError, CommonErrorSize, Discrepancy, ErrorBlock};
+use super::datum::{Datum, ErrorSd, LikelihoodError};
+use super::law::ErrorLaw;
+
+/// Measured values and the law of their errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "SerialisedLikelihood", into = "SerialisedLikelihood")]
+pub struct Likelihood {
+    pub(super) data: Vec<Datum>,
+    pub(super) law: ErrorLaw,
+    pub(super) common: Vec<CommonError>,
+    pub(super) discrepancy: Discrepancy,
+    /// Data that share no error.
+    pub(super) alone: Vec<usize>,
+    pub(super) blocks: Vec<ErrorBlock>,
+    pub(super) sensitive: Vec<usize>,
+}
+
+/// A likelihood as it travels: what it is made from.
+#[derive(Serialize, Deserialize)]
+struct SerialisedLikelihood {
+    data: Vec<Datum>,
+    law: ErrorLaw,
+    common: Vec<CommonError>,
+    discrepancy: Discrepancy,
+}
+
+impl From<Likelihood> for SerialisedLikelihood {
+    fn from(likelihood: Likelihood) -> Self {
+        Self {
+            data: likelihood.data,
+            law: likelihood.law,
+            common: likelihood.common,
+            discrepancy: likelihood.discrepancy,
+        }
+    }
+}
+
+impl TryFrom<SerialisedLikelihood> for Likelihood {
+    type Error = LikelihoodError;
+
+    fn try_from(written: SerialisedLikelihood) -> Result<Self, LikelihoodError> {
+        Self::with_common(written.data, written.law, written.common, written.discrepancy)
+    }
+}
+
+impl Likelihood {
+    /// Independent normal errors; the order of the data is the order of summation.
+    ///
+    /// # Errors
+    /// [`LikelihoodError::Value`] and [`LikelihoodError::Noise`].
+    pub fn new(data: Vec<Datum>) -> Result<Self, LikelihoodError> {
+        Self::with_common(data, ErrorLaw::Gaussian, Vec::new(), Discrepancy::None)
+    }
+
+    /// Errors of a law, some of them in common.
+    ///
+    /// # Arguments
+    /// - `discrepancy`: m of the common errors that are [`CommonErrorSize::Discrepancy`].
+    ///
+    /// # Errors
+    /// [`LikelihoodError::Value`], [`LikelihoodError::Noise`], [`LikelihoodError::Setting`],
+    /// [`LikelihoodError::Membership`].
+    pub fn with_common(
+        data: Vec<Datum>,
+        law: ErrorLaw,
+        common: Vec<CommonError>,
+        discrepancy: Discrepancy,
+    ) -> Result<Self, LikelihoodError> {
+        data.iter().try_for_each(Datum::check)?;
+        law.check()?;
+        discrepancy.check()?;
+        common_error::check(data.len(), &common)?;
+        let (alone, blocks) = common_error::blocks(&data, &common);
+        Ok(Self {
+            sensitive: common_error::sensitive(&common),
+            data,
+            law,
+            common,
+            discrepancy,
+            alone,
+            blocks,
+        })
+    }
+
+    /// The data, in their order.
+    #[must_use]
+    pub fn data(&self) -> &[Datum] {
+        &self.data
+    }
+
+    /// The law of the errors.
+    #[must_use]
+    pub fn law(&self) -> ErrorLaw {
+        self.law
+    }
+
+    /// m of the errors that the model cannot reach.
+    #[must_use]
+    pub fn discrepancy(&self) -> Discrepancy {
+        self.discrepancy
+    }
+
+    /// The errors in common.
+    #[must_use]
+    pub fn common(&self) -> &[CommonError] {
+        &self.common
+    }
+
+    /// Data whose sensitivity is asked for, ascending: these follow the predictions in the predicted values.
+    #[must_use]
+    pub fn sensitive(&self) -> &[usize] {
+        &self.sensitive
+    }
+
+    /// Number of predicted values: one for each datum, then one for each sensitive datum.
+    #[must_use]
+    pub fn values(&self) -> usize {
+        self.data.len() + self.sensitive.len()
+    }
+
+    /// Whether a sd is to be inferred that has no closed form: one of correlated or heavy-tailed data, or of an error
+    /// in common.
+    #[must_use]
+    pub fn entangles_unknown_sds(&self) -> bool {
+        let inferred = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { .. });
+        let heavy = self.law != ErrorLaw::Gaussian && self.data.iter().any(|d| inferred(d.sd));
+        let tied = self.blocks.iter().flat_map(|block| &block.data);
+        let common = self.common.iter().any(|error| match error.size {
+            CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity(sd) => inferred(sd),
+            CommonErrorSize::Discrepancy => false,
+        });
+        heavy || common || tied.into_iter().any(|&i| inferred(self.data[i].sd))
+    }
+}
