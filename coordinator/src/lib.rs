@@ -4,7 +4,6 @@
 //! - [`calibration`]: a calibration in progress: the one place where sampler, likelihood and leases meet. Pure.
 //! - [`lease`]: the rules of leasing. Pure.
 //! - [`farm`]: all calibrations and workers at hand; [`farm::dispatch`] gives it a thread.
-//! - [`fact`]: what must survive a restart.
 //! - [`store`]: the SQLite file; the only place that knows SQL.
 //! - [`study`]: how a study grows: its next step from where it stands.
 //! - [`service`]: store and farm together: submit, recover, control, grow.
@@ -12,7 +11,6 @@
 //! - [`missing_effect`]: the search for a missing effect: candidates, and what is said in the end.
 //! - [`effect`]: the effects as users meet them: cards and signatures.
 //! - [`embedded`]: local workers in this process; the only place that knows the worker.
-//! - [`result`]: tables, summary, flags and report of a calibration, from what the store kept.
 //! - [`command`]: the verbs of the command line.
 //! - [`config`]: command line and environment.
 
@@ -21,12 +19,10 @@ pub mod command;
 pub mod config;
 pub mod effect;
 pub mod embedded;
-pub mod fact;
 pub mod farm;
 pub mod http;
 pub mod lease;
 pub mod missing_effect;
-pub mod result;
 pub mod service;
 pub mod store;
 pub mod study;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 11] = [
+const CRATES: [&str; 13] = [
     "shared",
     "shared/formula",
     "shared/signal",
@@ -14,11 +14,13 @@ const CRATES: [&str; 11] = [
     "coordinator/inference",
     "coordinator/discovery",
     "coordinator/job",
+    "coordinator/record",
+    "coordinator/result",
     "worker",
     "worker/scm",
     "tests",
 ];
-const OURS: [&str; 11] = [
+const OURS: [&str; 13] = [
     "shared",
     "formula",
     "signal",
@@ -27,6 +29,8 @@ const OURS: [&str; 11] = [
     "inference",
     "discovery",
     "job",
+    "record",
+    "result",
     "worker",
     "scm",
     "farm-tests",
@@ -143,6 +147,22 @@ fn manifests_keep_the_direction_of_dependencies() {
         set(&["formula", "inference", "shared", "statistics"])
     );
     assert_eq!(
+        ours("coordinator/record"),
+        set(&["inference", "job", "shared", "statistics"])
+    );
+    assert_eq!(
+        ours("coordinator/result"),
+        set(&[
+            "formula",
+            "inference",
+            "job",
+            "record",
+            "shared",
+            "signal",
+            "statistics"
+        ])
+    );
+    assert_eq!(
         ours("worker"),
         set(&["formula", "scm", "shared", "signal", "statistics"])
     );
@@ -153,6 +173,8 @@ fn manifests_keep_the_direction_of_dependencies() {
             "formula",
             "inference",
             "job",
+            "record",
+            "result",
             "shared",
             "signal",
             "statistics",
@@ -186,6 +208,8 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         "coordinator/inference",
         "coordinator/discovery",
         "coordinator/job",
+        "coordinator/record",
+        "coordinator/result",
     ] {
         let dependencies = dependencies(krate);
         let found: Vec<&str> = impure.into_iter().filter(|d| dependencies.contains(*d)).collect();
@@ -274,7 +298,7 @@ fn http_reads_the_farm_and_rules_know_nobody() {
         &[],
     );
     nowhere(
-        &["coordinator/src/calibration", "coordinator/src/spec"],
+        &["coordinator/src/calibration", "coordinator/job/src"],
         &["crate::http", "crate::farm"],
         &[],
     );
@@ -296,8 +320,8 @@ fn pure_rooms_read_no_clock() {
         "shared/src",
         "shared/statistics/src",
         "coordinator/src/calibration",
-        "coordinator/src/spec",
-        "coordinator/src/result",
+        "coordinator/job/src",
+        "coordinator/result/src",
         "coordinator/src/effect",
     ];
     let clocks = [

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use coordinator::calibration::{Calibration, Finding, Identity, result_of};
 use coordinator::embedded::Evaluate;
-use coordinator::missing_effect::Extension;
 use coordinator::missing_effect::candidate::extended;
+use record::Extension;
 use shared::file::FileSet;
 use shared::outcome::Outcome;
 

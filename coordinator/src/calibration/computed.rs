@@ -1,5 +1,6 @@
 //! What came out of an evaluation that no machine failed at.
 
+use record::Fingerprint;
 use shared::exchange::WorkResult;
 use shared::outcome::{Observables, Outcome};
 use statistics::{Prior, SubchainEnd};
@@ -49,6 +50,23 @@ impl Computed {
                     && (end.accepted > 0) == self.outcome.is_some()
             }
         }
+    }
+
+    /// What a second computation of the same evaluation must agree with.
+    pub(super) fn fingerprint(&self) -> Fingerprint {
+        let outcome = match &self.outcome {
+            None => 0,
+            Some(Ok(observables)) => observables.fingerprint().cast_signed(),
+            // A refusal is compared by its text.
+            Some(Err(reason)) => reason
+                .bytes()
+                .fold(7, |hash: i64, b| hash.wrapping_mul(31).wrapping_add(i64::from(b))),
+        };
+        let end = self.end.as_ref().into_iter();
+        let numbers = end.flat_map(|end| end.theta.iter().copied().chain([end.log_gain]));
+        Fingerprint(numbers.fold(outcome, |hash, number| {
+            hash.wrapping_mul(31).wrapping_add(number.to_bits().cast_signed())
+        }))
     }
 
     /// Whether the model refused.

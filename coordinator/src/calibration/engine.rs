@@ -6,8 +6,9 @@ use inference::point_estimate::ModeEstimate;
 use inference::{EvaluationResult, PosteriorSample, Proposal, Sampler, StageRecord, TellError, TellProgress};
 use statistics::{LogLikelihood, Metamodel, ModelPair, SubchainEnd};
 
-use crate::missing_effect::{Discovery, Investigation, InvestigationError, Models};
+use crate::missing_effect::{Investigation, InvestigationError, Models};
 use job::{Method, MethodError, Spec};
+use record::Discovery;
 
 /// What asks for evaluations and is told their results.
 #[derive(Debug)]

@@ -6,7 +6,6 @@
 mod computed;
 mod draws;
 mod engine;
-mod identity;
 mod replay;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,17 +18,16 @@ use shared::model::ModelVariant;
 use shared::outcome::Observables;
 use statistics::{LogLikelihood, Metamodel, Subchain};
 
-use crate::fact::{EvaluationRow, Fact, Fingerprint, Kept};
 use crate::lease::{Completion, Queue};
 use crate::missing_effect::{InvestigationError, Models};
 use job::{Method, Spec};
+use record::{EvaluationKey, EvaluationRow, Fact, Kept};
 
 pub use computed::{Computed, result_of};
 use draws::{FinalDraws, final_draws};
 use engine::Scored;
 pub use engine::{BeginError, Engine, Finding};
-pub use identity::{EvaluationKey, HISTORIES, PREDICTIONS_FROM};
-pub use replay::{ReplayError, Stored, StoredEvaluation};
+pub use replay::ReplayError;
 
 /// Most effects that a search looks for together.
 const EFFECTS_TOGETHER: usize = 3;
@@ -328,7 +326,7 @@ impl Calibration {
         match self.queue.complete(evaluation) {
             Completion::First => {}
             Completion::Duplicate | Completion::Unknown => {
-                let fingerprint = Fingerprint::of(&computed);
+                let fingerprint = computed.fingerprint();
                 let (calibration, worker) = (self.identity.id, worker.to_owned());
                 return Ok((
                     vec![Fact::Duplicate {
@@ -345,7 +343,7 @@ impl Calibration {
             .theta(evaluation)
             .expect("the queue holds only evaluations asked for");
         let theta = computed.end.as_ref().map_or(asked, |end| &end.theta).to_vec();
-        let fingerprint = Fingerprint::of(&computed);
+        let fingerprint = computed.fingerprint();
         let rejected = computed.is_refused();
         let Computed { end, outcome } = computed;
         let scored = if self.draws.is_some() || self.engine.investigation().is_some() {

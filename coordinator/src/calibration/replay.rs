@@ -1,48 +1,11 @@
 //! Brings a calibration to where it stood, from what the store kept.
 
-use std::collections::BTreeMap;
-
 use shared::api::CalibrationState;
-use statistics::{LogLikelihood, SubchainEnd};
+use statistics::LogLikelihood;
 
 use super::{Calibration, Scored};
-use crate::fact::Fact;
 use job::EffectsChanged;
-
-/// What the store kept of a calibration that is not over.
-#[derive(Debug, Default)]
-pub struct Stored {
-    /// The state that it was left in.
-    pub state: Option<CalibrationState>,
-    /// Why it was paused.
-    pub message: Option<String>,
-    /// The pinned version of the model.
-    pub model_version: Option<String>,
-    /// Wall time spent before `[ms]`.
-    pub busy_ms: u64,
-    /// Its evaluations by number: parameter vector, log-likelihood, whether the model refused.
-    pub evaluations: BTreeMap<u64, StoredEvaluation>,
-    /// Failed leases by evaluation.
-    pub failed: BTreeMap<u64, u32>,
-}
-
-/// An evaluation as far as a replay needs it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StoredEvaluation {
-    /// Parameter vector.
-    pub theta: Vec<f64>,
-    /// Log-likelihood; `None` where the model refused or nothing was scored.
-    pub log_likelihood: Option<f64>,
-    /// Whether the model refused.
-    pub rejected: bool,
-    /// The model's values of the fitted measurements; read back for a fit and with a metamodel, which are told
-    /// them.
-    pub fitted: Option<Vec<f64>>,
-    /// Those of the quasi-static model; read back with a metamodel alone.
-    pub coarse: Option<Vec<f64>>,
-    /// Where the subchain ended.
-    pub end: Option<SubchainEnd>,
-}
+use record::{Fact, Stored, StoredEvaluation};
 
 /// Why a stored calibration cannot go on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -159,10 +122,11 @@ mod tests {
     use shared::file::FileSet;
     use shared::outcome::{Observables, SimulatedHistory};
 
-    use super::super::{HISTORIES, Identity, PREDICTIONS_FROM};
+    use super::super::Identity;
     use super::*;
-    use crate::fact::{EvaluationRow, Kept};
     use job::Spec;
+    use record::fact::{EvaluationRow, Kept};
+    use record::{HISTORIES, PREDICTIONS_FROM};
 
     const JOB: &str = "[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = { uniform = [4.0, 5.6] }\nkappa = 0.0\nn = { uniform = [0.8, 1.4] }\nfriction_angle_deg = 30.0\n[sampler]\nparticles = 20\nmoves = [2, 4]\n";
     const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 0.05\n";

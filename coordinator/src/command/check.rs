@@ -9,8 +9,8 @@ use super::output::say;
 use crate::calibration::{Calibration, Computed, Engine, Identity, result_of};
 use crate::config::JobFile;
 use crate::embedded::Evaluate;
-use crate::result::terminal;
 use job::Method;
+use result::terminal;
 
 /// Particles of the pilot: enough to find the number of stages, which hardly depends on them.
 const PILOT_PARTICLES: usize = 100;

@@ -13,11 +13,12 @@ use super::output::{note, say};
 use super::progress::Display;
 use crate::embedded::{LocalWorkers, model_version};
 use crate::farm::Control;
-use crate::result::discovery::{effect_file, terminal as discovery};
-use crate::result::{Study, report, terminal};
+use crate::service::load;
 use crate::service::{LEASE_MS, Service};
-use crate::store::CalibrationRow;
 use crate::study::next_step_of;
+use record::CalibrationRow;
+use result::discovery::{effect_file, terminal as discovery};
+use result::{Study, report, terminal};
 
 /// How often the display looks.
 const LOOK: Duration = Duration::from_millis(100);
@@ -104,7 +105,7 @@ impl Folder {
         }
         let rows = reader.study(study).await?;
         if let Some(row) = rows.iter().find(|row| row.state == CalibrationState::Finished) {
-            let study = Study::load(&reader, row).await?;
+            let study = load::study(&reader, row).await?;
             self.write_results(&study)?;
             let files = format!(
                 "\nin {}: summary.json, posterior.csv, report.html, grouser.db\n",

@@ -14,9 +14,9 @@ use super::folder::Folder;
 use super::output::say;
 use super::source::{Client, Place};
 use crate::config::{AddRuns, Discover, Extend};
-use crate::missing_effect::{Discovery, Extension};
-use crate::result::discovery::{effect_file, terminal};
 use crate::service::{Service, ServiceError};
+use record::{Discovery, Extension};
+use result::discovery::{effect_file, terminal};
 
 /// How often a service is asked whether a search is over.
 const LOOK: Duration = Duration::from_millis(500);

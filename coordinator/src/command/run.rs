@@ -10,7 +10,7 @@ use super::folder::Folder;
 use super::job_on_disk::{self, JobOnDisk};
 use super::output::note;
 use crate::config::Run;
-use crate::result::terminal;
+use result::terminal;
 
 pub(super) async fn run(config: Run) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file)?;

@@ -5,8 +5,10 @@ use serde::de::DeserializeOwned;
 use shared::api::{CalibrationStatus, ErrorBody};
 
 use crate::config::{Source, Target};
-use crate::result::{self, Comparison, Diagnostics, Outcome, PosteriorTable, Study, Summary, report};
-use crate::store::{CalibrationRow, Reader};
+use crate::service::load;
+use crate::store::Reader;
+use record::CalibrationRow;
+use result::{self, Comparison, Diagnostics, FinishedCalibration, PosteriorTable, Study, Summary, report};
 
 /// A service or a folder.
 pub(super) enum Place {
@@ -30,7 +32,7 @@ impl Place {
             Place::Service(client) => client.get("/v1/calibrations").await,
             Place::Folder(reader) => {
                 let rows = reader.calibrations().await?;
-                Ok(rows.iter().map(result::stored_status).collect())
+                Ok(rows.iter().map(load::stored_status).collect())
             }
         }
     }
@@ -51,7 +53,7 @@ impl Place {
         match self {
             Place::Service(client) => client.get(&format!("/v1/calibrations/{id}")).await,
             Place::Folder(reader) => match reader.calibration(id).await? {
-                Some(row) => Ok(result::stored_status(&row)),
+                Some(row) => Ok(load::stored_status(&row)),
                 None => bail!("there is no calibration {id}"),
             },
         }
@@ -101,12 +103,12 @@ async fn row(reader: &Reader, id: i64) -> anyhow::Result<CalibrationRow> {
     row.with_context(|| format!("there is no calibration {id}"))
 }
 
-async fn outcome(reader: &Reader, id: i64) -> anyhow::Result<Outcome> {
-    Ok(Outcome::load(reader, &row(reader, id).await?).await?)
+async fn outcome(reader: &Reader, id: i64) -> anyhow::Result<FinishedCalibration> {
+    Ok(load::finished_calibration(reader, &row(reader, id).await?).await?)
 }
 
 async fn study(reader: &Reader, id: i64) -> anyhow::Result<Study> {
-    Ok(Study::load(reader, &row(reader, id).await?).await?)
+    Ok(load::study(reader, &row(reader, id).await?).await?)
 }
 
 /// A service over HTTP.

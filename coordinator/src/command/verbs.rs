@@ -10,7 +10,7 @@ use super::job_on_disk;
 use super::output::say;
 use super::source::{Client, Place};
 use crate::config::{Export, Format, Report, Source, Submit, Target};
-use crate::result::{self, terminal};
+use result::{self, terminal};
 
 pub(super) async fn submit(config: &Submit) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file)?;

@@ -14,8 +14,8 @@ use tokio::sync::oneshot;
 
 use super::{Control, ControlError, Counters, Farm, WorkerRecord};
 use crate::calibration::Calibration;
-use crate::fact::Fact;
 use crate::store::FactSink;
+use record::fact::Fact;
 
 /// How often time passes for leases `[ms]`.
 const TICK: Duration = Duration::from_millis(250);

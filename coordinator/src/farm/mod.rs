@@ -14,8 +14,8 @@ use shared::model::ModelVariant;
 use shared::model::equations_of;
 
 use crate::calibration::{Calibration, Computed};
-use crate::fact::Fact;
 use progress::Pace;
+use record::fact::Fact;
 use token::Tokens;
 
 /// A worker is counted as connected for so long after its last message `[ms]`.

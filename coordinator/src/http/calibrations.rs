@@ -11,11 +11,13 @@ use utoipa_axum::routes;
 
 use super::error::{Body, HttpError, Id};
 use crate::farm::Control;
-use crate::result::{
-    ChannelHistory, Comparison, Diagnostics, Figures, Flag, Outcome, PosteriorTable, Study, Summary, report,
-};
 use crate::service::Service;
-use crate::store::{Sample, StageRow};
+use crate::service::load;
+use record::{Sample, StageRow};
+use result::{
+    ChannelHistory, Comparison, Diagnostics, Figures, FinishedCalibration, Flag, PosteriorTable, Study,
+    Summary, report,
+};
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new()
@@ -143,14 +145,14 @@ async fn samples(
     Ok(Json(Population { parameters, samples }))
 }
 
-async fn outcome(service: &Service, id: i64) -> Result<Outcome, HttpError> {
+async fn outcome(service: &Service, id: i64) -> Result<FinishedCalibration, HttpError> {
     let row = service.calibration_row(id).await?;
-    Ok(Outcome::load(&service.store().reader(), &row).await?)
+    Ok(load::finished_calibration(&service.store().reader(), &row).await?)
 }
 
 async fn study(service: &Service, id: i64) -> Result<Study, HttpError> {
     let row = service.calibration_row(id).await?;
-    Ok(Study::load(&service.store().reader(), &row).await?)
+    Ok(load::study(&service.store().reader(), &row).await?)
 }
 
 /// The equally weighted draws of the posterior.

@@ -8,9 +8,9 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{Body, HttpError, Id};
-use crate::missing_effect::{Discovery, Extension};
 use crate::service::Service;
 use crate::study;
+use record::{Discovery, Extension};
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new()

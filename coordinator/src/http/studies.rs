@@ -7,9 +7,10 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{HttpError, Id};
-use crate::result::{CalibrationSummary, Outcome, PointEstimate};
 use crate::service::Service;
+use crate::service::load;
 use job::is_discovery;
+use result::{CalibrationSummary, PointEstimate};
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(ledger))
@@ -60,7 +61,7 @@ async fn ledger(State(service): State<Service>, Id(id): Id) -> Result<Json<Ledge
     for &calibration in &calibrations {
         let row = service.calibration_row(calibration).await?;
         if row.state == CalibrationState::Finished && !is_discovery(&row.job.toml) {
-            let outcome = Outcome::load(&reader, &row).await?;
+            let outcome = load::finished_calibration(&reader, &row).await?;
             ledger.extend(outcome.calibration_summary());
             point_estimates.extend(outcome.point_estimate());
         }

@@ -8,8 +8,8 @@ use shared::experiment::RunUse;
 use shared::file::{FileError, FileSet, unknown_word};
 use shared::model::effects::parameter_name;
 
-use super::Extension;
 use job::{Spec, extended_job};
+use record::Extension;
 
 /// An explanation as a job takes it.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use super::Extension;
 use super::candidate::Explanation;
 use super::range::{DependsOn, rounded};
 use super::scan::{Pair, SOURCE};
+use record::Extension;
 
 /// A form with one variable; the magnitude m of the variable counts where x would lose its meaning below 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

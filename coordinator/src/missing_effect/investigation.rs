@@ -6,9 +6,9 @@ use shared::file::FileError;
 use shared::model::ModelVariant;
 use shared::outcome::Observables;
 
-use super::Discovery;
 use super::models::Models;
 use super::told::told;
+use record::Discovery;
 
 /// A search in progress.
 #[derive(Debug)]

@@ -1,7 +1,6 @@
 //! The search for a missing effect, as the farm runs it: candidates as jobs take them, and what is said in the end.
 //!
 //! # Layout
-//! - `record`: what a search found, as it is stored and shown.
 //! - [`candidate`]: explanations as additions to a job, and those of the library.
 //! - [`range`]: along which variables an experiment can show a dependence, and how far.
 //! - [`scan`]: laws outside the library, as curves along one variable; [`form`]: simple forms of them.
@@ -13,19 +12,13 @@
 pub mod candidate;
 pub mod curve;
 mod design;
-#[cfg(test)]
-pub(crate) mod fixture;
 pub mod form;
 mod investigation;
 mod models;
 pub mod range;
-mod record;
 mod rig_test;
 pub mod scan;
 mod told;
 
 pub use investigation::{Investigation, InvestigationError};
 pub use models::Models;
-pub use record::{
-    ChiSquare, Discovery, Extension, JudgedEffect, NEXT_RUNS, NONE, NOT_IN_LIBRARY, NextRun, Outside, Verdict,
-};

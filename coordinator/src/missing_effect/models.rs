@@ -12,8 +12,9 @@ use shared::outcome::Observables;
 
 use super::candidate::{Explanation, extended, library};
 use super::form::Form;
-use super::{Extension, design, scan};
+use super::{design, scan};
 use job::{FreeParameter, Spec, free_parameters, without_effects};
+use record::Extension;
 
 const JOB: &str = "job.toml";
 const EXPERIMENT: &str = "experiment.toml";

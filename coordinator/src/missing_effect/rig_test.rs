@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::Verdict;
+use record::Verdict;
 
 /// A test, and the effects that it sees apart from others.
 struct Test {

@@ -6,9 +6,9 @@ use formula::{Hook, Variable};
 use shared::channel::Channel;
 use shared::experiment::{Experiment, RunUse, TestRun};
 
-use super::Extension;
 use super::candidate::Explanation;
 use super::range::{DependsOn, KNOTS, Range, measured, ranges, rounded};
+use record::Extension;
 
 /// Prior standard deviation of the logarithm of a factor on a stress `[1]`.
 const FACTOR_SD: f64 = 0.5;

@@ -7,9 +7,9 @@ use discovery::inquiry::{self, Answer, Judgement};
 
 use super::candidate::Explanation;
 use super::models::{Entry, Law, Models};
-use super::{
-    ChiSquare, Discovery, Extension, JudgedEffect, NONE, NOT_IN_LIBRARY, NextRun, Outside, Verdict, curve,
-    rig_test,
+use super::{curve, rig_test};
+use record::{
+    ChiSquare, Discovery, Extension, JudgedEffect, NONE, NOT_IN_LIBRARY, NextRun, Outside, Verdict,
 };
 
 /// An effect of the model that gains it less is dropped \[nats\].

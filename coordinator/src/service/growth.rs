@@ -11,11 +11,13 @@ use shared::file::FileSet;
 use super::{Service, ServiceError, file_json, now_ms};
 use crate::calibration::{Calibration, Identity};
 use crate::farm::dispatch::Stopped;
-use crate::missing_effect::Extension;
 use crate::missing_effect::candidate::extended;
-use crate::store::{CalibrationRow, NewCalibrationRow};
-use crate::study::{Step, effect_of, next_step_of, search_of};
+use crate::store::NewCalibrationRow;
+use crate::study::{Step, next_step_of, search_of};
 use job::{Method, Spec, continued_job, discovery_job, is_discovery, without_effects};
+use record::CalibrationRow;
+use record::Extension;
+use record::effect_of;
 
 /// How job and experiment are called in messages.
 const FILES: [&str; 2] = ["job.toml", "experiment.toml"];

@@ -1,9 +1,11 @@
 //! Store and farm together: submit, recover, control, grow.
 //!
 //! # Layout
+//! - `load`: what is read from the store.
 //! - `growth`: what is added to a study that is there.
 
 mod growth;
+pub mod load;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,8 +18,9 @@ use shared::file::{FileError, FileSet};
 use crate::calibration::{BeginError, Calibration, Identity};
 use crate::farm::dispatch::{Dispatcher, Stopped};
 use crate::farm::{Control, ControlError, Farm};
-use crate::store::{CalibrationRow, NewCalibrationRow, NewStudy, Store, StoreError, StudyIds};
+use crate::store::{NewCalibrationRow, NewStudy, Store, StoreError, StudyIds};
 use job::{EffectsChanged, Job, Method, Spec, point_job};
+use record::CalibrationRow;
 
 /// A lease lasts so long without renewal `[ms]`.
 pub const LEASE_MS: u64 = 15_000;
@@ -255,7 +258,7 @@ impl Service {
     /// # Errors
     /// [`ServiceError`].
     pub async fn spec_of(&self, row: &CalibrationRow) -> Result<Spec, ServiceError> {
-        crate::result::spec_of(&self.store.reader(), row).await
+        load::spec_of(&self.store.reader(), row).await
     }
 
     /// Where a calibration stands.
@@ -271,7 +274,7 @@ impl Service {
     }
 
     fn stored_status(&self, row: &CalibrationRow) -> CalibrationStatus {
-        let mut status = crate::result::stored_status(row);
+        let mut status = load::stored_status(row);
         if let Some(reason) = self.left_alone(row.id) {
             status.message = Some(format!("cannot go on with this version: {reason}"));
         }

@@ -8,7 +8,7 @@ use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 
 use super::json;
 use super::writer::StoreHealth;
-use crate::fact::{Fact, Fingerprint};
+use record::fact::{Fact, Fingerprint};
 
 /// Most samples in one statement.
 const ROWS: usize = 4000;

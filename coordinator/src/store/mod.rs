@@ -16,8 +16,6 @@ use std::path::Path;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
 use sqlx::{Connection, SqliteConnection, SqlitePool};
 
-pub use prior::PriorDraw;
-pub use read::{CalibrationRow, EstimateRow, ExperimentRow, Prediction, Sample, StageRow, Subchains};
 pub use writer::{FactSink, NewCalibrationRow, NewStudy, StoreHealth, StudyIds, Writer};
 
 /// Why the store cannot be used.

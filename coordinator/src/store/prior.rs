@@ -5,17 +5,7 @@ use std::collections::BTreeMap;
 use sqlx::Row;
 
 use super::{Reader, StoreError, blob, numbers};
-
-/// A draw from the prior that a sampler began with.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PriorDraw {
-    /// Parameter vector, noise parameters included.
-    pub theta: Vec<f64>,
-    /// The predicted values that the likelihood takes, or why the model refused.
-    pub result: Result<Vec<f64>, String>,
-    /// Leases of it that failed before one succeeded.
-    pub faults: u64,
-}
+use record::PriorDraw;
 
 impl Reader {
     /// The draws of a sampler's first round.

@@ -5,137 +5,15 @@ use std::collections::BTreeMap;
 use inference::point_estimate::{Generation, StopReason};
 use shared::api::CalibrationState;
 use shared::file::FileSet;
-use shared::outcome::{Observables, SimulatedHistory};
+use shared::outcome::SimulatedHistory;
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 
 use super::{Reader, StoreError, blob, numbers};
-use crate::calibration::{EvaluationKey, HISTORIES, PREDICTIONS_FROM};
-use crate::missing_effect::Discovery;
-
-/// A stored experiment.
-#[derive(Debug, Clone)]
-pub struct ExperimentRow {
-    /// Its id.
-    pub id: i64,
-    /// Its files.
-    pub files: FileSet,
-}
-
-/// A stored calibration.
-#[derive(Debug, Clone)]
-pub struct CalibrationRow {
-    /// Its id.
-    pub id: i64,
-    /// The study it belongs to.
-    pub study: i64,
-    /// The experiment it is about.
-    pub experiment: i64,
-    /// Name for lists.
-    pub name: String,
-    /// Its job, with the effect files that it names.
-    pub job: FileSet,
-    /// Where it stands.
-    pub state: CalibrationState,
-    /// Why it is paused or failed.
-    pub message: Option<String>,
-    /// Version of the equations.
-    pub model_version: Option<String>,
-    /// Wall time spent `[ms]`.
-    pub busy_ms: u64,
-    /// Log-evidence.
-    pub log_evidence: Option<f64>,
-    /// Its standard error.
-    pub log_evidence_se: Option<f64>,
-    /// Whether every stage reached equilibrium.
-    pub equilibrated: Option<bool>,
-    /// Evaluations of the sampler.
-    pub evaluations: Option<u64>,
-    /// Of these, refused by the model.
-    pub rejected: Option<u64>,
-}
-
-/// A stored stage, without its population.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
-pub struct StageRow {
-    /// Position, counted from 0 = the prior.
-    pub stage: u32,
-    /// Tempering exponent.
-    pub tempering_exponent: f64,
-    /// Acceptance rate of the moves.
-    pub acceptance: f64,
-    /// Drift of the mean log-likelihood during the moves, as a z-score.
-    pub drift_z: f64,
-    /// Rank correlation of the log-likelihood between start and end of the moves.
-    pub correlation: f64,
-    /// Moves per particle.
-    pub steps: u32,
-    /// Share of the log-evidence.
-    pub log_evidence_increment: f64,
-    /// Coefficient of variation of the incremental weights.
-    pub weight_cov: f64,
-    /// Effective sample size of the weights.
-    pub ess: f64,
-    /// Scale of the proposals at the end.
-    pub scale: f64,
-    /// Evaluations spent.
-    pub evaluations: u64,
-    /// Whether the moves reached equilibrium.
-    pub equilibrated: bool,
-}
-
-/// A particle of a stored population.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
-pub struct Sample {
-    /// Parameter vector.
-    pub theta: Vec<f64>,
-    /// Log-likelihood; `None` where the model refused.
-    pub log_likelihood: Option<f64>,
-    /// Log-density of the prior.
-    pub log_prior: f64,
-}
-
-/// The stored result of a fit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EstimateRow {
-    /// The most probable parameters.
-    pub theta: Vec<f64>,
-    /// Log-likelihood there.
-    pub log_likelihood: f64,
-    /// Log-density of the prior there.
-    pub log_prior: f64,
-    /// Standard deviations after Laplace; `None` at a bound, and where nothing fixes a parameter. A search by
-    /// generations has none at all.
-    pub sd: Option<Vec<Option<f64>>>,
-    /// Whether each parameter lies at a bound of its prior.
-    pub at_bound: Vec<bool>,
-    /// Why the fit or the search ended.
-    pub stop: StopReason,
-    /// How a search by generations came there.
-    pub history: Vec<Generation>,
-}
-
-/// A final draw.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Prediction {
-    /// Parameter vector, noise parameters included.
-    pub theta: Vec<f64>,
-    /// What the model gave for the fitted runs, or why it refused.
-    pub fit: Result<Observables, String>,
-    /// The same for the holdout runs, where there are any.
-    pub holdout: Option<Result<Observables, String>>,
-}
-
-/// What a metamodel did between evaluations.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Subchains {
-    /// Subchains that were asked for.
-    pub subchains: u64,
-    /// Moves that they proposed.
-    pub moves: u64,
-    /// Subchains that ended elsewhere, where the model was asked.
-    pub moved: u64,
-}
+use record::{
+    CalibrationRow, Discovery, EstimateRow, EvaluationKey, ExperimentRow, HISTORIES, PREDICTIONS_FROM,
+    Prediction, Sample, StageRow, Subchains,
+};
 
 const CALIBRATION: &str = "SELECT c.*, coalesce(c.experiment, s.experiment) AS on_experiment
      FROM calibrations c JOIN studies s ON s.id = c.study";

@@ -7,7 +7,7 @@ use sqlx::Row;
 use statistics::SubchainEnd;
 
 use super::{Reader, StoreError, blob, numbers};
-use crate::calibration::{Stored, StoredEvaluation};
+use record::{Stored, StoredEvaluation};
 
 impl Reader {
     /// Ids of the calibrations that are not over, oldest first.

@@ -11,7 +11,7 @@ use sqlx::{Connection, QueryBuilder, Sqlite, SqliteConnection};
 use tokio::sync::{Notify, mpsc, oneshot, watch};
 
 use super::{StoreError, blob};
-use crate::fact::{EvaluationRow, Fact, Kept};
+use record::fact::{EvaluationRow, Fact, Kept};
 
 /// Most facts in one commit.
 const GROUP: usize = 4096;

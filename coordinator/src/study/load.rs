@@ -5,11 +5,11 @@ use shared::file::FileSet;
 
 use super::next_step::{Member, Part, Step, next_step};
 use crate::farm::ControlError;
-use crate::missing_effect::Discovery;
-use crate::result::spec_of;
-use crate::service::ServiceError;
-use crate::store::{CalibrationRow, Reader};
+use crate::service::{ServiceError, load::spec_of};
+use crate::store::Reader;
 use job::{Apply, Job, Method, discovery_job, is_discovery};
+use record::CalibrationRow;
+use record::Discovery;
 
 /// The next step of a study.
 ///

@@ -8,4 +8,4 @@ mod load;
 mod next_step;
 
 pub use load::{next_step_from, next_step_of, record, search_of};
-pub use next_step::{Member, Part, Step, effect_of, next_step};
+pub use next_step::{Member, Part, Step, next_step};

@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use shared::api::CalibrationState;
 
-use crate::missing_effect::{Discovery, Extension};
-use job::{Apply, DiscoverySettings, effect_name};
+use job::{Apply, DiscoverySettings};
+use record::effect_of;
+use record::{Discovery, Extension};
 
 /// A calibration of a study.
 #[derive(Debug, Clone)]
@@ -43,14 +44,6 @@ pub enum Step {
     Extend(i64, Extension),
     /// A calibration without effects that it no longer gains by.
     Drop(i64, Vec<String>),
-}
-
-/// The name of the effect that an extension adds.
-pub fn effect_of(extension: &Extension) -> String {
-    match extension {
-        Extension::Effect(effect) | Extension::OnWheel { effect, .. } => effect.clone(),
-        Extension::File { name, text } => effect_name(text).unwrap_or_else(|| name.clone()),
-    }
 }
 
 /// The next step of a study; `None` where it is over, or has members that are not.
@@ -110,7 +103,6 @@ pub fn next_step(settings: DiscoverySettings, members: &[Member]) -> Option<Step
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::missing_effect::fixture;
 
     fn ledger(id: i64, effects: &[&str], search: Option<i64>) -> Member {
         Member {
@@ -127,13 +119,17 @@ mod tests {
         let record = Discovery {
             extension: names.map(|name| Extension::Effect(name.to_owned())),
             drop: drop.iter().map(|&e| e.to_owned()).collect(),
-            ..fixture::discovery()
+            ..found()
         };
         Member {
             id,
             state: CalibrationState::Finished,
             part: Part::Search(Some(Box::new(record))),
         }
+    }
+
+    fn found() -> Discovery {
+        serde_json::from_str(include_str!("../../record/discovery.json")).unwrap()
     }
 
     fn beside(id: i64) -> Member {

@@ -1,9 +1,9 @@
 //! An experiment whose truth is known: drawn from the priors, run, measured with noise.
 
 use coordinator::embedded::Evaluate;
-use coordinator::missing_effect::Extension;
 use coordinator::missing_effect::candidate::extended;
 use job::Spec;
+use record::Extension;
 use shared::channel::Channel;
 use shared::file::FileSet;
 use shared::model::ModelVariant;

@@ -1,9 +1,9 @@
 //! What the measurements could say without noise: by how much the truth beats what is not the truth.
 
 use coordinator::embedded::Evaluate;
-use coordinator::missing_effect::Extension;
 use coordinator::missing_effect::candidate::extended;
 use discovery::{Engine, Finding, Settings, Starts};
+use record::Extension;
 use shared::outcome::Outcome;
 use statistics::{Likelihood, LogLikelihood};
 

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use coordinator::missing_effect::Extension;
 use coordinator::missing_effect::candidate::library;
+use record::Extension;
 use statistics::rng::Stream;
 
 use super::case::{Case, blank};

@@ -1,6 +1,6 @@
 //! Laws that are in nobody's library, as effect files, and what each acts on and depends on.
 
-use coordinator::missing_effect::Extension;
+use record::Extension;
 
 /// A law: its name, the pair of quantity and variable that is right, its effect file.
 pub(crate) struct Law {

@@ -1,0 +1,130 @@
+//! What the store is told: facts, in the order in which they came about.
+
+use inference::point_estimate::ModeEstimate;
+use inference::{PosteriorSample, StageRecord};
+use shared::api::CalibrationState;
+use shared::outcome::Observables;
+use statistics::SubchainEnd;
+
+use crate::discovery::Discovery;
+
+/// Something that must survive a restart.
+#[derive(Debug, Clone)]
+pub enum Fact {
+    /// A parameter vector was simulated.
+    Evaluated {
+        /// The calibration.
+        calibration: i64,
+        /// The evaluation.
+        row: EvaluationRow,
+    },
+    /// A late result of an evaluation that is already stored; compared, because it must be equal.
+    Duplicate {
+        /// The calibration.
+        calibration: i64,
+        /// The evaluation.
+        evaluation: u64,
+        /// What must agree.
+        fingerprint: Fingerprint,
+        /// Who computed it.
+        worker: String,
+    },
+    /// A stage ended.
+    Stage {
+        /// The calibration.
+        calibration: i64,
+        /// The stage with its population.
+        record: Box<StageRecord>,
+        /// Wall time spent on the calibration so far `[ms]`.
+        busy_ms: u64,
+    },
+    /// The sampler ended.
+    Posterior {
+        /// The calibration.
+        calibration: i64,
+        /// Evidence and counts; the draws are the last stage's population.
+        posterior: Box<PosteriorSample>,
+    },
+    /// The fit ended.
+    Estimate {
+        /// The calibration.
+        calibration: i64,
+        /// The most probable parameters.
+        estimate: Box<ModeEstimate>,
+    },
+    /// A search for a missing effect ended.
+    Discovery {
+        /// The calibration.
+        calibration: i64,
+        /// What it found.
+        record: Box<Discovery>,
+    },
+    /// A calibration changed its state.
+    State {
+        /// The calibration.
+        calibration: i64,
+        /// The new state.
+        state: CalibrationState,
+        /// Why, where there is something to say.
+        message: Option<String>,
+        /// Wall time spent on the calibration so far `[ms]`.
+        busy_ms: u64,
+    },
+    /// The first lease pinned the version of the equations, and of the effects.
+    ModelVersion {
+        /// The calibration.
+        calibration: i64,
+        /// The version.
+        version: String,
+    },
+    /// A machine failed at an evaluation.
+    Fault {
+        /// The calibration.
+        calibration: i64,
+        /// The evaluation.
+        evaluation: u64,
+        /// How many leases of it have failed by now.
+        attempt: u32,
+        /// The machine's worker.
+        worker: String,
+        /// What happened.
+        message: String,
+    },
+}
+
+/// A simulated parameter vector, as the store keeps it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EvaluationRow {
+    /// Number of the evaluation within its calibration.
+    pub evaluation: u64,
+    /// The whole parameter vector, noise parameters included.
+    pub theta: Vec<f64>,
+    /// Log-likelihood; `None` where the model refused or nothing was scored.
+    pub log_likelihood: Option<f64>,
+    /// What is kept of the result.
+    pub kept: Kept,
+    /// The quasi-static model's values of the fitted measurements, where it was asked.
+    pub coarse: Option<Vec<f64>>,
+    /// Where the subchain ended that was asked for; `theta` is that end.
+    pub end: Option<SubchainEnd>,
+    /// What a second computation must agree with.
+    pub fingerprint: Fingerprint,
+    /// Who computed it.
+    pub worker: String,
+}
+
+/// What is kept of a result.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Kept {
+    /// While sampling: the predicted values that the likelihood takes. Enough to
+    /// score them again under another noise model, and a quarter of the whole. Empty where a subchain stayed.
+    Fitted(Vec<f64>),
+    /// Of the final draws: everything.
+    Whole(Box<Observables>),
+    /// The model refused.
+    Refused(String),
+}
+
+/// Two computations of an evaluation must have the same one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fingerprint(pub i64);

@@ -1,0 +1,269 @@
+//! What each channel can say, how well it is met, how its intervals hold.
+
+use std::collections::BTreeMap;
+
+use inference::diagnostics::{self, ChannelSignal, PredictedDraw};
+use statistics::ErrorSd;
+
+use super::datum::{DataChannel, size};
+use super::residuals::ResidualDiagnostics;
+use super::{LEVEL, p_words};
+use crate::coverage::Coverage;
+use crate::report::number;
+use crate::{Comparison, FinishedCalibration};
+
+/// A channel of the fitted data.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct ChannelDiagnostics {
+    /// Channel without unit; `plates` and `rings` for readings of the bevameter.
+    pub channel: String,
+    /// Unit of the next figures; plates and rings count by their natural logarithm.
+    pub unit: String,
+    /// Fitted data.
+    pub data: usize,
+    /// Root mean square of the standard deviations of the errors, with what they share.
+    pub error_sd: Option<f64>,
+    /// Root mean square of the prior predictive standard deviations: what the prior allows the channel to vary.
+    pub prior_predictive_sd: Option<f64>,
+    /// Root mean square of the latter over the former; below 1 a datum says less than the prior did.
+    pub information: Option<f64>,
+    /// Parameters that the fit spends on the channel: the sum of its leverages.
+    pub effective_parameters: Option<f64>,
+    /// The misfit of the channel; null where its noise is inferred.
+    pub chi_square: Option<ChiSquareTest>,
+    /// Fitted measurements in their 90 % intervals.
+    pub coverage90_fit: Option<CoverageCount>,
+    /// Measurements that were not fitted in theirs.
+    pub coverage90_holdout: Option<CoverageCount>,
+    /// A sentence where the channel cannot inform, or hardly.
+    pub silence: Option<String>,
+}
+
+/// Squares of residuals against what chance allows.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct ChiSquareTest {
+    /// The sum of squares, made independent and of unit variance.
+    pub chi_square: f64,
+    /// Data of known noise that count.
+    pub data: usize,
+    /// Data less the parameters that the fit spends on them.
+    pub degrees_of_freedom: f64,
+    /// Probability of so large a sum; null where the fit spends as many parameters as there are data.
+    pub p: Option<f64>,
+}
+
+impl ChiSquareTest {
+    /// `the squares of 24 residuals sum to ...`.
+    pub fn words(&self) -> String {
+        let size = format!(
+            "the squares of {} residuals sum to {} noise variances where {} are expected",
+            self.data,
+            number::significant(self.chi_square, 3),
+            number::significant(self.degrees_of_freedom, 3),
+        );
+        match self.p {
+            Some(p) => format!("{size} ({}): {}", p_words(p), judgement(p)),
+            None => format!("{size}: the fit leaves nothing to judge it by"),
+        }
+    }
+}
+
+/// From here on a sum is larger than expected, though not beyond chance.
+const SUSPECT: f64 = 0.05;
+
+fn judgement(p: f64) -> &'static str {
+    if p < LEVEL {
+        "more than the declared errors explain"
+    } else if p < SUSPECT {
+        "rather more than the declared errors explain"
+    } else if p > 1.0 - LEVEL {
+        "less than expected, the declared errors may be too large"
+    } else {
+        "the declared errors explain the misfit"
+    }
+}
+
+/// Measurements inside their intervals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct CoverageCount {
+    /// Inside.
+    pub inside: usize,
+    /// With an interval.
+    pub of: usize,
+    /// Least count that right intervals would give 95 % of the time.
+    pub expected_from: usize,
+    /// Largest such count.
+    pub expected_to: usize,
+}
+
+impl CoverageCount {
+    fn new(coverage: Coverage) -> Self {
+        let [expected_from, expected_to] = coverage.expected();
+        CoverageCount {
+            inside: coverage.inside,
+            of: coverage.of,
+            expected_from,
+            expected_to,
+        }
+    }
+}
+
+/// The channels that have fitted data.
+pub(super) fn channels(
+    outcome: &FinishedCalibration,
+    comparison: &Comparison,
+    posterior: &[PredictedDraw],
+    residuals: &[ResidualDiagnostics],
+) -> Vec<ChannelDiagnostics> {
+    let data = outcome.spec.likelihood.data();
+    let signals = signals(outcome, residuals);
+    let is_inferred = |index: usize| {
+        let mut own = data.iter().filter(|d| d.channel == index);
+        own.any(|d| matches!(d.sd, ErrorSd::Inferred { .. }))
+    };
+    let channel = |(index, channel): (usize, DataChannel)| {
+        let own = || residuals.iter().filter(|r| r.channel == channel.name());
+        let count = |usage: &str| {
+            let rows = comparison.rows.iter();
+            let rows = rows.filter(|r| r.usage == usage && r.channel == channel.name());
+            Coverage::count(rows).map(CoverageCount::new)
+        };
+        let signal = signals.get(&index);
+        let rows = own().count();
+        let squares: f64 = own().map(|r| r.error_sd * r.error_sd).sum();
+        ChannelDiagnostics {
+            channel: channel.name().into(),
+            unit: channel.unit().into(),
+            data: data.iter().filter(|d| d.channel == index).count(),
+            error_sd: (rows > 0).then(|| (squares / rows as f64).sqrt()),
+            prior_predictive_sd: signal.map(|s| s.prior_sd),
+            information: signal.map(|s| s.ratio),
+            effective_parameters: (rows > 0).then(|| own().map(|r| r.leverage).sum()),
+            chi_square: chi_square(outcome, posterior, |i| data[i].channel == index),
+            coverage90_fit: count("fit"),
+            coverage90_holdout: count("holdout"),
+            silence: signal.and_then(|signal| silence(channel, signal, is_inferred(index))),
+        }
+    };
+    DataChannel::fitted(&outcome.spec)
+        .into_iter()
+        .map(channel)
+        .collect()
+}
+
+/// The chi-square of some of the data.
+pub(super) fn chi_square(
+    outcome: &FinishedCalibration,
+    posterior: &[PredictedDraw],
+    keep: impl Fn(usize) -> bool,
+) -> Option<ChiSquareTest> {
+    // These values were scored while sampling.
+    let found = diagnostics::chi_square(&outcome.spec.likelihood, posterior, keep).ok()??;
+    Some(ChiSquareTest {
+        chi_square: found.value,
+        data: found.data,
+        degrees_of_freedom: found.degrees_of_freedom(),
+        p: found.p,
+    })
+}
+
+/// What the prior allows each channel to vary; none of a fit, which has no draws from the prior.
+fn signals(
+    outcome: &FinishedCalibration,
+    residuals: &[ResidualDiagnostics],
+) -> BTreeMap<usize, ChannelSignal> {
+    let prior = outcome.prior_draws.iter().filter_map(|draw| {
+        Some(PredictedDraw {
+            theta: draw.theta.clone(),
+            values: draw.result.as_ref().ok()?.clone(),
+        })
+    });
+    let variances: Vec<f64> = residuals.iter().map(|r| r.error_sd * r.error_sd).collect();
+    diagnostics::signals(
+        outcome.spec.likelihood.data(),
+        &variances,
+        &prior.collect::<Vec<_>>(),
+    )
+}
+
+fn silence(channel: DataChannel, signal: &ChannelSignal, is_inferred: bool) -> Option<String> {
+    if signal.ratio >= 1.0 {
+        return None;
+    }
+    let size = format!(
+        "its error of {}{} is {} times what the prior allows it to vary",
+        size(channel.name(), signal.error_sd),
+        if is_inferred {
+            ", inferred from the misfit,"
+        } else {
+            ""
+        },
+        number::significant(1.0 / signal.ratio, 2)
+    );
+    Some(if signal.is_heard_together() {
+        format!(
+            "{} hardly informs: {size}; only its {} rows together say more than the prior",
+            channel.words(),
+            signal.data
+        )
+    } else {
+        format!("{} cannot inform: {size}", channel.words())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use shared::channel::Channel;
+
+    use super::*;
+
+    #[test]
+    fn a_channel_that_is_drowned_says_so() {
+        let signal = |data, ratio| ChannelSignal {
+            data,
+            prior_sd: 1.43,
+            error_sd: 20.0,
+            ratio,
+        };
+        let torque = DataChannel::Wheel(Channel::Torque);
+        assert_eq!(
+            silence(torque, &signal(24, 1.0 / 14.0), false).unwrap(),
+            "torque cannot inform: its error of 20 N m is 14 times what the prior allows it to vary"
+        );
+        assert_eq!(
+            silence(torque, &signal(24, 0.5), true).unwrap(),
+            "torque hardly informs: its error of 20 N m, inferred from the misfit, is 2.0 times what the prior allows it to vary; only its 24 rows together say more than the prior"
+        );
+        assert_eq!(silence(torque, &signal(24, 1.0), false), None);
+    }
+
+    #[test]
+    fn a_chi_square_is_judged_in_words() {
+        let test = |p| ChiSquareTest {
+            chi_square: 61.5,
+            data: 24,
+            degrees_of_freedom: 21.04,
+            p,
+        };
+        assert_eq!(
+            test(Some(1e-5)).words(),
+            "the squares of 24 residuals sum to 61.5 noise variances where 21.0 are expected (p = 1e-5): more than the declared errors explain"
+        );
+        assert!(
+            test(Some(0.4))
+                .words()
+                .ends_with("(p = 0.40): the declared errors explain the misfit")
+        );
+        assert!(
+            test(Some(0.02))
+                .words()
+                .ends_with("rather more than the declared errors explain")
+        );
+        assert!(
+            test(Some(0.999))
+                .words()
+                .ends_with("the declared errors may be too large")
+        );
+        assert!(test(None).words().ends_with("nothing to judge it by"));
+    }
+}

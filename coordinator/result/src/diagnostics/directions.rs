@@ -1,0 +1,193 @@
+//! Combinations of parameters: what is known only together.
+
+use inference::diagnostics::{self, Direction};
+
+use crate::FinishedCalibration;
+use crate::report::number;
+
+/// A parameter with a smaller share of a direction's squared length is not named.
+const LEAST_SHARE: f64 = 0.1;
+/// Parameters whose best combination is known so many times better than their worst are known only together.
+const NARROW: f64 = 0.5;
+/// A direction with more of the prior's spread is not known at all.
+const UNKNOWN: f64 = 0.95;
+
+/// A principal direction of the posterior, in units of the prior's standard deviations.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct DirectionDiagnostics {
+    /// Standard deviation along it over that of the prior; 1 where the data say nothing.
+    pub sd_ratio: f64,
+    /// Where it points: of length 1, in prior standard deviations of the sampler's coordinates.
+    pub loadings: Vec<Loading>,
+}
+
+/// A component of a direction.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct Loading {
+    /// Parameter.
+    pub parameter: String,
+    /// Its component.
+    pub loading: f64,
+}
+
+/// The principal directions, the worst known first; none of a fit, and none where the prior itself is correlated: what it
+/// ties together the data need not.
+pub(super) fn directions(outcome: &FinishedCalibration) -> Vec<DirectionDiagnostics> {
+    if outcome.spec.prior().is_correlated() {
+        return Vec::new();
+    }
+    let all: Vec<usize> = (0..outcome.spec.parameters.len()).collect();
+    let named = |direction: &Direction| DirectionDiagnostics {
+        sd_ratio: direction.variance.sqrt(),
+        loadings: outcome
+            .spec
+            .parameters
+            .iter()
+            .zip(&direction.loadings)
+            .map(|(free, &loading)| Loading {
+                parameter: free.name.clone(),
+                loading,
+            })
+            .collect(),
+    };
+    diagnostics::principal_directions(&whitened(outcome, &all))
+        .iter()
+        .map(named)
+        .collect()
+}
+
+/// The draws of some parameters, in prior standard deviations of the sampler's coordinates.
+fn whitened(outcome: &FinishedCalibration, parameters: &[usize]) -> Vec<Vec<f64>> {
+    let scales: Vec<(usize, f64, f64)> = parameters
+        .iter()
+        .map(|&i| {
+            let (mean, sd) = outcome.spec.parameters[i].marginal.coordinate_moments();
+            (i, mean, sd)
+        })
+        .collect();
+    let draw = |theta: &[f64]| {
+        let coordinate = |&(i, mean, sd): &(usize, f64, f64)| {
+            (outcome.spec.parameters[i].marginal.coordinate(theta[i]) - mean) / sd
+        };
+        scales.iter().map(coordinate).collect()
+    };
+    outcome.posterior.iter().map(|s| draw(&s.theta)).collect()
+}
+
+/// A sentence on the worst-known direction.
+pub(super) fn worst_known(
+    outcome: &FinishedCalibration,
+    directions: &[DirectionDiagnostics],
+) -> Option<String> {
+    let worst = directions.first()?;
+    let mut named: Vec<usize> = (0..worst.loadings.len())
+        .filter(|&i| worst.loadings[i].loading.powi(2) >= LEAST_SHARE)
+        .collect();
+    named.sort_by(|&a, &b| {
+        let size = |i: usize| worst.loadings[i].loading.abs();
+        size(b).total_cmp(&size(a))
+    });
+    let own = diagnostics::principal_directions(&whitened(outcome, &named));
+    let (wide, narrow) = (own.first()?, own.last()?);
+    let names: Vec<String> = named
+        .iter()
+        .map(|&i| worst.loadings[i].parameter.clone())
+        .collect();
+    Some(sentence(&names, wide, narrow))
+}
+
+fn sentence(names: &[String], wide: &Direction, narrow: &Direction) -> String {
+    let percent = |d: &Direction| number::significant(100.0 * d.variance.sqrt(), 2);
+    let who = number::list(names);
+    if names.len() == 1 {
+        return format!(
+            "the data know {who} least: {} % of its prior's spread is left",
+            percent(wide)
+        );
+    }
+    if narrow.variance.sqrt() > NARROW * wide.variance.sqrt() {
+        let what = if wide.variance.sqrt() > UNKNOWN {
+            "say next to nothing about"
+        } else {
+            "know least"
+        };
+        return format!(
+            "the data {what} {who}: {} % of the prior's spread is left in their worst combination, {} % in their best",
+            percent(wide),
+            percent(narrow)
+        );
+    }
+    let moves: Vec<String> = names
+        .iter()
+        .zip(&wide.loadings)
+        .map(|(name, loading)| format!("{name} by {loading:+.1}"))
+        .collect();
+    format!(
+        "{who} are known only together: moving {} prior standard deviations leaves the fit much as it is ({} % of the prior's spread is left along this line, {} % where they are known best)",
+        number::list(&moves),
+        percent(wide),
+        percent(narrow)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::fixture;
+
+    fn direction(sd: f64, loadings: &[f64]) -> Direction {
+        Direction {
+            variance: sd * sd,
+            loadings: loadings.to_vec(),
+        }
+    }
+
+    #[test]
+    fn a_ridge_is_described_by_what_may_be_exchanged() {
+        let names = ["n", "friction_angle_deg"].map(String::from);
+        let (wide, narrow) = (direction(0.7, &[0.8, -0.6]), direction(0.05, &[0.6, 0.8]));
+        assert_eq!(
+            sentence(&names, &wide, &narrow),
+            "n and friction_angle_deg are known only together: moving n by +0.8 and friction_angle_deg by -0.6 prior standard deviations leaves the fit much as it is (70 % of the prior's spread is left along this line, 5.0 % where they are known best)"
+        );
+        let round = sentence(&names, &wide, &direction(0.6, &[0.6, 0.8]));
+        assert!(
+            round.starts_with("the data know least n and friction_angle_deg: 70 %"),
+            "{round}"
+        );
+        let single = sentence(&names[..1], &wide, &wide);
+        assert_eq!(
+            single,
+            "the data know n least: 70 % of its prior's spread is left"
+        );
+    }
+
+    #[test]
+    fn draws_on_a_line_are_known_only_together() {
+        let mut outcome = fixture::outcome();
+        let priors: Vec<_> = outcome
+            .spec
+            .parameters
+            .iter()
+            .map(|p| p.marginal.clone())
+            .collect();
+        // n wanders over half its prior and the friction angle with it; everything else stands still.
+        for (k, sample) in outcome.posterior.iter_mut().enumerate() {
+            let share = 0.25 + 0.5 * (k as f64 + 0.5) / 40.0;
+            sample.theta = priors
+                .iter()
+                .enumerate()
+                .map(|(i, marginal)| marginal.quantile(if i == 1 || i == 2 { share } else { 0.5 }))
+                .collect();
+        }
+        let directions = directions(&outcome);
+        assert!(directions[0].sd_ratio > 0.4 && directions[1].sd_ratio < 0.1);
+        let words = worst_known(&outcome, &directions).unwrap();
+        assert!(
+            words.starts_with(
+                "n and friction_angle_deg are known only together: moving n by +0.8 and friction_angle_deg by +0.6"
+            ),
+            "{words}"
+        );
+    }
+}

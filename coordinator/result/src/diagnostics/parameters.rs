@@ -1,0 +1,155 @@
+//! What the data did to each parameter.
+
+use inference::diagnostics::{self, Conflict};
+
+use crate::FinishedCalibration;
+use job::FreeParameter;
+
+/// A parameter after the data, beside its prior.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct ParameterDiagnostics {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// 1 - sd after / sd before, in the sampler's coordinate (the logarithm of lognormal and log-uniform parameters):
+    /// 0 where the data say nothing, 1 where they say everything. Null of a fit.
+    pub contraction: Option<f64>,
+    /// Whether it lies at a bound of its prior.
+    pub at_bound: bool,
+    /// Probability that a right prior has the posterior so far out; null where the data say too little.
+    pub conflict_p: Option<f64>,
+}
+
+/// The prior of all parameters together against the data.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct PriorConflict {
+    /// Squared distance of posterior and prior, in the directions that the data inform.
+    pub statistic: f64,
+    /// As many directions.
+    pub degrees_of_freedom: usize,
+    /// Probability of so large a distance where the prior is right; null where the data inform no direction.
+    pub p: Option<f64>,
+}
+
+/// Where the model refuses more of the prior than this share, the prior's accepted draws take its place.
+const CUT: f64 = 0.05;
+
+/// Every parameter, in the order of the job, and all of them together.
+pub(super) fn parameters(
+    outcome: &FinishedCalibration,
+) -> (Vec<ParameterDiagnostics>, Option<PriorConflict>) {
+    let draws: Vec<&[f64]> = outcome.posterior.iter().map(|s| s.theta.as_slice()).collect();
+    let accepted: Vec<&[f64]> = outcome
+        .prior_draws
+        .iter()
+        .filter(|draw| draw.result.is_ok())
+        .map(|draw| draw.theta.as_slice())
+        .collect();
+    let refused = outcome.prior_draws.len() - accepted.len();
+    let is_cut = refused as f64 > CUT * outcome.prior_draws.len() as f64;
+    // What the model refuses the data never saw: there the prior is another than the one declared.
+    let conflict = if is_cut {
+        None
+    } else {
+        diagnostics::conflict(&outcome.spec.prior(), &draws)
+    };
+    let parameter = |(i, free): (usize, &FreeParameter)| {
+        let draws = outcome.draws(i);
+        let of = |c: &Conflict| c.parameters[i];
+        ParameterDiagnostics {
+            name: free.name.clone(),
+            unit: free.unit.clone(),
+            contraction: match is_cut {
+                true => spread(free, accepted.iter().map(|theta| theta[i]))
+                    .and_then(|before| contraction(free, &draws, before)),
+                false => contraction(free, &draws, free.marginal.coordinate_moments().1),
+            },
+            at_bound: match &outcome.estimate {
+                Some(estimate) => estimate.at_bound[i],
+                None => diagnostics::summary(&draws).is_some_and(|s| free.marginal.at_bound(s.q05, s.q95)),
+            },
+            conflict_p: conflict.as_ref().and_then(of),
+        }
+    };
+    let together = conflict.as_ref().map(|c| PriorConflict {
+        statistic: c.statistic,
+        degrees_of_freedom: c.degrees_of_freedom,
+        p: c.p,
+    });
+    let parameters = outcome.spec.parameters.iter().enumerate().map(parameter);
+    (parameters.collect(), together)
+}
+
+/// One less the posterior's spread over what it was before the data.
+fn contraction(free: &FreeParameter, draws: &[f64], before: f64) -> Option<f64> {
+    let after = spread(free, draws.iter().copied())?;
+    (before > 0.0).then(|| 1.0 - after / before)
+}
+
+/// Standard deviation in the sampler's coordinate; `None` with fewer than two values.
+fn spread(free: &FreeParameter, values: impl Iterator<Item = f64>) -> Option<f64> {
+    let coordinates: Vec<f64> = values.map(|x| free.marginal.coordinate(x)).collect();
+    let (_, sd) = diagnostics::mean_and_sd(&coordinates).filter(|_| coordinates.len() > 1)?;
+    Some(sd)
+}
+
+#[cfg(test)]
+mod tests {
+    use statistics::{Distribution, Marginal};
+
+    use super::*;
+    use crate::report::fixture;
+
+    fn free(distribution: Distribution) -> FreeParameter {
+        FreeParameter {
+            name: "x".into(),
+            unit: "1".into(),
+            marginal: Marginal::new(distribution, None).unwrap(),
+        }
+    }
+
+    #[test]
+    fn contraction_is_one_less_the_ratio_of_widths() {
+        // A uniform posterior a tenth as wide as its uniform prior.
+        let uniform = free(Distribution::Uniform {
+            lower: 2.0,
+            upper: 4.0,
+        });
+        let draws: Vec<f64> = (0..4000).map(|k| 3.0 + 0.2 * (k as f64 + 0.5) / 4000.0).collect();
+        let before = uniform.marginal.coordinate_moments().1;
+        assert!((contraction(&uniform, &draws, before).unwrap() - 0.9).abs() < 1e-3);
+        assert_eq!(contraction(&uniform, &[3.0], before), None);
+        // exp(+-a) with a = sqrt(1/2) ln 2 has the sd ln 2 of its logarithm, factor 4 in the prior: one half is left.
+        let lognormal = free(Distribution::Lognormal {
+            median: 1.0,
+            factor: 4.0,
+        });
+        let a = 0.5_f64.sqrt() * 2.0_f64.ln();
+        let before = lognormal.marginal.coordinate_moments().1;
+        let left = contraction(&lognormal, &[a.exp(), (-a).exp()], before).unwrap();
+        assert!((left - 0.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn where_the_model_refuses_much_the_accepted_draws_are_the_prior() {
+        let mut outcome = fixture::outcome();
+        let (whole, conflict) = parameters(&outcome);
+        assert!(conflict.is_some());
+        // Of the draws from the prior the model now takes only those in the lower half of the first parameter.
+        let mut first: Vec<f64> = outcome.prior_draws.iter().map(|draw| draw.theta[0]).collect();
+        first.sort_by(f64::total_cmp);
+        let middle = first[first.len() / 2];
+        for draw in &mut outcome.prior_draws {
+            if draw.theta[0] > middle {
+                draw.result = Err("no_support: condition 0: toy".into());
+            }
+        }
+        let (cut, conflict) = parameters(&outcome);
+        assert!(conflict.is_none());
+        assert!(
+            cut[0].contraction.unwrap() < whole[0].contraction.unwrap() - 0.02,
+            "{cut:?} {whole:?}"
+        );
+    }
+}

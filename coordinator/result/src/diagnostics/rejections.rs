@@ -1,0 +1,304 @@
+//! Refusals and faults by region of the prior.
+
+use std::collections::BTreeMap;
+
+use inference::diagnostics::{self, BINS, Region, Side};
+
+use super::{LEVEL, p_words};
+use crate::FinishedCalibration;
+use crate::report::number;
+use job::{FreeParameter, Spec};
+use record::PriorDraw;
+
+/// What the model refused and which leases failed.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct RejectionDiagnostics {
+    /// How often the model refused in the whole calibration, by reason.
+    pub refused: BTreeMap<String, u64>,
+    /// How often a lease failed in the whole calibration, by what was said of it. Each was retried: a failed lease says
+    /// nothing of the parameters.
+    pub faults: BTreeMap<String, u64>,
+    /// Draws from the prior, which the regions are made of.
+    pub prior_draws: u64,
+    /// Of these, refused.
+    pub prior_refused: u64,
+    /// Each parameter's prior in parts of equal probability.
+    pub parameters: Vec<BinnedParameter>,
+    /// Where refusals concentrate, if they do beyond chance.
+    pub region: Option<PriorRegion>,
+}
+
+/// A parameter's prior in parts of equal probability.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct BinnedParameter {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// The parts, from below.
+    pub bins: Vec<Bin>,
+}
+
+/// A part of a prior.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct Bin {
+    /// Lower end; null where the prior has none.
+    pub from: Option<f64>,
+    /// Upper end.
+    pub to: Option<f64>,
+    /// Draws from the prior.
+    pub draws: u64,
+    /// How often the model refused, by reason.
+    pub refused: BTreeMap<String, u64>,
+    /// Leases of these draws that failed.
+    pub faults: u64,
+}
+
+/// A region of the prior in which refusals concentrate.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct PriorRegion {
+    /// Bounds of one parameter, or of two that must both hold.
+    pub sides: Vec<RegionSide>,
+    /// Draws from the prior.
+    pub draws: u64,
+    /// How often the model refused, by reason.
+    pub refused: BTreeMap<String, u64>,
+    /// Probability of so many there by chance, corrected for the regions that were looked at.
+    pub p: f64,
+}
+
+/// A bound of one parameter.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct RegionSide {
+    /// Parameter.
+    pub parameter: String,
+    /// Unit.
+    pub unit: String,
+    /// Above this value.
+    pub above: Option<f64>,
+    /// Below this value.
+    pub below: Option<f64>,
+}
+
+/// Counts of the draws from the prior.
+pub(super) fn rejections(outcome: &FinishedCalibration) -> RejectionDiagnostics {
+    let draws = &outcome.prior_draws;
+    // The sds of noise are no concern of the model that refuses.
+    let free = &outcome.spec.parameters[..outcome.spec.fit_variant.parameters.len()];
+    let bin_of = |draw: &PriorDraw| -> Vec<usize> {
+        let parameters = free.iter().zip(&draw.theta);
+        parameters
+            .map(|(p, &x)| diagnostics::bin(p.marginal.cumulative(x)))
+            .collect()
+    };
+    let binned: Vec<(Vec<usize>, bool)> = draws.iter().map(|d| (bin_of(d), d.result.is_err())).collect();
+    let parameters = free.iter().enumerate().map(|(i, p)| BinnedParameter {
+        name: p.name.clone(),
+        unit: p.unit.clone(),
+        bins: (0..BINS)
+            .filter(|_| !draws.is_empty())
+            .map(|b| {
+                bin(
+                    p,
+                    b,
+                    draws
+                        .iter()
+                        .zip(&binned)
+                        .filter(|(_, (bins, _))| bins[i] == b)
+                        .map(|(d, _)| d),
+                )
+            })
+            .collect(),
+    });
+    let found = diagnostics::concentration(&binned).filter(|region| region.p < LEVEL);
+    RejectionDiagnostics {
+        refused: outcome.rejections.clone(),
+        faults: outcome.faults.clone(),
+        prior_draws: draws.len() as u64,
+        prior_refused: draws.iter().filter(|d| d.result.is_err()).count() as u64,
+        parameters: parameters.collect(),
+        region: found.map(|region| prior_region(&outcome.spec, &region, draws, &binned)),
+    }
+}
+
+fn finite(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
+}
+
+/// Lower end of a bin of a parameter; the upper end of the bin below.
+fn edge(free: &FreeParameter, bin: usize) -> f64 {
+    free.marginal.quantile(bin as f64 / BINS as f64)
+}
+
+fn bin<'a>(free: &FreeParameter, number: usize, draws: impl Iterator<Item = &'a PriorDraw>) -> Bin {
+    let own: Vec<&PriorDraw> = draws.collect();
+    Bin {
+        from: finite(edge(free, number)),
+        to: finite(edge(free, number + 1)),
+        draws: own.len() as u64,
+        refused: reasons(own.iter().copied()),
+        faults: own.iter().map(|d| d.faults).sum(),
+    }
+}
+
+/// Refusals by reason: what stands before the colon.
+fn reasons<'a>(draws: impl Iterator<Item = &'a PriorDraw>) -> BTreeMap<String, u64> {
+    let mut reasons = BTreeMap::new();
+    for reason in draws.filter_map(|d| d.result.as_ref().err()) {
+        let kind = reason.split_once(':').map_or(reason.as_str(), |(kind, _)| kind);
+        *reasons.entry(kind.to_owned()).or_default() += 1;
+    }
+    reasons
+}
+
+fn prior_region(
+    spec: &Spec,
+    region: &Region,
+    draws: &[PriorDraw],
+    binned: &[(Vec<usize>, bool)],
+) -> PriorRegion {
+    let inside = |bins: &[usize]| {
+        region
+            .sides
+            .iter()
+            .all(|s| (s.from..s.to).contains(&bins[s.parameter]))
+    };
+    let own = draws.iter().zip(binned).filter(|(_, (bins, _))| inside(bins));
+    let side = |side: &Side| {
+        let free = &spec.parameters[side.parameter];
+        RegionSide {
+            parameter: free.name.clone(),
+            unit: free.unit.clone(),
+            above: (side.from > 0).then(|| edge(free, side.from)),
+            below: (side.to < BINS).then(|| edge(free, side.to)),
+        }
+    };
+    PriorRegion {
+        sides: region.sides.iter().map(side).collect(),
+        draws: region.drawn as u64,
+        refused: reasons(own.map(|(draw, _)| draw)),
+        p: region.p,
+    }
+}
+
+impl RegionSide {
+    /// `k_c below -2.0e8 N/m^2.1`.
+    fn words(&self) -> String {
+        let unit = if self.unit == "1" {
+            String::new()
+        } else {
+            format!(" {}", self.unit)
+        };
+        let bound =
+            |word: &str, x: Option<f64>| x.map(|x| format!("{word} {}{unit}", number::significant(x, 3)));
+        let bounds: Vec<String> = bound("above", self.above)
+            .into_iter()
+            .chain(bound("below", self.below))
+            .collect();
+        format!("{} {}", self.parameter, number::list(&bounds))
+    }
+}
+
+impl RejectionDiagnostics {
+    /// A sentence on where refusals concentrate; none where they do not.
+    pub fn words(&self) -> Option<String> {
+        let region = self.region.as_ref()?;
+        let refused: u64 = region.refused.values().sum();
+        let percent = |part: u64, whole: u64| number::significant(100.0 * part as f64 / whole as f64, 2);
+        let sides: Vec<String> = region.sides.iter().map(RegionSide::words).collect();
+        let reasons: Vec<String> = region
+            .refused
+            .iter()
+            .map(|(kind, n)| format!("{kind} {n}"))
+            .collect();
+        Some(format!(
+            "{} % of the {} refusals among {} draws from the prior have {}: {}; this is {} % of the prior, and {} % of it is refused ({} by chance)",
+            percent(refused, self.prior_refused),
+            self.prior_refused,
+            self.prior_draws,
+            number::list(&sides),
+            reasons.join(", "),
+            percent(region.draws, self.prior_draws),
+            percent(refused, region.draws),
+            p_words(region.p)
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::fixture;
+
+    /// 200 draws spread evenly over the prior, of which those are refused whose n is in its lowest part.
+    fn with_low_n_refused() -> FinishedCalibration {
+        let mut outcome = fixture::outcome();
+        let priors: Vec<_> = outcome
+            .spec
+            .parameters
+            .iter()
+            .map(|p| p.marginal.clone())
+            .collect();
+        let kept = outcome
+            .prior_draws
+            .iter()
+            .find_map(|d| d.result.as_ref().ok().cloned())
+            .unwrap();
+        outcome.prior_draws = (0..200)
+            .map(|k| {
+                let share = |i: usize| (f64::from(k / 5_i32.pow(i as u32) % 5) + 0.5) / 5.0;
+                PriorDraw {
+                    theta: priors
+                        .iter()
+                        .enumerate()
+                        .map(|(i, p)| p.quantile(share(i)))
+                        .collect(),
+                    result: if share(1) < 0.2 {
+                        Err("no_support: k* < 0".into())
+                    } else {
+                        Ok(kept.clone())
+                    },
+                    faults: u64::from(k == 3),
+                }
+            })
+            .collect();
+        outcome
+    }
+
+    #[test]
+    fn refusals_of_low_n_are_found_there() {
+        let found = rejections(&with_low_n_refused());
+        // n is uniform from 0.8 to 1.6: its lowest fifth ends at 0.96.
+        let side = &found.region.as_ref().unwrap().sides;
+        assert_eq!(
+            (side.len(), side[0].parameter.as_str(), side[0].above),
+            (1, "n", None)
+        );
+        assert!((side[0].below.unwrap() - 0.96).abs() < 1e-12);
+        assert_eq!(
+            found.words().unwrap(),
+            "100 % of the 40 refusals among 200 draws from the prior have n below 0.960: no_support 40; this is 20 % of the prior, and 100 % of it is refused (p < 1e-12 by chance)"
+        );
+        let n = &found.parameters[1];
+        let counts: Vec<(u64, u64)> = n
+            .bins
+            .iter()
+            .map(|b| (b.draws, b.refused.values().sum()))
+            .collect();
+        assert_eq!(counts, [(40, 40), (40, 0), (40, 0), (40, 0), (40, 0)]);
+        assert_eq!((n.bins[0].from, n.bins[4].to), (Some(0.8), Some(1.6)));
+        assert_eq!(found.parameters.len(), 3, "noise has no bins");
+        let faults: Vec<u64> = found
+            .parameters
+            .iter()
+            .map(|p| p.bins.iter().map(|b| b.faults).sum())
+            .collect();
+        assert_eq!(faults, [1, 1, 1]);
+    }
+
+    #[test]
+    fn a_few_refusals_prove_no_region() {
+        let found = rejections(&fixture::outcome());
+        assert_eq!((found.prior_refused, found.region), (2, None));
+    }
+}

@@ -1,0 +1,120 @@
+//! The block `discovery` of `summary.json`.
+
+use super::Round;
+use record::effect_of;
+use record::{Discovery, JudgedEffect, NextRun, Outside, Verdict};
+
+/// What is known of the effects that a study's model misses.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct DiscoverySummary {
+    /// Of the whole study: what was added, or what the first search says.
+    pub verdict: Verdict,
+    /// The effects that were added; where none was, the one that a search would add.
+    pub chosen: Vec<String>,
+    /// Every explanation of the first search.
+    pub effects: Vec<JudgedEffect>,
+    /// What acts, where no effect of the library does.
+    pub outside: Option<Outside>,
+    /// Effects that the last search could not have seen.
+    pub cannot_exclude: Vec<String>,
+    /// Test runs that would tell what the last search left open.
+    pub next_runs: Vec<NextRun>,
+    /// Tests without a rolling wheel that would.
+    pub other_tests: Vec<String>,
+    /// Evaluations of all searches.
+    pub evaluations: u64,
+    /// Every search.
+    pub rounds: Vec<Discovery>,
+}
+
+impl DiscoverySummary {
+    /// The block of a study; `added` are the effects of its best calibration that the first one did not have.
+    /// `None` where nothing was searched.
+    pub(crate) fn of(rounds: &[Round], added: Vec<String>) -> Option<DiscoverySummary> {
+        let records: Vec<Discovery> = rounds.iter().map(|round| round.record.clone()).collect();
+        let (first, last) = (records.first()?, records.last()?);
+        // The search that named what was added; else the last one that saw something: further runs may have told more.
+        let named = records.iter().find(|record| {
+            record
+                .extension
+                .as_ref()
+                .is_some_and(|e| added.contains(&effect_of(e)))
+        });
+        let seeing = || {
+            records
+                .iter()
+                .rev()
+                .find(|r| r.verdict != Verdict::NothingDetectable)
+        };
+        let verdict = named.or_else(seeing).unwrap_or(first).verdict;
+        let chosen = match added.is_empty() {
+            true => seeing()
+                .and_then(|r| r.extension.as_ref())
+                .map(effect_of)
+                .into_iter()
+                .collect(),
+            false => added,
+        };
+        Some(DiscoverySummary {
+            verdict,
+            chosen,
+            effects: first.effects.clone(),
+            outside: records.iter().find_map(|record| record.outside.clone()),
+            cannot_exclude: last.cannot_exclude.clone(),
+            next_runs: last.next_runs.clone(),
+            other_tests: last.other_tests.clone(),
+            evaluations: records.iter().map(|record| record.evaluations).sum(),
+            rounds: records,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record() -> Discovery {
+        serde_json::from_str(include_str!("../../../record/discovery.json")).unwrap()
+    }
+
+    fn rounds() -> Vec<Round> {
+        let of = |calibration, record| Round { calibration, record };
+        let last = Discovery {
+            given: vec!["slip_sinkage".into()],
+            verdict: Verdict::NothingDetectable,
+            extension: None,
+            cannot_exclude: vec!["adhesion".into()],
+            next_runs: Vec::new(),
+            ..record()
+        };
+        vec![of(1, record()), of(3, last)]
+    }
+
+    #[test]
+    fn a_study_without_searches_says_nothing() {
+        assert!(DiscoverySummary::of(&[], vec!["slip_sinkage".into()]).is_none());
+    }
+
+    #[test]
+    fn what_was_added_is_the_verdict_of_the_study() {
+        let of = |added: &[&str]| {
+            let added = added.iter().map(|&e| e.to_owned()).collect();
+            let summary = DiscoverySummary::of(&rounds(), added).unwrap();
+            (summary.verdict, summary.chosen)
+        };
+        assert_eq!(of(&[]), (Verdict::Named, vec!["slip_sinkage".to_owned()]));
+        assert_eq!(of(&["adhesion"]), (Verdict::Named, vec!["adhesion".to_owned()]));
+        // A file of the user's own is no finding.
+        let file = ["shear_slip_step"];
+        assert_eq!(of(&file), (Verdict::Named, file.map(String::from).to_vec()));
+    }
+
+    #[test]
+    fn explanations_are_the_first_search_s_and_open_questions_the_last_one_s() {
+        let summary = DiscoverySummary::of(&rounds(), vec!["slip_sinkage".into()]).unwrap();
+        assert_eq!(summary.effects, record().effects);
+        assert_eq!(summary.cannot_exclude, ["adhesion"]);
+        assert!(summary.next_runs.is_empty());
+        assert_eq!((summary.evaluations, summary.rounds.len()), (8000, 2));
+    }
+}

@@ -1,0 +1,192 @@
+//! How searches and sampler came to their results: the source paper's Fig. 5.
+
+use inference::diagnostics;
+
+use super::AxisParameter;
+use crate::FinishedCalibration;
+use crate::point_estimate::{GenerationSummary, generations};
+use record::Sample;
+
+/// More points than this only make a picture heavy.
+const POINTS: usize = 400;
+/// The parameters that the source paper shows its samples in.
+const PAPER: [&str; 2] = ["n", "friction_angle_deg"];
+
+/// The way of a search by generations.
+#[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
+pub struct SearchConvergence {
+    /// Algorithm.
+    pub algorithm: String,
+    /// Best and mean log-posterior after every generation, by evaluations.
+    pub history: Vec<GenerationSummary>,
+}
+
+/// A stage of the sampler.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, utoipa::ToSchema)]
+pub struct StageConvergence {
+    /// Position, counted from 0 = the prior.
+    pub stage: u32,
+    /// Tempering exponent.
+    pub tempering_exponent: f64,
+    /// Evaluations spent up to its end.
+    pub evaluations: u64,
+    /// Log-likelihoods of its population; null where the model refused all of it.
+    pub log_likelihood: Option<LogLikelihoodRange>,
+}
+
+/// Log-likelihoods of a population `[nats]`.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, utoipa::ToSchema)]
+pub struct LogLikelihoodRange {
+    /// 5 % quantile.
+    pub q05: f64,
+    /// Median.
+    pub q50: f64,
+    /// 95 % quantile.
+    pub q95: f64,
+    /// Highest.
+    pub highest: f64,
+}
+
+/// The populations of some stages, in two parameters.
+#[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
+pub struct Populations {
+    /// The two parameters.
+    pub parameters: [AxisParameter; 2],
+    /// The first, a middle and the last stage; at most 400 points of each, evenly thinned.
+    pub stages: Vec<StagePopulation>,
+}
+
+/// The population of a stage.
+#[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
+pub struct StagePopulation {
+    /// Position, counted from 0 = the prior.
+    pub stage: u32,
+    /// Tempering exponent.
+    pub tempering_exponent: f64,
+    /// Values of both parameters.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// The way of a search; `None` of a sample, and of a fit by steps, which keeps none.
+pub(super) fn search(outcome: &FinishedCalibration) -> Option<SearchConvergence> {
+    let history = generations(&outcome.estimate.as_ref()?.history);
+    (!history.is_empty()).then(|| SearchConvergence {
+        algorithm: outcome.spec.method.name().to_owned(),
+        history,
+    })
+}
+
+/// A population with its stage, its tempering exponent and the evaluations up to its end.
+struct Population<'a> {
+    stage: u32,
+    tempering_exponent: f64,
+    evaluations: u64,
+    samples: &'a [Sample],
+}
+
+/// The populations from the prior, which is stage 0, to the posterior.
+fn all(outcome: &FinishedCalibration) -> Vec<Population<'_>> {
+    let Some((prior, later)) = outcome.populations.split_first() else {
+        return Vec::new();
+    };
+    let mut evaluations = prior.len() as u64;
+    let mut populations = vec![Population {
+        stage: 0,
+        tempering_exponent: 0.0,
+        evaluations,
+        samples: prior,
+    }];
+    let later = later.iter().chain([&outcome.posterior]);
+    for (row, samples) in outcome.stages.iter().zip(later) {
+        evaluations += row.evaluations;
+        populations.push(Population {
+            stage: row.stage,
+            tempering_exponent: row.tempering_exponent,
+            evaluations,
+            samples,
+        });
+    }
+    populations
+}
+
+/// The stages of a sampler.
+pub(super) fn stages(outcome: &FinishedCalibration) -> Vec<StageConvergence> {
+    let stage = |population: &Population| StageConvergence {
+        stage: population.stage,
+        tempering_exponent: population.tempering_exponent,
+        evaluations: population.evaluations,
+        log_likelihood: range(population.samples),
+    };
+    all(outcome).iter().map(stage).collect()
+}
+
+fn range(population: &[Sample]) -> Option<LogLikelihoodRange> {
+    let values: Vec<f64> = population.iter().filter_map(|s| s.log_likelihood).collect();
+    let summary = diagnostics::summary(&values)?;
+    Some(LogLikelihoodRange {
+        q05: summary.q05,
+        q50: summary.q50,
+        q95: summary.q95,
+        highest: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    })
+}
+
+/// The populations of the first, a middle and the last stage; in the source paper's parameters where the job has them.
+pub(super) fn populations(outcome: &FinishedCalibration) -> Option<Populations> {
+    let free = &outcome.spec.parameters;
+    let place = |name: &str| free.iter().position(|p| p.name == name);
+    let [x, y] = match PAPER.map(place) {
+        [Some(x), Some(y)] => [x, y],
+        _ if free.len() > 1 => [0, 1],
+        _ => return None,
+    };
+    let all = all(outcome);
+    let last = all.len().checked_sub(1)?;
+    let mut shown = vec![0, last / 2, last];
+    shown.dedup();
+    let stages = shown.into_iter().map(|i| {
+        let population = &all[i];
+        let every = population.samples.len().div_ceil(POINTS).max(1);
+        StagePopulation {
+            stage: population.stage,
+            tempering_exponent: population.tempering_exponent,
+            points: population
+                .samples
+                .iter()
+                .step_by(every)
+                .map(|s| [s.theta[x], s.theta[y]])
+                .collect(),
+        }
+    });
+    Some(Populations {
+        parameters: [(&free[x]).into(), (&free[y]).into()],
+        stages: stages.collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::report::fixture;
+    use super::*;
+
+    #[test]
+    fn evaluations_add_up_and_every_population_has_its_range() {
+        let stages = stages(&fixture::outcome());
+        let evaluations: Vec<u64> = stages.iter().map(|s| s.evaluations).collect();
+        assert_eq!(evaluations, [40, 520, 1000, 1480]);
+        let range = stages[0].log_likelihood.unwrap();
+        assert!(range.q05 < range.q50 && range.q50 < range.q95 && range.q95 <= range.highest);
+    }
+
+    #[test]
+    fn a_middle_stage_stands_between_the_first_and_the_last() {
+        let mut outcome = fixture::outcome();
+        let populations = populations(&outcome).unwrap();
+        let stages: Vec<u32> = populations.stages.iter().map(|s| s.stage).collect();
+        assert_eq!(stages, [0, 1, 3]);
+        assert_eq!(populations.parameters[1].unit, "deg");
+        assert!(populations.stages.iter().all(|s| s.points.len() == 40));
+        outcome.populations.clear();
+        assert!(super::populations(&outcome).is_none());
+    }
+}

@@ -1,0 +1,118 @@
+//! A finished calibration with everything that the store kept of it.
+
+use std::collections::BTreeMap;
+
+use shared::outcome::SimulatedHistory;
+use statistics::Marginal;
+
+use job::Spec;
+use record::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Sample, StageRow, Subchains};
+
+/// A finished calibration.
+#[derive(Debug)]
+pub struct FinishedCalibration {
+    /// Its row in the store.
+    pub row: CalibrationRow,
+    /// Its specification.
+    pub spec: Spec,
+    /// Name of its experiment.
+    pub experiment: String,
+    /// Its stages.
+    pub stages: Vec<StageRow>,
+    /// What a fit found; `None` where the posterior was sampled.
+    pub estimate: Option<EstimateRow>,
+    /// The equally weighted draws of the posterior; none of a fit.
+    pub posterior: Vec<Sample>,
+    /// The draws from the prior, then the populations at the end of the stages before the last; none of a fit.
+    pub populations: Vec<Vec<Sample>>,
+    /// The model's values of the fitted measurements at the draw of the highest likelihood.
+    pub likeliest_values: Option<Vec<f64>>,
+    /// The final draws, simulated on every run; the first is the most probable particle, of a fit the only one.
+    pub predictions: Vec<Prediction>,
+    /// What each fitted run felt over time at the likeliest parameters; `None` of a model that knows no time.
+    pub simulated_histories: Option<Vec<SimulatedHistory>>,
+    /// How often the model refused, by kind.
+    pub rejections: BTreeMap<String, u64>,
+    /// What a metamodel did; `None` where there was none.
+    pub subchains: Option<Subchains>,
+    /// The draws from the prior that a sampler began with; none of a fit.
+    pub prior_draws: Vec<PriorDraw>,
+    /// How often a lease failed, by what was said of it.
+    pub faults: BTreeMap<String, u64>,
+}
+
+impl FinishedCalibration {
+    /// The draw of the highest likelihood; the first of equals.
+    pub fn likeliest(&self) -> Option<&Sample> {
+        likeliest(&self.posterior)
+    }
+
+    /// The predictions that results are made from: equally weighted draws, without the most probable particle, which is
+    /// no random draw; of a fit, its one point.
+    pub fn predictive_draws(&self) -> &[Prediction] {
+        let first = usize::from(self.estimate.is_none()).min(self.predictions.len());
+        &self.predictions[first..]
+    }
+
+    /// The most probable particle: highest likelihood times prior; the first of equals.
+    pub fn most_probable(&self) -> Option<&Sample> {
+        let score = |s: &Sample| s.log_likelihood.unwrap_or(f64::NEG_INFINITY) + s.log_prior;
+        self.posterior
+            .iter()
+            .reduce(|best, s| if score(s) > score(best) { s } else { best })
+    }
+
+    /// The draws of one parameter.
+    pub fn draws(&self, parameter: usize) -> Vec<f64> {
+        self.posterior.iter().map(|s| s.theta[parameter]).collect()
+    }
+}
+
+/// The population that a sampler begins with.
+pub fn first_population(spec: &Spec, draws: &[PriorDraw]) -> Vec<Sample> {
+    let prior = spec.prior();
+    let score = |draw: &PriorDraw| {
+        let values = draw.result.as_ref().ok()?;
+        let scored = spec.likelihood.log_likelihood(values, &draw.theta).ok()?;
+        Some(scored.value()).filter(|value| value.is_finite())
+    };
+    let sample = |draw: &PriorDraw| Sample {
+        theta: draw.theta.clone(),
+        log_likelihood: score(draw),
+        log_prior: prior.log_density(&draw.theta),
+    };
+    draws.iter().map(sample).collect()
+}
+
+/// The draw of the highest likelihood; the first of equals.
+pub fn likeliest(draws: &[Sample]) -> Option<&Sample> {
+    let score = |s: &Sample| s.log_likelihood.unwrap_or(f64::NEG_INFINITY);
+    let best = draws
+        .iter()
+        .reduce(|best, s| if score(s) > score(best) { s } else { best });
+    best.filter(|s| s.log_likelihood.is_some())
+}
+
+/// The mean of a prior; that of a symmetric one is integrated to zero but for rounding, which is not shown.
+pub(crate) fn prior_mean(marginal: &Marginal) -> f64 {
+    let mean = marginal.mean();
+    if mean.abs() < 1e-12 * marginal.sd() {
+        0.0
+    } else {
+        mean
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use statistics::Distribution;
+
+    use super::*;
+
+    #[test]
+    fn a_prior_about_zero_has_the_mean_zero() {
+        let of = |mean| prior_mean(&Marginal::new(Distribution::Normal { mean, sd: 0.2 }, None).unwrap());
+        assert_eq!(of(0.0).to_bits(), 0.0_f64.to_bits());
+        assert!((of(1e-6) - 1e-6).abs() < 1e-15);
+    }
+}

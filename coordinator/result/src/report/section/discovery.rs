@@ -1,0 +1,186 @@
+//! Which effect the model misses: the ledger of errors, and what the searches found.
+
+use std::path::Path;
+
+use maud::{Markup, html};
+
+use crate::discovery::arguments;
+use crate::report::chart;
+use crate::report::number;
+use crate::report::quantity::Quantity;
+use crate::{Comparison, ErrorTable, FinishedCalibration, Round, Study};
+use record::{Discovery, JudgedEffect, Outside};
+
+/// Ledger, then each search; nothing where the study has neither a search nor an extension.
+pub(in crate::report) fn discovery(study: &Study) -> Option<Markup> {
+    let is_grown = !(study.rounds.is_empty() && study.extensions.is_empty());
+    is_grown.then(|| {
+        html! {
+            (ledger(study))
+            @for round in &study.rounds { (search(study, round)) }
+        }
+    })
+}
+
+/// The errors of each calibration: whether they fall is what an added effect is judged by.
+fn ledger(study: &Study) -> Markup {
+    let lines: Vec<(&FinishedCalibration, Comparison)> =
+        study.ledger().map(|o| (o, o.comparison())).collect();
+    let rows: Vec<_> = lines.iter().flat_map(|(_, c)| c.rows.iter().cloned()).collect();
+    let quantities = Quantity::measured(&rows);
+    html! {
+        div.scroll { table {
+            thead { tr {
+                th.text { "calibration" } th.text { "effects" } th.text { "rows" }
+                @for quantity in &quantities { th { (quantity.label()) br; "(noise sds)" } }
+                th { "all" br; "[noise sds]" } th { "inside" br; "90 %" } th { "log-evidence" }
+            } }
+            tbody {
+                @for (outcome, comparison) in &lines {
+                    @for (usage, table) in [("fit", &comparison.fit), ("holdout", &comparison.holdout)] {
+                        @if let Some(table) = table {
+                            tr.first[usage == "fit"] { (cells(outcome, comparison, usage, table, &quantities)) }
+                        }
+                    }
+                }
+            }
+        } }
+        p.note {
+            "Root mean square errors of the posterior-mean prediction. An effect that is really there lowers them on held-out rows, too. "
+            "Log-evidences compare on the same measurements alone."
+        }
+    }
+}
+
+fn cells(
+    outcome: &FinishedCalibration,
+    comparison: &Comparison,
+    usage: &str,
+    table: &ErrorTable,
+    quantities: &[Quantity],
+) -> Markup {
+    let is_first = usage == "fit";
+    let effects = outcome.effects();
+    let coverage = crate::coverage::Coverage::count(comparison.rows.iter().filter(|r| r.usage == usage));
+    html! {
+        td.text { @if is_first { (outcome.experiment) } }
+        td.text { @if is_first { (if effects.is_empty() { number::NONE.to_owned() } else { effects.join(", ") }) } }
+        td.text { (usage) }
+        @for quantity in quantities {
+            td {
+                @match table.channel(quantity.channel) {
+                    Some(error) => {
+                        (number::significant(error.rmse * quantity.scale, 3))
+                        " (" (error.rmse_sigma.map_or(number::NONE.into(), |s| number::significant(s, 3))) ")"
+                    },
+                    None => (number::NONE),
+                }
+            }
+        }
+        td { (table.all.rmse_sigma.map_or(number::NONE.into(), |s| number::significant(s, 3))) }
+        td { (coverage.map_or(number::NONE.into(), |c| format!("{} of {}", c.inside, c.of))) }
+        td {
+            @if is_first {
+                @match (outcome.row.log_evidence, outcome.row.log_evidence_se) {
+                    (Some(z), Some(se)) => (number::with_spread(z, se)),
+                    _ => (number::NONE),
+                }
+            }
+        }
+    }
+}
+
+/// What a search found.
+fn search(study: &Study, round: &Round) -> Markup {
+    let record = &round.record;
+    let of = study.all().find(|outcome| outcome.row.id == round.calibration);
+    html! {
+        h3 { "Search of " (of.map_or("the model", |outcome| outcome.experiment.as_str())) }
+        p.verdict { (record.text) }
+        (explanations(record))
+        @if let Some(outside) = &record.outside { (law(outside)) }
+        @if !record.drop.is_empty() { p { "The model no longer gains by " (number::list(&record.drop)) "." } }
+        @if !record.cannot_exclude.is_empty() {
+            p { "These data could not show, at the usual strength: " (number::list(&record.cannot_exclude)) "." }
+        }
+        @if !record.refused.is_empty() {
+            p { "Refused by the model at every strength: " (number::list(&record.refused)) "." }
+        }
+        @if !(record.next_runs.is_empty() && record.other_tests.is_empty()) { (next(record)) }
+        @if let Some(arguments) = arguments(record, Path::new("")) {
+            p { "To add it: " code { "coordinator extend " (round.calibration) " " (arguments) } }
+        }
+        p.note { (number::count(record.evaluations as usize, "evaluation")) "." }
+    }
+}
+
+/// Explanations that are shown at once.
+const SHOWN: usize = 10;
+
+fn explanations(record: &Discovery) -> Markup {
+    let (shown, others) = record.effects.split_at(SHOWN.min(record.effects.len()));
+    html! {
+        (table(shown))
+        p.note { "The data cannot tell explanations of one class apart. Bayes factors are against the model that was searched." }
+        @if !others.is_empty() {
+            details { summary { (number::count(others.len(), "less probable explanation")) } (table(others)) }
+        }
+    }
+}
+
+fn table(effects: &[JudgedEffect]) -> Markup {
+    html! {
+        div.scroll { table {
+            thead { tr {
+                th.text { "explanation" } th { "ln Bayes" br; "factor" } th { "probability" } th { "class" }
+                th.text { "95 % set" } th.text { "prior of its strength" }
+            } }
+            tbody {
+                @for effect in effects {
+                    tr {
+                        td.text { (effect.name) }
+                        td { (number::fixed(effect.log_bayes_factor, 2)) }
+                        td { (number::fixed(effect.probability, 4)) }
+                        td { (effect.class) }
+                        td.text { @if effect.in_credible_set { "in" } }
+                        td.text { (effect.strength_prior.as_deref().unwrap_or_default()) }
+                    }
+                }
+            }
+        } }
+    }
+}
+
+fn law(outside: &Outside) -> Markup {
+    let by = outside.depends_on.replace('_', " ");
+    let what = outside.acts_on.replace('_', " ");
+    html! {
+        p {
+            "No effect of the library acts like this: " (what) " depends on " (by) " (" (outside.form) ", ln Bayes factor "
+            (number::fixed(outside.log_bayes_factor, 2)) ")."
+        }
+        @if outside.curve.len() > 1 {
+            figure {
+                (chart::curve(&outside.curve, &by, &format!("correction of {what}")))
+                figcaption { "Its factor (of a channel: what it adds) along what it depends on, SI." }
+            }
+        }
+        details { summary { "Effect file" } pre { (outside.effect_file) } }
+    }
+}
+
+fn next(record: &Discovery) -> Markup {
+    html! {
+        p { "Tests that would tell more:" }
+        ul {
+            @for run in &record.next_runs {
+                li {
+                    "a run at slip " (number::significant(run.slip, 2)) ", " (number::significant(run.wheel_load_n, 3)) "\u{a0}N, "
+                    (number::significant(run.sled_speed_m_s, 3)) "\u{a0}m/s tells apart " (number::list(&run.separates)) " ("
+                    (number::significant(run.information_nats, 2)) " nats)"
+                }
+            }
+            @for test in &record.other_tests { li { (test) } }
+        }
+    }
+}

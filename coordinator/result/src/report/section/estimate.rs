@@ -1,0 +1,76 @@
+//! What a fit or a search found, in place of a posterior's parameters and a sampler's stages.
+
+use inference::point_estimate::StopReason;
+use maud::{Markup, html};
+
+use super::parameters::{fixed, prior_words};
+use super::stages::cost;
+use crate::FinishedCalibration;
+use crate::point_estimate::fitted;
+use crate::report::number;
+use record::EstimateRow;
+
+/// The most probable parameters.
+pub(in crate::report) fn estimate(outcome: &FinishedCalibration, estimate: &EstimateRow) -> Markup {
+    html! {
+        div.scroll { table {
+            thead { tr {
+                th.text { "parameter" } th.text { "unit" } th { "most" br; "probable" } th { "sd" } th { "prior" br; "sd" }
+                th { "sd over" br; "prior sd" } th.text { "prior" } th.text { "" }
+            } }
+            tbody {
+                @for p in fitted(estimate, &outcome.spec.parameters) {
+                    @let prior_sd = p.free.marginal.sd();
+                    tr {
+                        td.text { (p.free.name) } td.text { (p.free.unit) }
+                        td { (number::to_spread(p.value, p.sd.unwrap_or(0.0))) }
+                        td { (p.sd.map_or(number::NONE.into(), |sd| number::to_spread(sd, sd))) }
+                        td { (number::to_spread(prior_sd, prior_sd)) }
+                        td { (p.sd.map_or(number::NONE.into(), |sd| number::significant(sd / prior_sd, 2))) }
+                        td.text { (prior_words(p.free)) }
+                        td.text { @if p.at_bound { span.alarm { "AT BOUND" } } }
+                    }
+                }
+            }
+        } }
+        p.note {
+            "Most probable: the highest likelihood times prior density of the parameters as the job declares them. "
+            @if estimate.sd.is_some() {
+                "Sd: from the curvature there (Laplace), the parameters at a bound held; right where the posterior is a normal distribution, and too small where the noise was inferred from repeats that share a misfit. "
+                "AT BOUND: exactly at a bound of the prior; there is no sd."
+            } @else {
+                "A search by generations does not know the curvature there, so there are no standard deviations; what the data say nothing about lies anywhere. "
+                "AT BOUND: exactly at a bound of the prior."
+            }
+        }
+        (fixed(outcome))
+    }
+}
+
+/// What the fit cost and why it ended.
+pub(in crate::report) fn fit(outcome: &FinishedCalibration, estimate: &EstimateRow) -> Markup {
+    html! {
+        dl {
+            dt { "log-posterior" }
+            dd {
+                (number::significant(estimate.log_posterior(), 5)) " (log-likelihood " (number::significant(estimate.log_likelihood, 5))
+                " plus log-density of the prior " (number::significant(estimate.log_prior, 5)) "; without the evidence, which is not known)"
+            }
+            dt { "stopped because" } dd { (reason(estimate.stop)) }
+            (cost(outcome))
+        }
+    }
+}
+
+/// Why a fit ended, in words.
+pub(super) fn reason(stop: StopReason) -> &'static str {
+    match stop {
+        StopReason::Decrease => "no step gains anything any more",
+        StopReason::Step => {
+            "no step that was tried gained anything: nearer to the optimum the noise of the model does not let one see"
+        }
+        StopReason::Budget => "its budget of evaluations was spent; a better point may be near",
+        StopReason::Stagnation => "for many generations it found nothing better",
+        StopReason::Generations => "its generations had passed; a better point may be near",
+    }
+}

@@ -1,0 +1,51 @@
+//! Errors by level of a condition: where in the test range the model misses.
+
+use maud::{Markup, html};
+
+use crate::report::quantity::Quantity;
+use crate::{Comparison, ErrorGroup, GroupError};
+
+/// A mean beyond so many of its sampling errors is set off.
+const NOTABLE: f64 = 3.0;
+
+/// The table, folded; nothing where every condition has one level.
+pub(in crate::report) fn groups(comparison: &Comparison) -> Markup {
+    let quantities = Quantity::measured(&comparison.rows);
+    let groups = &comparison.groups;
+    html! {
+        @if !groups.is_empty() {
+            details {
+                summary { "Errors by slip, load, speed and wheel" }
+                div.scroll { table {
+                    thead { tr {
+                        th.text { "rows" } th.text { "at" }
+                        @for quantity in &quantities { th { (quantity.channel.words()) br; "noise sds" } }
+                    } }
+                    tbody {
+                        @for (i, group) in groups.iter().enumerate() {
+                            tr.first[i == 0 || groups[i - 1].by != group.by || groups[i - 1].usage != group.usage] {
+                                td.text { (group.usage) } td.text { (group.words()) }
+                                @for quantity in &quantities { td { (cell(group, *quantity)) } }
+                            }
+                        }
+                    }
+                } }
+                p.note {
+                    "Root mean square of measured minus predicted in units of the noise sd, (its mean), and the number of rows. A mean above 0: the model predicts too little. "
+                    "Means of more than three sampling errors are set off."
+                }
+            }
+        }
+    }
+}
+
+fn cell(group: &ErrorGroup, quantity: Quantity) -> Markup {
+    let error = group.channels.get(quantity.channel.name());
+    let notable = |e: &GroupError| e.mean_sigma.abs() * (e.runs as f64).sqrt() > NOTABLE;
+    html! {
+        @match error {
+            Some(error) => { span.alarm[notable(error)] { (error.words()) } }
+            None => { (crate::report::number::NONE) }
+        }
+    }
+}

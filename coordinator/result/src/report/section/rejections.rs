@@ -1,0 +1,67 @@
+//! Where in the prior the model refuses.
+
+use maud::{Markup, html};
+
+use crate::diagnostics::{Bin, RejectionDiagnostics};
+use crate::report::number;
+
+/// A row for each parameter, a cell for each fifth of its prior.
+pub(in crate::report) fn rejections(rejections: &RejectionDiagnostics) -> Markup {
+    let RejectionDiagnostics {
+        prior_draws,
+        prior_refused,
+        ..
+    } = rejections;
+    html! {
+        @for (message, n) in &rejections.faults {
+            p { (number::count(*n as usize, "lease")) " failed and were given out again: " (message) "." }
+        }
+        @if *prior_refused == 0 {
+            p { "The model took every one of " (number::count(*prior_draws as usize, "draw")) " from the prior." }
+        } @else {
+            p {
+                @match rejections.words() {
+                    Some(words) => { (words) "." }
+                    None => { "The model refused " (prior_refused) " of " (prior_draws) " draws from the prior, nowhere more than chance allows." }
+                }
+            }
+            div.scroll { table {
+                thead { tr {
+                    th.text { "parameter" } th.text { "unit" }
+                    @for part in ["lowest fifth", "second", "middle", "fourth", "highest fifth"] { th.text { (part) } }
+                } }
+                tbody { @for p in &rejections.parameters { tr {
+                    td.text { (p.name) } td.text { (p.unit) }
+                    @for bin in &p.bins { td.text { (cell(bin)) } }
+                } } }
+            } }
+            p.note {
+                "Refused of drawn in five parts of each prior that are equally probable, with the bounds of the part. "
+                "A refusal is a fact about the parameters; a lease that failed is a fact about a machine and was tried again."
+            }
+        }
+    }
+}
+
+fn cell(bin: &Bin) -> Markup {
+    let refused: u64 = bin.refused.values().sum();
+    let reasons: Vec<String> = bin
+        .refused
+        .iter()
+        .map(|(kind, n)| format!("{kind} {n}"))
+        .collect();
+    let end = |x: Option<f64>| x.map(|x| number::significant(x, 3));
+    html! {
+        b { (refused) } " of " (bin.draws)
+        @if !reasons.is_empty() { br; (reasons.join(", ")) }
+        @if bin.faults > 0 { br; (number::count(bin.faults as usize, "lease")) " failed" }
+        br; span.note {
+            @match (end(bin.from), end(bin.to)) {
+                (Some(from), Some(to)) => { (from) " to " (to) }
+                (None, Some(to)) => { "below " (to) }
+                (Some(from), None) => { "above " (from) }
+                (None, None) => {}
+            }
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! What the sampler did: evidence, counts, and the way from the prior to the posterior.
+
+use maud::{Markup, html};
+
+use crate::FinishedCalibration;
+use crate::report::chart::{self, Marker, glyph};
+use crate::report::number;
+use record::StageRow;
+
+/// Evidence, pictures and table.
+pub(in crate::report) fn stages(outcome: &FinishedCalibration) -> Markup {
+    let row = &outcome.row;
+    let evidence = match (row.log_evidence, row.log_evidence_se) {
+        (Some(z), Some(se)) => number::with_spread(z, se),
+        (Some(z), None) => number::significant(z, 4),
+        _ => number::NONE.into(),
+    };
+    html! {
+        dl {
+            dt { "log-evidence" } dd { (evidence) " (natural logarithm; \u{b1} is its standard error within this run)" }
+            (cost(outcome))
+        }
+        @if !outcome.stages.is_empty() {
+            div.legend {
+                span { (glyph(Some(Marker::Sound))) "equilibrated" }
+                span { (glyph(Some(Marker::Alarming))) "not equilibrated" }
+            }
+            div.charts {
+                figure { (chart::exponent(&outcome.stages)) figcaption { "Power of the likelihood: near 0 is the prior, 1 the posterior." } }
+                figure {
+                    (chart::drift(&outcome.stages))
+                    figcaption { "Mean change of the log-likelihood during a stage's moves. Shaded: a stage may end; beyond the dashed lines: not in equilibrium." }
+                }
+            }
+            div.scroll { (table(&outcome.stages)) }
+            p.note {
+                "Correlation: rank correlation of the log-likelihoods before and after the moves; above 0.3 the particles remember where they started. "
+                "ESS: effective number of particles after weighting. Stage 0, the draws from the prior, has no moves."
+            }
+        }
+    }
+}
+
+/// Evaluations, refusals and time.
+pub(super) fn cost(outcome: &FinishedCalibration) -> Markup {
+    let row = &outcome.row;
+    let refused = row.rejected.unwrap_or(0);
+    let kinds: Vec<String> = outcome
+        .rejections
+        .iter()
+        .map(|(kind, n)| format!("{kind} {n}"))
+        .collect();
+    html! {
+        dt { "evaluations" } dd { (row.evaluations.map_or(number::NONE.into(), |n| n.to_string())) }
+        @if let Some(metamodel) = &outcome.subchains {
+            dt { "metamodel" }
+            dd {
+                (metamodel.moves) " moves by quasi_static in " (metamodel.subchains) " subchains, " (metamodel.moved)
+                " of which moved and were evaluated"
+            }
+        }
+        dt { "refused by the model" }
+        dd {
+            (refused)
+            @if let Some(n) = row.evaluations.filter(|n| *n > 0) { " (" (number::significant(100.0 * refused as f64 / n as f64, 2)) " %)" }
+            @if !kinds.is_empty() { ": " (kinds.join(", ")) }
+        }
+        dt { "wall time" } dd { (number::duration(row.busy_ms as f64 / 1000.0)) }
+    }
+}
+
+fn table(stages: &[StageRow]) -> Markup {
+    html! {
+        table {
+            thead { tr {
+                th { "stage" } th { "tempering" br; "exponent" } th { "steps per" br; "particle" } th { "acceptance" } th { "drift z" }
+                th { "correlation" } th { "ESS" } th { "share of" br; "log-evidence" } th { "evaluations" } th.text { "equilibrated" }
+            } }
+            tbody {
+                @for s in stages {
+                    tr {
+                        td { (s.stage) }
+                        td { (number::significant(s.tempering_exponent, 3)) }
+                        td { (s.steps) }
+                        td { (number::fixed(s.acceptance, 2)) }
+                        td { (number::significant(s.drift_z, 2)) }
+                        td { (number::fixed(s.correlation, 2)) }
+                        td { (number::fixed(s.ess, 0)) }
+                        td { (number::fixed(s.log_evidence_increment, 2)) }
+                        td { (s.evaluations) }
+                        td.text { @if s.equilibrated { "yes" } @else { span.alarm { "no" } } }
+                    }
+                }
+            }
+        }
+    }
+}

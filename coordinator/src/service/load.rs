@@ -1,0 +1,158 @@
+//! What is read from the store to be shown or decided upon.
+
+use shared::api::{CalibrationState, CalibrationStatus};
+
+use super::ServiceError;
+use crate::farm::ControlError;
+use crate::store::Reader;
+use crate::study::next_step_from;
+use job::{Method, Spec, discovery_job, is_discovery};
+use record::CalibrationRow;
+use result::{FinishedCalibration, Round, Study, first_population, likeliest};
+
+/// Loads a finished calibration.
+///
+/// # Errors
+/// [`ServiceError::Control`] where it is not finished; [`ServiceError::Effects`] where this program has other
+/// effects; others where the store cannot be read.
+pub async fn finished_calibration(
+    reader: &Reader,
+    row: &CalibrationRow,
+) -> Result<FinishedCalibration, ServiceError> {
+    if row.state != CalibrationState::Finished {
+        return Err(ControlError::NotFinished {
+            id: row.id,
+            state: row.state,
+        }
+        .into());
+    }
+    if is_discovery(&row.job.toml) {
+        return Err(ServiceError::Search(row.id));
+    }
+    let stages = reader.stages(row.id).await?;
+    let spec = spec_of(reader, row).await?;
+    // Parameters and texts would be shown that the result was not computed with.
+    if let Some(pinned) = &row.model_version {
+        spec.check_effects(pinned)?;
+    }
+    let estimate = match spec.method {
+        Method::Sample(_) | Method::Discover { .. } => None,
+        Method::Fit(_) | Method::Evolve(_) => reader.estimate(row.id).await?,
+    };
+    let prior_draws = match spec.method {
+        Method::Sample(_) => reader.prior_draws(row.id, spec.method.width()).await?,
+        Method::Fit(_) | Method::Evolve(_) | Method::Discover { .. } => Vec::new(),
+    };
+    let mut populations = reader.populations(row.id).await?;
+    let posterior = populations.pop().unwrap_or_default();
+    if let Method::Sample(_) = spec.method {
+        populations.insert(0, first_population(&spec, &prior_draws));
+    }
+    let likeliest_values = match likeliest(&posterior) {
+        Some(sample) => reader.fitted_values(row.id, &sample.theta).await?,
+        None => None,
+    };
+    Ok(FinishedCalibration {
+        spec,
+        estimate,
+        prior_draws,
+        experiment: row.name.clone(),
+        posterior,
+        populations,
+        likeliest_values,
+        predictions: reader.predictions(row.id).await?,
+        simulated_histories: reader.histories(row.id).await?,
+        rejections: reader.rejections(row.id).await?,
+        subchains: reader.subchains(row.id).await?,
+        faults: reader.faults(row.id).await?,
+        stages,
+        row: row.clone(),
+    })
+}
+
+/// Loads what is finished of the study of a finished calibration.
+///
+/// # Errors
+/// As those of [`finished_calibration`].
+pub async fn study(reader: &Reader, row: &CalibrationRow) -> Result<Study, ServiceError> {
+    let rows = reader.study(row.study).await?;
+    let unfinished = rows.iter().find(|r| r.state != CalibrationState::Finished);
+    let finished = rows.iter().filter(|r| r.state == CalibrationState::Finished);
+    let (searches, calibrations): (Vec<_>, Vec<_>) = finished.partition(|r| is_discovery(&r.job.toml));
+    let mut calibrations = calibrations.into_iter();
+    // Without any, the calibration that was asked for says why there is nothing to show.
+    let lead = finished_calibration(reader, calibrations.next().unwrap_or(row)).await?;
+    let (mut beside, mut extensions) = (Vec::new(), Vec::new());
+    for row in calibrations {
+        let outcome = finished_calibration(reader, row).await?;
+        let is_same = outcome.row.experiment == lead.row.experiment && outcome.effects() == lead.effects();
+        if is_same { &mut beside } else { &mut extensions }.push(outcome);
+    }
+    let mut rounds = Vec::new();
+    for search in searches {
+        if let Some(record) = reader.discovery(search.id).await? {
+            let calibration = searched_by(search, &rows)?.unwrap_or(lead.row.id);
+            rounds.push(Round { calibration, record });
+        }
+    }
+    let state = match unfinished {
+        Some(row) => row.state,
+        // What is decided but not yet begun is work to come.
+        None if next_step_from(reader, &rows).await?.is_some() => CalibrationState::Running,
+        None => CalibrationState::Finished,
+    };
+    Ok(Study {
+        state,
+        lead,
+        beside,
+        extensions,
+        rounds,
+    })
+}
+
+/// The calibration whose model a search is about: the first of those that have the same.
+fn searched_by(search: &CalibrationRow, study: &[CalibrationRow]) -> Result<Option<i64>, ServiceError> {
+    for row in study.iter().filter(|row| !is_discovery(&row.job.toml)) {
+        if row.experiment == search.experiment && discovery_job("job.toml", &row.job)? == search.job {
+            return Ok(Some(row.id));
+        }
+    }
+    Ok(None)
+}
+
+/// The specification of a stored calibration.
+///
+/// # Errors
+/// [`ServiceError`].
+pub async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, ServiceError> {
+    let experiment = reader
+        .experiment(row.experiment)
+        .await?
+        .ok_or_else(|| ServiceError::NotFound {
+            what: "experiment",
+            id: row.experiment.to_string(),
+        })?;
+    Ok(Spec::new(
+        "job.toml",
+        &row.job,
+        "experiment.toml",
+        &experiment.files,
+    )?)
+}
+
+/// Where a calibration stands that nobody has in hand.
+pub fn stored_status(row: &CalibrationRow) -> CalibrationStatus {
+    // A job that this version does not understand still has a line in every list.
+    let model = job::Job::parse("job.toml", &row.job.toml).map(|job| job.model);
+    CalibrationStatus {
+        id: row.id,
+        name: row.name.clone(),
+        study: row.study,
+        experiment: row.experiment,
+        state: row.state,
+        message: row.message.clone(),
+        model_kind: model.ok().map(|m| m.kind.name().to_owned()),
+        model_version: row.model_version.clone(),
+        progress: None,
+    }
+}
