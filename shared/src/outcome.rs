@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::channel::Channel;
-use crate::model::ModelVariant;
 
 /// The result of simulating every condition of a variant at one parameter vector.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -169,35 +168,6 @@ impl Observables {
         let counts = self.nodes_in_contact.iter().map(|&n| u64::from(n));
         let coarse = self.coarse.iter().flatten().map(|v| v.to_bits());
         fnv(bits.chain(counts).chain(coarse))
-    }
-
-    /// Whether every vector has an entry for each condition of a variant, each plate and each ring.
-    pub fn covers(&self, variant: &ModelVariant) -> bool {
-        let runs = variant.conditions.len();
-        let derivatives = if variant.stiffness_sensitivity { runs } else { 0 };
-        let histories = if variant.histories { runs } else { 0 };
-        let whole = |history: &SimulatedHistory| {
-            let samples = history.sinkage_m.len();
-            Channel::ALL.iter().all(|&c| history.channel(c).len() == samples)
-        };
-        self.plate_pressure_pa.len() == variant.plates.len()
-            && self.shear_stress_pa.len() == variant.rings.len()
-            && self.histories.len() == histories
-            && self.histories.iter().all(whole)
-            && Channel::ALL
-                .iter()
-                .all(|&c| self.sensitivity(c).len() == derivatives)
-            && Channel::ALL.iter().all(|&c| self.channel(c).len() == runs)
-            && [
-                &self.b_eff_m,
-                &self.contact_length_m,
-                &self.residual_load_n,
-                &self.simulated_travel_m,
-            ]
-            .iter()
-            .all(|v| v.len() == runs)
-            && self.nodes_in_contact.len() == runs
-            && (self.settled_to.is_empty() || self.settled_to.len() == runs)
     }
 }
 

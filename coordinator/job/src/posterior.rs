@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use inference::diagnostics::mean_and_sd;
 use shared::file::{FileError, number, unknown_word};
 use shared::model::EffectSet;
-use shared::parameters::{self, NOISE_PREFIX, RING_TRANSFER, bekker_moduli};
+use shared::parameters::{NOISE_PREFIX, RING_TRANSFER, bekker_moduli};
 use statistics::{Distribution, Marginal};
 
 use super::priors::FreeParameter;
@@ -126,7 +126,7 @@ impl PosteriorPrior {
             if of_errors || ["log_likelihood", "log_prior"].contains(&name.as_str()) {
                 continue;
             }
-            match parameters::lookup(name, wheels, effects) {
+            match shared::model::lookup(name, wheels, effects) {
                 Ok(quantity) if !is_said(name) => covered.push((position, name.clone(), quantity)),
                 _ => unused.push(name.clone()),
             }

@@ -170,7 +170,7 @@ fn marginal(value: &toml::Value, quantity: &Quantity) -> Result<Marginal, String
 /// Unit and physical bounds of a parameter.
 fn quantity(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<Quantity, String> {
     let Some(column) = name.strip_prefix(NOISE_PREFIX) else {
-        return parameters::lookup(name, wheels, effects);
+        return shared::model::lookup(name, wheels, effects);
     };
     let unit = match Channel::ALL.into_iter().find(|c| c.column() == column) {
         Some(channel) => channel.unit(),

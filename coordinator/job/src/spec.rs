@@ -110,7 +110,7 @@ impl Spec {
         let of_effects = named
             .chain(fixed)
             .filter(|name| *name != parameters::RING_TRANSFER);
-        let effects = EffectSet::choose(job_name, &model, of_effects, texts)?;
+        let effects = EffectSet::choose(job_name, (&model.effects, &model.effect_files), of_effects, texts)?;
         let mut parameters = Vec::new();
         let mut joint_prior = None;
         if let Some(posterior) = job.posterior {
@@ -148,7 +148,7 @@ impl Spec {
             }
         }
         for (name, &value) in &job.reference {
-            parameters::lookup(name, &wheels, &effects)
+            shared::model::lookup(name, &wheels, &effects)
                 .and_then(|quantity| parameters::check_value(&quantity, name, value))
                 .map_err(|e| in_job(format!("[figures] reference: {e}")))?;
         }

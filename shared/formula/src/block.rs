@@ -1,53 +1,11 @@
 //! Evaluate formulas at many points at a time.
 
+pub use crate::address::BLOCK;
+use crate::address::{Address, COLUMNS};
 use crate::arithmetic::{LANES, Lanes, binary_lanes, choose_lanes, unary_lanes};
 use crate::graph::{Binary, Unary};
 use crate::program::{Arithmetic, Operation, Program, Then};
 use crate::variable::Variable;
-
-/// Most points of a block.
-pub const BLOCK: usize = 128;
-
-/// Numbers before those that programs keep.
-const COLUMNS: usize = Variable::LOCAL * BLOCK;
-
-/// Where an argument or a result stands in the memory of a block: at the first of its points, then so much further for each
-/// group of points.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place {
-    first: u32,
-    step: u32,
-}
-
-impl Place {
-    /// The column of a variable.
-    pub(crate) fn column(variable: Variable) -> Self {
-        Self {
-            first: (variable as usize * BLOCK) as u32,
-            step: LANES as u32,
-        }
-    }
-
-    /// What a program keeps at every point.
-    pub(crate) fn register(register: usize) -> Self {
-        Self {
-            first: (COLUMNS + register * BLOCK) as u32,
-            step: LANES as u32,
-        }
-    }
-
-    /// What is the same at all points, after so many registers.
-    pub(crate) fn constant(registers: usize, constant: usize) -> Self {
-        Self {
-            first: Self::register(registers).first + (constant * LANES) as u32,
-            step: 0,
-        }
-    }
-
-    fn at(self, group: usize) -> usize {
-        self.first as usize + group * self.step as usize
-    }
-}
 
 /// Variables at so many points, and room to compute with them.
 ///
@@ -98,7 +56,7 @@ impl Block {
     /// bits that [`Program::settle`] gives where nothing differs from point to point. Checked by
     /// `evaluation::every_operation_agrees_with_one_point_at_a_time` and `fuzz`.
     pub fn replace(&mut self, variable: Variable, program: &Program, scalars: &[f64], points: usize) {
-        let constants = |constant| Place::constant(program.registers, constant).at(0);
+        let constants = |constant| Address::constant(program.registers, constant).at(0);
         self.reserve(constants(program.constants.len()));
         for (constant, &scalar) in program.constants.iter().enumerate() {
             self.store(constants(constant), &[scalars[usize::from(scalar)]; LANES]);
@@ -107,14 +65,14 @@ impl Block {
         for &(operation, out) in &program.operations {
             self.compute(operation, out, groups);
         }
-        let target = Place::column(variable);
+        let target = Address::column(variable);
         match program.last {
             Some(operation) => self.compute(operation, target, groups),
             None => self.each(program.result, target, groups, |values| *values),
         }
     }
 
-    fn compute(&mut self, operation: Operation<Place>, out: Place, groups: usize) {
+    fn compute(&mut self, operation: Operation<Address>, out: Address, groups: usize) {
         // each arm knows its operation while it is compiled
         macro_rules! unary {
             ($a:ident, $operation:ident, $($name:ident)*) => {
@@ -147,7 +105,15 @@ impl Block {
         }
     }
 
-    fn pair(&mut self, first: Arithmetic, a: Place, b: Place, then: Then<Place>, out: Place, groups: usize) {
+    fn pair(
+        &mut self,
+        first: Arithmetic,
+        a: Address,
+        b: Address,
+        then: Then<Address>,
+        out: Address,
+        groups: usize,
+    ) {
         macro_rules! pair {
             ($first:ident, $($second:ident)*) => {
                 match then {
@@ -177,10 +143,10 @@ impl Block {
     #[inline(always)]
     fn three(
         &mut self,
-        a: Place,
-        b: Place,
-        c: Place,
-        out: Place,
+        a: Address,
+        b: Address,
+        c: Address,
+        out: Address,
         groups: usize,
         f: impl Fn(&Lanes, &Lanes, &Lanes) -> Lanes,
     ) {
@@ -191,7 +157,7 @@ impl Block {
     }
 
     #[inline(always)]
-    fn each(&mut self, a: Place, out: Place, groups: usize, f: impl Fn(&Lanes) -> Lanes) {
+    fn each(&mut self, a: Address, out: Address, groups: usize, f: impl Fn(&Lanes) -> Lanes) {
         for group in 0..groups {
             let values = f(&self.load(a, group));
             self.store(out.at(group), &values);
@@ -199,7 +165,14 @@ impl Block {
     }
 
     #[inline(always)]
-    fn both(&mut self, a: Place, b: Place, out: Place, groups: usize, f: impl Fn(&Lanes, &Lanes) -> Lanes) {
+    fn both(
+        &mut self,
+        a: Address,
+        b: Address,
+        out: Address,
+        groups: usize,
+        f: impl Fn(&Lanes, &Lanes) -> Lanes,
+    ) {
         for group in 0..groups {
             let values = f(&self.load(a, group), &self.load(b, group));
             self.store(out.at(group), &values);
@@ -207,7 +180,7 @@ impl Block {
     }
 
     #[inline(always)]
-    fn load(&self, place: Place, group: usize) -> Lanes {
+    fn load(&self, place: Address, group: usize) -> Lanes {
         let first = place.at(group);
         let mut lanes = [0.0; LANES];
         lanes.copy_from_slice(&self.memory[first..first + LANES]);

@@ -106,6 +106,7 @@
 //! A file of 32 768 bytes, 16 parameters, 32 definitions; a formula of 2000 characters, parentheses and signs 50 deep; names
 //! of 60 characters; 1000 different operations in an effect; tables nested 8 deep; powers of units up to 9.
 
+mod address;
 mod arithmetic;
 pub mod block;
 pub mod catalogue;

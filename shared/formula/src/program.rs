@@ -1,7 +1,7 @@
 //! Make a formula ready: what is the same everywhere is computed once, the rest point by point.
 
+use crate::address::Address;
 use crate::arithmetic::{binary, choose, unary};
-use crate::block::Place;
 use crate::graph::{Binary, Graph, Id, Node, Unary};
 use crate::variable::{Variable, Variables};
 
@@ -86,14 +86,14 @@ pub struct Program {
     /// What is the same at all points; arguments are positions among themselves.
     scalars: Vec<Node>,
     /// What is computed at every point, with the register that takes it, but for the last.
-    pub(crate) operations: Vec<(Operation<Place>, Place)>,
+    pub(crate) operations: Vec<(Operation<Address>, Address)>,
     /// The operation that gives the result, if one at every point does.
-    pub(crate) last: Option<Operation<Place>>,
+    pub(crate) last: Option<Operation<Address>>,
     /// How many registers there are.
     pub(crate) registers: usize,
     /// The scalars that operations at points work on.
     pub(crate) constants: Vec<u16>,
-    pub(crate) result: Place,
+    pub(crate) result: Address,
     /// The result among the scalars, where it is the same at all points.
     scalar: Option<u16>,
     uses: Variables,
@@ -127,20 +127,24 @@ impl Program {
         let registers = compiler.registers.most;
         let mut constants = Vec::new();
         let mut place = |operand: Operand| match operand {
-            Operand::Column(variable) => Place::column(variable),
-            Operand::Register(register) => Place::register(usize::from(register)),
+            Operand::Column(variable) => Address::column(variable),
+            Operand::Register(register) => Address::register(usize::from(register)),
             Operand::Scalar(scalar) => {
                 let known = constants.iter().position(|&s| s == scalar);
                 let constant = known.unwrap_or_else(|| {
                     constants.push(scalar);
                     constants.len() - 1
                 });
-                Place::constant(registers, constant)
+                Address::constant(registers, constant)
             }
         };
-        let mut operations: Vec<(Operation<Place>, Place)> = Vec::with_capacity(compiler.operations.len());
+        let mut operations: Vec<(Operation<Address>, Address)> =
+            Vec::with_capacity(compiler.operations.len());
         for (operation, register) in compiler.operations {
-            operations.push((operation.map(&mut place), Place::register(usize::from(register))));
+            operations.push((
+                operation.map(&mut place),
+                Address::register(usize::from(register)),
+            ));
         }
         let last = match result_operand {
             Operand::Register(_) => operations.pop().map(|(operation, _)| operation),

@@ -6,9 +6,11 @@
 //! - `runs`: the rows of `runs.csv`; `history`: what a run recorded over time, and its averages.
 //! - `more_runs`: an experiment with further runs.
 //! - `bevameter`: the rows of `plates.csv` and `shear.csv`.
+//! - `check`: checks of single numbers.
 //! - `table`: rows of a CSV file whose columns are known by name.
 
 mod bevameter;
+mod check;
 mod history;
 mod mesh;
 mod more_runs;

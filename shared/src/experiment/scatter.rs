@@ -1,6 +1,6 @@
 //! Scatter that is stated relative to what it scatters: of the soil from run to run, of bevameter tests and readings.
 
-use super::settings::RawSd;
+use super::check::RawSd;
 
 /// What scatters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

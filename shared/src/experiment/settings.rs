@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::check::{RawSd, not_negative, positive};
 use super::scatter::{Scatter, ScatterSd};
 use super::wheel::{RawWheel, Wheel};
 use crate::channel::Channel;
@@ -158,13 +159,6 @@ struct RawNoise {
     ring_noise: Option<RawSd>,
 }
 
-#[derive(Deserialize)]
-#[serde(untagged)]
-pub(super) enum RawSd {
-    Number(f64),
-    Word(String),
-}
-
 /// Parses and validates `experiment.toml` alone.
 pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError> {
     let raw: RawExperiment = parse_toml(name, toml)?;
@@ -239,9 +233,7 @@ fn check_numbers(rig: &Rig, soils: &BTreeMap<String, Soil>, protocol: &Protocol)
         ),
         ("lowpass_hz", protocol.lowpass_hz, "Hz"),
     ] {
-        if !(value.is_finite() && value >= 0.0) {
-            return Err(format!("[protocol] {key} {value} {unit} must be >= 0 {unit}"));
-        }
+        not_negative(key, value, unit).map_err(|e| format!("[protocol] {e}"))?;
     }
     Ok(())
 }
@@ -285,12 +277,4 @@ fn noise(raw: RawNoise) -> Result<Noise, String> {
         };
     }
     Ok(Noise { sd, scatter })
-}
-
-pub(super) fn positive(key: &str, value: f64, unit: &str) -> Result<(), String> {
-    if value.is_finite() && value > 0.0 {
-        Ok(())
-    } else {
-        Err(format!("{key} {value} {unit} must be > 0 {unit}"))
-    }
 }

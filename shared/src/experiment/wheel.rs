@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::check::{not_negative, positive};
 use super::mesh::{self, SurfaceMesh};
-use super::settings::positive;
 
 /// Speed of the rim `[m/s]` by the rig's radius: `v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the sled speed `[m/s]`.
 /// 0 for a locked wheel.
@@ -116,9 +116,7 @@ impl RawWheel {
             ("grouser_height_m", wheel.grouser_height_m),
             ("grouser_thickness_m", wheel.grouser_thickness_m),
         ] {
-            if !(value.is_finite() && value >= 0.0) {
-                return Err(format!("{key} {value} m must be >= 0 m"));
-            }
+            not_negative(key, value, "m")?;
         }
         Ok((wheel, self.mesh))
     }

@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use utoipa::ToSchema;
 
-use super::ModelSettings;
 use crate::file::{FileError, unknown_word};
 use crate::parameters::{self, Quantity};
 
@@ -62,18 +61,19 @@ impl EffectSet {
     ///
     /// # Arguments
     /// - `file`: how messages call the job.
+    /// - `effects`, `files`: the effects of the catalogue and the effect files that the model lists.
     /// - `names`: every parameter that the job names.
-    /// - `texts`: the files that the job names.
+    /// - `texts`: the texts of the files.
     ///
     /// # Errors
     /// [`FileError`]: of the effect's file with line and column, or of the job.
     pub fn choose<'a>(
         file: &str,
-        settings: &ModelSettings,
+        (effects, files): (&[String], &[String]),
         names: impl IntoIterator<Item = &'a str>,
         texts: &BTreeMap<String, String>,
     ) -> Result<Self, FileError> {
-        let listed = settings.effects.iter().map(String::as_str);
+        let listed = effects.iter().map(String::as_str);
         let named = names.into_iter().filter_map(|name| Some(parts(name)?.0));
         let wanted: BTreeSet<&str> = listed.chain(named).collect();
         let known = catalogue().iter().filter(|e| wanted.contains(e.name.as_str()));
@@ -83,7 +83,7 @@ impl EffectSet {
                 file: None,
             })
             .collect();
-        for named in &settings.effect_files {
+        for named in files {
             let text = texts.get(named).ok_or_else(|| {
                 FileError::whole(file, format!("file \"{named}\" is named but was not sent along"))
             })?;
@@ -355,12 +355,11 @@ mod tests {
         [parameters.v_a]\nunit = \"m/s\"\nprior = 0.01\n";
 
     fn choose(effects: &[&str], names: &[&str], mine: &str) -> Result<EffectSet, String> {
-        let mut settings =
-            ModelSettings::from_table(&toml::from_str("kind = \"quasi_static\"").unwrap()).unwrap();
-        settings.effects = effects.iter().map(|&e| e.to_owned()).collect();
-        settings.effect_files = vec!["mine.toml".into()];
+        let effects: Vec<String> = effects.iter().map(|&e| e.to_owned()).collect();
+        let files = ["mine.toml".to_owned()];
         let texts = BTreeMap::from([("mine.toml".to_owned(), mine.to_owned())]);
-        EffectSet::choose("job.toml", &settings, names.iter().copied(), &texts).map_err(|e| e.to_string())
+        EffectSet::choose("job.toml", (&effects, &files), names.iter().copied(), &texts)
+            .map_err(|e| e.to_string())
     }
 
     fn unsaid(set: &EffectSet, names: &[&str]) -> Vec<String> {

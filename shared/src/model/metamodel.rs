@@ -1,24 +1,12 @@
-//! The cheap model beside the one that counts: what a worker needs to take a metamodel's moves.
+//! The variants that a metamodel needs: the quasi-static one, and one with the metamodel of a stage.
 
-use serde::{Deserialize, Serialize};
 use statistics::Metamodel;
-use utoipa::ToSchema;
 
-use super::{ModelKind, ModelVariant};
+use super::companion::Companion;
+use super::effects::EffectSet;
+use super::kind::ModelKind;
+use super::variant::ModelVariant;
 use crate::parameters;
-use crate::predicted::Predicted;
-
-/// The quasi-static model beside a variant of the three-dimensional one.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Companion {
-    /// The values that are compared, in the order of the likelihood.
-    pub values: Vec<Predicted>,
-    /// The metamodel of a stage; absent before the first: then both models are evaluated, and no moves are taken.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(value_type = Option<Object>)]
-    pub metamodel: Option<Box<Metamodel>>,
-}
 
 impl ModelVariant {
     /// The same conditions and parameters for the quasi-static model.
@@ -39,7 +27,7 @@ impl ModelVariant {
                 .collect(),
             ..self.clone()
         };
-        let effects = super::EffectSet::read(&coarse.effects)?;
+        let effects = EffectSet::read(&coarse.effects)?;
         coarse.check_expressible(&effects)?;
         Ok(coarse)
     }

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::{EffectSet, ModelKind, SpatialSettings};
+use super::effects::EffectSet;
+use super::kind::ModelKind;
+use super::spatial::SpatialSettings;
 use formula::catalogue;
 
 use crate::file::{number, unknown_word};

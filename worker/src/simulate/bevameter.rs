@@ -2,7 +2,7 @@
 
 use shared::experiment::{Experiment, PLATE_COLUMNS, SHEAR_COLUMNS};
 
-use super::SimulateError;
+use super::error::SimulateError;
 use crate::model::Readings;
 
 /// The table of the plates, in the order of the experiment.

@@ -8,7 +8,7 @@ use shared::file::FileError;
 use shared::model::ModelVariant;
 use signal::INTERVAL_S;
 
-use super::SimulateError;
+use super::error::SimulateError;
 use crate::model::at_10_hz;
 
 /// Columns of a history file: time at the end of an interval, and means over the interval.

@@ -6,7 +6,10 @@
 //! - `histories`: what each run felt over time.
 
 mod bevameter;
+mod error;
 mod histories;
+
+pub use error::SimulateError;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -21,38 +24,6 @@ use shared::outcome::{Observables, Outcome};
 
 use crate::config::Simulate;
 use crate::model::{Bevameter, CompiledVariant, without_action};
-
-/// Why there are no forward runs.
-#[derive(Debug, thiserror::Error)]
-pub enum SimulateError {
-    /// A file cannot be used.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The model refuses the parameters.
-    #[error("{what} {name}: the model refuses these parameters: {message}")]
-    Rejected {
-        /// A run of the wheel, or a test of the bevameter.
-        what: &'static str,
-        /// Its name.
-        name: String,
-        /// Quantity, value, unit, bound.
-        message: String,
-    },
-    /// A history cannot be brought to a regular interval.
-    #[error("history: {0}")]
-    History(#[from] signal::SignalError),
-    /// A table cannot be put together.
-    #[error("table: {0}")]
-    Table(#[from] csv::Error),
-    /// The result cannot be written.
-    #[error("{path}: {source}")]
-    Write {
-        /// The file.
-        path: String,
-        /// The operating system's reason.
-        source: std::io::Error,
-    },
-}
 
 /// Simulates an experiment and writes each table that is asked for as CSV.
 ///
@@ -177,7 +148,12 @@ fn variant(
     settings.fixed.extend(theta);
     let texts = read_beside(model, &settings.effect_files)?;
     let names = settings.fixed.keys().map(String::as_str);
-    let effects = EffectSet::choose(&model_name, &settings, names, &texts)?;
+    let effects = EffectSet::choose(
+        &model_name,
+        (&settings.effects, &settings.effect_files),
+        names,
+        &texts,
+    )?;
     let in_parameters = |e: String| FileError::whole(&parameters_name, e);
     state_shapes(experiment, &effects, &mut settings.fixed).map_err(in_parameters)?;
     ModelVariant::new(experiment, &settings, &effects, Vec::new(), runs).map_err(in_parameters)

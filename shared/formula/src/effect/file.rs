@@ -77,8 +77,22 @@ impl RawEffect {
     }
 }
 
-/// Reads an effect file.
-pub(super) fn read(text: &str) -> Result<Effect, EffectError> {
+impl Effect {
+    /// Reads an effect file.
+    ///
+    /// # Errors
+    /// [`EffectError`] with the line and the column of the first mistake found, and with the nearest known name or all that are
+    /// expected; without a place where the whole file is to blame. Checked by `messages::every_message_is_as_written` and, for
+    /// any text, by `fuzzed::any_text_is_read_or_refused_at_a_place_that_is_there`.
+    ///
+    /// # Validity
+    /// Time and memory are bounded by [`Effect::LONGEST`]; so is the depth of the stack, far below that of a thread.
+    pub fn read(text: &str) -> Result<Effect, EffectError> {
+        read(text)
+    }
+}
+
+fn read(text: &str) -> Result<Effect, EffectError> {
     if text.len() > Effect::LONGEST {
         let (length, most) = (text.len(), Effect::LONGEST);
         return Err(whole(format!(

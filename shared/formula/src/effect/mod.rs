@@ -115,19 +115,6 @@ impl Effect {
     /// Most bytes of a file.
     pub const LONGEST: usize = 32_768;
 
-    /// Reads an effect file.
-    ///
-    /// # Errors
-    /// [`EffectError`] with the line and the column of the first mistake found, and with the nearest known name or all that are
-    /// expected; without a place where the whole file is to blame. Checked by `messages::every_message_is_as_written` and, for
-    /// any text, by `fuzzed::any_text_is_read_or_refused_at_a_place_that_is_there`.
-    ///
-    /// # Validity
-    /// Time and memory are bounded by [`Effect::LONGEST`]; so is the depth of the stack, far below that of a thread.
-    pub fn read(text: &str) -> Result<Effect, EffectError> {
-        file::read(text)
-    }
-
     /// The quantities that its formulas replace, in the order of evaluation.
     pub fn hooks(&self) -> impl Iterator<Item = Hook> {
         self.formulas.iter().map(|(hook, _)| *hook)

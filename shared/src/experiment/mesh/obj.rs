@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use tobj::{LoadError, LoadOptions, load_obj_buf};
 
-use super::SurfaceMesh;
+use super::surface::SurfaceMesh;
 use crate::file::FileError;
 
 /// Parses OBJ. All objects of a file are one surface; faces with more corners are split into fans about their first

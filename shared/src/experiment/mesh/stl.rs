@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use stl_io::{Triangle, create_stl_reader};
 
-use super::{SurfaceMesh, check_count};
+use super::surface::{SurfaceMesh, check_count};
 use crate::file::FileError;
 
 /// Bytes before the first triangle of a binary file, and of each triangle.

@@ -3,6 +3,7 @@
 //! # Layout
 //! - here: [`Effects`], compiled for one model, and [`Active`], those of them whose strength is not neutral.
 //! - `case`: the run as effects on slip, dimensions, exponent and load leave it.
+//! - `law`: an effect as one model knows it.
 //! - `node`: pressure, strength and stress at many nodes.
 //! - `channel`: what the rig measures.
 //!
@@ -11,6 +12,7 @@
 
 mod case;
 mod channel;
+mod law;
 mod node;
 
 pub(crate) use case::Case;
@@ -20,7 +22,7 @@ use formula::effect::Mechanism;
 use formula::variable::Variables;
 use formula::{Effect, Hook, Program, Variable};
 
-use crate::Rejection;
+use law::{Law, formulas_at};
 
 /// A forward model, as far as effects tell models apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,16 +95,6 @@ pub struct Effects {
     laws: Vec<Law>,
 }
 
-/// An effect as one model knows it.
-#[derive(Debug, Clone)]
-struct Law {
-    effect: Effect,
-    /// By hook.
-    programs: [Option<Program>; Hook::COUNT],
-    /// What stands in place of the formulas.
-    mechanism: Option<Mechanism>,
-}
-
 impl Effects {
     /// Compiles effects; they follow each other in this order.
     ///
@@ -154,7 +146,7 @@ impl Effects {
             nodes: None,
         };
         active.entered = Hook::ALL.map(|hook| active.at(hook).next().is_some());
-        active.nodes = NodeLaws::new(&active);
+        active.nodes = NodeLaws::new(&active.laws);
         active
     }
 }
@@ -182,45 +174,12 @@ impl<'a> Active<'a> {
 
     /// The formulas at a hook, in order, each with its effect and parameters.
     fn at(&self, hook: Hook) -> impl Iterator<Item = (&'a Program, &'a Law, &[f64])> {
-        self.laws.iter().filter_map(move |(law, values)| {
-            let program = law.programs[hook as usize].as_ref()?;
-            Some((program, *law, values.as_slice()))
-        })
+        formulas_at(&self.laws, hook)
     }
 
     /// The parameters of an effect that the model has in code, in the order of its file.
     pub(crate) fn mechanism(&self, mechanism: Mechanism) -> Option<&[f64]> {
         let law = self.laws.iter().find(|(law, _)| law.mechanism == Some(mechanism));
         law.map(|(_, values)| values.as_slice())
-    }
-}
-
-impl Law {
-    /// Why a formula's value cannot be used, with the values that led to it.
-    fn refusal(&self, hook: Hook, parameters: &[f64], value: f64, of: impl Fn(Variable) -> f64) -> Rejection {
-        let program = self.programs[hook as usize].iter();
-        let values = program.flat_map(|program| {
-            let variables = program.uses().iter().map(|v| (v.name(), of(v), v.unit_name()));
-            let own = program.parameters().iter().map(|&place| {
-                let parameter = &self.effect.parameters[usize::from(place)];
-                (
-                    parameter.name.as_str(),
-                    parameters[usize::from(place)],
-                    parameter.unit.as_str(),
-                )
-            });
-            variables.chain(own).collect::<Vec<_>>()
-        });
-        let shown: Vec<String> = values
-            .map(|(name, value, unit)| format!("{name} = {value}{}", crate::rejection::shown(unit)))
-            .collect();
-        Rejection::Formula(Box::new(crate::rejection::FormulaRefusal {
-            effect: self.effect.name.clone(),
-            hook: hook.name(),
-            value,
-            unit: hook.target().unit_name(),
-            bound: hook.bound(),
-            values: shown.join(", "),
-        }))
     }
 }

@@ -4,7 +4,7 @@ use formula::block::Block;
 use formula::variable::Variables;
 use formula::{Hook, Program, Variable};
 
-use super::{Active, Law};
+use super::law::{Law, formulas_at};
 use crate::Rejection;
 
 /// The hooks at nodes, in the order of evaluation.
@@ -33,10 +33,10 @@ struct NodeLaw<'a> {
 
 impl<'a> NodeLaws<'a> {
     /// The formulas at nodes, or none if there are none.
-    pub(super) fn new(active: &Active<'a>) -> Option<Self> {
+    pub(super) fn new(laws: &[(&'a Law, Vec<f64>)]) -> Option<Self> {
         let laws: Vec<NodeLaw> = HOOKS
             .into_iter()
-            .flat_map(|hook| active.at(hook).map(move |law| (hook, law)))
+            .flat_map(|hook| formulas_at(laws, hook).map(move |law| (hook, law)))
             .map(|(hook, (program, law, parameters))| NodeLaw {
                 hook,
                 law,

@@ -2,7 +2,8 @@
 
 use super::crossing::{Scan, rises_up_to, scan};
 use super::footing::Footing;
-use super::rim::{Reaction, Rim};
+use super::reaction::Reaction;
+use super::rim::Rim;
 use super::start::Coordinate;
 use crate::Rejection;
 

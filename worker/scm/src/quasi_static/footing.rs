@@ -1,7 +1,8 @@
 //! The wheel on the soil, with or without effects.
 
+use super::reaction::Reaction;
 use super::reshaped::Reshaping;
-use super::rim::{Reaction, Rim};
+use super::rim::Rim;
 use crate::Rejection;
 
 /// A rim, and what effects make of its run.

@@ -2,7 +2,8 @@
 //!
 //! # Layout
 //! - `kinematics`: the slip velocity along the rim.
-//! - `rim`: the soil's force and torque on the rim for a given contact length.
+//! - `rim`: what of a run does not depend on how deep the wheel stands.
+//! - `reaction`: the soil's force and torque on the rim for a given contact length.
 //! - `footing`: the rim with or without effects.
 //! - `panel`: nodes of the quadrature on a piece of the rim.
 //! - `reshaped`: the rim where effects enter; `displacement`: how far the rim has slid.
@@ -16,6 +17,7 @@ mod displacement;
 mod footing;
 mod kinematics;
 mod panel;
+mod reaction;
 mod reshaped;
 mod rim;
 mod start;

@@ -6,7 +6,8 @@ use formula::{Hook, Variable};
 
 use super::displacement::Slide;
 use super::panel::{Contact, Panel};
-use super::rim::{Reaction, Rim};
+use super::reaction::Reaction;
+use super::rim::Rim;
 use crate::Rejection;
 use crate::effects::{Active, Case, NodeLaws};
 use crate::footprint::rectangle_effective_width;

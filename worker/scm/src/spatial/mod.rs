@@ -15,56 +15,22 @@ mod displacement;
 mod fixture;
 mod pack;
 mod run;
+mod scene;
 mod settings;
 mod surface;
 mod terrain;
 mod wheel;
 
-pub use run::History;
+pub use run::{History, Run};
+pub use scene::Scene;
 pub use settings::{Displacement, Ground, Grousers, PressureDirection, Protocol, Settings, Shape, Vertical};
 pub use surface::{Normals, SurfaceMesh};
 
-use crate::effects::{Active, Site};
 use crate::rejection::require;
-use crate::{Averages, Condition, Rejection, Soil, Wheel};
+use crate::{Condition, Rejection};
 
 /// Speeds of the sled at which times and lengths of a step are numbers to compute with `[m/s]`.
 const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
-
-/// What the wheel rolls on, and the wheel.
-#[derive(Debug, Clone, Copy)]
-pub struct Scene<'a> {
-    /// Pressure and shear of the soil.
-    pub soil: &'a Soil,
-    /// Deformation of the soil.
-    pub ground: &'a Ground,
-    /// Radius and width of the rim, or nominal ones of a mesh.
-    pub wheel: &'a Wheel,
-    /// The rest of the wheel's shape.
-    pub shape: &'a Shape,
-    /// Effects that enter; `Active::default()` is none.
-    pub effects: &'a Active<'a>,
-    /// What effects may ask of the run beyond the rest.
-    pub site: Site,
-}
-
-/// What a run gives.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Run {
-    /// Averages by the protocol, with the diagnostics of the contact.
-    pub averages: Averages,
-    /// Change from the last window but one to the last, by the measure of [`Protocol::Steady`]; above its tolerance
-    /// where the travel did not suffice, infinite where there was one window only. `None` for a fixed duration.
-    pub settled_to: Option<f64>,
-    /// Mean power that motor and rig put into the soil while averaging `[W]`, ≥ 0 but for rounding.
-    pub dissipated_power_w: f64,
-    /// Heights of the hub that were tried, and nodes in contact over all of them.
-    pub trials: u64,
-    /// Sum over all trials of the nodes in contact that were computed.
-    pub node_trials: u64,
-    /// Step by step.
-    pub history: History,
-}
 
 /// A rigid wheel rolls over deformable soil at prescribed speeds of sled and rim.
 ///

@@ -10,7 +10,8 @@ use crate::spatial::contact::Contact;
 use crate::spatial::contact::formulas::NodeFormulas;
 use crate::spatial::contact::laws::Laws;
 use crate::spatial::contact::reaction::Reaction;
-use crate::spatial::{Ground, Scene, Shape};
+use crate::spatial::scene::Scene;
+use crate::spatial::settings::{Ground, Shape};
 
 /// The effects of one run.
 ///

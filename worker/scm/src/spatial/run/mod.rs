@@ -6,6 +6,7 @@
 //! - `rolling`: one step after the other.
 //! - `effects`: what effects change of it.
 //! - `history`: what each step gave.
+//! - `result`: what a run gives.
 //! - `record`: what the steps gave, its averages, and whether they can be.
 //! - `protocol`: when a run ends, and which steps are averaged.
 
@@ -14,8 +15,10 @@ mod effects;
 mod history;
 mod protocol;
 mod record;
+mod result;
 mod rolling;
 mod track;
 
 pub use history::History;
 pub(crate) use protocol::roll;
+pub use result::Run;

@@ -1,13 +1,14 @@
 //! Decide when a run ends, and average it.
 
 use super::record::{Record, Windows};
+use super::result::Run;
 use super::rolling::Rolling;
 use super::track::count;
 use crate::Condition;
 use crate::effects::Case;
 use crate::rejection::Rejection;
+use crate::spatial::scene::Scene;
 use crate::spatial::settings::{Protocol, Settings};
-use crate::spatial::{Run, Scene};
 use signal::{INTERVAL_S, LowPass, average};
 
 /// Roll the wheel by the settings' protocol, pass after pass; the last one counts.

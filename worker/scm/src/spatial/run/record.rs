@@ -1,9 +1,9 @@
 //! Keep what each step gives, and make a run of it.
 
 use super::history::History;
+use super::result::Run;
 use super::rolling::{Rolling, Step};
 use crate::rejection::Rejection;
-use crate::spatial::Run;
 use crate::{Averages, Condition};
 use signal::{Window, period_mean};
 

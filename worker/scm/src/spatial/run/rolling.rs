@@ -9,15 +9,15 @@ use crate::spatial::contact::Contact;
 use crate::spatial::contact::laws::Laws;
 use crate::spatial::contact::reaction::Reaction;
 use crate::spatial::displacement::ShearPath;
-use crate::spatial::settings::{PressureDirection, Protocol, Settings, Vertical};
+use crate::spatial::scene::Scene;
+use crate::spatial::settings::{Ground, PressureDirection, Protocol, Settings, Vertical};
 use crate::spatial::terrain::Terrain;
 use crate::spatial::terrain::flow::Flow;
 use crate::spatial::terrain::relaxation::Relaxation;
 use crate::spatial::wheel::Underside;
 use crate::spatial::wheel::envelope::Envelope;
 use crate::spatial::wheel::motion::Motion;
-use crate::spatial::wheel::{Pose, Range};
-use crate::spatial::{Ground, Scene};
+use crate::spatial::wheel::pose::{Pose, Range};
 use crate::{Condition, Wheel};
 use formula::Variable;
 

@@ -10,7 +10,6 @@ pub(super) mod flow;
 pub(super) mod relaxation;
 
 use super::pack::PACK;
-use super::wheel::across::Across;
 
 /// Room for berms beside the wheel `[lanes]`.
 pub(crate) const BERM_LANES: usize = 6;
@@ -76,15 +75,6 @@ impl Terrain {
     #[inline]
     pub(crate) fn y(&self, lane: usize) -> f64 {
         self.first_y + lane as f64 * self.dy
-    }
-
-    /// The highest surface of a column under the wheel `[m]`.
-    pub(crate) fn highest(&self, column: usize, across: &Across) -> f64 {
-        let start = column * self.lanes + across.first_lane;
-        let under = &self.surface[start..start + across.lanes];
-        under
-            .iter()
-            .fold(f64::MIN, |high, &z| if z > high { z } else { high })
     }
 
     /// Add soil to a node.

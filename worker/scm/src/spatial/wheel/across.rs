@@ -28,6 +28,15 @@ impl Across {
         self.width.len()
     }
 
+    /// The highest surface of a column of the terrain under the wheel `[m]`.
+    pub(crate) fn highest(&self, terrain: &Terrain, column: usize) -> f64 {
+        let start = column * terrain.lanes + self.first_lane;
+        let under = &terrain.surface[start..start + self.lanes];
+        under
+            .iter()
+            .fold(f64::MIN, |high, &z| if z > high { z } else { high })
+    }
+
     /// Lay a wheel of a width around y over the lanes, whose borders it meets. In a mirrored terrain the right side is the
     /// left one's image.
     pub(crate) fn lay(&mut self, terrain: &Terrain, y: f64, width: f64) {

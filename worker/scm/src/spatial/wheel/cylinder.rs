@@ -4,7 +4,7 @@ use super::super::settings::Grousers;
 use super::super::terrain::Terrain;
 use super::across::Across;
 use super::envelope::{Envelope, NOWHERE, Strip};
-use super::{Pose, Range};
+use super::pose::{Pose, Range};
 
 /// A rim with straight grousers: rectangles that stand on the rim along its whole width.
 ///
@@ -115,7 +115,7 @@ impl Cylinder {
         let touches = |c: &usize| {
             let ahead = ((terrain.x(*c) - pose.x).abs() - 0.5 * terrain.dx).max(0.0);
             let rise = (self.radius * self.radius - ahead * ahead).max(0.0).sqrt();
-            rise + terrain.highest(*c, across) > least_rise + terrain.top
+            rise + across.highest(terrain, *c) > least_rise + terrain.top
         };
         let rearmost = (column(-half)..range.start).find(touches);
         let foremost = (range.end..column(half) + 1).rev().find(touches);
@@ -193,7 +193,7 @@ impl Cylinder {
             let extent = self.grouser_thickness + self.grouser_height * libm::sin(angle).abs();
             let columns = ((tip - extent) / terrain.dx) as usize..=((tip + extent) / terrain.dx) as usize;
             let on_track = columns.take_while(|&column| column < terrain.columns);
-            let highest = on_track.fold(f64::MIN, |high, column| high.max(terrain.highest(column, across)));
+            let highest = on_track.fold(f64::MIN, |high, column| high.max(across.highest(terrain, column)));
             if deepest + highest > least_rise + terrain.top {
                 self.push_grouser(angle);
             }

@@ -5,6 +5,7 @@
 //! - `cylinder`: lays an analytic rim with straight grousers.
 //! - `mesh`: lays any surface of triangles.
 //! - `across`: the lanes that the wheel covers.
+//! - `pose`: where the wheel stands, and the columns that it may touch.
 //! - `motion`: velocity of the surface over the soil, directions of pressure and shear.
 
 pub(super) mod across;
@@ -12,31 +13,16 @@ pub(super) mod cylinder;
 pub(super) mod envelope;
 pub(super) mod mesh;
 pub(super) mod motion;
+pub(super) mod pose;
 
 use self::across::Across;
 use self::cylinder::Cylinder;
 use self::envelope::Envelope;
 use self::mesh::Mesh;
+use self::pose::{Pose, Range};
 use super::settings::Shape;
 use super::terrain::Terrain;
 use crate::Wheel;
-
-/// Where the wheel stands.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Pose {
-    /// x and y of the hub `[m]`.
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-    /// Angle by which the wheel has turned forwards `[rad]`.
-    pub(crate) turned: f64,
-}
-
-/// Columns that may touch soil: from the rearmost to beyond the foremost.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Range {
-    pub(crate) start: usize,
-    pub(crate) end: usize,
-}
 
 /// The wheel as the soil meets it.
 #[derive(Debug, Clone)]

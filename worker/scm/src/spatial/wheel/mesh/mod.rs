@@ -18,7 +18,7 @@ use super::super::surface::{Normals, SurfaceMesh};
 use super::super::terrain::Terrain;
 use super::across::Across;
 use super::envelope::Envelope;
-use super::{Pose, Range};
+use super::pose::{Pose, Range};
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 /// Half the angle about the axle within which a triangle must lie to be found by angle `[rad]`; others are looked at always.
@@ -190,7 +190,7 @@ impl Mesh {
                 if rear >= widened.start && front < widened.end {
                     continue;
                 }
-                let highest = (rear..=front).fold(f64::MIN, |z, c| z.max(terrain.highest(c, across)));
+                let highest = (rear..=front).fold(f64::MIN, |z, c| z.max(across.highest(terrain, c)));
                 if deepest + highest > least_rise + terrain.top {
                     widened.start = widened.start.min(rear.saturating_sub(1));
                     widened.end = widened.end.max(front + 2);

@@ -4,7 +4,7 @@ use super::super::super::pack::PACK;
 use super::super::super::terrain::Terrain;
 use super::super::across::Across;
 use super::super::envelope::NOWHERE;
-use super::super::{Pose, Range};
+use super::super::pose::{Pose, Range};
 use super::triangle::Placed;
 
 /// Part of a sample or lane by which rounding may misplace one.

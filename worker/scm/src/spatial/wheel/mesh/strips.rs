@@ -3,7 +3,7 @@
 use super::super::super::pack::{PACK, Pack};
 use super::super::super::terrain::Terrain;
 use super::super::envelope::{Envelope, Facet, NOWHERE, Strip};
-use super::super::{Pose, Range};
+use super::super::pose::{Pose, Range};
 use super::raster::Raster;
 
 /// Greatest change of the slope dh/dx within a smooth surface; half of it is the steepest step that counts as part of one.

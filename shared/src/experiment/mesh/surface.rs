@@ -1,0 +1,200 @@
+//! A surface of triangles, and its bounds.
+
+use serde::{Deserialize, Serialize};
+
+/// A surface with more triangles is refused: a wheel needs no finer one than the soil's grid.
+pub const MOST_TRIANGLES: usize = 200_000;
+
+/// Part of the radius by which a surface may miss it: coordinates of STL files have 24 bits.
+const ROUNDING: f64 = 1e-6;
+/// The surface reaches at most so many times `radius_m` from the axle: grousers are no longer.
+const LARGEST_REACH: f64 = 1.5;
+/// The surface is at most so many times `width_m` wide.
+const LARGEST_WIDTH: f64 = 1.05;
+
+/// The surface of a rigid wheel as it stands at an angle of rotation of 0.
+///
+/// The axle is the y axis through the origin, z points up, x forward. Vertices are shared by triangles or not; the order
+/// of a triangle's vertices does not count, and neither does a gap.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SurfaceMesh {
+    /// Vertices: x, y, z `[m]`, finite.
+    pub vertices_m: Vec<[f64; 3]>,
+    /// Triangles: positions in `vertices_m`. At least one, at most [`MOST_TRIANGLES`].
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl SurfaceMesh {
+    /// Checks what the fields promise.
+    ///
+    /// # Errors
+    /// A sentence that names the vertex or triangle, counted from 1, the value and the bound.
+    pub fn check(&self) -> Result<(), String> {
+        let (vertices, triangles) = (self.vertices_m.len(), self.triangles.len());
+        check_count(triangles)?;
+        for (i, v) in self.vertices_m.iter().enumerate() {
+            if let Some(x) = v.iter().find(|x| !x.is_finite()) {
+                return Err(format!("vertex {}: coordinate {x} m is not finite", i + 1));
+            }
+        }
+        for (i, t) in self.triangles.iter().enumerate() {
+            if let Some(index) = t.iter().find(|&&index| index as usize >= vertices) {
+                return Err(format!(
+                    "face {}: vertex {} is not among the {vertices} vertices",
+                    i + 1,
+                    u64::from(*index) + 1
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// The largest distance of a vertex from the axle `[m]`.
+    pub fn reach_m(&self) -> f64 {
+        let squares = self.vertices_m.iter().map(|[x, _, z]| x * x + z * z);
+        squares.fold(0.0, f64::max).sqrt()
+    }
+
+    /// The extent of the surface along the axle `[m]`.
+    pub fn width_m(&self) -> f64 {
+        let y = || self.vertices_m.iter().map(|v| v[1]);
+        y().fold(f64::NEG_INFINITY, f64::max) - y().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Checks the surface against the nominal radius and width that stand beside it.
+    ///
+    /// # Errors
+    /// A sentence that names the extent, its bound and the likely mistake.
+    pub(in crate::experiment) fn check_against(&self, radius_m: f64, width_m: f64) -> Result<(), String> {
+        let (reach, width) = (self.reach_m(), self.width_m());
+        let (most_reach, most_width) = (LARGEST_REACH * radius_m, LARGEST_WIDTH * width_m);
+        if reach < radius_m * (1.0 - ROUNDING) {
+            return Err(format!(
+                "the surface reaches {} m from the axle, but radius_m is {radius_m} m: metres are expected, and the axle is the y axis",
+                shown(reach)
+            ));
+        }
+        if reach > most_reach {
+            return Err(format!(
+                "the surface reaches {} m from the axle, more than {LARGEST_REACH} radius_m = {} m: {}",
+                shown(reach),
+                shown(most_reach),
+                mistake(reach / radius_m)
+            ));
+        }
+        if width > most_width {
+            return Err(format!(
+                "the surface is {} m wide along y, more than {LARGEST_WIDTH} width_m = {} m: {}",
+                shown(width),
+                shown(most_width),
+                mistake(width / width_m)
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// A length in six digits, for a person to read.
+fn shown(metres: f64) -> f64 {
+    format!("{metres:.5e}").parse().unwrap_or(metres)
+}
+
+/// What was probably meant by an extent that is so many times too large.
+fn mistake(ratio: f64) -> &'static str {
+    if ratio > 100.0 {
+        "metres are expected, were these millimetres?"
+    } else {
+        "is the axle the y axis through the origin?"
+    }
+}
+
+/// Refuses a surface without triangles, or with too many.
+pub(super) fn check_count(triangles: usize) -> Result<(), String> {
+    match triangles {
+        0 => Err("no triangle stands in the file".into()),
+        1..=MOST_TRIANGLES => Ok(()),
+        _ => Err(format!(
+            "the surface has {triangles} triangles, at most {MOST_TRIANGLES} are taken"
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A double pyramid of 0.1 m radius about the y axis, 0.04 m wide.
+    fn spindle() -> SurfaceMesh {
+        SurfaceMesh {
+            vertices_m: vec![
+                [0.0, -0.02, 0.0],
+                [0.0, 0.02, 0.0],
+                [0.1, 0.0, 0.0],
+                [-0.05, 0.0, 0.086_602_540_378_443_9],
+                [-0.05, 0.0, -0.086_602_540_378_443_9],
+            ],
+            triangles: vec![[0, 2, 3], [0, 3, 4], [0, 4, 2], [1, 2, 3], [1, 3, 4], [1, 4, 2]],
+        }
+    }
+
+    #[test]
+    fn reach_and_width_are_measured_from_the_axle() {
+        let mesh = spindle();
+        assert!((mesh.reach_m() - 0.1).abs() < 1e-15 && (mesh.width_m() - 0.04).abs() < 1e-15);
+        assert_eq!(mesh.check(), Ok(()));
+        // An STL file says 0.1f32 = 0.100000001…; a radius of 0.1000000 may be missed by that.
+        assert_eq!(mesh.check_against(0.100_000_05, 0.04), Ok(()));
+    }
+
+    #[test]
+    fn a_surface_that_does_not_fit_its_wheel_says_what_was_mistaken() {
+        let mesh = spindle();
+        for (radius, width, message) in [
+            (
+                0.11,
+                0.04,
+                "the surface reaches 0.1 m from the axle, but radius_m is 0.11 m: metres are expected, and the axle is the y axis",
+            ),
+            (
+                0.06,
+                0.04,
+                "the surface reaches 0.1 m from the axle, more than 1.5 radius_m = 0.09 m: is the axle the y axis through the origin?",
+            ),
+            (
+                0.0002,
+                0.04,
+                "the surface reaches 0.1 m from the axle, more than 1.5 radius_m = 0.0003 m: metres are expected, were these millimetres?",
+            ),
+            (
+                0.1,
+                0.02,
+                "the surface is 0.04 m wide along y, more than 1.05 width_m = 0.021 m: is the axle the y axis through the origin?",
+            ),
+        ] {
+            assert_eq!(mesh.check_against(radius, width), Err(message.to_owned()));
+        }
+    }
+
+    #[test]
+    fn indices_and_numbers_are_checked() {
+        let mut mesh = spindle();
+        mesh.triangles[2][1] = 5;
+        assert_eq!(
+            mesh.check().unwrap_err(),
+            "face 3: vertex 6 is not among the 5 vertices"
+        );
+        let mut mesh = spindle();
+        mesh.vertices_m[3][2] = f64::NAN;
+        assert_eq!(
+            mesh.check().unwrap_err(),
+            "vertex 4: coordinate NaN m is not finite"
+        );
+        let mut mesh = spindle();
+        mesh.triangles = vec![[0, 1, 2]; MOST_TRIANGLES + 1];
+        assert_eq!(
+            mesh.check().unwrap_err(),
+            "the surface has 200001 triangles, at most 200000 are taken"
+        );
+    }
+}

@@ -1,0 +1,90 @@
+//! What a forward model can express of what a variant asks.
+
+use std::collections::BTreeSet;
+
+use formula::effect::Mechanism;
+use formula::{Hook, Variable};
+
+use super::effects::EffectSet;
+use super::kind::ModelKind;
+use super::spatial::Displacement;
+use super::variant::ModelVariant;
+use crate::parameters;
+
+impl ModelVariant {
+    /// Checks that the forward model can express what the variant and its effects ask of a wheel. Without conditions no
+    /// wheel rolls, and nothing is asked of it.
+    ///
+    /// # Errors
+    /// A sentence that names what the model of this kind lacks.
+    pub fn check_expressible(&self, effects: &EffectSet) -> Result<(), String> {
+        if self.conditions.is_empty() {
+            return Ok(());
+        }
+        if let Some(spatial) = &self.spatial {
+            spatial.check_protocol(&self.protocol)?;
+            if spatial.displacement != Displacement::Rim && effects.using(Variable::J).is_none() {
+                return Err(
+                    "displacement has no effect without an effect that uses j, such as janosi_hanamoto"
+                        .into(),
+                );
+            }
+        }
+        let meshes: BTreeSet<&str> = self.conditions.iter().map(|c| c.wheel.as_str()).collect();
+        let meshes: BTreeSet<&str> = meshes.into_iter().filter(|wheel| self.has_mesh(wheel)).collect();
+        let names: BTreeSet<&str> = self.names().collect();
+        match self.kind {
+            ModelKind::Scm => self.check_meshes(effects, &names, &meshes),
+            ModelKind::QuasiStatic => {
+                if let Some(name) = names
+                    .iter()
+                    .find(|n| parameters::SPATIAL.iter().any(|p| p.name == **n))
+                {
+                    return Err(format!(
+                        "{name}: quasi_static has no terrain that deforms; use kind = \"scm\""
+                    ));
+                }
+                match meshes.first() {
+                    Some(wheel) => Err(format!(
+                        "wheel {wheel} is a surface mesh: quasi_static rolls a smooth cylinder; use kind = \"scm\""
+                    )),
+                    None => Ok(()),
+                }
+            }
+        }
+    }
+
+    /// Checks that nothing asks of a surface mesh what only a rim can do.
+    fn check_meshes(
+        &self,
+        effects: &EffectSet,
+        names: &BTreeSet<&str>,
+        meshes: &BTreeSet<&str>,
+    ) -> Result<(), String> {
+        let Some(wheel) = meshes.first() else {
+            return Ok(());
+        };
+        if names.iter().any(|n| n.starts_with("wheel_radius_m")) {
+            return Err(format!(
+                "wheel {wheel} is a surface mesh, which has its radius: wheel_radius_m cannot be a parameter"
+            ));
+        }
+        for effect in effects.iter() {
+            let wheels: BTreeSet<&str> = self.wheels.keys().map(String::as_str).collect();
+            let reach = EffectSet::acts_on(effect, names, &wheels);
+            let dimension = effect.hooks().find(|h| [Hook::Radius, Hook::Width].contains(h));
+            let shapes = effect.mechanism == Some(Mechanism::FlatPatch) || dimension.is_some();
+            if let Some(wheel) = meshes.intersection(&reach).next().filter(|_| shapes) {
+                return Err(format!(
+                    "effect {} reshapes the rim: wheel {wheel} is a surface mesh, which has its shape",
+                    effect.name
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn has_mesh(&self, wheel: &str) -> bool {
+        self.wheels.get(wheel).is_some_and(|wheel| wheel.mesh.is_some())
+    }
+}

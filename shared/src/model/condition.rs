@@ -1,0 +1,65 @@
+//! What is to be simulated: conditions of the rig, readings of plates and rings.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::experiment::TestRun;
+
+/// A condition of the rig, as the simulation needs it; measurements stay with the coordinator.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Condition {
+    /// Name of the wheel in [`ModelVariant::wheels`](super::ModelVariant::wheels).
+    pub wheel: String,
+    /// Slip by the rig's radius, in [-1, 1).
+    pub slip: f64,
+    /// Vertical load `[N]`.
+    pub wheel_load_n: f64,
+    /// Sled speed along travel `[m/s]`.
+    pub sled_speed_m_s: f64,
+    /// From wheel heading to travel `[deg]`.
+    pub slip_angle_deg: f64,
+    /// How often the wheel passes; the last pass counts.
+    pub pass: u32,
+    /// Angle of repose of the run's soil `[deg]`, for a model whose soil slides; absent: the model's default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repose_angle_deg: Option<f64>,
+    /// Density of the run's soil `[kg/m^3]`; absent where no effect asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density_kg_m3: Option<f64>,
+}
+
+impl Condition {
+    pub(super) fn new(run: &TestRun, repose_angle_deg: Option<f64>, density_kg_m3: Option<f64>) -> Self {
+        Condition {
+            repose_angle_deg,
+            density_kg_m3,
+            wheel: run.wheel.clone(),
+            slip: run.slip,
+            wheel_load_n: run.wheel_load_n,
+            sled_speed_m_s: run.sled_speed_m_s,
+            slip_angle_deg: run.slip_angle_deg,
+            pass: run.pass,
+        }
+    }
+}
+
+/// A plate in the soil; what it measured stays with the coordinator.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlateCondition {
+    /// Radius of the round plate `[m]`.
+    pub plate_radius_m: f64,
+    /// Sinkage `[m]`.
+    pub sinkage_m: f64,
+}
+
+/// A ring on the soil; what it measured stays with the coordinator.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RingCondition {
+    /// Normal stress under the ring `[Pa]`.
+    pub normal_stress_pa: f64,
+    /// Displacement at the ring's mean radius `[m]`.
+    pub shear_displacement_m: f64,
+}

@@ -1,0 +1,248 @@
+//! The self-contained variant of a forward model that a worker evaluates.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use formula::{Effect, Variable};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use utoipa::ToSchema;
+
+use super::companion::Companion;
+use super::condition::{Condition, PlateCondition, RingCondition};
+use super::effects::{EffectSet, EffectText};
+use super::kind::ModelKind;
+use super::names::{check_complete, lookup};
+use super::settings::ModelSettings;
+use super::spatial::SpatialSettings;
+use crate::channel::Channel;
+use crate::experiment::{Experiment, Protocol, TestRun, Wheel};
+use crate::outcome::{Observables, SimulatedHistory};
+use crate::parameters::check_value;
+
+/// Everything that maps a parameter vector to observables; a worker fetches it once, by its hash.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModelVariant {
+    /// Which forward model.
+    pub kind: ModelKind,
+    /// What the three-dimensional model needs beside; absent for the others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spatial: Option<SpatialSettings>,
+    /// The effects, in the order of their evaluation.
+    pub effects: Vec<EffectText>,
+    /// Names of the free parameters, in the order of every parameter vector.
+    pub parameters: Vec<String>,
+    /// Values of the fixed parameters.
+    pub fixed: BTreeMap<String, f64>,
+    /// The wheels by name.
+    #[schema(value_type = Object)]
+    pub wheels: BTreeMap<String, Wheel>,
+    /// Acceleration of gravity `[m/s^2]`.
+    pub gravity_m_s2: f64,
+    /// Length of the soil bin `[m]`; absent where no effect asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bin_length_m: Option<f64>,
+    /// The conditions to simulate, in the order of the observables.
+    pub conditions: Vec<Condition>,
+    /// How histories become averages.
+    #[schema(value_type = Object)]
+    pub protocol: Protocol,
+    /// Whether each condition is simulated once more on soil that is a little stiffer, for the derivatives by ln k*.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stiffness_sensitivity: bool,
+    /// Whether what each run felt over time comes back, too; only a model that rolls in time has that.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub histories: bool,
+    /// Readings of plates to predict beside.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plates: Vec<PlateCondition>,
+    /// Readings of rings to predict beside.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rings: Vec<RingCondition>,
+    /// The quasi-static model beside, where a metamodel is made of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub companion: Option<Companion>,
+}
+
+impl ModelVariant {
+    /// Puts together the variant of some of an experiment's runs; base parameters that are neither free
+    /// nor fixed take their defaults.
+    ///
+    /// # Errors
+    /// A sentence that names a parameter that is unknown, out of bounds, missing or said twice.
+    pub fn new<'a>(
+        experiment: &Experiment,
+        settings: &ModelSettings,
+        effects: &EffectSet,
+        parameters: Vec<String>,
+        runs: impl IntoIterator<Item = &'a TestRun>,
+    ) -> Result<Self, String> {
+        let wheels = experiment.wheel_names();
+        let mut fixed = settings.fixed.clone();
+        for parameter in settings.kind.parameters() {
+            let Some(default) = parameter.default else {
+                continue;
+            };
+            if !parameters.iter().any(|p| p == parameter.name) {
+                fixed.entry(parameter.name.to_owned()).or_insert(default);
+            }
+        }
+        for (name, &value) in &fixed {
+            check_value(&lookup(name, &wheels, effects)?, name, value)?;
+        }
+        if let Some(twice) = parameters.iter().find(|p| fixed.contains_key(*p)) {
+            return Err(format!("parameter {twice} is both fixed and free"));
+        }
+        let names: BTreeSet<&str> = parameters
+            .iter()
+            .chain(fixed.keys())
+            .map(String::as_str)
+            .collect();
+        check_complete(&names, &wheels, effects)?;
+        check_grousers(effects, &names, experiment)?;
+        let slides = settings.kind == ModelKind::Scm;
+        let (weighing, walled) = (
+            effects.using(Variable::Density),
+            effects.using(Variable::BinLength),
+        );
+        let condition = |run: &TestRun| {
+            let soil = &experiment.soils[&run.soil];
+            if let (Some(effect), None) = (weighing, soil.density_kg_m3) {
+                return Err(format!(
+                    "effect {} needs density_kg_m3 of soil {}",
+                    effect.name, run.soil
+                ));
+            }
+            let repose_angle_deg = soil.repose_angle_deg.filter(|_| slides);
+            let density_kg_m3 = soil.density_kg_m3.filter(|_| weighing.is_some());
+            Ok(Condition::new(run, repose_angle_deg, density_kg_m3))
+        };
+        let conditions = runs.into_iter().map(condition).collect::<Result<Vec<_>, _>>()?;
+        let bin_length_m = experiment.rig.bin_length_m.filter(|_| walled.is_some());
+        if let (Some(effect), None, false) = (walled, bin_length_m, conditions.is_empty()) {
+            return Err(format!("effect {} needs bin_length_m under [rig]", effect.name));
+        }
+        let variant = ModelVariant {
+            kind: settings.kind,
+            spatial: settings.spatial,
+            effects: effects.texts(),
+            parameters,
+            fixed,
+            wheels: experiment.wheels.clone(),
+            gravity_m_s2: experiment.rig.gravity_m_s2,
+            bin_length_m,
+            conditions,
+            protocol: experiment.protocol.clone(),
+            stiffness_sensitivity: false,
+            histories: false,
+            plates: Vec::new(),
+            rings: Vec::new(),
+            companion: None,
+        };
+        variant.check_expressible(effects)?;
+        Ok(variant)
+    }
+
+    /// The same runs with what each felt over time, and nothing beside; `None` of a model that knows no time, and without
+    /// runs.
+    pub fn with_histories(&self) -> Option<Self> {
+        let rolls = self.kind == ModelKind::Scm && !self.conditions.is_empty();
+        rolls.then(|| ModelVariant {
+            histories: true,
+            companion: None,
+            stiffness_sensitivity: false,
+            plates: Vec::new(),
+            rings: Vec::new(),
+            ..self.clone()
+        })
+    }
+
+    /// The names of all parameters, free and fixed.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.parameters
+            .iter()
+            .chain(self.fixed.keys())
+            .map(String::as_str)
+    }
+
+    /// Version of the model that a worker with these equations computes: its own, and that of the effects. A
+    /// calibration is pinned to both; [`equations_of`] is the part that a worker can know.
+    pub fn model_version(&self, equations: &str) -> String {
+        format!("{equations}{}", EffectSet::version(&self.effects))
+    }
+
+    /// Name of the variant on the wire: the first 128 bits of the SHA-256 of its JSON, in hex.
+    pub fn hash(&self) -> String {
+        // Struct fields and ordered maps serialise in one order, so equal variants have equal text.
+        let text = serde_json::to_vec(self).expect("a variant holds only numbers, text and ordered maps");
+        Sha256::digest(&text)[..16]
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
+    }
+}
+
+/// The part of a model's version that names the equations: what stands before the effects.
+pub fn equations_of(version: &str) -> &str {
+    version
+        .split_once('+')
+        .map_or(version, |(equations, _)| equations)
+}
+
+/// Checks that effects of grousers act on a wheel that has some.
+fn check_grousers(
+    effects: &EffectSet,
+    names: &BTreeSet<&str>,
+    experiment: &Experiment,
+) -> Result<(), String> {
+    let wheels = experiment.wheel_names();
+    let of_grousers = |effect: &&Effect| {
+        let uses = effect.uses();
+        uses.contains(Variable::GrouserCount) || uses.contains(Variable::GrouserHeight)
+    };
+    for effect in effects.iter().filter(of_grousers) {
+        let reach = EffectSet::acts_on(effect, names, &wheels);
+        let mut smooth = reach
+            .iter()
+            .filter(|wheel| !experiment.wheels[**wheel].has_grousers());
+        let all = reach.len() == wheels.len() && smooth.clone().count() < reach.len();
+        if let Some(wheel) = smooth.next().filter(|_| !all) {
+            return Err(format!(
+                "effect {} needs a wheel with grousers: {wheel} has none",
+                effect.name
+            ));
+        }
+    }
+    Ok(())
+}
+
+impl Observables {
+    /// Whether every vector has an entry for each condition of a variant, each plate and each ring.
+    pub fn covers(&self, variant: &ModelVariant) -> bool {
+        let runs = variant.conditions.len();
+        let derivatives = if variant.stiffness_sensitivity { runs } else { 0 };
+        let histories = if variant.histories { runs } else { 0 };
+        let whole = |history: &SimulatedHistory| {
+            let samples = history.sinkage_m.len();
+            Channel::ALL.iter().all(|&c| history.channel(c).len() == samples)
+        };
+        self.plate_pressure_pa.len() == variant.plates.len()
+            && self.shear_stress_pa.len() == variant.rings.len()
+            && self.histories.len() == histories
+            && self.histories.iter().all(whole)
+            && Channel::ALL
+                .iter()
+                .all(|&c| self.sensitivity(c).len() == derivatives)
+            && Channel::ALL.iter().all(|&c| self.channel(c).len() == runs)
+            && [
+                &self.b_eff_m,
+                &self.contact_length_m,
+                &self.residual_load_n,
+                &self.simulated_travel_m,
+            ]
+            .iter()
+            .all(|v| v.len() == runs)
+            && self.nodes_in_contact.len() == runs
+            && (self.settled_to.is_empty() || self.settled_to.len() == runs)
+    }
+}

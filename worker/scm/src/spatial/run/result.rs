@@ -1,0 +1,22 @@
+//! What a run gives.
+
+use super::history::History;
+use crate::Averages;
+
+/// What a run gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// Averages by the protocol, with the diagnostics of the contact.
+    pub averages: Averages,
+    /// Change from the last window but one to the last, by the measure of [`Protocol::Steady`](crate::spatial::Protocol::Steady); above its tolerance
+    /// where the travel did not suffice, infinite where there was one window only. `None` for a fixed duration.
+    pub settled_to: Option<f64>,
+    /// Mean power that motor and rig put into the soil while averaging `[W]`, ≥ 0 but for rounding.
+    pub dissipated_power_w: f64,
+    /// Heights of the hub that were tried, and nodes in contact over all of them.
+    pub trials: u64,
+    /// Sum over all trials of the nodes in contact that were computed.
+    pub node_trials: u64,
+    /// Step by step.
+    pub history: History,
+}

@@ -1,0 +1,49 @@
+//! The variants that a worker has at hand.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+
+use shared::model::ModelVariant;
+
+use super::variant::CompiledVariant;
+
+/// Variants at hand; a metamodel brings a new one with every stage.
+const MOST_VARIANTS: usize = 64;
+
+/// Variants by hash, each compiled once; the oldest make room.
+#[derive(Debug, Default)]
+pub struct VariantCache {
+    variants: BTreeMap<String, Arc<CompiledVariant>>,
+    by_age: VecDeque<String>,
+}
+
+impl VariantCache {
+    /// The compiled variant of a hash, if it was added.
+    pub fn get(&self, hash: &str) -> Option<Arc<CompiledVariant>> {
+        self.variants.get(hash).cloned()
+    }
+
+    /// Compiles and keeps a variant under the hash it was asked for by.
+    ///
+    /// # Errors
+    /// The variant does not have that hash, or cannot be compiled.
+    pub fn add(&mut self, hash: &str, variant: &ModelVariant) -> Result<(), String> {
+        let own = variant.hash();
+        if own != hash {
+            return Err(format!(
+                "variant {hash} came with hash {own}: coordinator and worker read it differently"
+            ));
+        }
+        let compiled = CompiledVariant::new(variant)?;
+        let compiled = Arc::new(compiled);
+        if self.variants.insert(hash.to_owned(), compiled).is_none() {
+            self.by_age.push_back(hash.to_owned());
+        }
+        if self.by_age.len() > MOST_VARIANTS
+            && let Some(oldest) = self.by_age.pop_front()
+        {
+            self.variants.remove(&oldest);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,295 @@
+//! The forward model of a variant: shared names become the physics' types.
+
+use scm::spatial::Run;
+use scm::{Averages, Condition, Soil, Wheel, quasi_static};
+use shared::model::{EffectSet, ModelKind, ModelVariant, PlateCondition, RingCondition};
+use shared::outcome::{Observables, Outcome, Rejection};
+
+use super::bevameter::Bevameter;
+use super::effects::{ActiveEffects, EffectMap};
+use super::parameters::{Radius, SoilMap};
+use super::recording;
+use super::spatial::SpatialModel;
+
+/// The forward model of a variant, its names resolved, so that an evaluation looks up nothing.
+#[derive(Debug)]
+pub(super) struct ForwardModel {
+    pub(super) dimension: usize,
+    soil: SoilMap,
+    wheels: Vec<(Wheel, Radius)>,
+    conditions: Vec<(usize, Condition)>,
+    effects: EffectMap,
+    /// The three-dimensional model; `None`: the quasi-static one.
+    spatial: Option<SpatialModel>,
+    stiffness_sensitivity: bool,
+    histories: bool,
+    /// What plates and rings read, where there are any to predict.
+    bevameter: Option<(Bevameter, Vec<PlateCondition>, Vec<RingCondition>)>,
+}
+
+/// The stiffness is raised by this share for its derivatives: a model on a grid has noise of some 0.3 % of a force, and the
+/// laws are smooth powers of the stiffness.
+const STIFFER: f64 = 0.05;
+
+/// What simulating one condition gives.
+enum Simulated {
+    Steady(Averages),
+    Rolled(Box<Run>),
+}
+
+impl ForwardModel {
+    /// Resolves the names of a variant.
+    ///
+    /// # Errors
+    /// A sentence that names what this worker does not know or cannot express.
+    pub(super) fn new(variant: &ModelVariant) -> Result<Self, String> {
+        let set = EffectSet::read(&variant.effects)?;
+        variant.check_expressible(&set)?;
+        if variant.histories && variant.kind == ModelKind::QuasiStatic {
+            return Err("histories: quasi_static knows the steady state alone; use kind = \"scm\"".into());
+        }
+        let effects = EffectMap::new(variant, &set)?;
+        let names: Vec<&str> = variant.wheels.keys().map(String::as_str).collect();
+        let soil = SoilMap::new(variant)?;
+        let wheels = variant
+            .wheels
+            .iter()
+            .map(|(name, w)| {
+                let wheel = Wheel {
+                    radius_m: w.radius_m,
+                    width_m: w.width_m,
+                    rig_radius_m: w.rig_radius_m,
+                };
+                (wheel, Radius::new(variant, name))
+            })
+            .collect();
+        let conditions = variant
+            .conditions
+            .iter()
+            .map(|c| {
+                let wheel = names
+                    .iter()
+                    .position(|n| *n == c.wheel)
+                    .ok_or(format!("unknown wheel \"{}\"", c.wheel))?;
+                let condition = Condition {
+                    slip: c.slip,
+                    wheel_load_n: c.wheel_load_n,
+                    sled_speed_m_s: c.sled_speed_m_s,
+                    slip_angle_rad: c.slip_angle_deg.to_radians(),
+                    pass: c.pass,
+                };
+                Ok((wheel, condition))
+            })
+            .collect::<Result<_, String>>()?;
+        let spatial = match variant.kind {
+            ModelKind::QuasiStatic => None,
+            ModelKind::Scm => Some(SpatialModel::new(variant)?),
+        };
+        Ok(ForwardModel {
+            spatial,
+            dimension: variant.parameters.len(),
+            soil,
+            wheels,
+            conditions,
+            effects,
+            stiffness_sensitivity: variant.stiffness_sensitivity,
+            histories: variant.histories,
+            bevameter: match variant.plates.is_empty() && variant.rings.is_empty() {
+                true => None,
+                false => Some((
+                    Bevameter::new(variant)?,
+                    variant.plates.clone(),
+                    variant.rings.clone(),
+                )),
+            },
+        })
+    }
+
+    /// Conditions that an evaluation simulates.
+    pub(super) fn runs(&self) -> usize {
+        self.conditions.len()
+    }
+
+    /// Simulates every condition at one parameter vector; the first rejection ends it. `keep` receives each run of a model that
+    /// rolls in time, in the order of the conditions.
+    pub(super) fn evaluate(&self, theta: &[f64], mut keep: impl FnMut(Run)) -> Outcome {
+        let soil = match self.soil_of(theta) {
+            Ok(soil) => soil,
+            Err(rejection) => return Outcome::Rejected(rejection),
+        };
+        let mut effects = self.effects.at(theta);
+        let mut observables = Observables::with_capacity(self.runs());
+        for position in 0..self.runs() {
+            match self.simulate(theta, &soil, &mut effects, position) {
+                Ok(Simulated::Steady(averages)) => push(&mut observables, &averages),
+                Ok(Simulated::Rolled(run)) => {
+                    push(&mut observables, &run.averages);
+                    observables.settled_to.extend(run.settled_to);
+                    if self.histories {
+                        match recording::recorded(&run.history) {
+                            Ok(history) => observables.histories.push(history),
+                            Err(rejection) => {
+                                return rejected(rejection.kind(), position, rejection.to_string());
+                            }
+                        }
+                    }
+                    keep(*run);
+                }
+                Err(rejection) => return rejected(rejection.kind(), position, rejection.to_string()),
+            }
+        }
+        if self.stiffness_sensitivity
+            && let Err(rejection) = self.differentiate(theta, &soil, &mut effects, &mut observables)
+        {
+            return Outcome::Rejected(rejection);
+        }
+        if let Err(rejection) = self.read_bevameter(theta, &mut observables) {
+            return Outcome::Rejected(rejection);
+        }
+        Outcome::Evaluated(observables)
+    }
+
+    /// Simulates every condition on stiffer soil: derivatives of the channels by ln k*.
+    fn differentiate(
+        &self,
+        theta: &[f64],
+        soil: &Soil,
+        effects: &mut ActiveEffects,
+        observables: &mut Observables,
+    ) -> Result<(), Rejection> {
+        let stiffer = Soil {
+            k_c: soil.k_c * (1.0 + STIFFER),
+            k_phi: soil.k_phi * (1.0 + STIFFER),
+            ..*soil
+        };
+        let step = libm::log1p(STIFFER);
+        for position in 0..self.runs() {
+            let averages = match self.simulate(theta, &stiffer, effects, position) {
+                Ok(Simulated::Steady(averages)) => averages,
+                Ok(Simulated::Rolled(run)) => run.averages,
+                Err(rejection) => {
+                    let message = format!("on soil stiffer by {STIFFER}: {rejection}");
+                    return Err(refusal(rejection.kind(), position, message));
+                }
+            };
+            let o = &mut *observables;
+            let change = |there: f64, here: f64| (there - here) / step;
+            o.d_drawbar_pull_n
+                .push(change(averages.drawbar_pull_n, o.drawbar_pull_n[position]));
+            o.d_torque_n_m
+                .push(change(averages.torque_n_m, o.torque_n_m[position]));
+            o.d_sinkage_m
+                .push(change(averages.sinkage_m, o.sinkage_m[position]));
+            o.d_lateral_force_n
+                .push(change(averages.lateral_force_n, o.lateral_force_n[position]));
+        }
+        Ok(())
+    }
+
+    /// Predicts plates and rings. Their likelihood is one of logarithms, so a stress of zero is a refusal.
+    fn read_bevameter(&self, theta: &[f64], observables: &mut Observables) -> Result<(), Rejection> {
+        let Some((bevameter, plates, rings)) = &self.bevameter else {
+            return Ok(());
+        };
+        let readings = bevameter.at(theta);
+        let positive = |position: usize, what: &str, stress: Result<f64, scm::Rejection>| match stress {
+            Ok(stress) if stress > 0.0 => Ok(stress),
+            Ok(stress) => Err(refusal(
+                "no_support",
+                position,
+                format!("{what}: {stress} Pa must be above 0"),
+            )),
+            Err(rejection) => Err(refusal(
+                rejection.kind(),
+                position,
+                format!("{what}: {rejection}"),
+            )),
+        };
+        for (i, plate) in plates.iter().enumerate() {
+            let pressure = readings.pressure_pa(plate.plate_radius_m, plate.sinkage_m);
+            let pressure = positive(self.runs() + i, "pressure under a plate", pressure)?;
+            observables.plate_pressure_pa.push(pressure);
+        }
+        for (i, ring) in rings.iter().enumerate() {
+            let stress = readings.shear_stress_pa(ring.normal_stress_pa, ring.shear_displacement_m);
+            let position = self.runs() + plates.len() + i;
+            let stress = positive(position, "shear stress under a ring", stress)?;
+            observables.shear_stress_pa.push(stress);
+        }
+        Ok(())
+    }
+
+    /// Simulates every condition at one parameter vector; a refusal of one leaves the others.
+    pub(super) fn each(&self, theta: &[f64]) -> Vec<Result<Averages, String>> {
+        let soil = match self.soil_of(theta) {
+            Ok(soil) => soil,
+            Err(rejection) => return vec![Err(rejection.message); self.runs()],
+        };
+        let mut effects = self.effects.at(theta);
+        let averages = |position| match self.simulate(theta, &soil, &mut effects, position) {
+            Ok(Simulated::Steady(averages)) => Ok(averages),
+            Ok(Simulated::Rolled(run)) => Ok(run.averages),
+            Err(rejection) => Err(rejection.to_string()),
+        };
+        (0..self.runs()).map(averages).collect()
+    }
+
+    fn soil_of(&self, theta: &[f64]) -> Result<Soil, Rejection> {
+        if theta.len() != self.dimension {
+            let message = format!(
+                "theta has {} entries, the variant has {}",
+                theta.len(),
+                self.dimension
+            );
+            return Err(refusal("invalid_parameter", 0, message));
+        }
+        let soil = self.soil.soil(theta).checked();
+        soil.map_err(|rejection| refusal(rejection.kind(), 0, rejection.to_string()))
+    }
+
+    fn simulate(
+        &self,
+        theta: &[f64],
+        soil: &Soil,
+        effects: &mut ActiveEffects,
+        position: usize,
+    ) -> Result<Simulated, scm::Rejection> {
+        let (place, condition) = &self.conditions[position];
+        let (wheel, radius) = &self.wheels[*place];
+        let wheel = Wheel {
+            radius_m: radius.value(theta).unwrap_or(wheel.radius_m),
+            ..*wheel
+        };
+        let (active, site) = (effects.on_wheel(*place), self.effects.site(position));
+        match &self.spatial {
+            None => quasi_static::simulate_with(soil, &wheel, condition, active, site).map(Simulated::Steady),
+            Some(model) => model
+                .run(theta, position, soil, (*place, &wheel), condition, (active, site))
+                .map(|run| Simulated::Rolled(Box::new(run))),
+        }
+    }
+}
+
+fn push(o: &mut Observables, a: &Averages) {
+    o.drawbar_pull_n.push(a.drawbar_pull_n);
+    o.torque_n_m.push(a.torque_n_m);
+    o.sinkage_m.push(a.sinkage_m);
+    o.lateral_force_n.push(a.lateral_force_n);
+    o.b_eff_m.push(a.b_eff_m);
+    o.contact_length_m.push(a.contact_length_m);
+    o.residual_load_n.push(a.residual_load_n);
+    o.nodes_in_contact.push(a.nodes_in_contact);
+    o.simulated_travel_m.push(a.simulated_travel_m);
+}
+
+fn refusal(kind: &str, condition: usize, message: String) -> Rejection {
+    Rejection {
+        kind: kind.to_owned(),
+        condition: condition as u32,
+        message,
+    }
+}
+
+fn rejected(kind: &str, condition: usize, message: String) -> Outcome {
+    Outcome::Rejected(refusal(kind, condition, message))
+}
