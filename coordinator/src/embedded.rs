@@ -9,7 +9,7 @@ use shared::outcome::Outcome;
 use statistics::{Subchain, SubchainEnd};
 use tokio::sync::watch;
 use worker::evaluator::SimulationClock;
-use worker::pull::{Coordinator, ExchangeError, Settings, run};
+use worker::pull::{Coordinator, ExchangeError, PullSettings, run};
 
 use crate::farm::dispatch::Dispatcher;
 
@@ -69,7 +69,7 @@ impl LocalWorkers {
         shutdown: impl Future<Output = ()> + Send + 'static,
     ) -> Self {
         let clock = Arc::new(SimulationClock::default());
-        let settings = Settings {
+        let settings = PullSettings {
             name: format!("local-{}", std::process::id()),
             threads,
         };

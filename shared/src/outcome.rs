@@ -16,7 +16,7 @@ pub enum Outcome {
     /// The model gave observables.
     Evaluated(Observables),
     /// The model refuses these parameters: a fact about them, recorded and never retried.
-    Rejected(Rejection),
+    Rejected(ParameterRejection),
     /// The machine failed: a fact about it; the evaluation is leased again elsewhere.
     Fault(Fault),
 }
@@ -174,7 +174,7 @@ impl Observables {
 /// Why the model refuses a parameter vector.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Rejection {
+pub struct ParameterRejection {
     /// Stable word: `no_support`, `no_convergence`, `not_finite`, `energy_gained`, `protocol`, `formula`, `invalid_parameter`.
     pub kind: String,
     /// Position of the condition that was refused, plates counted behind the runs and rings behind the plates.

@@ -62,7 +62,7 @@ pub const SPATIAL: [BaseParameter; 3] = [
 
 /// Unit and physical bounds of a parameter.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Quantity {
+pub struct ParameterBounds {
     /// Unit for tables and axes.
     pub unit: String,
     /// Least admissible value.
@@ -71,9 +71,9 @@ pub struct Quantity {
     pub upper: f64,
 }
 
-impl From<&BaseParameter> for Quantity {
+impl From<&BaseParameter> for ParameterBounds {
     fn from(base: &BaseParameter) -> Self {
-        Quantity {
+        ParameterBounds {
             unit: base.unit.to_owned(),
             lower: base.lower,
             upper: base.upper,
@@ -132,8 +132,8 @@ pub fn behind(unit: &str) -> String {
 ///
 /// # Errors
 /// A sentence with the name, the value, the unit and the bound.
-pub fn check_value(quantity: &Quantity, name: &str, value: f64) -> Result<(), String> {
-    let Quantity { unit, lower, upper } = quantity;
+pub fn check_value(quantity: &ParameterBounds, name: &str, value: f64) -> Result<(), String> {
+    let ParameterBounds { unit, lower, upper } = quantity;
     if !value.is_finite() {
         return Err(format!("{name} = {value} is not a finite number"));
     }

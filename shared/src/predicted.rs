@@ -9,7 +9,7 @@ use crate::outcome::Observables;
 /// One predicted value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Predicted {
+pub enum PredictedValue {
     /// The average of a channel, in its unit.
     Average {
         /// The channel.
@@ -38,14 +38,14 @@ pub enum Predicted {
     },
 }
 
-impl Predicted {
+impl PredictedValue {
     /// The value; `observables` must cover the variant that this was made for.
     pub fn of(self, observables: &Observables) -> f64 {
         match self {
-            Predicted::Average { channel, run } => observables.channel(channel)[run],
-            Predicted::Sensitivity { channel, run } => observables.sensitivity(channel)[run],
-            Predicted::LnPlatePressure { reading } => libm::log(observables.plate_pressure_pa[reading]),
-            Predicted::LnShearStress { reading } => libm::log(observables.shear_stress_pa[reading]),
+            PredictedValue::Average { channel, run } => observables.channel(channel)[run],
+            PredictedValue::Sensitivity { channel, run } => observables.sensitivity(channel)[run],
+            PredictedValue::LnPlatePressure { reading } => libm::log(observables.plate_pressure_pa[reading]),
+            PredictedValue::LnShearStress { reading } => libm::log(observables.shear_stress_pa[reading]),
         }
     }
 }

@@ -8,11 +8,11 @@ use shared::api::{
     CalibrationState, CalibrationStatus, ErrorBody, ErrorDetail, ErrorKind, NewCalibration, Progress,
 };
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
-use shared::experiment::Wheel;
+use shared::experiment::WheelGeometry;
 use shared::model::{
-    Condition, EffectText, ModelKind, ModelVariant, PlateCondition, RingCondition, SpatialSettings,
+    EffectText, ModelKind, ModelVariant, PlateCondition, RingCondition, RunCondition, SpatialSettings,
 };
-use shared::outcome::{Fault, Observables, Outcome, Rejection, SimulatedHistory};
+use shared::outcome::{Fault, Observables, Outcome, ParameterRejection, SimulatedHistory};
 use statistics::{Subchain, SubchainEnd};
 
 /// A message has one form: it is written so, and read back to the same.
@@ -82,7 +82,7 @@ fn observables_json() -> Value {
 
 #[test]
 fn an_exchange_request_has_one_form() {
-    let rejection = Rejection {
+    let rejection = ParameterRejection {
         kind: "no_support".into(),
         condition: 3,
         message: "sinkage 0.2 m".into(),
@@ -179,7 +179,7 @@ fn an_exchange_response_has_one_form() {
 
 #[test]
 fn a_variant_has_one_form_and_its_hash_names_it() {
-    let wheel = Wheel {
+    let wheel = WheelGeometry {
         radius_m: 0.125,
         width_m: 0.112,
         grouser_count: 0,
@@ -188,7 +188,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         rig_radius_m: 0.125,
         mesh: None,
     };
-    let condition = Condition {
+    let condition = RunCondition {
         wheel: "w".into(),
         slip: 0.05,
         wheel_load_n: 60.0,

@@ -4,7 +4,7 @@ use farm_tests::cylinder::Cylinder;
 use farm_tests::job::Job;
 use farm_tests::service::Service;
 use serde_json::json;
-use shared::experiment::{Experiment, SurfaceMesh};
+use shared::experiment::{Experiment, WheelMesh};
 
 const WHEEL: Cylinder = Cylinder {
     facets: 60,
@@ -21,7 +21,7 @@ fn with(file: &str, content: impl Into<Vec<u8>>) -> Job {
 }
 
 /// The mesh of a job that is written to disk and read back; its text, too.
-fn read(file: &str, job: &Job) -> (SurfaceMesh, String) {
+fn read(file: &str, job: &Job) -> (WheelMesh, String) {
     let folder = tempfile::tempdir().expect("a folder");
     job.write(folder.path());
     let files = Experiment::read_files(&folder.path().join("experiment.toml")).expect("files");
@@ -42,7 +42,7 @@ fn ascii_and_binary_stl_and_obj_are_the_same_surface() {
     assert_eq!(obj.triangles.len(), expected.len());
     for (t, corners) in expected.iter().enumerate() {
         for (c, corner) in corners.iter().enumerate() {
-            let of = |mesh: &SurfaceMesh| mesh.vertices_m[mesh.triangles[t][c] as usize];
+            let of = |mesh: &WheelMesh| mesh.vertices_m[mesh.triangles[t][c] as usize];
             assert_eq!(of(&obj).map(f64::to_bits), corner.map(|x| (x + 0.0).to_bits()));
             assert_eq!(
                 of(&ascii).map(|x| (x as f32).to_bits()),
@@ -72,7 +72,7 @@ fn grousers_reach_beyond_the_nominal_radius() {
 fn a_mesh_goes_through_json_and_none_leaves_no_trace() {
     let (mesh, _) = read("wheel.stl", &with("wheel.stl", WHEEL.binary_stl()));
     let text = serde_json::to_string(&mesh).unwrap();
-    assert_eq!(serde_json::from_str::<SurfaceMesh>(&text).unwrap(), mesh);
+    assert_eq!(serde_json::from_str::<WheelMesh>(&text).unwrap(), mesh);
     let folder = tempfile::tempdir().unwrap();
     Job::small().write(folder.path());
     let files = Experiment::read_files(&folder.path().join("experiment.toml")).unwrap();

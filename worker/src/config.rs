@@ -5,18 +5,18 @@ use std::path::PathBuf;
 /// Simulates wheel-soil contact for a Grouser coordinator.
 #[derive(Debug, clap::Parser)]
 #[command(version, args_conflicts_with_subcommands = true)]
-pub struct Config {
+pub struct WorkerConfig {
     /// What to do besides serving a coordinator.
     #[command(subcommand)]
-    pub command: Option<Command>,
+    pub command: Option<WorkerCommand>,
     /// How to serve a coordinator.
     #[command(flatten)]
-    pub serve: Option<Serve>,
+    pub serve: Option<PullArguments>,
 }
 
 /// How to serve a coordinator.
 #[derive(Debug, clap::Args)]
-pub struct Serve {
+pub struct PullArguments {
     /// The coordinator, as in `http://host:7070`.
     #[arg(long, env = "GROUSER_COORDINATOR", value_name = "URL")]
     pub coordinator: String,
@@ -27,7 +27,7 @@ pub struct Serve {
 
 /// What else a worker does.
 #[derive(Debug, clap::Subcommand)]
-pub enum Command {
+pub enum WorkerCommand {
     /// Forward runs of an experiment, without a coordinator.
     Simulate(Simulate),
 }

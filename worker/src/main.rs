@@ -6,9 +6,9 @@ use anyhow::Context;
 use clap::Parser;
 use shared::sentence::of_causes;
 use worker::client::HttpCoordinator;
-use worker::config::{Command, Config, Serve};
+use worker::config::{PullArguments, WorkerCommand, WorkerConfig};
 use worker::evaluator::SimulationClock;
-use worker::pull::{Settings, run};
+use worker::pull::{PullSettings, run};
 
 fn main() -> std::process::ExitCode {
     if let Err(error) = worker::processor::check() {
@@ -22,9 +22,11 @@ fn main() -> std::process::ExitCode {
         .with_writer(std::io::stderr)
         .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()))
         .init();
-    let config = Config::parse();
+    let config = WorkerConfig::parse();
     let done = match (config.command, config.serve) {
-        (Some(Command::Simulate(command)), _) => worker::simulate::simulate(&command).map_err(Into::into),
+        (Some(WorkerCommand::Simulate(command)), _) => {
+            worker::simulate::simulate(&command).map_err(Into::into)
+        }
         (None, Some(serve)) => pull(&serve),
         (None, None) => Err(anyhow::anyhow!("--coordinator URL is missing")),
     };
@@ -38,7 +40,7 @@ fn main() -> std::process::ExitCode {
 }
 
 #[tokio::main]
-async fn pull(serve: &Serve) -> anyhow::Result<()> {
+async fn pull(serve: &PullArguments) -> anyhow::Result<()> {
     let coordinator = HttpCoordinator::new(&serve.coordinator).map_err(anyhow::Error::msg)?;
     let cores = std::thread::available_parallelism().map_or(1, Into::into);
     let threads = serve.threads.map_or(cores, Into::into);
@@ -53,7 +55,7 @@ async fn pull(serve: &Serve) -> anyhow::Result<()> {
     let clock = Arc::new(SimulationClock::default());
     run(
         Arc::new(coordinator),
-        Settings { name, threads },
+        PullSettings { name, threads },
         clock,
         stop_signal()?,
     )

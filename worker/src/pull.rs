@@ -54,7 +54,7 @@ pub trait Coordinator: Send + Sync + 'static {
 
 /// Who the worker is and how it works.
 #[derive(Debug, Clone)]
-pub struct Settings {
+pub struct PullSettings {
     /// Name of this worker process, fresh at every start.
     pub name: String,
     /// Threads that simulate.
@@ -67,7 +67,7 @@ pub struct Settings {
 /// [`ExchangeError::Refused`], or the threads cannot be started (as `Refused`, too: nothing can mend it).
 pub async fn run<C: Coordinator>(
     coordinator: Arc<C>,
-    settings: Settings,
+    settings: PullSettings,
     clock: Arc<SimulationClock>,
     shutdown: impl Future<Output = ()>,
 ) -> Result<(), ExchangeError> {
@@ -119,7 +119,7 @@ struct Worker<C> {
     coordinator: Arc<C>,
     evaluator: Evaluator,
     clock: Arc<SimulationClock>,
-    settings: Settings,
+    settings: PullSettings,
     variants: VariantCache,
     /// Leases whose result is not there yet.
     held: BTreeSet<u64>,

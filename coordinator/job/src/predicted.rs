@@ -1,25 +1,28 @@
 //! Which of the observables a likelihood takes, and in which order.
 
 use shared::channel::Channel;
-use shared::predicted::Predicted;
+use shared::predicted::PredictedValue;
 use statistics::{Datum, Likelihood};
 
 use super::{PLATE, RING};
 
 /// The predicted values of a likelihood: one for each datum, then one for each sensitive datum.
-pub(super) fn predicted(likelihood: &Likelihood) -> Vec<Predicted> {
+pub(super) fn predicted(likelihood: &Likelihood) -> Vec<PredictedValue> {
     let data = likelihood.data();
     let value = |d: &Datum| match d.channel {
-        PLATE => Predicted::LnPlatePressure { reading: d.run },
-        RING => Predicted::LnShearStress { reading: d.run },
-        channel => Predicted::Average {
+        PLATE => PredictedValue::LnPlatePressure { reading: d.run },
+        RING => PredictedValue::LnShearStress { reading: d.run },
+        channel => PredictedValue::Average {
             channel: Channel::ALL[channel],
             run: d.run,
         },
     };
-    let sensitive = likelihood.sensitive().iter().map(|&i| Predicted::Sensitivity {
-        channel: Channel::ALL[data[i].channel],
-        run: data[i].run,
-    });
+    let sensitive = likelihood
+        .sensitive()
+        .iter()
+        .map(|&i| PredictedValue::Sensitivity {
+            channel: Channel::ALL[data[i].channel],
+            run: data[i].run,
+        });
     data.iter().map(value).chain(sensitive).collect()
 }

@@ -8,7 +8,7 @@ use shared::experiment::Scatter;
 use shared::file::{FileError, number, unknown_word};
 use shared::model::EffectSet;
 use shared::model::effects::parameter_name;
-use shared::parameters::{self, NOISE_PREFIX, Quantity, behind};
+use shared::parameters::{self, NOISE_PREFIX, ParameterBounds, behind};
 use statistics::{Distribution, Marginal};
 
 /// A parameter with a prior.
@@ -92,7 +92,7 @@ impl Parsed {
         if let Some(value) = number(&parameter.prior) {
             return Ok(Parsed::Fixed(value));
         }
-        let quantity = Quantity {
+        let quantity = ParameterBounds {
             unit: parameter.unit.clone(),
             lower: f64::NEG_INFINITY,
             upper: f64::INFINITY,
@@ -134,8 +134,8 @@ pub fn free_parameters(effect: &Effect) -> Result<Vec<FreeParameter>, String> {
 }
 
 /// The prior density that a table describes, within the quantity's physical bounds.
-fn marginal(value: &toml::Value, quantity: &Quantity) -> Result<Marginal, String> {
-    let Quantity { unit, lower, upper } = quantity;
+fn marginal(value: &toml::Value, quantity: &ParameterBounds) -> Result<Marginal, String> {
+    let ParameterBounds { unit, lower, upper } = quantity;
     let (lower, upper, unit) = (*lower, *upper, behind(unit));
     let table = value.as_table().ok_or("a number or a table is expected")?;
     let distribution = distribution(table)?;
@@ -168,7 +168,7 @@ fn marginal(value: &toml::Value, quantity: &Quantity) -> Result<Marginal, String
 }
 
 /// Unit and physical bounds of a parameter.
-fn quantity(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<Quantity, String> {
+fn quantity(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<ParameterBounds, String> {
     let Some(column) = name.strip_prefix(NOISE_PREFIX) else {
         return shared::model::lookup(name, wheels, effects);
     };
@@ -184,7 +184,7 @@ fn quantity(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<
             ));
         }
     };
-    Ok(Quantity {
+    Ok(ParameterBounds {
         unit: unit.to_owned(),
         lower: 0.0,
         upper: f64::INFINITY,
@@ -236,7 +236,7 @@ mod tests {
     fn every_prior_of_the_catalogue_is_a_number_or_a_density() {
         for effect in formula::catalogue::catalogue() {
             for parameter in &effect.parameters {
-                let quantity = Quantity {
+                let quantity = ParameterBounds {
                     unit: parameter.unit.clone(),
                     lower: f64::NEG_INFINITY,
                     upper: f64::INFINITY,

@@ -7,7 +7,7 @@ use shared::file::{FileError, FileSet, number};
 use shared::model::{Companion, EffectSet, ModelKind, ModelSettings, ModelVariant, equations_of};
 use shared::outcome::Observables;
 use shared::parameters;
-use shared::predicted::Predicted;
+use shared::predicted::PredictedValue;
 use statistics::{Likelihood, Prior, PriorError};
 
 use crate::bevameter::{Bevameter, PLATE};
@@ -46,7 +46,7 @@ pub struct Spec {
     /// The likelihood of the measurements that are fitted; runs count within [`Spec::fit_runs`].
     pub likelihood: Likelihood,
     /// Which of the observables it takes.
-    predicted: Vec<Predicted>,
+    predicted: Vec<PredictedValue>,
     /// What an independent test says of parameters; the figures show it, nothing else reads it.
     pub reference: BTreeMap<String, f64>,
     /// What the job says of the errors.

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use formula::Variable;
 use shared::api::CalibrationStatus;
 use shared::channel::Channel;
-use shared::experiment::{MeasuredHistory, Protocol};
+use shared::experiment::{AveragingProtocol, MeasuredHistory};
 use shared::model::{EffectSet, ModelKind};
 
 use super::comparison::{Comparison, ComparisonRow};
@@ -124,7 +124,7 @@ pub fn specification(spec: &Spec) -> String {
 }
 
 /// What was cut from a run's recording, and averaged: samples, periods.
-fn averaging(run: &str, history: &MeasuredHistory, protocol: &Protocol) -> String {
+fn averaging(run: &str, history: &MeasuredHistory, protocol: &AveragingProtocol) -> String {
     let filter = match protocol.lowpass_hz {
         0.0 => "not filtered".to_owned(),
         cutoff => format!("low-pass {cutoff} Hz"),

@@ -2,7 +2,9 @@
 
 use formula::{Effect, Variable};
 use serde::{Deserialize, Serialize};
-use shared::experiment::{Experiment, Noise, Protocol, Rig, RunUse, Soil, TestRun, Wheel};
+use shared::experiment::{
+    AveragingProtocol, Experiment, Noise, Rig, RunUse, SoilProperties, TestRun, WheelGeometry,
+};
 use shared::model::effects::parameter_name;
 use shared::model::{EffectSet, EffectText, ModelKind, ModelSettings, ModelVariant};
 use utoipa::ToSchema;
@@ -173,7 +175,7 @@ struct Reference<'a> {
 
 impl<'a> Reference<'a> {
     fn new(effect: &'a Effect, kind: ModelKind, runs: Vec<TestRun>) -> Result<Self, String> {
-        let wheel = Wheel {
+        let wheel = WheelGeometry {
             radius_m: 0.130,
             width_m: 0.112,
             grouser_count: 12,
@@ -182,7 +184,7 @@ impl<'a> Reference<'a> {
             rig_radius_m: RIG_RADIUS_M,
             mesh: None,
         };
-        let soil = Soil {
+        let soil = SoilProperties {
             density_kg_m3: Some(1400.0),
             repose_angle_deg: None,
         };
@@ -194,7 +196,7 @@ impl<'a> Reference<'a> {
                 ..Rig::default()
             },
             noise: Noise::default(),
-            protocol: Protocol::default(),
+            protocol: AveragingProtocol::default(),
             runs,
             plates: Vec::new(),
             shear: Vec::new(),

@@ -2,7 +2,7 @@
 
 use shared::channel::Channel;
 use shared::experiment::{TestRun, rim_speed_m_s};
-use shared::model::Condition;
+use shared::model::RunCondition;
 use statistics::Likelihood;
 
 use job::{PLATE, Spec};
@@ -66,7 +66,7 @@ fn level_of(values: &[f64]) -> Vec<usize> {
 
 /// Runs that the rig could make, with the wheel and the soil of the first that was fitted: each slip at each load at each speed of
 /// the rim.
-pub(super) fn proposed(spec: &Spec) -> Vec<Condition> {
+pub(super) fn proposed(spec: &Spec) -> Vec<RunCondition> {
     let conditions = &spec.fit_variant.conditions;
     let Some(first) = conditions.first() else {
         return Vec::new();
@@ -96,7 +96,7 @@ pub(super) fn proposed(spec: &Spec) -> Vec<Condition> {
                 } else {
                     rim * (1.0 - slip)
                 });
-                proposed.push(Condition {
+                proposed.push(RunCondition {
                     slip,
                     wheel_load_n,
                     sled_speed_m_s,

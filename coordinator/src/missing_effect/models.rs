@@ -7,7 +7,7 @@ use discovery::{Candidate, Settings, Starts};
 use formula::Effect;
 use shared::channel::Channel;
 use shared::file::{FileError, FileSet};
-use shared::model::{Condition, ModelKind, ModelVariant};
+use shared::model::{ModelKind, ModelVariant, RunCondition};
 use shared::outcome::Observables;
 
 use super::candidate::{Explanation, extended, library};
@@ -52,7 +52,7 @@ pub struct Models {
     pub left_out: Vec<(String, String)>,
     /// The base's own effects, each with the names of the parameters that are left without it.
     pub(super) reductions: Vec<(String, Vec<String>)>,
-    pub(super) design: Vec<Condition>,
+    pub(super) design: Vec<RunCondition>,
     pub(super) channels: Vec<(Channel, f64)>,
     variants: BTreeMap<(Model, bool), (String, ModelVariant)>,
     max_effects: usize,

@@ -2,7 +2,7 @@
 
 use super::error::SignalError;
 use super::low_pass::LowPass;
-use super::period_mean::{History, PeriodMean, Window, period_mean};
+use super::period_mean::{PeriodMean, SampledSignal, Window, period_mean};
 
 /// Filters a history in place, cuts its beginning, and takes the mean over the last whole number of periods.
 ///
@@ -30,7 +30,7 @@ pub fn average(
     if let Some(filter) = filter {
         filter.apply(samples);
     }
-    let history = History {
+    let history = SampledSignal {
         start_s: 0.0,
         interval_s,
         samples,

@@ -20,7 +20,7 @@ pub mod resample;
 pub use average::average;
 pub use error::SignalError;
 pub use low_pass::LowPass;
-pub use period_mean::{History, PeriodMean, Window, period_mean};
+pub use period_mean::{PeriodMean, SampledSignal, Window, period_mean};
 pub use resample::{intervals, resample};
 
 /// Interval of the recordings of the rigs and of every simulated history `[s]`: 10 Hz.

@@ -7,7 +7,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Means over intervals of equal length.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct History<'a> {
+pub struct SampledSignal<'a> {
     /// Where the first interval begins `[s]`.
     pub start_s: f64,
     /// Length of an interval `[s]`, > 0.
@@ -16,7 +16,7 @@ pub struct History<'a> {
     pub samples: &'a [f64],
 }
 
-impl History<'_> {
+impl SampledSignal<'_> {
     /// Where the last interval ends `[s]`.
     pub fn end_s(&self) -> f64 {
         self.start_s + self.samples.len() as f64 * self.interval_s
@@ -87,7 +87,7 @@ pub struct PeriodMean {
 /// # Source
 /// A window that is no multiple of the period is off by up to `A / (π N)`. Checked by
 /// `a_mean_over_whole_periods_is_free_of_the_swing` and others of that file.
-pub fn period_mean(history: &History<'_>, window: &Window) -> Result<PeriodMean, SignalError> {
+pub fn period_mean(history: &SampledSignal<'_>, window: &Window) -> Result<PeriodMean, SignalError> {
     let Window {
         from_s,
         to_s,

@@ -2,7 +2,9 @@
 
 use core::f64::consts::PI;
 
-use signal::{History, INTERVAL_S, LowPass, SignalError, Window, average, intervals, period_mean, resample};
+use signal::{
+    INTERVAL_S, LowPass, SampledSignal, SignalError, Window, average, intervals, period_mean, resample,
+};
 
 const RATE_HZ: f64 = 10.0;
 
@@ -198,7 +200,7 @@ fn swinging(mean: f64, amplitude: f64, period_s: f64, count: u32) -> Vec<f64> {
 }
 
 fn mean_of(samples: &[f64], from_s: f64, to_s: f64, period_s: Option<f64>) -> (f64, u32, f64) {
-    let history = History {
+    let history = SampledSignal {
         start_s: 0.0,
         interval_s: INTERVAL_S,
         samples,
@@ -253,7 +255,7 @@ fn a_period_that_just_fits_counts_and_one_too_long_takes_the_window() {
 
 #[test]
 fn windows_outside_the_history_are_refused() {
-    let history = History {
+    let history = SampledSignal {
         start_s: 1.0,
         interval_s: INTERVAL_S,
         samples: &[1.0; 20],
@@ -292,7 +294,7 @@ fn an_average_is_filter_cut_and_mean_in_this_order() {
     let filter = LowPass::new(0.5, RATE_HZ).unwrap();
     let mut filtered = raw.clone();
     filter.apply(&mut filtered);
-    let history = History {
+    let history = SampledSignal {
         start_s: 0.0,
         interval_s: INTERVAL_S,
         samples: &filtered,

@@ -2,9 +2,9 @@
 
 use signal::{LowPass, SignalError, average};
 
-use super::settings::Protocol;
+use super::settings::AveragingProtocol;
 use super::table::{self, Columns};
-use super::wheel::Wheel;
+use super::wheel::WheelGeometry;
 use crate::channel::Channel;
 use crate::file::FileError;
 
@@ -67,8 +67,8 @@ impl MeasuredHistory {
 pub(super) fn averaged(
     file: &str,
     text: &str,
-    wheel: &Wheel,
-    protocol: &Protocol,
+    wheel: &WheelGeometry,
+    protocol: &AveragingProtocol,
     (slip, sled_speed_m_s): (f64, f64),
 ) -> Result<MeasuredHistory, FileError> {
     let mut known = vec!["t_s"];
@@ -173,8 +173,8 @@ mod tests {
     /// 2 pi 0.125 m / 12 / 10 mm/s = 6.545 s from grouser to grouser at this slip and speed.
     const MOTION: (f64, f64) = (0.2, 0.008);
 
-    fn wheel() -> Wheel {
-        Wheel {
+    fn wheel() -> WheelGeometry {
+        WheelGeometry {
             radius_m: 0.125,
             width_m: 0.112,
             grouser_count: 12,
@@ -185,7 +185,7 @@ mod tests {
         }
     }
 
-    fn read(text: &str, protocol: &Protocol) -> Result<MeasuredHistory, String> {
+    fn read(text: &str, protocol: &AveragingProtocol) -> Result<MeasuredHistory, String> {
         averaged("h.csv", text, &wheel(), protocol, MOTION).map_err(|e| e.to_string())
     }
 
@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn the_transient_is_cut_and_whole_grouser_periods_are_averaged() {
-        let history = read(&recording(), &Protocol::default()).unwrap();
+        let history = read(&recording(), &AveragingProtocol::default()).unwrap();
         let pull = history.channel(Channel::DrawbarPull).unwrap();
         // 20 s behind the transient hold three periods of 6.545 s; over these the swing drops out
         assert_eq!(pull.periods, 3);
@@ -219,9 +219,9 @@ mod tests {
         let sinkage = history.channel(Channel::Sinkage).unwrap();
         assert!((sinkage.average - 0.005).abs() < 1e-12);
         assert!(history.channel(Channel::Torque).is_none());
-        let raw = Protocol {
+        let raw = AveragingProtocol {
             lowpass_hz: 0.0,
-            ..Protocol::default()
+            ..AveragingProtocol::default()
         };
         let unfiltered = read(&recording(), &raw).unwrap();
         let pull = unfiltered.channel(Channel::DrawbarPull).unwrap();
@@ -230,9 +230,9 @@ mod tests {
 
     #[test]
     fn malformed_histories_say_what_is_wrong() {
-        let steady = Protocol {
+        let steady = AveragingProtocol {
             measured_transient_s: 0.0,
-            ..Protocol::default()
+            ..AveragingProtocol::default()
         };
         let rows = |rows: &str| read(&format!("t_s,sinkage_m\n{rows}"), &steady).unwrap_err();
         for (wrong, message) in [
@@ -270,7 +270,11 @@ mod tests {
             "h.csv line 1: unknown column \"torqe_n_m\"; the nearest known is \"torque_n_m\""
         );
         assert_eq!(
-            read("t_s,sinkage_m\n0.1,0\n0.2,0\n0.3,0\n", &Protocol::default()).unwrap_err(),
+            read(
+                "t_s,sinkage_m\n0.1,0\n0.2,0\n0.3,0\n",
+                &AveragingProtocol::default()
+            )
+            .unwrap_err(),
             "h.csv: [protocol] measured_transient_s 40 s must be < 0.300000 s, the length of the recording"
         );
     }

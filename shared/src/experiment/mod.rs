@@ -25,11 +25,11 @@ use std::path::Path;
 
 pub use bevameter::{PLATE_COLUMNS, PlateReading, SHEAR_COLUMNS, ShearReading};
 pub use history::{MeasuredHistory, Recorded};
-pub use mesh::{MOST_BYTES, MOST_TRIANGLES, SurfaceMesh};
+pub use mesh::{MOST_BYTES, MOST_TRIANGLES, WheelMesh};
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
 pub use scatter::{Scatter, ScatterSd};
-pub use settings::{Noise, NoiseSd, Protocol, ProtocolKind, Rig, Soil};
-pub use wheel::{Wheel, rim_speed_m_s};
+pub use settings::{AveragingProtocol, Noise, NoiseSd, ProtocolKind, Rig, SoilProperties};
+pub use wheel::{WheelGeometry, rim_speed_m_s};
 
 use crate::channel::Channel;
 use crate::file::{FileError, FileSet, read_text, sibling};
@@ -38,15 +38,15 @@ use crate::file::{FileError, FileSet, read_text, sibling};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
     /// Wheels by name.
-    pub wheels: BTreeMap<String, Wheel>,
+    pub wheels: BTreeMap<String, WheelGeometry>,
     /// Soils by name.
-    pub soils: BTreeMap<String, Soil>,
+    pub soils: BTreeMap<String, SoilProperties>,
     /// What holds the wheel.
     pub rig: Rig,
     /// Standard deviation of the measurement noise by channel.
     pub noise: Noise,
     /// How histories become averages.
-    pub protocol: Protocol,
+    pub protocol: AveragingProtocol,
     /// The test runs, in the order of `runs.csv`; empty where the experiment names bevameter readings alone.
     pub runs: Vec<TestRun>,
     /// Readings of plates, in the order of `plates.csv`; empty where the experiment names no such file.
@@ -89,7 +89,7 @@ impl Experiment {
         let mut file = settings::parse(name, &files.toml)?;
         let text = |named: &str| files.named(name, named);
         for (wheel_name, named) in &file.meshes {
-            let mesh = SurfaceMesh::parse(named, text(named)?)?;
+            let mesh = WheelMesh::parse(named, text(named)?)?;
             if let Some(wheel) = file.wheel.get_mut(wheel_name) {
                 mesh.check_against(wheel.radius_m, wheel.width_m)
                     .map_err(|e| FileError::whole(named, e))?;

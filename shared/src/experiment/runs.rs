@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::history::{MeasuredHistory, averaged};
-use super::settings::{Protocol, Soil};
+use super::settings::{AveragingProtocol, SoilProperties};
 use super::table::{self, Columns, Row};
-use super::wheel::Wheel;
+use super::wheel::WheelGeometry;
 use crate::channel::Channel;
 use crate::file::{FileError, FileSet};
 
@@ -100,9 +100,9 @@ pub(super) fn named_histories(file: &str, text: &str) -> Result<BTreeSet<String>
 pub(super) fn parse(
     file: &str,
     files: &FileSet,
-    wheels: &BTreeMap<String, Wheel>,
-    soils: &BTreeMap<String, Soil>,
-    protocol: &Protocol,
+    wheels: &BTreeMap<String, WheelGeometry>,
+    soils: &BTreeMap<String, SoilProperties>,
+    protocol: &AveragingProtocol,
 ) -> Result<Vec<TestRun>, FileError> {
     let text = files.named(file, file)?;
     let mut first_line: BTreeMap<String, usize> = BTreeMap::new();
@@ -146,8 +146,8 @@ pub(super) fn parse(
 impl Row<'_> {
     fn test_run(
         &self,
-        wheels: &BTreeMap<String, Wheel>,
-        soils: &BTreeMap<String, Soil>,
+        wheels: &BTreeMap<String, WheelGeometry>,
+        soils: &BTreeMap<String, SoilProperties>,
     ) -> Result<TestRun, String> {
         let wheel = self.named("wheel", wheels)?;
         let slip = self.required("slip")?;

@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 
 use super::check::{RawSd, not_negative, positive};
 use super::scatter::{Scatter, ScatterSd};
-use super::wheel::{RawWheel, Wheel};
+use super::wheel::{RawWheel, WheelGeometry};
 use crate::channel::Channel;
 use crate::file::{FileError, parse_toml};
 
 /// What is known of a soil besides the calibrated parameters.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Soil {
+pub struct SoilProperties {
     /// Bulk density `[kg/m^3]`.
     pub density_kg_m3: Option<f64>,
     /// Angle of repose `[deg]`.
@@ -78,7 +78,7 @@ impl Noise {
 /// How a time history becomes the averages of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Protocol {
+pub struct AveragingProtocol {
     /// When a simulated run ends.
     pub kind: ProtocolKind,
     /// Time cut from the start of a measured history `[s]`.
@@ -101,9 +101,9 @@ pub enum ProtocolKind {
     Paper,
 }
 
-impl Default for Protocol {
+impl Default for AveragingProtocol {
     fn default() -> Self {
-        Protocol {
+        AveragingProtocol {
             kind: ProtocolKind::Steady,
             measured_transient_s: 40.0,
             simulated_transient_force_s: 20.0,
@@ -118,13 +118,13 @@ pub(super) struct ExperimentFile {
     pub(super) runs: Option<String>,
     pub(super) plates: Option<String>,
     pub(super) shear: Option<String>,
-    pub(super) wheel: BTreeMap<String, Wheel>,
+    pub(super) wheel: BTreeMap<String, WheelGeometry>,
     /// Names of the mesh files, by wheel; the wheels themselves are still without.
     pub(super) meshes: BTreeMap<String, String>,
-    pub(super) soil: BTreeMap<String, Soil>,
+    pub(super) soil: BTreeMap<String, SoilProperties>,
     pub(super) rig: Rig,
     pub(super) noise: Noise,
-    pub(super) protocol: Protocol,
+    pub(super) protocol: AveragingProtocol,
 }
 
 #[derive(Deserialize)]
@@ -136,13 +136,13 @@ struct RawExperiment {
     #[serde(default)]
     wheel: BTreeMap<String, RawWheel>,
     #[serde(default)]
-    soil: BTreeMap<String, Soil>,
+    soil: BTreeMap<String, SoilProperties>,
     #[serde(default)]
     rig: Rig,
     #[serde(default)]
     noise: RawNoise,
     #[serde(default)]
-    protocol: Protocol,
+    protocol: AveragingProtocol,
 }
 
 #[derive(Default, Deserialize)]
@@ -199,7 +199,11 @@ pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError>
 }
 
 /// Refuses numbers of rig, soils and protocol that are not finite or have the wrong sign.
-fn check_numbers(rig: &Rig, soils: &BTreeMap<String, Soil>, protocol: &Protocol) -> Result<(), String> {
+fn check_numbers(
+    rig: &Rig,
+    soils: &BTreeMap<String, SoilProperties>,
+    protocol: &AveragingProtocol,
+) -> Result<(), String> {
     let in_rig = |e: String| format!("[rig] {e}");
     positive("gravity_m_s2", rig.gravity_m_s2, "m/s^2").map_err(in_rig)?;
     if let Some(length) = rig.bin_length_m {

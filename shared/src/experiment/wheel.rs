@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::check::{not_negative, positive};
-use super::mesh::{self, SurfaceMesh};
+use super::mesh::{self, WheelMesh};
 
 /// Speed of the rim `[m/s]` by the rig's radius: `v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the sled speed `[m/s]`.
 /// 0 for a locked wheel.
@@ -17,7 +17,7 @@ pub fn rim_speed_m_s(slip: f64, sled_speed_m_s: f64) -> f64 {
 
 /// A rigid wheel. `quasi_static` models its smooth rim alone: grousers enter through a radius of its own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Wheel {
+pub struct WheelGeometry {
     /// Radius of the rim `[m]`; beside a mesh, the radius that slip and sinkage refer to.
     pub radius_m: f64,
     /// Width of the rim `[m]`; beside a mesh, the width of the lane.
@@ -33,10 +33,10 @@ pub struct Wheel {
     /// The surface, where it is given instead of rim and grousers. Not written where there is none, so that a variant
     /// without a mesh has the text, and the hash, that it had before there were meshes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mesh: Option<SurfaceMesh>,
+    pub mesh: Option<WheelMesh>,
 }
 
-impl Wheel {
+impl WheelGeometry {
     /// Whether grousers are declared, be it only by a height.
     pub fn has_grousers(&self) -> bool {
         self.grouser_count > 0 || self.grouser_height_m > 0.0
@@ -81,8 +81,8 @@ pub(super) struct RawWheel {
 
 impl RawWheel {
     /// The wheel without its mesh, and the name of the mesh's file.
-    pub(super) fn check(self) -> Result<(Wheel, Option<String>), String> {
-        let wheel = Wheel {
+    pub(super) fn check(self) -> Result<(WheelGeometry, Option<String>), String> {
+        let wheel = WheelGeometry {
             radius_m: self.radius_m,
             width_m: self.width_m,
             grouser_count: self.grouser_count.unwrap_or(0),
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn a_grouser_follows_the_other_after_a_twelfth_of_a_turn() {
-        let mut wheel = Wheel {
+        let mut wheel = WheelGeometry {
             radius_m: 0.13,
             width_m: 0.1,
             grouser_count: 12,

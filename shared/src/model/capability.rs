@@ -7,7 +7,7 @@ use formula::{Hook, Variable};
 
 use super::effects::EffectSet;
 use super::kind::ModelKind;
-use super::spatial::Displacement;
+use super::spatial::DisplacementFrame;
 use super::variant::ModelVariant;
 use crate::parameters;
 
@@ -23,7 +23,7 @@ impl ModelVariant {
         }
         if let Some(spatial) = &self.spatial {
             spatial.check_protocol(&self.protocol)?;
-            if spatial.displacement != Displacement::Rim && effects.using(Variable::J).is_none() {
+            if spatial.displacement != DisplacementFrame::Rim && effects.using(Variable::J).is_none() {
                 return Err(
                     "displacement has no effect without an effect that uses j, such as janosi_hanamoto"
                         .into(),

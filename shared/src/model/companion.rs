@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 use statistics::Metamodel;
 use utoipa::ToSchema;
 
-use crate::predicted::Predicted;
+use crate::predicted::PredictedValue;
 
 /// The quasi-static model beside a variant of the three-dimensional one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Companion {
     /// The values that are compared, in the order of the likelihood.
-    pub values: Vec<Predicted>,
+    pub values: Vec<PredictedValue>,
     /// The metamodel of a stage; absent before the first: then both models are evaluated, and no moves are taken.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Object>)]

@@ -8,7 +8,7 @@ use crate::experiment::TestRun;
 /// A condition of the rig, as the simulation needs it; measurements stay with the coordinator.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Condition {
+pub struct RunCondition {
     /// Name of the wheel in [`ModelVariant::wheels`](super::ModelVariant::wheels).
     pub wheel: String,
     /// Slip by the rig's radius, in [-1, 1).
@@ -29,9 +29,9 @@ pub struct Condition {
     pub density_kg_m3: Option<f64>,
 }
 
-impl Condition {
+impl RunCondition {
     pub(super) fn new(run: &TestRun, repose_angle_deg: Option<f64>, density_kg_m3: Option<f64>) -> Self {
-        Condition {
+        RunCondition {
             repose_angle_deg,
             density_kg_m3,
             wheel: run.wheel.clone(),

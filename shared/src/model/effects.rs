@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use utoipa::ToSchema;
 
 use crate::file::{FileError, unknown_word};
-use crate::parameters::{self, Quantity};
+use crate::parameters::{self, ParameterBounds};
 
 /// An effect as it travels: a worker may come from another version of the catalogue, or have never seen the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -151,7 +151,7 @@ impl EffectSet {
     ///
     /// # Errors
     /// A sentence that names what is unknown, and the nearest known.
-    pub fn lookup(&self, name: &str, wheels: &BTreeSet<&str>) -> Option<Result<Quantity, String>> {
+    pub fn lookup(&self, name: &str, wheels: &BTreeSet<&str>) -> Option<Result<ParameterBounds, String>> {
         let (effect, parameter, wheel) = parts(name)?;
         Some(self.find(effect).and_then(|effect| {
             let known = effect.parameters.iter().map(|p| p.name.as_str());
@@ -166,7 +166,7 @@ impl EffectSet {
             // the prior of the file says whether it is a magnitude; nothing else is known of it
             let magnitude = ["half_normal", "lognormal", "loguniform"];
             let positive = magnitude.iter().any(|d| parameter.prior.get(d).is_some());
-            Ok(Quantity {
+            Ok(ParameterBounds {
                 unit: parameter.unit.clone(),
                 lower: if positive { 0.0 } else { f64::NEG_INFINITY },
                 upper: f64::INFINITY,

@@ -21,7 +21,7 @@ pub mod spatial;
 mod variant;
 
 pub use companion::Companion;
-pub use condition::{Condition, PlateCondition, RingCondition};
+pub use condition::{PlateCondition, RingCondition, RunCondition};
 pub use effects::{EffectSet, EffectText};
 pub use kind::ModelKind;
 pub use names::{check_complete, lookup};

@@ -4,15 +4,15 @@ use std::collections::BTreeSet;
 
 use super::effects::EffectSet;
 use crate::file::unknown_word;
-use crate::parameters::{BASE, Quantity, RING_TRANSFER, SPATIAL};
+use crate::parameters::{BASE, ParameterBounds, RING_TRANSFER, SPATIAL};
 
 /// What is known of the parameter behind a name: of the model, of one of its wheels, of an effect.
 ///
 /// # Errors
 /// A sentence that names the unknown name and the nearest known one.
-pub fn lookup(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<Quantity, String> {
+pub fn lookup(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<ParameterBounds, String> {
     if name == RING_TRANSFER {
-        return Ok(Quantity {
+        return Ok(ParameterBounds {
             unit: "1".to_owned(),
             lower: -2.0,
             upper: 2.0,

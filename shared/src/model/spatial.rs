@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::experiment::{Protocol, ProtocolKind};
+use crate::experiment::{AveragingProtocol, ProtocolKind};
 
 /// Length of a simulated run of the `paper` protocol `[s]`.
 pub const PAPER_DURATION_S: f64 = 50.0;
@@ -19,11 +19,11 @@ pub struct SpatialSettings {
     /// Travel of one step `[m]`.
     pub travel_step_m: f64,
     /// Where the displacement of `janosi_hanamoto` is kept.
-    pub displacement: Displacement,
+    pub displacement: DisplacementFrame,
     /// Along which normal the pressure acts.
-    pub pressure_direction: PressureDirection,
+    pub pressure_direction: PressureAxis,
     /// How the hub finds its height.
-    pub vertical: Vertical,
+    pub vertical: HubMotion,
     /// Damping of the hub where it moves freely \[N s/m\].
     pub damping_n_s_m: f64,
     /// Change of the averages from one window to the next at which a steady run ends `[–]`.
@@ -35,7 +35,7 @@ pub struct SpatialSettings {
 /// Where the shear displacement is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Displacement {
+pub enum DisplacementFrame {
     /// On the wheel's rim, as in the published values of K.
     Rim,
     /// On the nodes of the soil.
@@ -45,7 +45,7 @@ pub enum Displacement {
 /// Along which normal the pressure acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum PressureDirection {
+pub enum PressureAxis {
     /// The wheel's surface.
     WheelNormal,
     /// The undisturbed soil: upwards, without compaction resistance.
@@ -55,7 +55,7 @@ pub enum PressureDirection {
 /// How the hub finds its height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Vertical {
+pub enum HubMotion {
     /// In balance with the load at every step.
     Balance,
     /// Under the mass that the load stands for, and a damper.
@@ -67,9 +67,9 @@ impl Default for SpatialSettings {
         SpatialSettings {
             dem_spacing_m: 0.004,
             travel_step_m: 0.0005,
-            displacement: Displacement::Rim,
-            pressure_direction: PressureDirection::WheelNormal,
-            vertical: Vertical::Balance,
+            displacement: DisplacementFrame::Rim,
+            pressure_direction: PressureAxis::WheelNormal,
+            vertical: HubMotion::Balance,
             damping_n_s_m: 2000.0,
             steady_tolerance: 0.005,
             steady_travel_m: 1.0,
@@ -109,7 +109,7 @@ impl SpatialSettings {
                 return Err(format!("{key} {value}{unit} must be > 0{unit}"));
             }
         }
-        if damped && settings.vertical == Vertical::Balance {
+        if damped && settings.vertical == HubMotion::Balance {
             return Err("damping_n_s_m has no effect without vertical = \"dynamic\"".into());
         }
         let damping = settings.damping_n_s_m;
@@ -123,7 +123,7 @@ impl SpatialSettings {
     ///
     /// # Errors
     /// A sentence that names the key, the value and what is allowed.
-    pub fn check_protocol(&self, protocol: &Protocol) -> Result<(), String> {
+    pub fn check_protocol(&self, protocol: &AveragingProtocol) -> Result<(), String> {
         if protocol.kind == ProtocolKind::Steady {
             return Ok(());
         }
@@ -205,8 +205,8 @@ mod tests {
 
     #[test]
     fn a_protocol_that_no_run_can_follow_is_refused() {
-        let refused = |change: fn(&mut SpatialSettings, &mut Protocol)| {
-            let (mut settings, mut protocol) = (SpatialSettings::default(), Protocol::default());
+        let refused = |change: fn(&mut SpatialSettings, &mut AveragingProtocol)| {
+            let (mut settings, mut protocol) = (SpatialSettings::default(), AveragingProtocol::default());
             protocol.kind = ProtocolKind::Paper;
             settings.check_protocol(&protocol).unwrap();
             change(&mut settings, &mut protocol);

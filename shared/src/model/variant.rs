@@ -8,14 +8,14 @@ use sha2::{Digest, Sha256};
 use utoipa::ToSchema;
 
 use super::companion::Companion;
-use super::condition::{Condition, PlateCondition, RingCondition};
+use super::condition::{PlateCondition, RingCondition, RunCondition};
 use super::effects::{EffectSet, EffectText};
 use super::kind::ModelKind;
 use super::names::{check_complete, lookup};
 use super::settings::ModelSettings;
 use super::spatial::SpatialSettings;
 use crate::channel::Channel;
-use crate::experiment::{Experiment, Protocol, TestRun, Wheel};
+use crate::experiment::{AveragingProtocol, Experiment, TestRun, WheelGeometry};
 use crate::outcome::{Observables, SimulatedHistory};
 use crate::parameters::check_value;
 
@@ -36,17 +36,17 @@ pub struct ModelVariant {
     pub fixed: BTreeMap<String, f64>,
     /// The wheels by name.
     #[schema(value_type = Object)]
-    pub wheels: BTreeMap<String, Wheel>,
+    pub wheels: BTreeMap<String, WheelGeometry>,
     /// Acceleration of gravity `[m/s^2]`.
     pub gravity_m_s2: f64,
     /// Length of the soil bin `[m]`; absent where no effect asks for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bin_length_m: Option<f64>,
     /// The conditions to simulate, in the order of the observables.
-    pub conditions: Vec<Condition>,
+    pub conditions: Vec<RunCondition>,
     /// How histories become averages.
     #[schema(value_type = Object)]
-    pub protocol: Protocol,
+    pub protocol: AveragingProtocol,
     /// Whether each condition is simulated once more on soil that is a little stiffer, for the derivatives by ln k*.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub stiffness_sensitivity: bool,
@@ -115,7 +115,7 @@ impl ModelVariant {
             }
             let repose_angle_deg = soil.repose_angle_deg.filter(|_| slides);
             let density_kg_m3 = soil.density_kg_m3.filter(|_| weighing.is_some());
-            Ok(Condition::new(run, repose_angle_deg, density_kg_m3))
+            Ok(RunCondition::new(run, repose_angle_deg, density_kg_m3))
         };
         let conditions = runs.into_iter().map(condition).collect::<Result<Vec<_>, _>>()?;
         let bin_length_m = experiment.rig.bin_length_m.filter(|_| walled.is_some());

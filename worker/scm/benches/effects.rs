@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use formula::Effect;
 use formula::catalogue::find;
-use scm::effects::{Active, Effects, Model, Site};
+use scm::effects::{Active, CompiledEffects, ModelForm, Site};
 use scm::{Averages, quasi_static};
 use support::base;
 
@@ -51,8 +51,8 @@ fn main() {
     let janosi = find("janosi_hanamoto").expect("an effect of the catalogue");
     let site = Site::default();
     for slip in [0.2, -0.3] {
-        let effects = Effects::compile(Model::QuasiStatic, [&law]).expect("a form");
-        let jh = Effects::compile(Model::QuasiStatic, [janosi]).expect("a form");
+        let effects = CompiledEffects::compile(ModelForm::QuasiStatic, [&law]).expect("a form");
+        let jh = CompiledEffects::compile(ModelForm::QuasiStatic, [janosi]).expect("a form");
         let run = |velocity: f64, active: &mut Active| {
             let mut case = base(slip, 100.0, 30.0);
             case.soil.shear_velocity_m_s = black_box(velocity);

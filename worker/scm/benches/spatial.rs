@@ -11,7 +11,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use scene::Track;
 use scm::Rejection;
-use scm::spatial::{Displacement, Grousers, Protocol, Run, Settings, Shape};
+use scm::spatial::{Displacement, Grousers, Protocol, RunSettings, Shape, SpatialRun};
 use support::base;
 
 fn main() {
@@ -51,7 +51,7 @@ const FIFTY: Case = Case {
 };
 
 impl Case {
-    fn run(&self) -> Result<Run, Rejection> {
+    fn run(&self) -> Result<SpatialRun, Rejection> {
         let mut case = base(0.2, 100.0, 30.0);
         case.condition.sled_speed_m_s = 0.02;
         case.condition.slip_angle_rad = self.slip_angle_deg.to_radians();
@@ -72,12 +72,12 @@ impl Case {
         } else {
             Protocol::default()
         };
-        track.settings = Settings {
+        track.settings = RunSettings {
             dem_spacing_m: self.spacing_m,
             displacement: self.displacement,
             protocol,
             both_halves: self.both_halves,
-            ..Settings::default()
+            ..RunSettings::default()
         };
         track.try_roll()
     }

@@ -13,7 +13,7 @@ mod scene;
 mod support;
 
 use scene::Track;
-use scm::spatial::{Grousers, Protocol, Settings, Shape};
+use scm::spatial::{Grousers, Protocol, RunSettings, Shape};
 use support::base;
 
 fn main() -> Result<(), scm::Rejection> {
@@ -25,7 +25,7 @@ fn main() -> Result<(), scm::Rejection> {
     if says("smooth") {
         track.shape = Shape::Rim(Grousers::default());
     }
-    track.settings = Settings {
+    track.settings = RunSettings {
         protocol: if says("steady") {
             Protocol::default()
         } else {
@@ -37,7 +37,7 @@ fn main() -> Result<(), scm::Rejection> {
             }
         },
         both_halves: says("both-halves"),
-        ..Settings::default()
+        ..RunSettings::default()
     };
     if says("formula") {
         track.case.soil.shear_velocity_m_s = 0.0;

@@ -50,7 +50,7 @@ pub use formula::elementary;
 
 pub use averages::Averages;
 pub use condition::Condition;
-pub use effects::Effects;
+pub use effects::CompiledEffects;
 pub use rejection::Rejection;
 pub use soil::{Soil, bekker_moduli};
 pub use wheel::Wheel;

@@ -2,8 +2,8 @@
 
 use crate::support::{Case, base};
 use formula::Effect;
-use scm::effects::{Effects, Model, Site};
-use scm::spatial::{Ground, Grousers, Protocol, Run, Scene, Settings, Shape, simulate};
+use scm::effects::{CompiledEffects, ModelForm, Site};
+use scm::spatial::{Ground, Grousers, Protocol, RunSettings, Scene, Shape, SpatialRun, simulate};
 use scm::{Averages, Rejection};
 
 /// A case with the choices of the three-dimensional model.
@@ -12,7 +12,7 @@ pub(crate) struct Track {
     pub(crate) case: Case,
     pub(crate) ground: Ground,
     pub(crate) shape: Shape,
-    pub(crate) settings: Settings,
+    pub(crate) settings: RunSettings,
     /// Effects with the values of their parameters.
     pub(crate) effects: Vec<(Effect, Vec<f64>)>,
     pub(crate) site: Site,
@@ -28,7 +28,7 @@ impl Track {
                 ..Ground::default()
             },
             shape: Shape::Rim(Grousers::default()),
-            settings: Settings::default(),
+            settings: RunSettings::default(),
             effects: Vec::new(),
             site: Site::default(),
         }
@@ -71,14 +71,15 @@ impl Track {
         self.enter(law, &[shear_modulus_m]);
     }
 
-    pub(crate) fn try_roll(&self) -> Result<Run, Rejection> {
+    pub(crate) fn try_roll(&self) -> Result<SpatialRun, Rejection> {
         let Case {
             soil,
             wheel,
             condition,
         } = &self.case;
         let effects = self.effects.iter().map(|(effect, _)| effect);
-        let effects = Effects::compile(Model::Spatial, effects).expect("effects that the model can express");
+        let effects = CompiledEffects::compile(ModelForm::Spatial, effects)
+            .expect("effects that the model can express");
         let values = self.effects.iter().map(|(_, values)| values.clone());
         let scene = Scene {
             soil,
@@ -91,7 +92,7 @@ impl Track {
         simulate(&scene, condition, &self.settings)
     }
 
-    pub(crate) fn roll(&self) -> Run {
+    pub(crate) fn roll(&self) -> SpatialRun {
         self.try_roll()
             .unwrap_or_else(|rejection| panic!("{rejection}: {self:?}"))
     }

@@ -6,7 +6,7 @@ use scm::{Rejection, Soil};
 use shared::model::ModelVariant;
 use shared::parameters::RING_TRANSFER;
 
-use super::parameters::{SoilMap, Source};
+use super::parameters::{ParameterSource, SoilMap};
 
 /// The one effect that a ring feels.
 const SHEAR_DISPLACEMENT: &str = "janosi_hanamoto";
@@ -15,17 +15,17 @@ const SHEAR_MODULUS: &str = "janosi_hanamoto.shear_modulus_m";
 
 /// The effects of a variant that plates and rings do not feel.
 pub fn without_action(variant: &ModelVariant) -> impl Iterator<Item = &str> {
-    let felt = Source::find(variant, SHEAR_MODULUS).map(|_| SHEAR_DISPLACEMENT);
+    let felt = ParameterSource::find(variant, SHEAR_MODULUS).map(|_| SHEAR_DISPLACEMENT);
     let names = variant.effects.iter().map(|effect| effect.name.as_str());
     names.filter(move |&name| Some(name) != felt)
 }
 
 /// The soil and the shear-displacement law of a variant, ready to be asked what a bevameter reads.
 #[derive(Debug)]
-pub struct Bevameter {
+pub struct CompiledBevameter {
     soil: SoilMap,
-    modulus: Option<Source>,
-    ln_transfer: Option<Source>,
+    modulus: Option<ParameterSource>,
+    ln_transfer: Option<ParameterSource>,
 }
 
 /// What a bevameter reads at one parameter vector.
@@ -37,16 +37,16 @@ pub struct Readings {
     law: ShearDisplacement,
 }
 
-impl Bevameter {
+impl CompiledBevameter {
     /// Resolves the names of a variant; its wheels and conditions do not count.
     ///
     /// # Errors
     /// A sentence that names the parameter that is missing.
     pub fn new(variant: &ModelVariant) -> Result<Self, String> {
-        Ok(Bevameter {
+        Ok(CompiledBevameter {
             soil: SoilMap::new(variant)?,
-            modulus: Source::find(variant, SHEAR_MODULUS),
-            ln_transfer: Source::find(variant, RING_TRANSFER),
+            modulus: ParameterSource::find(variant, SHEAR_MODULUS),
+            ln_transfer: ParameterSource::find(variant, RING_TRANSFER),
         })
     }
 

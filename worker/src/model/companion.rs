@@ -2,7 +2,7 @@
 
 use shared::model::ModelVariant;
 use shared::outcome::Outcome;
-use shared::predicted::Predicted;
+use shared::predicted::PredictedValue;
 use statistics::Metamodel;
 
 use super::forward::ForwardModel;
@@ -11,7 +11,7 @@ use super::forward::ForwardModel;
 #[derive(Debug)]
 pub(super) struct CompiledCompanion {
     coarse: ForwardModel,
-    values: Vec<Predicted>,
+    values: Vec<PredictedValue>,
     pub(super) metamodel: Option<Metamodel>,
 }
 

@@ -1,18 +1,18 @@
 //! The effects of a variant: compiled once, and for each evaluation given the values of their parameters.
 
-use scm::effects::{Active, Effects, Model, Site};
+use scm::effects::{Active, CompiledEffects, ModelForm, Site};
 use shared::model::effects::parameter_name;
 use shared::model::{EffectSet, ModelKind, ModelVariant};
 
-use super::parameters::Source;
+use super::parameters::ParameterSource;
 
 /// The sources of every parameter of every effect, for wheels that share them.
-type Sources = Vec<Vec<Source>>;
+type Sources = Vec<Vec<ParameterSource>>;
 
 /// The effects of a variant with the sources of their parameters.
 #[derive(Debug)]
 pub(super) struct EffectMap {
-    effects: Effects,
+    effects: CompiledEffects,
     /// Each different set of sources once: effects are activated as often as wheels differ in them.
     sources: Vec<Sources>,
     /// Of each wheel, in the variant's order: its set of sources.
@@ -42,10 +42,10 @@ impl EffectMap {
     /// A sentence that names the effect that the model cannot express, or the parameter that is missing.
     pub(super) fn new(variant: &ModelVariant, set: &EffectSet) -> Result<Self, String> {
         let model = match variant.kind {
-            ModelKind::QuasiStatic => Model::QuasiStatic,
-            ModelKind::Scm => Model::Spatial,
+            ModelKind::QuasiStatic => ModelForm::QuasiStatic,
+            ModelKind::Scm => ModelForm::Spatial,
         };
-        let effects = Effects::compile(model, set.iter())?;
+        let effects = CompiledEffects::compile(model, set.iter())?;
         let mut sources: Vec<Sources> = Vec::new();
         let mut of_wheel = Vec::new();
         for wheel in variant.wheels.keys() {
@@ -66,7 +66,7 @@ impl EffectMap {
 
     /// The effects at one parameter vector.
     pub(super) fn at(&self, theta: &[f64]) -> ActiveEffects<'_> {
-        let values = |sources: &Vec<Source>| sources.iter().map(|s| s.value(theta)).collect();
+        let values = |sources: &Vec<ParameterSource>| sources.iter().map(|s| s.value(theta)).collect();
         let active = |sources: &Sources| self.effects.activate(sources.iter().map(values));
         ActiveEffects {
             active: self.sources.iter().map(active).collect(),
@@ -85,15 +85,15 @@ fn sources_of(variant: &ModelVariant, set: &EffectSet, wheel: &str) -> Result<So
     let of_effect = |effect: &formula::Effect| {
         let strengths = effect.parameters.iter().filter(|p| p.neutral.is_some());
         let find = |p: &formula::Parameter| {
-            let own = Source::find(variant, &parameter_name(effect, p, Some(wheel)));
-            own.or_else(|| Source::find(variant, &parameter_name(effect, p, None)))
+            let own = ParameterSource::find(variant, &parameter_name(effect, p, Some(wheel)));
+            own.or_else(|| ParameterSource::find(variant, &parameter_name(effect, p, None)))
         };
         let acts = strengths.clone().count() == 0 || strengths.clone().any(|p| find(p).is_some());
         let source = |p: &formula::Parameter| match (find(p), p.neutral) {
             (Some(source), _) => Ok(source),
-            (None, Some(neutral)) => Ok(Source::Fixed(neutral)),
+            (None, Some(neutral)) => Ok(ParameterSource::Fixed(neutral)),
             // the shape of what is absent
-            (None, None) if !acts => Ok(Source::Fixed(0.0)),
+            (None, None) if !acts => Ok(ParameterSource::Fixed(0.0)),
             (None, None) => {
                 let name = parameter_name(effect, p, None);
                 Err(format!("parameter {name} has neither a prior nor a fixed value"))
@@ -105,7 +105,7 @@ fn sources_of(variant: &ModelVariant, set: &EffectSet, wheel: &str) -> Result<So
 }
 
 fn sites(variant: &ModelVariant) -> Vec<Site> {
-    let site = |condition: &shared::model::Condition| {
+    let site = |condition: &shared::model::RunCondition| {
         let wheel = variant.wheels.get(&condition.wheel);
         Site {
             density_kg_m3: condition.density_kg_m3,

@@ -1,11 +1,11 @@
 //! The forward model of a variant: shared names become the physics' types.
 
-use scm::spatial::Run;
+use scm::spatial::SpatialRun;
 use scm::{Averages, Condition, Soil, Wheel, quasi_static};
 use shared::model::{EffectSet, ModelKind, ModelVariant, PlateCondition, RingCondition};
-use shared::outcome::{Observables, Outcome, Rejection};
+use shared::outcome::{Observables, Outcome, ParameterRejection};
 
-use super::bevameter::Bevameter;
+use super::bevameter::CompiledBevameter;
 use super::effects::{ActiveEffects, EffectMap};
 use super::parameters::{Radius, SoilMap};
 use super::recording;
@@ -24,7 +24,7 @@ pub(super) struct ForwardModel {
     stiffness_sensitivity: bool,
     histories: bool,
     /// What plates and rings read, where there are any to predict.
-    bevameter: Option<(Bevameter, Vec<PlateCondition>, Vec<RingCondition>)>,
+    bevameter: Option<(CompiledBevameter, Vec<PlateCondition>, Vec<RingCondition>)>,
 }
 
 /// The stiffness is raised by this share for its derivatives: a model on a grid has noise of some 0.3 % of a force, and the
@@ -34,7 +34,7 @@ const STIFFER: f64 = 0.05;
 /// What simulating one condition gives.
 enum Simulated {
     Steady(Averages),
-    Rolled(Box<Run>),
+    Rolled(Box<SpatialRun>),
 }
 
 impl ForwardModel {
@@ -97,7 +97,7 @@ impl ForwardModel {
             bevameter: match variant.plates.is_empty() && variant.rings.is_empty() {
                 true => None,
                 false => Some((
-                    Bevameter::new(variant)?,
+                    CompiledBevameter::new(variant)?,
                     variant.plates.clone(),
                     variant.rings.clone(),
                 )),
@@ -112,7 +112,7 @@ impl ForwardModel {
 
     /// Simulates every condition at one parameter vector; the first rejection ends it. `keep` receives each run of a model that
     /// rolls in time, in the order of the conditions.
-    pub(super) fn evaluate(&self, theta: &[f64], mut keep: impl FnMut(Run)) -> Outcome {
+    pub(super) fn evaluate(&self, theta: &[f64], mut keep: impl FnMut(SpatialRun)) -> Outcome {
         let soil = match self.soil_of(theta) {
             Ok(soil) => soil,
             Err(rejection) => return Outcome::Rejected(rejection),
@@ -156,7 +156,7 @@ impl ForwardModel {
         soil: &Soil,
         effects: &mut ActiveEffects,
         observables: &mut Observables,
-    ) -> Result<(), Rejection> {
+    ) -> Result<(), ParameterRejection> {
         let stiffer = Soil {
             k_c: soil.k_c * (1.0 + STIFFER),
             k_phi: soil.k_phi * (1.0 + STIFFER),
@@ -187,7 +187,7 @@ impl ForwardModel {
     }
 
     /// Predicts plates and rings. Their likelihood is one of logarithms, so a stress of zero is a refusal.
-    fn read_bevameter(&self, theta: &[f64], observables: &mut Observables) -> Result<(), Rejection> {
+    fn read_bevameter(&self, theta: &[f64], observables: &mut Observables) -> Result<(), ParameterRejection> {
         let Some((bevameter, plates, rings)) = &self.bevameter else {
             return Ok(());
         };
@@ -234,7 +234,7 @@ impl ForwardModel {
         (0..self.runs()).map(averages).collect()
     }
 
-    fn soil_of(&self, theta: &[f64]) -> Result<Soil, Rejection> {
+    fn soil_of(&self, theta: &[f64]) -> Result<Soil, ParameterRejection> {
         if theta.len() != self.dimension {
             let message = format!(
                 "theta has {} entries, the variant has {}",
@@ -282,8 +282,8 @@ fn push(o: &mut Observables, a: &Averages) {
     o.simulated_travel_m.push(a.simulated_travel_m);
 }
 
-fn refusal(kind: &str, condition: usize, message: String) -> Rejection {
-    Rejection {
+fn refusal(kind: &str, condition: usize, message: String) -> ParameterRejection {
+    ParameterRejection {
         kind: kind.to_owned(),
         condition: condition as u32,
         message,

@@ -18,7 +18,7 @@ mod recording;
 mod spatial;
 mod variant;
 
-pub use bevameter::{Bevameter, Readings, without_action};
+pub use bevameter::{CompiledBevameter, Readings, without_action};
 pub use cache::VariantCache;
 pub use recording::at_10_hz;
 pub use variant::CompiledVariant;

@@ -6,31 +6,31 @@ use shared::model::ModelVariant;
 
 /// The source of one quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Source {
+pub(super) enum ParameterSource {
     /// Position in the parameter vector.
     Free(usize),
     Fixed(f64),
 }
 
-impl Source {
-    pub(super) fn find(variant: &ModelVariant, name: &str) -> Option<Source> {
+impl ParameterSource {
+    pub(super) fn find(variant: &ModelVariant, name: &str) -> Option<ParameterSource> {
         let free = variant
             .parameters
             .iter()
             .position(|p| p == name)
-            .map(Source::Free);
-        free.or_else(|| variant.fixed.get(name).copied().map(Source::Fixed))
+            .map(ParameterSource::Free);
+        free.or_else(|| variant.fixed.get(name).copied().map(ParameterSource::Fixed))
     }
 
-    fn required(variant: &ModelVariant, name: &str) -> Result<Source, String> {
-        Source::find(variant, name)
+    fn required(variant: &ModelVariant, name: &str) -> Result<ParameterSource, String> {
+        ParameterSource::find(variant, name)
             .ok_or_else(|| format!("parameter {name} has neither a prior nor a fixed value"))
     }
 
     pub(super) fn value(self, theta: &[f64]) -> f64 {
         match self {
-            Source::Free(position) => theta[position],
-            Source::Fixed(value) => value,
+            ParameterSource::Free(position) => theta[position],
+            ParameterSource::Fixed(value) => value,
         }
     }
 }
@@ -38,37 +38,46 @@ impl Source {
 /// How the stiffness is stated.
 #[derive(Debug)]
 enum Stiffness {
-    Moduli { k_c: Source, k_phi: Source },
-    Reference { log10_p_ref: Source, kappa: Source },
+    Moduli {
+        k_c: ParameterSource,
+        k_phi: ParameterSource,
+    },
+    Reference {
+        log10_p_ref: ParameterSource,
+        kappa: ParameterSource,
+    },
 }
 
 /// The sources of the soil parameters.
 #[derive(Debug)]
 pub(super) struct SoilMap {
     stiffness: Stiffness,
-    n: Source,
-    cohesion_pa: Source,
-    friction_angle_deg: Source,
-    shear_velocity_m_s: Source,
-    gamma_exponent: Source,
+    n: ParameterSource,
+    cohesion_pa: ParameterSource,
+    friction_angle_deg: ParameterSource,
+    shear_velocity_m_s: ParameterSource,
+    gamma_exponent: ParameterSource,
 }
 
 impl SoilMap {
     pub(super) fn new(variant: &ModelVariant) -> Result<Self, String> {
-        let stiffness = match (Source::find(variant, "k_c"), Source::find(variant, "k_phi")) {
+        let stiffness = match (
+            ParameterSource::find(variant, "k_c"),
+            ParameterSource::find(variant, "k_phi"),
+        ) {
             (Some(k_c), Some(k_phi)) => Stiffness::Moduli { k_c, k_phi },
             _ => Stiffness::Reference {
-                log10_p_ref: Source::required(variant, "log10_p_ref")?,
-                kappa: Source::required(variant, "kappa")?,
+                log10_p_ref: ParameterSource::required(variant, "log10_p_ref")?,
+                kappa: ParameterSource::required(variant, "kappa")?,
             },
         };
         Ok(SoilMap {
             stiffness,
-            n: Source::required(variant, "n")?,
-            cohesion_pa: Source::required(variant, "cohesion_pa")?,
-            friction_angle_deg: Source::required(variant, "friction_angle_deg")?,
-            shear_velocity_m_s: Source::required(variant, "shear_velocity_m_s")?,
-            gamma_exponent: Source::required(variant, "gamma_exponent")?,
+            n: ParameterSource::required(variant, "n")?,
+            cohesion_pa: ParameterSource::required(variant, "cohesion_pa")?,
+            friction_angle_deg: ParameterSource::required(variant, "friction_angle_deg")?,
+            shear_velocity_m_s: ParameterSource::required(variant, "shear_velocity_m_s")?,
+            gamma_exponent: ParameterSource::required(variant, "gamma_exponent")?,
         })
     }
 
@@ -95,17 +104,17 @@ impl SoilMap {
 /// The sources of what deforms the soil.
 #[derive(Debug)]
 pub(super) struct GroundMap {
-    elastic_stiffness_pa_m: Source,
-    flow_fraction: Source,
-    bearing_credit: Source,
+    elastic_stiffness_pa_m: ParameterSource,
+    flow_fraction: ParameterSource,
+    bearing_credit: ParameterSource,
 }
 
 impl GroundMap {
     pub(super) fn new(variant: &ModelVariant) -> Result<Self, String> {
         Ok(GroundMap {
-            elastic_stiffness_pa_m: Source::required(variant, "elastic_stiffness_pa_m")?,
-            flow_fraction: Source::required(variant, "flow_fraction")?,
-            bearing_credit: Source::required(variant, "bearing_credit")?,
+            elastic_stiffness_pa_m: ParameterSource::required(variant, "elastic_stiffness_pa_m")?,
+            flow_fraction: ParameterSource::required(variant, "flow_fraction")?,
+            bearing_credit: ParameterSource::required(variant, "bearing_credit")?,
         })
     }
 
@@ -123,12 +132,12 @@ impl GroundMap {
 
 /// The source of a wheel's radius: its own parameter, the parameter of all wheels, or the experiment.
 #[derive(Debug)]
-pub(super) struct Radius(Option<Source>);
+pub(super) struct Radius(Option<ParameterSource>);
 
 impl Radius {
     pub(super) fn new(variant: &ModelVariant, wheel: &str) -> Self {
-        let own = Source::find(variant, &format!("wheel_radius_m.{wheel}"));
-        Radius(own.or_else(|| Source::find(variant, "wheel_radius_m")))
+        let own = ParameterSource::find(variant, &format!("wheel_radius_m.{wheel}"));
+        Radius(own.or_else(|| ParameterSource::find(variant, "wheel_radius_m")))
     }
 
     /// The radius `[m]`; `None` = the experiment's.

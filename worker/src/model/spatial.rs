@@ -1,18 +1,18 @@
 //! The three-dimensional model of a variant: shared settings become the physics' types.
 
 use scm::effects::{Active, Site};
-use scm::spatial::{self, Grousers, Run, Scene, Settings, Shape, SurfaceMesh};
+use scm::spatial::{self, Grousers, RunSettings, Scene, Shape, SpatialRun, SurfaceMesh};
 use scm::{Condition, Rejection, Soil, Wheel};
-use shared::experiment::{self, ProtocolKind};
+use shared::experiment::{ProtocolKind, WheelGeometry};
 use shared::model::ModelVariant;
-use shared::model::spatial::{Displacement, PAPER_DURATION_S, PressureDirection, Vertical};
+use shared::model::spatial::{DisplacementFrame, HubMotion, PAPER_DURATION_S, PressureAxis};
 
 use super::parameters::GroundMap;
 
 /// What a run needs beside soil, wheel and condition.
 #[derive(Debug)]
 pub(super) struct SpatialModel {
-    settings: Settings,
+    settings: RunSettings,
     ground: GroundMap,
     /// Of each wheel, in the variant's order.
     shapes: Vec<Shape>,
@@ -30,20 +30,20 @@ impl SpatialModel {
             .spatial
             .ok_or("kind = \"scm\" comes without its settings")?;
         let protocol = &variant.protocol;
-        let settings = Settings {
+        let settings = RunSettings {
             dem_spacing_m: choices.dem_spacing_m,
             travel_step_m: choices.travel_step_m,
             displacement: match choices.displacement {
-                Displacement::Rim => spatial::Displacement::Rim,
-                Displacement::Node => spatial::Displacement::Node,
+                DisplacementFrame::Rim => spatial::Displacement::Rim,
+                DisplacementFrame::Node => spatial::Displacement::Node,
             },
             pressure_direction: match choices.pressure_direction {
-                PressureDirection::WheelNormal => spatial::PressureDirection::WheelNormal,
-                PressureDirection::Vertical => spatial::PressureDirection::Vertical,
+                PressureAxis::WheelNormal => spatial::PressureDirection::WheelNormal,
+                PressureAxis::Vertical => spatial::PressureDirection::Vertical,
             },
             vertical: match choices.vertical {
-                Vertical::Balance => spatial::Vertical::Balance,
-                Vertical::Dynamic => spatial::Vertical::Dynamic {
+                HubMotion::Balance => spatial::Vertical::Balance,
+                HubMotion::Dynamic => spatial::Vertical::Dynamic {
                     damping_n_s_m: choices.damping_n_s_m,
                     gravity_m_s2: variant.gravity_m_s2,
                 },
@@ -79,7 +79,7 @@ impl SpatialModel {
         (place, wheel): (usize, &Wheel),
         condition: &Condition,
         (effects, site): (&Active, &Site),
-    ) -> Result<Run, Rejection> {
+    ) -> Result<SpatialRun, Rejection> {
         let scene = Scene {
             soil,
             ground: &self.ground.ground(theta, self.repose_angles[position]),
@@ -92,7 +92,7 @@ impl SpatialModel {
     }
 }
 
-fn shape(wheel: &experiment::Wheel) -> Shape {
+fn shape(wheel: &WheelGeometry) -> Shape {
     match &wheel.mesh {
         Some(mesh) => Shape::from(SurfaceMesh {
             vertices_m: mesh.vertices_m.clone(),

@@ -1,7 +1,7 @@
 //! A variant, compiled: its forward model, and the companion of a metamodel.
 
 use scm::Averages;
-use scm::spatial::Run;
+use scm::spatial::SpatialRun;
 use shared::model::ModelVariant;
 use shared::outcome::{Fault, Outcome};
 use statistics::{Subchain, SubchainEnd};
@@ -40,7 +40,7 @@ impl CompiledVariant {
     }
 
     /// The same, handing over each run of a model that rolls in time, in the order of the conditions.
-    pub fn evaluate_and_keep(&self, theta: &[f64], keep: impl FnMut(Run)) -> Outcome {
+    pub fn evaluate_and_keep(&self, theta: &[f64], keep: impl FnMut(SpatialRun)) -> Outcome {
         let mut outcome = self.forward.evaluate(theta, keep);
         if let (Outcome::Evaluated(observables), Some(companion)) = (&mut outcome, &self.companion) {
             observables.coarse = companion.values(theta);

@@ -23,7 +23,7 @@ use shared::model::{EffectSet, ModelSettings, ModelVariant};
 use shared::outcome::{Observables, Outcome};
 
 use crate::config::Simulate;
-use crate::model::{Bevameter, CompiledVariant, without_action};
+use crate::model::{CompiledBevameter, CompiledVariant, without_action};
 
 /// Simulates an experiment and writes each table that is asked for as CSV.
 ///
@@ -67,7 +67,7 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
         for effect in without_action(&variant) {
             tracing::warn!(effect, "does not act on plates and rings");
         }
-        let bevameter = Bevameter::new(&variant)
+        let bevameter = CompiledBevameter::new(&variant)
             .map_err(|e| FileError::whole(&command.model.display().to_string(), e))?
             .at(&[]);
         if let Some(path) = &command.plates {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use discovery::inquiry::{Answer, Fitted};
-use shared::model::Condition;
+use shared::model::RunCondition;
 
 use super::case::{Case, spec, values};
 use super::design::CHANNELS;
@@ -79,7 +79,7 @@ type Predicted = Vec<[f64; CHANNELS]>;
 fn predicted(
     asking: &mut Asking,
     fitted: &Fitted,
-    conditions: &[Condition],
+    conditions: &[RunCondition],
 ) -> Result<Vec<Option<Predicted>>, String> {
     let seen = asking.predict(&fitted.effects, conditions, &fitted.draws)?;
     let seen = seen.into_iter();

@@ -7,7 +7,7 @@ use coordinator::missing_effect::Models;
 use discovery::inquiry::{Answer, Asked, Inquiry, Model};
 use discovery::{Engine, Finding};
 use shared::file::FileSet;
-use shared::model::Condition;
+use shared::model::RunCondition;
 use shared::outcome::{Observables, Outcome};
 use statistics::Likelihood;
 
@@ -44,7 +44,7 @@ impl Asking {
     pub(crate) fn predict(
         &mut self,
         effects: &[usize],
-        conditions: &[Condition],
+        conditions: &[RunCondition],
         thetas: &[Vec<f64>],
     ) -> Result<Vec<Option<Observables>>, String> {
         let question = |theta: &Vec<f64>| Asked {

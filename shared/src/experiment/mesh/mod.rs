@@ -16,19 +16,19 @@ mod surface;
 
 use std::path::Path;
 
-pub use surface::{MOST_TRIANGLES, SurfaceMesh};
+pub use surface::{MOST_TRIANGLES, WheelMesh};
 
 use crate::file::{FileError, read_text};
 
 /// A file with more bytes is refused; the service takes bodies of 64 MiB.
 pub const MOST_BYTES: usize = 48 << 20;
 
-impl SurfaceMesh {
+impl WheelMesh {
     /// Reads a mesh from the text of an STL or OBJ file, by the ending of the file's name.
     ///
     /// # Errors
     /// [`FileError`] with the line (OBJ) or the face (STL), counted from 1. Checked by this folder's tests.
-    pub fn parse(file: &str, text: &str) -> Result<SurfaceMesh, FileError> {
+    pub fn parse(file: &str, text: &str) -> Result<WheelMesh, FileError> {
         check_size(file, text.len())?;
         let mesh = match format(file).map_err(|e| FileError::whole(file, e))? {
             Format::Stl => stl::parse(file, text)?,
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn the_ending_of_the_name_says_the_format() {
-        let message = SurfaceMesh::parse("w.ply", "ply").unwrap_err().to_string();
+        let message = WheelMesh::parse("w.ply", "ply").unwrap_err().to_string();
         assert_eq!(message, "w.ply: mesh = \"w.ply\" must end in .stl or .obj");
     }
 }

@@ -4,12 +4,12 @@ use std::io::Cursor;
 
 use tobj::{LoadError, LoadOptions, load_obj_buf};
 
-use super::surface::SurfaceMesh;
+use super::surface::WheelMesh;
 use crate::file::FileError;
 
 /// Parses OBJ. All objects of a file are one surface; faces with more corners are split into fans about their first
 /// corner; materials, normals, texture and colours are not used.
-pub(super) fn parse(file: &str, text: &str) -> Result<SurfaceMesh, FileError> {
+pub(super) fn parse(file: &str, text: &str) -> Result<WheelMesh, FileError> {
     let text = &shape(text);
     let options = LoadOptions {
         triangulate: true,
@@ -26,7 +26,7 @@ pub(super) fn parse(file: &str, text: &str) -> Result<SurfaceMesh, FileError> {
             _ => FileError::at(file, line_at(text, read), error.to_string()),
         }
     })?;
-    let mut mesh = SurfaceMesh {
+    let mut mesh = WheelMesh {
         vertices_m: Vec::new(),
         triangles: Vec::new(),
     };

@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use stl_io::{Triangle, create_stl_reader};
 
-use super::surface::{SurfaceMesh, check_count};
+use super::surface::{WheelMesh, check_count};
 use crate::file::FileError;
 
 /// Bytes before the first triangle of a binary file, and of each triangle.
@@ -13,7 +13,7 @@ const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
 /// Parses ASCII STL. Several solids in one file are one surface; normals are not used.
-pub(super) fn parse(file: &str, text: &str) -> Result<SurfaceMesh, FileError> {
+pub(super) fn parse(file: &str, text: &str) -> Result<WheelMesh, FileError> {
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
     let is = |line: Option<&str>, word: &str| {
         line.and_then(|l| l.split_whitespace().next())
@@ -93,7 +93,7 @@ fn triangles(file: &str, bytes: Vec<u8>) -> Result<Vec<Triangle>, FileError> {
 }
 
 /// Vertices in the order of their first use, each once.
-fn indexed(triangles: &[Triangle]) -> SurfaceMesh {
+fn indexed(triangles: &[Triangle]) -> WheelMesh {
     let mut positions = std::collections::BTreeMap::new();
     let mut vertices_m = Vec::new();
     let triangles = triangles
@@ -108,7 +108,7 @@ fn indexed(triangles: &[Triangle]) -> SurfaceMesh {
             })
         })
         .collect();
-    SurfaceMesh {
+    WheelMesh {
         vertices_m,
         triangles,
     }

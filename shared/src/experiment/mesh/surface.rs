@@ -18,14 +18,14 @@ const LARGEST_WIDTH: f64 = 1.05;
 /// of a triangle's vertices does not count, and neither does a gap.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SurfaceMesh {
+pub struct WheelMesh {
     /// Vertices: x, y, z `[m]`, finite.
     pub vertices_m: Vec<[f64; 3]>,
     /// Triangles: positions in `vertices_m`. At least one, at most [`MOST_TRIANGLES`].
     pub triangles: Vec<[u32; 3]>,
 }
 
-impl SurfaceMesh {
+impl WheelMesh {
     /// Checks what the fields promise.
     ///
     /// # Errors
@@ -125,8 +125,8 @@ mod tests {
     use super::*;
 
     /// A double pyramid of 0.1 m radius about the y axis, 0.04 m wide.
-    fn spindle() -> SurfaceMesh {
-        SurfaceMesh {
+    fn spindle() -> WheelMesh {
+        WheelMesh {
             vertices_m: vec![
                 [0.0, -0.02, 0.0],
                 [0.0, 0.02, 0.0],

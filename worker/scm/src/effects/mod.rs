@@ -1,7 +1,7 @@
 //! Let effects enter the models: formulas and mechanisms that replace quantities of the base.
 //!
 //! # Layout
-//! - here: [`Effects`], compiled for one model, and [`Active`], those of them whose strength is not neutral.
+//! - here: [`CompiledEffects`], compiled for one model, and [`Active`], those of them whose strength is not neutral.
 //! - `case`: the run as effects on slip, dimensions, exponent and load leave it.
 //! - `law`: an effect as one model knows it.
 //! - `node`: pressure, strength and stress at many nodes.
@@ -26,27 +26,27 @@ use law::{Law, formulas_at};
 
 /// A forward model, as far as effects tell models apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Model {
+pub enum ModelForm {
     /// [`quasi_static`](crate::quasi_static): the footprint is one, so its modulus and width are the same at all nodes.
     QuasiStatic,
     /// [`spatial`](crate::spatial): patches of the footprint have their own.
     Spatial,
 }
 
-impl Model {
+impl ModelForm {
     /// Name in messages.
     fn name(self) -> &'static str {
         match self {
-            Model::QuasiStatic => "quasi_static",
-            Model::Spatial => "scm",
+            ModelForm::QuasiStatic => "quasi_static",
+            ModelForm::Spatial => "scm",
         }
     }
 
     /// What the model has in code of its own; it then leaves such an effect's formulas alone.
     fn mechanisms(self) -> &'static [Mechanism] {
         match self {
-            Model::QuasiStatic => &[Mechanism::Rebound, Mechanism::FlatPatch],
-            Model::Spatial => &Mechanism::ALL,
+            ModelForm::QuasiStatic => &[Mechanism::Rebound, Mechanism::FlatPatch],
+            ModelForm::Spatial => &Mechanism::ALL,
         }
     }
 
@@ -55,8 +55,8 @@ impl Model {
         use Variable::{BEff, J, KStar, P, Position, Tau, TauMax, Vn, Vt, Z};
         let both = Variables::of(&[P, Z, Vn, Vt, J, Position, TauMax, Tau]);
         match self {
-            Model::QuasiStatic => both,
-            Model::Spatial => both.with(KStar).with(BEff),
+            ModelForm::QuasiStatic => both,
+            ModelForm::Spatial => both.with(KStar).with(BEff),
         }
     }
 }
@@ -91,16 +91,19 @@ impl Default for Site {
 
 /// Effects compiled for one model.
 #[derive(Debug, Clone)]
-pub struct Effects {
+pub struct CompiledEffects {
     laws: Vec<Law>,
 }
 
-impl Effects {
+impl CompiledEffects {
     /// Compiles effects; they follow each other in this order.
     ///
     /// # Errors
     /// A sentence that names the effect that the model cannot express.
-    pub fn compile<'a>(model: Model, effects: impl IntoIterator<Item = &'a Effect>) -> Result<Self, String> {
+    pub fn compile<'a>(
+        model: ModelForm,
+        effects: impl IntoIterator<Item = &'a Effect>,
+    ) -> Result<Self, String> {
         let law = |effect: &Effect| {
             let mechanism = effect.mechanism.filter(|m| model.mechanisms().contains(m));
             if mechanism.is_none() && effect.hooks().next().is_none() {

@@ -103,7 +103,7 @@ pub fn simulate(soil: &Soil, wheel: &Wheel, condition: &Condition) -> Result<Ave
 ///   `omega (R − δ) − v`. Sinkage is that of the flat, as a rig reads it that is zeroed under load on hard ground.
 ///
 /// # Arguments
-/// - `effects`: compiled for [`Model::QuasiStatic`](crate::effects::Model::QuasiStatic), with room to compute in. With none active the result is that of
+/// - `effects`: compiled for [`ModelForm::QuasiStatic`](crate::effects::ModelForm::QuasiStatic), with room to compute in. With none active the result is that of
 ///   [`simulate`], bit for bit.
 /// - `site`: what formulas may ask beyond soil, wheel and condition.
 ///

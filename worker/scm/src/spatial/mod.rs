@@ -1,7 +1,7 @@
 //! Simulate a wheel that rolls over a deformable terrain, in three dimensions.
 //!
 //! # Layout
-//! - [`Scene`], [`Settings`], [`Ground`], [`Shape`], [`SurfaceMesh`]: what a run is made of.
+//! - [`Scene`], [`RunSettings`], [`Ground`], [`Shape`], [`SurfaceMesh`]: what a run is made of.
 //! - `run`: the wheel along its track, and the averages of what it feels.
 //! - `wheel`: the underside that the soil meets, and its motion.
 //! - `contact`: which nodes the wheel touches at a height, their pressure, force and torque.
@@ -21,9 +21,11 @@ mod surface;
 mod terrain;
 mod wheel;
 
-pub use run::{History, Run};
+pub use run::{History, SpatialRun};
 pub use scene::Scene;
-pub use settings::{Displacement, Ground, Grousers, PressureDirection, Protocol, Settings, Shape, Vertical};
+pub use settings::{
+    Displacement, Ground, Grousers, PressureDirection, Protocol, RunSettings, Shape, Vertical,
+};
 pub use surface::{Normals, SurfaceMesh};
 
 use crate::rejection::require;
@@ -72,7 +74,7 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 ///   `condition.pass` = k: the wheel passes k times over the same track under this condition, the k-th is averaged.
 ///
 /// # Returns
-/// [`Run`]: averages by the protocol, and histories step by step.
+/// [`SpatialRun`]: averages by the protocol, and histories step by step.
 ///
 /// # Errors
 /// - [`Rejection::InvalidParameter`]: a field is outside its bounds. Nothing is clamped.
@@ -101,7 +103,7 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 ///
 /// # Example
 /// ```
-/// use scm::spatial::{Ground, Grousers, Scene, Settings, Shape, simulate};
+/// use scm::spatial::{Ground, Grousers, Scene, RunSettings, Shape, simulate};
 /// use scm::effects::{Active, Site};
 /// use scm::{Condition, Soil, Wheel};
 /// let soil = Soil { k_c: 0.0, k_phi: 1e7, n: 1.1, cohesion_pa: 0.0, friction_angle_rad: 30f64.to_radians(),
@@ -111,11 +113,15 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 /// let condition = Condition { slip: 0.2, wheel_load_n: 100.0, sled_speed_m_s: 0.008, slip_angle_rad: 0.0, pass: 1 };
 /// let (effects, site) = (Active::default(), Site::default()); // none; a smooth wheel on Earth
 /// let scene = Scene { soil: &soil, ground: &Ground::default(), wheel: &wheel, shape: &shape, effects: &effects, site };
-/// let run = simulate(&scene, &condition, &Settings::default())?;
+/// let run = simulate(&scene, &condition, &RunSettings::default())?;
 /// assert!((run.averages.drawbar_pull_n - 39.4).abs() < 0.5 && (run.averages.sinkage_m - 5.24e-3).abs() < 1e-4);
 /// # Ok::<(), scm::Rejection>(())
 /// ```
-pub fn simulate(scene: &Scene, condition: &Condition, settings: &Settings) -> Result<Run, Rejection> {
+pub fn simulate(
+    scene: &Scene,
+    condition: &Condition,
+    settings: &RunSettings,
+) -> Result<SpatialRun, Rejection> {
     let (soil, ground, wheel) = (
         scene.soil.checked()?,
         scene.ground.checked()?,
@@ -138,7 +144,11 @@ pub fn simulate(scene: &Scene, condition: &Condition, settings: &Settings) -> Re
 }
 
 /// The same run where effects are active: with the soil, wheel, sled speed and load that they leave.
-fn simulate_with_effects(scene: &Scene, condition: &Condition, settings: Settings) -> Result<Run, Rejection> {
+fn simulate_with_effects(
+    scene: &Scene,
+    condition: &Condition,
+    settings: RunSettings,
+) -> Result<SpatialRun, Rejection> {
     let case = scene
         .effects
         .case(scene.soil, scene.wheel, condition, &scene.site)?;

@@ -223,7 +223,7 @@ impl Default for Protocol {
 
 /// Choices of the discretisation and of the laws' variants.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct RunSettings {
     /// Spacing of the terrain's nodes `[m]`; along travel it is refined to an eighth of the contact.
     pub dem_spacing_m: f64,
     /// Travel of one step `[m]`; refined to the spacing along travel.
@@ -240,7 +240,7 @@ pub struct Settings {
     pub both_halves: bool,
 }
 
-impl Default for Settings {
+impl Default for RunSettings {
     fn default() -> Self {
         Self {
             dem_spacing_m: 0.004,
@@ -254,7 +254,7 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
+impl RunSettings {
     /// The same settings, if they can be followed.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use formula::Effect;
 use formula::catalogue::find;
-use scm::effects::{Effects, Model, Site};
+use scm::effects::{CompiledEffects, ModelForm, Site};
 use scm::quasi_static;
 
 use crate::support::base;
@@ -17,7 +17,7 @@ type Truth = [f64; 4];
 fn check(reference: &str, truth: Truth, effect: Option<(&Effect, Vec<f64>)>) {
     let (effect, values): (Option<&Effect>, Vec<_>) =
         effect.map_or((None, vec![]), |(e, v)| (Some(e), vec![v]));
-    let effects = Effects::compile(Model::QuasiStatic, effect).expect("a form");
+    let effects = CompiledEffects::compile(ModelForm::QuasiStatic, effect).expect("a form");
     let mut active = effects.activate(values);
     let mut worst = [0.0_f64; 3];
     let mut runs = 0;

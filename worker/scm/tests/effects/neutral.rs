@@ -1,7 +1,7 @@
 //! At its neutral strength an effect is absent, bit for bit.
 
 use formula::catalogue::catalogue;
-use scm::effects::{Effects, Model};
+use scm::effects::{CompiledEffects, ModelForm};
 use scm::quasi_static;
 
 use crate::support::Draws;
@@ -10,7 +10,7 @@ use crate::validation::effects::{SITE, values};
 #[test]
 fn each_effect_at_neutral_strength_is_the_base() {
     for effect in catalogue() {
-        let effects = Effects::compile(Model::QuasiStatic, [effect]).unwrap();
+        let effects = CompiledEffects::compile(ModelForm::QuasiStatic, [effect]).unwrap();
         let mut draws = Draws(7);
         for case in (0..20).map(|_| draws.case()) {
             let mut active = effects.activate([values(effect, "", f64::NAN)]);
@@ -25,7 +25,7 @@ fn each_effect_at_neutral_strength_is_the_base() {
 
 #[test]
 fn all_effects_together_at_neutral_strength_are_the_base() {
-    let effects = Effects::compile(Model::QuasiStatic, catalogue()).unwrap();
+    let effects = CompiledEffects::compile(ModelForm::QuasiStatic, catalogue()).unwrap();
     let mut draws = Draws(8);
     for case in (0..50).map(|_| draws.case()) {
         let mut active = effects.activate(catalogue().iter().map(|effect| values(effect, "", f64::NAN)));

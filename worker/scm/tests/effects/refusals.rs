@@ -2,7 +2,7 @@
 
 use formula::Effect;
 use formula::catalogue::find;
-use scm::effects::{Effects, Model, Site};
+use scm::effects::{CompiledEffects, ModelForm, Site};
 use scm::{Averages, Rejection, quasi_static};
 
 use crate::support::base;
@@ -12,7 +12,7 @@ fn with_law(hook: &str, formula: &str, slip: f64) -> Result<Averages, Rejection>
     let text =
         format!("name = \"odd\"\nsummary = \"an odd law\"\nsource = \"none\"\n{hook} = \"{formula}\"\n");
     let effect = Effect::read(&text).expect("a formula");
-    let effects = Effects::compile(Model::QuasiStatic, [&effect]).expect("a form");
+    let effects = CompiledEffects::compile(ModelForm::QuasiStatic, [&effect]).expect("a form");
     let case = base(slip, 100.0, 30.0);
     let mut active = effects.activate([vec![]]);
     quasi_static::simulate_with(
@@ -90,7 +90,7 @@ fn a_branch_that_is_not_taken_may_be_anything() {
 
 #[test]
 fn a_deflection_beyond_the_radius_is_refused() {
-    let effects = Effects::compile(Model::QuasiStatic, find("wheel_flexibility")).unwrap();
+    let effects = CompiledEffects::compile(ModelForm::QuasiStatic, find("wheel_flexibility")).unwrap();
     let case = base(0.2, 100.0, 30.0);
     let mut active = effects.activate([vec![2e-3]]);
     let refused = quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, &mut active, &SITE);
@@ -135,7 +135,7 @@ fn channels_see_the_load_that_is_carried() {
                 (effect, values(effect, strength, *value))
             })
             .unzip();
-        let compiled = Effects::compile(Model::QuasiStatic, effects).expect("a form");
+        let compiled = CompiledEffects::compile(ModelForm::QuasiStatic, effects).expect("a form");
         let case = base(0.2, 100.0, 30.0);
         let run = |values: Vec<Vec<f64>>| {
             let mut active = compiled.activate(values);
@@ -182,7 +182,7 @@ fn laws_that_jump_with_the_contact_or_the_reaction_have_a_balance() {
 
 #[test]
 fn a_wheel_that_reads_as_sunk_to_its_hub_is_refused() {
-    let effects = Effects::compile(Model::QuasiStatic, find("slip_digging")).unwrap();
+    let effects = CompiledEffects::compile(ModelForm::QuasiStatic, find("slip_digging")).unwrap();
     let case = base(0.97, 100.0, 30.0);
     let mut active = effects.activate([vec![0.01]]);
     let refused = quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, &mut active, &SITE);
@@ -198,7 +198,7 @@ fn a_mechanism_without_its_parameters_is_refused() {
     let text = "name = \"springs\"\nsummary = \"rebound\"\nsource = \"none\"\nmechanism = \"rebound\"\n";
     let effect = Effect::read(text).unwrap();
     assert_eq!(
-        Effects::compile(Model::QuasiStatic, [&effect]).unwrap_err(),
+        CompiledEffects::compile(ModelForm::QuasiStatic, [&effect]).unwrap_err(),
         "effect springs: mechanism rebound takes the parameters compliance_m_pa, in this order"
     );
 }

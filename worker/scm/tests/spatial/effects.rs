@@ -5,7 +5,7 @@ use crate::scene::{Track, smooth};
 use crate::support::base;
 use formula::Effect;
 use scm::Rejection;
-use scm::spatial::{Displacement, Grousers, Protocol, Run, Shape};
+use scm::spatial::{Displacement, Grousers, Protocol, Shape, SpatialRun};
 
 /// An effect of one parameter `a`, without a unit, with these formulas.
 fn effect(formulas: &str) -> Effect {
@@ -50,7 +50,7 @@ fn rejection(track: &Track) -> Rejection {
 }
 
 /// Greatest relative difference of two runs, over all steps and channels.
-fn difference(a: &Run, b: &Run) -> f64 {
+fn difference(a: &SpatialRun, b: &SpatialRun) -> f64 {
     assert_eq!(a.history.len(), b.history.len());
     let channels = a.history.channels().into_iter().zip(b.history.channels());
     channels.fold(0.0_f64, |most, (a, b)| {

@@ -3,7 +3,9 @@
 use super::surfaces::{Surface, across};
 use crate::support::{Case, base};
 use scm::effects::{Active, Site};
-use scm::spatial::{Ground, Grousers, Normals, Protocol, Run, Scene, Settings, Shape, SurfaceMesh, simulate};
+use scm::spatial::{
+    Ground, Grousers, Normals, Protocol, RunSettings, Scene, Shape, SpatialRun, SurfaceMesh, simulate,
+};
 
 const R: f64 = 0.125;
 const B: f64 = 0.112;
@@ -12,7 +14,7 @@ fn case() -> Case {
     base(0.2, 100.0, 30.0)
 }
 
-fn roll(case: &Case, shape: &Shape, settings: Settings) -> Run {
+fn roll(case: &Case, shape: &Shape, settings: RunSettings) -> SpatialRun {
     let scene = Scene {
         soil: &case.soil,
         ground: &Ground::default(),
@@ -25,16 +27,16 @@ fn roll(case: &Case, shape: &Shape, settings: Settings) -> Run {
 }
 
 /// A window of 0.3 m behind a transient of 0.2 m.
-fn fixed(case: &Case) -> Settings {
+fn fixed(case: &Case) -> RunSettings {
     let second = 1.0 / case.condition.sled_speed_m_s;
-    Settings {
+    RunSettings {
         protocol: Protocol::Fixed {
             duration_s: 0.5 * second,
             transient_force_s: 0.2 * second,
             transient_sinkage_s: 0.2 * second,
             lowpass_hz: 0.0,
         },
-        ..Settings::default()
+        ..RunSettings::default()
     }
 }
 
@@ -55,7 +57,7 @@ fn rim(grousers: u32) -> Shape {
 }
 
 /// Differences of F, T and z, relative to W, W R and z.
-fn differences(case: &Case, got: &Run, expected: &Run) -> [f64; 3] {
+fn differences(case: &Case, got: &SpatialRun, expected: &SpatialRun) -> [f64; 3] {
     let (load, a, e) = (case.condition.wheel_load_n, got.averages, expected.averages);
     [
         (a.drawbar_pull_n - e.drawbar_pull_n) / load,
@@ -124,7 +126,7 @@ fn a_faceted_cylinder_is_the_analytic_rim_at_an_angle_in_skid_and_on_a_second_pa
 fn boxes_on_a_rim_are_the_analytic_grousers_but_for_the_thrust_of_their_flanks() {
     let case = case();
     for (dem_spacing_m, bounds) in [(0.004, [0.003, 0.003, 0.012]), (0.001, [0.002, 0.002, 0.006])] {
-        let settings = Settings {
+        let settings = RunSettings {
             dem_spacing_m,
             ..fixed(&case)
         };
@@ -151,7 +153,7 @@ fn boxes_on_a_rim_are_the_analytic_grousers_but_for_the_thrust_of_their_flanks()
 #[test]
 fn the_period_is_found_from_the_vertices() {
     let case = case();
-    let settings = Settings::default();
+    let settings = RunSettings::default();
     let given = |repeats_per_turn| Shape::Mesh {
         surface: with_boxes(360),
         repeats_per_turn,
@@ -174,7 +176,7 @@ fn barrel() -> SurfaceMesh {
 fn a_symmetric_mesh_feels_no_lateral_force_and_half_of_it_stands_for_both() {
     let case = case();
     let half = fixed(&case);
-    let whole = Settings {
+    let whole = RunSettings {
         both_halves: true,
         ..half
     };

@@ -4,7 +4,7 @@
 
 use super::effects::typical;
 use crate::scene::smooth;
-use scm::spatial::{Protocol, Run};
+use scm::spatial::{Protocol, SpatialRun};
 
 /// Slips of the columns; rim speed 10 mm/s, 100 N.
 const SLIPS: [f64; 3] = [0.05, 0.2, 0.6];
@@ -171,7 +171,7 @@ const ROWS: [Row; 34] = [
 ];
 
 /// A wheel of 130 mm at the rig's 125 mm.
-fn roll(slip: f64, row: Option<&Row>) -> Run {
+fn roll(slip: f64, row: Option<&Row>) -> SpatialRun {
     let mut track = smooth(slip, 100.0, 30.0);
     track.case.wheel.radius_m = 0.130;
     track.site.density_kg_m3 = Some(1400.0);
@@ -191,7 +191,7 @@ fn roll(slip: f64, row: Option<&Row>) -> Run {
     track.roll()
 }
 
-fn channels(run: &Run) -> [f64; 3] {
+fn channels(run: &SpatialRun) -> [f64; 3] {
     let averages = &run.averages;
     [
         averages.drawbar_pull_n,

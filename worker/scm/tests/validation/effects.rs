@@ -4,7 +4,7 @@
 
 use formula::Effect;
 use formula::catalogue::find;
-use scm::effects::{Effects, Model, Site};
+use scm::effects::{CompiledEffects, ModelForm, Site};
 use scm::{Averages, quasi_static};
 
 use super::Rows;
@@ -57,7 +57,7 @@ pub(crate) fn values(effect: &Effect, strength: &str, value: f64) -> Vec<f64> {
 pub(crate) fn with_effect(case: &Case, name: &str, strength: &str, value: f64, site: &Site) -> Averages {
     let effect = find(name).expect("an effect of the catalogue");
     assert!(effect.parameter(strength).is_some(), "{name} has no {strength}");
-    let effects = Effects::compile(Model::QuasiStatic, [effect]).expect("a form in this model");
+    let effects = CompiledEffects::compile(ModelForm::QuasiStatic, [effect]).expect("a form in this model");
     let mut active = effects.activate([values(effect, strength, value)]);
     quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, &mut active, site)
         .unwrap_or_else(|rejection| panic!("{name}: {rejection}"))

@@ -6,7 +6,7 @@ use super::Rows;
 use super::row::Bounds;
 use crate::scene::Track;
 use crate::support::base;
-use scm::spatial::{Grousers, Run, Shape};
+use scm::spatial::{Grousers, Shape, SpatialRun};
 
 /// Found: 1.8 N, 0.01 N m, 0.9 %. Ours ends contacts between nodes, the prototype at whole cells; that this makes the 1.8 N is
 /// not shown.
@@ -41,7 +41,7 @@ fn amplitude(history: &[f64]) -> f64 {
 /// Period of what swings `[s]`: that of the greatest Fourier amplitude between 3 and 12 s.
 ///
 /// The autocorrelation would not do: its peaks stick to the grid's ripple.
-fn period_s(run: &Run, history: &[f64]) -> f64 {
+fn period_s(run: &SpatialRun, history: &[f64]) -> f64 {
     let steady = &history[history.len() / 4..];
     let mean = steady.iter().sum::<f64>() / steady.len() as f64;
     let amplitude = |period: f64| {

@@ -3,7 +3,7 @@
 use inference::diagnostics::mean_and_sd;
 use maud::{Markup, html};
 use shared::channel::Channel;
-use shared::experiment::{RunUse, Wheel};
+use shared::experiment::{RunUse, WheelGeometry};
 use shared::model::ModelKind;
 use shared::parameters::noise_parameter;
 
@@ -268,7 +268,14 @@ fn notes(outcome: &FinishedCalibration) -> Vec<String> {
     let mut notes = Vec::new();
     // where grousers are declared, the notes of the job name their wheels
     let quasi_static = outcome.spec.model.kind == ModelKind::QuasiStatic;
-    if quasi_static && !outcome.spec.experiment.wheels.values().any(Wheel::has_grousers) {
+    if quasi_static
+        && !outcome
+            .spec
+            .experiment
+            .wheels
+            .values()
+            .any(WheelGeometry::has_grousers)
+    {
         notes.push("Grousers are not modelled here: each wheel has its own wheel_radius_m.NAME.".to_owned());
     }
     notes.extend(

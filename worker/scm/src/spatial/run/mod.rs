@@ -21,4 +21,4 @@ mod track;
 
 pub use history::History;
 pub(crate) use protocol::roll;
-pub use result::Run;
+pub use result::SpatialRun;

@@ -1,14 +1,14 @@
 //! Decide when a run ends, and average it.
 
 use super::record::{Record, Windows};
-use super::result::Run;
+use super::result::SpatialRun;
 use super::rolling::Rolling;
 use super::track::count;
 use crate::Condition;
 use crate::effects::Case;
 use crate::rejection::Rejection;
 use crate::spatial::scene::Scene;
-use crate::spatial::settings::{Protocol, Settings};
+use crate::spatial::settings::{Protocol, RunSettings};
 use signal::{INTERVAL_S, LowPass, average};
 
 /// Roll the wheel by the settings' protocol, pass after pass; the last one counts.
@@ -18,8 +18,8 @@ pub(crate) fn roll(
     scene: &Scene,
     condition: &Condition,
     case: Option<&Case>,
-    settings: Settings,
-) -> Result<Run, Rejection> {
+    settings: RunSettings,
+) -> Result<SpatialRun, Rejection> {
     let track = match settings.protocol {
         Protocol::Steady { most_travel_m, .. } => most_travel_m,
         Protocol::Fixed { duration_s, .. } => duration_s * condition.sled_speed_m_s,

@@ -1,7 +1,7 @@
 //! Keep what each step gives, and make a run of it.
 
 use super::history::History;
-use super::result::Run;
+use super::result::SpatialRun;
 use super::rolling::{Rolling, Step};
 use crate::rejection::Rejection;
 use crate::{Averages, Condition};
@@ -150,7 +150,7 @@ impl Record {
         condition: &Condition,
         windows: Windows,
         settled_to: Option<f64>,
-    ) -> Result<Run, Rejection> {
+    ) -> Result<SpatialRun, Rejection> {
         let mean = |values: &[f64], first: usize| {
             let part = &values[first.min(values.len() - 1)..];
             part.iter().sum::<f64>() / part.len() as f64
@@ -195,7 +195,7 @@ impl Record {
             });
         }
         let steps = self.history.len() - 1;
-        Ok(Run {
+        Ok(SpatialRun {
             averages: Averages {
                 drawbar_pull_n,
                 torque_n_m,
@@ -219,7 +219,7 @@ impl Record {
 fn means(channels: [&[f64]; 4], from: f64, to: f64) -> Result<[f64; 4], Rejection> {
     let mut means = [0.0; 4];
     for (mean, channel) in means.iter_mut().zip(channels) {
-        let history = signal::History {
+        let history = signal::SampledSignal {
             start_s: 0.0,
             interval_s: 1.0,
             samples: &channel[1..],
@@ -239,14 +239,14 @@ mod tests {
     use super::*;
     use crate::effects::Active;
     use crate::spatial::fixture::{CONDITION, scene};
-    use crate::spatial::{Ground, Grousers, Settings, Shape};
+    use crate::spatial::{Ground, Grousers, RunSettings, Shape};
 
     /// What finishing a short run says, after its record was changed.
-    fn finished(change: fn(&mut Record)) -> Result<Run, Rejection> {
+    fn finished(change: fn(&mut Record)) -> Result<SpatialRun, Rejection> {
         let (ground, shape) = (Ground::default(), Shape::Rim(Grousers::default()));
         let none = Active::default();
         let scene = scene(&ground, &shape, &none);
-        let mut rolling = Rolling::new(&scene, &CONDITION, None, Settings::default(), 0.05)?;
+        let mut rolling = Rolling::new(&scene, &CONDITION, None, RunSettings::default(), 0.05)?;
         let mut record = Record::new(rolling.steps.time, 50);
         let lowered = rolling.lower()?;
         record.push(&mut rolling, &lowered)?;

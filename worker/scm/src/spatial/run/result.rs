@@ -5,7 +5,7 @@ use crate::Averages;
 
 /// What a run gives.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Run {
+pub struct SpatialRun {
     /// Averages by the protocol, with the diagnostics of the contact.
     pub averages: Averages,
     /// Change from the last window but one to the last, by the measure of [`Protocol::Steady`](crate::spatial::Protocol::Steady); above its tolerance

@@ -10,7 +10,7 @@ use crate::spatial::contact::laws::Laws;
 use crate::spatial::contact::reaction::Reaction;
 use crate::spatial::displacement::ShearPath;
 use crate::spatial::scene::Scene;
-use crate::spatial::settings::{Ground, PressureDirection, Protocol, Settings, Vertical};
+use crate::spatial::settings::{Ground, PressureDirection, Protocol, RunSettings, Vertical};
 use crate::spatial::terrain::Terrain;
 use crate::spatial::terrain::flow::Flow;
 use crate::spatial::terrain::relaxation::Relaxation;
@@ -49,7 +49,7 @@ pub(crate) struct Step {
 pub(crate) struct Rolling<'a> {
     wheel: &'a Wheel,
     condition: &'a Condition,
-    settings: Settings,
+    settings: RunSettings,
     ground: Ground,
     pub(crate) motion: Motion,
     pub(crate) steps: Steps,
@@ -97,7 +97,7 @@ impl<'a> Rolling<'a> {
         scene: &Scene<'a>,
         condition: &'a Condition,
         case: Option<&'a Case>,
-        settings: Settings,
+        settings: RunSettings,
         travel: f64,
     ) -> Result<Self, Rejection> {
         let Scene {
@@ -414,7 +414,7 @@ impl<'a> Rolling<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::{Active, Effects, Model};
+    use crate::effects::{Active, CompiledEffects, ModelForm};
     use crate::spatial::fixture::{CONDITION, scene};
     use crate::spatial::{Grousers, Shape};
 
@@ -443,9 +443,9 @@ mod tests {
             thickness_m: 0.002,
         });
         let scene = scene(&ground, &shape, effects);
-        let settings = Settings {
+        let settings = RunSettings {
             both_halves,
-            ..Settings::default()
+            ..RunSettings::default()
         };
         let condition = condition(slip_angle_rad);
         let case = effects.case(scene.soil, scene.wheel, &condition, &scene.site);
@@ -463,7 +463,7 @@ mod tests {
     #[test]
     fn the_soil_that_does_not_compact_is_all_there() {
         let digging = formula::catalogue::find("slip_digging").expect("in the catalogue");
-        let digging = Effects::compile(Model::Spatial, [digging]).expect("a mechanism");
+        let digging = CompiledEffects::compile(ModelForm::Spatial, [digging]).expect("a mechanism");
         let (none, digging) = (Active::default(), digging.activate([vec![0.01]]));
         for (fraction, slip_angle, both_halves, effects) in [
             (0.0, 0.0, false, &none),
@@ -502,9 +502,9 @@ mod tests {
         let none = Active::default();
         let scene = scene(&ground, &shape, &none);
         let condition = condition(0.0);
-        let settings = Settings {
+        let settings = RunSettings {
             displacement: crate::spatial::Displacement::Node,
-            ..Settings::default()
+            ..RunSettings::default()
         };
         let mut rolling = Rolling::new(&scene, &condition, None, settings, 0.1).expect("a track");
         rolling.lower().expect("support");

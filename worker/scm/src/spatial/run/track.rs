@@ -1,7 +1,7 @@
 //! Lay out the terrain that a run needs, and the size of its steps.
 
 use super::super::contact::MOST_LANES;
-use super::super::settings::{Settings, Vertical};
+use super::super::settings::{RunSettings, Vertical};
 use super::super::terrain::{BERM_LANES, Terrain};
 use super::super::wheel::motion::Motion;
 use crate::rejection::{Rejection, require};
@@ -43,7 +43,7 @@ pub(crate) fn spacing_along(
     elastic_stiffness: f64,
     wheel: &Wheel,
     condition: &Condition,
-    settings: &Settings,
+    settings: &RunSettings,
 ) -> f64 {
     let smooth = quasi_static::simulate(soil, wheel, condition);
     smooth.map_or(settings.dem_spacing_m, |averages| {
@@ -68,7 +68,7 @@ pub(crate) fn steps(
     wheel: &Wheel,
     condition: &Condition,
     motion: &Motion,
-    settings: &Settings,
+    settings: &RunSettings,
     dx: f64,
 ) -> Steps {
     // a whole number of steps to a column, so that what the grid does repeats
@@ -117,7 +117,7 @@ pub(crate) fn count(travel: f64, steps: &Steps, condition: &Condition) -> Result
 pub(crate) fn terrain(
     width: f64,
     motion: &Motion,
-    settings: &Settings,
+    settings: &RunSettings,
     dx: f64,
     reach: f64,
     travel: f64,
