@@ -10,7 +10,7 @@ use crate::fleet::Fleet;
 use crate::importance::Importance;
 use crate::screen::Screened;
 use crate::settings::{Settings, Starts};
-use inference::round::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
+use inference::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
 use statistics::likelihood::Likelihood;
 use statistics::prior::Marginal;
 

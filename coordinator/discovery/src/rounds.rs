@@ -9,7 +9,7 @@ use crate::fleet::Fleet;
 use crate::importance::Importance;
 use crate::screen::STRENGTHS;
 use crate::{base, confirm, extension, polish, screen};
-use inference::round::InferenceFailure;
+use inference::InferenceFailure;
 
 impl Engine {
     /// Asks what the descents want; gives them back when they want nothing more.

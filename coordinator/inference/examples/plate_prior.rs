@@ -94,7 +94,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ]);
     let mut sampler = Sampler::new(prior, TmcmcSettings::default())?;
     let posterior = loop {
-        for proposal in sampler.pending().to_vec() {
+        for proposal in sampler.round().pending().to_vec() {
             let value = tests.iter().map(|t| log_density(t, &proposal.theta)).sum();
             if let TellProgress::Failed(failure) =
                 sampler.tell(proposal.particle, LogLikelihood::new(value)?)?

@@ -15,11 +15,15 @@
 pub mod diagnostics;
 pub mod evolution;
 pub mod lm;
+mod phase;
 pub mod point_estimate;
-pub mod round;
+mod round;
+mod tell;
 pub mod tmcmc;
 
-pub use round::{InferenceFailure, Proposal, TellError, TellProgress};
+pub use phase::EvaluationCount;
+pub use round::{Proposal, ProposalRound};
+pub use tell::{InferenceFailure, TellError, TellProgress};
 pub use tmcmc::{
     Algorithm, EvaluationResult, Particle, PosteriorSample, Sampler, StageProgress, StageRecord,
     TmcmcSettings, TmcmcSettingsError,

@@ -161,7 +161,7 @@ fn the_jacobian_of_log_coordinates_is_accounted_for() {
     let mut sampler =
         inference::Sampler::new(statistics::Prior::new(vec![prior]), TmcmcSettings::default()).unwrap();
     while sampler.posterior().is_none() {
-        for proposal in sampler.pending().to_vec() {
+        for proposal in sampler.round().pending().to_vec() {
             let z = libm::log(proposal.theta[0]) / sd;
             let value = -0.5 * z * z - libm::log(sd) - 0.5 * libm::log(std::f64::consts::TAU);
             sampler

@@ -31,8 +31,8 @@ fn unit_prior(dimension: usize) -> Prior {
 fn run(prior: Prior, settings: TmcmcSettings, score: impl Fn(&[f64]) -> f64, shuffle: u64) -> Sampler {
     let mut sampler = Sampler::new(prior, settings).unwrap();
     loop {
-        let mut proposals = sampler.pending().to_vec();
-        let mut stream = Stream::new(shuffle, 0, 0, sampler.round());
+        let mut proposals = sampler.round().pending().to_vec();
+        let mut stream = Stream::new(shuffle, 0, 0, sampler.round().number());
         for last in (1..proposals.len()).rev() {
             if shuffle > 0 {
                 proposals.swap(last, stream.below(last + 1));
@@ -49,7 +49,9 @@ fn run(prior: Prior, settings: TmcmcSettings, score: impl Fn(&[f64]) -> f64, shu
                 .unwrap();
         }
         match progress {
-            TellProgress::NextRound | TellProgress::StageFinished => assert!(!sampler.pending().is_empty()),
+            TellProgress::NextRound | TellProgress::StageFinished => {
+                assert!(!sampler.round().pending().is_empty())
+            }
             TellProgress::Finished | TellProgress::Failed(_) => return sampler,
             TellProgress::Waiting => panic!("a completed round left the sampler waiting"),
         }
@@ -96,12 +98,12 @@ fn the_seed_matters() {
 #[test]
 fn pending_holds_still_and_refuses_what_it_did_not_ask() {
     let mut sampler = Sampler::new(unit_prior(2), small()).unwrap();
-    let before = sampler.pending().to_vec();
+    let before = sampler.round().pending().to_vec();
     let value = LogLikelihood::new(-1.0).unwrap();
     assert_eq!(sampler.tell(7, value), Ok(TellProgress::Waiting));
-    assert_eq!(sampler.pending(), before);
-    assert!(sampler.is_told(7) && !sampler.is_told(8));
-    assert_eq!((sampler.current().told, sampler.current().proposals), (1, 60));
+    assert_eq!(sampler.round().pending(), before);
+    assert!(sampler.round().is_told(7) && !sampler.round().is_told(8));
+    assert_eq!((sampler.round().told(), sampler.round().pending().len()), (1, 60));
     assert_eq!(
         sampler.tell(7, value),
         Err(TellError::AlreadyTold {
@@ -160,7 +162,7 @@ fn a_model_that_rejects_everything_is_reported() {
         failure.to_string(),
         "all 60 prior draws were rejected by the model"
     );
-    assert!(sampler.pending().is_empty() && sampler.posterior().is_none());
+    assert!(sampler.round().pending().is_empty() && sampler.posterior().is_none());
     let few = run(
         unit_prior(3),
         small(),
@@ -198,7 +200,7 @@ fn rounds_without_proposals_inside_the_prior_advance_by_themselves() {
         0,
     );
     let posterior = sampler.posterior().unwrap();
-    assert!(sampler.round() > 10 && posterior.particles.len() == 22);
+    assert!(sampler.round().number() > 10 && posterior.particles.len() == 22);
 }
 
 #[test]

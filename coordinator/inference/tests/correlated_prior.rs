@@ -17,8 +17,8 @@ fn a_correlated_prior_is_updated_as_on_paper() {
         ..TmcmcSettings::default()
     };
     let mut sampler = Sampler::new(prior, settings).unwrap();
-    while !sampler.pending().is_empty() {
-        for proposal in sampler.pending().to_vec() {
+    while !sampler.round().pending().is_empty() {
+        for proposal in sampler.round().pending().to_vec() {
             let z = (datum - proposal.theta[0] - proposal.theta[1]) / sd;
             let value = -0.5 * z * z - 0.5 * libm::log(std::f64::consts::TAU * sd * sd);
             sampler

@@ -33,10 +33,10 @@ fn begin(prior: &[Marginal], likelihood: &Likelihood, settings: LmSettings) -> L
 
 /// Runs a fit to its end, each round's results told in an order of its own.
 fn end(mut fit: LmFit, model: Model, order: impl Fn(u64, &mut Vec<usize>)) -> LmFit {
-    while !fit.pending().is_empty() {
-        let pending = fit.pending().to_vec();
+    while !fit.round().pending().is_empty() {
+        let pending = fit.round().pending().to_vec();
         let mut indices: Vec<usize> = (0..pending.len()).collect();
-        order(fit.round(), &mut indices);
+        order(fit.round().number(), &mut indices);
         for k in indices {
             let proposal = &pending[k];
             fit.tell(proposal.particle, model(&proposal.theta).as_deref())
@@ -407,7 +407,7 @@ fn a_model_that_refuses_everything_fails_with_half_of_the_budget() {
         ended.failure(),
         Some(InferenceFailure::AllImpossible { draws: 100 })
     );
-    assert_eq!((ended.estimate(), ended.rejected()), (None, 100));
+    assert_eq!((ended.estimate(), ended.count().rejected), (None, 100));
 }
 
 #[test]
@@ -456,8 +456,10 @@ fn the_order_within_a_round_does_not_matter() {
         ..LmSettings::default()
     };
     assert_ne!(
-        begin(&prior, &likelihood, other).pending(),
-        begin(&prior, &likelihood, LmSettings::default()).pending()
+        begin(&prior, &likelihood, other).round().pending(),
+        begin(&prior, &likelihood, LmSettings::default())
+            .round()
+            .pending()
     );
 }
 
@@ -501,7 +503,7 @@ fn what_fits_no_datum_is_refused_and_changes_nothing() {
         }
         .into())
     );
-    assert!(!fit.is_told(0));
+    assert!(!fit.round().is_told(0));
     assert_eq!(fit.tell(0, None), Ok(TellProgress::Waiting));
     assert_eq!(
         fit.tell(0, None),

@@ -53,7 +53,7 @@ fn run(settings: TmcmcSettings, coarse: fn(&[f64]) -> Option<Vec<f64>>) -> (Samp
         // as it travels
         let text = sampler.metamodel().map(|m| serde_json::to_string(m).unwrap());
         let metamodel: Option<Metamodel> = text.map(|text| serde_json::from_str(&text).unwrap());
-        for proposal in sampler.pending().to_vec() {
+        for proposal in sampler.round().pending().to_vec() {
             let answer = match (proposal.subchain, &metamodel) {
                 (Some(subchain), Some(metamodel)) => {
                     let end = metamodel.run(&subchain, &proposal.theta, coarse).unwrap();

@@ -44,8 +44,8 @@ impl Problem {
     /// Runs a search to its end.
     pub(crate) fn search(&self, settings: EvolutionSettings) -> Evolution {
         let mut search = Evolution::new(self.prior(), settings).unwrap();
-        while !search.pending().is_empty() {
-            for proposal in search.pending().to_vec() {
+        while !search.round().pending().is_empty() {
+            for proposal in search.round().pending().to_vec() {
                 let value = self.score(&proposal.theta);
                 search.tell(proposal.particle, value).unwrap();
             }
@@ -58,7 +58,7 @@ impl Problem {
         let mut sampler = Sampler::new(self.prior(), settings).unwrap();
         loop {
             let mut last = TellProgress::Waiting;
-            for proposal in sampler.pending().to_vec() {
+            for proposal in sampler.round().pending().to_vec() {
                 last = sampler
                     .tell(proposal.particle, self.score(&proposal.theta))
                     .unwrap();

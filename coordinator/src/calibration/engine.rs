@@ -123,9 +123,9 @@ impl Engine {
     /// Number of completed rounds.
     pub(super) fn round(&self) -> u64 {
         match self {
-            Engine::Sampler(sampler) => sampler.round(),
-            Engine::Fit(fit) => fit.round(),
-            Engine::Evolution(evolution) => evolution.round(),
+            Engine::Sampler(sampler) => sampler.round().number(),
+            Engine::Fit(fit) => fit.round().number(),
+            Engine::Evolution(evolution) => evolution.round().number(),
             Engine::Discovery(investigation) => investigation.round(),
         }
     }
@@ -133,9 +133,9 @@ impl Engine {
     /// This round's proposals, by ascending particle.
     pub(super) fn pending(&self) -> &[Proposal] {
         match self {
-            Engine::Sampler(sampler) => sampler.pending(),
-            Engine::Fit(fit) => fit.pending(),
-            Engine::Evolution(evolution) => evolution.pending(),
+            Engine::Sampler(sampler) => sampler.round().pending(),
+            Engine::Fit(fit) => fit.round().pending(),
+            Engine::Evolution(evolution) => evolution.round().pending(),
             Engine::Discovery(investigation) => investigation.pending(),
         }
     }

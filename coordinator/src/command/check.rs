@@ -175,7 +175,7 @@ fn pilot(mut spec: job::Spec) -> anyhow::Result<Pilot> {
         seconds_per_evaluation: simulated_s / evaluations as f64,
         rejected_share: calibration.rejected as f64 / evaluations as f64,
         exponent: match calibration.engine() {
-            Engine::Sampler(sampler) => sampler.current().tempering_exponent,
+            Engine::Sampler(sampler) => sampler.progress().tempering_exponent,
             Engine::Fit(_) | Engine::Evolution(_) | Engine::Discovery(_) => 1.0,
         },
         complete: calibration.engine().finding().is_some(),

@@ -45,11 +45,11 @@ pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> Cal
     let identity = &calibration.identity;
     let (stage, tempering_exponent, step, acceptance) = match calibration.engine() {
         Engine::Sampler(sampler) => {
-            let now = sampler.current();
+            let now = sampler.progress();
             (now.stage, now.tempering_exponent, now.step, now.acceptance)
         }
-        Engine::Fit(fit) => (fit.current().steps, 1.0, 0, None),
-        Engine::Evolution(evolution) => (evolution.current().generations, 1.0, 0, None),
+        Engine::Fit(fit) => (fit.steps(), 1.0, 0, None),
+        Engine::Evolution(evolution) => (evolution.history().len(), 1.0, 0, None),
         Engine::Discovery(search) => (search.round() as usize, 1.0, 0, None),
     };
     let queue = &calibration.queue;

@@ -33,7 +33,7 @@ pub use crate::chi_square::ChiSquare;
 use crate::candidate::CandidateError;
 use crate::engine::Engine;
 use found::Found;
-use inference::round::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
+use inference::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
 use search::Search;
 use statistics::likelihood::LikelihoodError;
 use steps::Step;

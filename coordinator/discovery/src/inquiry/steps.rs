@@ -13,7 +13,7 @@ use crate::depth::{ALL_CURVES, CURVES, FORMS, QUICK};
 use crate::engine::Engine;
 use crate::evidence::log_sum_exp;
 use crate::settings::{Settings, Starts};
-use inference::round::InferenceFailure;
+use inference::InferenceFailure;
 
 /// A log Bayes factor above this is a detection \[nats\].
 pub(super) const DETECTED: f64 = 3.0;

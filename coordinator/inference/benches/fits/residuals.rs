@@ -25,8 +25,8 @@ fn fitted(prior: &Prior, data: &[(f64, ErrorSd)], model: Model, seeds: u64) -> V
             ..LmSettings::default()
         };
         let mut fit = LmFit::new(prior.clone(), likelihood.clone(), settings).unwrap();
-        while !fit.pending().is_empty() {
-            for proposal in fit.pending().to_vec() {
+        while !fit.round().pending().is_empty() {
+            for proposal in fit.round().pending().to_vec() {
                 fit.tell(proposal.particle, Some(&model(&proposal.theta)))
                     .unwrap();
             }

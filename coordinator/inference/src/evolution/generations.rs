@@ -6,8 +6,10 @@ use super::settings_error::EvolutionSettingsError;
 use super::strategy::Strategy;
 use crate::evolution::individual::Individual;
 use crate::evolution::prior_space::PriorSpace;
+use crate::phase::{EvaluationCount, Phase};
 use crate::point_estimate::{Generation, ModeEstimate, StopReason};
-use crate::round::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
+use crate::round::{Proposal, ProposalRound};
+use crate::tell::{InferenceFailure, TellError, TellProgress};
 use statistics::log_likelihood::LogLikelihood;
 use statistics::prior::Prior;
 
@@ -17,26 +19,17 @@ use statistics::prior::Prior;
 /// checked by `evolution::the_order_within_a_generation_does_not_matter`.
 #[derive(Debug, Clone)]
 pub struct Evolution {
-    pub(super) space: PriorSpace,
-    pub(super) settings: EvolutionSettings,
-    pub(super) round: ProposalRound<LogLikelihood>,
-    pub(super) phase: EvolutionPhase,
+    space: PriorSpace,
+    settings: EvolutionSettings,
+    round: ProposalRound<LogLikelihood>,
+    phase: Phase<(), ModeEstimate>,
     /// The best so far; the first of equals.
-    pub(super) best: Option<Individual>,
-    pub(super) history: Vec<Generation>,
-    pub(super) evaluations: usize,
-    pub(super) rejected: usize,
+    best: Option<Individual>,
+    history: Vec<Generation>,
+    count: EvaluationCount,
     strategy: Strategy,
     /// Of the pending proposals.
     positions: Vec<Vec<f64>>,
-}
-
-/// What the search waits for.
-#[derive(Debug, Clone)]
-pub(super) enum EvolutionPhase {
-    Generation,
-    Done(Box<ModeEstimate>),
-    Failed(InferenceFailure),
 }
 
 impl Evolution {
@@ -52,15 +45,44 @@ impl Evolution {
             space,
             settings,
             round: ProposalRound::default(),
-            phase: EvolutionPhase::Generation,
+            phase: Phase::Waiting(()),
             best: None,
             history: Vec::new(),
-            evaluations: 0,
-            rejected: 0,
+            count: EvaluationCount::default(),
             positions: Vec::new(),
         };
         search.ask();
         Ok(search)
+    }
+
+    /// The round in progress, a generation; its list of proposals is empty only when the evolution has ended.
+    #[must_use]
+    pub fn round(&self) -> &ProposalRound<LogLikelihood> {
+        &self.round
+    }
+
+    /// The result, once finished.
+    #[must_use]
+    pub fn estimate(&self) -> Option<&ModeEstimate> {
+        self.phase.result()
+    }
+
+    /// Why the evolution failed, if it did.
+    #[must_use]
+    pub fn failure(&self) -> Option<InferenceFailure> {
+        self.phase.failure()
+    }
+
+    /// Evaluations told so far in completed rounds.
+    #[must_use]
+    pub fn count(&self) -> EvaluationCount {
+        self.count
+    }
+
+    /// The completed generations.
+    #[must_use]
+    pub fn history(&self) -> &[Generation] {
+        &self.history
     }
 
     /// Takes the log-likelihood of a pending proposal; the last one of a round leads to the next generation.
@@ -72,12 +94,7 @@ impl Evolution {
         if complete {
             self.advance();
         }
-        Ok(match &self.phase {
-            EvolutionPhase::Done(_) => TellProgress::Finished,
-            EvolutionPhase::Failed(failure) => TellProgress::Failed(*failure),
-            EvolutionPhase::Generation if complete => TellProgress::NextRound,
-            EvolutionPhase::Generation => TellProgress::Waiting,
-        })
+        Ok(self.phase.progress(complete))
     }
 
     fn advance(&mut self) {
@@ -89,11 +106,8 @@ impl Evolution {
             .zip(answers)
             .map(|((proposal, position), answer)| self.space.individual(position, proposal.theta, answer))
             .collect();
-        self.evaluations += generation.len();
-        self.rejected += generation
-            .iter()
-            .filter(|individual| individual.log_likelihood.is_impossible())
-            .count();
+        let rejections = generation.iter().map(|i| i.log_likelihood.is_impossible());
+        self.count.add(rejections);
         for individual in &generation {
             let least = self
                 .best
@@ -115,7 +129,7 @@ impl Evolution {
             .map(Individual::log_posterior)
             .collect();
         self.history.push(Generation {
-            evaluations: self.evaluations as u64,
+            evaluations: self.count.evaluations as u64,
             best: self.best.as_ref().map(Individual::log_posterior),
             mean: crate::diagnostics::mean(&taken),
         });
@@ -124,11 +138,11 @@ impl Evolution {
     /// Asks for the next generation, unless there is none; without anybody whom the model took, for half of the budget.
     fn ask(&mut self) {
         let budget = self.settings.max_evaluations();
-        match self.strategy.next(&self.space, budget - self.evaluations) {
+        match self.strategy.next(&self.space, budget - self.count.evaluations) {
             NextGeneration::Ask(positions)
                 if self.best.is_some()
-                    || self.evaluations == 0
-                    || 2 * (self.evaluations + positions.len()) <= budget =>
+                    || self.count.evaluations == 0
+                    || 2 * (self.count.evaluations + positions.len()) <= budget =>
             {
                 let proposals = positions
                     .iter()
@@ -143,22 +157,22 @@ impl Evolution {
     }
 
     fn fail(&mut self) {
-        let draws = self.evaluations;
-        self.phase = EvolutionPhase::Failed(InferenceFailure::AllImpossible { draws });
+        let draws = self.count.evaluations;
+        self.phase = Phase::Failed(InferenceFailure::AllImpossible { draws });
     }
 
     fn finish(&mut self, stop: StopReason) {
         let Some(best) = &self.best else {
             return self.fail();
         };
-        self.phase = EvolutionPhase::Done(Box::new(ModeEstimate {
+        self.phase = Phase::Done(Box::new(ModeEstimate {
             theta: best.theta.clone(),
             log_likelihood: best.log_likelihood.value(),
             log_prior: best.log_prior,
             at_bound: self.space.at_bound(&best.position),
             laplace: None,
-            evaluations: self.evaluations as u64,
-            rejected: self.rejected as u64,
+            evaluations: self.count.evaluations as u64,
+            rejected: self.count.rejected as u64,
             stop,
             history: self.history.clone(),
         }));

@@ -8,7 +8,7 @@
 //! deviations. It has the history of the generations instead.
 //!
 //! # Layout
-//! - `generations`: the rounds. `progress`: what they show of themselves.
+//! - `generations`: the rounds.
 //! - `settings`, `settings_error`: those of either strategy. `strategy`: either of them, with its state.
 //! - `next_generation`: what a strategy wants. `individual`: an evaluated point. `prior_space`: all axes of the prior.
 
@@ -18,7 +18,6 @@ mod generations;
 mod individual;
 mod next_generation;
 mod prior_space;
-mod progress;
 mod settings;
 mod settings_error;
 mod strategy;
@@ -26,6 +25,5 @@ mod strategy;
 pub use cma_es::CmaEsSettings;
 pub use ga::GaSettings;
 pub use generations::Evolution;
-pub use progress::EvolutionProgress;
 pub use settings::EvolutionSettings;
 pub use settings_error::EvolutionSettingsError;

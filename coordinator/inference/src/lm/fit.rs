@@ -4,8 +4,10 @@ use super::damping::Damping;
 use super::objective::{Column, FitPoint, Objective};
 use super::settings::{LmSettings, LmSettingsError};
 use super::stencil::{Sides, Stencil};
+use crate::phase::{EvaluationCount, Phase};
 use crate::point_estimate::{ModeEstimate, StopReason};
-use crate::round::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
+use crate::round::{Proposal, ProposalRound};
+use crate::tell::{InferenceFailure, TellError, TellProgress};
 use statistics::likelihood::Likelihood;
 use statistics::prior::Prior;
 
@@ -21,7 +23,7 @@ pub struct LmFit {
     pub(super) objective: Objective,
     pub(super) settings: LmSettings,
     pub(super) round: ProposalRound<PredictedValues>,
-    pub(super) phase: FitPhase,
+    pub(super) phase: Phase<Awaited, ModeEstimate>,
     /// The best point so far.
     pub(super) best: Option<FitPoint>,
     /// The last known Jacobian: at the best point, or at one before it.
@@ -36,19 +38,16 @@ pub struct LmFit {
     /// The last step gained too little to go on.
     pub(super) settled: bool,
     pub(super) steps: usize,
-    pub(super) evaluations: usize,
-    pub(super) rejected: usize,
+    pub(super) count: EvaluationCount,
 }
 
 /// What the fit waits for.
 #[derive(Debug, Clone)]
-pub(super) enum FitPhase {
+pub(super) enum Awaited {
     Starts,
     Differences,
-    /// Dampings and promised decreases of the steps that are tried.
+    /// Dampings and predicted decreases of the steps that are tried.
     Trials(Vec<(f64, f64)>),
-    Done(Box<ModeEstimate>),
-    Failed(InferenceFailure),
 }
 
 impl LmFit {
@@ -72,18 +71,47 @@ impl LmFit {
             objective,
             settings,
             round: ProposalRound::default(),
-            phase: FitPhase::Starts,
+            phase: Phase::Waiting(Awaited::Starts),
             best: None,
             sides: Sides::One,
             lengths: Vec::new(),
             damping: Damping::default(),
             settled: false,
             steps: 0,
-            evaluations: 0,
-            rejected: 0,
+            count: EvaluationCount::default(),
         };
         optimiser.ask_starts();
         Ok(optimiser)
+    }
+
+    /// The round in progress; its list of proposals is empty only when the fit has ended.
+    #[must_use]
+    pub fn round(&self) -> &ProposalRound<Option<Vec<f64>>> {
+        &self.round
+    }
+
+    /// The result, once finished.
+    #[must_use]
+    pub fn estimate(&self) -> Option<&ModeEstimate> {
+        self.phase.result()
+    }
+
+    /// Why the fit failed, if it did.
+    #[must_use]
+    pub fn failure(&self) -> Option<InferenceFailure> {
+        self.phase.failure()
+    }
+
+    /// Evaluations told so far in completed rounds.
+    #[must_use]
+    pub fn count(&self) -> EvaluationCount {
+        self.count
+    }
+
+    /// Steps taken so far.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.steps
     }
 
     /// Takes the predicted values of a pending proposal; the last one of a round advances the fit.
@@ -101,12 +129,7 @@ impl LmFit {
         if complete {
             self.advance();
         }
-        Ok(match &self.phase {
-            FitPhase::Done(_) => TellProgress::Finished,
-            FitPhase::Failed(failure) => TellProgress::Failed(*failure),
-            _ if complete => TellProgress::NextRound,
-            _ => TellProgress::Waiting,
-        })
+        Ok(self.phase.progress(complete))
     }
 
     fn check(&self, values: &[f64]) -> Result<(), TellError> {
@@ -120,27 +143,26 @@ impl LmFit {
     /// Completes a round and asks for the next, unless the fit has ended.
     fn advance(&mut self) {
         let (proposals, answers) = self.round.complete();
-        self.evaluations += answers.len();
-        self.rejected += answers.iter().filter(|answer| answer.is_none()).count();
-        match std::mem::replace(&mut self.phase, FitPhase::Starts) {
-            FitPhase::Starts => self.after_starts(&proposals, &answers),
-            FitPhase::Differences => self.after_differences(answers),
-            FitPhase::Trials(trials) => self.after_trials(&trials, &proposals, &answers),
-            ended @ (FitPhase::Done(_) | FitPhase::Failed(_)) => self.phase = ended,
+        self.count.add(answers.iter().map(Option::is_none));
+        match std::mem::replace(&mut self.phase, Phase::Waiting(Awaited::Starts)) {
+            Phase::Waiting(Awaited::Starts) => self.after_starts(&proposals, &answers),
+            Phase::Waiting(Awaited::Differences) => self.after_differences(answers),
+            Phase::Waiting(Awaited::Trials(trials)) => self.after_trials(&trials, &proposals, &answers),
+            ended @ (Phase::Done(_) | Phase::Failed(_)) => self.phase = ended,
         }
     }
 
     pub(super) fn remaining(&self) -> usize {
-        self.settings.max_evaluations - self.evaluations
+        self.settings.max_evaluations - self.count.evaluations
     }
 
-    pub(super) fn ask(&mut self, phase: FitPhase, thetas: impl Iterator<Item = Vec<f64>>) {
+    pub(super) fn ask(&mut self, awaited: Awaited, thetas: impl Iterator<Item = Vec<f64>>) {
         let proposals = thetas
             .enumerate()
             .map(|(particle, theta)| Proposal::plain(particle, theta))
             .collect();
         self.round.ask(proposals);
-        self.phase = phase;
+        self.phase = Phase::Waiting(awaited);
     }
 
     pub(super) fn finish(&mut self, stop: StopReason) {
@@ -148,8 +170,8 @@ impl LmFit {
         // A step that settled the fit ends it even where the budget has no room for another Jacobian.
         let stop = if self.settled { StopReason::Decrease } else { stop };
         let mut estimate = self.objective.estimate(point, &self.columns, stop);
-        estimate.evaluations = self.evaluations as u64;
-        estimate.rejected = self.rejected as u64;
-        self.phase = FitPhase::Done(Box::new(estimate));
+        estimate.evaluations = self.count.evaluations as u64;
+        estimate.rejected = self.count.rejected as u64;
+        self.phase = Phase::Done(Box::new(estimate));
     }
 }

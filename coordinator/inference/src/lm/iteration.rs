@@ -1,11 +1,13 @@
 //! Go from round to round: what the results of one lead to.
 
 use super::damping::Damping;
-use super::fit::{FitPhase, LmFit, PredictedValues};
+use super::fit::{Awaited, LmFit, PredictedValues};
 use super::objective::FitPoint;
 use super::stencil::{Sides, Stencil};
+use crate::phase::Phase;
 use crate::point_estimate::StopReason;
-use crate::round::{InferenceFailure, Proposal};
+use crate::round::Proposal;
+use crate::tell::InferenceFailure;
 use statistics::rng::Stream;
 
 /// A step so much longer is worth another Jacobian.
@@ -14,7 +16,7 @@ const MUCH_LONGER: f64 = 1.5;
 impl LmFit {
     /// The prior mean, then one prior draw after the other; each draw has a stream of its own.
     pub(super) fn ask_starts(&mut self) {
-        let (first, seed) = (self.evaluations, self.settings.seed);
+        let (first, seed) = (self.count.evaluations, self.settings.seed);
         let prior = &self.objective.prior;
         let starts: Vec<Vec<f64>> = (first..first + self.settings.starts)
             .map(|k| match k {
@@ -22,7 +24,7 @@ impl LmFit {
                 _ => prior.sample(&mut Stream::new(seed, 0, k as u64, 0)),
             })
             .collect();
-        self.ask(FitPhase::Starts, starts.into_iter());
+        self.ask(Awaited::Starts, starts.into_iter());
     }
 
     /// The point with the least f; the first of equals.
@@ -51,12 +53,12 @@ impl LmFit {
     pub(super) fn after_starts(&mut self, proposals: &[Proposal], answers: &[PredictedValues]) {
         match self.least(proposals, answers) {
             Some((_, point)) => self.go_on_from(point, Sides::One),
-            None if 2 * (self.evaluations + self.settings.starts) <= self.settings.max_evaluations => {
+            None if 2 * (self.count.evaluations + self.settings.starts) <= self.settings.max_evaluations => {
                 self.ask_starts();
             }
             None => {
-                let draws = self.evaluations;
-                self.phase = FitPhase::Failed(InferenceFailure::AllImpossible { draws });
+                let draws = self.count.evaluations;
+                self.phase = Phase::Failed(InferenceFailure::AllImpossible { draws });
             }
         }
     }
@@ -109,7 +111,7 @@ impl LmFit {
         let differences = self.stencil.ask(sides);
         let trial = usize::from(sides == Sides::One);
         if differences.is_empty()
-            || differences.len() + trial > self.settings.max_evaluations - self.evaluations
+            || differences.len() + trial > self.settings.max_evaluations - self.count.evaluations
         {
             return false;
         }
@@ -122,7 +124,7 @@ impl LmFit {
             })
             .collect();
         self.sides = sides;
-        self.ask(FitPhase::Differences, thetas.into_iter());
+        self.ask(Awaited::Differences, thetas.into_iter());
         true
     }
 
@@ -186,7 +188,7 @@ impl LmFit {
             .map(|position| self.objective.theta(point, position))
             .collect();
         if !thetas.is_empty() {
-            self.ask(FitPhase::Trials(trials), thetas.into_iter());
+            self.ask(Awaited::Trials(trials), thetas.into_iter());
         } else if self.refine() {
             // It may yet show the way down.
             self.damping = Damping::default();

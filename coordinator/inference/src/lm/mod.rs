@@ -24,7 +24,7 @@
 //!
 //! # Layout
 //! - `settings`: starts, budget, step of the differences.
-//! - `fit`: the rounds. `iteration`: what each leads to. `progress`: what they show of themselves.
+//! - `fit`: the rounds. `iteration`: what each leads to.
 //! - `noise`: one noise sd.
 //! - `objective`: f at a point, and its parabola there. `quadratic_model`: the least of a damped parabola in a box.
 //! - `stencil`: the differences. `damping`: how far to trust the parabola.
@@ -39,12 +39,10 @@ mod iteration;
 mod laplace;
 mod noise;
 mod objective;
-mod progress;
 mod quadratic_model;
 mod settings;
 mod stencil;
 
 pub use fit::LmFit;
-pub use progress::FitProgress;
 pub use quadratic_model::QuadraticModel;
 pub use settings::{LmSettings, LmSettingsError};

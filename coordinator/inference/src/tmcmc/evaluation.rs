@@ -37,8 +37,8 @@ impl EvaluationResult {
         !matches!(self, Self::Moved { found: None, .. })
     }
 
-    /// Whether it was asked and refused.
-    pub(super) fn is_refused(&self) -> bool {
+    /// Whether the model was asked and rejected the parameters.
+    pub(super) fn is_rejected(&self) -> bool {
         match self {
             Self::Here { log_likelihood, .. } => log_likelihood.is_impossible(),
             Self::Moved { found, .. } => found.as_ref().is_some_and(|(value, _)| value.is_impossible()),

@@ -21,7 +21,6 @@ mod equilibrium;
 mod evaluation;
 mod evidence;
 mod particle;
-mod progress;
 mod record;
 mod resample;
 mod sampler;
@@ -29,6 +28,7 @@ mod scale;
 mod schedule;
 mod settings;
 mod stage;
+mod stage_sequence;
 mod transition;
 mod weights;
 

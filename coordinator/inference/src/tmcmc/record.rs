@@ -45,14 +45,8 @@ pub struct StageProgress {
     pub tempering_exponent: f64,
     /// Steps completed in this stage.
     pub step: usize,
-    /// Steps after which the stage ends at the latest.
-    pub most_steps: usize,
     /// Acceptance so far; `None` before the first step and during the prior draws.
     pub acceptance: Option<f64>,
-    /// Proposals of this round that have been told.
-    pub told: usize,
-    /// Proposals of this round.
-    pub proposals: usize,
 }
 
 /// The result.

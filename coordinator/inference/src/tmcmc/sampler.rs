@@ -1,23 +1,18 @@
-//! Run the rounds: list proposals, take their log-likelihoods, advance.
+//! The rounds of the sampler: list proposals, take their results, advance.
 
-use std::sync::Arc;
-
-use super::equilibrium::{Drift, is_alarming, pooled_z};
 use super::evaluation::EvaluationResult;
 use super::evidence::Evidence;
-use super::particle::Particle;
-use super::record::{PosteriorSample, StageRecord};
-use super::settings::{Algorithm, TmcmcSettings, TmcmcSettingsError};
+use super::record::{PosteriorSample, StageProgress, StageRecord};
+use super::settings::{TmcmcSettings, TmcmcSettingsError};
 use super::stage::Stage;
-use super::transition::Transition;
-use crate::round::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
+use super::transition::Passage;
+use crate::phase::{EvaluationCount, Phase};
+use crate::round::{Proposal, ProposalRound};
+use crate::tell::{InferenceFailure, TellError, TellProgress};
 use statistics::likelihood::Likelihood;
-use statistics::metamodel::{ChainState, Metamodel, MetamodelStage, Pool};
+use statistics::metamodel::Metamodel;
 use statistics::prior::Prior;
 use statistics::rng::Stream;
-
-/// Steps between two looks at a stage's equilibrium; one with a metamodel, whose steps hold many moves.
-const BLOCK: usize = 5;
 
 /// An ask/tell sampler.
 ///
@@ -34,30 +29,20 @@ pub struct Sampler {
     pub(super) evidence: Evidence,
     pub(super) passage: Passage,
     pub(super) stages: Vec<StageRecord>,
-    pub(super) posterior: Option<PosteriorSample>,
-    pub(super) evaluations: u64,
-    pub(super) rejected: u64,
+    pub(super) count: EvaluationCount,
 }
 
-/// How the stage in progress was reached.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Passage {
-    /// Growth of the exponent.
-    step: f64,
-    weight_cov: f64,
-    /// Part of the increment of the log-evidence that is known already.
-    log_evidence: f64,
-}
-
-/// What the sampler is doing.
+/// What the sampler waits for.
 #[derive(Debug, Clone)]
-pub(super) enum SamplerPhase {
-    /// Waiting for the prior draws, whose coordinates are held.
+pub(super) enum Awaited {
+    /// The prior draws.
     Prior,
-    Moving(Box<Stage>),
-    Done,
-    Failed(InferenceFailure),
+    /// Moves of the chains of a stage.
+    Moves(Box<Stage>),
 }
+
+/// Where a sampler is.
+pub(super) type SamplerPhase = Phase<Awaited, PosteriorSample>;
 
 impl Sampler {
     /// A sampler whose round 0 holds the prior draws.
@@ -77,13 +62,11 @@ impl Sampler {
             settings,
             likelihood: None,
             round: ProposalRound::default(),
-            phase: SamplerPhase::Prior,
+            phase: Phase::Waiting(Awaited::Prior),
             evidence: Evidence::default(),
             passage: Passage::default(),
             stages: Vec::new(),
-            posterior: None,
-            evaluations: 0,
-            rejected: 0,
+            count: EvaluationCount::default(),
         };
         sampler.round.ask(pending);
         Ok(sampler)
@@ -105,6 +88,67 @@ impl Sampler {
         let mut sampler = Self::new(prior, settings)?;
         sampler.likelihood = (settings.metamodel_moves > 0).then_some(likelihood);
         Ok(sampler)
+    }
+
+    /// The round in progress.
+    ///
+    /// Proposals outside the prior's support are rejected at once and never listed. The list is empty only when the
+    /// sampler has finished or failed.
+    #[must_use]
+    pub fn round(&self) -> &ProposalRound<EvaluationResult> {
+        &self.round
+    }
+
+    /// The metamodel of the stage in progress; `None` without one, and while the prior is drawn.
+    #[must_use]
+    pub fn metamodel(&self) -> Option<&Metamodel> {
+        match &self.phase {
+            Phase::Waiting(Awaited::Moves(stage)) => stage.metamodel.as_deref(),
+            _ => None,
+        }
+    }
+
+    /// The finished stages.
+    #[must_use]
+    pub fn stages(&self) -> &[StageRecord] {
+        &self.stages
+    }
+
+    /// The result, once finished.
+    #[must_use]
+    pub fn posterior(&self) -> Option<&PosteriorSample> {
+        self.phase.result()
+    }
+
+    /// Why the sampler failed, if it did.
+    #[must_use]
+    pub fn failure(&self) -> Option<InferenceFailure> {
+        self.phase.failure()
+    }
+
+    /// The stage in progress, for display; the last stage once finished.
+    #[must_use]
+    pub fn progress(&self) -> StageProgress {
+        match (&self.phase, self.stages.last()) {
+            (Phase::Waiting(Awaited::Moves(stage)), _) => StageProgress {
+                stage: stage.index,
+                tempering_exponent: stage.exponent,
+                step: stage.step,
+                acceptance: stage.acceptance(),
+            },
+            (_, Some(last)) => StageProgress {
+                stage: last.stage,
+                tempering_exponent: last.tempering_exponent,
+                step: last.steps,
+                acceptance: Some(last.acceptance),
+            },
+            (_, None) => StageProgress {
+                stage: 0,
+                tempering_exponent: 0.0,
+                step: 0,
+                acceptance: None,
+            },
+        }
     }
 
     /// Takes the answer for a pending particle, a log-likelihood or what a subchain came to; the last one of a round
@@ -136,24 +180,23 @@ impl Sampler {
         let stages = self.stages.len();
         loop {
             let (proposals, answers) = self.round.complete();
-            self.evaluations += answers.iter().filter(|answer| answer.is_evaluated()).count() as u64;
-            self.rejected += answers.iter().filter(|answer| answer.is_refused()).count() as u64;
-            let next = match std::mem::replace(&mut self.phase, SamplerPhase::Done) {
-                SamplerPhase::Prior => self.finish_prior(&proposals, answers),
-                SamplerPhase::Moving(mut stage) => {
+            let evaluated = answers.iter().filter(|answer| answer.is_evaluated());
+            self.count.add(evaluated.map(EvaluationResult::is_rejected));
+            let next = match std::mem::replace(&mut self.phase, Phase::Waiting(Awaited::Prior)) {
+                Phase::Waiting(Awaited::Prior) => self.finish_prior(&proposals, answers),
+                Phase::Waiting(Awaited::Moves(mut stage)) => {
                     stage.accept(&self.prior, answers);
                     self.after_step(stage)
                 }
-                ended @ (SamplerPhase::Done | SamplerPhase::Failed(_)) => Ok(ended),
+                ended @ (Phase::Done(_) | Phase::Failed(_)) => Ok(ended),
             };
-            self.phase = next.unwrap_or_else(SamplerPhase::Failed);
+            self.phase = next.unwrap_or_else(Phase::Failed);
             match &mut self.phase {
-                SamplerPhase::Moving(stage) => {
+                Phase::Waiting(Awaited::Moves(stage)) => {
                     let proposals = stage.propose(&self.prior, self.settings.seed);
                     self.round.ask(proposals);
                 }
-                SamplerPhase::Failed(failure) => return TellProgress::Failed(*failure),
-                SamplerPhase::Prior | SamplerPhase::Done => return TellProgress::Finished,
+                ended => return ended.progress(true),
             }
             if !self.round.pending().is_empty() {
                 return if self.stages.len() > stages {
@@ -163,189 +206,5 @@ impl Sampler {
                 };
             }
         }
-    }
-
-    /// Turns the prior draws into the first stage; draws that the model rejected are dropped, and the
-    /// evidence multiplied by the surviving fraction.
-    fn finish_prior(
-        &mut self,
-        proposals: &[Proposal],
-        answers: Vec<EvaluationResult>,
-    ) -> Result<SamplerPhase, InferenceFailure> {
-        let draws = answers.len();
-        let mut pool = Pool::default();
-        for (proposal, answer) in proposals.iter().zip(answers) {
-            if let EvaluationResult::Here { log_likelihood, pair } = answer
-                && !log_likelihood.is_impossible()
-            {
-                let coordinates = self.prior.coordinates(&proposal.theta);
-                let log_prior = self.prior.log_density_of_coordinates(&coordinates);
-                pool.push(
-                    pool.states.len(),
-                    ChainState {
-                        coordinates,
-                        log_prior,
-                        log_likelihood,
-                        pair: pair.map(Arc::new),
-                    },
-                );
-            }
-        }
-        let (possible, needed) = (pool.states.len(), self.prior.dimension() + 2);
-        if possible == 0 {
-            return Err(InferenceFailure::AllImpossible { draws });
-        }
-        if possible < needed {
-            return Err(InferenceFailure::TooFewPossible {
-                possible,
-                draws,
-                needed,
-            });
-        }
-        let survival = self.evidence.survive(possible, draws);
-        self.evidence.add(&pool, Vec::new(), 0.0);
-        self.begin_stage(&pool, 1, 0.0, None, survival)
-    }
-
-    /// Starts the stage that follows a pool; `log_evidence` is already known of its increment.
-    fn begin_stage(
-        &mut self,
-        pool: &Pool,
-        index: usize,
-        exponent: f64,
-        scale: Option<f64>,
-        log_evidence: f64,
-    ) -> Result<SamplerPhase, InferenceFailure> {
-        let Transition {
-            mut stage,
-            weights,
-            step,
-        } = Transition::new(pool, index, exponent, scale, &self.settings)?;
-        stage.metamodel = self.learn(&stage, pool, &weights.normalised())?;
-        self.passage = Passage {
-            step,
-            weight_cov: weights.cov,
-            log_evidence,
-        };
-        Ok(SamplerPhase::Moving(Box::new(stage)))
-    }
-
-    /// The metamodel of a stage, from the pool that it begins with.
-    fn learn(
-        &self,
-        stage: &Stage,
-        pool: &Pool,
-        weights: &[f64],
-    ) -> Result<Option<Arc<Metamodel>>, InferenceFailure> {
-        let Some(likelihood) = &self.likelihood else {
-            return Ok(None);
-        };
-        let purpose = MetamodelStage {
-            seed: self.settings.seed,
-            stage: stage.index,
-            exponent: stage.exponent,
-            moves: self.settings.metamodel_moves,
-            prior: &self.prior,
-            likelihood,
-        };
-        let metamodel = Metamodel::learn(&purpose, pool, weights, &stage.mixture);
-        Ok(metamodel.map_err(InferenceFailure::Metamodel)?.map(Arc::new))
-    }
-
-    /// Goes on with a stage, or ends it and starts the next or the posterior.
-    fn after_step(&mut self, stage: Box<Stage>) -> Result<SamplerPhase, InferenceFailure> {
-        let [least, _] = self.settings.moves;
-        let mut drift = None;
-        if self.settings.algorithm == Algorithm::Tmcmc
-            && stage.step >= least
-            && (stage.step - least).is_multiple_of(if stage.metamodel.is_some() { 1 } else { BLOCK })
-        {
-            drift = Some(self.drift(&stage)).filter(|drift| drift.is_settled());
-        }
-        if drift.is_none() && !stage.is_exhausted() {
-            return Ok(SamplerPhase::Moving(stage));
-        }
-        let drift = drift.unwrap_or_else(|| self.drift(&stage));
-        self.record(&stage, drift);
-        if stage.exponent < 1.0 {
-            return self.begin_stage(
-                &stage.pool,
-                stage.index + 1,
-                stage.exponent,
-                Some(stage.scale),
-                0.0,
-            );
-        }
-        let drift_z = pooled_z(self.stages.iter().map(|stage| stage.drift_z));
-        let weight_drift_z = pooled_z(self.stages.iter().map(|stage| stage.weight_drift_z));
-        self.posterior = Some(PosteriorSample {
-            particles: self
-                .stages
-                .last()
-                .map(|last| last.population.clone())
-                .unwrap_or_default(),
-            log_evidence: self.evidence.log,
-            log_evidence_se: self.evidence.standard_error(),
-            drift_z,
-            weight_drift_z,
-            equilibrated: self.stages.iter().all(|stage| stage.equilibrated)
-                && !is_alarming(drift_z)
-                && !is_alarming(weight_drift_z),
-            evaluations: self.evaluations,
-            rejected: self.rejected,
-        });
-        Ok(SamplerPhase::Done)
-    }
-
-    /// Drift of a stage: of its chains from start to end or, after Ching and Chen, of every particle from the
-    /// leader of its chain (with one step, as BASIS has, they are the same). The chains have moved if they
-    /// accepted one step each on average.
-    fn drift(&self, stage: &Stage) -> Drift {
-        let chains = &stage.chains;
-        let moved = stage.accepted >= chains.len() as u64;
-        let (members, end): (Vec<usize>, Vec<f64>) = if self.settings.algorithm.keeps_every_step() {
-            (stage.pool.chains.clone(), stage.pool.log_likelihoods())
-        } else {
-            let end = chains.iter().map(|chain| chain.current.log_likelihood.value());
-            ((0..chains.len()).collect(), end.collect())
-        };
-        let start: Vec<f64> = members.iter().map(|&chain| chains[chain].start.value()).collect();
-        let clusters: Vec<usize> = members.iter().map(|&chain| chains[chain].ancestor).collect();
-        Drift::of(&start, &end, &clusters, self.passage.step, moved)
-    }
-
-    /// Files a finished stage.
-    fn record(&mut self, stage: &Stage, drift: Drift) {
-        let Passage {
-            step,
-            weight_cov,
-            log_evidence,
-        } = self.passage;
-        let ancestors = stage.chains.iter().map(|chain| chain.ancestor).collect();
-        let log_evidence_increment = log_evidence + self.evidence.add(&stage.pool, ancestors, step);
-        let population: Vec<&ChainState> = if self.settings.algorithm.keeps_every_step() {
-            stage.pool.states.iter().collect()
-        } else {
-            stage.chains.iter().map(|chain| &chain.current).collect()
-        };
-        self.stages.push(StageRecord {
-            stage: stage.index,
-            tempering_exponent: stage.exponent,
-            acceptance: stage.acceptance().unwrap_or(0.0),
-            drift_z: drift.z,
-            weight_drift_z: drift.weight_z,
-            correlation: drift.correlation,
-            steps: stage.step,
-            log_evidence_increment,
-            weight_cov,
-            ess: self.settings.particles as f64 / (1.0 + weight_cov * weight_cov),
-            scale: stage.scale,
-            evaluations: stage.evaluations,
-            equilibrated: drift.is_equilibrated(),
-            population: population
-                .into_iter()
-                .map(|state| Particle::new(state, &self.prior))
-                .collect(),
-        });
     }
 }

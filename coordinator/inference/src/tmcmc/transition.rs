@@ -7,12 +7,22 @@ use super::schedule::exponent_step;
 use super::settings::{Algorithm, TmcmcSettings};
 use super::stage::{Chain, Stage};
 use super::weights::Weights;
-use crate::round::InferenceFailure;
+use crate::tell::InferenceFailure;
 use statistics::metamodel::{CovarianceFactor, Pool, ProposalMixture};
 use statistics::rng::Stream;
 
 /// Stream of a stage's resampling; particles never reach this number.
 const RESAMPLING: u64 = u64::MAX;
+
+/// How the stage in progress was reached.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Passage {
+    /// Growth of the exponent.
+    pub(super) step: f64,
+    pub(super) weight_cov: f64,
+    /// Part of the increment of the log-evidence that is known already.
+    pub(super) log_evidence: f64,
+}
 
 /// A stage about to start, with the weights that led to it.
 pub(super) struct Transition {

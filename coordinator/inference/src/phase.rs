@@ -1,0 +1,56 @@
+//! What every ask/tell algorithm keeps beside its round: how far it is, and what it has spent.
+
+use crate::tell::{InferenceFailure, TellProgress};
+
+/// What an algorithm waits for, or how it ended.
+#[derive(Debug, Clone)]
+pub(crate) enum Phase<W, R> {
+    Waiting(W),
+    Done(Box<R>),
+    Failed(InferenceFailure),
+}
+
+impl<W, R> Phase<W, R> {
+    pub(crate) fn result(&self) -> Option<&R> {
+        match self {
+            Self::Done(result) => Some(result),
+            Self::Waiting(_) | Self::Failed(_) => None,
+        }
+    }
+
+    pub(crate) fn failure(&self) -> Option<InferenceFailure> {
+        match self {
+            Self::Failed(failure) => Some(*failure),
+            Self::Waiting(_) | Self::Done(_) => None,
+        }
+    }
+
+    /// What a told result led to; `complete`: it was the last one of its round.
+    pub(crate) fn progress(&self, complete: bool) -> TellProgress {
+        match self {
+            Self::Done(_) => TellProgress::Finished,
+            Self::Failed(failure) => TellProgress::Failed(*failure),
+            Self::Waiting(_) if complete => TellProgress::NextRound,
+            Self::Waiting(_) => TellProgress::Waiting,
+        }
+    }
+}
+
+/// Evaluations in completed rounds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct EvaluationCount {
+    /// All of them.
+    pub evaluations: usize,
+    /// Those that the model rejected.
+    pub rejected: usize,
+}
+
+impl EvaluationCount {
+    /// Counts evaluations, each with whether the model rejected it.
+    pub(crate) fn add(&mut self, rejections: impl Iterator<Item = bool>) {
+        for is_rejected in rejections {
+            self.evaluations += 1;
+            self.rejected += usize::from(is_rejected);
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! The sequence of stages, from the prior draws to the posterior sample.
+
+use std::sync::Arc;
+
+use super::equilibrium::{Drift, is_alarming, pooled_z};
+use super::evaluation::EvaluationResult;
+use super::particle::Particle;
+use super::record::{PosteriorSample, StageRecord};
+use super::sampler::{Awaited, Sampler, SamplerPhase};
+use super::settings::Algorithm;
+use super::stage::Stage;
+use super::transition::{Passage, Transition};
+use crate::phase::Phase;
+use crate::round::Proposal;
+use crate::tell::InferenceFailure;
+use statistics::metamodel::{ChainState, Metamodel, MetamodelStage, Pool};
+
+/// Steps between two checks of a stage's equilibrium; one with a metamodel, whose steps hold many moves.
+const BLOCK: usize = 5;
+
+impl Sampler {
+    /// Turns the prior draws into the first stage; draws that the model rejected are dropped, and the
+    /// evidence multiplied by the surviving fraction.
+    pub(super) fn finish_prior(
+        &mut self,
+        proposals: &[Proposal],
+        answers: Vec<EvaluationResult>,
+    ) -> Result<SamplerPhase, InferenceFailure> {
+        let draws = answers.len();
+        let mut pool = Pool::default();
+        for (proposal, answer) in proposals.iter().zip(answers) {
+            if let EvaluationResult::Here { log_likelihood, pair } = answer
+                && !log_likelihood.is_impossible()
+            {
+                let coordinates = self.prior.coordinates(&proposal.theta);
+                let log_prior = self.prior.log_density_of_coordinates(&coordinates);
+                pool.push(
+                    pool.states.len(),
+                    ChainState {
+                        coordinates,
+                        log_prior,
+                        log_likelihood,
+                        pair: pair.map(Arc::new),
+                    },
+                );
+            }
+        }
+        let (possible, needed) = (pool.states.len(), self.prior.dimension() + 2);
+        if possible == 0 {
+            return Err(InferenceFailure::AllImpossible { draws });
+        }
+        if possible < needed {
+            return Err(InferenceFailure::TooFewPossible {
+                possible,
+                draws,
+                needed,
+            });
+        }
+        let survival = self.evidence.survive(possible, draws);
+        self.evidence.add(&pool, Vec::new(), 0.0);
+        self.begin_stage(&pool, 1, 0.0, None, survival)
+    }
+
+    /// Starts the stage that follows a pool; `log_evidence` is already known of its increment.
+    fn begin_stage(
+        &mut self,
+        pool: &Pool,
+        index: usize,
+        exponent: f64,
+        scale: Option<f64>,
+        log_evidence: f64,
+    ) -> Result<SamplerPhase, InferenceFailure> {
+        let Transition {
+            mut stage,
+            weights,
+            step,
+        } = Transition::new(pool, index, exponent, scale, &self.settings)?;
+        stage.metamodel = self.learn(&stage, pool, &weights.normalised())?;
+        self.passage = Passage {
+            step,
+            weight_cov: weights.cov,
+            log_evidence,
+        };
+        Ok(Phase::Waiting(Awaited::Moves(Box::new(stage))))
+    }
+
+    /// The metamodel of a stage, from the pool that it begins with.
+    fn learn(
+        &self,
+        stage: &Stage,
+        pool: &Pool,
+        weights: &[f64],
+    ) -> Result<Option<Arc<Metamodel>>, InferenceFailure> {
+        let Some(likelihood) = &self.likelihood else {
+            return Ok(None);
+        };
+        let purpose = MetamodelStage {
+            seed: self.settings.seed,
+            stage: stage.index,
+            exponent: stage.exponent,
+            moves: self.settings.metamodel_moves,
+            prior: &self.prior,
+            likelihood,
+        };
+        let metamodel = Metamodel::learn(&purpose, pool, weights, &stage.mixture);
+        Ok(metamodel.map_err(InferenceFailure::Metamodel)?.map(Arc::new))
+    }
+
+    /// Goes on with a stage, or ends it and starts the next or the posterior.
+    pub(super) fn after_step(&mut self, stage: Box<Stage>) -> Result<SamplerPhase, InferenceFailure> {
+        let [least, _] = self.settings.moves;
+        let mut drift = None;
+        if self.settings.algorithm == Algorithm::Tmcmc
+            && stage.step >= least
+            && (stage.step - least).is_multiple_of(if stage.metamodel.is_some() { 1 } else { BLOCK })
+        {
+            drift = Some(self.drift(&stage)).filter(|drift| drift.is_settled());
+        }
+        if drift.is_none() && !stage.is_exhausted() {
+            return Ok(Phase::Waiting(Awaited::Moves(stage)));
+        }
+        let drift = drift.unwrap_or_else(|| self.drift(&stage));
+        self.record(&stage, drift);
+        if stage.exponent < 1.0 {
+            return self.begin_stage(
+                &stage.pool,
+                stage.index + 1,
+                stage.exponent,
+                Some(stage.scale),
+                0.0,
+            );
+        }
+        let drift_z = pooled_z(self.stages.iter().map(|stage| stage.drift_z));
+        let weight_drift_z = pooled_z(self.stages.iter().map(|stage| stage.weight_drift_z));
+        Ok(Phase::Done(Box::new(PosteriorSample {
+            particles: self
+                .stages
+                .last()
+                .map(|last| last.population.clone())
+                .unwrap_or_default(),
+            log_evidence: self.evidence.log,
+            log_evidence_se: self.evidence.standard_error(),
+            drift_z,
+            weight_drift_z,
+            equilibrated: self.stages.iter().all(|stage| stage.equilibrated)
+                && !is_alarming(drift_z)
+                && !is_alarming(weight_drift_z),
+            evaluations: self.count.evaluations as u64,
+            rejected: self.count.rejected as u64,
+        })))
+    }
+
+    /// Drift of a stage: of its chains from start to end or, after Ching and Chen, of every particle from the
+    /// leader of its chain (with one step, as BASIS has, they are the same). The chains have moved if they
+    /// accepted one step each on average.
+    fn drift(&self, stage: &Stage) -> Drift {
+        let chains = &stage.chains;
+        let moved = stage.accepted >= chains.len() as u64;
+        let (members, end): (Vec<usize>, Vec<f64>) = if self.settings.algorithm.keeps_every_step() {
+            (stage.pool.chains.clone(), stage.pool.log_likelihoods())
+        } else {
+            let end = chains.iter().map(|chain| chain.current.log_likelihood.value());
+            ((0..chains.len()).collect(), end.collect())
+        };
+        let start: Vec<f64> = members.iter().map(|&chain| chains[chain].start.value()).collect();
+        let clusters: Vec<usize> = members.iter().map(|&chain| chains[chain].ancestor).collect();
+        Drift::of(&start, &end, &clusters, self.passage.step, moved)
+    }
+
+    /// Files a finished stage.
+    fn record(&mut self, stage: &Stage, drift: Drift) {
+        let Passage {
+            step,
+            weight_cov,
+            log_evidence,
+        } = self.passage;
+        let ancestors = stage.chains.iter().map(|chain| chain.ancestor).collect();
+        let log_evidence_increment = log_evidence + self.evidence.add(&stage.pool, ancestors, step);
+        let population: Vec<&ChainState> = if self.settings.algorithm.keeps_every_step() {
+            stage.pool.states.iter().collect()
+        } else {
+            stage.chains.iter().map(|chain| &chain.current).collect()
+        };
+        self.stages.push(StageRecord {
+            stage: stage.index,
+            tempering_exponent: stage.exponent,
+            acceptance: stage.acceptance().unwrap_or(0.0),
+            drift_z: drift.z,
+            weight_drift_z: drift.weight_z,
+            correlation: drift.correlation,
+            steps: stage.step,
+            log_evidence_increment,
+            weight_cov,
+            ess: self.settings.particles as f64 / (1.0 + weight_cov * weight_cov),
+            scale: stage.scale,
+            evaluations: stage.evaluations,
+            equilibrated: drift.is_equilibrated(),
+            population: population
+                .into_iter()
+                .map(|state| Particle::new(state, &self.prior))
+                .collect(),
+        });
+    }
+}
