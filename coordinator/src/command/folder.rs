@@ -13,9 +13,7 @@ use super::output::{note, say};
 use super::progress::Display;
 use crate::embedded::{LocalWorkers, model_version};
 use crate::farm::Control;
-use crate::service::load;
-use crate::service::{LEASE_MS, Service};
-use crate::study::next_step_of;
+use crate::service::{LEASE_MS, Service, finished_study, next_step_of};
 use record::CalibrationRow;
 use result::discovery::{effect_file, terminal as discovery};
 use result::{Study, report, terminal};
@@ -105,7 +103,7 @@ impl Folder {
         }
         let rows = reader.study(study).await?;
         if let Some(row) = rows.iter().find(|row| row.state == CalibrationState::Finished) {
-            let study = load::study(&reader, row).await?;
+            let study = finished_study(&reader, row).await?;
             self.write_results(&study)?;
             let files = format!(
                 "\nin {}: summary.json, posterior.csv, report.html, grouser.db\n",

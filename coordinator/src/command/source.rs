@@ -5,9 +5,8 @@ use serde::de::DeserializeOwned;
 use shared::api::{CalibrationStatus, ErrorBody};
 
 use crate::config::{Source, Target};
-use crate::service::load;
+use crate::service::{calibration_row, finished_calibration, finished_study, stored_status};
 use crate::store::Reader;
-use record::CalibrationRow;
 use result::{self, Comparison, Diagnostics, FinishedCalibration, PosteriorTable, Study, Summary, report};
 
 /// A service or a folder.
@@ -32,7 +31,7 @@ impl Place {
             Place::Service(client) => client.get("/v1/calibrations").await,
             Place::Folder(reader) => {
                 let rows = reader.calibrations().await?;
-                Ok(rows.iter().map(load::stored_status).collect())
+                Ok(rows.iter().map(stored_status).collect())
             }
         }
     }
@@ -52,10 +51,7 @@ impl Place {
     pub(super) async fn status(&self, id: i64) -> anyhow::Result<CalibrationStatus> {
         match self {
             Place::Service(client) => client.get(&format!("/v1/calibrations/{id}")).await,
-            Place::Folder(reader) => match reader.calibration(id).await? {
-                Some(row) => Ok(load::stored_status(&row)),
-                None => bail!("there is no calibration {id}"),
-            },
+            Place::Folder(reader) => Ok(stored_status(&calibration_row(reader, id).await?)),
         }
     }
 
@@ -98,17 +94,12 @@ impl Place {
     }
 }
 
-async fn row(reader: &Reader, id: i64) -> anyhow::Result<CalibrationRow> {
-    let row = reader.calibration(id).await?;
-    row.with_context(|| format!("there is no calibration {id}"))
-}
-
 async fn outcome(reader: &Reader, id: i64) -> anyhow::Result<FinishedCalibration> {
-    Ok(load::finished_calibration(reader, &row(reader, id).await?).await?)
+    Ok(finished_calibration(reader, &calibration_row(reader, id).await?).await?)
 }
 
 async fn study(reader: &Reader, id: i64) -> anyhow::Result<Study> {
-    Ok(load::study(reader, &row(reader, id).await?).await?)
+    Ok(finished_study(reader, &calibration_row(reader, id).await?).await?)
 }
 
 /// A service over HTTP.

@@ -11,8 +11,7 @@ use utoipa_axum::routes;
 
 use super::error::{Body, HttpError, Id};
 use crate::farm::Control;
-use crate::service::Service;
-use crate::service::load;
+use crate::service::{Service, finished_calibration, finished_study};
 use record::{Sample, StageRow};
 use result::{
     ChannelHistory, Comparison, Diagnostics, Figures, FinishedCalibration, Flag, PosteriorTable, Study,
@@ -147,12 +146,12 @@ async fn samples(
 
 async fn outcome(service: &Service, id: i64) -> Result<FinishedCalibration, HttpError> {
     let row = service.calibration_row(id).await?;
-    Ok(load::finished_calibration(&service.store().reader(), &row).await?)
+    Ok(finished_calibration(&service.store().reader(), &row).await?)
 }
 
 async fn study(service: &Service, id: i64) -> Result<Study, HttpError> {
     let row = service.calibration_row(id).await?;
-    Ok(load::study(&service.store().reader(), &row).await?)
+    Ok(finished_study(&service.store().reader(), &row).await?)
 }
 
 /// The equally weighted draws of the posterior.

@@ -8,8 +8,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{Body, HttpError, Id};
-use crate::service::Service;
-use crate::study;
+use crate::service::{Service, finished_search};
 use record::{Discovery, Extension};
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -68,7 +67,7 @@ async fn discover(
 ))]
 async fn discovery(State(service): State<Service>, Id(id): Id) -> Result<Json<Discovery>, HttpError> {
     let row = service.calibration_row(id).await?;
-    Ok(Json(study::record(&service.store().reader(), &row).await?))
+    Ok(Json(finished_search(&service.store().reader(), &row).await?))
 }
 
 /// Adds measurements to a study, and a calibration of all of them with the job at the end of its ledger.

@@ -7,8 +7,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{HttpError, Id};
-use crate::service::Service;
-use crate::service::load;
+use crate::service::{Service, finished_calibration};
 use job::is_discovery;
 use result::{CalibrationSummary, PointEstimate};
 
@@ -61,7 +60,7 @@ async fn ledger(State(service): State<Service>, Id(id): Id) -> Result<Json<Ledge
     for &calibration in &calibrations {
         let row = service.calibration_row(calibration).await?;
         if row.state == CalibrationState::Finished && !is_discovery(&row.job.toml) {
-            let outcome = load::finished_calibration(&reader, &row).await?;
+            let outcome = finished_calibration(&reader, &row).await?;
             ledger.extend(outcome.calibration_summary());
             point_estimates.extend(outcome.point_estimate());
         }

@@ -8,12 +8,15 @@ use shared::api::{CalibrationCreated, RunsAdded};
 use shared::experiment::Experiment;
 use shared::file::FileSet;
 
-use super::{Service, ServiceError, file_json, now_ms};
+use super::clock::now_ms;
+use super::error::ServiceError;
+use super::handle::Service;
+use super::study_step::{next_step_of, search_of};
 use crate::calibration::{Calibration, Identity};
 use crate::farm::dispatch::Stopped;
 use crate::missing_effect::candidate::extended;
 use crate::store::NewCalibrationRow;
-use crate::study::{Step, next_step_of, search_of};
+use crate::study::Step;
 use job::{Method, Spec, continued_job, discovery_job, is_discovery, without_effects};
 use record::CalibrationRow;
 use record::Extension;
@@ -57,7 +60,7 @@ impl Service {
         calibration: Option<i64>,
     ) -> Result<RunsAdded, ServiceError> {
         let _growing = self.growing.lock().await;
-        let rows = self.store.reader().study(study).await?;
+        let rows = self.store().reader().study(study).await?;
         let (mut ledger, mut beside) = (None, None);
         let meant = |row: &&CalibrationRow| calibration.is_none_or(|id| id == row.id);
         for row in rows
@@ -71,10 +74,7 @@ impl Service {
             }
         }
         let (Some(last), Some(newest)) = (ledger.or(beside), rows.last()) else {
-            return Err(ServiceError::NotFound {
-                what: "study",
-                id: study.to_string(),
-            });
+            return Err(ServiceError::not_found("study", study));
         };
         let experiment = self.experiment(newest.experiment).await?;
         let enlarged =
@@ -84,9 +84,7 @@ impl Service {
         // Refused before anything is stored.
         let name = format!("{} ({runs} runs)", last.name);
         let member = self.prepared(last, 0, name, job, enlarged.clone()).await?;
-        let json = file_json(&enlarged.files);
-        let writer = self.store.writer();
-        let experiment = writer.add_experiment(enlarged.toml, json, now_ms()).await?;
+        let experiment = self.store().writer().add_experiment(enlarged, now_ms()).await?;
         let created = self.take_in(member, experiment).await?;
         Ok(RunsAdded {
             id: created.id,
@@ -108,7 +106,7 @@ impl Service {
     async fn searched(&self, id: i64) -> Result<CalibrationCreated, ServiceError> {
         use shared::api::CalibrationState::{Cancelled, Failed};
         let row = self.searchable(id).await?;
-        match search_of(&self.store.reader(), &row).await? {
+        match search_of(&self.store().reader(), &row).await? {
             Some(search) if !matches!(search.state, Failed | Cancelled) => Ok(CalibrationCreated {
                 id: search.id,
                 study: search.study,
@@ -128,7 +126,7 @@ impl Service {
     /// [`ServiceError`].
     pub async fn advance(&self, study: i64) -> Result<bool, ServiceError> {
         let _growing = self.growing.lock().await;
-        let Some(step) = next_step_of(&self.store.reader(), study).await? else {
+        let Some(step) = next_step_of(&self.store().reader(), study).await? else {
             return Ok(false);
         };
         match step {
@@ -150,7 +148,7 @@ impl Service {
         let mut at_rest: BTreeMap<i64, i64> = BTreeMap::new();
         loop {
             tokio::time::sleep(LOOK).await;
-            let settled = match self.store.reader().settled_studies().await {
+            let settled = match self.store().reader().settled_studies().await {
                 Ok(settled) => settled,
                 Err(error) => {
                     tracing::error!(%error, "studies cannot be looked at");
@@ -180,15 +178,6 @@ impl Service {
             true => Err(ServiceError::Search(id)),
             false => Ok(row),
         }
-    }
-
-    pub(super) async fn experiment(&self, id: i64) -> Result<FileSet, ServiceError> {
-        let experiment = self.store.reader().experiment(id).await?;
-        let experiment = experiment.ok_or_else(|| ServiceError::NotFound {
-            what: "experiment",
-            id: id.to_string(),
-        })?;
-        Ok(experiment.files)
     }
 
     /// Stores a calibration beside another of its study, and takes it in hand.
@@ -235,17 +224,16 @@ impl Service {
         let identity = &mut calibration.identity;
         let row = NewCalibrationRow {
             name: identity.name.clone(),
-            toml: job.toml,
-            files: file_json(&job.files),
+            job,
         };
         let study = identity.study;
         let id = self
-            .store
+            .store()
             .writer()
             .add_member(study, experiment, row, now_ms())
             .await?;
         (identity.id, identity.experiment) = (id, experiment);
-        self.dispatcher.add(calibration, Vec::new()).await?;
+        self.dispatcher().add(calibration, Vec::new()).await?;
         Ok(CalibrationCreated {
             id,
             study,

@@ -8,7 +8,7 @@
 use shared::channel::Channel;
 use shared::outcome::{Observables, SimulatedHistory};
 
-use super::StoreError;
+use super::error::StoreError;
 
 /// Vectors per run that always stand there.
 const VECTORS: usize = 9;

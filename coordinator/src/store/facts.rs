@@ -6,8 +6,8 @@ use inference::StageRecord;
 use inference::point_estimate::ModeEstimate;
 use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 
-use super::json;
-use super::writer::StoreHealth;
+use super::health::StoreHealth;
+use super::json::json;
 use record::fact::{Fact, Fingerprint};
 
 /// Most samples in one statement.

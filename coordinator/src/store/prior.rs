@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 
 use sqlx::Row;
 
-use super::{Reader, StoreError, blob, numbers};
+use super::blob;
+use super::error::StoreError;
+use super::json::numbers;
+use super::reader::Reader;
 use record::PriorDraw;
 
 impl Reader {

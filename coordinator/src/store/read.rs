@@ -9,7 +9,10 @@ use shared::outcome::SimulatedHistory;
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 
-use super::{Reader, StoreError, blob, numbers};
+use super::blob;
+use super::error::StoreError;
+use super::json::{json, numbers};
+use super::reader::Reader;
 use record::{
     CalibrationRow, Discovery, EstimateRow, EvaluationKey, ExperimentRow, HISTORIES, PREDICTIONS_FROM,
     Prediction, Sample, StageRow, Subchains,
@@ -191,7 +194,7 @@ impl Reader {
              WHERE calibration = ? AND theta = ? AND fitted IS NOT NULL ORDER BY evaluation LIMIT 1",
         )
         .bind(calibration)
-        .bind(super::json(theta))
+        .bind(json(theta))
         .fetch_optional(&self.pool)
         .await?;
         row.map(|row| blob::decode_values(row.get("fitted"))).transpose()

@@ -6,7 +6,10 @@ use shared::api::CalibrationState;
 use sqlx::Row;
 use statistics::SubchainEnd;
 
-use super::{Reader, StoreError, blob, numbers};
+use super::blob;
+use super::error::StoreError;
+use super::json::numbers;
+use super::reader::Reader;
 use record::{Stored, StoredEvaluation};
 
 impl Reader {

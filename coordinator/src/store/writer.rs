@@ -7,10 +7,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
+use shared::file::FileSet;
 use sqlx::{Connection, QueryBuilder, Sqlite, SqliteConnection};
 use tokio::sync::{Notify, mpsc, oneshot, watch};
 
-use super::{StoreError, blob};
+use super::blob;
+use super::error::StoreError;
+use super::health::StoreHealth;
+use super::json::json;
 use record::fact::{EvaluationRow, Fact, Kept};
 
 /// Most facts in one commit.
@@ -23,8 +27,7 @@ const ROWS: usize = 2000;
 enum Write {
     Fact(Fact),
     Experiment {
-        toml: String,
-        files: String,
+        files: FileSet,
         now_ms: i64,
         reply: oneshot::Sender<i64>,
     },
@@ -67,25 +70,8 @@ pub struct StudyIds {
 pub struct NewCalibrationRow {
     /// Name for lists.
     pub name: String,
-    /// Text of `job.toml`.
-    pub toml: String,
-    /// Texts of the files it names, as a JSON object.
-    pub files: String,
-}
-
-/// Figures of the writer, for the metrics page.
-#[derive(Debug, Default)]
-pub struct StoreHealth {
-    /// Facts sent to the writer.
-    pub sent: AtomicU64,
-    /// Commits.
-    pub commits: AtomicU64,
-    /// Facts committed.
-    pub facts: AtomicU64,
-    /// Time spent writing and committing `[us]`.
-    pub busy_us: AtomicU64,
-    /// Late duplicates that differed from what is stored: faults of determinism.
-    pub differing_duplicates: AtomicU64,
+    /// The job with the files it names.
+    pub job: FileSet,
 }
 
 /// The way to the writer; clones are cheap.
@@ -226,19 +212,9 @@ impl Writer {
     ///
     /// # Errors
     /// [`StoreError::Stopped`].
-    pub async fn add_experiment(&self, toml: String, files: String, now_ms: i64) -> Result<i64, StoreError> {
-        let (reply, answer) = oneshot::channel();
-        let write = Write::Experiment {
-            toml,
-            files,
-            now_ms,
-            reply,
-        };
-        self.sender.send(write).map_err(|_| StoreError::Stopped)?;
-        self.waiting
-            .while_urgent(answer)
-            .await
-            .map_err(|_| StoreError::Stopped)
+    pub async fn add_experiment(&self, files: FileSet, now_ms: i64) -> Result<i64, StoreError> {
+        let write = |reply| Write::Experiment { files, now_ms, reply };
+        self.committed(write).await
     }
 
     /// Stores a study with its first calibrations; their ids.
@@ -246,14 +222,7 @@ impl Writer {
     /// # Errors
     /// [`StoreError::Stopped`].
     pub async fn add_study(&self, new: NewStudy) -> Result<StudyIds, StoreError> {
-        let (reply, answer) = oneshot::channel();
-        self.sender
-            .send(Write::Study { new, reply })
-            .map_err(|_| StoreError::Stopped)?;
-        self.waiting
-            .while_urgent(answer)
-            .await
-            .map_err(|_| StoreError::Stopped)
+        self.committed(|reply| Write::Study { new, reply }).await
     }
 
     /// Stores a calibration of a study that is there, on its experiment or on another; its id.
@@ -267,19 +236,22 @@ impl Writer {
         row: NewCalibrationRow,
         now_ms: i64,
     ) -> Result<i64, StoreError> {
-        let (reply, answer) = oneshot::channel();
-        let write = Write::Member {
+        let write = |reply| Write::Member {
             study,
             experiment,
             row,
             now_ms,
             reply,
         };
-        self.sender.send(write).map_err(|_| StoreError::Stopped)?;
-        self.waiting
-            .while_urgent(answer)
-            .await
-            .map_err(|_| StoreError::Stopped)
+        self.committed(write).await
+    }
+
+    /// Sends a write and waits for what it replies once it is committed.
+    async fn committed<T>(&self, write: impl FnOnce(oneshot::Sender<T>) -> Write) -> Result<T, StoreError> {
+        let (reply, answer) = oneshot::channel();
+        self.sender.send(write(reply)).map_err(|_| StoreError::Stopped)?;
+        let answer = self.waiting.while_urgent(answer).await;
+        answer.map_err(|_| StoreError::Stopped)
     }
 }
 
@@ -359,17 +331,12 @@ async fn write_group(
                 }
             }
             Write::Close => {}
-            Write::Experiment {
-                toml,
-                files,
-                now_ms,
-                reply,
-            } => {
+            Write::Experiment { files, now_ms, reply } => {
                 let id = sqlx::query_scalar(
                     "INSERT INTO experiments (toml, files, created_at_ms) VALUES (?, ?, ?) RETURNING id",
                 )
-                .bind(toml)
-                .bind(files)
+                .bind(files.toml)
+                .bind(json(&files.files))
                 .bind(now_ms)
                 .fetch_one(&mut *connection)
                 .await?;
@@ -423,8 +390,8 @@ async fn insert_calibration(
     .bind(study)
     .bind(experiment)
     .bind(row.name)
-    .bind(row.toml)
-    .bind(row.files)
+    .bind(row.job.toml)
+    .bind(json(&row.job.files))
     .bind(now_ms)
     .fetch_one(connection)
     .await
@@ -450,14 +417,14 @@ async fn insert_evaluations(
             values
                 .push_bind(calibration)
                 .push_bind(row.evaluation as i64)
-                .push_bind(super::json(&row.theta))
+                .push_bind(json(&row.theta))
                 .push_bind(row.log_likelihood)
                 .push_bind(rejection)
                 .push_bind(fitted)
                 .push_bind(observables)
                 .push_bind(row.fingerprint.0)
                 .push_bind(row.worker)
-                .push_bind(row.end.as_ref().map(super::json))
+                .push_bind(row.end.as_ref().map(json))
                 .push_bind(row.coarse.as_deref().map(blob::encode));
         });
         query.build().persistent(false).execute(&mut *connection).await?;

@@ -2,10 +2,7 @@
 //!
 //! # Layout
 //! - `next_step`: what follows from where a study stands. Pure.
-//! - `load`: where a study stands, from what is stored.
 
-mod load;
 mod next_step;
 
-pub use load::{next_step_from, next_step_of, record, search_of};
 pub use next_step::{Member, Part, Step, next_step};

@@ -1,12 +1,12 @@
-//! What is read from the store to be shown or decided upon.
+//! A finished calibration, and its study, loaded from the store.
 
-use shared::api::{CalibrationState, CalibrationStatus};
+use shared::api::CalibrationState;
 
-use super::ServiceError;
-use crate::farm::ControlError;
+use super::error::ServiceError;
+use super::stored_calibration::spec_of;
+use super::study_step::{is_search_of, next_step_from};
 use crate::store::Reader;
-use crate::study::next_step_from;
-use job::{Method, Spec, discovery_job, is_discovery};
+use job::{Method, is_discovery};
 use record::CalibrationRow;
 use result::{FinishedCalibration, Round, Study, first_population, likeliest};
 
@@ -20,11 +20,7 @@ pub async fn finished_calibration(
     row: &CalibrationRow,
 ) -> Result<FinishedCalibration, ServiceError> {
     if row.state != CalibrationState::Finished {
-        return Err(ControlError::NotFinished {
-            id: row.id,
-            state: row.state,
-        }
-        .into());
+        return Err(ServiceError::not_finished(row));
     }
     if is_discovery(&row.job.toml) {
         return Err(ServiceError::Search(row.id));
@@ -74,7 +70,7 @@ pub async fn finished_calibration(
 ///
 /// # Errors
 /// As those of [`finished_calibration`].
-pub async fn study(reader: &Reader, row: &CalibrationRow) -> Result<Study, ServiceError> {
+pub async fn finished_study(reader: &Reader, row: &CalibrationRow) -> Result<Study, ServiceError> {
     let rows = reader.study(row.study).await?;
     let unfinished = rows.iter().find(|r| r.state != CalibrationState::Finished);
     let finished = rows.iter().filter(|r| r.state == CalibrationState::Finished);
@@ -113,46 +109,9 @@ pub async fn study(reader: &Reader, row: &CalibrationRow) -> Result<Study, Servi
 /// The calibration whose model a search is about: the first of those that have the same.
 fn searched_by(search: &CalibrationRow, study: &[CalibrationRow]) -> Result<Option<i64>, ServiceError> {
     for row in study.iter().filter(|row| !is_discovery(&row.job.toml)) {
-        if row.experiment == search.experiment && discovery_job("job.toml", &row.job)? == search.job {
+        if is_search_of(search, row)? {
             return Ok(Some(row.id));
         }
     }
     Ok(None)
-}
-
-/// The specification of a stored calibration.
-///
-/// # Errors
-/// [`ServiceError`].
-pub async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, ServiceError> {
-    let experiment = reader
-        .experiment(row.experiment)
-        .await?
-        .ok_or_else(|| ServiceError::NotFound {
-            what: "experiment",
-            id: row.experiment.to_string(),
-        })?;
-    Ok(Spec::new(
-        "job.toml",
-        &row.job,
-        "experiment.toml",
-        &experiment.files,
-    )?)
-}
-
-/// Where a calibration stands that nobody has in hand.
-pub fn stored_status(row: &CalibrationRow) -> CalibrationStatus {
-    // A job that this version does not understand still has a line in every list.
-    let model = job::Job::parse("job.toml", &row.job.toml).map(|job| job.model);
-    CalibrationStatus {
-        id: row.id,
-        name: row.name.clone(),
-        study: row.study,
-        experiment: row.experiment,
-        state: row.state,
-        message: row.message.clone(),
-        model_kind: model.ok().map(|m| m.kind.name().to_owned()),
-        model_version: row.model_version.clone(),
-        progress: None,
-    }
 }

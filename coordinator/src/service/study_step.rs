@@ -1,15 +1,13 @@
-//! Where a study stands, from what is stored of it.
+//! The next step of a study and the searches of its calibrations, from what is stored.
 
 use shared::api::CalibrationState;
-use shared::file::FileSet;
 
-use super::next_step::{Member, Part, Step, next_step};
-use crate::farm::ControlError;
-use crate::service::{ServiceError, load::spec_of};
+use super::error::ServiceError;
+use super::stored_calibration::spec_of;
 use crate::store::Reader;
+use crate::study::{Member, Part, Step, next_step};
 use job::{Apply, Job, Method, discovery_job, is_discovery};
-use record::CalibrationRow;
-use record::Discovery;
+use record::{CalibrationRow, Discovery};
 
 /// The next step of a study.
 ///
@@ -23,7 +21,10 @@ pub async fn next_step_of(reader: &Reader, study: i64) -> Result<Option<Step>, S
 ///
 /// # Errors
 /// As those of [`next_step_of`].
-pub async fn next_step_from(reader: &Reader, rows: &[CalibrationRow]) -> Result<Option<Step>, ServiceError> {
+pub(super) async fn next_step_from(
+    reader: &Reader,
+    rows: &[CalibrationRow],
+) -> Result<Option<Step>, ServiceError> {
     let Some(lead) = rows.first() else { return Ok(None) };
     let settings = Job::parse("job.toml", &lead.job.toml)?.discovery;
     // Most studies grow by their users alone, and reading every member's files is work.
@@ -64,18 +65,24 @@ fn find_search<'a>(
     if is_discovery(&row.job.toml) {
         return Ok(Some(row));
     }
-    let search: FileSet = discovery_job("job.toml", &row.job)?;
-    Ok(study
-        .iter()
-        .rev()
-        .find(|other| other.experiment == row.experiment && other.job == search))
+    for other in study.iter().rev() {
+        if is_search_of(other, row)? {
+            return Ok(Some(other));
+        }
+    }
+    Ok(None)
+}
+
+/// Whether a calibration is the search of the model of another.
+pub(super) fn is_search_of(search: &CalibrationRow, row: &CalibrationRow) -> Result<bool, ServiceError> {
+    Ok(search.experiment == row.experiment && search.job == discovery_job("job.toml", &row.job)?)
 }
 
 /// The search of a calibration's model, if there is one.
 ///
 /// # Errors
 /// [`ServiceError`].
-pub async fn search_of(
+pub(super) async fn search_of(
     reader: &Reader,
     row: &CalibrationRow,
 ) -> Result<Option<CalibrationRow>, ServiceError> {
@@ -87,18 +94,11 @@ pub async fn search_of(
 ///
 /// # Errors
 /// [`ServiceError::NotFound`] where none was asked for, [`ServiceError::Control`] where it is not finished.
-pub async fn record(reader: &Reader, row: &CalibrationRow) -> Result<Discovery, ServiceError> {
-    let none = || ServiceError::NotFound {
-        what: "search for a missing effect of calibration",
-        id: row.id.to_string(),
-    };
+pub async fn finished_search(reader: &Reader, row: &CalibrationRow) -> Result<Discovery, ServiceError> {
+    let none = || ServiceError::not_found("search for a missing effect of calibration", row.id);
     let search = search_of(reader, row).await?.ok_or_else(none)?;
     if search.state != CalibrationState::Finished {
-        return Err(ControlError::NotFinished {
-            id: search.id,
-            state: search.state,
-        }
-        .into());
+        return Err(ServiceError::not_finished(&search));
     }
     reader.discovery(search.id).await?.ok_or_else(none)
 }

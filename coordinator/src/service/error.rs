@@ -1,0 +1,64 @@
+//! Why the service cannot do what it is asked.
+
+use shared::file::FileError;
+
+use crate::calibration::BeginError;
+use crate::farm::ControlError;
+use crate::farm::dispatch::Stopped;
+use crate::store::StoreError;
+use job::EffectsChanged;
+use record::CalibrationRow;
+
+/// Why the service cannot do what it is asked.
+#[derive(Debug, thiserror::Error)]
+pub enum ServiceError {
+    /// A file is malformed.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A calibration cannot begin.
+    #[error(transparent)]
+    Begin(#[from] BeginError),
+    /// The effects are not those that the calibration was computed with.
+    #[error(transparent)]
+    Effects(#[from] EffectsChanged),
+    /// A search has nothing to extend, and no search of its own.
+    #[error("calibration {0} is a search for a missing effect: name the calibration that it searches")]
+    Search(i64),
+    /// No such thing.
+    #[error("there is no {what} {id}")]
+    NotFound {
+        /// What was asked for.
+        what: &'static str,
+        /// Its id.
+        id: String,
+    },
+    /// The command does not fit.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// The store fails.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The operating system refuses a thread.
+    #[error("the thread of the farm: {0}")]
+    Thread(std::io::Error),
+    /// The coordinator is going down.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+    /// More facts wait than the store takes.
+    #[error("{0} facts wait to be stored; try again in a second")]
+    Busy(u64),
+}
+
+impl ServiceError {
+    /// No `what` has this id.
+    pub(super) fn not_found(what: &'static str, id: i64) -> Self {
+        let id = id.to_string();
+        ServiceError::NotFound { what, id }
+    }
+
+    /// A calibration without a result yet.
+    pub(super) fn not_finished(row: &CalibrationRow) -> Self {
+        let (id, state) = (row.id, row.state);
+        ControlError::NotFinished { id, state }.into()
+    }
+}

@@ -1,0 +1,163 @@
+//! Store and farm together: what calibrations there are, where they stand, what is done with them.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use shared::api::{CalibrationState, CalibrationStatus};
+use shared::exchange::{ExchangeRequest, ExchangeResponse};
+use shared::file::FileSet;
+
+use super::clock::now_ms;
+use super::error::ServiceError;
+use super::recovery::recover;
+use super::stored_calibration;
+use crate::farm::dispatch::Dispatcher;
+use crate::farm::{Control, ControlError, Farm};
+use crate::store::Store;
+use job::Spec;
+use record::CalibrationRow;
+
+/// A lease lasts so long without renewal `[ms]`.
+pub const LEASE_MS: u64 = 15_000;
+/// So many facts may wait for the store before the service asks for patience.
+const BACKLOG: u64 = 200_000;
+
+/// Store and farm together; clones are cheap.
+#[derive(Debug, Clone)]
+pub struct Service {
+    store: Store,
+    dispatcher: Dispatcher,
+    left_alone: Arc<BTreeMap<i64, String>>,
+    /// Held by whoever adds to a study: each sees what the one before has added.
+    pub(super) growing: Arc<tokio::sync::Mutex<()>>,
+}
+
+impl Service {
+    /// Opens the store and takes up every calibration that is not over.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn open(path: &str, lease_ms: u64) -> Result<Service, ServiceError> {
+        let store = Store::open(path, now_ms()).await?;
+        let farm = Farm::new(store.epochs(), lease_ms);
+        let dispatcher = Dispatcher::start(farm, store.writer().sink()).map_err(ServiceError::Thread)?;
+        let left_alone = Arc::new(recover(&store, &dispatcher).await?);
+        Ok(Service {
+            store,
+            dispatcher,
+            left_alone,
+            growing: Arc::default(),
+        })
+    }
+
+    /// Ends farm and writer; everything told so far is stored.
+    pub async fn close(&self) {
+        self.dispatcher.stop();
+        self.store.close().await;
+    }
+
+    /// Why this version cannot take up a stored calibration, if it cannot.
+    pub fn left_alone(&self, id: i64) -> Option<&str> {
+        self.left_alone.get(&id).map(String::as_str)
+    }
+
+    /// The store.
+    pub fn store(&self) -> &Store {
+        &self.store
+    }
+
+    /// The farm's thread.
+    pub fn dispatcher(&self) -> &Dispatcher {
+        &self.dispatcher
+    }
+
+    /// A stored calibration.
+    ///
+    /// # Errors
+    /// [`ServiceError::NotFound`] and others.
+    pub async fn calibration_row(&self, id: i64) -> Result<CalibrationRow, ServiceError> {
+        stored_calibration::calibration_row(&self.store.reader(), id).await
+    }
+
+    /// The specification of a stored calibration.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn spec_of(&self, row: &CalibrationRow) -> Result<Spec, ServiceError> {
+        stored_calibration::spec_of(&self.store.reader(), row).await
+    }
+
+    /// The files of a stored experiment.
+    pub(super) async fn experiment(&self, id: i64) -> Result<FileSet, ServiceError> {
+        stored_calibration::experiment_files(&self.store.reader(), id).await
+    }
+
+    /// Where a calibration stands.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn status(&self, id: i64) -> Result<CalibrationStatus, ServiceError> {
+        if let Some(status) = self.dispatcher.status(id).await? {
+            return Ok(status);
+        }
+        let row = self.calibration_row(id).await?;
+        Ok(self.stored_status(&row))
+    }
+
+    fn stored_status(&self, row: &CalibrationRow) -> CalibrationStatus {
+        let mut status = stored_calibration::stored_status(row);
+        if let Some(reason) = self.left_alone(row.id) {
+            status.message = Some(format!("cannot go on with this version: {reason}"));
+        }
+        status
+    }
+
+    /// Where every calibration stands, oldest first.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn list(&self) -> Result<Vec<CalibrationStatus>, ServiceError> {
+        let mut in_hand = self.dispatcher.statuses().await?;
+        let rows = self.store.reader().calibrations().await?;
+        let status =
+            |row: &CalibrationRow| in_hand.remove(&row.id).unwrap_or_else(|| self.stored_status(row));
+        Ok(rows.iter().map(status).collect())
+    }
+
+    /// Carries out a user's command; the answer is durable.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn control(&self, id: i64, control: Control) -> Result<CalibrationState, ServiceError> {
+        match self.dispatcher.control(id, control).await? {
+            Ok((state, fact)) => {
+                self.store.writer().durable(fact).await?;
+                Ok(state)
+            }
+            Err(ControlError::NotInProgress(_)) => {
+                let state = self.calibration_row(id).await?.state;
+                let verb = match control {
+                    Control::Cancel => "cancelled",
+                    Control::Pause => "paused",
+                    Control::Resume => "resumed",
+                };
+                Err(ControlError::WrongState { id, state, verb }.into())
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// A worker's exchange; the answer is given when its results are durable.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn exchange(&self, request: ExchangeRequest) -> Result<ExchangeResponse, ServiceError> {
+        let backlog = self.store.writer().backlog();
+        if backlog > BACKLOG {
+            return Err(ServiceError::Busy(backlog));
+        }
+        let (response, fact) = self.dispatcher.exchange(request).await?;
+        self.store.writer().durable(fact).await?;
+        Ok(response)
+    }
+}

@@ -1,0 +1,52 @@
+//! A stored calibration: its row, its specification, where it stands.
+
+use shared::api::CalibrationStatus;
+use shared::file::FileSet;
+
+use super::error::ServiceError;
+use crate::store::Reader;
+use job::{Job, Spec};
+use record::CalibrationRow;
+
+/// A stored calibration.
+///
+/// # Errors
+/// [`ServiceError::NotFound`] and others.
+pub async fn calibration_row(reader: &Reader, id: i64) -> Result<CalibrationRow, ServiceError> {
+    let row = reader.calibration(id).await?;
+    row.ok_or_else(|| ServiceError::not_found("calibration", id))
+}
+
+/// The files of a stored experiment.
+pub(super) async fn experiment_files(reader: &Reader, id: i64) -> Result<FileSet, ServiceError> {
+    let row = reader.experiment(id).await?;
+    Ok(row
+        .ok_or_else(|| ServiceError::not_found("experiment", id))?
+        .files)
+}
+
+/// The specification of a stored calibration.
+///
+/// # Errors
+/// [`ServiceError`].
+pub(super) async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, ServiceError> {
+    let experiment = experiment_files(reader, row.experiment).await?;
+    Ok(Spec::new("job.toml", &row.job, "experiment.toml", &experiment)?)
+}
+
+/// The status of a stored calibration that the farm does not hold.
+pub fn stored_status(row: &CalibrationRow) -> CalibrationStatus {
+    // A job that this version does not understand still has a line in every list.
+    let model = Job::parse("job.toml", &row.job.toml).map(|job| job.model);
+    CalibrationStatus {
+        id: row.id,
+        name: row.name.clone(),
+        study: row.study,
+        experiment: row.experiment,
+        state: row.state,
+        message: row.message.clone(),
+        model_kind: model.ok().map(|m| m.kind.name().to_owned()),
+        model_version: row.model_version.clone(),
+        progress: None,
+    }
+}

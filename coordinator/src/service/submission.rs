@@ -1,0 +1,106 @@
+//! New experiments and calibrations: validated, stored, taken in hand.
+
+use std::sync::Arc;
+
+use shared::api::{CalibrationCreated, NewCalibration, NewExperiment};
+use shared::experiment::Experiment;
+use shared::file::{FileError, FileSet};
+
+use super::clock::now_ms;
+use super::error::ServiceError;
+use super::handle::Service;
+use crate::calibration::{Calibration, Identity};
+use crate::farm::dispatch::Stopped;
+use crate::store::{NewCalibrationRow, NewStudy, StudyIds};
+use job::{Job, Method, Spec, point_job};
+
+impl Service {
+    /// Stores an experiment after validating it; its id.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn add_experiment(&self, new: NewExperiment) -> Result<i64, ServiceError> {
+        let files = FileSet {
+            toml: new.toml,
+            files: new.files,
+        };
+        Experiment::parse("experiment.toml", &files)?;
+        Ok(self.store().writer().add_experiment(files, now_ms()).await?)
+    }
+
+    /// Stores a calibration after validating it, with the point estimates that its job asks for, and takes them in hand.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn add_calibration(&self, new: NewCalibration) -> Result<CalibrationCreated, ServiceError> {
+        let experiment = self.experiment(new.experiment).await?;
+        let name = new.name.unwrap_or_else(|| "calibration".into());
+        let job = FileSet {
+            toml: new.toml,
+            files: new.files,
+        };
+        // The samplers are built once before anything is stored: what they refuse leaves nothing half-written.
+        let trial = Identity {
+            id: 0,
+            name,
+            study: 0,
+            experiment: new.experiment,
+        };
+        // Reading a stranger's files and drawing a large population from the prior is CPU work: not on the async
+        // runtime.
+        let members = tokio::task::spawn_blocking(move || members(&trial, &job, &experiment));
+        let members = members.await.map_err(|_| Stopped)??;
+        let row = |(calibration, job): &(Calibration, FileSet)| NewCalibrationRow {
+            name: calibration.identity.name.clone(),
+            job: job.clone(),
+        };
+        let study = NewStudy {
+            experiment: new.experiment,
+            calibrations: members.iter().map(row).collect(),
+            now_ms: now_ms(),
+        };
+        let StudyIds { study, calibrations } = self.store().writer().add_study(study).await?;
+        for ((mut calibration, _), &id) in members.into_iter().zip(&calibrations) {
+            (calibration.identity.id, calibration.identity.study) = (id, study);
+            self.dispatcher().add(calibration, Vec::new()).await?;
+        }
+        let (id, point_estimates) = calibrations.split_first().expect("a study begins with its job");
+        Ok(CalibrationCreated {
+            id: *id,
+            study,
+            point_estimates: point_estimates.to_vec(),
+        })
+    }
+}
+
+/// The calibrations that a job begins its study with, each with its own job: the job itself, then the point estimates
+/// that it asks for.
+fn members(
+    identity: &Identity,
+    job: &FileSet,
+    experiment: &FileSet,
+) -> Result<Vec<(Calibration, FileSet)>, ServiceError> {
+    let file = "job.toml";
+    let parsed = Job::parse(file, &job.toml)?;
+    parsed.check_files(file, &job.files)?;
+    let spec = Spec::of(file, parsed, &job.files, "experiment.toml", experiment)?;
+    if matches!(spec.method, Method::Discover { .. }) {
+        let message = "[sampler] algorithm = \"discovery\" is a search that a study runs by itself: say apply = \"ask\" or \"auto\" under [discovery]";
+        return Err(FileError::whole(file, message).into());
+    }
+    let point_estimates = spec.point_estimates.clone();
+    let mut members = vec![(Calibration::new(identity.clone(), Arc::new(spec))?, job.clone())];
+    for method in &point_estimates {
+        let job = FileSet {
+            toml: point_job(file, &job.toml, method)?,
+            files: job.files.clone(),
+        };
+        let spec = Spec::new(file, &job, "experiment.toml", experiment)?;
+        let identity = Identity {
+            name: format!("{} ({})", identity.name, method.name()),
+            ..identity.clone()
+        };
+        members.push((Calibration::new(identity, Arc::new(spec))?, job));
+    }
+    Ok(members)
+}

@@ -1,0 +1,100 @@
+//! The file of a store: its name, its options, its lock, and what is refused as one.
+
+use std::io::Read;
+use std::path::Path;
+
+use sqlx::sqlite::{SqliteConnectOptions, SqlitePoolOptions};
+use sqlx::{SqliteConnection, SqlitePool};
+
+use super::error::StoreError;
+
+/// The file's name without the scheme.
+pub(super) fn file_of(path: &str) -> &str {
+    path.strip_prefix("sqlite://").unwrap_or(path)
+}
+
+pub(super) fn options(path: &str) -> SqliteConnectOptions {
+    // By file name, not by URL: a name may hold a `%` or a `?`.
+    SqliteConnectOptions::new()
+        .filename(file_of(path))
+        .foreign_keys(true)
+        .busy_timeout(std::time::Duration::from_secs(2))
+}
+
+/// Refuses a database that somebody else has made.
+pub(super) async fn recognise(connection: &mut SqliteConnection, path: &str) -> Result<(), StoreError> {
+    let ours = "SELECT count(*) FROM sqlite_schema WHERE name = '_sqlx_migrations' OR name = 'calibrations'";
+    let known: i64 = sqlx::query_scalar(ours).fetch_one(&mut *connection).await?;
+    let all: i64 = sqlx::query_scalar("SELECT count(*) FROM sqlite_schema")
+        .fetch_one(connection)
+        .await?;
+    if known == 2 || all == 0 {
+        return Ok(());
+    }
+    Err(StoreError::Unfit {
+        path: file_of(path).into(),
+        reason: "the database is not one of Grouser's".into(),
+    })
+}
+
+pub(super) async fn pool(options: SqliteConnectOptions) -> Result<SqlitePool, sqlx::Error> {
+    SqlitePoolOptions::new()
+        .max_connections(4)
+        .connect_with(options)
+        .await
+}
+
+/// Refuses what cannot be a store before anything is written beside it.
+pub(super) fn examine(path: &str) -> Result<(), StoreError> {
+    let file = Path::new(file_of(path));
+    if path.contains(":memory:") {
+        return Ok(());
+    }
+    let unfit = |reason: String| {
+        Err(StoreError::Unfit {
+            path: file.display().to_string(),
+            reason,
+        })
+    };
+    let folder = file
+        .parent()
+        .filter(|f| !f.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    match std::fs::File::open(file) {
+        Ok(open) if !open.metadata().is_ok_and(|m| m.is_file()) => unfit("this is no file".into()),
+        Ok(mut open) => {
+            let mut head = Vec::new();
+            match open.by_ref().take(16).read_to_end(&mut head) {
+                Ok(_) if head.is_empty() || head == b"SQLite format 3\0" => Ok(()),
+                Ok(_) => unfit("the file is not a database of SQLite".into()),
+                Err(error) => unfit(error.to_string()),
+            }
+        }
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound && folder.is_dir() => Ok(()),
+        Err(error) => unfit(error.to_string()),
+    }
+}
+
+/// Takes the lock file beside the store; it is released when the returned file is dropped, or at any death.
+pub(super) fn lock(path: &str) -> Result<Option<std::fs::File>, StoreError> {
+    let file = file_of(path);
+    if file.contains(":memory:") {
+        return Ok(None);
+    }
+    let name = format!("{file}.lock");
+    let io = |e: std::io::Error| StoreError::Sqlite {
+        path: name.clone(),
+        source: sqlx::Error::Io(e),
+    };
+    let lock = std::fs::OpenOptions::new()
+        .create(true)
+        .truncate(false)
+        .write(true)
+        .open(&name)
+        .map_err(io)?;
+    match lock.try_lock() {
+        Ok(()) => Ok(Some(lock)),
+        Err(std::fs::TryLockError::WouldBlock) => Err(StoreError::InUse(file.into())),
+        Err(std::fs::TryLockError::Error(e)) => Err(io(e)),
+    }
+}

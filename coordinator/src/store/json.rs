@@ -1,0 +1,13 @@
+//! Values as JSON text in a column.
+
+use super::error::StoreError;
+
+/// Numbers as a JSON array; every finite `f64` comes back to the bit.
+pub(super) fn json<T: serde::Serialize + ?Sized>(values: &T) -> String {
+    serde_json::to_string(values).expect("numbers have a JSON form")
+}
+
+/// The numbers of a JSON array.
+pub(super) fn numbers(json: &str) -> Result<Vec<f64>, StoreError> {
+    serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("parameter vector {json}: {e}")))
+}
