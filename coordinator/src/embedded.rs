@@ -18,7 +18,7 @@ use crate::farm::dispatch::Dispatcher;
 /// # Errors
 /// A sentence that says how to build for this machine.
 pub fn check_processor() -> Result<(), String> {
-    worker::processor::check()
+    worker::processor::check().map_err(|e| e.to_string())
 }
 
 /// The farm as a worker in the same process sees it.
@@ -125,7 +125,9 @@ impl Evaluate {
     /// # Errors
     /// A sentence that names what is not known.
     pub fn new(variant: &ModelVariant) -> Result<Self, String> {
-        worker::model::CompiledVariant::new(variant).map(Evaluate)
+        worker::model::CompiledVariant::new(variant)
+            .map(Evaluate)
+            .map_err(|e| e.to_string())
     }
 
     /// Simulates every condition at one parameter vector.
@@ -146,7 +148,10 @@ impl Evaluate {
     pub fn each(&self, theta: &[f64]) -> Vec<Result<[f64; 3], String>> {
         let channels = self.0.each(theta).into_iter();
         channels
-            .map(|a| a.map(|a| [a.drawbar_pull_n, a.torque_n_m, a.sinkage_m]))
+            .map(|a| {
+                a.map(|a| [a.drawbar_pull_n, a.torque_n_m, a.sinkage_m])
+                    .map_err(|rejection| rejection.message)
+            })
             .collect()
     }
 }

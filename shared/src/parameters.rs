@@ -128,20 +128,51 @@ pub fn behind(unit: &str) -> String {
     }
 }
 
+/// Why a parameter cannot have a value.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BoundsError {
+    /// It is not a finite number.
+    #[error("{name} = {value} is not a finite number")]
+    NotFinite {
+        /// The parameter.
+        name: String,
+        /// The value.
+        value: f64,
+    },
+    /// It lies outside the physical bounds.
+    #[error("{name} = {value}{unit} lies outside [{lower}, {upper}]{unit}")]
+    Outside {
+        /// The parameter.
+        name: String,
+        /// The value.
+        value: f64,
+        /// Its unit with a space in front, or nothing.
+        unit: String,
+        /// The least admissible value.
+        lower: f64,
+        /// The largest admissible value.
+        upper: f64,
+    },
+}
+
 /// Checks one value against the physical bounds of its parameter.
 ///
 /// # Errors
-/// A sentence with the name, the value, the unit and the bound.
-pub fn check_value(quantity: &ParameterBounds, name: &str, value: f64) -> Result<(), String> {
+/// [`BoundsError`] with the name, the value, the unit and the bounds.
+pub fn check_value(quantity: &ParameterBounds, name: &str, value: f64) -> Result<(), BoundsError> {
     let ParameterBounds { unit, lower, upper } = quantity;
     if !value.is_finite() {
-        return Err(format!("{name} = {value} is not a finite number"));
+        let name = name.to_owned();
+        return Err(BoundsError::NotFinite { name, value });
     }
     if value < *lower || value > *upper {
-        let unit = behind(unit);
-        return Err(format!(
-            "{name} = {value}{unit} lies outside [{lower}, {upper}]{unit}"
-        ));
+        return Err(BoundsError::Outside {
+            name: name.to_owned(),
+            value,
+            unit: behind(unit),
+            lower: *lower,
+            upper: *upper,
+        });
     }
     Ok(())
 }

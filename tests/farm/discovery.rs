@@ -171,7 +171,7 @@ fn what_cannot_be_added_says_why() {
         extend(extended),
         effect("torque_gain"),
         422,
-        "\"torque_gain\" stands twice",
+        "\"torque_gain\" appears twice",
     );
 
     let runs = "/v1/studies/1/runs".to_owned();
@@ -186,7 +186,7 @@ fn what_cannot_be_added_says_why() {
         runs.clone(),
         with("later-2", "later-1"),
         422,
-        "line 3: run \"later-1\" stands twice",
+        "line 3: run \"later-1\" appears twice",
     );
     refused(
         runs.clone(),
@@ -205,7 +205,7 @@ fn what_cannot_be_added_says_why() {
         runs,
         json!({"runs": more()}),
         422,
-        "runs.csv line 2: run \"later-1\" stands in the study already",
+        "runs.csv line 2: run \"later-1\" is in the study already",
     );
 
     let discovery = service.client.get(&format!("/v1/calibrations/{id}/discovery"));

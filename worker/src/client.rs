@@ -16,6 +16,17 @@ pub struct HttpCoordinator {
     url: String,
 }
 
+/// Why a coordinator cannot be reached at all.
+#[derive(Debug, thiserror::Error)]
+pub enum ClientError {
+    /// The URL, and what is wrong with it.
+    #[error("coordinator URL \"{0}\": {1}")]
+    Url(String, String),
+    /// The HTTP client cannot be set up.
+    #[error("HTTP client: {0}")]
+    Client(reqwest::Error),
+}
+
 /// Longer than the longest poll; a connection that is silent for so long is dead.
 const TIMEOUT: Duration = Duration::from_secs(60);
 
@@ -23,20 +34,19 @@ impl HttpCoordinator {
     /// A client of the coordinator at `url`, as in `http://host:7070`.
     ///
     /// # Errors
-    /// A sentence that names the URL and what is wrong with it.
-    pub fn new(url: &str) -> Result<Self, String> {
-        let parsed = reqwest::Url::parse(url).map_err(|e| format!("coordinator URL \"{url}\": {e}"))?;
+    /// [`ClientError`] names the URL and what is wrong with it.
+    pub fn new(url: &str) -> Result<Self, ClientError> {
+        let owned = || url.to_owned();
+        let parsed = reqwest::Url::parse(url).map_err(|e| ClientError::Url(owned(), e.to_string()))?;
         if parsed.scheme() != "http" {
-            return Err(format!(
-                "coordinator URL \"{url}\": scheme {} is not http",
-                parsed.scheme()
-            ));
+            let wrong = format!("scheme {} is not http", parsed.scheme());
+            return Err(ClientError::Url(owned(), wrong));
         }
         let client = Client::builder()
             .timeout(TIMEOUT)
             .connect_timeout(Duration::from_secs(5))
             .build()
-            .map_err(|e| format!("HTTP client: {e}"))?;
+            .map_err(ClientError::Client)?;
         Ok(HttpCoordinator {
             client,
             url: url.trim_end_matches('/').to_owned(),

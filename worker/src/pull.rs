@@ -325,7 +325,10 @@ impl<C: Coordinator> Worker<C> {
             return Ok(());
         }
         match self.coordinator.variant(hash).await {
-            Ok(Some(variant)) => self.variants.add(hash, &variant).map_err(Missing::Unusable),
+            Ok(Some(variant)) => self
+                .variants
+                .add(hash, &variant)
+                .map_err(|e| Missing::Unusable(e.to_string())),
             Err(ExchangeError::Refused(reason)) => Err(Missing::Unusable(reason)),
             // The calibration has ended meanwhile, or the coordinator is away: nobody is to blame.
             Ok(None) | Err(ExchangeError::Away(_)) => Err(Missing::Away),

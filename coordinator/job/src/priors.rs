@@ -170,7 +170,7 @@ fn marginal(value: &toml::Value, quantity: &ParameterBounds) -> Result<Marginal,
 /// Unit and physical bounds of a parameter.
 fn quantity(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<ParameterBounds, String> {
     let Some(column) = name.strip_prefix(NOISE_PREFIX) else {
-        return shared::model::lookup(name, wheels, effects);
+        return Ok(shared::model::lookup(name, wheels, effects)?);
     };
     let unit = match Channel::ALL.into_iter().find(|c| c.column() == column) {
         Some(channel) => channel.unit(),

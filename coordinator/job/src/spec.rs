@@ -149,7 +149,7 @@ impl Spec {
         }
         for (name, &value) in &job.reference {
             shared::model::lookup(name, &wheels, &effects)
-                .and_then(|quantity| parameters::check_value(&quantity, name, value))
+                .and_then(|quantity| Ok(parameters::check_value(&quantity, name, value)?))
                 .map_err(|e| in_job(format!("[figures] reference: {e}")))?;
         }
         add_unsaid(job_name, &effects, &wheels, &mut model, &mut parameters)?;
@@ -190,7 +190,7 @@ impl Spec {
             let runs = runs.iter().map(|&i| &experiment.runs[i]);
             let mut variant =
                 ModelVariant::new(&experiment, &model, &effects, model_parameters.clone(), runs)
-                    .map_err(in_job)?;
+                    .map_err(|e| in_job(e.to_string()))?;
             variant.stiffness_sensitivity = !likelihood.sensitive().is_empty();
             Ok(variant)
         };

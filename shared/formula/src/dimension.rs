@@ -6,8 +6,16 @@
 use crate::graph::{Binary, Graph, Id, Node, Unary};
 use crate::unit::Unit;
 
-/// A contradiction between units, in words.
-pub(crate) type Contradiction = String;
+/// A contradiction between units, with the operation that it is in.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Contradiction {
+    #[error("{0} needs an angle in rad, not in deg: multiply it by pi / 180")]
+    Degrees(&'static str),
+    #[error("{0} needs a number without unit, not one in {1}")]
+    HasUnit(&'static str, Unit),
+    #[error("{0} must have the same unit, not {1} and {2}")]
+    Unlike(&'static str, Unit, Unit),
+}
 
 /// The unit of an operation on others of a graph, as far as units tell.
 ///
@@ -40,9 +48,7 @@ fn unary(operation: Unary, of: Option<Unit>) -> Result<Option<Unit>, Contradicti
         Unary::Tan => "tan",
     };
     match (operation, of) {
-        (Unary::Sin | Unary::Cos | Unary::Tan, Some(Unit::DEGREE)) => Err(format!(
-            "{name} needs an angle in rad, not in deg: multiply it by pi / 180"
-        )),
+        (Unary::Sin | Unary::Cos | Unary::Tan, Some(Unit::DEGREE)) => Err(Contradiction::Degrees(name)),
         _ => plain(name, of).map(|()| Some(Unit::ONE)),
     }
 }
@@ -77,19 +83,17 @@ fn binary(
 }
 
 /// What must have no unit.
-fn plain(what: &str, unit: Option<Unit>) -> Result<(), Contradiction> {
+fn plain(what: &'static str, unit: Option<Unit>) -> Result<(), Contradiction> {
     match unit {
-        Some(unit) if unit != Unit::ONE => {
-            Err(format!("{what} needs a number without unit, not one in {unit}"))
-        }
+        Some(unit) if unit != Unit::ONE => Err(Contradiction::HasUnit(what, unit)),
         _ => Ok(()),
     }
 }
 
 /// Two that must have the same unit, which is known from either.
-fn same(what: &str, left: Option<Unit>, right: Option<Unit>) -> Result<Option<Unit>, Contradiction> {
+fn same(what: &'static str, left: Option<Unit>, right: Option<Unit>) -> Result<Option<Unit>, Contradiction> {
     match (left, right) {
-        (Some(a), Some(b)) if a != b => Err(format!("{what} must have the same unit, not {a} and {b}")),
+        (Some(a), Some(b)) if a != b => Err(Contradiction::Unlike(what, a, b)),
         (a, b) => Ok(a.or(b)),
     }
 }

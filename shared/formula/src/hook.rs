@@ -1,4 +1,4 @@
-//! Name the quantities that a formula may replace.
+//! The quantities that a formula may replace.
 
 use crate::variable::{Variable, Variables};
 
@@ -35,63 +35,48 @@ pub enum Hook {
     LateralForce,
 }
 
+/// Every hook with its key in effect files and the variable that it replaces, in the order of the enumeration.
+const TABLE: [(Hook, &str, Variable); Hook::COUNT] = [
+    (Hook::Slip, "slip", Variable::Slip),
+    (Hook::Radius, "radius", Variable::Radius),
+    (Hook::Width, "width", Variable::Width),
+    (Hook::SinkageExponent, "sinkage_exponent", Variable::N),
+    (Hook::WheelLoad, "wheel_load", Variable::WheelLoad),
+    (Hook::Pressure, "pressure", Variable::P),
+    (Hook::ShearLimit, "shear_limit", Variable::TauMax),
+    (Hook::Shear, "shear", Variable::Tau),
+    (Hook::DrawbarPull, "drawbar_pull", Variable::DrawbarPull),
+    (Hook::Torque, "torque", Variable::Torque),
+    (Hook::Sinkage, "sinkage", Variable::Sinkage),
+    (Hook::LateralForce, "lateral_force", Variable::LateralForce),
+];
+
 impl Hook {
     /// How many hooks there are.
     pub const COUNT: usize = 12;
 
     /// Every hook, in the order of evaluation.
-    pub const ALL: [Hook; Hook::COUNT] = [
-        Hook::Slip,
-        Hook::Radius,
-        Hook::Width,
-        Hook::SinkageExponent,
-        Hook::WheelLoad,
-        Hook::Pressure,
-        Hook::ShearLimit,
-        Hook::Shear,
-        Hook::DrawbarPull,
-        Hook::Torque,
-        Hook::Sinkage,
-        Hook::LateralForce,
-    ];
+    pub const ALL: [Hook; Hook::COUNT] = {
+        let mut all = [Hook::Slip; Hook::COUNT];
+        let mut place = 0;
+        while place < all.len() {
+            all[place] = TABLE[place].0;
+            place += 1;
+        }
+        all
+    };
 
     /// The measured channels: each sees the others as they were before this effect.
     pub const CHANNELS: [Hook; 4] = [Hook::DrawbarPull, Hook::Torque, Hook::Sinkage, Hook::LateralForce];
 
     /// Key in effect files.
     pub fn name(self) -> &'static str {
-        match self {
-            Hook::Slip => "slip",
-            Hook::Radius => "radius",
-            Hook::Width => "width",
-            Hook::SinkageExponent => "sinkage_exponent",
-            Hook::WheelLoad => "wheel_load",
-            Hook::Pressure => "pressure",
-            Hook::ShearLimit => "shear_limit",
-            Hook::Shear => "shear",
-            Hook::DrawbarPull => "drawbar_pull",
-            Hook::Torque => "torque",
-            Hook::Sinkage => "sinkage",
-            Hook::LateralForce => "lateral_force",
-        }
+        TABLE[self as usize].1
     }
 
     /// The variable that the formula replaces.
     pub fn target(self) -> Variable {
-        match self {
-            Hook::Slip => Variable::Slip,
-            Hook::Radius => Variable::Radius,
-            Hook::Width => Variable::Width,
-            Hook::SinkageExponent => Variable::N,
-            Hook::WheelLoad => Variable::WheelLoad,
-            Hook::Pressure => Variable::P,
-            Hook::ShearLimit => Variable::TauMax,
-            Hook::Shear => Variable::Tau,
-            Hook::DrawbarPull => Variable::DrawbarPull,
-            Hook::Torque => Variable::Torque,
-            Hook::Sinkage => Variable::Sinkage,
-            Hook::LateralForce => Variable::LateralForce,
-        }
+        TABLE[self as usize].2
     }
 
     /// What its formula may use.
@@ -100,7 +85,7 @@ impl Hook {
             BEff, ContactLength, DrawbarPull, J, KStar, LateralForce, P, Position, Sinkage, Tau, TauMax,
             Torque, Vn, Vt, Z,
         };
-        let run = Variables::of(&Variable::OF_RUN);
+        let run = Variables::OF_RUN;
         let contact = run.union(Variables::of(&[ContactLength, BEff, KStar]));
         let node = contact.union(Variables::of(&[P, Z, Vn, Vt, J, Position]));
         match self {
@@ -115,7 +100,7 @@ impl Hook {
         }
     }
 
-    /// What its value must be, in words, and whether a number is.
+    /// Whether its quantity may have a value.
     pub fn admits(self, value: f64) -> bool {
         value.is_finite()
             && match self {

@@ -119,7 +119,7 @@ impl Parser<'_, '_> {
     /// Adds an operation whose sign or name stands at a place.
     fn add(&mut self, at: usize, node: Node) -> Result<Id, Mistake> {
         let parameter = |place: u8| self.scope.parameters[usize::from(place)].1;
-        let unit = unit_of(self.graph, node, parameter).map_err(|message| Mistake::new(at, message))?;
+        let unit = unit_of(self.graph, node, parameter).map_err(|e| Mistake::new(at, e.to_string()))?;
         self.graph.add(node, unit).ok_or_else(|| {
             let most = Graph::MOST;
             Mistake::new(

@@ -1,4 +1,4 @@
-//! Read units, and say which dimension they have.
+//! Units and their dimensions.
 
 /// Powers of kilogram, metre, second and degree, each counted in halves: a square root stays a dimension.
 ///
@@ -13,6 +13,17 @@ const MOST: i16 = 64;
 
 /// The highest power that a text may ask for.
 const HIGHEST: i16 = 9;
+
+/// A unit that is not known.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("unknown unit \"{word}\"{}; SI units without prefixes are {}, with / and spaces and ^ up to {HIGHEST}",
+    within.as_ref().map_or_else(String::new, |text| format!(" in \"{text}\"")), KNOWN.map(|(name, _)| name).join(", "))]
+pub struct UnitError {
+    /// The word that is not known.
+    pub word: String,
+    /// The whole text, where it holds more than that word.
+    pub within: Option<String>,
+}
 
 const KNOWN: [(&str, [i16; 4]); 11] = [
     ("1", [0, 0, 0, 0]),
@@ -39,18 +50,11 @@ impl Unit {
     /// alone): `N s/m`, `1/m`, `kg/m^3`.
     ///
     /// # Errors
-    /// A sentence that names what is not known, and what is.
-    pub fn parse(text: &str) -> Result<Unit, String> {
-        let unknown = |word: &str| {
-            let known = KNOWN.map(|(name, _)| name).join(", ");
-            let within = if word == text {
-                String::new()
-            } else {
-                format!(" in \"{text}\"")
-            };
-            let known =
-                format!("SI units without prefixes are {known}, with / and spaces and ^ up to {HIGHEST}");
-            format!("unknown unit \"{word}\"{within}; {known}")
+    /// [`UnitError`] names what is not known, and what is.
+    pub fn parse(text: &str) -> Result<Unit, UnitError> {
+        let unknown = |word: &str| UnitError {
+            word: word.to_owned(),
+            within: (word != text).then(|| text.to_owned()),
         };
         let mut unit = Unit::ONE;
         let mut any = false;
@@ -158,7 +162,7 @@ mod tests {
     #[test]
     fn what_is_no_si_unit_is_named() {
         for text in ["mm", "", "N/", "m^x", "m^400", "m^-32768", "lb"] {
-            let error = Unit::parse(text).unwrap_err();
+            let error = Unit::parse(text).unwrap_err().to_string();
             assert!(
                 error.starts_with("unknown unit") && error.contains("Pa"),
                 "{error}"

@@ -1,4 +1,4 @@
-//! Name what a formula can see.
+//! The variables that a formula can use.
 
 use crate::unit::Unit;
 
@@ -16,7 +16,7 @@ pub enum Variable {
     Vt,
     /// Shear displacement: how far the wheel's surface has slid since it met the soil.
     J,
-    /// Place of a node in the contact: 0 at the rear end, 1 at the front entry.
+    /// Position of a node in the contact: 0 at the rear end, 1 at the front entry.
     Position,
     /// Modulus k* = `k_c` / `b_eff` + `k_phi` of the footprint that holds the node; its unit depends on n.
     KStar,
@@ -54,7 +54,7 @@ pub enum Variable {
     GrouserCount,
     /// Height of the grousers.
     GrouserHeight,
-    /// Which pass over the track it is, from 1 on.
+    /// Number of the pass over the track, from 1.
     Pass,
     /// Length of the soil bin.
     BinLength,
@@ -68,11 +68,39 @@ pub enum Variable {
     LateralForce,
 }
 
-use Variable::{
-    BEff, BinLength, Cohesion, ContactLength, Density, DrawbarPull, FrictionAngle, Gravity, GrouserCount,
-    GrouserHeight, J, KStar, LateralForce, N, P, Pass, Position, Radius, ShearVelocity, Sinkage, SledSpeed,
-    Slip, Tau, TauMax, Torque, Vn, Vt, WheelLoad, Width, Z,
-};
+/// Every variable with its name in formulas and its unit, in the order of the enumeration.
+const TABLE: [(Variable, &str, &str); Variable::COUNT] = [
+    (Variable::P, "p", "Pa"),
+    (Variable::Z, "z", "m"),
+    (Variable::Vn, "v_n", "m/s"),
+    (Variable::Vt, "v_t", "m/s"),
+    (Variable::J, "j", "m"),
+    (Variable::Position, "position", "1"),
+    (Variable::KStar, "k_star", "N/m^(n+2)"),
+    (Variable::BEff, "b_eff", "m"),
+    (Variable::TauMax, "tau_max", "Pa"),
+    (Variable::Tau, "tau", "Pa"),
+    (Variable::ContactLength, "contact_length", "m"),
+    (Variable::Slip, "slip", "1"),
+    (Variable::SledSpeed, "sled_speed", "m/s"),
+    (Variable::WheelLoad, "wheel_load", "N"),
+    (Variable::Radius, "radius", "m"),
+    (Variable::Width, "width", "m"),
+    (Variable::FrictionAngle, "friction_angle_rad", "rad"),
+    (Variable::Cohesion, "cohesion_pa", "Pa"),
+    (Variable::N, "n", "1"),
+    (Variable::ShearVelocity, "shear_velocity", "m/s"),
+    (Variable::Density, "density_kg_m3", "kg/m^3"),
+    (Variable::Gravity, "gravity", "m/s^2"),
+    (Variable::GrouserCount, "grouser_count", "1"),
+    (Variable::GrouserHeight, "grouser_height", "m"),
+    (Variable::Pass, "pass", "1"),
+    (Variable::BinLength, "bin_length", "m"),
+    (Variable::DrawbarPull, "drawbar_pull", "N"),
+    (Variable::Torque, "torque", "N m"),
+    (Variable::Sinkage, "sinkage", "m"),
+    (Variable::LateralForce, "lateral_force", "N"),
+];
 
 impl Variable {
     /// How many variables there are; `variable as usize` is below it.
@@ -82,106 +110,29 @@ impl Variable {
     pub const LOCAL: usize = 10;
 
     /// Every variable, in the order of their numbers.
-    pub const ALL: [Variable; Variable::COUNT] = [
-        P,
-        Z,
-        Vn,
-        Vt,
-        J,
-        Position,
-        KStar,
-        BEff,
-        TauMax,
-        Tau,
-        ContactLength,
-        Slip,
-        SledSpeed,
-        WheelLoad,
-        Radius,
-        Width,
-        FrictionAngle,
-        Cohesion,
-        N,
-        ShearVelocity,
-        Density,
-        Gravity,
-        GrouserCount,
-        GrouserHeight,
-        Pass,
-        BinLength,
-        DrawbarPull,
-        Torque,
-        Sinkage,
-        LateralForce,
-    ];
-
-    /// What no node has of its own: conditions, dimensions and parameters of soil and rig.
-    pub const OF_RUN: [Variable; 15] = [
-        Slip,
-        SledSpeed,
-        WheelLoad,
-        Radius,
-        Width,
-        FrictionAngle,
-        Cohesion,
-        N,
-        ShearVelocity,
-        Density,
-        Gravity,
-        GrouserCount,
-        GrouserHeight,
-        Pass,
-        BinLength,
-    ];
+    pub const ALL: [Variable; Variable::COUNT] = {
+        let mut all = [Variable::P; Variable::COUNT];
+        let mut place = 0;
+        while place < all.len() {
+            all[place] = TABLE[place].0;
+            place += 1;
+        }
+        all
+    };
 
     /// Name in formulas.
     pub fn name(self) -> &'static str {
-        self.entry().0
+        TABLE[self as usize].1
     }
 
     /// Its unit; none where that depends on a parameter.
     pub fn unit(self) -> Option<Unit> {
-        Unit::parse(self.entry().1).ok()
+        Unit::parse(self.unit_name()).ok()
     }
 
     /// Its unit in words.
     pub fn unit_name(self) -> &'static str {
-        self.entry().1
-    }
-
-    const fn entry(self) -> (&'static str, &'static str) {
-        match self {
-            P => ("p", "Pa"),
-            Z => ("z", "m"),
-            Vn => ("v_n", "m/s"),
-            Vt => ("v_t", "m/s"),
-            J => ("j", "m"),
-            Position => ("position", "1"),
-            KStar => ("k_star", "N/m^(n+2)"),
-            BEff => ("b_eff", "m"),
-            TauMax => ("tau_max", "Pa"),
-            Tau => ("tau", "Pa"),
-            ContactLength => ("contact_length", "m"),
-            Slip => ("slip", "1"),
-            SledSpeed => ("sled_speed", "m/s"),
-            WheelLoad => ("wheel_load", "N"),
-            Radius => ("radius", "m"),
-            Width => ("width", "m"),
-            FrictionAngle => ("friction_angle_rad", "rad"),
-            Cohesion => ("cohesion_pa", "Pa"),
-            N => ("n", "1"),
-            ShearVelocity => ("shear_velocity", "m/s"),
-            Density => ("density_kg_m3", "kg/m^3"),
-            Gravity => ("gravity", "m/s^2"),
-            GrouserCount => ("grouser_count", "1"),
-            GrouserHeight => ("grouser_height", "m"),
-            Pass => ("pass", "1"),
-            BinLength => ("bin_length", "m"),
-            DrawbarPull => ("drawbar_pull", "N"),
-            Torque => ("torque", "N m"),
-            Sinkage => ("sinkage", "m"),
-            LateralForce => ("lateral_force", "N"),
-        }
+        TABLE[self as usize].2
     }
 }
 
@@ -190,6 +141,12 @@ impl Variable {
 pub struct Variables(u32);
 
 impl Variables {
+    /// The variables that are the same at all nodes: conditions, dimensions, and parameters of soil and rig.
+    pub const OF_RUN: Variables = {
+        let (first, last) = (Variable::Slip as u32, Variable::BinLength as u32);
+        Variables((1 << (last + 1)) - (1 << first))
+    };
+
     /// The set of these.
     pub fn of(variables: &[Variable]) -> Self {
         variables.iter().fold(Self::default(), |set, &v| set.with(v))
@@ -232,7 +189,9 @@ mod tests {
         for (place, variable) in Variable::ALL.into_iter().enumerate() {
             assert_eq!(variable as usize, place);
         }
-        assert_eq!(Variable::OF_RUN[0] as usize, Variable::ContactLength as usize + 1);
+        assert_eq!(Variables::OF_RUN.iter().count(), 15);
+        assert!(!Variables::OF_RUN.contains(Variable::ContactLength));
+        assert!(!Variables::OF_RUN.contains(Variable::DrawbarPull));
     }
 
     #[test]
@@ -240,7 +199,7 @@ mod tests {
         for variable in Variable::ALL {
             assert_eq!(
                 variable.unit().is_none(),
-                variable == KStar,
+                variable == Variable::KStar,
                 "{}",
                 variable.name()
             );

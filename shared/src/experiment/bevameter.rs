@@ -1,5 +1,6 @@
 //! The rows of `plates.csv` and `shear.csv`.
 
+use super::check::ValueError;
 use super::table::{self, Columns, Row};
 use crate::file::FileError;
 
@@ -58,7 +59,7 @@ pub(super) fn plates(file: &str, text: &str) -> Result<Vec<PlateReading>, FileEr
             pressure_pa: row.number("pressure_pa")?,
         })
     })?;
-    some(file, readings, "no reading of a plate stands in the file")
+    some(file, readings, "the file has no reading of a plate")
 }
 
 /// Parses `shear.csv`.
@@ -73,7 +74,7 @@ pub(super) fn shear(file: &str, text: &str) -> Result<Vec<ShearReading>, FileErr
             shear_stress_pa: row.number("shear_stress_pa")?,
         })
     })?;
-    some(file, readings, "no reading of a ring stands in the file")
+    some(file, readings, "the file has no reading of a ring")
 }
 
 fn columns<'a>(names: &'a [&'a str; 4]) -> Columns<'a> {
@@ -83,13 +84,12 @@ fn columns<'a>(names: &'a [&'a str; 4]) -> Columns<'a> {
     }
 }
 
-fn in_metres(column: &str, value: f64, largest: f64) -> Result<(), String> {
+fn in_metres(column: &str, value: f64, largest: f64) -> Result<(), ValueError> {
     if value <= largest {
         return Ok(());
     }
-    Err(format!(
-        "{column} {value} m must be <= {largest} m: metres are expected, were these millimetres?"
-    ))
+    let key = column.to_owned();
+    Err(ValueError::Millimetres { key, value, largest })
 }
 
 fn some<T>(file: &str, readings: Vec<T>, otherwise: &str) -> Result<Vec<T>, FileError> {
@@ -151,7 +151,7 @@ mod tests {
         );
         assert_eq!(
             ring("test,normal_stress_pa,shear_displacement_m\n"),
-            "shear.csv: no reading of a ring stands in the file"
+            "shear.csv: the file has no reading of a ring"
         );
     }
 }

@@ -1,6 +1,8 @@
-//! Numbers of `experiment.toml` before and while they are checked.
+//! Checks of single values, and what is wrong with them.
 
 use serde::Deserialize;
+
+use super::mesh::MeshError;
 
 /// A standard deviation as the file states it.
 #[derive(Deserialize)]
@@ -10,20 +12,54 @@ pub(super) enum RawSd {
     Word(String),
 }
 
+/// What is wrong with a key or a field.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum ValueError {
+    #[error("{0} is blank")]
+    Blank(String),
+    #[error("{key} \"{text}\" is not a number")]
+    NotNumber { key: String, text: String },
+    #[error("{key} {value} is not a finite number")]
+    NotFinite { key: String, value: f64 },
+    /// `bound` is `> 0`, `>= 0`, `< 90`…
+    #[error("{key} {value} {unit} must be {bound} {unit}")]
+    Bound {
+        key: String,
+        value: f64,
+        unit: String,
+        bound: String,
+    },
+    #[error("{key} {value} m must be <= {largest} m: metres are expected, were these millimetres?")]
+    Millimetres { key: String, value: f64, largest: f64 },
+    /// A word that is not known, with the nearest known.
+    #[error("{0}")]
+    Unknown(String),
+    /// Any other rule, as a sentence.
+    #[error("{0}")]
+    Rule(String),
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}
+
 /// Requires a finite number above 0.
-pub(super) fn positive(key: &str, value: f64, unit: &str) -> Result<(), String> {
-    if value.is_finite() && value > 0.0 {
-        Ok(())
-    } else {
-        Err(format!("{key} {value} {unit} must be > 0 {unit}"))
-    }
+pub(super) fn positive(key: &str, value: f64, unit: &str) -> Result<(), ValueError> {
+    require(value.is_finite() && value > 0.0, key, value, unit, "> 0")
 }
 
 /// Requires a finite number of at least 0.
-pub(super) fn not_negative(key: &str, value: f64, unit: &str) -> Result<(), String> {
-    if value.is_finite() && value >= 0.0 {
-        Ok(())
-    } else {
-        Err(format!("{key} {value} {unit} must be >= 0 {unit}"))
+pub(super) fn not_negative(key: &str, value: f64, unit: &str) -> Result<(), ValueError> {
+    require(value.is_finite() && value >= 0.0, key, value, unit, ">= 0")
+}
+
+/// Requires what `holds`; `bound` says it in words.
+pub(super) fn require(holds: bool, key: &str, value: f64, unit: &str, bound: &str) -> Result<(), ValueError> {
+    if holds {
+        return Ok(());
     }
+    Err(ValueError::Bound {
+        key: key.to_owned(),
+        value,
+        unit: unit.to_owned(),
+        bound: bound.to_owned(),
+    })
 }

@@ -25,7 +25,7 @@ use std::path::Path;
 
 pub use bevameter::{PLATE_COLUMNS, PlateReading, SHEAR_COLUMNS, ShearReading};
 pub use history::{MeasuredHistory, Recorded};
-pub use mesh::{MOST_BYTES, MOST_TRIANGLES, WheelMesh};
+pub use mesh::{MOST_BYTES, MOST_TRIANGLES, MeshError, WheelMesh};
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
 pub use scatter::{Scatter, ScatterSd};
 pub use settings::{AveragingProtocol, Noise, NoiseSd, ProtocolKind, Rig, SoilProperties};
@@ -92,7 +92,7 @@ impl Experiment {
             let mesh = WheelMesh::parse(named, text(named)?)?;
             if let Some(wheel) = file.wheel.get_mut(wheel_name) {
                 mesh.check_against(wheel.radius_m, wheel.width_m)
-                    .map_err(|e| FileError::whole(named, e))?;
+                    .map_err(|e| FileError::whole(named, e.to_string()))?;
                 wheel.mesh = Some(mesh);
             }
         }
@@ -213,11 +213,11 @@ mod tests {
         let two = format!("{HEADER}a,w,s,0.2,100,0.01,1,,fit\na,w,s,0.2,100,0.01,1,,fit\n");
         assert_eq!(
             parse(TOML, &two).unwrap_err(),
-            "runs.csv line 3: run \"a\" stands twice (first on line 2)"
+            "runs.csv line 3: run \"a\" appears twice (first on line 2)"
         );
         assert_eq!(
             parse(TOML, HEADER).unwrap_err(),
-            "runs.csv: no test run stands in the file"
+            "runs.csv: the file has no test run"
         );
         let commented =
             format!("# a\n\n{HEADER}a,w,s,0.2,100,0.01,1,,fit\n# b\n# c\nd,w,s,2,100,0.01,1,,fit");

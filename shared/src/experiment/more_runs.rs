@@ -22,6 +22,7 @@ impl Experiment {
                 "runs = \"runs.csv\" is missing: there are no runs that others could join",
             )
         })?;
+        let fail = |e: csv::Error| FileError::whole(&file, e.to_string());
         let with = |text: String| {
             let mut all = files.clone();
             all.files.insert(file.clone(), text);
@@ -40,7 +41,7 @@ impl Experiment {
                 return Err(FileError::at(
                     &file,
                     *line,
-                    format!("run \"{run}\" stands in the study already"),
+                    format!("run \"{run}\" is in the study already"),
                 ));
             }
         }
@@ -57,7 +58,7 @@ impl Experiment {
                 .map(|column| fields.remove(column.as_str()).unwrap_or_default());
             rows.push((line, row.collect()));
         }
-        let enlarged = with(written(&header, rows).map_err(|e| FileError::whole(&file, e))?);
+        let enlarged = with(written(&header, rows).map_err(fail)?);
         let runs = Experiment::parse(name, &enlarged)?.runs.len();
         Ok((enlarged, runs))
     }
@@ -80,15 +81,15 @@ fn records(file: &str, text: &str) -> Result<Records, FileError> {
 }
 
 /// The text of a CSV file; short rows are filled with blanks.
-fn written(header: &[String], rows: Vec<(usize, Vec<String>)>) -> Result<String, String> {
+fn written(header: &[String], rows: Vec<(usize, Vec<String>)>) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(header).map_err(|e| e.to_string())?;
+    writer.write_record(header)?;
     for (_, mut row) in rows {
         row.resize(header.len(), String::new());
-        writer.write_record(row).map_err(|e| e.to_string())?;
+        writer.write_record(row)?;
     }
-    let bytes = writer.into_inner().map_err(|e| e.to_string())?;
-    String::from_utf8(bytes).map_err(|e| e.to_string())
+    let bytes = writer.into_inner().map_err(|e| e.into_error())?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 #[cfg(test)]
@@ -121,7 +122,7 @@ mod tests {
         for (more, message) in [
             (
                 MORE.replace("three", "\"one, two\""),
-                "runs.csv line 4: run \"one, two\" stands in the study already",
+                "runs.csv line 4: run \"one, two\" is in the study already",
             ),
             (
                 MORE.replace("0.4,25", "1.4,25"),

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::check::ValueError;
 use super::history::{MeasuredHistory, averaged};
 use super::settings::{AveragingProtocol, SoilProperties};
 use super::table::{self, Columns, Row};
@@ -110,15 +111,15 @@ pub(super) fn parse(
         let run = row.test_run(wheels, soils)?;
         let history = row.text(HISTORY).map(str::to_owned);
         match first_line.insert(run.name.clone(), line) {
-            Some(first) => Err(format!(
-                "run \"{}\" stands twice (first on line {first})",
+            Some(first) => Err(ValueError::Rule(format!(
+                "run \"{}\" appears twice (first on line {first})",
                 run.name
-            )),
+            ))),
             None => Ok((run, history, line)),
         }
     })?;
     if rows.is_empty() {
-        return Err(FileError::whole(file, "no test run stands in the file"));
+        return Err(FileError::whole(file, "the file has no test run"));
     }
     let average = |(mut run, history, line): (TestRun, Option<String>, usize)| {
         if let Some(named) = history {
@@ -148,17 +149,18 @@ impl Row<'_> {
         &self,
         wheels: &BTreeMap<String, WheelGeometry>,
         soils: &BTreeMap<String, SoilProperties>,
-    ) -> Result<TestRun, String> {
+    ) -> Result<TestRun, ValueError> {
+        let rule = |message: String| Err(ValueError::Rule(message));
         let wheel = self.named("wheel", wheels)?;
         let slip = self.required("slip")?;
         if !(-1.0..1.0).contains(&slip) {
-            return Err(format!("slip {slip} must lie in [-1, 1)"));
+            return rule(format!("slip {slip} must lie in [-1, 1)"));
         }
         let wheel_load_n = self.positive("wheel_load_n", "N")?;
         let sled_speed_m_s = self.positive("sled_speed_m_s", "m/s")?;
         let slip_angle_deg = self.number("slip_angle_deg")?.unwrap_or(0.0);
         if slip_angle_deg.abs() > 90.0 {
-            return Err(format!(
+            return rule(format!(
                 "slip_angle_deg {slip_angle_deg} deg must lie in [-90, 90] deg"
             ));
         }
@@ -166,13 +168,13 @@ impl Row<'_> {
             None => 1,
             Some(text) => match text.parse::<u32>() {
                 Ok(pass) if pass >= 1 => pass,
-                _ => return Err(format!("pass \"{text}\" must be a whole number >= 1")),
+                _ => return rule(format!("pass \"{text}\" must be a whole number >= 1")),
             },
         };
         let usage = match self.text("use") {
             None | Some("fit") => RunUse::Fit,
             Some("holdout") => RunUse::Holdout,
-            Some(word) => return Err(format!("use \"{word}\" must be fit or holdout")),
+            Some(word) => return rule(format!("use \"{word}\" must be fit or holdout")),
         };
         let (mut measured, mut sd) = ([None; 4], [None; 4]);
         for channel in Channel::ALL {

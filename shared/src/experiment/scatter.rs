@@ -1,6 +1,6 @@
 //! Scatter that is stated relative to what it scatters: of the soil from run to run, of bevameter tests and readings.
 
-use super::check::RawSd;
+use super::check::{RawSd, ValueError};
 
 /// What scatters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,18 +72,19 @@ impl Scatter {
     }
 
     /// Reads a value; readings have noise, tests may have no scatter.
-    pub(super) fn read(self, raw: Option<RawSd>) -> Result<ScatterSd, String> {
+    pub(super) fn read(self, raw: Option<RawSd>) -> Result<ScatterSd, ValueError> {
         let key = self.key();
+        let rule = |message: String| Err(ValueError::Rule(message));
         match raw {
             None => Ok(ScatterSd::Known(self.usual())),
             Some(RawSd::Word(word)) if word == "unknown" => Ok(ScatterSd::Unknown),
-            Some(RawSd::Word(word)) => Err(format!("{key} = \"{word}\" must be a number or \"unknown\"")),
+            Some(RawSd::Word(word)) => rule(format!("{key} = \"{word}\" must be a number or \"unknown\"")),
             Some(RawSd::Number(x)) => {
                 let reading = matches!(self, Scatter::PlateReading | Scatter::RingReading);
                 match (0.0..=1.0).contains(&x) && (x > 0.0 || !reading) {
                     true => Ok(ScatterSd::Known(x)),
-                    false if reading => Err(format!("{key} {x} must be > 0 and <= 1: it is relative")),
-                    false => Err(format!("{key} {x} must lie in [0, 1]: it is relative")),
+                    false if reading => rule(format!("{key} {x} must be > 0 and <= 1: it is relative")),
+                    false => rule(format!("{key} {x} must lie in [0, 1]: it is relative")),
                 }
             }
         }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::check::{RawSd, not_negative, positive};
+use super::check::{RawSd, ValueError, not_negative, positive, require};
 use super::scatter::{Scatter, ScatterSd};
 use super::wheel::{RawWheel, WheelGeometry};
 use crate::channel::Channel;
@@ -183,7 +183,7 @@ pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError>
         meshes.extend(mesh.map(|file| (wheel_name.clone(), file)));
         wheels.insert(wheel_name, wheel);
     }
-    check_numbers(&raw.rig, &raw.soil, &raw.protocol).map_err(fail)?;
+    check_numbers(name, &raw.rig, &raw.soil, &raw.protocol)?;
     let noise = noise(raw.noise).map_err(|e| fail(format!("[noise] {e}")))?;
     Ok(ExperimentFile {
         runs: raw.runs,
@@ -198,19 +198,21 @@ pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError>
     })
 }
 
-/// Refuses numbers of rig, soils and protocol that are not finite or have the wrong sign.
+/// Rejects numbers of rig, soils and protocol that are not finite or have the wrong sign; messages name the table.
 fn check_numbers(
+    file: &str,
     rig: &Rig,
     soils: &BTreeMap<String, SoilProperties>,
     protocol: &AveragingProtocol,
-) -> Result<(), String> {
-    let in_rig = |e: String| format!("[rig] {e}");
+) -> Result<(), FileError> {
+    let within = |table: &str, e: ValueError| FileError::whole(file, format!("[{table}] {e}"));
+    let in_rig = |e| within("rig", e);
     positive("gravity_m_s2", rig.gravity_m_s2, "m/s^2").map_err(in_rig)?;
     if let Some(length) = rig.bin_length_m {
         positive("bin_length_m", length, "m").map_err(in_rig)?;
     }
     for (name, soil) in soils {
-        let in_soil = |e: String| format!("[soil.{name}] {e}");
+        let in_soil = |e| within(&format!("soil.{name}"), e);
         for (key, value, unit) in [
             ("density_kg_m3", soil.density_kg_m3, "kg/m^3"),
             ("repose_angle_deg", soil.repose_angle_deg, "deg"),
@@ -219,8 +221,8 @@ fn check_numbers(
                 positive(key, value, unit).map_err(in_soil)?;
             }
         }
-        if let Some(angle) = soil.repose_angle_deg.filter(|&angle| angle >= 90.0) {
-            return Err(in_soil(format!("repose_angle_deg {angle} deg must be < 90 deg")));
+        if let Some(angle) = soil.repose_angle_deg {
+            require(angle < 90.0, "repose_angle_deg", angle, "deg", "< 90").map_err(in_soil)?;
         }
     }
     for (key, value, unit) in [
@@ -237,12 +239,12 @@ fn check_numbers(
         ),
         ("lowpass_hz", protocol.lowpass_hz, "Hz"),
     ] {
-        not_negative(key, value, unit).map_err(|e| format!("[protocol] {e}"))?;
+        not_negative(key, value, unit).map_err(|e| within("protocol", e))?;
     }
     Ok(())
 }
 
-fn noise(raw: RawNoise) -> Result<Noise, String> {
+fn noise(raw: RawNoise) -> Result<Noise, ValueError> {
     let relative = [
         raw.run_scatter,
         raw.plate_scatter,
@@ -273,9 +275,9 @@ fn noise(raw: RawNoise) -> Result<Noise, String> {
                 "unknown" => Some(NoiseSd::Unknown),
                 _ => {
                     let column = channel.column();
-                    return Err(format!(
+                    return Err(ValueError::Rule(format!(
                         "{column} = \"{word}\" must be a number, \"replicates\" or \"unknown\""
-                    ));
+                    )));
                 }
             },
         };

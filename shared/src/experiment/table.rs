@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::check::{ValueError, not_negative, positive};
 use crate::file::{FileError, unknown_word};
 
 /// Which columns a file may and must have.
@@ -14,18 +15,19 @@ pub(super) struct Columns<'a> {
 
 impl Columns<'_> {
     /// Where each column stands in the header.
-    fn find(&self, header: &csv::StringRecord) -> Result<BTreeMap<String, usize>, String> {
+    fn find(&self, header: &csv::StringRecord) -> Result<BTreeMap<String, usize>, ValueError> {
         let mut positions = BTreeMap::new();
         for (position, name) in header.iter().enumerate() {
             if !self.known.contains(&name) {
-                return Err(unknown_word("column", name, self.known.iter().copied()));
+                let known = self.known.iter().copied();
+                return Err(ValueError::Unknown(unknown_word("column", name, known)));
             }
             if positions.insert(name.to_owned(), position).is_some() {
-                return Err(format!("column \"{name}\" stands twice"));
+                return Err(ValueError::Rule(format!("column \"{name}\" appears twice")));
             }
         }
         match self.required.iter().find(|&&c| !positions.contains_key(c)) {
-            Some(missing) => Err(format!("column \"{missing}\" is missing")),
+            Some(missing) => Err(ValueError::Rule(format!("column \"{missing}\" is missing"))),
             None => Ok(positions),
         }
     }
@@ -48,7 +50,7 @@ pub(super) fn rows<T>(
     file: &str,
     text: &str,
     columns: &Columns<'_>,
-    mut row: impl FnMut(&Row<'_>, usize) -> Result<T, String>,
+    mut row: impl FnMut(&Row<'_>, usize) -> Result<T, ValueError>,
 ) -> Result<Vec<T>, FileError> {
     let mut reader = reader(text);
     let header = reader
@@ -57,7 +59,7 @@ pub(super) fn rows<T>(
         .clone();
     let positions = columns
         .find(&header)
-        .map_err(|e| FileError::at(file, line_of(text, &header), e))?;
+        .map_err(|e| FileError::at(file, line_of(text, &header), e.to_string()))?;
     let mut parsed = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| FileError::whole(file, e.to_string()))?;
@@ -70,7 +72,7 @@ pub(super) fn rows<T>(
             positions: &positions,
             record: &record,
         };
-        parsed.push(row(&fields, line).map_err(|e| FileError::at(file, line, e))?);
+        parsed.push(row(&fields, line).map_err(|e| FileError::at(file, line, e.to_string()))?);
     }
     Ok(parsed)
 }
@@ -109,57 +111,55 @@ impl Row<'_> {
     }
 
     /// The field of a column, which must not be blank.
-    pub(super) fn word(&self, column: &str) -> Result<&str, String> {
-        self.text(column).ok_or_else(|| format!("{column} is blank"))
+    pub(super) fn word(&self, column: &str) -> Result<&str, ValueError> {
+        self.text(column)
+            .ok_or_else(|| ValueError::Blank(column.to_owned()))
     }
 
     /// A finite number; `None` where the field is blank or the column absent.
-    pub(super) fn number(&self, column: &str) -> Result<Option<f64>, String> {
+    pub(super) fn number(&self, column: &str) -> Result<Option<f64>, ValueError> {
         let Some(text) = self.text(column) else {
             return Ok(None);
         };
-        let value: f64 = text
-            .parse()
-            .map_err(|_| format!("{column} \"{text}\" is not a number"))?;
-        if value.is_finite() {
-            Ok(Some(value))
-        } else {
-            Err(format!("{column} {value} is not a finite number"))
+        let key = column.to_owned();
+        match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(Some(value)),
+            Ok(value) => Err(ValueError::NotFinite { key, value }),
+            Err(_) => Err(ValueError::NotNumber {
+                key,
+                text: text.to_owned(),
+            }),
         }
     }
 
     /// A finite number that must be there.
-    pub(super) fn required(&self, column: &str) -> Result<f64, String> {
-        self.number(column)?.ok_or_else(|| format!("{column} is blank"))
+    pub(super) fn required(&self, column: &str) -> Result<f64, ValueError> {
+        self.number(column)?
+            .ok_or_else(|| ValueError::Blank(column.to_owned()))
     }
 
     /// A number above 0 that must be there.
-    pub(super) fn positive(&self, column: &str, unit: &str) -> Result<f64, String> {
+    pub(super) fn positive(&self, column: &str, unit: &str) -> Result<f64, ValueError> {
         let value = self.required(column)?;
-        if value > 0.0 {
-            Ok(value)
-        } else {
-            Err(format!("{column} {value} {unit} must be > 0 {unit}"))
-        }
+        positive(column, value, unit)?;
+        Ok(value)
     }
 
     /// A number of at least 0 that must be there.
-    pub(super) fn not_negative(&self, column: &str, unit: &str) -> Result<f64, String> {
+    pub(super) fn not_negative(&self, column: &str, unit: &str) -> Result<f64, ValueError> {
         let value = self.required(column)?;
-        if value >= 0.0 {
-            Ok(value)
-        } else {
-            Err(format!("{column} {value} {unit} must be >= 0 {unit}"))
-        }
+        not_negative(column, value, unit)?;
+        Ok(value)
     }
 
     /// A name that must be one of `known`.
-    pub(super) fn named<T>(&self, column: &str, known: &BTreeMap<String, T>) -> Result<String, String> {
+    pub(super) fn named<T>(&self, column: &str, known: &BTreeMap<String, T>) -> Result<String, ValueError> {
         let name = self.word(column)?;
         if known.contains_key(name) {
             Ok(name.to_owned())
         } else {
-            Err(unknown_word(column, name, known.keys().map(String::as_str)))
+            let known = known.keys().map(String::as_str);
+            Err(ValueError::Unknown(unknown_word(column, name, known)))
         }
     }
 }

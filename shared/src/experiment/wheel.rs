@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::check::{not_negative, positive};
+use super::check::{ValueError, not_negative, positive};
 use super::mesh::{self, WheelMesh};
 
 /// Speed of the rim `[m/s]` by the rig's radius: `v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the sled speed `[m/s]`.
@@ -43,12 +43,12 @@ impl WheelGeometry {
     }
 
     /// Refuses a sinkage `[m]` beyond the wheel's diameter, which is a mistake of units.
-    pub(super) fn check_sinkage(&self, sinkage_m: f64) -> Result<(), String> {
+    pub(super) fn check_sinkage(&self, sinkage_m: f64) -> Result<(), ValueError> {
         let diameter = 2.0 * self.radius_m;
         if sinkage_m.abs() > diameter {
-            return Err(format!(
+            return Err(ValueError::Rule(format!(
                 "sinkage_m {sinkage_m} m is more than the wheel's diameter {diameter} m: metres are expected, were these millimetres?"
-            ));
+            )));
         }
         Ok(())
     }
@@ -81,7 +81,7 @@ pub(super) struct RawWheel {
 
 impl RawWheel {
     /// The wheel without its mesh, and the name of the mesh's file.
-    pub(super) fn check(self) -> Result<(WheelGeometry, Option<String>), String> {
+    pub(super) fn check(self) -> Result<(WheelGeometry, Option<String>), ValueError> {
         let wheel = WheelGeometry {
             radius_m: self.radius_m,
             width_m: self.width_m,
@@ -99,9 +99,9 @@ impl RawWheel {
                 ("grouser_thickness_m", self.grouser_thickness_m.is_some()),
             ] {
                 if stated {
-                    return Err(format!(
-                        "{key} stands beside mesh = \"{file}\": grousers are part of the surface"
-                    ));
+                    return Err(ValueError::Rule(format!(
+                        "{key} has no place beside mesh = \"{file}\": grousers are part of the surface"
+                    )));
                 }
             }
         }

@@ -6,6 +6,7 @@ use formula::effect::Mechanism;
 use formula::{Hook, Variable};
 
 use super::effects::EffectSet;
+use super::error::ModelError;
 use super::kind::ModelKind;
 use super::spatial::DisplacementFrame;
 use super::variant::ModelVariant;
@@ -16,18 +17,17 @@ impl ModelVariant {
     /// wheel rolls, and nothing is asked of it.
     ///
     /// # Errors
-    /// A sentence that names what the model of this kind lacks.
-    pub fn check_expressible(&self, effects: &EffectSet) -> Result<(), String> {
+    /// [`ModelError`] names what the model of this kind lacks.
+    pub fn check_expressible(&self, effects: &EffectSet) -> Result<(), ModelError> {
         if self.conditions.is_empty() {
             return Ok(());
         }
         if let Some(spatial) = &self.spatial {
             spatial.check_protocol(&self.protocol)?;
             if spatial.displacement != DisplacementFrame::Rim && effects.using(Variable::J).is_none() {
-                return Err(
-                    "displacement has no effect without an effect that uses j, such as janosi_hanamoto"
-                        .into(),
-                );
+                let message =
+                    "displacement has no effect without an effect that uses j, such as janosi_hanamoto";
+                return Err(ModelError::Inexpressible(message.to_owned()));
             }
         }
         let meshes: BTreeSet<&str> = self.conditions.iter().map(|c| c.wheel.as_str()).collect();
@@ -40,14 +40,14 @@ impl ModelVariant {
                     .iter()
                     .find(|n| parameters::SPATIAL.iter().any(|p| p.name == **n))
                 {
-                    return Err(format!(
+                    return Err(ModelError::Inexpressible(format!(
                         "{name}: quasi_static has no terrain that deforms; use kind = \"scm\""
-                    ));
+                    )));
                 }
                 match meshes.first() {
-                    Some(wheel) => Err(format!(
+                    Some(wheel) => Err(ModelError::Inexpressible(format!(
                         "wheel {wheel} is a surface mesh: quasi_static rolls a smooth cylinder; use kind = \"scm\""
-                    )),
+                    ))),
                     None => Ok(()),
                 }
             }
@@ -60,14 +60,14 @@ impl ModelVariant {
         effects: &EffectSet,
         names: &BTreeSet<&str>,
         meshes: &BTreeSet<&str>,
-    ) -> Result<(), String> {
+    ) -> Result<(), ModelError> {
         let Some(wheel) = meshes.first() else {
             return Ok(());
         };
         if names.iter().any(|n| n.starts_with("wheel_radius_m")) {
-            return Err(format!(
+            return Err(ModelError::Inexpressible(format!(
                 "wheel {wheel} is a surface mesh, which has its radius: wheel_radius_m cannot be a parameter"
-            ));
+            )));
         }
         for effect in effects.iter() {
             let wheels: BTreeSet<&str> = self.wheels.keys().map(String::as_str).collect();
@@ -75,10 +75,10 @@ impl ModelVariant {
             let dimension = effect.hooks().find(|h| [Hook::Radius, Hook::Width].contains(h));
             let shapes = effect.mechanism == Some(Mechanism::FlatPatch) || dimension.is_some();
             if let Some(wheel) = meshes.intersection(&reach).next().filter(|_| shapes) {
-                return Err(format!(
+                return Err(ModelError::Inexpressible(format!(
                     "effect {} reshapes the rim: wheel {wheel} is a surface mesh, which has its shape",
                     effect.name
-                ));
+                )));
             }
         }
         Ok(())

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use utoipa::ToSchema;
 
+use super::error::ModelError;
 use crate::file::{FileError, unknown_word};
 use crate::parameters::{self, ParameterBounds};
 
@@ -106,9 +107,10 @@ impl EffectSet {
     }
 
     /// Refuses more effects than a job may have.
-    pub(super) fn check_count(count: usize) -> Result<(), String> {
+    pub(super) fn check_count(count: usize) -> Result<(), ModelError> {
         if count > Self::MOST {
-            return Err(format!("{count} effects must be at most {}", Self::MOST));
+            let message = format!("{count} effects must be at most {}", Self::MOST);
+            return Err(ModelError::Invalid(message));
         }
         Ok(())
     }
@@ -116,12 +118,16 @@ impl EffectSet {
     /// Reads effects that have travelled.
     ///
     /// # Errors
-    /// A sentence that names the effect and what is wrong with its file.
-    pub fn read(texts: &[EffectText]) -> Result<Self, String> {
+    /// [`ModelError`] names the effect and what is wrong with its file.
+    pub fn read(texts: &[EffectText]) -> Result<Self, ModelError> {
         let read = |sent: &EffectText| {
-            let effect = Effect::read(&sent.text).map_err(|e| format!("effect {}: {e}", sent.name))?;
+            let name = sent.name.clone();
+            let effect = Effect::read(&sent.text).map_err(|error| ModelError::Effect { name, error })?;
             if effect.name != sent.name {
-                return Err(format!("effect {} came as {}", effect.name, sent.name));
+                return Err(ModelError::EffectName {
+                    own: effect.name,
+                    sent: sent.name.clone(),
+                });
             }
             Ok(Chosen { effect, file: None })
         };
@@ -150,17 +156,18 @@ impl EffectSet {
     /// The parameter of an effect behind a name, `None` where the name is none of an effect.
     ///
     /// # Errors
-    /// A sentence that names what is unknown, and the nearest known.
-    pub fn lookup(&self, name: &str, wheels: &BTreeSet<&str>) -> Option<Result<ParameterBounds, String>> {
+    /// [`ModelError`] names what is unknown, and the nearest known.
+    pub fn lookup(&self, name: &str, wheels: &BTreeSet<&str>) -> Option<Result<ParameterBounds, ModelError>> {
         let (effect, parameter, wheel) = parts(name)?;
         Some(self.find(effect).and_then(|effect| {
             let known = effect.parameters.iter().map(|p| p.name.as_str());
             let Some(place) = effect.parameter(parameter) else {
                 let what = format!("parameter of effect {}", effect.name);
-                return Err(unknown_word(&what, parameter, known));
+                return Err(ModelError::Unknown(unknown_word(&what, parameter, known)));
             };
             if let Some(unknown) = wheel.filter(|w| !wheels.contains(w)) {
-                return Err(unknown_word("wheel", unknown, wheels.iter().copied()));
+                let known = wheels.iter().copied();
+                return Err(ModelError::Unknown(unknown_word("wheel", unknown, known)));
             }
             let parameter = &effect.parameters[place];
             // the prior of the file says whether it is a magnitude; nothing else is known of it
@@ -174,11 +181,11 @@ impl EffectSet {
         }))
     }
 
-    fn find(&self, name: &str) -> Result<&Effect, String> {
+    fn find(&self, name: &str) -> Result<&Effect, ModelError> {
         let names = || self.iter().map(|effect| effect.name.as_str());
         self.iter().find(|effect| effect.name == name).ok_or_else(|| {
             let catalogue = catalogue().iter().map(|effect| effect.name.as_str());
-            unknown_word("effect", name, names().chain(catalogue))
+            ModelError::Unknown(unknown_word("effect", name, names().chain(catalogue)))
         })
     }
 
@@ -216,12 +223,12 @@ impl EffectSet {
     /// Checks the names of effects' parameters against each other, and that nothing is missing.
     ///
     /// # Errors
-    /// A sentence that names the parameter.
+    /// [`ModelError`] names the parameter.
     pub(crate) fn check_complete(
         &self,
         names: &BTreeSet<&str>,
         wheels: &BTreeSet<&str>,
-    ) -> Result<(), String> {
+    ) -> Result<(), ModelError> {
         for chosen in &self.0 {
             let effect = &chosen.effect;
             let reach = Reach::of(effect, names, wheels);
@@ -230,20 +237,20 @@ impl EffectSet {
                 let Some(wheel) = one else { continue };
                 let name = parameter_name(effect, parameter, None);
                 if reach.says(parameter, None) {
-                    return Err(format!("{name} is given both for all wheels and for one wheel"));
+                    return Err(ModelError::Incomplete(format!(
+                        "{name} is given both for all wheels and for one wheel"
+                    )));
                 }
                 if !reach.wheels.contains(wheel) {
-                    return Err(format!(
+                    return Err(ModelError::Inexpressible(format!(
                         "{name}.{wheel} has no effect: effect {} does not act on wheel {wheel}",
                         effect.name
-                    ));
+                    )));
                 }
             }
         }
         match self.unsaid(names, wheels).first() {
-            Some(Unsaid { name, .. }) => {
-                Err(format!("parameter {name} has neither a prior nor a fixed value"))
-            }
+            Some(Unsaid { name, .. }) => Err(ModelError::Unset(name.clone())),
             None => Ok(()),
         }
     }
@@ -401,6 +408,7 @@ mod tests {
             let names = names.iter().copied().collect();
             set.check_complete(&names, &BTreeSet::from(["w", "x"]))
                 .unwrap_err()
+                .to_string()
         };
         assert_eq!(
             check(&["mine.a", "mine.a.w", "mine.v_a"]),

@@ -4,6 +4,7 @@ use statistics::Metamodel;
 
 use super::companion::Companion;
 use super::effects::EffectSet;
+use super::error::ModelError;
 use super::kind::ModelKind;
 use super::variant::ModelVariant;
 use crate::parameters;
@@ -12,8 +13,8 @@ impl ModelVariant {
     /// The same conditions and parameters for the quasi-static model.
     ///
     /// # Errors
-    /// A sentence that names what that model cannot express.
-    pub fn coarse(&self) -> Result<ModelVariant, String> {
+    /// [`ModelError`] names what that model cannot express.
+    pub fn coarse(&self) -> Result<ModelVariant, ModelError> {
         let coarse = ModelVariant {
             kind: ModelKind::QuasiStatic,
             spatial: None,

@@ -4,6 +4,7 @@
 //! - `kind`: the models by name; [`settings`]: the table `[model]` of a job; [`spatial`]: settings of the
 //!   three-dimensional model.
 //! - [`effects`]: the effects of a job, their order and their parameters.
+//! - `error`: why a model cannot be set up.
 //! - `names`: what parameter names mean, and whether a set of them is complete.
 //! - `variant`: [`ModelVariant`], with the runs and readings (`condition`) to simulate; `capability`: whether its model can
 //!   express it.
@@ -13,6 +14,7 @@ mod capability;
 mod companion;
 mod condition;
 pub mod effects;
+mod error;
 mod kind;
 mod metamodel;
 mod names;
@@ -23,6 +25,7 @@ mod variant;
 pub use companion::Companion;
 pub use condition::{PlateCondition, RingCondition, RunCondition};
 pub use effects::{EffectSet, EffectText};
+pub use error::ModelError;
 pub use kind::ModelKind;
 pub use names::{check_complete, lookup};
 pub use settings::ModelSettings;

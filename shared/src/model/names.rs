@@ -3,14 +3,19 @@
 use std::collections::BTreeSet;
 
 use super::effects::EffectSet;
+use super::error::ModelError;
 use crate::file::unknown_word;
 use crate::parameters::{BASE, ParameterBounds, RING_TRANSFER, SPATIAL};
 
 /// What is known of the parameter behind a name: of the model, of one of its wheels, of an effect.
 ///
 /// # Errors
-/// A sentence that names the unknown name and the nearest known one.
-pub fn lookup(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<ParameterBounds, String> {
+/// [`ModelError`] names the unknown name and the nearest known one.
+pub fn lookup(
+    name: &str,
+    wheels: &BTreeSet<&str>,
+    effects: &EffectSet,
+) -> Result<ParameterBounds, ModelError> {
     if name == RING_TRANSFER {
         return Ok(ParameterBounds {
             unit: "1".to_owned(),
@@ -28,16 +33,17 @@ pub fn lookup(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Resul
             if wheels.contains(w) {
                 Ok(p.into())
             } else {
-                Err(unknown_word("wheel", w, wheels.iter().copied()))
+                let known = wheels.iter().copied();
+                Err(ModelError::Unknown(unknown_word("wheel", w, known)))
             }
         }
-        (Some(p), Some(_)) => Err(format!(
+        (Some(p), Some(_)) => Err(ModelError::Invalid(format!(
             "parameter {} belongs to the soil, not to one wheel: \"{name}\"",
             p.name
-        )),
+        ))),
         (None, _) => effects.lookup(name, wheels).unwrap_or_else(|| {
             let known = BASE.iter().chain(&SPATIAL).map(|p| p.name);
-            Err(unknown_word("parameter", name, known))
+            Err(ModelError::Unknown(unknown_word("parameter", name, known)))
         }),
     }
 }
@@ -46,31 +52,32 @@ pub fn lookup(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Resul
 /// angle present, everything said of every effect, nothing given both for one wheel and for all.
 ///
 /// # Errors
-/// A sentence that names what is missing or said twice.
+/// [`ModelError`] names what is missing or given twice.
 pub fn check_complete(
     names: &BTreeSet<&str>,
     wheels: &BTreeSet<&str>,
     effects: &EffectSet,
-) -> Result<(), String> {
+) -> Result<(), ModelError> {
     for name in names {
         lookup(name, wheels, effects)?;
     }
+    let incomplete = |message: &str| Err(ModelError::Incomplete(message.to_owned()));
     let has = |name| names.contains(name);
     match (has("k_c") && has("k_phi"), has("log10_p_ref") && has("kappa")) {
-        (true, false) if has("log10_p_ref") || has("kappa") => return Err(BOTH_STIFFNESSES.into()),
-        (false, true) if has("k_c") || has("k_phi") => return Err(BOTH_STIFFNESSES.into()),
-        (true, true) => return Err(BOTH_STIFFNESSES.into()),
-        (false, false) => return Err("the stiffness needs k_c and k_phi, or log10_p_ref and kappa".into()),
+        (true, false) if has("log10_p_ref") || has("kappa") => return incomplete(BOTH_STIFFNESSES),
+        (false, true) if has("k_c") || has("k_phi") => return incomplete(BOTH_STIFFNESSES),
+        (true, true) => return incomplete(BOTH_STIFFNESSES),
+        (false, false) => return incomplete("the stiffness needs k_c and k_phi, or log10_p_ref and kappa"),
         _ => {}
     }
     for name in ["n", "friction_angle_deg"] {
         if !has(name) {
-            return Err(format!("parameter {name} has neither a prior nor a fixed value"));
+            return Err(ModelError::Unset(name.to_owned()));
         }
     }
     let per_wheel = names.iter().any(|n| n.starts_with("wheel_radius_m."));
     if has("wheel_radius_m") && per_wheel {
-        return Err("wheel_radius_m is given both for all wheels and for one wheel".into());
+        return incomplete("wheel_radius_m is given both for all wheels and for one wheel");
     }
     effects.check_complete(names, wheels)
 }
@@ -82,7 +89,7 @@ mod tests {
     use super::*;
     use crate::parameters::check_value;
 
-    fn check(names: &[&str]) -> Result<(), String> {
+    fn check(names: &[&str]) -> Result<(), ModelError> {
         let (wheels, none) = (BTreeSet::from(["smooth"]), EffectSet::default());
         check_complete(&names.iter().copied().collect(), &wheels, &none)
     }
@@ -97,11 +104,13 @@ mod tests {
         assert!(
             check(&["k_c", "k_phi", "kappa", "n", "friction_angle_deg"])
                 .unwrap_err()
+                .to_string()
                 .contains("twice")
         );
         assert!(
             check(&["k_c", "n", "friction_angle_deg"])
                 .unwrap_err()
+                .to_string()
                 .contains("needs")
         );
     }
@@ -114,7 +123,10 @@ mod tests {
             &EffectSet::default(),
         )
         .unwrap_err();
-        assert_eq!(error, "unknown wheel \"smoth\"; the nearest known is \"smooth\"");
+        assert_eq!(
+            error.to_string(),
+            "unknown wheel \"smoth\"; the nearest known is \"smooth\""
+        );
     }
 
     #[test]
@@ -123,16 +135,18 @@ mod tests {
         let effects = EffectSet::choose("job.toml", (&[], &[]), [name], &Default::default()).unwrap();
         let lookup = |name: &str| lookup(name, &BTreeSet::from(["w"]), &effects);
         assert_eq!(
-            check_value(&lookup(name).unwrap(), name, -0.01).unwrap_err(),
+            check_value(&lookup(name).unwrap(), name, -0.01)
+                .unwrap_err()
+                .to_string(),
             "janosi_hanamoto.shear_modulus_m = -0.01 m lies outside [0, inf] m"
         );
         assert_eq!(lookup("janosi_hanamoto.shear_modulus_m.w").unwrap().unit, "m");
         assert_eq!(
-            lookup("janosi_hanamoto.shear_modulus").unwrap_err(),
+            lookup("janosi_hanamoto.shear_modulus").unwrap_err().to_string(),
             "unknown parameter of effect janosi_hanamoto \"shear_modulus\"; the nearest known is \"shear_modulus_m\""
         );
         assert_eq!(
-            lookup("buldozing.scale").unwrap_err(),
+            lookup("buldozing.scale").unwrap_err().to_string(),
             "unknown effect \"buldozing\"; the nearest known is \"bulldozing\""
         );
     }
@@ -141,9 +155,12 @@ mod tests {
     fn a_value_outside_its_bounds_names_value_unit_and_bound() {
         let phi = lookup("friction_angle_deg", &BTreeSet::new(), &EffectSet::default()).unwrap();
         let error = check_value(&phi, "friction_angle_deg", 95.0).unwrap_err();
-        assert_eq!(error, "friction_angle_deg = 95 deg lies outside [0, 89] deg");
+        assert_eq!(
+            error.to_string(),
+            "friction_angle_deg = 95 deg lies outside [0, 89] deg"
+        );
         let n = lookup("n", &BTreeSet::new(), &EffectSet::default()).unwrap();
         let error = check_value(&n, "n", -1.0).unwrap_err();
-        assert_eq!(error, "n = -1 lies outside [0.01, 10]");
+        assert_eq!(error.to_string(), "n = -1 lies outside [0.01, 10]");
     }
 }

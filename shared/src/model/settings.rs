@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::effects::EffectSet;
+use super::error::ModelError;
 use super::kind::ModelKind;
 use super::spatial::SpatialSettings;
 use formula::catalogue;
@@ -29,8 +30,8 @@ impl ModelSettings {
     /// Reads the table `[model]`.
     ///
     /// # Errors
-    /// A sentence that names the key, the value and what is allowed.
-    pub fn from_table(table: &toml::Table) -> Result<Self, String> {
+    /// [`ModelError`] names the key, the value and what is allowed.
+    pub fn from_table(table: &toml::Table) -> Result<Self, ModelError> {
         let mut kind = None;
         let mut fixed = BTreeMap::new();
         let mut spatial = toml::Table::new();
@@ -41,7 +42,10 @@ impl ModelSettings {
                     kind = Some(match name.as_str() {
                         "quasi_static" => ModelKind::QuasiStatic,
                         "scm" => ModelKind::Scm,
-                        other => return Err(unknown_word("kind", other, ["quasi_static", "scm"])),
+                        other => {
+                            let known = ["quasi_static", "scm"];
+                            return Err(ModelError::Unknown(unknown_word("kind", other, known)));
+                        }
                     });
                 }
                 ("effects", names) => effects = words("effects", names)?,
@@ -54,14 +58,15 @@ impl ModelSettings {
                 }
             }
         }
-        let kind = kind.ok_or("kind is missing: \"quasi_static\" or \"scm\"")?;
+        let missing = || ModelError::Incomplete("kind is missing: \"quasi_static\" or \"scm\"".to_owned());
+        let kind = kind.ok_or_else(missing)?;
         let spatial = match kind {
             ModelKind::Scm => Some(SpatialSettings::from_table(spatial)?),
             ModelKind::QuasiStatic => match spatial.keys().next() {
                 Some(key) => {
-                    return Err(format!(
+                    return Err(ModelError::Invalid(format!(
                         "{key}: quasi_static has no terrain of nodes; use kind = \"scm\""
-                    ));
+                    )));
                 }
                 None => None,
             },
@@ -80,18 +85,18 @@ impl ModelSettings {
     /// Adds effects of the catalogue by name, and files of others.
     ///
     /// # Errors
-    /// A sentence that names the effect that is unknown or stands there already, or how many are too many.
-    pub fn add_effects(&mut self, effects: &[String], files: &[String]) -> Result<(), String> {
+    /// [`ModelError`] names the effect that is unknown or stands there already, or how many are too many.
+    pub fn add_effects(&mut self, effects: &[String], files: &[String]) -> Result<(), ModelError> {
         // First of all: what follows takes each name against every other.
         EffectSet::check_count(self.effects.len() + self.effect_files.len() + effects.len() + files.len())?;
         for name in effects {
             if name.ends_with(".toml") {
-                return Err(format!(
+                return Err(ModelError::Invalid(format!(
                     "effects: \"{name}\" looks like a file, which stands under effect_files"
-                ));
+                )));
             }
             if catalogue::find(name).is_none() {
-                return Err(unknown_effect(name));
+                return Err(ModelError::Unknown(unknown_effect(name)));
             }
         }
         for (key, list, more) in [
@@ -100,7 +105,7 @@ impl ModelSettings {
         ] {
             for name in more {
                 if list.contains(name) {
-                    return Err(format!("{key}: \"{name}\" stands twice"));
+                    return Err(ModelError::Invalid(format!("{key}: \"{name}\" appears twice")));
                 }
                 list.push(name.clone());
             }
@@ -110,10 +115,10 @@ impl ModelSettings {
 }
 
 /// A list of words.
-fn words(key: &str, value: &toml::Value) -> Result<Vec<String>, String> {
+fn words(key: &str, value: &toml::Value) -> Result<Vec<String>, ModelError> {
     let word = |v: &toml::Value| v.as_str().map(str::to_owned);
     let words: Option<Vec<String>> = value.as_array().and_then(|list| list.iter().map(word).collect());
-    words.ok_or_else(|| format!("{key} = {value} must be a list of names in quotes"))
+    words.ok_or_else(|| ModelError::Invalid(format!("{key} = {value} must be a list of names in quotes")))
 }
 
 /// `unknown effect "bulldosing"; the nearest known is "bulldozing"`.
@@ -125,9 +130,11 @@ pub fn unknown_effect(name: &str) -> String {
     )
 }
 
-fn fixed_parameter(key: &str, value: &toml::Value) -> Result<f64, String> {
+fn fixed_parameter(key: &str, value: &toml::Value) -> Result<f64, ModelError> {
     if let Some(within) = value.as_table().and_then(|table| table.keys().next()) {
-        return Err(format!("write the name in quotes: \"{key}.{within}\""));
+        return Err(ModelError::Invalid(format!(
+            "write the name in quotes: \"{key}.{within}\""
+        )));
     }
     // what stands before a dot may be an effect of a file that is still to be read
     let base = parameters::BASE
@@ -136,9 +143,10 @@ fn fixed_parameter(key: &str, value: &toml::Value) -> Result<f64, String> {
         .map(|p| p.name);
     if !key.contains('.') && !base.clone().any(|name| name == key) {
         let names = base.chain(["kind", "effects", "effect_files"]);
-        return Err(unknown_word("key", key, names.chain(SpatialSettings::KEYS)));
+        let names = names.chain(SpatialSettings::KEYS);
+        return Err(ModelError::Unknown(unknown_word("key", key, names)));
     }
-    number(value).ok_or_else(|| format!("{key} must be a number, not {value}"))
+    number(value).ok_or_else(|| ModelError::Invalid(format!("{key} must be a number, not {value}")))
 }
 
 #[cfg(test)]
@@ -148,13 +156,15 @@ mod tests {
     #[test]
     fn a_list_that_is_too_long_is_refused_for_its_length_alone() {
         for (key, end) in [("effects", ""), ("effect_files", ".toml")] {
-            // none of them is known, and the last stands twice
+            // none of them is known, and the last appears twice
             let mut names: Vec<String> = (0..60_000).map(|i| format!("\"e{i}{end}\"")).collect();
             names[59_999] = names[0].clone();
             let table = format!("kind = \"scm\"\n{key} = [{}]", names.join(", "));
             assert_eq!(
-                ModelSettings::from_table(&toml::from_str(&table).unwrap()),
-                Err("60000 effects must be at most 10".to_owned())
+                ModelSettings::from_table(&toml::from_str(&table).unwrap())
+                    .unwrap_err()
+                    .to_string(),
+                "60000 effects must be at most 10"
             );
         }
     }

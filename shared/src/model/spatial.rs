@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::error::ModelError;
 use crate::experiment::{AveragingProtocol, ProtocolKind};
 
 /// Length of a simulated run of the `paper` protocol `[s]`.
@@ -93,12 +94,13 @@ impl SpatialSettings {
     /// Reads the keys that stand in `[model]`.
     ///
     /// # Errors
-    /// A sentence that names the key, the value and what is allowed.
-    pub fn from_table(table: toml::Table) -> Result<Self, String> {
+    /// [`ModelError`] names the key, the value and what is allowed.
+    pub fn from_table(table: toml::Table) -> Result<Self, ModelError> {
         let damped = table.contains_key("damping_n_s_m");
-        let settings: SpatialSettings = table
-            .try_into()
-            .map_err(|e: toml::de::Error| e.to_string().trim().replace('`', "\"").replace('\n', " "))?;
+        let settings: SpatialSettings = table.try_into().map_err(|e: toml::de::Error| {
+            let message = e.to_string().trim().replace('`', "\"").replace('\n', " ");
+            ModelError::Invalid(message)
+        })?;
         for (key, value, unit) in [
             ("dem_spacing_m", settings.dem_spacing_m, " m"),
             ("travel_step_m", settings.travel_step_m, " m"),
@@ -106,15 +108,20 @@ impl SpatialSettings {
             ("steady_travel_m", settings.steady_travel_m, " m"),
         ] {
             if !(value.is_finite() && value > 0.0) {
-                return Err(format!("{key} {value}{unit} must be > 0{unit}"));
+                return Err(ModelError::Invalid(format!(
+                    "{key} {value}{unit} must be > 0{unit}"
+                )));
             }
         }
         if damped && settings.vertical == HubMotion::Balance {
-            return Err("damping_n_s_m has no effect without vertical = \"dynamic\"".into());
+            let message = "damping_n_s_m has no effect without vertical = \"dynamic\"";
+            return Err(ModelError::Inexpressible(message.to_owned()));
         }
         let damping = settings.damping_n_s_m;
         if !(damping.is_finite() && damping >= 0.0) {
-            return Err(format!("damping_n_s_m {damping} N s/m must be >= 0 N s/m"));
+            return Err(ModelError::Invalid(format!(
+                "damping_n_s_m {damping} N s/m must be >= 0 N s/m"
+            )));
         }
         Ok(settings)
     }
@@ -122,8 +129,8 @@ impl SpatialSettings {
     /// Checks that a protocol can be followed with these settings, and that each has an effect.
     ///
     /// # Errors
-    /// A sentence that names the key, the value and what is allowed.
-    pub fn check_protocol(&self, protocol: &AveragingProtocol) -> Result<(), String> {
+    /// [`ModelError`] names the key, the value and what is allowed.
+    pub fn check_protocol(&self, protocol: &AveragingProtocol) -> Result<(), ModelError> {
         if protocol.kind == ProtocolKind::Steady {
             return Ok(());
         }
@@ -137,7 +144,9 @@ impl SpatialSettings {
             ("steady_travel_m", self.steady_travel_m, default.steady_travel_m),
         ] {
             if value.to_bits() != default.to_bits() {
-                return Err(format!("{key} has no effect with [protocol] kind = \"paper\""));
+                return Err(ModelError::Invalid(format!(
+                    "{key} has no effect with [protocol] kind = \"paper\""
+                )));
             }
         }
         for (key, value) in [
@@ -151,17 +160,17 @@ impl SpatialSettings {
             ),
         ] {
             if value >= PAPER_DURATION_S {
-                return Err(format!(
+                return Err(ModelError::Invalid(format!(
                     "[protocol] {key} {value} s must be < {PAPER_DURATION_S} s, the length of the simulated run"
-                ));
+                )));
             }
         }
         let lowpass = protocol.lowpass_hz;
         if lowpass >= 0.5 * SAMPLES_HZ {
-            return Err(format!(
+            return Err(ModelError::Invalid(format!(
                 "[protocol] lowpass_hz {lowpass} Hz must be < {} Hz, half of the {SAMPLES_HZ} samples a second",
                 0.5 * SAMPLES_HZ
-            ));
+            )));
         }
         Ok(())
     }
@@ -171,7 +180,7 @@ impl SpatialSettings {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<SpatialSettings, String> {
+    fn read(text: &str) -> Result<SpatialSettings, ModelError> {
         SpatialSettings::from_table(toml::from_str(text).unwrap())
     }
 
@@ -185,18 +194,20 @@ mod tests {
     #[test]
     fn values_out_of_bounds_and_unknown_words_are_named() {
         assert_eq!(
-            read("dem_spacing_m = 0.0").unwrap_err(),
+            read("dem_spacing_m = 0.0").unwrap_err().to_string(),
             "dem_spacing_m 0 m must be > 0 m"
         );
         assert_eq!(
-            read("vertical = \"dynamic\"\ndamping_n_s_m = -1.0").unwrap_err(),
+            read("vertical = \"dynamic\"\ndamping_n_s_m = -1.0")
+                .unwrap_err()
+                .to_string(),
             "damping_n_s_m -1 N s/m must be >= 0 N s/m"
         );
         assert_eq!(
-            read("damping_n_s_m = 1.0").unwrap_err(),
+            read("damping_n_s_m = 1.0").unwrap_err().to_string(),
             "damping_n_s_m has no effect without vertical = \"dynamic\""
         );
-        let error = read("displacement = \"soil\"").unwrap_err();
+        let error = read("displacement = \"soil\"").unwrap_err().to_string();
         assert!(
             error.contains("soil") && error.contains("rim") && error.contains("node"),
             "{error}"
@@ -210,7 +221,7 @@ mod tests {
             protocol.kind = ProtocolKind::Paper;
             settings.check_protocol(&protocol).unwrap();
             change(&mut settings, &mut protocol);
-            settings.check_protocol(&protocol).unwrap_err()
+            settings.check_protocol(&protocol).unwrap_err().to_string()
         };
         assert_eq!(
             refused(|_, protocol| protocol.simulated_transient_force_s = 50.0),

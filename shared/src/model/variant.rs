@@ -10,6 +10,7 @@ use utoipa::ToSchema;
 use super::companion::Companion;
 use super::condition::{PlateCondition, RingCondition, RunCondition};
 use super::effects::{EffectSet, EffectText};
+use super::error::ModelError;
 use super::kind::ModelKind;
 use super::names::{check_complete, lookup};
 use super::settings::ModelSettings;
@@ -69,14 +70,14 @@ impl ModelVariant {
     /// nor fixed take their defaults.
     ///
     /// # Errors
-    /// A sentence that names a parameter that is unknown, out of bounds, missing or said twice.
+    /// [`ModelError`] names a parameter that is unknown, out of bounds, missing or said twice.
     pub fn new<'a>(
         experiment: &Experiment,
         settings: &ModelSettings,
         effects: &EffectSet,
         parameters: Vec<String>,
         runs: impl IntoIterator<Item = &'a TestRun>,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, ModelError> {
         let wheels = experiment.wheel_names();
         let mut fixed = settings.fixed.clone();
         for parameter in settings.kind.parameters() {
@@ -91,7 +92,9 @@ impl ModelVariant {
             check_value(&lookup(name, &wheels, effects)?, name, value)?;
         }
         if let Some(twice) = parameters.iter().find(|p| fixed.contains_key(*p)) {
-            return Err(format!("parameter {twice} is both fixed and free"));
+            return Err(ModelError::Incomplete(format!(
+                "parameter {twice} is both fixed and free"
+            )));
         }
         let names: BTreeSet<&str> = parameters
             .iter()
@@ -108,10 +111,10 @@ impl ModelVariant {
         let condition = |run: &TestRun| {
             let soil = &experiment.soils[&run.soil];
             if let (Some(effect), None) = (weighing, soil.density_kg_m3) {
-                return Err(format!(
+                return Err(ModelError::Incomplete(format!(
                     "effect {} needs density_kg_m3 of soil {}",
                     effect.name, run.soil
-                ));
+                )));
             }
             let repose_angle_deg = soil.repose_angle_deg.filter(|_| slides);
             let density_kg_m3 = soil.density_kg_m3.filter(|_| weighing.is_some());
@@ -120,7 +123,10 @@ impl ModelVariant {
         let conditions = runs.into_iter().map(condition).collect::<Result<Vec<_>, _>>()?;
         let bin_length_m = experiment.rig.bin_length_m.filter(|_| walled.is_some());
         if let (Some(effect), None, false) = (walled, bin_length_m, conditions.is_empty()) {
-            return Err(format!("effect {} needs bin_length_m under [rig]", effect.name));
+            return Err(ModelError::Incomplete(format!(
+                "effect {} needs bin_length_m under [rig]",
+                effect.name
+            )));
         }
         let variant = ModelVariant {
             kind: settings.kind,
@@ -194,7 +200,7 @@ fn check_grousers(
     effects: &EffectSet,
     names: &BTreeSet<&str>,
     experiment: &Experiment,
-) -> Result<(), String> {
+) -> Result<(), ModelError> {
     let wheels = experiment.wheel_names();
     let of_grousers = |effect: &&Effect| {
         let uses = effect.uses();
@@ -207,10 +213,10 @@ fn check_grousers(
             .filter(|wheel| !experiment.wheels[**wheel].has_grousers());
         let all = reach.len() == wheels.len() && smooth.clone().count() < reach.len();
         if let Some(wheel) = smooth.next().filter(|_| !all) {
-            return Err(format!(
+            return Err(ModelError::Incomplete(format!(
                 "effect {} needs a wheel with grousers: {wheel} has none",
                 effect.name
-            ));
+            )));
         }
     }
     Ok(())

@@ -44,7 +44,7 @@ fn malformed_readings_name_file_line_value_unit_and_bound() {
     );
     refused(
         shear("\nr1,20000,0.012,", ""),
-        "shear.csv: no reading of a ring stands in the file",
+        "shear.csv: the file has no reading of a ring",
     );
 }
 

@@ -46,7 +46,7 @@ fn unknown_effects_and_parameters_name_the_nearest_known() {
     );
     refused(
         model("effects = [\"sled_tare\", \"sled_tare\"]"),
-        "job.toml: [model] effects: \"sled_tare\" stands twice",
+        "job.toml: [model] effects: \"sled_tare\" appears twice",
     );
     refused(
         model("effects = [\"mine.toml\"]"),

@@ -98,7 +98,7 @@ fn malformed_rows_name_the_line() {
     );
     refused(
         Job::small().in_runs("\nr01,", "\nr00,"),
-        "runs.csv line 5: run \"r00\" stands twice (first on line 4)",
+        "runs.csv line 5: run \"r00\" appears twice (first on line 4)",
     );
     refused(
         Job {
@@ -109,7 +109,7 @@ fn malformed_rows_name_the_line() {
     );
     refused(
         Job::small().in_runs("torque_n_m,", "drawbar_pull_n,"),
-        "runs.csv line 3: column \"drawbar_pull_n\" stands twice",
+        "runs.csv line 3: column \"drawbar_pull_n\" appears twice",
     );
 }
 
@@ -126,7 +126,7 @@ fn an_experiment_without_anything_to_fit_is_refused() {
             runs: header,
             ..Job::small()
         },
-        "runs.csv: no test run stands in the file",
+        "runs.csv: the file has no test run",
     );
     refused(
         Job {

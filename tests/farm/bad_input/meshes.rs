@@ -77,7 +77,7 @@ fn files_that_are_no_surface_name_face_or_line() {
     );
     refused(
         with("wheel.obj", "# empty\n"),
-        "wheel.obj: no triangle stands in the file",
+        "wheel.obj: the file has no triangle",
     );
     let message = refusal(&Job::with_mesh("wheel.stl"));
     assert!(message.starts_with("wheel.stl: No such file"), "{message}");
@@ -95,7 +95,7 @@ fn keys_that_do_not_go_with_a_surface_are_refused() {
         refused(
             job.in_experiment(wheel, &more),
             &format!(
-                "experiment.toml: [wheel.w] {key} stands beside mesh = \"wheel.stl\": grousers are part of the surface"
+                "experiment.toml: [wheel.w] {key} has no place beside mesh = \"wheel.stl\": grousers are part of the surface"
             ),
         );
     }

@@ -3,7 +3,7 @@
 use scm::bevameter::{Plate, plate, ring};
 use scm::shear::ShearDisplacement;
 use scm::{Rejection, Soil};
-use shared::model::ModelVariant;
+use shared::model::{ModelError, ModelVariant};
 use shared::parameters::RING_TRANSFER;
 
 use super::parameters::{ParameterSource, SoilMap};
@@ -41,8 +41,8 @@ impl CompiledBevameter {
     /// Resolves the names of a variant; its wheels and conditions do not count.
     ///
     /// # Errors
-    /// A sentence that names the parameter that is missing.
-    pub fn new(variant: &ModelVariant) -> Result<Self, String> {
+    /// [`ModelError::Unset`] names the parameter that is missing.
+    pub fn new(variant: &ModelVariant) -> Result<Self, ModelError> {
         Ok(CompiledBevameter {
             soil: SoilMap::new(variant)?,
             modulus: ParameterSource::find(variant, SHEAR_MODULUS),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use shared::model::ModelVariant;
 
+use super::error::CompileError;
 use super::variant::CompiledVariant;
 
 /// Variants at hand; a metamodel brings a new one with every stage.
@@ -27,12 +28,13 @@ impl VariantCache {
     ///
     /// # Errors
     /// The variant does not have that hash, or cannot be compiled.
-    pub fn add(&mut self, hash: &str, variant: &ModelVariant) -> Result<(), String> {
+    pub fn add(&mut self, hash: &str, variant: &ModelVariant) -> Result<(), CompileError> {
         let own = variant.hash();
         if own != hash {
-            return Err(format!(
-                "variant {hash} came with hash {own}: coordinator and worker read it differently"
-            ));
+            return Err(CompileError::OtherHash {
+                asked: hash.to_owned(),
+                own,
+            });
         }
         let compiled = CompiledVariant::new(variant)?;
         let compiled = Arc::new(compiled);

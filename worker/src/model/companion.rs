@@ -5,6 +5,7 @@ use shared::outcome::Outcome;
 use shared::predicted::PredictedValue;
 use statistics::Metamodel;
 
+use super::error::CompileError;
 use super::forward::ForwardModel;
 
 /// A variant's companion, ready to evaluate.
@@ -19,8 +20,8 @@ impl CompiledCompanion {
     /// The companion of a variant; `None` where it has none.
     ///
     /// # Errors
-    /// A sentence that names what the quasi-static model cannot express.
-    pub(super) fn new(variant: &ModelVariant) -> Result<Option<Self>, String> {
+    /// [`CompileError`] names what the quasi-static model cannot express.
+    pub(super) fn new(variant: &ModelVariant) -> Result<Option<Self>, CompileError> {
         let Some(companion) = &variant.companion else {
             return Ok(None);
         };

@@ -2,8 +2,9 @@
 
 use scm::effects::{Active, CompiledEffects, ModelForm, Site};
 use shared::model::effects::parameter_name;
-use shared::model::{EffectSet, ModelKind, ModelVariant};
+use shared::model::{EffectSet, ModelError, ModelKind, ModelVariant};
 
+use super::error::CompileError;
 use super::parameters::ParameterSource;
 
 /// The sources of every parameter of every effect, for wheels that share them.
@@ -39,8 +40,8 @@ impl EffectMap {
     /// Compiles the effects of a variant for its model.
     ///
     /// # Errors
-    /// A sentence that names the effect that the model cannot express, or the parameter that is missing.
-    pub(super) fn new(variant: &ModelVariant, set: &EffectSet) -> Result<Self, String> {
+    /// [`CompileError`] names the effect that the model cannot express, or the parameter that is missing.
+    pub(super) fn new(variant: &ModelVariant, set: &EffectSet) -> Result<Self, CompileError> {
         let model = match variant.kind {
             ModelKind::QuasiStatic => ModelForm::QuasiStatic,
             ModelKind::Scm => ModelForm::Spatial,
@@ -81,7 +82,7 @@ impl EffectMap {
 }
 
 /// Where a wheel's values stand: its own, those of all wheels, or the neutral value of a strength that acts elsewhere.
-fn sources_of(variant: &ModelVariant, set: &EffectSet, wheel: &str) -> Result<Sources, String> {
+fn sources_of(variant: &ModelVariant, set: &EffectSet, wheel: &str) -> Result<Sources, ModelError> {
     let of_effect = |effect: &formula::Effect| {
         let strengths = effect.parameters.iter().filter(|p| p.neutral.is_some());
         let find = |p: &formula::Parameter| {
@@ -94,10 +95,7 @@ fn sources_of(variant: &ModelVariant, set: &EffectSet, wheel: &str) -> Result<So
             (None, Some(neutral)) => Ok(ParameterSource::Fixed(neutral)),
             // the shape of what is absent
             (None, None) if !acts => Ok(ParameterSource::Fixed(0.0)),
-            (None, None) => {
-                let name = parameter_name(effect, p, None);
-                Err(format!("parameter {name} has neither a prior nor a fixed value"))
-            }
+            (None, None) => Err(ModelError::Unset(parameter_name(effect, p, None))),
         };
         effect.parameters.iter().map(source).collect()
     };

@@ -7,6 +7,7 @@ use shared::outcome::{Observables, Outcome, ParameterRejection};
 
 use super::bevameter::CompiledBevameter;
 use super::effects::{ActiveEffects, EffectMap};
+use super::error::CompileError;
 use super::parameters::{Radius, SoilMap};
 use super::recording;
 use super::spatial::SpatialModel;
@@ -41,12 +42,12 @@ impl ForwardModel {
     /// Resolves the names of a variant.
     ///
     /// # Errors
-    /// A sentence that names what this worker does not know or cannot express.
-    pub(super) fn new(variant: &ModelVariant) -> Result<Self, String> {
+    /// [`CompileError`] names what this worker does not know or cannot express.
+    pub(super) fn new(variant: &ModelVariant) -> Result<Self, CompileError> {
         let set = EffectSet::read(&variant.effects)?;
         variant.check_expressible(&set)?;
         if variant.histories && variant.kind == ModelKind::QuasiStatic {
-            return Err("histories: quasi_static knows the steady state alone; use kind = \"scm\"".into());
+            return Err(CompileError::NoHistories);
         }
         let effects = EffectMap::new(variant, &set)?;
         let names: Vec<&str> = variant.wheels.keys().map(String::as_str).collect();
@@ -70,7 +71,7 @@ impl ForwardModel {
                 let wheel = names
                     .iter()
                     .position(|n| *n == c.wheel)
-                    .ok_or(format!("unknown wheel \"{}\"", c.wheel))?;
+                    .ok_or_else(|| CompileError::UnknownWheel(c.wheel.clone()))?;
                 let condition = Condition {
                     slip: c.slip,
                     wheel_load_n: c.wheel_load_n,
@@ -80,7 +81,7 @@ impl ForwardModel {
                 };
                 Ok((wheel, condition))
             })
-            .collect::<Result<_, String>>()?;
+            .collect::<Result<_, CompileError>>()?;
         let spatial = match variant.kind {
             ModelKind::QuasiStatic => None,
             ModelKind::Scm => Some(SpatialModel::new(variant)?),
@@ -220,16 +221,16 @@ impl ForwardModel {
     }
 
     /// Simulates every condition at one parameter vector; a refusal of one leaves the others.
-    pub(super) fn each(&self, theta: &[f64]) -> Vec<Result<Averages, String>> {
+    pub(super) fn each(&self, theta: &[f64]) -> Vec<Result<Averages, ParameterRejection>> {
         let soil = match self.soil_of(theta) {
             Ok(soil) => soil,
-            Err(rejection) => return vec![Err(rejection.message); self.runs()],
+            Err(rejection) => return vec![Err(rejection); self.runs()],
         };
         let mut effects = self.effects.at(theta);
         let averages = |position| match self.simulate(theta, &soil, &mut effects, position) {
             Ok(Simulated::Steady(averages)) => Ok(averages),
             Ok(Simulated::Rolled(run)) => Ok(run.averages),
-            Err(rejection) => Err(rejection.to_string()),
+            Err(rejection) => Err(refusal(rejection.kind(), position, rejection.to_string())),
         };
         (0..self.runs()).map(averages).collect()
     }

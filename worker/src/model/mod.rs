@@ -4,6 +4,7 @@
 //! - `variant`: [`CompiledVariant`], a forward model with its companion; `cache`: the variants at hand.
 //! - `forward`: the forward model; `spatial`: what the three-dimensional one needs; `bevameter`: plates and rings.
 //! - `companion`: the quasi-static model that a metamodel evaluates beside the three-dimensional one.
+//! - `error`: why a variant cannot be evaluated here.
 //! - `effects`: the effects, compiled, with the sources of their parameters.
 //! - `parameters`: the source of each physical quantity.
 //! - `recording`: the time histories of a run, at 10 Hz.
@@ -12,6 +13,7 @@ mod bevameter;
 mod cache;
 mod companion;
 mod effects;
+mod error;
 mod forward;
 mod parameters;
 mod recording;
@@ -20,5 +22,6 @@ mod variant;
 
 pub use bevameter::{CompiledBevameter, Readings, without_action};
 pub use cache::VariantCache;
+pub use error::CompileError;
 pub use recording::at_10_hz;
 pub use variant::CompiledVariant;

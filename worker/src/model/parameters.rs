@@ -2,7 +2,7 @@
 
 use scm::spatial::Ground;
 use scm::{Soil, bekker_moduli};
-use shared::model::ModelVariant;
+use shared::model::{ModelError, ModelVariant};
 
 /// The source of one quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,9 +22,8 @@ impl ParameterSource {
         free.or_else(|| variant.fixed.get(name).copied().map(ParameterSource::Fixed))
     }
 
-    fn required(variant: &ModelVariant, name: &str) -> Result<ParameterSource, String> {
-        ParameterSource::find(variant, name)
-            .ok_or_else(|| format!("parameter {name} has neither a prior nor a fixed value"))
+    fn required(variant: &ModelVariant, name: &str) -> Result<ParameterSource, ModelError> {
+        ParameterSource::find(variant, name).ok_or_else(|| ModelError::Unset(name.to_owned()))
     }
 
     pub(super) fn value(self, theta: &[f64]) -> f64 {
@@ -60,7 +59,7 @@ pub(super) struct SoilMap {
 }
 
 impl SoilMap {
-    pub(super) fn new(variant: &ModelVariant) -> Result<Self, String> {
+    pub(super) fn new(variant: &ModelVariant) -> Result<Self, ModelError> {
         let stiffness = match (
             ParameterSource::find(variant, "k_c"),
             ParameterSource::find(variant, "k_phi"),
@@ -110,7 +109,7 @@ pub(super) struct GroundMap {
 }
 
 impl GroundMap {
-    pub(super) fn new(variant: &ModelVariant) -> Result<Self, String> {
+    pub(super) fn new(variant: &ModelVariant) -> Result<Self, ModelError> {
         Ok(GroundMap {
             elastic_stiffness_pa_m: ParameterSource::required(variant, "elastic_stiffness_pa_m")?,
             flow_fraction: ParameterSource::required(variant, "flow_fraction")?,

@@ -7,6 +7,7 @@ use shared::experiment::{ProtocolKind, WheelGeometry};
 use shared::model::ModelVariant;
 use shared::model::spatial::{DisplacementFrame, HubMotion, PAPER_DURATION_S, PressureAxis};
 
+use super::error::CompileError;
 use super::parameters::GroundMap;
 
 /// What a run needs beside soil, wheel and condition.
@@ -24,11 +25,9 @@ impl SpatialModel {
     /// Resolves the names of a variant of kind `scm`.
     ///
     /// # Errors
-    /// A sentence that names what is missing or cannot be expressed.
-    pub(super) fn new(variant: &ModelVariant) -> Result<Self, String> {
-        let choices = variant
-            .spatial
-            .ok_or("kind = \"scm\" comes without its settings")?;
+    /// [`CompileError`] names what is missing or cannot be expressed.
+    pub(super) fn new(variant: &ModelVariant) -> Result<Self, CompileError> {
+        let choices = variant.spatial.ok_or(CompileError::NoSettings)?;
         let protocol = &variant.protocol;
         let settings = RunSettings {
             dem_spacing_m: choices.dem_spacing_m,

@@ -3,10 +3,11 @@
 use scm::Averages;
 use scm::spatial::SpatialRun;
 use shared::model::ModelVariant;
-use shared::outcome::{Fault, Outcome};
+use shared::outcome::{Fault, Outcome, ParameterRejection};
 use statistics::{Subchain, SubchainEnd};
 
 use super::companion::CompiledCompanion;
+use super::error::CompileError;
 use super::forward::ForwardModel;
 
 /// A variant ready to evaluate.
@@ -21,8 +22,8 @@ impl CompiledVariant {
     /// Resolves the names of a variant.
     ///
     /// # Errors
-    /// A sentence that names what this worker does not know or cannot express.
-    pub fn new(variant: &ModelVariant) -> Result<Self, String> {
+    /// [`CompileError`] names what this worker does not know or cannot express.
+    pub fn new(variant: &ModelVariant) -> Result<Self, CompileError> {
         Ok(CompiledVariant {
             forward: ForwardModel::new(variant)?,
             companion: CompiledCompanion::new(variant)?,
@@ -49,7 +50,7 @@ impl CompiledVariant {
     }
 
     /// Simulates every condition at one parameter vector; a rejection of one leaves the others.
-    pub fn each(&self, theta: &[f64]) -> Vec<Result<Averages, String>> {
+    pub fn each(&self, theta: &[f64]) -> Vec<Result<Averages, ParameterRejection>> {
         self.forward.each(theta)
     }
 

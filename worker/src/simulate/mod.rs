@@ -51,7 +51,7 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
     let mut tables: Vec<(PathBuf, Vec<u8>)> = Vec::new();
     if let Some(path) = &command.out {
         let compiled = CompiledVariant::new(&variant)
-            .map_err(|e| FileError::whole(&command.model.display().to_string(), e))?;
+            .map_err(|e| FileError::whole(&command.model.display().to_string(), e.to_string()))?;
         let mut rolled = Vec::new();
         let runs = wheel_runs(&experiment, &variant, &compiled, command, &mut rolled)?;
         tables.push((path.clone(), runs));
@@ -124,8 +124,7 @@ fn wheel_runs(
             tracing::info!(run = run.name, settled_to = settled, "averages settled");
         }
     }
-    let noise = noise(experiment, command.noise_seed)
-        .map_err(|e| FileError::whole(&command.experiment.display().to_string(), e))?;
+    let noise = noise(experiment, command)?;
     Ok(table(experiment, &observables, &noise)?)
 }
 
@@ -143,7 +142,7 @@ fn variant(
     }
     let mut settings = ModelSettings::from_table(&table).map_err(|e| FileError::whole(&model_name, e))?;
     let text = read_text(parameters)?;
-    check_quotes(&text).map_err(|e| FileError::whole(&parameters_name, e))?;
+    check_quotes(&parameters_name, &text)?;
     let theta: BTreeMap<String, f64> = parse_toml(&parameters_name, &text)?;
     settings.fixed.extend(theta);
     let texts = read_beside(model, &settings.effect_files)?;
@@ -154,9 +153,9 @@ fn variant(
         names,
         &texts,
     )?;
-    let in_parameters = |e: String| FileError::whole(&parameters_name, e);
-    state_shapes(experiment, &effects, &mut settings.fixed).map_err(in_parameters)?;
-    ModelVariant::new(experiment, &settings, &effects, Vec::new(), runs).map_err(in_parameters)
+    state_shapes(experiment, &effects, &mut settings.fixed, &parameters_name)?;
+    ModelVariant::new(experiment, &settings, &effects, Vec::new(), runs)
+        .map_err(|e| FileError::whole(&parameters_name, e))
 }
 
 /// Takes what the files of effects fix; the rest must be stated.
@@ -164,7 +163,8 @@ fn state_shapes(
     experiment: &Experiment,
     effects: &EffectSet,
     fixed: &mut BTreeMap<String, f64>,
-) -> Result<(), String> {
+    file: &str,
+) -> Result<(), FileError> {
     let names = fixed.keys().map(String::as_str).collect();
     let mut more = Vec::new();
     for unsaid in effects.unsaid(&names, &experiment.wheel_names()) {
@@ -174,10 +174,11 @@ fn state_shapes(
                 "1" => String::new(),
                 unit => format!(" [{unit}]"),
             };
-            return Err(format!(
+            let message = format!(
                 "{}{unit} has no value: effect {} has it",
                 unsaid.name, unsaid.chosen.effect.name
-            ));
+            );
+            return Err(FileError::whole(file, message));
         };
         more.push((unsaid.name, number));
     }
@@ -186,22 +187,31 @@ fn state_shapes(
 }
 
 /// A dotted name without quotes is a table to TOML; says so.
-fn check_quotes(parameters: &str) -> Result<(), String> {
+fn check_quotes(file: &str, parameters: &str) -> Result<(), FileError> {
     // What is no TOML at all is for the parser to say.
     for (name, value) in parameters.parse::<toml::Table>().unwrap_or_default() {
         if let Some(key) = value.as_table().and_then(|table| table.keys().next()) {
-            return Err(format!("write the name in quotes: \"{name}.{key}\""));
+            let message = format!("write the name in quotes: \"{name}.{key}\"");
+            return Err(FileError::whole(file, message));
         }
     }
     Ok(())
 }
 
 /// Noise by run and channel: independent normal draws, one stream for each seed.
-fn noise(experiment: &Experiment, seed: Option<u64>) -> Result<Vec<[f64; 4]>, String> {
+fn noise(experiment: &Experiment, command: &Simulate) -> Result<Vec<[f64; 4]>, FileError> {
     let mut noise = vec![[0.0; 4]; experiment.runs.len()];
-    let Some(seed) = seed else { return Ok(noise) };
+    let Some(seed) = command.noise_seed else {
+        return Ok(noise);
+    };
+    let fail = |message: String| {
+        Err(FileError::whole(
+            &command.experiment.display().to_string(),
+            message,
+        ))
+    };
     if experiment.noise.scatter(Scatter::Run) != ScatterSd::Known(0.0) {
-        return Err("--noise-seed draws independent noise alone: [noise] run_scatter is not available there in this version".into());
+        return fail("--noise-seed draws independent noise alone: [noise] run_scatter is not available there in this version".into());
     }
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     for (row, run) in noise.iter_mut().zip(&experiment.runs) {
@@ -211,7 +221,7 @@ fn noise(experiment: &Experiment, seed: Option<u64>) -> Result<Vec<[f64; 4]>, St
                 (Some(sd), _) | (None, Some(NoiseSd::Known(sd))) => sd,
                 (None, None) => 0.0,
                 (None, Some(_)) => {
-                    return Err(format!(
+                    return fail(format!(
                         "--noise-seed needs a number for [noise] {}",
                         channel.column()
                     ));

@@ -108,11 +108,10 @@ fn read(text: &str) -> Result<Effect, EffectError> {
         ));
     }
     let raw = tables(text)?;
-    let wrong = |byte: usize| move |message: String| at(text, byte, message);
-    names::check_form("name", raw.name.get_ref()).map_err(wrong(raw.name.span().start))?;
+    names::check_form("name", raw.name.get_ref()).map_err(|e| at(text, raw.name.span().start, e))?;
     let mechanism = match &raw.mechanism {
         None => None,
-        Some(name) => Some(names::mechanism(name.get_ref()).map_err(wrong(name.span().start))?),
+        Some(name) => Some(names::mechanism(name.get_ref()).map_err(|e| at(text, name.span().start, e))?),
     };
     if mechanism.is_none() && Hook::ALL.iter().all(|&h| raw.formula(h).is_none()) {
         let hooks = Hook::ALL.map(Hook::name).join(", ");
@@ -263,7 +262,7 @@ fn parameters(text: &str, raw: &RawEffect) -> Result<Vec<(String, Unit)>, Effect
     {
         let message = "no parameter has a key neutral: expected it for the effect's strength, with the value at which \
                        the effect is absent";
-        return Err(at(text, first.span().start, message.to_owned()));
+        return Err(at(text, first.span().start, message));
     }
     Ok(parameters)
 }
@@ -285,10 +284,11 @@ fn define(
         return Err(at(text, first_too_many.span().start, message));
     }
     for &(name, formula) in &entries {
-        let wrong = |message: String| at(text, formula.span().start, message);
-        names::check_free("definition", name).map_err(wrong)?;
+        let start = formula.span().start;
+        names::check_free("definition", name).map_err(|e| at(text, start, e))?;
         if raw.parameters.contains_key(name) {
-            return Err(wrong(format!("definition {name} has the name of a parameter")));
+            let message = format!("definition {name} has the name of a parameter");
+            return Err(at(text, start, message));
         }
     }
     let mut known = BTreeMap::new();
@@ -381,12 +381,12 @@ fn whole(message: String) -> EffectError {
 }
 
 /// An error at a byte of the file.
-fn at(text: &str, byte: usize, message: String) -> EffectError {
+fn at(text: &str, byte: usize, message: impl ToString) -> EffectError {
     let (line, column) = place::line_and_column(text, byte);
     EffectError {
         line: Some(line),
         column: Some(column),
-        message,
+        message: message.to_string(),
     }
 }
 

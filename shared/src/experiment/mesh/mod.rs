@@ -10,12 +10,14 @@
 //! ([`Experiment::read_files`](super::Experiment::read_files)), without a change in any coordinate. Who talks to the
 //! service directly sends ASCII STL or OBJ.
 
+mod error;
 mod obj;
 mod stl;
 mod surface;
 
 use std::path::Path;
 
+pub use error::MeshError;
 pub use surface::{MOST_TRIANGLES, WheelMesh};
 
 use crate::file::{FileError, read_text};
@@ -30,11 +32,11 @@ impl WheelMesh {
     /// [`FileError`] with the line (OBJ) or the face (STL), counted from 1. Checked by this folder's tests.
     pub fn parse(file: &str, text: &str) -> Result<WheelMesh, FileError> {
         check_size(file, text.len())?;
-        let mesh = match format(file).map_err(|e| FileError::whole(file, e))? {
+        let mesh = match format(file).map_err(|e| e.in_file(file))? {
             Format::Stl => stl::parse(file, text)?,
             Format::Obj => obj::parse(file, text)?,
         };
-        mesh.check().map_err(|e| FileError::whole(file, e))?;
+        mesh.check().map_err(|e| e.in_file(file))?;
         Ok(mesh)
     }
 }
@@ -45,17 +47,17 @@ enum Format {
     Obj,
 }
 
-fn format(file: &str) -> Result<Format, String> {
+fn format(file: &str) -> Result<Format, MeshError> {
     let ending = Path::new(file).extension().unwrap_or_default();
     match ending.to_string_lossy().to_ascii_lowercase().as_str() {
         "stl" => Ok(Format::Stl),
         "obj" => Ok(Format::Obj),
-        _ => Err(format!("mesh = \"{file}\" must end in .stl or .obj")),
+        _ => Err(MeshError::Ending(file.to_owned())),
     }
 }
 
 /// Checks the ending of a file's name.
-pub(super) fn check_name(file: &str) -> Result<(), String> {
+pub(super) fn check_name(file: &str) -> Result<(), MeshError> {
     format(file).map(|_| ())
 }
 
@@ -65,7 +67,7 @@ pub(super) fn read(path: &Path) -> Result<String, FileError> {
     let whole = |message: String| FileError::whole(&file, message);
     let bytes = std::fs::metadata(path).map_err(|e| whole(e.to_string()))?.len();
     check_size(&file, usize::try_from(bytes).unwrap_or(usize::MAX))?;
-    match format(&file).map_err(whole)? {
+    match format(&file).map_err(|e| e.in_file(&file))? {
         Format::Stl => stl::text(&file, std::fs::read(path).map_err(|e| whole(e.to_string()))?),
         Format::Obj => read_text(path),
     }
@@ -75,7 +77,7 @@ fn check_size(file: &str, bytes: usize) -> Result<(), FileError> {
     if bytes <= MOST_BYTES {
         return Ok(());
     }
-    let message = format!("the file has {bytes} bytes, at most {MOST_BYTES} are taken");
+    let message = format!("the file has {bytes} bytes, at most {MOST_BYTES} are allowed");
     Err(FileError::whole(file, message))
 }
 

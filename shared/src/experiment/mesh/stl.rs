@@ -60,7 +60,7 @@ pub(super) fn text(file: &str, mut bytes: Vec<u8>) -> Result<String, FileError> 
             FileError::whole(file, format!("neither text nor binary STL{says}"))
         });
     }
-    check_count(count.map_or(0, |n| n as usize)).map_err(|e| FileError::whole(file, e))?;
+    check_count(count.map_or(0, |n| n as usize)).map_err(|e| e.in_file(file))?;
     bytes[..HEADER - 4].fill(0);
     let mut text = String::from("solid wheel\n");
     for triangle in triangles(file, bytes)? {
@@ -88,7 +88,7 @@ fn triangles(file: &str, bytes: Vec<u8>) -> Result<Vec<Triangle>, FileError> {
         }
         triangles.push(triangle);
     }
-    check_count(triangles.len()).map_err(|e| FileError::whole(file, e))?;
+    check_count(triangles.len()).map_err(|e| e.in_file(file))?;
     Ok(triangles)
 }
 
@@ -153,7 +153,7 @@ mod tests {
         assert!(wrong("solid left", "left").starts_with("w.stl: ASCII STL must begin with \"solid\""));
         assert_eq!(
             parse("w.stl", "solid\nendsolid").unwrap_err().to_string(),
-            "w.stl: no triangle stands in the file"
+            "w.stl: the file has no triangle"
         );
     }
 

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::error::MeshError;
+
 /// A surface with more triangles is refused: a wheel needs no finer one than the soil's grid.
 pub const MOST_TRIANGLES: usize = 200_000;
 
@@ -29,22 +31,25 @@ impl WheelMesh {
     /// Checks what the fields promise.
     ///
     /// # Errors
-    /// A sentence that names the vertex or triangle, counted from 1, the value and the bound.
-    pub fn check(&self) -> Result<(), String> {
+    /// [`MeshError`] names the vertex or triangle, the value and the bound.
+    pub fn check(&self) -> Result<(), MeshError> {
         let (vertices, triangles) = (self.vertices_m.len(), self.triangles.len());
         check_count(triangles)?;
         for (i, v) in self.vertices_m.iter().enumerate() {
             if let Some(x) = v.iter().find(|x| !x.is_finite()) {
-                return Err(format!("vertex {}: coordinate {x} m is not finite", i + 1));
+                return Err(MeshError::NotFinite {
+                    vertex: i + 1,
+                    value: *x,
+                });
             }
         }
         for (i, t) in self.triangles.iter().enumerate() {
             if let Some(index) = t.iter().find(|&&index| index as usize >= vertices) {
-                return Err(format!(
-                    "face {}: vertex {} is not among the {vertices} vertices",
-                    i + 1,
-                    u64::from(*index) + 1
-                ));
+                return Err(MeshError::NoVertex {
+                    face: i + 1,
+                    vertex: u64::from(*index) + 1,
+                    vertices,
+                });
             }
         }
         Ok(())
@@ -65,18 +70,19 @@ impl WheelMesh {
     /// Checks the surface against the nominal radius and width that stand beside it.
     ///
     /// # Errors
-    /// A sentence that names the extent, its bound and the likely mistake.
-    pub(in crate::experiment) fn check_against(&self, radius_m: f64, width_m: f64) -> Result<(), String> {
+    /// [`MeshError::Extent`].
+    pub(in crate::experiment) fn check_against(&self, radius_m: f64, width_m: f64) -> Result<(), MeshError> {
+        let extent = |message: String| Err(MeshError::Extent(message));
         let (reach, width) = (self.reach_m(), self.width_m());
         let (most_reach, most_width) = (LARGEST_REACH * radius_m, LARGEST_WIDTH * width_m);
         if reach < radius_m * (1.0 - ROUNDING) {
-            return Err(format!(
+            return extent(format!(
                 "the surface reaches {} m from the axle, but radius_m is {radius_m} m: metres are expected, and the axle is the y axis",
                 shown(reach)
             ));
         }
         if reach > most_reach {
-            return Err(format!(
+            return extent(format!(
                 "the surface reaches {} m from the axle, more than {LARGEST_REACH} radius_m = {} m: {}",
                 shown(reach),
                 shown(most_reach),
@@ -84,7 +90,7 @@ impl WheelMesh {
             ));
         }
         if width > most_width {
-            return Err(format!(
+            return extent(format!(
                 "the surface is {} m wide along y, more than {LARGEST_WIDTH} width_m = {} m: {}",
                 shown(width),
                 shown(most_width),
@@ -110,13 +116,14 @@ fn mistake(ratio: f64) -> &'static str {
 }
 
 /// Refuses a surface without triangles, or with too many.
-pub(super) fn check_count(triangles: usize) -> Result<(), String> {
+pub(super) fn check_count(triangles: usize) -> Result<(), MeshError> {
     match triangles {
-        0 => Err("no triangle stands in the file".into()),
+        0 => Err(MeshError::Empty),
         1..=MOST_TRIANGLES => Ok(()),
-        _ => Err(format!(
-            "the surface has {triangles} triangles, at most {MOST_TRIANGLES} are taken"
-        )),
+        _ => Err(MeshError::TooMany {
+            triangles,
+            most: MOST_TRIANGLES,
+        }),
     }
 }
 
@@ -172,7 +179,10 @@ mod tests {
                 "the surface is 0.04 m wide along y, more than 1.05 width_m = 0.021 m: is the axle the y axis through the origin?",
             ),
         ] {
-            assert_eq!(mesh.check_against(radius, width), Err(message.to_owned()));
+            assert_eq!(
+                mesh.check_against(radius, width).unwrap_err().to_string(),
+                message
+            );
         }
     }
 
@@ -181,20 +191,20 @@ mod tests {
         let mut mesh = spindle();
         mesh.triangles[2][1] = 5;
         assert_eq!(
-            mesh.check().unwrap_err(),
+            mesh.check().unwrap_err().to_string(),
             "face 3: vertex 6 is not among the 5 vertices"
         );
         let mut mesh = spindle();
         mesh.vertices_m[3][2] = f64::NAN;
         assert_eq!(
-            mesh.check().unwrap_err(),
+            mesh.check().unwrap_err().to_string(),
             "vertex 4: coordinate NaN m is not finite"
         );
         let mut mesh = spindle();
         mesh.triangles = vec![[0, 1, 2]; MOST_TRIANGLES + 1];
         assert_eq!(
-            mesh.check().unwrap_err(),
-            "the surface has 200001 triangles, at most 200000 are taken"
+            mesh.check().unwrap_err().to_string(),
+            "the surface has 200001 triangles, at most 200000 are allowed"
         );
     }
 }

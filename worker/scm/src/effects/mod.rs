@@ -3,6 +3,7 @@
 //! # Layout
 //! - here: [`CompiledEffects`], compiled for one model, and [`Active`], those of them whose strength is not neutral.
 //! - `case`: the run as effects on slip, dimensions, exponent and load leave it.
+//! - `error`: why a model cannot express an effect.
 //! - `law`: an effect as one model knows it.
 //! - `node`: pressure, strength and stress at many nodes.
 //! - `channel`: what the rig measures.
@@ -12,10 +13,12 @@
 
 mod case;
 mod channel;
+mod error;
 mod law;
 mod node;
 
 pub(crate) use case::Case;
+pub use error::FormError;
 pub(crate) use node::NodeLaws;
 
 use formula::effect::Mechanism;
@@ -99,25 +102,25 @@ impl CompiledEffects {
     /// Compiles effects; they follow each other in this order.
     ///
     /// # Errors
-    /// A sentence that names the effect that the model cannot express.
+    /// [`FormError`] names the effect that the model cannot express.
     pub fn compile<'a>(
         model: ModelForm,
         effects: impl IntoIterator<Item = &'a Effect>,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, FormError> {
         let law = |effect: &Effect| {
             let mechanism = effect.mechanism.filter(|m| model.mechanisms().contains(m));
             if mechanism.is_none() && effect.hooks().next().is_none() {
-                let (name, model) = (&effect.name, model.name());
-                return Err(format!("effect {name} has no form in {model}"));
+                let (effect, model) = (effect.name.clone(), model.name());
+                return Err(FormError::NoForm { effect, model });
             }
             let names = effect.parameters.iter().map(|p| p.name.as_str());
             if let Some(mechanism) = mechanism.filter(|m| !names.clone().eq(m.parameters().iter().copied())) {
                 let expected = mechanism.parameters().join(", ");
-                return Err(format!(
-                    "effect {}: mechanism {} takes the parameters {expected}, in this order",
-                    effect.name,
-                    mechanism.name()
-                ));
+                return Err(FormError::Parameters {
+                    effect: effect.name.clone(),
+                    mechanism: mechanism.name(),
+                    expected,
+                });
             }
             let program = |hook: Hook| match mechanism {
                 Some(_) => None,

@@ -89,8 +89,7 @@ impl<'a> NodeLaws<'a> {
 
     /// Whether formulas do nothing but scale the shear stress, by what they make of these variables.
     pub(crate) fn only_scale_stress_by(&self, variables: Variables) -> bool {
-        let of_run = Variables::of(&Variable::OF_RUN);
-        let known = variables.union(of_run).with(Variable::Tau);
+        let known = variables.union(Variables::OF_RUN).with(Variable::Tau);
         let scales = |law: &NodeLaw| law.hook == Hook::Shear && law.law.effect.only_scales(Hook::Shear);
         self.laws.iter().all(scales) && self.uses.iter().all(|variable| known.contains(variable))
     }

@@ -198,7 +198,9 @@ fn a_mechanism_without_its_parameters_is_refused() {
     let text = "name = \"springs\"\nsummary = \"rebound\"\nsource = \"none\"\nmechanism = \"rebound\"\n";
     let effect = Effect::read(text).unwrap();
     assert_eq!(
-        CompiledEffects::compile(ModelForm::QuasiStatic, [&effect]).unwrap_err(),
+        CompiledEffects::compile(ModelForm::QuasiStatic, [&effect])
+            .unwrap_err()
+            .to_string(),
         "effect springs: mechanism rebound takes the parameters compliance_m_pa, in this order"
     );
 }

@@ -1,0 +1,50 @@
+//! What is wrong with a wheel's surface.
+
+use crate::file::FileError;
+
+/// Why a surface cannot be used; vertices and faces are counted from 1.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// The ending of the file's name is not known.
+    #[error("mesh = \"{0}\" must end in .stl or .obj")]
+    Ending(String),
+    /// There is no triangle.
+    #[error("the file has no triangle")]
+    Empty,
+    /// There are too many triangles.
+    #[error("the surface has {triangles} triangles, at most {most} are allowed")]
+    TooMany {
+        /// Number of triangles.
+        triangles: usize,
+        /// The largest number allowed.
+        most: usize,
+    },
+    /// A coordinate is not a finite number.
+    #[error("vertex {vertex}: coordinate {value} m is not finite")]
+    NotFinite {
+        /// The vertex.
+        vertex: usize,
+        /// Its coordinate `[m]`.
+        value: f64,
+    },
+    /// A face refers to a vertex that does not exist.
+    #[error("face {face}: vertex {vertex} is not among the {vertices} vertices")]
+    NoVertex {
+        /// The face.
+        face: usize,
+        /// The vertex.
+        vertex: u64,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// The surface does not fit the nominal radius and width: a sentence with the extent, its bound and the likely mistake.
+    #[error("{0}")]
+    Extent(String),
+}
+
+impl MeshError {
+    /// The error of a file.
+    pub(super) fn in_file(&self, file: &str) -> FileError {
+        FileError::whole(file, self.to_string())
+    }
+}

@@ -1,0 +1,32 @@
+//! Why a variant cannot be evaluated here.
+
+use scm::effects::FormError;
+use shared::model::ModelError;
+
+/// Why a variant cannot be evaluated here.
+#[derive(Debug, thiserror::Error)]
+pub enum CompileError {
+    /// The variant contradicts itself, or its model cannot express it.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The model of this worker has no form of an effect.
+    #[error(transparent)]
+    Effect(#[from] FormError),
+    /// Histories of a model that knows no time.
+    #[error("histories: quasi_static knows the steady state alone; use kind = \"scm\"")]
+    NoHistories,
+    /// A condition names a wheel that does not exist.
+    #[error("unknown wheel \"{0}\"")]
+    UnknownWheel(String),
+    /// The three-dimensional model comes without its settings.
+    #[error("kind = \"scm\" comes without its settings")]
+    NoSettings,
+    /// A variant was asked for by another hash than it has.
+    #[error("variant {asked} came with hash {own}: coordinator and worker read it differently")]
+    OtherHash {
+        /// The hash that it was asked for by.
+        asked: String,
+        /// The hash that it has here.
+        own: String,
+    },
+}
