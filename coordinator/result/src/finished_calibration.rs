@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use shared::outcome::SimulatedHistory;
-use statistics::Marginal;
-
 use job::Spec;
 use record::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Sample, StageRow, Subchains};
+use shared::outcome::SimulatedHistory;
+use statistics::Marginal;
 
 /// A finished calibration.
 #[derive(Debug)]

@@ -1,40 +1,47 @@
 //! Tables, summary, flags and report of a calibration, from what the store kept.
 //!
-//! Everything here is a pure function of an [`FinishedCalibration`], or of the [`Study`] that it belongs to; the decisions it states read no holdout row.
+//! Everything here is a pure function of a [`FinishedCalibration`], or of the [`Study`] that it belongs to; the decisions it
+//! states read no holdout row.
+//!
+//! # Layout
+//! - `finished_calibration`, `study`: what the results are made from.
+//! - `table`: model against measurement, errors, intervals, the posterior's draws.
+//! - [`diagnostics`]: how far the posterior can be trusted. `flag`: what deserves attention, in words.
+//!   `diagnosis`: both, computed once.
+//! - `summary`: `summary.json`. `discovery`: its block on missing effects.
+//! - [`figure`]: the numbers of the source paper's figures.
+//! - [`report`]: the HTML page. [`terminal`]: text for a terminal.
+//! - `words`: numbers and probabilities as people read them.
 
-mod baseline;
-mod comparison;
-mod coverage;
-mod csv;
+mod diagnosis;
 pub mod diagnostics;
 pub mod discovery;
-mod entangled;
-mod errors;
 pub mod figure;
 mod finished_calibration;
-mod flags;
-mod group;
-mod level;
-mod point_estimate;
-mod predictive;
-mod readings;
+#[cfg(test)]
+mod fixture;
+mod flag;
 pub mod report;
-mod settling;
 mod study;
 mod summary;
+mod table;
 pub mod terminal;
+mod words;
 
-pub use comparison::{Comparison, ComparisonRow};
-pub use csv::PosteriorTable;
 pub use diagnostics::Diagnostics;
 pub use discovery::{DiscoverySummary, Round};
-pub use errors::{ChannelError, ErrorTable};
 pub use figure::{ChannelHistory, Figures, ModelSeries, Series};
-use finished_calibration::prior_mean;
 pub use finished_calibration::{FinishedCalibration, first_population, likeliest};
-pub use flags::Flag;
-pub use group::{ErrorGroup, GroupError};
-pub use point_estimate::PointEstimate;
-pub use predictive::Predictive;
+pub use flag::kind::Flag;
+pub use flag::model_limit::model_limits;
 pub use study::Study;
-pub use summary::{CalibrationSummary, ParameterSummary, Summary};
+pub use summary::calibration::CalibrationSummary;
+pub use summary::parameter::ParameterSummary;
+pub use summary::point_estimate::PointEstimate;
+pub use summary::study::Summary;
+pub use table::comparison::Comparison;
+pub use table::errors::{ChannelError, ErrorTable};
+pub use table::group::{ErrorGroup, GroupError};
+pub use table::posterior::PosteriorTable;
+pub use table::predictive::Predictive;
+pub use table::row::ComparisonRow;

@@ -10,7 +10,7 @@ use crate::calibration::{Calibration, Computed, Engine, Identity, result_of};
 use crate::config::JobFile;
 use crate::embedded::Evaluate;
 use job::Method;
-use result::terminal;
+use result::{model_limits, terminal};
 
 /// Particles of the pilot: enough to find the number of stages, which hardly depends on them.
 const PILOT_PARTICLES: usize = 100;
@@ -20,7 +20,7 @@ const PILOT_S: f64 = 30.0;
 pub(super) async fn check(file: &JobFile) -> anyhow::Result<()> {
     let job = job_on_disk::read(file)?;
     let mut text = terminal::specification(&job.spec);
-    for note in terminal::notes(&job.spec) {
+    for note in model_limits(&job.spec) {
         text += &format!("note: {note}\n");
     }
     say(&text)?;

@@ -15,7 +15,8 @@ use crate::embedded::{LocalWorkers, model_version};
 use crate::farm::Control;
 use crate::service::{LEASE_MS, Service, finished_study, next_step_of};
 use record::CalibrationRow;
-use result::discovery::{effect_file, terminal as discovery};
+use result::discovery::effect_file;
+use result::terminal::discovery;
 use result::{Study, report, terminal};
 
 /// How often the display looks.

@@ -16,7 +16,8 @@ use super::source::{Client, Place};
 use crate::config::{AddRuns, Discover, Extend};
 use crate::service::{Service, ServiceError};
 use record::{Discovery, Extension};
-use result::discovery::{effect_file, terminal};
+use result::discovery::effect_file;
+use result::terminal::discovery;
 
 /// How often a service is asked whether a search is over.
 const LOOK: Duration = Duration::from_millis(500);
@@ -46,7 +47,7 @@ pub(super) async fn discover(config: &Discover) -> anyhow::Result<()> {
     let record: Discovery = client.get(&path).await?;
     let url = format!("--url {}", config.target.source.url());
     write_file(&record)?;
-    Ok(say(&terminal::text(&record, id, &url, Path::new("")))?)
+    Ok(say(&discovery::text(&record, id, &url, Path::new("")))?)
 }
 
 /// Writes the effect file that a search found into the present folder.

@@ -10,11 +10,11 @@ use super::folder::Folder;
 use super::job_on_disk::{self, JobOnDisk};
 use super::output::note;
 use crate::config::Run;
-use result::terminal;
+use result::model_limits;
 
 pub(super) async fn run(config: Run) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file)?;
-    for text in terminal::notes(&job.spec) {
+    for text in model_limits(&job.spec) {
         note(&format!("note: {text}"));
     }
     let out = config

@@ -71,7 +71,7 @@ pub(super) async fn compare(target: &Target) -> anyhow::Result<()> {
 pub(super) async fn diagnose(target: &Target) -> anyhow::Result<()> {
     let place = Place::open(&target.source).await?;
     let diagnostics = place.diagnostics(place.id(target).await?).await?;
-    Ok(say(&result::diagnostics::terminal::text(&diagnostics))?)
+    Ok(say(&terminal::diagnostics(&diagnostics))?)
 }
 
 pub(super) async fn report(config: &Report) -> anyhow::Result<()> {

@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use inference::diagnostics::{self, ChannelSignal, PredictedDraw};
 use statistics::ErrorSd;
 
-use super::datum::{DataChannel, size};
+use super::data_channel::{DataChannel, size};
 use super::residuals::ResidualDiagnostics;
-use super::{LEVEL, p_words};
-use crate::coverage::Coverage;
-use crate::report::number;
-use crate::{Comparison, FinishedCalibration};
+use crate::finished_calibration::FinishedCalibration;
+use crate::table::comparison::Comparison;
+use crate::table::coverage::Coverage;
+use crate::words::number;
+use crate::words::probability::{LEVEL, p_words};
 
 /// A channel of the fitted data.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -109,7 +110,7 @@ impl CoverageCount {
 }
 
 /// The channels that have fitted data.
-pub(super) fn channels(
+pub(crate) fn channels(
     outcome: &FinishedCalibration,
     comparison: &Comparison,
     posterior: &[PredictedDraw],
@@ -152,7 +153,7 @@ pub(super) fn channels(
 }
 
 /// The chi-square of some of the data.
-pub(super) fn chi_square(
+pub(crate) fn chi_square(
     outcome: &FinishedCalibration,
     posterior: &[PredictedDraw],
     keep: impl Fn(usize) -> bool,

@@ -2,8 +2,8 @@
 
 use inference::diagnostics::{self, Direction};
 
-use crate::FinishedCalibration;
-use crate::report::number;
+use crate::finished_calibration::FinishedCalibration;
+use crate::words::number;
 
 /// A parameter with a smaller share of a direction's squared length is not named.
 const LEAST_SHARE: f64 = 0.1;
@@ -11,6 +11,11 @@ const LEAST_SHARE: f64 = 0.1;
 const NARROW: f64 = 0.5;
 /// A direction with more of the prior's spread is not known at all.
 const UNKNOWN: f64 = 0.95;
+
+/// Most directions in a list of the worst known.
+pub(crate) const WORST_KNOWN: usize = 3;
+/// Components below are left out of a list.
+const LEAST_LOADING: f64 = 0.2;
 
 /// A principal direction of the posterior, in units of the prior's standard deviations.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -30,9 +35,26 @@ pub struct Loading {
     pub loading: f64,
 }
 
+impl DirectionDiagnostics {
+    /// `n +0.80, kappa -0.60`: the components that matter.
+    pub(crate) fn words(&self) -> String {
+        let mut named: Vec<_> = self
+            .loadings
+            .iter()
+            .filter(|l| l.loading.abs() >= LEAST_LOADING)
+            .collect();
+        named.sort_by(|a, b| b.loading.abs().total_cmp(&a.loading.abs()));
+        let words: Vec<String> = named
+            .iter()
+            .map(|l| format!("{} {:+.2}", l.parameter, l.loading))
+            .collect();
+        words.join(", ")
+    }
+}
+
 /// The principal directions, the worst known first; none of a fit, and none where the prior itself is correlated: what it
 /// ties together the data need not.
-pub(super) fn directions(outcome: &FinishedCalibration) -> Vec<DirectionDiagnostics> {
+pub(crate) fn directions(outcome: &FinishedCalibration) -> Vec<DirectionDiagnostics> {
     if outcome.spec.prior().is_correlated() {
         return Vec::new();
     }
@@ -75,7 +97,7 @@ fn whitened(outcome: &FinishedCalibration, parameters: &[usize]) -> Vec<Vec<f64>
 }
 
 /// A sentence on the worst-known direction.
-pub(super) fn worst_known(
+pub(crate) fn worst_known(
     outcome: &FinishedCalibration,
     directions: &[DirectionDiagnostics],
 ) -> Option<String> {
@@ -133,7 +155,7 @@ fn sentence(names: &[String], wide: &Direction, narrow: &Direction) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::fixture;
+    use crate::fixture;
 
     fn direction(sd: f64, loadings: &[f64]) -> Direction {
         Direction {

@@ -1,9 +1,9 @@
 //! What the data did to each parameter.
 
 use inference::diagnostics::{self, Conflict};
-
-use crate::FinishedCalibration;
 use job::FreeParameter;
+
+use crate::finished_calibration::FinishedCalibration;
 
 /// A parameter after the data, beside its prior.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -36,7 +36,7 @@ pub struct PriorConflict {
 const CUT: f64 = 0.05;
 
 /// Every parameter, in the order of the job, and all of them together.
-pub(super) fn parameters(
+pub(crate) fn parameters(
     outcome: &FinishedCalibration,
 ) -> (Vec<ParameterDiagnostics>, Option<PriorConflict>) {
     let draws: Vec<&[f64]> = outcome.posterior.iter().map(|s| s.theta.as_slice()).collect();
@@ -99,7 +99,7 @@ mod tests {
     use statistics::{Distribution, Marginal};
 
     use super::*;
-    use crate::report::fixture;
+    use crate::fixture;
 
     fn free(distribution: Distribution) -> FreeParameter {
         FreeParameter {

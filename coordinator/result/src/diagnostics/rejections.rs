@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use inference::diagnostics::{self, BINS, Region, Side};
-
-use super::{LEVEL, p_words};
-use crate::FinishedCalibration;
-use crate::report::number;
 use job::{FreeParameter, Spec};
 use record::PriorDraw;
+
+use crate::finished_calibration::FinishedCalibration;
+use crate::words::number;
+use crate::words::probability::{LEVEL, p_words};
 
 /// What the model refused and which leases failed.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -81,7 +81,7 @@ pub struct RegionSide {
 }
 
 /// Counts of the draws from the prior.
-pub(super) fn rejections(outcome: &FinishedCalibration) -> RejectionDiagnostics {
+pub(crate) fn rejections(outcome: &FinishedCalibration) -> RejectionDiagnostics {
     let draws = &outcome.prior_draws;
     // The sds of noise are no concern of the model that refuses.
     let free = &outcome.spec.parameters[..outcome.spec.fit_variant.parameters.len()];
@@ -228,7 +228,7 @@ impl RejectionDiagnostics {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::fixture;
+    use crate::fixture;
 
     /// 200 draws spread evenly over the prior, of which those are refused whose n is in its lowest part.
     fn with_low_n_refused() -> FinishedCalibration {

@@ -2,8 +2,11 @@
 
 use inference::diagnostics::{self, PredictedDraw};
 
-use super::datum::{DataChannel, run_name};
-use crate::FinishedCalibration;
+use super::data_channel::{DataChannel, run_name};
+use crate::finished_calibration::FinishedCalibration;
+
+/// Most residuals in a list of the largest.
+const LARGEST: usize = 5;
 
 /// A fitted measurement beside the posterior's mean prediction.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -27,7 +30,7 @@ pub struct ResidualDiagnostics {
 }
 
 /// In the order of the likelihood's data; empty of a fit.
-pub(super) fn residuals(
+pub(crate) fn residuals(
     outcome: &FinishedCalibration,
     posterior: &[PredictedDraw],
 ) -> Vec<ResidualDiagnostics> {
@@ -50,4 +53,11 @@ pub(super) fn residuals(
             }
         })
         .collect()
+}
+
+/// The most improbable residuals; those that cannot be judged are left out.
+pub(crate) fn largest(all: &[ResidualDiagnostics]) -> Vec<&ResidualDiagnostics> {
+    let mut judged: Vec<(f64, &ResidualDiagnostics)> = all.iter().filter_map(|r| Some((r.p?, r))).collect();
+    judged.sort_by(|a, b| a.0.total_cmp(&b.0));
+    judged.into_iter().map(|(_, r)| r).take(LARGEST).collect()
 }

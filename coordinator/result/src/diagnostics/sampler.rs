@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::FinishedCalibration;
 use record::StageRow;
+
+use crate::finished_calibration::FinishedCalibration;
 
 /// Whether the draws can be read as the posterior, and how many they are worth.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -21,7 +22,7 @@ pub struct SamplerDiagnostics {
 }
 
 /// None of a fit.
-pub(super) fn sampler(outcome: &FinishedCalibration) -> Option<SamplerDiagnostics> {
+pub(crate) fn sampler(outcome: &FinishedCalibration) -> Option<SamplerDiagnostics> {
     let bits = |theta: &[f64]| theta.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
     let distinct: BTreeSet<Vec<u64>> = outcome.posterior.iter().map(|s| bits(&s.theta)).collect();
     outcome.estimate.is_none().then(|| SamplerDiagnostics {

@@ -4,8 +4,8 @@ use inference::diagnostics::{PredictedDraw, TrendTest};
 use shared::channel::Channel;
 use shared::experiment::TestRun;
 
-use crate::FinishedCalibration;
-use crate::level::levels;
+use crate::finished_calibration::FinishedCalibration;
+use crate::table::level::levels;
 
 /// What residuals are held against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -98,7 +98,7 @@ pub struct TrendDiagnostics {
 }
 
 /// Every channel against every condition that its fitted runs vary and that the fit does not take up; empty of a fit.
-pub(super) fn trends(outcome: &FinishedCalibration, posterior: &[PredictedDraw]) -> Vec<TrendDiagnostics> {
+pub(crate) fn trends(outcome: &FinishedCalibration, posterior: &[PredictedDraw]) -> Vec<TrendDiagnostics> {
     let spec = &outcome.spec;
     // These values were scored while sampling.
     let Ok(Some(test)) = TrendTest::new(&spec.likelihood, &spec.prior(), posterior) else {
@@ -139,7 +139,7 @@ pub(super) fn trends(outcome: &FinishedCalibration, posterior: &[PredictedDraw])
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::fixture;
+    use crate::fixture;
 
     /// Runs with these slips, loads and speeds.
     fn runs(conditions: &[[f64; 3]]) -> Vec<TestRun> {

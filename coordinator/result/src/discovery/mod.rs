@@ -2,10 +2,8 @@
 //!
 //! # Layout
 //! - `summary`: the block `discovery` of `summary.json`.
-//! - [`terminal`]: a search as text.
 
 mod summary;
-pub mod terminal;
 
 pub use summary::DiscoverySummary;
 

@@ -1,8 +1,8 @@
 //! The block `discovery` of `summary.json`.
 
-use super::Round;
-use record::effect_of;
-use record::{Discovery, JudgedEffect, NextRun, Outside, Verdict};
+use record::{Discovery, JudgedEffect, NextRun, Outside, Verdict, effect_of};
+
+use crate::discovery::Round;
 
 /// What is known of the effects that a study's model misses.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]

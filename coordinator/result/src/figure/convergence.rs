@@ -1,11 +1,11 @@
 //! How searches and sampler came to their results: the source paper's Fig. 5.
 
 use inference::diagnostics;
-
-use super::AxisParameter;
-use crate::FinishedCalibration;
-use crate::point_estimate::{GenerationSummary, generations};
 use record::Sample;
+
+use super::axis_parameter::AxisParameter;
+use crate::finished_calibration::FinishedCalibration;
+use crate::summary::point_estimate::{GenerationSummary, generations};
 
 /// More points than this only make a picture heavy.
 const POINTS: usize = 400;
@@ -166,8 +166,8 @@ pub(super) fn populations(outcome: &FinishedCalibration) -> Option<Populations> 
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::report::fixture;
     use super::*;
+    use crate::fixture;
 
     #[test]
     fn evaluations_add_up_and_every_population_has_its_range() {

@@ -1,11 +1,12 @@
 //! How far off the model is over the posterior: the source paper's Fig. 8.
 
 use inference::diagnostics;
+use job::Spec;
 use shared::channel::Channel;
 
 use super::mark::{Mark, MarkKind};
-use crate::{FinishedCalibration, Study};
-use job::Spec;
+use crate::finished_calibration::FinishedCalibration;
+use crate::study::Study;
 
 /// Points of the grid.
 const GRID: usize = 160;
@@ -87,8 +88,8 @@ fn density(study: &Study, sample: &FinishedCalibration, channel: Channel) -> Opt
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::report::fixture;
     use super::*;
+    use crate::fixture;
 
     #[test]
     fn the_density_holds_all_draws_and_marks_are_their_errors() {

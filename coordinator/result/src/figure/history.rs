@@ -1,5 +1,6 @@
 //! Measured and simulated histories, filtered.
 
+use job::Method;
 use serde::Serialize;
 use shared::channel::Channel;
 use shared::experiment::MeasuredHistory;
@@ -7,8 +8,8 @@ use shared::outcome::SimulatedHistory;
 use signal::{INTERVAL_S, LowPass};
 use utoipa::ToSchema;
 
-use super::super::{FinishedCalibration, Study};
-use job::Method;
+use crate::finished_calibration::FinishedCalibration;
+use crate::study::Study;
 
 /// One channel of one fitted run over time.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]

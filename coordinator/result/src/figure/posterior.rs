@@ -4,11 +4,13 @@ use std::collections::BTreeMap;
 
 use inference::diagnostics;
 
+use super::axis_parameter::AxisParameter;
 use super::mark::{Mark, MarkKind, Place};
-use super::{AxisParameter, reference};
-use crate::entangled::most_correlated;
-use crate::report::number;
-use crate::{FinishedCalibration, Study};
+use super::reference;
+use crate::diagnostics::correlated_pair::most_correlated;
+use crate::finished_calibration::FinishedCalibration;
+use crate::study::Study;
+use crate::words::number;
 
 /// The pairs that the source paper shows.
 const PAPER: [[&str; 2]; 3] = [
@@ -210,8 +212,8 @@ fn stiffness_line(
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::report::fixture;
     use super::*;
+    use crate::fixture;
 
     #[test]
     fn the_line_of_k_star_has_the_mean_width_s_slope() {

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use inference::diagnostics::mean;
-
 use job::{Bevameter, Spec};
 
 /// Values of parameters by name: those that the job states, then what the readings of plates and rings say.
@@ -55,10 +54,10 @@ fn friction_angle_deg(bevameter: &Bevameter) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use job::Reading;
     use shared::model::{PlateCondition, RingCondition};
 
     use super::*;
-    use job::Reading;
 
     #[test]
     fn plates_give_the_exponent_and_rings_the_angle() {

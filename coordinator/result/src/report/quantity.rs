@@ -2,8 +2,8 @@
 
 use shared::channel::Channel;
 
-use super::number;
-use crate::ComparisonRow;
+use crate::table::row::ComparisonRow;
+use crate::words::number;
 
 /// A channel as it is shown: sinkage in millimetres, everything else in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]

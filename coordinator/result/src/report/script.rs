@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use crate::Figures;
+use crate::figure::Figures;
 
 /// The modules, each behind those that it imports.
 const MODULES: [(&str, &str); 11] = [
@@ -84,7 +84,7 @@ fn import(line: &str) -> Option<(&str, &str)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::fixture;
+    use crate::fixture;
 
     #[test]
     fn every_module_stands_behind_those_that_it_imports() {

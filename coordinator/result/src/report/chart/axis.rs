@@ -1,6 +1,6 @@
 //! An axis: a range, its ticks at 1-2-5 steps, and where a value lies on the picture.
 
-use crate::report::number::{self, magnitude};
+use crate::words::number::{self, magnitude};
 
 /// How values are laid out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

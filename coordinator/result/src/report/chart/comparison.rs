@@ -4,9 +4,9 @@ use maud::{Markup, html};
 
 use super::axis::{Axis, Scale};
 use super::frame::{Frame, Marker, interval, line, marker, px};
-use crate::ComparisonRow;
-use crate::report::number;
 use crate::report::quantity::Quantity;
+use crate::table::row::ComparisonRow;
+use crate::words::number;
 
 const WIDTH: f64 = 460.0;
 const HEIGHT: f64 = 290.0;

@@ -1,12 +1,12 @@
 //! The posterior of one parameter over its prior density.
 
+use job::FreeParameter;
 use maud::{Markup, html};
 
 use super::axis::{Axis, Scale};
 use super::frame::{Frame, px};
 use super::scale::scale;
-use crate::ParameterSummary;
-use job::FreeParameter;
+use crate::summary::parameter::ParameterSummary;
 
 const WIDTH: f64 = 320.0;
 const HEIGHT: f64 = 210.0;

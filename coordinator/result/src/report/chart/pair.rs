@@ -1,11 +1,11 @@
 //! The draws of two parameters against each other.
 
+use job::FreeParameter;
 use maud::{Markup, html};
 
 use super::axis::Axis;
 use super::frame::{Frame, px};
 use super::scale::scale;
-use job::FreeParameter;
 
 const WIDTH: f64 = 320.0;
 const HEIGHT: f64 = 280.0;

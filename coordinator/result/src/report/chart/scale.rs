@@ -1,7 +1,8 @@
 //! Whether a parameter is drawn against equal steps or equal ratios.
 
-use super::axis::Scale;
 use job::FreeParameter;
+
+use super::axis::Scale;
 
 /// Draws over more than this factor are drawn against equal ratios, where the prior is made of ratios too.
 const WIDE: f64 = 10.0;

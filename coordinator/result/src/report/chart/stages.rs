@@ -1,11 +1,11 @@
 //! The way from the prior to the posterior, stage by stage.
 
 use maud::{Markup, html};
+use record::StageRow;
 
 use super::axis::{Axis, Scale};
 use super::frame::{Frame, Marker, line, marker, px};
-use crate::report::number;
-use record::StageRow;
+use crate::words::number;
 
 const WIDTH: f64 = 460.0;
 const HEIGHT: f64 = 240.0;

@@ -4,10 +4,12 @@ use std::collections::BTreeSet;
 
 use maud::{Markup, html};
 
+use crate::finished_calibration::FinishedCalibration;
 use crate::report::chart::{ComparisonChart, Marker, glyph, shared_range};
-use crate::report::number;
 use crate::report::quantity::Quantity;
-use crate::{Comparison, ComparisonRow, FinishedCalibration};
+use crate::table::comparison::Comparison;
+use crate::table::row::ComparisonRow;
+use crate::words::number;
 
 /// Pictures and table.
 pub(in crate::report) fn comparison(outcome: &FinishedCalibration, comparison: &Comparison) -> Markup {

@@ -2,13 +2,14 @@
 
 use maud::{Markup, html};
 
-use crate::Diagnostics;
-use crate::diagnostics::terminal::{largest, loadings};
-use crate::diagnostics::{ChannelDiagnostics, ResidualDiagnostics, TrendDiagnostics, probability, shown};
-use crate::report::number;
-
-/// So many of the worst-known directions are shown.
-const DIRECTIONS: usize = 3;
+use crate::diagnostics::calibration::Diagnostics;
+use crate::diagnostics::channels::ChannelDiagnostics;
+use crate::diagnostics::data_channel::shown;
+use crate::diagnostics::directions::WORST_KNOWN;
+use crate::diagnostics::residuals::{ResidualDiagnostics, largest};
+use crate::diagnostics::trends::TrendDiagnostics;
+use crate::words::number;
+use crate::words::probability::probability;
 
 /// Findings, then the tables that they come from.
 pub(in crate::report) fn diagnostics(diagnostics: &Diagnostics) -> Markup {
@@ -152,8 +153,8 @@ fn directions(diagnostics: &Diagnostics) -> Markup {
         @if !diagnostics.directions.is_empty() {
             table {
                 thead { tr { th { "share of the prior's" br; "spread that is left" } th.text { "worst-known directions" } } }
-                tbody { @for d in diagnostics.directions.iter().take(DIRECTIONS) { tr {
-                    td { (number::significant(d.sd_ratio, 2)) } td.text { (loadings(d)) }
+                tbody { @for d in diagnostics.directions.iter().take(WORST_KNOWN) { tr {
+                    td { (number::significant(d.sd_ratio, 2)) } td.text { (d.words()) }
                 } } }
             }
         }

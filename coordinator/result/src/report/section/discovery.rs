@@ -3,13 +3,17 @@
 use std::path::Path;
 
 use maud::{Markup, html};
-
-use crate::discovery::arguments;
-use crate::report::chart;
-use crate::report::number;
-use crate::report::quantity::Quantity;
-use crate::{Comparison, ErrorTable, FinishedCalibration, Round, Study};
 use record::{Discovery, JudgedEffect, Outside};
+
+use crate::discovery::{Round, arguments};
+use crate::finished_calibration::FinishedCalibration;
+use crate::report::chart;
+use crate::report::quantity::Quantity;
+use crate::study::Study;
+use crate::table::comparison::Comparison;
+use crate::table::coverage::Coverage;
+use crate::table::errors::ErrorTable;
+use crate::words::number;
 
 /// Ledger, then each search; nothing where the study has neither a search nor an extension.
 pub(in crate::report) fn discovery(study: &Study) -> Option<Markup> {
@@ -61,7 +65,7 @@ fn cells(
 ) -> Markup {
     let is_first = usage == "fit";
     let effects = outcome.effects();
-    let coverage = crate::coverage::Coverage::count(comparison.rows.iter().filter(|r| r.usage == usage));
+    let coverage = Coverage::count(comparison.rows.iter().filter(|r| r.usage == usage));
     html! {
         td.text { @if is_first { (outcome.experiment) } }
         td.text { @if is_first { (if effects.is_empty() { number::NONE.to_owned() } else { effects.join(", ") }) } }

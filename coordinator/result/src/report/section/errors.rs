@@ -2,11 +2,14 @@
 
 use maud::{Markup, html};
 
-use crate::coverage::Coverage;
-use crate::readings::reading_errors;
-use crate::report::number;
+use crate::finished_calibration::FinishedCalibration;
 use crate::report::quantity::Quantity;
-use crate::{ChannelError, Comparison, ComparisonRow, ErrorTable, FinishedCalibration};
+use crate::table::comparison::Comparison;
+use crate::table::coverage::Coverage;
+use crate::table::errors::{ChannelError, ErrorTable};
+use crate::table::readings::reading_errors;
+use crate::table::row::ComparisonRow;
+use crate::words::number;
 
 /// A line of the table.
 struct Line {

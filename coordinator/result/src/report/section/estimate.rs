@@ -2,13 +2,13 @@
 
 use inference::point_estimate::StopReason;
 use maud::{Markup, html};
+use record::EstimateRow;
 
 use super::parameters::{fixed, prior_words};
 use super::stages::cost;
-use crate::FinishedCalibration;
-use crate::point_estimate::fitted;
-use crate::report::number;
-use record::EstimateRow;
+use crate::finished_calibration::FinishedCalibration;
+use crate::summary::point_estimate::fitted;
+use crate::words::number;
 
 /// The most probable parameters.
 pub(in crate::report) fn estimate(outcome: &FinishedCalibration, estimate: &EstimateRow) -> Markup {

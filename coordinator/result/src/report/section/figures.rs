@@ -2,9 +2,8 @@
 
 use maud::{Markup, html};
 
-use crate::Figures;
-use crate::figure::{ChannelHistory, ErrorDensity, Mark, Posterior, SearchConvergence};
-use crate::report::number;
+use crate::figure::{ChannelHistory, ErrorDensity, Figures, Mark, Posterior, SearchConvergence};
+use crate::words::number;
 
 /// Every figure that there is something to show in.
 pub(in crate::report) fn figures(figures: &Figures) -> Markup {

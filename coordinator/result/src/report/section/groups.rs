@@ -3,7 +3,9 @@
 use maud::{Markup, html};
 
 use crate::report::quantity::Quantity;
-use crate::{Comparison, ErrorGroup, GroupError};
+use crate::table::comparison::Comparison;
+use crate::table::group::{ErrorGroup, GroupError};
+use crate::words::number;
 
 /// A mean beyond so many of its sampling errors is set off.
 const NOTABLE: f64 = 3.0;
@@ -45,7 +47,7 @@ fn cell(group: &ErrorGroup, quantity: Quantity) -> Markup {
     html! {
         @match error {
             Some(error) => { span.alarm[notable(error)] { (error.words()) } }
-            None => { (crate::report::number::NONE) }
+            None => { (number::NONE) }
         }
     }
 }

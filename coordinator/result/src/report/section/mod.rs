@@ -1,6 +1,5 @@
 //! The parts of the page, in reading order.
 
-mod beside;
 mod comparison;
 mod diagnostics;
 mod discovery;
@@ -9,12 +8,12 @@ mod estimate;
 mod figures;
 mod groups;
 mod parameters;
+mod point_estimates;
 mod provenance;
 mod rejections;
 mod stages;
 mod verdict;
 
-pub(super) use beside::beside;
 pub(super) use comparison::comparison;
 pub(super) use diagnostics::diagnostics;
 pub(super) use discovery::discovery;
@@ -23,6 +22,7 @@ pub(super) use estimate::{estimate, fit};
 pub(super) use figures::figures;
 pub(super) use groups::groups;
 pub(super) use parameters::parameters;
+pub(super) use point_estimates::point_estimates;
 pub(super) use provenance::{provenance, subtitle};
 pub(super) use rejections::rejections;
 pub(super) use stages::stages;

@@ -1,12 +1,14 @@
 //! Parameters after and before the data: table, densities, and the pairs that the data leave entangled.
 
+use job::FreeParameter;
 use maud::{Markup, html};
 use statistics::Distribution;
 
-use crate::entangled::{LEAST_CORRELATION, most_correlated};
-use crate::report::{chart, number};
-use crate::{FinishedCalibration, ParameterSummary};
-use job::FreeParameter;
+use crate::diagnostics::correlated_pair::{LEAST_CORRELATION, most_correlated};
+use crate::finished_calibration::FinishedCalibration;
+use crate::report::chart;
+use crate::summary::parameter::ParameterSummary;
+use crate::words::number;
 
 /// A bound so many standard deviations from the mean needs no mention.
 const FAR: f64 = 6.0;

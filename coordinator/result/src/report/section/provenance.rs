@@ -1,13 +1,13 @@
 //! Where the result comes from, enough to make it again.
 
 use inference::evolution::EvolutionSettings;
+use job::Method;
 use maud::{Markup, html};
 use shared::experiment::RunUse;
 
-use crate::FinishedCalibration;
-use crate::readings::error_model;
-use crate::report::number;
-use job::Method;
+use crate::finished_calibration::FinishedCalibration;
+use crate::table::error_model::error_model;
+use crate::words::number;
 
 /// One line under the title: model, data, sampler.
 pub(in crate::report) fn subtitle(outcome: &FinishedCalibration) -> String {

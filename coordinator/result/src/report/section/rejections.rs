@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-use crate::diagnostics::{Bin, RejectionDiagnostics};
-use crate::report::number;
+use crate::diagnostics::rejections::{Bin, RejectionDiagnostics};
+use crate::words::number;
 
 /// A row for each parameter, a cell for each fifth of its prior.
 pub(in crate::report) fn rejections(rejections: &RejectionDiagnostics) -> Markup {

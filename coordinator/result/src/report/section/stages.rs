@@ -1,11 +1,11 @@
 //! What the sampler did: evidence, counts, and the way from the prior to the posterior.
 
 use maud::{Markup, html};
-
-use crate::FinishedCalibration;
-use crate::report::chart::{self, Marker, glyph};
-use crate::report::number;
 use record::StageRow;
+
+use crate::finished_calibration::FinishedCalibration;
+use crate::report::chart::{self, Marker, glyph};
+use crate::words::number;
 
 /// Evidence, pictures and table.
 pub(in crate::report) fn stages(outcome: &FinishedCalibration) -> Markup {

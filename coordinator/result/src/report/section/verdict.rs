@@ -1,6 +1,7 @@
 //! What the result says, in plain words made from its numbers.
 
 use inference::diagnostics::mean_and_sd;
+use job::repeat_scatter;
 use maud::{Markup, html};
 use shared::channel::Channel;
 use shared::experiment::{RunUse, WheelGeometry};
@@ -8,12 +9,15 @@ use shared::model::ModelKind;
 use shared::parameters::noise_parameter;
 
 use super::estimate::reason;
-use crate::coverage::Coverage;
-use crate::report::number;
+use crate::finished_calibration::FinishedCalibration;
+use crate::flag::model_limit::model_limits;
+use crate::flag::unsettled_run::unsettled;
 use crate::report::quantity::Quantity;
-use crate::settling::unsettled;
-use crate::{Comparison, ErrorTable, FinishedCalibration, Study, terminal};
-use job::repeat_scatter;
+use crate::study::Study;
+use crate::table::comparison::Comparison;
+use crate::table::coverage::Coverage;
+use crate::table::errors::ErrorTable;
+use crate::words::number;
 
 /// Flags first, then the verdict, then what a reader must know of the model.
 pub(in crate::report) fn verdict(study: &Study, comparison: &Comparison) -> Markup {
@@ -279,7 +283,7 @@ fn notes(outcome: &FinishedCalibration) -> Vec<String> {
         notes.push("Grousers are not modelled here: each wheel has its own wheel_radius_m.NAME.".to_owned());
     }
     notes.extend(
-        terminal::notes(&outcome.spec)
+        model_limits(&outcome.spec)
             .into_iter()
             .map(|note| format!("{note}.")),
     );

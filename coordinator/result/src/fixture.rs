@@ -1,0 +1,261 @@
+//! A small outcome with hostile names, for tests.
+
+use std::collections::BTreeMap;
+
+use inference::evolution::{EvolutionSettings, GaSettings};
+use inference::point_estimate::{Generation, StopReason};
+use job::{Method, Spec};
+use record::{CalibrationRow, EstimateRow, Outside, Prediction, PriorDraw, Sample, StageRow};
+use shared::api::CalibrationState;
+use shared::file::FileSet;
+use shared::outcome::Observables;
+
+use crate::discovery::Round;
+use crate::finished_calibration::FinishedCalibration;
+use crate::study::Study;
+
+const JOB: &str = r#"
+# <i>bold & brave</i>
+experiment = "experiment.toml"
+[model]
+kind = "quasi_static"
+cohesion_pa = 0.0
+shear_velocity_m_s = 0.001
+[priors]
+log10_p_ref = { normal = [3.9, 0.2] }
+kappa = 0.0
+n = { uniform = [0.8, 1.6] }
+friction_angle_deg = { normal = [31.0, 4.0], bounds = [15.0, 45.0] }
+"noise.sinkage_m" = { lognormal = [0.002, 2.5] }
+[sampler]
+particles = 40
+"#;
+
+const EXPERIMENT: &str = r#"
+runs = "runs.csv"
+[wheel.a]
+radius_m = 0.1
+width_m = 0.05
+[soil.sand]
+[noise]
+drawbar_pull_n = 1.0
+sinkage_m = "unknown"
+"#;
+
+const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,sinkage_m,use
+<script>alert(1)</script>,a,sand,-0.2,25,0.01,-7.0,0.015,fit
+b&c,a,sand,0.2,25,0.01,0.5,0.020,fit
+d,a,sand,0.5,25,0.01,1.5,,fit
+e,a,sand,0.4,25,0.01,1.2,0.022,LAST
+";
+
+/// An outcome with a holdout run.
+pub(crate) fn outcome() -> FinishedCalibration {
+    build("holdout")
+}
+
+/// The same with every run fitted.
+pub(crate) fn without_holdout() -> FinishedCalibration {
+    build("fit")
+}
+
+/// The same where the model refused all final draws, drifted, and has no evidence.
+pub(crate) fn all_refused() -> FinishedCalibration {
+    let mut outcome = outcome();
+    for prediction in &mut outcome.predictions {
+        prediction.fit = Err("no_support".into());
+        prediction.holdout = prediction.holdout.take().map(|_| Err("no_support".into()));
+    }
+    for stage in &mut outcome.stages {
+        (stage.equilibrated, stage.drift_z, stage.tempering_exponent) = (false, 1e6, 0.0);
+    }
+    outcome.row.equilibrated = Some(false);
+    outcome.row.log_evidence = None;
+    outcome
+}
+
+/// A fit of the same job, one parameter at a bound.
+pub(crate) fn fit() -> FinishedCalibration {
+    let mut outcome = outcome();
+    outcome.spec.method = Method::Fit(inference::lm::LmSettings::default());
+    let first = outcome.predictions.remove(0);
+    let mut sd: Vec<Option<f64>> = first.theta.iter().map(|x| Some(0.1 * x)).collect();
+    let mut at_bound = vec![false; sd.len()];
+    (sd[1], at_bound[1]) = (None, true);
+    outcome.estimate = Some(EstimateRow {
+        theta: first.theta.clone(),
+        log_likelihood: -20.0,
+        log_prior: -1.0,
+        sd: Some(sd),
+        at_bound,
+        stop: StopReason::Decrease,
+        history: Vec::new(),
+    });
+    outcome.predictions = vec![first];
+    outcome.posterior.clear();
+    outcome.prior_draws.clear();
+    outcome.populations.clear();
+    outcome.likeliest_values = None;
+    outcome.stages.clear();
+    outcome.row.log_evidence = None;
+    outcome.row.log_evidence_se = None;
+    outcome.row.equilibrated = None;
+    outcome
+}
+
+/// A search of the same job that its generations cut short.
+pub(crate) fn search() -> FinishedCalibration {
+    let mut outcome = fit();
+    outcome.spec.method = Method::Evolve(EvolutionSettings::Ga(GaSettings::default()));
+    if let Some(estimate) = &mut outcome.estimate {
+        estimate.sd = None;
+        estimate.stop = StopReason::Generations;
+        estimate.history = vec![Generation {
+            evaluations: 100,
+            best: Some(-21.0),
+            mean: None,
+        }];
+    }
+    outcome
+}
+
+/// A sample with a search beside it.
+pub(crate) fn study() -> Study {
+    Study {
+        beside: vec![search()],
+        ..Study::from(outcome())
+    }
+}
+
+/// A sample that was searched and extended.
+pub(crate) fn grown() -> Study {
+    let mut extension = outcome();
+    (extension.row.id, extension.experiment) = (3, "<script>sand+slip_sinkage".into());
+    let mut record =
+        serde_json::from_str::<record::Discovery>(include_str!("../../record/discovery.json")).unwrap();
+    record.outside = Some(Outside {
+        acts_on: "shear".into(),
+        depends_on: "slip".into(),
+        form: "step".into(),
+        log_bayes_factor: 12.0,
+        effect_file: "name = \"<script>\"\n".into(),
+        curve: vec![[0.0, 1.0], [0.3, 1.0], [0.31, 1.2], [0.6, 1.2]],
+        left_out_nats: [8.0, 3.0],
+    });
+    Study {
+        extensions: vec![extension],
+        rounds: vec![Round {
+            calibration: 1,
+            record,
+        }],
+        ..study()
+    }
+}
+
+fn build(last: &str) -> FinishedCalibration {
+    let runs = RUNS.replace("LAST", last);
+    let files = FileSet {
+        toml: EXPERIMENT.into(),
+        files: BTreeMap::from([("runs.csv".into(), runs)]),
+    };
+    let job = FileSet {
+        toml: JOB.into(),
+        files: BTreeMap::new(),
+    };
+    let spec = Spec::new("job.toml", &job, "experiment.toml", &files).expect("the fixture's files are valid");
+    // The golden ratio's multiples spread evenly.
+    let share = |k: usize, i: usize| (0.5 + 0.618_033_988_75 * (k * (i + 1)) as f64) % 1.0;
+    let theta = |k: usize| -> Vec<f64> {
+        spec.parameters
+            .iter()
+            .enumerate()
+            .map(|(i, p)| p.marginal.quantile(share(k, i)))
+            .collect()
+    };
+    let posterior: Vec<Sample> = (0..40)
+        .map(|k| Sample {
+            theta: theta(k),
+            log_likelihood: Some(-20.0 - share(k, 0)),
+            log_prior: -1.0,
+        })
+        .collect();
+    let predicted = |k: usize, runs: &[usize]| {
+        let values = |base: f64, step: f64| {
+            runs.iter()
+                .map(|&r| base + step * (r as f64 + share(k, r)))
+                .collect()
+        };
+        Observables {
+            drawbar_pull_n: values(-6.0, 2.0),
+            torque_n_m: values(0.1, 0.1),
+            sinkage_m: values(0.014, 0.002),
+            lateral_force_n: values(0.0, 0.0),
+            ..Observables::default()
+        }
+    };
+    // The model refuses two draws, those with the least n.
+    let prior_draws = (0..40)
+        .map(|k| PriorDraw {
+            theta: theta(k),
+            result: match share(k, 1) < 0.075 {
+                true => Err("no_support: condition 0: k* = -2 Pa".into()),
+                false => Ok(spec.predicted_values(&predicted(k, &spec.fit_runs))),
+            },
+            faults: u64::from(k == 7),
+        })
+        .collect();
+    let predictions = (0..20)
+        .map(|k| Prediction {
+            theta: theta(k),
+            fit: Ok(predicted(k, &spec.fit_runs)),
+            holdout: (!spec.holdout_runs.is_empty()).then(|| Ok(predicted(k, &spec.holdout_runs))),
+        })
+        .collect();
+    let likeliest_values = spec.predicted_values(&predicted(0, &spec.fit_runs));
+    let stage = |stage: u32, tempering_exponent: f64| StageRow {
+        stage,
+        tempering_exponent,
+        acceptance: 0.3,
+        drift_z: -0.4,
+        correlation: 0.1,
+        steps: 12,
+        log_evidence_increment: -3.0,
+        weight_cov: 1.0,
+        ess: 20.0,
+        scale: 0.5,
+        evaluations: 480,
+        equilibrated: true,
+    };
+    let row = CalibrationRow {
+        id: 1,
+        study: 1,
+        experiment: 1,
+        name: "<script>sand".into(),
+        job,
+        state: CalibrationState::Finished,
+        message: None,
+        model_version: Some("1".into()),
+        busy_ms: 1500,
+        log_evidence: Some(-25.0),
+        log_evidence_se: Some(0.2),
+        equilibrated: Some(true),
+        evaluations: Some(1000),
+        rejected: Some(3),
+    };
+    FinishedCalibration {
+        experiment: row.name.clone(),
+        row,
+        estimate: None,
+        stages: vec![stage(1, 0.001), stage(2, 0.1), stage(3, 1.0)],
+        populations: vec![posterior.clone(); 3],
+        likeliest_values: Some(likeliest_values),
+        posterior,
+        predictions,
+        simulated_histories: None,
+        rejections: BTreeMap::from([("no_support".into(), 3)]),
+        subchains: None,
+        prior_draws,
+        faults: BTreeMap::from([("the lease expired".into(), 1)]),
+        spec,
+    }
+}

@@ -1,0 +1,15 @@
+//! What deserves attention, each with a sentence that a test engineer understands.
+//!
+//! # Layout
+//! - `kind`: a flag.
+//! - `finding`: flags of the diagnostics' tests; `cause`: what a trend may come from.
+//! - `calibration`: all flags of a calibration. `study`: of a study.
+//! - `model_limit`, `unsettled_run`: notes that raise no flag.
+
+pub(crate) mod calibration;
+pub(crate) mod cause;
+pub(crate) mod finding;
+pub(crate) mod kind;
+pub(crate) mod model_limit;
+pub(crate) mod study;
+pub(crate) mod unsettled_run;

@@ -1,0 +1,40 @@
+//! Limits of the model that a reader of its results should know.
+
+use formula::Variable;
+use job::Spec;
+use shared::model::{EffectSet, ModelKind};
+
+/// What the model leaves out of this job, a sentence each.
+pub fn model_limits(spec: &Spec) -> Vec<String> {
+    let mut limits = Vec::new();
+    let lugged: Vec<&str> = spec
+        .experiment
+        .wheels
+        .iter()
+        .filter(|(_, wheel)| wheel.has_grousers())
+        .map(|(name, _)| name.as_str())
+        .collect();
+    let lugged = lugged.join(", ");
+    // what was read once is read again
+    let effects = EffectSet::read(&spec.fit_variant.effects).unwrap_or_default();
+    let named = |variables: &[Variable]| variables.iter().any(|v| effects.using(*v).is_some());
+    match spec.fit_variant.kind {
+        ModelKind::QuasiStatic => {
+            if !lugged.is_empty() && !named(&[Variable::GrouserCount, Variable::GrouserHeight]) {
+                limits.push(format!(
+                    "quasi_static models the smooth rim: the grousers of {lugged} enter only through a radius of their own (wheel_radius_m.NAME)"
+                ));
+            }
+            if spec.experiment.runs.iter().any(|r| r.pass > 1) && !named(&[Variable::Pass]) {
+                limits.push(
+                    "quasi_static has no memory between passes: every pass is predicted like the first".into(),
+                );
+            }
+        }
+        ModelKind::Scm if lugged.is_empty() => {}
+        ModelKind::Scm => limits.push(format!(
+            "scm rolls the grousers of {lugged}, but a height field cannot show their flanks: thrust beyond their sheared tips is left out"
+        )),
+    }
+    limits
+}

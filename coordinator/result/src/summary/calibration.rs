@@ -1,0 +1,148 @@
+//! `summary.json`: the contract's summary of a study.
+
+use std::collections::BTreeMap;
+
+use inference::diagnostics;
+use shared::channel::Channel;
+
+use super::error::{BaselineSummary, ErrorSummary};
+use super::parameter::ParameterSummary;
+use crate::finished_calibration::FinishedCalibration;
+use crate::table::coverage::Coverage;
+use crate::table::row::ComparisonRow;
+
+/// A calibration of the ledger.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct CalibrationSummary {
+    /// Effects switched on.
+    pub effects: Vec<String>,
+    /// Algorithm.
+    pub algorithm: String,
+    /// Log-evidence.
+    pub log_evidence: Option<f64>,
+    /// Its standard error.
+    pub log_evidence_se: Option<f64>,
+    /// Whether every stage reached equilibrium.
+    pub equilibrated: Option<bool>,
+    /// Evaluations of the sampler.
+    pub evaluations: Option<u64>,
+    /// Of these, refused by the model.
+    pub rejected: Option<u64>,
+    /// Wall time `[s]`.
+    pub wall_s: f64,
+    /// What a metamodel did between evaluations; null without one.
+    pub metamodel: Option<MetamodelSummary>,
+    /// Stages.
+    pub stages: Vec<StageSummary>,
+    /// Parameters by name.
+    pub parameters: BTreeMap<String, ParameterSummary>,
+    /// Interpolation without physics.
+    pub baseline: BaselineSummary,
+    /// Errors of the posterior-mean prediction.
+    pub error: ErrorSummary,
+    /// Noise standard deviation by channel: declared, or its posterior mean.
+    pub noise_sd: BTreeMap<String, f64>,
+    /// Share of measurements inside their 90 % interval.
+    pub coverage90: CoverageSummary,
+}
+
+/// What a metamodel did between evaluations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct MetamodelSummary {
+    /// Moves that it proposed, each an evaluation of `quasi_static` in place of one of `scm`.
+    pub moves: u64,
+    /// Subchains of such moves.
+    pub subchains: u64,
+    /// Of these, the ones that ended elsewhere than they began, where `scm` was asked.
+    pub moved: u64,
+}
+
+/// A stage.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct StageSummary {
+    /// Tempering exponent.
+    pub tempering_exponent: f64,
+    /// Acceptance rate.
+    pub acceptance: f64,
+    /// Drift as a z-score.
+    pub drift_z: f64,
+    /// Moves per particle.
+    pub steps: u32,
+}
+
+/// Coverage on both kinds of runs.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct CoverageSummary {
+    /// Fitted runs.
+    pub fit: Option<f64>,
+    /// Runs that were not fitted.
+    pub holdout: Option<f64>,
+}
+
+impl FinishedCalibration {
+    /// Names of the effects of its model.
+    pub fn effects(&self) -> Vec<String> {
+        let effects = &self.spec.fit_variant.effects;
+        effects.iter().map(|e| e.name.clone()).collect()
+    }
+
+    /// The calibration's line of the ledger; `None` for a fit: point estimates stand apart.
+    pub fn calibration_summary(&self) -> Option<CalibrationSummary> {
+        if self.estimate.is_some() {
+            return None;
+        }
+        let comparison = self.comparison();
+        let noise_sd = Channel::ALL
+            .iter()
+            .filter_map(|c| {
+                let rows = comparison
+                    .rows
+                    .iter()
+                    .filter(|r| r.usage == "fit" && r.channel == c.name());
+                let sds: Vec<f64> = rows.filter_map(|r| r.noise_sd).collect();
+                Some((c.name().to_owned(), diagnostics::mean(&sds)?))
+            })
+            .collect();
+        Some(CalibrationSummary {
+            effects: self.effects(),
+            algorithm: self.spec.method.name().to_owned(),
+            log_evidence: self.row.log_evidence,
+            log_evidence_se: self.row.log_evidence_se,
+            equilibrated: self.row.equilibrated,
+            evaluations: self.row.evaluations,
+            rejected: self.row.rejected,
+            wall_s: self.row.busy_ms as f64 / 1000.0,
+            metamodel: self.subchains.map(|s| MetamodelSummary {
+                moves: s.moves,
+                subchains: s.subchains,
+                moved: s.moved,
+            }),
+            stages: self
+                .stages
+                .iter()
+                .map(|s| StageSummary {
+                    tempering_exponent: s.tempering_exponent,
+                    acceptance: s.acceptance,
+                    drift_z: s.drift_z,
+                    steps: s.steps,
+                })
+                .collect(),
+            parameters: self.parameter_summaries().into_iter().collect(),
+            baseline: BaselineSummary::of(&comparison),
+            noise_sd,
+            coverage90: CoverageSummary {
+                fit: coverage(&comparison.rows, "fit"),
+                holdout: coverage(&comparison.rows, "holdout"),
+            },
+            error: ErrorSummary {
+                fit: comparison.fit,
+                holdout: comparison.holdout,
+            },
+        })
+    }
+}
+
+fn coverage(rows: &[ComparisonRow], usage: &str) -> Option<f64> {
+    let coverage = Coverage::count(rows.iter().filter(|r| r.usage == usage))?;
+    Some(coverage.inside as f64 / coverage.of as f64)
+}

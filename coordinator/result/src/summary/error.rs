@@ -1,0 +1,31 @@
+//! Errors of a model and of interpolation without physics.
+
+use crate::table::comparison::Comparison;
+use crate::table::errors::ErrorTable;
+
+/// Errors on both kinds of runs.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct ErrorSummary {
+    /// Fitted runs.
+    pub fit: Option<ErrorTable>,
+    /// Runs that were not fitted.
+    pub holdout: Option<ErrorTable>,
+}
+
+/// Interpolation without physics.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct BaselineSummary {
+    /// `interpolation`: monotone cubic in slip between the fitted measurements of the same wheel.
+    pub name: String,
+    /// Its errors.
+    pub holdout: Option<ErrorTable>,
+}
+
+impl BaselineSummary {
+    pub(crate) fn of(comparison: &Comparison) -> Self {
+        BaselineSummary {
+            name: "interpolation".into(),
+            holdout: comparison.baseline_holdout.clone(),
+        }
+    }
+}

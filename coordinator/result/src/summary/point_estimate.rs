@@ -1,0 +1,115 @@
+//! The result of a fit or a search: the most probable parameters, beside no posterior.
+
+use std::collections::BTreeMap;
+
+use inference::point_estimate::{Generation, StopReason};
+use job::FreeParameter;
+use record::EstimateRow;
+
+use super::error::{BaselineSummary, ErrorSummary};
+use crate::finished_calibration::FinishedCalibration;
+
+/// Deterministic updating.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct PointEstimate {
+    /// Algorithm.
+    pub algorithm: String,
+    /// The most probable parameters by name.
+    pub parameters: BTreeMap<String, f64>,
+    /// Their standard deviations after Laplace; null at a bound, and where nothing fixes a parameter. Null for a search
+    /// by generations, which does not know the curvature.
+    pub sd: Option<BTreeMap<String, Option<f64>>>,
+    /// The parameters that lie at a bound of their prior.
+    pub at_bound: Vec<String>,
+    /// Log-likelihood plus log-density of the prior, both normalised.
+    pub log_posterior: f64,
+    /// Errors of the model at these parameters.
+    pub error: ErrorSummary,
+    /// Interpolation without physics.
+    pub baseline: BaselineSummary,
+    /// Evaluations spent.
+    pub evaluations: u64,
+    /// Of these, refused by the model.
+    pub rejected: u64,
+    /// Wall time `[s]`.
+    pub wall_s: f64,
+    /// Why it ended: `decrease` (no step gains anything), `step` (none that is tried does), `budget`; of a search by
+    /// generations `stagnation` (nobody better for many), `generations`, `budget`.
+    #[schema(value_type = String)]
+    pub stop: StopReason,
+    /// How a search by generations came there; empty for a fit.
+    pub history: Vec<GenerationSummary>,
+}
+
+/// Where a search stood after a generation.
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct GenerationSummary {
+    /// Evaluations so far.
+    pub evaluations: u64,
+    /// Highest log-posterior so far; null while the model refused everything.
+    pub best: Option<f64>,
+    /// Mean log-posterior of the generation; null if the model refused all of it.
+    pub mean: Option<f64>,
+}
+
+/// One fitted parameter.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FittedParameter<'a> {
+    pub(crate) free: &'a FreeParameter,
+    pub(crate) value: f64,
+    pub(crate) sd: Option<f64>,
+    pub(crate) at_bound: bool,
+}
+
+/// How a search by generations came to its result.
+pub(crate) fn generations(history: &[Generation]) -> Vec<GenerationSummary> {
+    let generation = |g: &Generation| GenerationSummary {
+        evaluations: g.evaluations,
+        best: g.best,
+        mean: g.mean,
+    };
+    history.iter().map(generation).collect()
+}
+
+/// The parameters of an estimate, in the order of the job.
+pub(crate) fn fitted<'a>(
+    estimate: &'a EstimateRow,
+    parameters: &'a [FreeParameter],
+) -> impl Iterator<Item = FittedParameter<'a>> {
+    parameters.iter().enumerate().map(|(i, free)| FittedParameter {
+        free,
+        value: estimate.theta[i],
+        sd: estimate.sd.as_ref().and_then(|sd| sd[i]),
+        at_bound: estimate.at_bound[i],
+    })
+}
+
+impl FinishedCalibration {
+    /// What a fit or a search found; `None` of a sample.
+    pub fn point_estimate(&self) -> Option<PointEstimate> {
+        let estimate = self.estimate.as_ref()?;
+        let comparison = self.comparison();
+        let fitted = || fitted(estimate, &self.spec.parameters);
+        let name = |p: FittedParameter| p.free.name.clone();
+        Some(PointEstimate {
+            algorithm: self.spec.method.name().to_owned(),
+            parameters: fitted().map(|p| (name(p), p.value)).collect(),
+            sd: estimate
+                .sd
+                .is_some()
+                .then(|| fitted().map(|p| (name(p), p.sd)).collect()),
+            at_bound: fitted().filter(|p| p.at_bound).map(name).collect(),
+            log_posterior: estimate.log_posterior(),
+            baseline: BaselineSummary::of(&comparison),
+            error: ErrorSummary {
+                fit: comparison.fit,
+                holdout: comparison.holdout,
+            },
+            evaluations: self.row.evaluations.unwrap_or(0),
+            rejected: self.row.rejected.unwrap_or(0),
+            wall_s: self.row.busy_ms as f64 / 1000.0,
+            stop: estimate.stop,
+            history: generations(&estimate.history),
+        })
+    }
+}

@@ -1,0 +1,93 @@
+//! `summary.json`: the contract's summary of a study.
+
+use super::calibration::CalibrationSummary;
+use super::point_estimate::PointEstimate;
+use crate::discovery::DiscoverySummary;
+use crate::finished_calibration::FinishedCalibration;
+use crate::flag::kind::Flag;
+use crate::study::Study;
+
+/// The summary of a study; what does not apply is null.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct Summary {
+    /// Name of the experiment.
+    pub experiment: String,
+    /// Seed of the job.
+    pub seed: u64,
+    /// Version of the equations and the effects.
+    pub model_version: String,
+    /// `quasi_static` or `scm`.
+    pub model_kind: String,
+    /// State of the study.
+    pub status: String,
+    /// The error ledger: base first, then each extension. Empty for a fit, which has no posterior.
+    pub calibrations: Vec<CalibrationSummary>,
+    /// Deterministic fits.
+    pub point_estimates: Vec<PointEstimate>,
+    /// What deserves attention.
+    pub flags: Vec<Flag>,
+    /// What is known of effects that the model misses; null where no search is finished.
+    pub discovery: Option<DiscoverySummary>,
+}
+
+impl Study {
+    /// The error ledger: the calibrations that have a posterior.
+    pub fn calibrations(&self) -> Vec<CalibrationSummary> {
+        self.all()
+            .filter_map(FinishedCalibration::calibration_summary)
+            .collect()
+    }
+
+    /// What fits and searches found.
+    pub fn point_estimates(&self) -> Vec<PointEstimate> {
+        self.all()
+            .filter_map(FinishedCalibration::point_estimate)
+            .collect()
+    }
+
+    /// Effects that the first calibration did not have, of the line of the ledger with the most evidence on the newest data.
+    fn added(&self) -> Vec<String> {
+        let had = self.lead.effects();
+        let newest = self.ledger().map(|o| o.row.experiment).max();
+        let of_newest = self.ledger().filter(|o| Some(o.row.experiment) == newest);
+        let evidence = |o: &FinishedCalibration| o.row.log_evidence.unwrap_or(f64::NEG_INFINITY);
+        let best = of_newest.reduce(|a, b| if evidence(b) > evidence(a) { b } else { a });
+        best.map(FinishedCalibration::effects)
+            .unwrap_or_default()
+            .into_iter()
+            .filter(|effect| !had.contains(effect))
+            .collect()
+    }
+
+    /// `summary.json`.
+    pub fn summary(&self) -> Summary {
+        let lead = &self.lead;
+        Summary {
+            experiment: lead.experiment.clone(),
+            seed: lead.spec.method.seed(),
+            model_version: lead.row.model_version.clone().unwrap_or_default(),
+            model_kind: lead.spec.model.kind.name().to_owned(),
+            status: self.state.name().to_owned(),
+            calibrations: self.calibrations(),
+            point_estimates: self.point_estimates(),
+            flags: self.flags(),
+            discovery: DiscoverySummary::of(&self.rounds, self.added()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fixture;
+
+    #[test]
+    fn a_sample_stands_in_the_ledger_and_a_search_beside_it() {
+        let summary = fixture::study().summary();
+        let algorithms: Vec<&str> = summary.calibrations.iter().map(|c| &*c.algorithm).collect();
+        assert_eq!(algorithms, ["tmcmc"]);
+        let estimates: Vec<&str> = summary.point_estimates.iter().map(|e| &*e.algorithm).collect();
+        assert_eq!(estimates, ["ga"]);
+        let of_search = summary.flags.iter().filter(|f| f.text.starts_with("ga: "));
+        assert!(of_search.count() > 0, "{:?}", summary.flags);
+    }
+}

@@ -1,0 +1,74 @@
+//! Model against measurement, run by run.
+
+use shared::channel::Channel;
+use shared::experiment::RunUse;
+
+use super::baseline::Baseline;
+use super::errors::ErrorTable;
+use super::group::{ErrorGroup, error_groups};
+use super::predictive::{Levels, predictive};
+use super::row::ComparisonRow;
+use crate::finished_calibration::FinishedCalibration;
+
+/// Model against measurement.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct Comparison {
+    /// One row for each run and measured channel.
+    pub rows: Vec<ComparisonRow>,
+    /// Errors of the fitted runs.
+    pub fit: Option<ErrorTable>,
+    /// Errors of the runs that were not fitted.
+    pub holdout: Option<ErrorTable>,
+    /// Errors of interpolating the fitted measurements in slip, without physics, on the holdout runs.
+    pub baseline_holdout: Option<ErrorTable>,
+    /// Errors by level of slip, load and speed, and by wheel, of fitted runs and of the others.
+    pub groups: Vec<ErrorGroup>,
+}
+
+impl FinishedCalibration {
+    /// Model against measurement, run by run.
+    pub fn comparison(&self) -> Comparison {
+        let baseline = Baseline::new(&self.spec.experiment);
+        let levels = Levels::of(self);
+        let mut rows = Vec::new();
+        for (i, run) in self.spec.experiment.runs.iter().enumerate() {
+            for channel in Channel::ALL {
+                let Some(measured) = run.measured[channel.index()] else {
+                    continue;
+                };
+                let p = predictive(self, &levels, i, channel);
+                let holdout = run.usage == RunUse::Holdout;
+                rows.push(ComparisonRow {
+                    run: run.name.clone(),
+                    usage: run.usage.name().into(),
+                    wheel: run.wheel.clone(),
+                    slip: run.slip,
+                    wheel_load_n: run.wheel_load_n,
+                    sled_speed_m_s: run.sled_speed_m_s,
+                    slip_angle_deg: run.slip_angle_deg,
+                    channel: channel.name().into(),
+                    unit: channel.unit().into(),
+                    measured,
+                    predicted: p.map(|p| p.mean),
+                    q05: p.and_then(|p| p.interval).map(|[q05, _]| q05),
+                    q95: p.and_then(|p| p.interval).map(|[_, q95]| q95),
+                    noise_sd: p.and_then(|p| p.noise_sd),
+                    residual_sigma: p.and_then(|p| p.noise_sd.map(|sd| (measured - p.mean) / sd)),
+                    interpolated: if holdout {
+                        baseline.interpolate(run, channel)
+                    } else {
+                        None
+                    },
+                });
+            }
+        }
+        let errors = |usage: &str| ErrorTable::of_model(rows.iter().filter(|r| r.usage == usage));
+        Comparison {
+            fit: errors("fit"),
+            holdout: errors("holdout"),
+            baseline_holdout: ErrorTable::of_baseline(rows.iter().filter(|r| r.usage == "holdout")),
+            groups: error_groups(&rows),
+            rows,
+        }
+    }
+}

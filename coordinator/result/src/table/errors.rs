@@ -1,0 +1,108 @@
+//! Root mean square errors by channel.
+
+use std::collections::BTreeMap;
+
+use shared::channel::Channel;
+
+use super::row::ComparisonRow;
+
+/// Errors by channel, and over all channels in units of the noise.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct ErrorTable {
+    /// Drawbar pull.
+    pub drawbar_pull: Option<ChannelError>,
+    /// Torque.
+    pub torque: Option<ChannelError>,
+    /// Sinkage.
+    pub sinkage: Option<ChannelError>,
+    /// Lateral force.
+    pub lateral_force: Option<ChannelError>,
+    /// Every channel together.
+    pub all: AllError,
+}
+
+/// The error of a channel.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct ChannelError {
+    /// Root mean square of measured minus predicted [channel's unit].
+    pub rmse: f64,
+    /// The same in units of each row's noise sd; a perfect model scores about 1.
+    pub rmse_sigma: Option<f64>,
+    /// Rows that count.
+    pub runs: usize,
+}
+
+/// The error over all channels.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct AllError {
+    /// Root mean square in units of the noise sd.
+    pub rmse_sigma: Option<f64>,
+}
+
+impl ErrorTable {
+    /// Errors of the posterior-mean prediction; `None` without rows.
+    pub(crate) fn of_model<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
+        table(rows.filter_map(|r| Some((r, r.predicted?))))
+    }
+
+    /// Errors of interpolation without physics; `None` where it has nothing to say.
+    pub(crate) fn of_baseline<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
+        table(rows.filter_map(|r| Some((r, r.interpolated?))))
+    }
+
+    /// The error of a channel.
+    pub fn channel(&self, channel: Channel) -> Option<ChannelError> {
+        match channel {
+            Channel::DrawbarPull => self.drawbar_pull,
+            Channel::Torque => self.torque,
+            Channel::Sinkage => self.sinkage,
+            Channel::LateralForce => self.lateral_force,
+        }
+    }
+}
+
+/// Squares by channel: (sum, sum in sigma^2, rows, rows with a noise sd).
+#[derive(Default, Clone, Copy)]
+struct Squares {
+    sum: f64,
+    sum_sigma: f64,
+    rows: usize,
+    rows_sigma: usize,
+}
+
+fn table<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, f64)>) -> Option<ErrorTable> {
+    let mut squares: BTreeMap<&str, Squares> = BTreeMap::new();
+    let mut all = Squares::default();
+    for (row, predicted) in rows {
+        let error = row.measured - predicted;
+        let sd = row.noise_sd;
+        for s in [squares.entry(row.channel.as_str()).or_default(), &mut all] {
+            s.sum += error * error;
+            s.rows += 1;
+            if let Some(sd) = sd {
+                s.sum_sigma += (error / sd) * (error / sd);
+                s.rows_sigma += 1;
+            }
+        }
+    }
+    if all.rows == 0 {
+        return None;
+    }
+    let sigma = |s: &Squares| (s.rows_sigma > 0).then(|| (s.sum_sigma / s.rows_sigma as f64).sqrt());
+    let channel = |c: Channel| {
+        squares.get(c.name()).map(|s| ChannelError {
+            rmse: (s.sum / s.rows as f64).sqrt(),
+            rmse_sigma: sigma(s),
+            runs: s.rows,
+        })
+    };
+    Some(ErrorTable {
+        drawbar_pull: channel(Channel::DrawbarPull),
+        torque: channel(Channel::Torque),
+        sinkage: channel(Channel::Sinkage),
+        lateral_force: channel(Channel::LateralForce),
+        all: AllError {
+            rmse_sigma: sigma(&all),
+        },
+    })
+}

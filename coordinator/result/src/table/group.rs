@@ -1,0 +1,196 @@
+//! Errors by level of a condition: where in the test range the model misses.
+
+use std::collections::BTreeMap;
+
+use super::level::{Level, few_levels};
+use super::row::ComparisonRow;
+use crate::words::number;
+
+/// Reads a condition from a row.
+type Condition = fn(&ComparisonRow) -> f64;
+
+/// The errors of the rows at one level of a condition, or of one wheel.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct ErrorGroup {
+    /// `fit` or `holdout`.
+    #[serde(rename = "use")]
+    pub usage: String,
+    /// What the rows have in common: `slip`, `wheel_load`, `sled_speed`, `wheel`.
+    pub by: String,
+    /// The wheel, of a group by wheel.
+    pub wheel: Option<String>,
+    /// Least value of the condition `[N, m/s, of slip 1]`; null of a wheel.
+    pub from: Option<f64>,
+    /// Largest value of the condition.
+    pub to: Option<f64>,
+    /// The errors by channel without unit.
+    pub channels: BTreeMap<String, GroupError>,
+}
+
+/// The error of a channel within a group, in units of each row's noise sd.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct GroupError {
+    /// Root mean square of (measured - predicted) / noise sd.
+    pub rmse_sigma: f64,
+    /// Mean of the same: above 0 the model predicts too little.
+    pub mean_sigma: f64,
+    /// Rows that count.
+    pub runs: usize,
+}
+
+impl ErrorGroup {
+    /// `slip 0.050`, `load 60.0 to 61.2 N`, `wheel w`.
+    pub(crate) fn words(&self) -> String {
+        let (what, scale, decimals, unit) = match self.by.as_str() {
+            "wheel_load" => ("load", 1.0, 1, " N"),
+            "sled_speed" => ("speed", 1000.0, 2, " mm/s"),
+            other => (other, 1.0, 3, ""),
+        };
+        let value = |x: f64| number::fixed(scale * x, decimals);
+        match (&self.wheel, self.from.map(value), self.to.map(value)) {
+            (Some(wheel), ..) => format!("wheel {wheel}"),
+            (None, Some(from), Some(to)) if from != to => format!("{what} {from} to {to}{unit}"),
+            (None, from, _) => format!("{what} {}{unit}", from.unwrap_or_default()),
+        }
+    }
+}
+
+impl GroupError {
+    /// `1.23 (+0.41) 6`: root mean square, mean, rows.
+    pub(crate) fn words(&self) -> String {
+        format!("{:.2} ({:+.2}) {}", self.rmse_sigma, self.mean_sigma, self.runs)
+    }
+}
+
+/// Fitted rows, then the others, each by slip, load, speed and wheel; conditions on one level only are left out.
+pub(crate) fn error_groups(rows: &[ComparisonRow]) -> Vec<ErrorGroup> {
+    let conditions: [(&str, Condition); 3] = [
+        ("slip", |r| r.slip),
+        ("wheel_load", |r| r.wheel_load_n),
+        ("sled_speed", |r| r.sled_speed_m_s),
+    ];
+    let mut groups = Vec::new();
+    for usage in ["fit", "holdout"] {
+        let own = || rows.iter().filter(|r| r.usage == usage);
+        for (by, value) in conditions {
+            // The same levels for both uses, so that they can be compared.
+            let levels = few_levels(rows.iter().map(value));
+            for level in levels.iter().filter(|_| levels.len() > 1) {
+                let Level { from, to } = *level;
+                let channels = errors(own().filter(|r| level.holds(value(r))));
+                groups.push(ErrorGroup {
+                    usage: usage.into(),
+                    by: by.into(),
+                    wheel: None,
+                    from: Some(from),
+                    to: Some(to),
+                    channels,
+                });
+            }
+        }
+        let mut wheels: Vec<&str> = rows.iter().map(|r| r.wheel.as_str()).collect();
+        wheels.sort_unstable();
+        wheels.dedup();
+        for wheel in wheels.iter().filter(|_| wheels.len() > 1) {
+            groups.push(ErrorGroup {
+                usage: usage.into(),
+                by: "wheel".into(),
+                wheel: Some((*wheel).to_owned()),
+                from: None,
+                to: None,
+                channels: errors(own().filter(|r| r.wheel == *wheel)),
+            });
+        }
+    }
+    groups.retain(|group| !group.channels.is_empty());
+    groups
+}
+
+fn errors<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> BTreeMap<String, GroupError> {
+    let mut residuals: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for row in rows {
+        if let Some(residual) = row.residual_sigma {
+            residuals.entry(row.channel.clone()).or_default().push(residual);
+        }
+    }
+    let error = |own: &Vec<f64>| {
+        let count = own.len() as f64;
+        GroupError {
+            rmse_sigma: (own.iter().map(|r| r * r).sum::<f64>() / count).sqrt(),
+            mean_sigma: own.iter().sum::<f64>() / count,
+            runs: own.len(),
+        }
+    };
+    residuals
+        .iter()
+        .map(|(channel, own)| (channel.clone(), error(own)))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    /// (use, words, pull) of every group that has pull.
+    fn pulls(rows: &[ComparisonRow]) -> Vec<(String, String, [f64; 3])> {
+        let groups = error_groups(rows);
+        let pull = |g: &ErrorGroup| {
+            let pull = g.channels.get("drawbar_pull")?;
+            let figures = [pull.rmse_sigma, pull.mean_sigma, pull.runs as f64];
+            Some((g.usage.clone(), g.words(), figures))
+        };
+        groups.iter().filter_map(pull).collect()
+    }
+
+    #[test]
+    fn errors_stand_by_use_and_level_with_their_sign() {
+        let mut rows = fixture::outcome().comparison().rows;
+        rows.retain(|r| r.channel == "drawbar_pull");
+        for (row, (slip, residual)) in
+            rows.iter_mut()
+                .zip([(0.1, 3.0), (0.101, -1.0), (0.4, 2.0), (0.4, -2.0)])
+        {
+            (row.slip, row.residual_sigma) = (slip, Some(residual));
+        }
+        let group = |usage: &str, words: &str, figures: [f64; 3]| (usage.into(), words.into(), figures);
+        assert_eq!(
+            pulls(&rows),
+            [
+                group("fit", "slip 0.100 to 0.101", [5.0_f64.sqrt(), 1.0, 2.0]),
+                group("fit", "slip 0.400", [2.0, 2.0, 1.0]),
+                group("holdout", "slip 0.400", [2.0, -2.0, 1.0]),
+            ],
+            "load, speed and wheel are the same everywhere"
+        );
+        (rows[0].wheel, rows[0].wheel_load_n, rows[0].sled_speed_m_s) = ("b".into(), 75.0, 0.02);
+        let words: Vec<String> = pulls(&rows).into_iter().map(|g| g.1).collect();
+        for expected in ["load 75.0 N", "speed 20.00 mm/s", "wheel b"] {
+            assert!(words.contains(&expected.to_owned()), "{expected} in {words:?}");
+        }
+    }
+
+    #[test]
+    fn the_terminal_shows_a_line_for_each_group() {
+        let comparison = fixture::outcome().comparison();
+        let text = crate::terminal::groups(&comparison);
+        assert_eq!(text.lines().count(), 2 + comparison.groups.len());
+        let line = text.lines().find(|line| line.starts_with("holdout  slip 0.400"));
+        let pull = comparison
+            .groups
+            .iter()
+            .find(|g| g.usage == "holdout")
+            .unwrap()
+            .channels["drawbar_pull"];
+        assert!(line.unwrap().contains(&pull.words()), "{text}");
+    }
+
+    #[test]
+    fn rows_without_a_prediction_or_noise_do_not_count() {
+        let mut rows = fixture::outcome().comparison().rows;
+        for row in &mut rows {
+            row.residual_sigma = None;
+        }
+        assert_eq!(error_groups(&rows), []);
+    }
+}

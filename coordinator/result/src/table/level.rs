@@ -1,0 +1,94 @@
+//! Levels of a condition: values that differ too little to be different on purpose are one.
+
+/// Values within so much of the range are one level.
+const TOLERANCE: f64 = 0.02;
+/// More levels than a table can show.
+const MOST: usize = 12;
+
+/// Values of a condition that count as one, from the least to the largest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Level {
+    /// Least value.
+    pub(crate) from: f64,
+    /// Largest value.
+    pub(crate) to: f64,
+}
+
+impl Level {
+    /// Whether a value belongs to it.
+    pub(crate) fn holds(self, value: f64) -> bool {
+        (self.from..=self.to).contains(&value)
+    }
+}
+
+/// The levels of some values, the least first: a level spans less than 2 % of the range.
+pub(crate) fn levels(values: impl IntoIterator<Item = f64>) -> Vec<Level> {
+    let mut sorted: Vec<f64> = values.into_iter().collect();
+    sorted.sort_by(f64::total_cmp);
+    within(&sorted, TOLERANCE)
+}
+
+/// The same for a table: where conditions scatter so much that there are more than twelve, wider ones.
+pub(crate) fn few_levels(values: impl IntoIterator<Item = f64>) -> Vec<Level> {
+    let mut sorted: Vec<f64> = values.into_iter().collect();
+    sorted.sort_by(f64::total_cmp);
+    let mut tolerance = TOLERANCE;
+    loop {
+        let found = within(&sorted, tolerance);
+        if found.len() <= MOST {
+            return found;
+        }
+        tolerance *= 2.0;
+    }
+}
+
+fn within(sorted: &[f64], tolerance: f64) -> Vec<Level> {
+    let mut found: Vec<Level> = Vec::new();
+    let (Some(&least), Some(&largest)) = (sorted.first(), sorted.last()) else {
+        return found;
+    };
+    let span = tolerance * (largest - least);
+    for &value in sorted {
+        match found.last_mut() {
+            Some(level) if value <= level.from || value - level.from < span => level.to = value,
+            _ => found.push(Level {
+                from: value,
+                to: value,
+            }),
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bounds(levels: &[Level]) -> Vec<[f64; 2]> {
+        levels.iter().map(|l| [l.from, l.to]).collect()
+    }
+
+    #[test]
+    fn values_that_scatter_about_a_set_point_are_one_level() {
+        let loads = [60.0, 120.0, 60.4, 59.9, 121.0];
+        assert_eq!(bounds(&levels(loads)), [[59.9, 60.4], [120.0, 121.0]]);
+        assert_eq!(bounds(&levels([25.0, 25.0])), [[25.0, 25.0]]);
+        assert_eq!(bounds(&levels([])), [[0.0; 2]; 0]);
+        // 2 % of the range is the next level.
+        assert_eq!(bounds(&levels([0.0, 0.02, 1.0])).len(), 3);
+        let one = levels(loads)[0];
+        assert!(one.holds(60.0) && !one.holds(120.0));
+    }
+
+    #[test]
+    fn a_table_has_at_most_twelve_levels() {
+        let scattered = (0..100).map(|k| f64::from(k * k));
+        let found = few_levels(scattered.clone());
+        assert!((6..=12).contains(&found.len()), "{found:?}");
+        let counted: usize = found
+            .iter()
+            .map(|level| scattered.clone().filter(|v| level.holds(*v)).count())
+            .sum();
+        assert_eq!(counted, 100);
+    }
+}

@@ -1,0 +1,20 @@
+//! Model against measurement: tables of a calibration.
+//!
+//! # Layout
+//! - `row`: a measured channel of a run beside its prediction. `comparison`: all rows with their errors.
+//! - `errors`: root mean square errors by channel. `group`: by level of a condition; `level`: those levels.
+//! - `baseline`: interpolation without physics. `predictive`: the posterior predictive distribution.
+//! - `coverage`: measurements inside their intervals. `readings`: errors of plates and rings.
+//! - `error_model`: the error model in words. `posterior`: the draws.
+
+pub(crate) mod baseline;
+pub(crate) mod comparison;
+pub(crate) mod coverage;
+pub(crate) mod error_model;
+pub(crate) mod errors;
+pub(crate) mod group;
+pub(crate) mod level;
+pub(crate) mod posterior;
+pub(crate) mod predictive;
+pub(crate) mod readings;
+pub(crate) mod row;

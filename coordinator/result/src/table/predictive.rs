@@ -1,0 +1,285 @@
+//! The posterior predictive distribution of every run and channel.
+
+use job::Spec;
+use record::Prediction;
+use shared::channel::Channel;
+use shared::experiment::NoiseSd;
+use shared::outcome::Observables;
+use shared::parameters::noise_parameter;
+use statistics::{CommonErrorSize, Discrepancy, ErrorLaw, ErrorSd};
+
+use crate::finished_calibration::FinishedCalibration;
+
+/// What the calibrated model predicts for one run and channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Predictive {
+    /// Mean of the model over the posterior, or its value at the point that a fit found [channel's unit].
+    pub mean: f64,
+    /// 5 % and 95 % quantile of a new measurement on a new soil bed, in a condition not seen before: model, noise, scatter
+    /// of the soil and what the model cannot reach. `None` of a fit, which has no distribution.
+    pub interval: Option<[f64; 2]>,
+    /// Noise standard deviation: declared, its posterior mean, or fitted.
+    pub noise_sd: Option<f64>,
+}
+
+/// Where the noise sd of a channel of a run stands.
+fn noise_source(outcome: &FinishedCalibration, run: usize, channel: Channel) -> Option<ErrorSd> {
+    let spec = &outcome.spec;
+    let c = channel.index();
+    match (spec.experiment.runs[run].sd[c], spec.experiment.noise.sd[c]) {
+        (Some(sd), _) | (None, Some(NoiseSd::Known(sd))) => Some(ErrorSd::Known(sd)),
+        (None, Some(NoiseSd::Unknown)) => {
+            let name = noise_parameter(channel);
+            spec.parameters
+                .iter()
+                .position(|p| p.name == name)
+                .map(|parameter| ErrorSd::Inferred { parameter })
+        }
+        // Pooled from the fitted repeats: every fitted datum of the channel without an sd of its own has it.
+        (None, Some(NoiseSd::Replicates)) => {
+            let shares = |d: &&statistics::Datum| {
+                d.channel == c && spec.experiment.runs[spec.fit_runs[d.run]].sd[c].is_none()
+            };
+            spec.likelihood.data().iter().find(shares).map(|d| d.sd)
+        }
+        (None, None) => None,
+    }
+}
+
+/// The predictive distribution of a run and channel; `None` where every draw was refused.
+pub(crate) fn predictive(
+    outcome: &FinishedCalibration,
+    levels: &Levels,
+    run: usize,
+    channel: Channel,
+) -> Option<Predictive> {
+    let source = noise_source(outcome, run, channel);
+    let spec = &outcome.spec;
+    let position = |runs: &[usize]| runs.iter().position(|&r| r == run);
+    let place = match position(&spec.fit_runs) {
+        Some(position) => Place::Fit(position),
+        None => Place::Holdout(position(&spec.holdout_runs)?),
+    };
+    let scatter = Scatter::of(spec);
+    let mut draws = Vec::new();
+    let mut sds = Vec::new();
+    for (draw, theta, observables, position) in accepted(outcome, place) {
+        let sd = source.map(|s| match s {
+            ErrorSd::Known(sd) => sd,
+            ErrorSd::Inferred { parameter } => theta[parameter],
+        });
+        sds.extend(sd);
+        let mean = observables.channel(channel)[position];
+        let soil = scatter.sd(theta) * observables.sensitivity(channel).get(position).unwrap_or(&0.0);
+        for &(m, weight) in &levels.0[draw] {
+            let scale = sd.map(|sd| widened(sd, [m * sd, soil]));
+            draws.push(Component { mean, scale, weight });
+        }
+    }
+    let values: Vec<(f64, f64)> = draws.iter().map(|d| (d.mean, d.weight)).collect();
+    let mean = weighted_mean(&values)?;
+    Some(Predictive {
+        mean,
+        interval: outcome
+            .estimate
+            .is_none()
+            .then(|| [0.05, 0.95].map(|p| mixture_quantile(&draws, spec.likelihood.law(), p))),
+        noise_sd: inference::diagnostics::mean(&sds),
+    })
+}
+
+/// One draw of the posterior with one value of the discrepancy.
+#[derive(Debug, Clone, Copy)]
+struct Component {
+    mean: f64,
+    /// Noise, scatter and discrepancy together; `None` where no noise is known.
+    scale: Option<f64>,
+    weight: f64,
+}
+
+/// The scatter of the soil from run to run.
+struct Scatter(Option<ErrorSd>);
+
+impl Scatter {
+    fn of(spec: &Spec) -> Self {
+        let common = spec.likelihood.common().iter();
+        Scatter(common.into_iter().find_map(|error| match error.size {
+            CommonErrorSize::Sensitivity(sd) => Some(sd),
+            CommonErrorSize::Shift(_) | CommonErrorSize::Discrepancy => None,
+        }))
+    }
+
+    fn sd(&self, theta: &[f64]) -> f64 {
+        match self.0 {
+            None => 0.0,
+            Some(ErrorSd::Known(sd)) => sd,
+            Some(ErrorSd::Inferred { parameter }) => theta[parameter],
+        }
+    }
+}
+
+/// Of each final draw, the values of the discrepancy with their probabilities after the fitted data; m = 0 without one.
+pub(crate) struct Levels(Vec<Vec<(f64, f64)>>);
+
+impl Levels {
+    pub(crate) fn of(outcome: &FinishedCalibration) -> Self {
+        let draws = outcome.predictive_draws().iter();
+        Levels(draws.map(|draw| Self::at(&outcome.spec, draw)).collect())
+    }
+
+    fn at(spec: &Spec, draw: &Prediction) -> Vec<(f64, f64)> {
+        match spec.likelihood.discrepancy() {
+            Discrepancy::None => vec![(0.0, 1.0)],
+            Discrepancy::Known(m) => vec![(m, 1.0)],
+            Discrepancy::Unknown => {
+                let values = draw.fit.as_ref().ok().map(|o| spec.predicted_values(o));
+                let weights = values.and_then(|v| spec.likelihood.discrepancy_weights(&v, &draw.theta).ok());
+                weights.unwrap_or_else(|| {
+                    let levels = Discrepancy::Unknown.levels();
+                    let share = 1.0 / levels.len() as f64;
+                    levels.into_iter().map(|m| (m, share)).collect()
+                })
+            }
+        }
+    }
+}
+
+/// A sd widened by others; itself, to the bit, where these are 0.
+fn widened(sd: f64, others: [f64; 2]) -> f64 {
+    let more: f64 = others.iter().map(|o| o * o).sum();
+    if more > 0.0 { (sd * sd + more).sqrt() } else { sd }
+}
+
+/// The probabilities of the discrepancy's values after the data, averaged over the final draws; empty where m is known.
+pub(crate) fn discrepancy_posterior(outcome: &FinishedCalibration) -> Vec<(f64, f64)> {
+    if outcome.spec.likelihood.discrepancy() != Discrepancy::Unknown {
+        return Vec::new();
+    }
+    let levels = Discrepancy::Unknown.levels();
+    let mut sum: Vec<(f64, f64)> = levels.into_iter().map(|m| (m, 0.0)).collect();
+    let draws = Levels::of(outcome).0;
+    for levels in &draws {
+        for (total, (_, weight)) in sum.iter_mut().zip(levels) {
+            total.1 += weight / draws.len() as f64;
+        }
+    }
+    sum
+}
+
+/// The mean; the plain one, to the bit, where all weights are 1.
+fn weighted_mean(values: &[(f64, f64)]) -> Option<f64> {
+    let plain = values.iter().all(|(_, weight)| (weight - 1.0).abs() <= 0.0);
+    if plain {
+        let values: Vec<f64> = values.iter().map(|v| v.0).collect();
+        return inference::diagnostics::mean(&values);
+    }
+    let total: f64 = values.iter().map(|(_, weight)| weight).sum();
+    Some(values.iter().map(|(value, weight)| value * weight).sum::<f64>() / total)
+}
+
+/// Where a run stands in the observables of a final draw.
+#[derive(Clone, Copy)]
+enum Place {
+    Fit(usize),
+    Holdout(usize),
+}
+
+/// The final draws that the model took: number, parameters, observables, position of the run in them.
+fn accepted(
+    outcome: &FinishedCalibration,
+    place: Place,
+) -> impl Iterator<Item = (usize, &[f64], &Observables, usize)> {
+    let draws = outcome.predictive_draws().iter().enumerate();
+    draws.filter_map(move |(number, p)| {
+        let (result, position) = match place {
+            Place::Fit(position) => (&p.fit, position),
+            Place::Holdout(position) => (p.holdout.as_ref()?, position),
+        };
+        let observables = result.as_ref().ok()?;
+        Some((number, p.theta.as_slice(), observables, position))
+    })
+}
+
+/// Quantile of a mixture by bisection; without noise, of the values themselves.
+fn mixture_quantile(draws: &[Component], law: ErrorLaw, p: f64) -> f64 {
+    let total: f64 = draws.iter().map(|d| d.weight).sum();
+    let cdf = |y: f64| {
+        let below = |d: &Component| match (d.scale, law) {
+            (Some(sd), ErrorLaw::Gaussian) => {
+                0.5 * libm::erfc((d.mean - y) / (sd * std::f64::consts::SQRT_2))
+            }
+            (Some(scale), law) => law.cumulative((y - d.mean) / scale),
+            (None, _) => f64::from(u8::from(d.mean <= y)),
+        };
+        draws.iter().map(|d| d.weight * below(d)).sum::<f64>() / total
+    };
+    let end = |scales: f64| {
+        let ends = draws.iter().map(|d| d.mean + scales * d.scale.unwrap_or(0.0));
+        match scales < 0.0 {
+            true => ends.fold(f64::INFINITY, f64::min),
+            false => ends.fold(f64::NEG_INFINITY, f64::max),
+        }
+    };
+    // Ten scales hold the quantile of normal errors; heavy tails may reach further.
+    let mut reach = 10.0;
+    while law != ErrorLaw::Gaussian && reach < 1e6 && !(cdf(end(-reach)) < p && cdf(end(reach)) > p) {
+        reach *= 10.0;
+    }
+    let (mut low, mut high) = (end(-reach), end(reach));
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if cdf(middle) < p {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn component(mean: f64, sd: f64, weight: f64) -> Component {
+        Component {
+            mean,
+            scale: Some(sd),
+            weight,
+        }
+    }
+
+    #[test]
+    fn quantiles_of_one_normal_are_the_normal_s() {
+        let draws = [component(3.0, 2.0, 1.0); 5];
+        let quantile = |p| mixture_quantile(&draws, ErrorLaw::Gaussian, p);
+        assert!((quantile(0.95) - (3.0 + 2.0 * 1.644_853_627)).abs() < 1e-6);
+        assert!((quantile(0.05) - (3.0 - 2.0 * 1.644_853_627)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn quantiles_of_one_t_are_the_t_s() {
+        let law = |degrees_of_freedom| ErrorLaw::StudentT { degrees_of_freedom };
+        let draws = [component(3.0, 2.0, 1.0); 5];
+        // Abramowitz & Stegun, table 26.10.
+        assert!((mixture_quantile(&draws, law(5.0), 0.95) - (3.0 + 2.0 * 2.015_048)).abs() < 1e-5);
+        assert!((mixture_quantile(&draws, law(1.0), 0.05) - (3.0 - 2.0 * 6.313_752)).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_wide_mixture_is_wider_than_its_parts() {
+        let draws = [component(-5.0, 1.0, 1.0), component(5.0, 1.0, 1.0)];
+        assert!(mixture_quantile(&draws, ErrorLaw::Gaussian, 0.95) > 5.0);
+        assert!(mixture_quantile(&draws, ErrorLaw::Gaussian, 0.05) < -5.0);
+        // With one part as good as sure, the other hardly counts.
+        let draws = [component(-5.0, 1.0, 1e-9), component(5.0, 1.0, 1.0)];
+        assert!((mixture_quantile(&draws, ErrorLaw::Gaussian, 0.05) - (5.0 - 1.644_853_627)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn independent_errors_add_their_squares_and_none_changes_nothing() {
+        assert!((widened(3.0, [4.0, 0.0]) - 5.0).abs() < 1e-15);
+        assert!((widened(2.0, [3.0, 6.0]) - 7.0).abs() < 1e-15);
+        assert_eq!(widened(0.1, [0.0, -0.0]).to_bits(), 0.1_f64.to_bits());
+    }
+}

@@ -1,0 +1,89 @@
+//! Model against plates and rings.
+
+use std::collections::BTreeSet;
+
+use job::{PLATE, RING};
+
+use crate::finished_calibration::FinishedCalibration;
+
+/// How well the model meets the readings of plates, or of rings.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ReadingError {
+    /// `plates` or `rings`.
+    pub(crate) what: &'static str,
+    /// Tests.
+    pub(crate) tests: usize,
+    /// Readings.
+    pub(crate) readings: usize,
+    /// Root mean square of ln(measured / predicted), predicted being the posterior's mean logarithm.
+    pub(crate) rms_ln: f64,
+    /// The same after each test's own mean is taken off.
+    pub(crate) rms_ln_within: f64,
+}
+
+impl ReadingError {
+    /// `60 readings in 6 tests of plates: ...`.
+    pub(crate) fn words(&self) -> String {
+        format!(
+            "{} readings in {} tests of {}: root mean square error {:.1} %, {:.1} % within tests",
+            self.readings,
+            self.tests,
+            self.what,
+            100.0 * self.rms_ln,
+            100.0 * self.rms_ln_within
+        )
+    }
+}
+
+/// The errors of plates and of rings, where there are any.
+pub(crate) fn reading_errors(outcome: &FinishedCalibration) -> Vec<ReadingError> {
+    let bevameter = &outcome.spec.bevameter;
+    let plates = bevameter.plates.iter().map(|r| &*r.test).collect();
+    let rings = bevameter.rings.iter().map(|r| &*r.test).collect();
+    [("plates", PLATE, plates), ("rings", RING, rings)]
+        .into_iter()
+        .filter_map(|(what, channel, tests)| error(outcome, what, channel, tests))
+        .collect()
+}
+
+fn error(
+    outcome: &FinishedCalibration,
+    what: &'static str,
+    channel: usize,
+    tests: Vec<&str>,
+) -> Option<ReadingError> {
+    let draws: Vec<Vec<f64>> = outcome
+        .predictive_draws()
+        .iter()
+        .filter_map(|p| Some(outcome.spec.predicted_values(p.fit.as_ref().ok()?)))
+        .collect();
+    let data = outcome.spec.likelihood.data();
+    let residuals: Vec<f64> = (0..data.len())
+        .filter(|&i| data[i].channel == channel)
+        .map(|i| {
+            let mean = draws.iter().map(|values| values[i]).sum::<f64>() / draws.len() as f64;
+            data[i].value - mean
+        })
+        .collect();
+    if residuals.is_empty() || draws.is_empty() {
+        return None;
+    }
+    let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
+    let names: BTreeSet<&str> = tests.iter().copied().collect();
+    let mut within = Vec::with_capacity(residuals.len());
+    for name in &names {
+        let own: Vec<f64> = (0..tests.len())
+            .filter(|&i| tests[i] == *name)
+            .map(|i| residuals[i])
+            .collect();
+        let mean = own.iter().sum::<f64>() / own.len() as f64;
+        within.extend(own.iter().map(|r| r - mean));
+    }
+    Some(ReadingError {
+        what,
+        tests: names.len(),
+        readings: residuals.len(),
+        rms_ln: rms(&residuals),
+        rms_ln_within: rms(&within),
+    })
+}

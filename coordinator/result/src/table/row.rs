@@ -1,0 +1,46 @@
+//! A measured channel of a run beside its prediction.
+
+/// A run and channel.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct ComparisonRow {
+    /// Name of the run.
+    pub run: String,
+    /// `fit` or `holdout`.
+    #[serde(rename = "use")]
+    pub usage: String,
+    /// Wheel.
+    pub wheel: String,
+    /// Slip.
+    pub slip: f64,
+    /// Wheel load `[N]`.
+    pub wheel_load_n: f64,
+    /// Sled speed `[m/s]`.
+    pub sled_speed_m_s: f64,
+    /// Slip angle `[deg]`.
+    pub slip_angle_deg: f64,
+    /// Channel without unit.
+    pub channel: String,
+    /// Unit of the next figures.
+    pub unit: String,
+    /// Measured.
+    pub measured: f64,
+    /// Posterior mean of the model, or its value at the point that a fit found; `None` where every draw was refused.
+    pub predicted: Option<f64>,
+    /// 5 % quantile of a new measurement; `None` of a fit, which has no distribution.
+    pub q05: Option<f64>,
+    /// 95 % quantile of a new measurement.
+    pub q95: Option<f64>,
+    /// Noise standard deviation: declared, its posterior mean, or fitted.
+    pub noise_sd: Option<f64>,
+    /// (measured - predicted) / noise sd.
+    pub residual_sigma: Option<f64>,
+    /// Interpolation of the fitted measurements in slip; `None` inside the fit and where it would extrapolate.
+    pub interpolated: Option<f64>,
+}
+
+impl ComparisonRow {
+    /// Whether the measurement lies in its 90 % interval.
+    pub fn covered(&self) -> Option<bool> {
+        Some((self.q05?..=self.q95?).contains(&self.measured))
+    }
+}

@@ -1,0 +1,202 @@
+//! A search for a missing effect as text.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use record::{ChiSquare, Discovery};
+
+use crate::discovery::{arguments, effect_file, word};
+use crate::study::Study;
+use crate::table::errors::ErrorTable;
+use crate::words::probability::p_words;
+
+/// Most explanations that are shown.
+const SHOWN: usize = 8;
+/// Most effects in a list that could not be seen.
+const UNSEEN: usize = 20;
+
+/// The story of a study that was searched: what each search said, and how the error fell.
+pub fn story(study: &Study) -> String {
+    let mut text = String::new();
+    for round in &study.rounds {
+        let given = match round.record.given.as_slice() {
+            [] => "the model as it is".to_owned(),
+            given => format!("with {}", given.join(", ")),
+        };
+        let _ = writeln!(text, "search, {given}: {}", round.record.text);
+    }
+    let _ = writeln!(
+        text,
+        "\n{:<40} {:>16} {:>20} {:>20} {:>10}",
+        "error ledger", "ln evidence", "fit, sigma", "held out, sigma", "intervals"
+    );
+    let lines = study.ledger().filter_map(|o| Some((o, o.calibration_summary()?)));
+    for (outcome, line) in lines {
+        let mut effects = match line.effects.as_slice() {
+            [] => "base".to_owned(),
+            effects => format!("with {}", effects.join(", ")),
+        };
+        if outcome.row.experiment != study.lead.row.experiment {
+            let _ = write!(effects, ", {} fitted runs", outcome.spec.fit_runs.len());
+        }
+        let number = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.2}"));
+        let sigma = |table: &Option<ErrorTable>| number(table.as_ref().and_then(|t| t.all.rmse_sigma));
+        let _ = writeln!(
+            text,
+            "{effects:<40} {:>16} {:>20} {:>20} {:>10}",
+            number(line.log_evidence),
+            sigma(&line.error.fit),
+            sigma(&line.error.holdout),
+            line.coverage90
+                .holdout
+                .or(line.coverage90.fit)
+                .map_or("-".to_owned(), |c| format!("{:.0} %", 100.0 * c))
+        );
+    }
+    text
+}
+
+/// What a search found, and the command that adds it.
+///
+/// `calibration` is the one that was searched, `place` the argument that says where it is, `folder` where effect files lie.
+pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) -> String {
+    let mut text = format!("discovery: {}\n{}\n\n", word(record.verdict), record.text);
+    let width = record.effects.iter().map(|e| e.name.len()).fold(28, usize::max);
+    let _ = writeln!(
+        text,
+        "{:<width$} {:>9} {:>11} {:>6} {:>9}  strength prior",
+        "explanation", "ln BF", "probability", "class", "95 % set"
+    );
+    for effect in record.effects.iter().take(SHOWN) {
+        let _ = writeln!(
+            text,
+            "{:<width$} {:>9.2} {:>11.4} {:>6} {:>9}  {}",
+            effect.name,
+            effect.log_bayes_factor,
+            effect.probability,
+            effect.class,
+            if effect.in_credible_set { "in" } else { "-" },
+            effect.strength_prior.as_deref().unwrap_or("-")
+        );
+    }
+    if let Some(more) = record.effects.len().checked_sub(SHOWN).filter(|&more| more > 0) {
+        let _ = writeln!(text, "and {more} less probable ones");
+    }
+    let _ = writeln!(
+        text,
+        "\nchi-square {} as the model is, {} with the best explanation",
+        chi_square(record.chi2),
+        chi_square(record.chi2_best)
+    );
+    if let Some(outside) = &record.outside {
+        let _ = writeln!(
+            text,
+            "outside the library: {} depends on {} ({}), ln BF {:.2}",
+            outside.acts_on, outside.depends_on, outside.form, outside.log_bayes_factor
+        );
+    }
+    if let Some((name, _)) = effect_file(record) {
+        let _ = writeln!(text, "its effect file: {}", folder.join(name).display());
+    }
+    for (words, effects) in [
+        ("no longer gained by", &record.drop),
+        (
+            "could not have been seen at its usual strength",
+            &record.cannot_exclude,
+        ),
+        ("refused by the model at every strength", &record.refused),
+    ] {
+        if !effects.is_empty() {
+            let effects = folded(effects);
+            let more = effects.len().saturating_sub(UNSEEN);
+            let shown = effects[..effects.len() - more].join(", ");
+            let rest = if more > 0 {
+                format!(" and {more} more")
+            } else {
+                String::new()
+            };
+            let _ = writeln!(text, "{words}: {shown}{rest}");
+        }
+    }
+    for run in &record.next_runs {
+        let _ = writeln!(
+            text,
+            "next run: slip {:.2}, {:.1} N, {:.4} m/s tells apart {} ({:.2} nats)",
+            run.slip,
+            run.wheel_load_n,
+            run.sled_speed_m_s,
+            run.separates.join(", "),
+            run.information_nats
+        );
+    }
+    for test in &record.other_tests {
+        let _ = writeln!(text, "other test: {test}");
+    }
+    let _ = writeln!(
+        text,
+        "{} evaluations, {} until the verdict",
+        record.evaluations, record.evaluations_to_name
+    );
+    if let Some(arguments) = arguments(record, folder) {
+        let _ = writeln!(
+            text,
+            "\nto add it: coordinator extend {calibration} {arguments} {place}"
+        );
+    }
+    text
+}
+
+/// Names without those on one wheel of effects that are in the list themselves.
+fn folded(names: &[String]) -> Vec<&str> {
+    let is_own = |name: &&String| match name.split_once('.') {
+        Some((effect, _)) => !names.iter().any(|other| other == effect),
+        None => true,
+    };
+    names.iter().filter(is_own).map(String::as_str).collect()
+}
+
+/// `210.0 on 68 degrees of freedom (p 1e-9)`.
+fn chi_square(chi2: ChiSquare) -> String {
+    let value = chi2.value.map_or("unknown".into(), |value| format!("{value:.1}"));
+    let p = chi2.p.map_or(String::new(), |p| format!(" ({})", p_words(p)));
+    format!("{value} on {:.0} degrees of freedom{p}", chi2.degrees_of_freedom)
+}
+
+#[cfg(test)]
+mod tests {
+    use record::Extension;
+
+    use super::*;
+
+    fn record() -> Discovery {
+        serde_json::from_str(include_str!("../../../record/discovery.json")).unwrap()
+    }
+
+    #[test]
+    fn a_search_says_what_it_found_and_how_to_add_it() {
+        let text = text(&record(), 7, "--out out/sand", Path::new("out/sand"));
+        for words in [
+            "discovery: named\nThe data name slip_sinkage.",
+            "slip_sinkage                     40.00      0.9600      1        in  half_normal 0.2",
+            "could not have been seen at its usual strength: moisture",
+            "next run: slip 0.60, 80.0 N, 0.0200 m/s tells apart slip_sinkage, bulldozing (0.40 nats)",
+            "other test: a plate test at 80 N",
+            "to add it: coordinator extend 7 --effect slip_sinkage --out out/sand",
+        ] {
+            assert!(text.contains(words), "{words} in\n{text}");
+        }
+    }
+
+    #[test]
+    fn a_file_is_added_from_where_it_lies_and_nothing_by_no_command() {
+        let mut record = record();
+        record.extension = Some(Extension::File {
+            name: "anything.toml".into(),
+            text: "name = \"shear_slip_step\"\n".into(),
+        });
+        let with = |record: &Discovery| text(record, 1, "--out o", Path::new("o"));
+        assert!(with(&record).contains("extend 1 --effect-file o/shear_slip_step.toml --out o"));
+        record.extension = None;
+        assert!(!with(&record).contains("to add it"));
+    }
+}

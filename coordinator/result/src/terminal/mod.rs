@@ -1,0 +1,22 @@
+//! Text for a terminal.
+//!
+//! # Layout
+//! - `specification`: a job before it runs. `status`: where calibrations stand.
+//! - `study`: the results of a study; `calibration`: of one calibration; `comparison`: its errors.
+//! - `diagnostics`: how far a result can be trusted. [`discovery`]: a search for a missing effect.
+//! - `column`: widths of columns.
+
+mod calibration;
+mod column;
+mod comparison;
+mod diagnostics;
+pub mod discovery;
+mod specification;
+mod status;
+mod study;
+
+pub use comparison::{comparison, groups};
+pub use diagnostics::diagnostics;
+pub use specification::specification;
+pub use status::status_table;
+pub use study::study;

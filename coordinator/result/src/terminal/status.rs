@@ -1,0 +1,33 @@
+//! Where calibrations stand, as text.
+
+use std::fmt::Write;
+
+use shared::api::CalibrationStatus;
+
+/// Where calibrations stand, a line each.
+pub fn status_table(statuses: &[CalibrationStatus]) -> String {
+    let mut text = format!(
+        "{:>4} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}\n",
+        "id", "name", "state", "stage", "exponent", "evaluations", "per s", "to go s"
+    );
+    for s in statuses {
+        let p = s.progress.as_ref();
+        let cell = |value: Option<String>| value.unwrap_or_else(|| "-".into());
+        let _ = writeln!(
+            text,
+            "{:>4} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}",
+            s.id,
+            s.name,
+            s.state.name(),
+            cell(p.map(|p| p.stage.to_string())),
+            cell(p.map(|p| format!("{:.3e}", p.tempering_exponent))),
+            cell(p.map(|p| p.evaluations.to_string())),
+            cell(p.map(|p| format!("{:.0}", p.evaluations_per_s))),
+            cell(p.and_then(|p| p.remaining_s).map(|s| format!("{s:.0}")))
+        );
+        if let Some(message) = &s.message {
+            let _ = writeln!(text, "     {message}");
+        }
+    }
+    text
+}

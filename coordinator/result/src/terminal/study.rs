@@ -1,0 +1,19 @@
+//! The results of a study as text.
+
+use std::fmt::Write;
+
+use super::calibration::{brief, summary};
+use crate::study::Study;
+
+/// The results of a study, one calibration after the other; of one that has grown without the tables of their runs.
+pub fn study(study: &Study) -> String {
+    let results: Vec<String> = match study.rounds.as_slice() {
+        [] => study.all().map(summary).collect(),
+        _ => study.all().map(brief).collect(),
+    };
+    let mut text = results.join("\n");
+    for flag in study.missed_modes() {
+        let _ = writeln!(text, "\nflag {}: {}", flag.kind, flag.text);
+    }
+    text
+}

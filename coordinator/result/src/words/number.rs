@@ -1,0 +1,180 @@
+//! Numbers with as many digits as they deserve.
+
+/// What stands where there is no number.
+pub(crate) const NONE: &str = "\u{2013}";
+
+/// Beyond these sizes a number is written with an exponent.
+const LARGE: f64 = 1e7;
+const DECIMALS: i32 = 7;
+
+/// A number to so many significant digits.
+pub(crate) fn significant(x: f64, digits: i32) -> String {
+    if !x.is_finite() {
+        return NONE.into();
+    }
+    if x.abs() < f64::MIN_POSITIVE {
+        return "0".into();
+    }
+    let decimals = digits - 1 - magnitude(x);
+    if x.abs() >= LARGE || decimals > DECIMALS + digits {
+        let digits = (digits - 1).max(0) as usize;
+        return format!("{x:.digits$e}");
+    }
+    fixed(x, decimals)
+}
+
+/// A number to the digit in which its spread has its second figure.
+pub(crate) fn to_spread(x: f64, spread: f64) -> String {
+    if !x.is_finite() {
+        return NONE.into();
+    }
+    if !spread.is_finite() || spread <= 0.0 {
+        return significant(x, 4);
+    }
+    let decimals = 1 - rounded_magnitude(spread);
+    let size = x.abs().max(spread);
+    if size >= LARGE || decimals > DECIMALS {
+        let digits = (magnitude(size) + decimals).max(0) as usize;
+        return format!("{x:.digits$e}");
+    }
+    fixed(x, decimals)
+}
+
+/// Four significant digits, for a column.
+pub(crate) fn four_digits(x: f64) -> String {
+    if x.abs() < f64::MIN_POSITIVE {
+        "0".into()
+    } else if (1e-3..1e5).contains(&x.abs()) {
+        let digits = (3 - x.abs().log10().floor() as i32).max(0) as usize;
+        format!("{x:.digits$}")
+    } else {
+        format!("{x:.3e}")
+    }
+}
+
+/// A number with its spread: `2.76 ± 0.40`.
+pub(crate) fn with_spread(x: f64, spread: f64) -> String {
+    format!(
+        "{}\u{a0}\u{b1}\u{a0}{}",
+        to_spread(x, spread),
+        to_spread(spread, spread)
+    )
+}
+
+/// So many decimals (negative: whole tens, hundreds), and no negative zero.
+pub(crate) fn fixed(x: f64, decimals: i32) -> String {
+    let x = match decimals {
+        0.. => x,
+        _ => (x / 10f64.powi(-decimals)).round() * 10f64.powi(-decimals),
+    };
+    let decimals = decimals.max(0) as usize;
+    let text = format!("{x:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.into(),
+        _ => text,
+    }
+}
+
+/// A number as its author wrote it, as far as that can be known.
+pub(crate) fn as_written(x: f64) -> String {
+    let size = x.abs();
+    if size < f64::MIN_POSITIVE {
+        "0".into()
+    } else if (1e-4..LARGE).contains(&size) {
+        x.to_string()
+    } else {
+        format!("{x:e}")
+    }
+}
+
+/// A count with its noun: `1 run`, `2 runs`.
+pub(crate) fn count(n: usize, noun: &str) -> String {
+    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
+}
+
+/// Words joined as in a sentence: `a, b and c`.
+pub(crate) fn list(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.clone(),
+        [head @ .., last] => format!("{} and {last}", head.join(", ")),
+    }
+}
+
+/// Seconds, minutes or hours.
+pub(crate) fn duration(seconds: f64) -> String {
+    if seconds < 120.0 {
+        format!("{seconds:.1} s")
+    } else if seconds < 7200.0 {
+        format!("{:.1} min", seconds / 60.0)
+    } else {
+        format!("{:.1} h", seconds / 3600.0)
+    }
+}
+
+/// Power of ten of the first digit.
+pub(crate) fn magnitude(x: f64) -> i32 {
+    x.abs().log10().floor() as i32
+}
+
+/// The same after rounding to two figures: 0.0996 becomes 0.10.
+fn rounded_magnitude(x: f64) -> i32 {
+    format!("{x:.1e}")
+        .split_once('e')
+        .and_then(|(_, k)| k.parse().ok())
+        .unwrap_or_else(|| magnitude(x))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_stops_at_the_second_figure_of_its_spread() {
+        assert_eq!(with_spread(3.816, 0.156), "3.82\u{a0}\u{b1}\u{a0}0.16");
+        assert_eq!(
+            with_spread(0.062_05, 4.647e-4),
+            "0.06205\u{a0}\u{b1}\u{a0}0.00046"
+        );
+        assert_eq!(
+            with_spread(1_234_567.0, 45_678.0),
+            "1235000\u{a0}\u{b1}\u{a0}46000"
+        );
+        assert_eq!(to_spread(26.0, 1.1), "26.0");
+        assert_eq!(with_spread(0.976, 0.0996), "0.98\u{a0}\u{b1}\u{a0}0.10");
+        assert_eq!(to_spread(812.3, 150.0), "810");
+        assert_eq!(
+            with_spread(280_063.0, 578_767.0),
+            "280000\u{a0}\u{b1}\u{a0}580000"
+        );
+    }
+
+    #[test]
+    fn zero_has_no_sign_and_nonsense_no_digits() {
+        assert_eq!(to_spread(-0.001, 0.2), "0.00");
+        assert_eq!(significant(0.0, 3), "0");
+        assert_eq!(significant(f64::NAN, 3), NONE);
+        assert_eq!(to_spread(f64::INFINITY, 1.0), NONE);
+    }
+
+    #[test]
+    fn significant_digits() {
+        assert_eq!(significant(2.756, 2), "2.8");
+        assert_eq!(significant(-23.95, 3), "-23.9");
+        assert_eq!(significant(12_345.0, 3), "12300");
+        assert_eq!(significant(2.5e8, 3), "2.50e8");
+    }
+
+    #[test]
+    fn words_join_as_in_a_sentence() {
+        let words = |n: usize| list(&["a", "b", "c"].map(String::from)[..n]);
+        assert_eq!(
+            (words(0), words(1), words(3)),
+            (String::new(), "a".into(), "a, b and c".into())
+        );
+        assert_eq!(
+            (count(1, "run"), count(3, "run")),
+            ("1 run".into(), "3 runs".into())
+        );
+    }
+}
