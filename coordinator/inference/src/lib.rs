@@ -1,16 +1,49 @@
-//! Update a prior by measurements: everything statistical of the farm, and nothing else.
+//! Bayesian updating by ask and tell: samplers, point estimates and diagnostics.
+//!
+//! No algorithm runs the model. Each lists the parameter vectors of a round, which can be evaluated at the same time and
+//! anywhere, and is told their results in any order; the last result of a round leads to the next.
+//!
+//! ```
+//! use inference::{Sampler, TmcmcSettings};
+//! use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
+//!
+//! // One measurement of x, 1.0 +- 0.5, under the prior N(0, 1).
+//! let prior = Prior::new(vec![Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None)?]);
+//! let datum = Datum { run: 0, channel: 0, value: 1.0, sd: ErrorSd::Known(0.5) };
+//! let likelihood = Likelihood::new(vec![datum])?;
+//! let settings = TmcmcSettings { particles: 500, ..TmcmcSettings::default() };
+//!
+//! let mut sampler = Sampler::new(prior, settings)?;
+//! let posterior = loop {
+//!     for proposal in sampler.round().pending().to_vec() {
+//!         let predicted = [proposal.theta[0]]; // the model: x itself
+//!         let log_likelihood = likelihood.log_likelihood(&predicted, &proposal.theta)?;
+//!         sampler.tell(proposal.particle, log_likelihood)?;
+//!     }
+//!     if let Some(failure) = sampler.failure() {
+//!         return Err(failure.into());
+//!     }
+//!     if let Some(posterior) = sampler.posterior() {
+//!         break posterior;
+//!     }
+//! };
+//!
+//! // The evidence is N(1; 0, 1 + 0.25): -ln sqrt(2 pi 1.25) - 1 / 2.5 = -1.43.
+//! assert!((posterior.log_evidence + 1.43).abs() < 4.0 * posterior.log_evidence_se + 0.01);
+//! assert!(posterior.equilibrated);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! The crate is pure: no clock, no network, no store. A result is a function of the prior, the settings, the
-//! seed and the log-likelihoods alone. Every transcendental function comes from `libm` and every sum has a
+//! seed and the told results alone. Every transcendental function comes from `libm` and every sum has a
 //! fixed order, so the same input gives the same bits on every machine.
 //!
 //! # Layout
-//! - [`round`]: proposals that can be evaluated at the same time; what every ask/tell algorithm shares.
-//! - [`tmcmc`]: the ask/tell sampler, its stages and its evidence.
-//! - [`point`]: what every search for the most probable parameters shares: axes, the result.
-//! - [`lm`]: the ask/tell fit of the most probable parameters.
-//! - [`search`]: the ask/tell search by generations; [`ga`], [`cma_es`]: how the next generation is made.
-//! - [`diagnostics`]: summaries of draws: moments, quantiles, densities, bounds, effective sizes.
+//! - `round`: a round of proposals and its results. `tell`: what telling leads to. `phase`: how far an algorithm is.
+//! - [`tmcmc`]: the sampler, its stages and its evidence.
+//! - [`point_estimate`]: what every point estimate shares: axes, the result.
+//! - [`lm`]: the Levenberg-Marquardt fit. [`evolution`]: the genetic algorithm and CMA-ES.
+//! - [`diagnostics`]: summaries and tests of draws and residuals.
 
 pub mod diagnostics;
 pub mod evolution;

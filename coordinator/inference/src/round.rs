@@ -3,19 +3,19 @@
 use crate::tell::TellError;
 use statistics::Subchain;
 
-/// A parameter vector that awaits its evaluation.
+/// A parameter vector to be evaluated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Proposal {
-    /// Index of the particle, or of the candidate of a fit; with the round it names the evaluation for ever.
+    /// Index of the particle, or of the trial point of a fit; with the number of the round it identifies the evaluation.
     pub particle: usize,
     /// The parameters, in the order of the prior.
     pub theta: Vec<f64>,
-    /// The moves to take from there before the model is asked at their end; `None`: it is asked there.
+    /// The subchain that starts at `theta` and whose end is evaluated; `None`: `theta` is evaluated.
     pub subchain: Option<Subchain>,
 }
 
 impl Proposal {
-    /// A proposal to be evaluated where it is.
+    /// A proposal without a subchain.
     #[must_use]
     pub fn plain(particle: usize, theta: Vec<f64>) -> Self {
         Self {
@@ -26,7 +26,7 @@ impl Proposal {
     }
 }
 
-/// The proposals of a round with the results told so far, and the count of completed rounds.
+/// The proposals of a round with the results told so far, and the number of completed rounds.
 #[derive(Debug, Clone)]
 pub struct ProposalRound<A> {
     number: u64,
@@ -48,14 +48,14 @@ impl<A> Default for ProposalRound<A> {
 }
 
 impl<A> ProposalRound<A> {
-    /// Lists proposals, by ascending particle.
+    /// Opens a round with these proposals, by ascending particle.
     pub fn ask(&mut self, proposals: Vec<Proposal>) {
         self.missing = proposals.len();
         self.answers = proposals.iter().map(|_| None).collect();
         self.pending = proposals;
     }
 
-    /// Takes the result of a pending particle; whether it was the last one of the round.
+    /// Takes the result of a pending particle; returns whether it was the last one of the round.
     ///
     /// # Errors
     /// [`TellError::NotPending`], [`TellError::AlreadyTold`].
@@ -72,7 +72,7 @@ impl<A> ProposalRound<A> {
         Ok(self.missing == 0)
     }
 
-    /// Completes the round: its proposals with their results, in the order of the proposals.
+    /// Closes the round; returns its proposals and their results, in the same order.
     pub fn complete(&mut self) -> (Vec<Proposal>, Vec<A>) {
         self.number += 1;
         let answers = self.answers.drain(..).flatten().collect();
@@ -91,7 +91,7 @@ impl<A> ProposalRound<A> {
         &self.pending
     }
 
-    /// How many of them have been told.
+    /// Number of proposals that have been told.
     #[must_use]
     pub fn told(&self) -> usize {
         self.pending.len() - self.missing

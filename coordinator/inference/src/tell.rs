@@ -5,31 +5,31 @@ use statistics::likelihood::LikelihoodError;
 /// What a told result led to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TellProgress {
-    /// The round still waits for others.
+    /// The round has untold proposals left.
     Waiting,
     /// New proposals are pending.
     NextRound,
     /// A stage ended and new proposals are pending.
     StageFinished,
-    /// The result is there.
+    /// The algorithm has finished.
     Finished,
-    /// The algorithm cannot go on.
+    /// The algorithm has failed.
     Failed(InferenceFailure),
 }
 
-/// Why a sampler or a fit cannot go on.
+/// Why a sampler or a point estimate fails.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum InferenceFailure {
-    /// No prior draw was possible.
+    /// The model rejected every prior draw.
     #[error("all {draws} prior draws were rejected by the model")]
     AllImpossible {
         /// Number of prior draws.
         draws: usize,
     },
-    /// Too few prior draws were possible.
-    #[error("only {possible} of {draws} prior draws were possible, at least {needed} are needed")]
+    /// The model accepted too few prior draws.
+    #[error("the model accepted only {possible} of {draws} prior draws, at least {needed} are needed")]
     TooFewPossible {
-        /// Possible draws.
+        /// Accepted draws.
         possible: usize,
         /// Prior draws.
         draws: usize,
@@ -39,7 +39,7 @@ pub enum InferenceFailure {
     /// The metamodel's predictions cannot be scored.
     #[error("the metamodel: {0}")]
     Metamodel(LikelihoodError),
-    /// The next exponent cannot be told from the last.
+    /// The next exponent equals the last in floating point.
     #[error("tempering exponent {exponent} cannot grow by {step}: the log-likelihoods differ too much")]
     ExponentStuck {
         /// The last exponent.
@@ -49,7 +49,7 @@ pub enum InferenceFailure {
     },
 }
 
-/// A result that nobody asked for, or that fits nothing.
+/// Why a told result is refused.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TellError {
     /// The particle was told before in this round.
@@ -76,8 +76,10 @@ pub enum TellError {
         /// Predicted values.
         given: usize,
     },
-    /// A particle was to be evaluated where it is, and came back from a subchain, or the other way round.
-    #[error("particle {particle} of round {round} was told what was not asked of it")]
+    /// The end of a subchain was told for a proposal without one, or the other way round.
+    #[error(
+        "particle {particle} of round {round}: a subchain was told where none was asked for, or none where one was"
+    )]
     NotAsked {
         /// The round.
         round: u64,

@@ -61,11 +61,11 @@ fn run(settings: TmcmcSettings, coarse: fn(&[f64]) -> Option<Vec<f64>>) -> (Samp
                     moves += u64::from(end.moves);
                     subchains += 1;
                     found_out += u64::from(found.is_some());
-                    EvaluationResult::Moved { end, found }
+                    EvaluationResult::AtSubchainEnd { end, found }
                 }
                 _ => {
                     let (log_likelihood, pair) = score(&proposal.theta);
-                    EvaluationResult::Here { log_likelihood, pair }
+                    EvaluationResult::AtProposal { log_likelihood, pair }
                 }
             };
             sampler.tell(proposal.particle, answer).unwrap();
@@ -199,9 +199,9 @@ fn an_answer_to_another_question_is_refused() {
         scaled_accepted: 0,
     };
     let error = sampler
-        .tell(3, EvaluationResult::Moved { end, found: None })
+        .tell(3, EvaluationResult::AtSubchainEnd { end, found: None })
         .unwrap_err();
-    assert!(error.to_string().contains("what was not asked"), "{error}");
+    assert!(error.to_string().contains("a subchain was told"), "{error}");
 }
 
 #[test]

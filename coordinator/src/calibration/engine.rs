@@ -70,8 +70,8 @@ impl Scored<'_> {
             coarse: coarse.to_vec(),
         });
         match self.end {
-            None => EvaluationResult::Here { log_likelihood, pair },
-            Some(end) => EvaluationResult::Moved {
+            None => EvaluationResult::AtProposal { log_likelihood, pair },
+            Some(end) => EvaluationResult::AtSubchainEnd {
                 found: (end.accepted > 0).then_some((log_likelihood, pair)),
                 end: end.clone(),
             },

@@ -1,8 +1,8 @@
-//! Hold a log-likelihood that is a finite number or impossible, and nothing else.
+//! A log-likelihood: a finite number, or impossible.
 
 /// The logarithm of p(data | theta).
 ///
-/// Build it with [`LogLikelihood::new`], which refuses NaN and plus infinity.
+/// [`LogLikelihood::new`] refuses NaN and plus infinity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LogLikelihood {
     /// A finite value, in nats.
@@ -11,7 +11,7 @@ pub enum LogLikelihood {
     Impossible,
 }
 
-/// A finite number of nats; made by [`LogLikelihood::new`] alone.
+/// A finite number of nats; only [`LogLikelihood::new`] makes one.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Nats(f64);
 

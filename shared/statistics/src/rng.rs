@@ -1,7 +1,7 @@
-//! Give every (seed, stage, particle, step) its own random stream.
+//! Random streams, one for every (seed, stage, particle, step).
 //!
 //! The streams are `ChaCha8` counters: seed, stage and step make the key, the particle is the stream number.
-//! So no draw depends on how many other draws were made, by whom, or in which order.
+//! So no draw depends on the number or order of other draws.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 /// Half the spacing of 53-bit uniforms; keeps them off 0 and 1.
 const UNIFORM_STEP: f64 = 1.0 / 9_007_199_254_740_992.0;
 
-/// Last eight bytes of every key: the scheme's name, to be changed with the scheme.
+/// Last eight bytes of every key: the name of the scheme, which changes with the scheme.
 const SCHEME: [u8; 8] = *b"grouser1";
 
 /// A stream of random numbers.
@@ -40,7 +40,7 @@ impl Stream {
         ((u128::from(self.0.next_u64()) * bound as u128) >> 64) as usize
     }
 
-    /// A pair of independent standard normal numbers (Box and Muller 1958).
+    /// A pair of independent standard normal numbers (Box & Muller 1958, doi:10.1214/aoms/1177706645).
     pub fn normal_pair(&mut self) -> (f64, f64) {
         let radius = (-2.0 * libm::log(self.uniform())).sqrt();
         let angle = std::f64::consts::TAU * self.uniform();

@@ -349,7 +349,7 @@ fn variances_are_the_diagonal_of_the_covariance() {
 }
 
 #[test]
-fn a_part_has_the_density_of_its_data_alone() {
+fn a_subset_has_the_density_of_its_data_alone() {
     let whole = entangled(Discrepancy::Known(2.0));
     let (part, places) = whole.subset(&[0, 2, 4]).unwrap();
     assert_eq!(places, [0, 2, 4, 6]);

@@ -253,9 +253,7 @@ fn error_models_that_mean_nothing_are_refused() {
         Job::small().in_experiment("[noise]", "[noise]\nrun_scatter = \"unknown\"")
     ));
     assert!(
-        message.starts_with(
-            "job.toml: [sampler] lm finds an unknown noise sd of independent normal errors alone"
-        ),
+        message.starts_with("job.toml: [sampler] lm infers noise sds of independent normal errors only"),
         "{message}"
     );
 }

@@ -1,22 +1,22 @@
-//! See whether the data pull the parameters to where the prior did not expect them.
+//! Prior-data conflict: whether the posterior lies where the prior did not expect it.
 
 use super::spectrum::{mean_and_covariance, principal_directions};
 use super::tail::chi_square_tail;
 use statistics::likelihood::ErrorLaw;
 use statistics::prior::Prior;
 
-/// A variance of the scores above this share of the prior's says too little to contradict anything.
+/// Directions whose posterior variance is above this share of the prior's are left out: too little information.
 const INFORMED: f64 = 0.75;
 
-/// How surprising the posterior is to the prior.
+/// How far the posterior lies out in the prior.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conflict {
-    /// Of each parameter, the probability of a posterior so far out in its prior, were the prior right; `None` where the
-    /// data say too little.
+    /// For each parameter the probability of a posterior so far out, were the prior right; `None` where the data say too
+    /// little.
     pub parameters: Vec<Option<f64>>,
     /// Squared distance of the posterior's mean over all directions that the data inform.
     pub statistic: f64,
-    /// As many directions.
+    /// Number of these directions.
     pub degrees_of_freedom: usize,
     /// Probability of so large a distance; `None` where no direction is informed.
     pub p: Option<f64>,
@@ -26,8 +26,8 @@ pub struct Conflict {
 ///
 /// # Equation
 /// Every parameter is turned into its normal score `u = Phi^-1(F(theta))`, F its prior distribution, so that the prior
-/// is standard normal; where it is correlated, each parameter alone is, and D takes scores made independent. With m and S the posterior's mean and covariance of u, `z_i = m_i / sqrt(1 - S_ii)`, and over
-/// the eigenvectors v of S with eigenvalues l, `D = sum (v'm)^2 / (1 - l)`. Under the prior predictive distribution
+/// is standard normal; where it is correlated, D takes scores made independent. With m and S the posterior's mean and
+/// covariance of u, `z_i = m_i / sqrt(1 - S_ii)`, and over the eigenvectors v of S with eigenvalues l, `D = sum (v'm)^2 / (1 - l)`. Under the prior predictive distribution
 /// `Cov(m) = I - S`, so z is standard normal and D chi-square.
 ///
 /// # Arguments
@@ -39,7 +39,7 @@ pub struct Conflict {
 /// 1 - l would be sampling error.
 ///
 /// # Source
-/// Evans & Moshonov 2006, *Checking for prior-data conflict*, Bayesian Analysis 1:893, section 3. Checked by
+/// Evans & Moshonov 2006, *Checking for prior-data conflict*, Bayesian Analysis 1:893, doi:10.1214/06-BA129, section 3. Checked by
 /// `diagnostics::conflict_is_rare_where_the_prior_is_right` and `diagnostics::a_prior_that_is_wrong_is_contradicted`.
 #[must_use]
 pub fn conflict(prior: &Prior, draws: &[&[f64]]) -> Option<Conflict> {
@@ -51,7 +51,7 @@ pub fn conflict(prior: &Prior, draws: &[&[f64]]) -> Option<Conflict> {
         })
         .collect();
     let (mean, covariance) = mean_and_covariance(&scores)?;
-    // The mean of so many draws has a sampling error of its own.
+    // The mean of the draws has a sampling error of its own.
     let sampling = 1.0 / draws.len() as f64;
     let squared_z = |distance: f64, variance: f64| {
         (variance < INFORMED).then(|| distance * distance / (1.0 - variance + variance * sampling))

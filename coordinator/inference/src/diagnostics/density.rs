@@ -1,21 +1,21 @@
-//! Estimate the density of draws by a Gaussian kernel.
+//! The density of draws by a Gaussian kernel.
 
 use super::moments::mean_and_sd;
 use super::quantile::quantile;
 
-/// The kernel is neglected beyond so many bandwidths: exp(-32) of its height.
+/// Reach of the kernel in bandwidths: exp(-32) of its height is neglected.
 const REACH: f64 = 8.0;
 
 /// The bandwidth that is optimal for a normal density: h = (4 / (3 n))^(1/5) s.
 ///
 /// s is the smaller of standard deviation and interquartile range / 1.349, so that neither tails nor a second mode
-/// smooth the rest away; where half the draws are equal, the standard deviation.
+/// oversmooth; where half the draws are equal, the standard deviation.
 ///
 /// # Arguments
 /// - `values`: n equally weighted draws, in any unit.
 ///
 /// # Returns
-/// h > 0 in the unit of the draws; `None` of fewer than two draws, or where all are equal.
+/// h > 0 in the unit of the draws; `None` for fewer than two draws, or where all are equal.
 ///
 /// # Source
 /// Silverman 1986, Density Estimation for Statistics and Data Analysis, Eq. 3.28, with the robust s of Eq. 3.30; his rule of
@@ -38,13 +38,13 @@ pub fn bandwidth(values: &[f64]) -> Option<f64> {
 /// # Arguments
 /// - `values`: equally weighted draws, each within the support.
 /// - `support`: lower and upper bound, infinite where there is none. Beyond it the density is 0.
-/// - `grid`: where it is wanted, in the unit of the draws.
+/// - `grid`: points of evaluation, in the unit of the draws.
 ///
 /// # Returns
-/// The density in 1 over the unit of the draws; `None` where [`bandwidth`] has none.
+/// The density in 1 over the unit of the draws; `None` where [`bandwidth`] is `None`.
 ///
 /// # Validity
-/// It integrates to 1 over the support. At a bound its slope is 0: reflection keeps the mass and the height there, not a slope.
+/// It integrates to 1 over the support. Reflection keeps mass and height at a bound, but makes the slope 0 there.
 /// Between two bounds three images are summed to either side, enough for every bandwidth of draws between them.
 ///
 /// # Source

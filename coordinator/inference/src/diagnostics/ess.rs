@@ -1,4 +1,4 @@
-//! Measure how much independent information weights and chains carry.
+//! Effective sample size of weights, and rank correlation.
 
 /// Effective sample size of weights, `(sum w)^2 / sum w^2` (Kish 1965); 0 if no weight is positive.
 #[must_use]

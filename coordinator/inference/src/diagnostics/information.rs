@@ -1,4 +1,4 @@
-//! See whether a channel can say anything, before the data are looked at.
+//! Whether a channel can be informative, by its prior predictive spread against its errors.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use super::moments::mean_and_sd;
 use super::predicted_draw::PredictedDraw;
 use statistics::likelihood::Datum;
 
-/// What the prior allows the data of a channel to vary, beside their errors.
+/// The prior predictive spread of a channel against its errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelSignal {
     /// Data of the channel.
@@ -15,12 +15,13 @@ pub struct ChannelSignal {
     pub prior_sd: f64,
     /// Root mean square of the errors' standard deviations [unit of the channel].
     pub error_sd: f64,
-    /// Root mean square of the one over the other; below 1 a datum says less than the prior did.
+    /// Root mean square of the one over the other; below 1 a datum holds less information than the prior.
     pub ratio: f64,
 }
 
 impl ChannelSignal {
-    /// Whether all data of the channel together, were they independent looks at one thing, would say as much as the prior.
+    /// Whether all data of the channel together, as independent measurements of one quantity, would hold as much information
+    /// as the prior.
     #[must_use]
     pub fn is_heard_together(&self) -> bool {
         self.ratio * (self.data as f64).sqrt() >= 1.0
@@ -31,7 +32,7 @@ impl ChannelSignal {
 ///
 /// # Arguments
 /// - `error_variances`: of each datum, as [`Likelihood::error_variances`](statistics::Likelihood::error_variances) gives them.
-/// - `prior_draws`: predictions at draws from the prior that the model took.
+/// - `prior_draws`: predictions at draws from the prior that the model accepted.
 ///
 /// Checked by `diagnostics::the_signal_of_a_linear_model_is_its_slope`.
 #[must_use]

@@ -1,27 +1,27 @@
-//! Estimate the joint density of two parameters by a Gaussian kernel.
+//! The joint density of two parameters by a Gaussian kernel.
 
 use super::moments::mean_and_sd;
 
-/// The kernel is neglected beyond so many bandwidths: exp(-32) of its height.
+/// Reach of the kernel in bandwidths: exp(-32) of its height is neglected.
 const REACH: f64 = 8.0;
 
 /// The joint density of draws of two parameters on a grid, by a Gaussian kernel of constant window.
 ///
 /// `f(x) = 1/(n 2 pi |H|^(1/2)) sum_i exp(-(x - x_i)' H^-1 (x - x_i) / 2)` with `H = n^(-1/3) S`, S the covariance of the draws. The
-/// kernel is as slanted as the draws, so a ridge is not smoothed across. The estimate is folded back at the bounds of the
-/// support, each coordinate for itself.
+/// kernel has the correlation of the draws, so a ridge is not smoothed across. The estimate is reflected at the bounds of
+/// the support, in each coordinate.
 ///
 /// # Arguments
 /// - `values`: the draws of both parameters, equally weighted, pairwise, within their supports.
 /// - `support`: lower and upper bound of each, infinite where there is none. Beyond them the density is 0.
-/// - `grid`: the values of each at which it is wanted.
+/// - `grid`: the values of each at which it is evaluated.
 ///
 /// # Returns
-/// The density in 1 over the product of the units, row by row: `[grid[1]][grid[0]]`, the first parameter fastest. `None` of
+/// The density in 1 over the product of the units, row by row: `[grid[1]][grid[0]]`, the first parameter fastest. `None` for
 /// fewer than three draws, of lists of different lengths, and where the draws lie on a line.
 ///
 /// # Validity
-/// It integrates to 1 over the support where the bandwidth is small against the support's width. One image is folded back at
+/// It integrates to 1 over the support where the bandwidth is small against the support's width. One image is reflected at
 /// each bound.
 ///
 /// # Source
@@ -34,7 +34,7 @@ pub fn joint_density(values: [&[f64]; 2], support: [(f64, f64); 2], grid: [&[f64
         return None;
     }
     let kernel = Kernel::of(values)?;
-    // Draws in the kernel's own coordinates, where it is round; mirrored ones have a mirrored kernel, so the point is
+    // Draws in the kernel's own coordinates, where it is round. A mirrored draw has a mirrored kernel, so the point is
     // mirrored instead.
     let round: Vec<[f64; 2]> = values[0]
         .iter()
@@ -128,7 +128,7 @@ impl Kernel {
 /// For each share the lowest density of the region; empty where the density is 0 everywhere.
 ///
 /// # Source
-/// Hyndman 1996, Computing and graphing highest density regions. Checked by `levels_enclose_their_shares`.
+/// Hyndman 1996, Computing and graphing highest density regions, Am. Stat. 50:120, doi:10.1080/00031305.1996.10474359. Checked by `levels_enclose_their_shares`.
 #[must_use]
 pub fn highest_density_levels(density: &[f64], shares: &[f64]) -> Vec<f64> {
     let mut sorted = density.to_vec();

@@ -1,16 +1,16 @@
-//! Summarise draws and predictions by pure functions on slices.
+//! Summaries and tests of draws and predictions: pure functions on slices.
 //!
-//! An empty slice has no mean: such questions answer `None`.
+//! What is undefined, as the mean of an empty slice, is `None`.
 //!
 //! # Layout
 //! - `moments`, `quantile`, `ess`: draws of one parameter.
-//! - `spectrum`: combinations of parameters that the data know best and worst.
-//! - `conflict`: prior against posterior.
-//! - `density`, `joint_density`: kernel densities, and the levels that hold most of a sample.
-//! - `predicted_draw`: draws with their predictions. `information`: what a channel can say. `residual`: what the fit leaves,
-//!   one by one and in sum. `trend`: whether it follows a condition.
+//! - `spectrum`: the combinations of parameters that the data determine best and worst.
+//! - `conflict`: prior-data conflict.
+//! - `density`, `joint_density`: kernel densities, and highest-density regions.
+//! - `predicted_draw`: draws with their predictions. `information`: the prior signal of a channel. `residual`: studentised
+//!   residuals and their chi-square. `trend`: trends of residuals with a regressor.
 //! - `region`: where in the prior failures concentrate.
-//! - `tail`: probabilities of tests.
+//! - `tail`: tail probabilities of test statistics.
 
 mod conflict;
 mod density;

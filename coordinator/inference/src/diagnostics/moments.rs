@@ -1,4 +1,4 @@
-//! Average draws.
+//! Mean and standard deviation of draws.
 
 /// Arithmetic mean; `None` for an empty slice.
 #[must_use]

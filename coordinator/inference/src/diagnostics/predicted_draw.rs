@@ -1,11 +1,11 @@
-//! Draws with what the model predicts at them.
+//! Draws with the predictions of the model.
 
 /// A parameter vector and the predicted values that the likelihood takes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PredictedDraw {
     /// Parameters, inferred standard deviations among them.
     pub theta: Vec<f64>,
-    /// One for each datum, then the sensitivities, as [`Likelihood::values`](statistics::Likelihood::values) counts them.
+    /// One for each datum, then the sensitivities, as many as [`Likelihood::values`](statistics::Likelihood::values) says.
     pub values: Vec<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Read quantiles off equally weighted draws.
+//! Quantiles of equally weighted draws.
 
 use super::moments::mean_and_sd;
 
@@ -33,7 +33,7 @@ pub fn summary(values: &[f64]) -> Option<DrawSummary> {
     })
 }
 
-/// Quantile of type 7: linear between order statistics at (n - 1) p (Hyndman & Fan 1996).
+/// Quantile of type 7: linear between order statistics at (n - 1) p (Hyndman & Fan 1996, doi:10.1080/00031305.1996.10473566).
 ///
 /// `None` for an empty slice or `p` outside [0, 1].
 #[must_use]

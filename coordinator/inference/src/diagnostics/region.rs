@@ -1,18 +1,18 @@
-//! Find the part of the prior in which failures concentrate.
+//! The region of the prior in which failures concentrate.
 
 use super::tail::ln_hypergeometric_tail;
 
-/// Parts of equal probability that the prior of each parameter is cut into.
+/// Bins of equal probability in the prior of each parameter.
 pub const BINS: usize = 5;
 
-/// One end of a parameter's prior: bins `from` to `to`, the latter not among them.
+/// One end of a parameter's prior: the bins `from..to`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Side {
     /// Position of the parameter.
     pub parameter: usize,
     /// First bin.
     pub from: usize,
-    /// The bin behind the last.
+    /// The bin after the last.
     pub to: usize,
 }
 
@@ -25,7 +25,7 @@ pub struct Region {
     pub drawn: usize,
     /// Failures among them.
     pub failed: usize,
-    /// Probability of so many failures there by chance, times the number of regions that were looked at; at most 1.
+    /// Probability of so many failures there by chance, times the number of regions tested; at most 1.
     pub p: f64,
 }
 
@@ -36,11 +36,11 @@ pub fn bin(probability: f64) -> usize {
 }
 
 /// The region with the least probability by chance, among the ends of every parameter and of every pair; `None` where all
-/// draws failed or none did. The first of equals; of one parameter rather than two.
+/// draws failed or none did. Of equal regions the first; one parameter goes before two.
 ///
 /// # Equation
 /// Fisher's exact test: with N draws, R failures and K draws in a region, the failures there are hypergeometric if
-/// failing has nothing to do with it. Bonferroni over the `8 d + 64 d (d - 1) / 2` regions of d parameters.
+/// failure is independent of it. Bonferroni over the `8 d + 64 d (d - 1) / 2` regions of d parameters.
 ///
 /// # Arguments
 /// - `draws`: the [`bin`] of every parameter, and whether the draw failed.

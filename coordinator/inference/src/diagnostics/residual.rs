@@ -1,34 +1,34 @@
-//! Judge residuals by what the fit leaves them, one by one and in sum.
+//! Studentised residuals, and their chi-square.
 
 use super::predicted_draw::PredictedDraw;
 use super::tail::chi_square_tail;
 use statistics::likelihood::{ErrorLaw, ErrorSd, Likelihood, LikelihoodError};
 
-/// A measured value beside the posterior's mean prediction.
+/// A measured value against the posterior's mean prediction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Residual {
     /// Measured minus predicted [unit of the datum].
     pub value: f64,
-    /// Standard deviation of the error: noise, and what it shares with other data [unit of the datum].
+    /// Standard deviation of the error, noise and common errors [unit of the datum].
     pub error_sd: f64,
-    /// Share h of the error's variance that the fit takes up; 1 or more where the linear identity fails.
+    /// Leverage h, the share of the error's variance that the fit absorbs; 1 or more where the linear identity fails.
     pub leverage: f64,
-    /// The residual over its own standard deviation; `None` where h is 1 or more, or nothing else shows its noise.
+    /// The residual over its own standard deviation; `None` where h is 1 or more, or no other data show its noise.
     pub studentised: Option<f64>,
-    /// Probability of one so large on either side.
+    /// Two-sided probability of one so large.
     pub p: Option<f64>,
 }
 
-/// The sum of squares of residuals that are made independent, of unit variance.
+/// The sum of squares of the whitened residuals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResidualChiSquare {
     /// The sum.
     pub value: f64,
     /// Data that count: those whose noise is known.
     pub data: usize,
-    /// What the fit takes up of them: the effective number of parameters.
+    /// The effective number of parameters.
     pub effective_parameters: f64,
-    /// Probability of so large a sum; `None` where the fit takes up everything.
+    /// Probability of so large a sum; `None` where no degree of freedom is left.
     pub p: Option<f64>,
 }
 
@@ -45,14 +45,14 @@ impl ResidualChiSquare {
 /// # Equation
 /// `t_i = r_i / sqrt(R_ii - V_i)`, R the covariance of the errors, `V_i` the posterior variance of the prediction;
 /// for independent errors `r_i / (sigma_i sqrt(1 - h_i))` with `h_i = V_i / sigma_i^2`. A noise sd that is
-/// inferred is estimated anew from the other data that have it: `s^2 = mean_j r_j^2 / (1 - h_j)`, j not i, with
+/// inferred is re-estimated from the other data that share it: `s^2 = mean_j r_j^2 / (1 - h_j)`, j not i, with
 /// `sum (1 - h) - 1` degrees of freedom (external studentisation).
 ///
 /// # Arguments
-/// - `draws`: of the posterior, equally weighted, with their predictions; two or more, else nothing is returned.
+/// - `draws`: of the posterior, equally weighted, with their predictions; with fewer than two the result is empty.
 ///
 /// # Returns
-/// One for each datum, in their order. The probability is of the likelihood's law, of Student's t where the sd is
+/// One for each datum, in their order. The probability is by the likelihood's law, by Student's t where the sd is
 /// estimated.
 ///
 /// # Errors
@@ -61,7 +61,7 @@ impl ResidualChiSquare {
 /// # Validity
 /// `Cov(r) = R - X S X'` holds exactly for predictions that are linear in normal parameters, with R known; R is taken at
 /// the posterior mean. Where predictions bend over the posterior, or R is inferred among errors in common, it is an
-/// approximation. Where the sd is estimated, alarms are a little rarer than stated: 4.2 % at 5 %, with twelve data and two
+/// approximation. Where the sd is estimated, false alarms are a little rarer than stated: 4.2 % at 5 %, with twelve data and two
 /// parameters.
 ///
 /// # Source
@@ -105,7 +105,7 @@ pub fn residuals(likelihood: &Likelihood, draws: &[PredictedDraw]) -> Result<Vec
     Ok(rows)
 }
 
-/// The parameter that is the sd of a datum, where other data can tell it as well.
+/// The parameter that is the sd of a datum with independent normal errors.
 pub(super) fn own_scale(likelihood: &Likelihood, i: usize) -> Option<usize> {
     match likelihood.data()[i].sd {
         ErrorSd::Inferred { parameter }
@@ -145,18 +145,18 @@ fn against_peers(row: Residual, peers: &[Residual]) -> Option<(f64, f64)> {
 /// # Equation
 /// `Q = r' R^-1 r` with `E(Q) = n - tr(H)`, `H = X S X' R^-1`; tr(H), the posterior variance of the whitened
 /// predictions, is the effective number of parameters. Q is referred to a chi-square with `n - tr(H)` degrees of freedom.
-/// An unknown discrepancy enters with each of its values, weighted by its probability after the data.
+/// An unknown discrepancy enters with each of its values, weighted by its posterior probability.
 ///
 /// # Errors
 /// Those of [`Likelihood::log_likelihood`].
 ///
 /// # Validity
 /// The mean is exact for linear predictions and normal errors; the tail is exact where H is a projection (a weak prior),
-/// and a little too heavy otherwise, so that alarms are rarer than stated. Data whose noise is inferred are left out: it was
-/// inferred so as to make their sum right.
+/// and a little too heavy otherwise, so that false alarms are rarer than stated. Data whose noise is inferred are left out: their
+/// sum is right by construction.
 ///
 /// # Source
-/// Spiegelhalter et al. 2002, J. R. Stat. Soc. B 64:583, section 4 (leverage as effective parameters). Checked by
+/// Spiegelhalter et al. 2002, J. R. Stat. Soc. B 64:583, doi:10.1111/1467-9868.00353, section 4 (leverage as effective parameters). Checked by
 /// `diagnostics::chi_square_of_a_line_is_its_closed_form` and `diagnostics::chi_square_keeps_its_level`.
 pub fn chi_square(
     likelihood: &Likelihood,

@@ -1,4 +1,4 @@
-//! Find the combinations of parameters that draws know best and worst.
+//! The principal directions of draws: combinations of parameters that they determine best and worst.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -17,11 +17,11 @@ pub struct Direction {
 /// Eigenvalues and eigenvectors of the sample covariance (divisor n - 1).
 ///
 /// # Arguments
-/// - `draws`: one vector of coordinates for each draw. Divide them by the prior's standard deviations first, and the
-///   variances are shares of the prior's: 1 where the data say nothing.
+/// - `draws`: one vector of coordinates for each draw. In units of the prior's standard deviations the variances are
+///   shares of the prior's: 1 where the data say nothing.
 ///
 /// # Validity
-/// Where two variances are as good as equal, their directions are arbitrary within the plane that they span.
+/// Where two variances are nearly equal, their directions are arbitrary within the plane that they span.
 /// Checked by `spectrum::tests`.
 #[must_use]
 pub fn principal_directions(draws: &[Vec<f64>]) -> Vec<Direction> {
@@ -65,7 +65,7 @@ pub(super) fn mean_and_covariance(draws: &[Vec<f64>]) -> Option<(Vec<f64>, DMatr
         let cross = draws.iter().map(|d| (d[i] - mean[i]) * (d[j] - mean[j]));
         cross.sum::<f64>() / divisor
     };
-    // An upper half that repeats the lower one: the sums would differ in their last bits.
+    // The upper half repeats the lower one: the sums would differ in their last bits.
     let covariance = DMatrix::from_fn(dimension, dimension, |i, j| entry(i.max(j), i.min(j)));
     Some((mean, covariance))
 }

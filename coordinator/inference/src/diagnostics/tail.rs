@@ -1,4 +1,4 @@
-//! Probabilities in the tails of distributions that tests refer to.
+//! Tail probabilities of test statistics.
 
 /// Terms after which the series and the fraction have settled for any degrees of freedom below 1e6.
 const TERMS: u32 = 10_000;

@@ -1,4 +1,4 @@
-//! Test whether residuals still follow a regressor, after all that the fit has taken up of it.
+//! Score test for a trend of the residuals with a regressor, after what the fit absorbs of it.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -8,39 +8,39 @@ use super::spectrum::mean_and_covariance;
 use statistics::likelihood::{ErrorLaw, Likelihood, LikelihoodError, Whitening};
 use statistics::prior::Prior;
 
-/// Where the fit takes up all but so much of a regressor, the rest is an error of the linear model rather than a test.
+/// Where the fit absorbs all but this share of a regressor, the rest is an error of the linear model.
 const LEAST_SHARE: f64 = 0.02;
 
-/// A straight line through residuals.
+/// The slope of the residuals along a regressor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trend {
-    /// Measured minus predicted for one unit of the regressor, had the fit not bent towards it [unit of the data].
+    /// Measured minus predicted for one unit of the regressor, corrected for what the fit absorbs [unit of the data].
     pub slope: f64,
     /// Standard deviation of the slope where there is no trend.
     pub sd: f64,
-    /// Share of the regressor that the fit cannot take up, in (0, 1].
+    /// Share of the regressor that the fit cannot absorb, in (0, 1].
     pub share_left: f64,
-    /// The slope over its standard deviation, from the scatter of the data where their noise is inferred.
+    /// The slope over its standard deviation; where the noise is inferred, the latter is estimated from the residuals.
     pub statistic: f64,
     /// Two-sided probability of so large a statistic.
     pub p: f64,
 }
 
-/// The posterior as a linear model with normal parameters, prepared to test any number of regressors.
+/// The posterior as a linear model with normal parameters, to test any number of regressors.
 ///
 /// # Equation
-/// Of parameters turned into independent standard normal scores u, predictions are `f + X (u - m)`, m their posterior
-/// mean and X the regression of the predictions on u over the draws. A regressor x, added with an unknown factor, has the
+/// With the parameters as independent standard normal scores u, predictions are `f + X (u - m)`, m the posterior mean of u
+/// and X the regression of the predictions on u over the draws. A regressor x, added with an unknown factor, has the
 /// efficient score and information
 /// `U = x' R^-1 r - a' (X' R^-1 r - m)`, `I = x' R^-1 x - a' X' R^-1 x`, `a = (1 + X' R^-1 X)^-1 X' R^-1 x`,
 /// with r the residuals and R the covariance of the errors. `slope = U / I`, `sd = 1 / sqrt(I)`, and `U / sqrt(I)` is standard
 /// normal where nothing is missing: `I = x' C^-1 x`, C the prior predictive covariance of the data. Where the noise sd of all
-/// data of a regressor is inferred, it is estimated anew from the residuals that the trend would leave, and the statistic is
+/// data of a regressor is inferred, it is re-estimated from the residuals without the trend, and the statistic is
 /// Student's.
 ///
 /// # Validity
 /// Exact for predictions that are linear in normal scores and normal errors of known covariance (or one unknown sd, under a
-/// weak prior); under Student's errors asymptotic. A posterior mean that is a little off the mode changes nothing at first order.
+/// weak prior); under Student's errors asymptotic. A small distance of the posterior mean from the mode has no effect at first order.
 ///
 /// # Source
 /// Cox & Hinkley 1974, *Theoretical Statistics*, section 9.3 (score test with nuisance parameters); Neyman 1959 (C(alpha)).
@@ -60,16 +60,16 @@ pub struct TrendTest<'a> {
     gradient: DVector<f64>,
     /// `1 + X' R^-1 X`.
     precision: Cholesky<f64, Dyn>,
-    /// Standard deviation of each datum's error, and its row of `X` over it, such that the products of rows are what the fit
-    /// takes up of the errors.
+    /// Standard deviation of each datum's error, and its row of `X` over it, scaled so that products of rows are the
+    /// elements of the hat matrix.
     rows: Vec<(f64, DVector<f64>)>,
 }
 
 impl<'a> TrendTest<'a> {
-    /// Prepares the test; `None` where the draws are fewer than two or do not spread in every direction.
+    /// Prepares the test; `None` for fewer than two draws, or draws that do not spread in every direction.
     ///
     /// # Arguments
-    /// - `prior`: of all parameters, in the order of theta.
+    /// - `prior`: the prior of all parameters, in the order of theta.
     /// - `draws`: of the posterior, equally weighted, with their predictions.
     ///
     /// # Errors
@@ -117,10 +117,11 @@ impl<'a> TrendTest<'a> {
         }))
     }
 
-    /// The trend of the residuals with a regressor; `None` where the fit takes up all of it, or nothing else shows the noise.
+    /// The trend of the residuals with a regressor; `None` where the fit absorbs all of it, or no residuals are left to
+    /// estimate the noise from.
     ///
     /// # Arguments
-    /// - `regressor`: one value for each datum, 0 for data that it does not concern.
+    /// - `regressor`: one value for each datum, 0 for data that it does not affect.
     #[must_use]
     pub fn against(&self, regressor: &[f64]) -> Option<Trend> {
         let x = self.whitening.apply(regressor);
@@ -132,7 +133,7 @@ impl<'a> TrendTest<'a> {
         let absorbed = self.precision.solve(&overlap);
         let information = whole - absorbed.dot(&overlap);
         let share_left = information / whole;
-        // Not a number where the regressor is 0.
+        // NaN where the regressor is 0.
         if share_left.is_nan() || share_left < LEAST_SHARE {
             return None;
         }
@@ -155,7 +156,7 @@ impl<'a> TrendTest<'a> {
         })
     }
 
-    /// The parameter that is the noise sd of all data that the regressor concerns.
+    /// The parameter that is the noise sd of all data that the regressor affects.
     fn scale_of(&self, regressor: &[f64]) -> Option<usize> {
         let concerned = (0..regressor.len()).filter(|&i| regressor[i].abs() > 0.0);
         let mut scales = concerned.map(|i| own_scale(self.likelihood, i));
@@ -163,7 +164,7 @@ impl<'a> TrendTest<'a> {
         scales.all(|scale| scale == Some(first)).then_some(first)
     }
 
-    /// What the fit leaves of a regressor.
+    /// The residual of a regressor after the fit.
     fn left_of(&self, regressor: &[f64], absorbed: &DVector<f64>) -> Vec<f64> {
         let mut left = regressor.to_vec();
         for (column, share) in self.sensitivities.iter().zip(absorbed.iter()) {
@@ -174,14 +175,14 @@ impl<'a> TrendTest<'a> {
         left
     }
 
-    /// The noise that the residuals show beside the trend, over that which the posterior has, and its degrees of freedom: those
-    /// of the chi-square with the mean and variance of their sum of squares (Satterthwaite).
+    /// The noise sd of the residuals without the trend over the posterior's, and its degrees of freedom: those of the
+    /// chi-square with the mean and variance of their sum of squares (Satterthwaite).
     fn scale(&self, parameter: usize, slope: f64, sd: f64, left: &[f64]) -> Option<(f64, f64)> {
         let peers: Vec<usize> = (0..self.rows.len())
             .filter(|&i| own_scale(self.likelihood, i) == Some(parameter))
             .collect();
         let in_sds = |i: usize, value: f64| value / self.rows[i].0;
-        // What is left of the error i in the residual j.
+        // Share of the error i that remains in the residual j.
         let left_of_error = |i: usize, j: usize| {
             let taken = self.rows[i].1.dot(&self.rows[j].1);
             let by_trend = sd * sd * in_sds(i, left[i]) * in_sds(j, left[j]);

@@ -1,4 +1,4 @@
-//! Run the rounds: list a generation, take its log-likelihoods, and say when it is over.
+//! The rounds of an evolution: list a generation, take its log-likelihoods, finish.
 
 use super::next_generation::NextGeneration;
 use super::settings::EvolutionSettings;
@@ -13,7 +13,7 @@ use crate::tell::{InferenceFailure, TellError, TellProgress};
 use statistics::log_likelihood::LogLikelihood;
 use statistics::prior::Prior;
 
-/// An ask/tell search for the most probable parameters.
+/// The most probable parameters by generations, by ask and tell.
 ///
 /// Its state is a function of prior, settings and the told log-likelihoods, whatever their order within a round:
 /// checked by `evolution::the_order_within_a_generation_does_not_matter`.
@@ -28,19 +28,19 @@ pub struct Evolution {
     history: Vec<Generation>,
     count: EvaluationCount,
     strategy: Strategy,
-    /// Of the pending proposals.
+    /// Positions of the pending proposals.
     positions: Vec<Vec<f64>>,
 }
 
 impl Evolution {
-    /// A search whose first generation is pending.
+    /// An evolution whose first generation is pending.
     ///
     /// # Errors
     /// [`EvolutionSettingsError`] names the setting, its value and its bound.
     pub fn new(prior: Prior, settings: EvolutionSettings) -> Result<Self, EvolutionSettingsError> {
         settings.check(prior.dimension())?;
         let space = PriorSpace::new(prior);
-        let mut search = Self {
+        let mut evolution = Self {
             strategy: Strategy::new(settings, &space),
             space,
             settings,
@@ -51,8 +51,8 @@ impl Evolution {
             count: EvaluationCount::default(),
             positions: Vec::new(),
         };
-        search.ask();
-        Ok(search)
+        evolution.ask();
+        Ok(evolution)
     }
 
     /// The round in progress, a generation; its list of proposals is empty only when the evolution has ended.
@@ -88,7 +88,7 @@ impl Evolution {
     /// Takes the log-likelihood of a pending proposal; the last one of a round leads to the next generation.
     ///
     /// # Errors
-    /// [`TellError::AlreadyTold`] and [`TellError::NotPending`]; the search is then unchanged.
+    /// [`TellError::AlreadyTold`] and [`TellError::NotPending`]; the evolution is then unchanged.
     pub fn tell(&mut self, particle: usize, value: LogLikelihood) -> Result<TellProgress, TellError> {
         let complete = self.round.tell(particle, value)?;
         if complete {
@@ -117,13 +117,13 @@ impl Evolution {
                 self.best = Some(individual.clone());
             }
         }
-        self.remember(&generation);
+        self.record(&generation);
         self.strategy.accept(generation);
         self.ask();
     }
 
-    fn remember(&mut self, generation: &[Individual]) {
-        let taken: Vec<f64> = generation
+    fn record(&mut self, generation: &[Individual]) {
+        let accepted: Vec<f64> = generation
             .iter()
             .filter(|individual| individual.is_possible())
             .map(Individual::log_posterior)
@@ -131,11 +131,12 @@ impl Evolution {
         self.history.push(Generation {
             evaluations: self.count.evaluations as u64,
             best: self.best.as_ref().map(Individual::log_posterior),
-            mean: crate::diagnostics::mean(&taken),
+            mean: crate::diagnostics::mean(&accepted),
         });
     }
 
-    /// Asks for the next generation, unless there is none; without anybody whom the model took, for half of the budget.
+    /// Asks for the next generation, if there is one; fails when the model has rejected half of the budget and accepted
+    /// nothing.
     fn ask(&mut self) {
         let budget = self.settings.max_evaluations();
         match self.strategy.next(&self.space, budget - self.count.evaluations) {

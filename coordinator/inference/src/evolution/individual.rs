@@ -1,4 +1,4 @@
-//! Hold an evaluated point.
+//! An evaluated point.
 
 use std::cmp::Ordering;
 
@@ -20,12 +20,12 @@ impl Individual {
         self.log_likelihood.value() + self.log_prior
     }
 
-    /// Whether the model took the parameters.
+    /// Whether the model accepted the parameters.
     pub(crate) fn is_possible(&self) -> bool {
         self.log_posterior() > f64::NEG_INFINITY
     }
 
-    /// The better first.
+    /// The order of rank: the better first.
     pub(crate) fn rank(&self, other: &Self) -> Ordering {
         other.log_posterior().total_cmp(&self.log_posterior())
     }

@@ -1,4 +1,4 @@
-//! Find the most probable parameters by generations, asked and told from outside.
+//! The most probable parameters by generations (genetic algorithm, CMA-ES), by ask and tell.
 //!
 //! [`Evolution`] never runs the model. A round is a generation: its [`Proposal`](crate::Proposal)s can be evaluated at the
 //! same time and are told their log-likelihoods in any order; rejected ones rank last. [`ga`] or [`cma_es`] makes the next
@@ -10,7 +10,7 @@
 //! # Layout
 //! - `generations`: the rounds.
 //! - `settings`, `settings_error`: those of either strategy. `strategy`: either of them, with its state.
-//! - `next_generation`: what a strategy wants. `individual`: an evaluated point. `prior_space`: all axes of the prior.
+//! - `next_generation`: what a strategy asks for. `individual`: an evaluated point. `prior_space`: all axes of the prior.
 
 pub mod cma_es;
 pub mod ga;

@@ -1,12 +1,12 @@
-//! What a strategy wants next: a generation, or the end.
+//! The next generation that a strategy asks for, or the end.
 
 use crate::point_estimate::StopReason;
 
-/// What a strategy wants next.
+/// What a strategy asks for.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum NextGeneration {
     /// A generation at these positions, all within the bounds.
     Ask(Vec<Vec<f64>>),
-    /// Nothing any more.
+    /// The end of the evolution.
     End(StopReason),
 }

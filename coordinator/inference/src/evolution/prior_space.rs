@@ -1,4 +1,4 @@
-//! Move all parameters in units of their priors' widths.
+//! All parameters in units of their priors' widths.
 
 use super::individual::Individual;
 use crate::point_estimate::PriorAxis;
@@ -6,10 +6,10 @@ use statistics::log_likelihood::LogLikelihood;
 use statistics::prior::Prior;
 use statistics::rng::Stream;
 
-/// Nearer to a bound than this is at the bound, in prior widths: rounding must not decide whether a parameter is.
+/// A position nearer to a bound than this, in prior widths, is at the bound: rounding must not decide it.
 const NEAR: f64 = 1e-9;
 
-/// The support of a prior, every parameter on an axis of its own.
+/// The support of a prior, with one axis for each parameter.
 #[derive(Debug, Clone)]
 pub(crate) struct PriorSpace {
     pub(crate) prior: Prior,
@@ -45,7 +45,7 @@ impl PriorSpace {
         pairs.map(|(axis, &x)| axis.position(x)).collect()
     }
 
-    /// The nearest position within the bounds; exactly a bound where that is all but reached.
+    /// The nearest position within the bounds; exactly at a bound where it is within [`NEAR`].
     pub(crate) fn inside(&self, position: &[f64]) -> Vec<f64> {
         let inside = |(axis, &t): (&PriorAxis, &f64)| {
             if t < axis.lower + NEAR {
@@ -59,13 +59,13 @@ impl PriorSpace {
         self.axes.iter().zip(position).map(inside).collect()
     }
 
-    /// The parameters at a position; exactly a bound where the position is one.
+    /// The parameters at a position; exact at a bound.
     pub(crate) fn theta(&self, position: &[f64]) -> Vec<f64> {
         let pairs = self.axes.iter().zip(position);
         pairs.map(|(axis, &t)| axis.value(t)).collect()
     }
 
-    /// Which coordinates of a position are bounds.
+    /// Which coordinates of a position are at a bound.
     pub(crate) fn at_bound(&self, position: &[f64]) -> Vec<bool> {
         let pairs = self.axes.iter().zip(position);
         pairs.map(|(axis, &t)| axis.is_bound(t)).collect()

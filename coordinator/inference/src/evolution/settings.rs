@@ -1,10 +1,10 @@
-//! Hold the settings of a search and refuse those that cannot work.
+//! The settings of an evolution.
 
 use super::cma_es::CmaEsSettings;
 use super::ga::GaSettings;
 use super::settings_error::EvolutionSettingsError;
 
-/// Settings of a search: which strategy, and its own.
+/// Settings of an evolution: the strategy with its own settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EvolutionSettings {
     /// A genetic algorithm.

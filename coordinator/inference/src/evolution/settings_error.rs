@@ -1,9 +1,9 @@
-//! Why the settings of an evolutionary optimisation are refused.
+//! Why the settings of an evolution are refused.
 
 /// Largest population: more than any farm has workers.
 const MOST_INDIVIDUALS: usize = 100_000;
 
-/// Settings that cannot work.
+/// Why settings are refused.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum EvolutionSettingsError {
     /// The prior has no parameters.
@@ -25,7 +25,7 @@ pub enum EvolutionSettingsError {
         /// The most generations.
         most: usize,
     },
-    /// Nobody would survive, or hardly anybody be born.
+    /// The elite is empty, or leaves too few children.
     #[error("elite = {elite} is not from 1 to half of the population, {population}")]
     Elite {
         /// The setting.
@@ -33,7 +33,7 @@ pub enum EvolutionSettingsError {
         /// The population.
         population: usize,
     },
-    /// The budget is beyond reason, or does not reach to a second generation.
+    /// The budget is too large, or too small for a second generation.
     #[error("max_evaluations = {max_evaluations} is not from {least} (two generations) to {most}")]
     Evaluations {
         /// The setting.

@@ -1,4 +1,4 @@
-//! Choose between the strategies.
+//! Either strategy with its state.
 
 use super::cma_es::Restarts;
 use super::ga::Population;

@@ -1,12 +1,12 @@
-//! Decide how far to trust the parabola.
+//! The damping of the steps.
 
 /// Dampings of neighbouring trials differ by this factor.
 const SPREAD: f64 = 8.0;
 /// The dampings of a round, in units of the least.
 const TRIALS: [f64; 3] = [1.0, SPREAD, SPREAD * SPREAD];
-/// The damping that a fit begins with: a tenth of the parabola's own curvature.
+/// The initial damping: a tenth of the curvature.
 const FIRST: f64 = 0.1;
-/// The least damping; less changes no digit that matters.
+/// The least damping; less has no effect.
 const LEAST: f64 = 1e-9;
 
 /// The damping of the next trials.
@@ -28,16 +28,16 @@ impl Default for Damping {
 }
 
 impl Damping {
-    /// The dampings to try at the same time, most promising first: the whole step, then ever shorter ones.
+    /// The dampings of a round: none, then ever more.
     pub(super) fn trials(&self) -> Vec<f64> {
         let whole = self.undamped.then_some(0.0);
         let damped = TRIALS.into_iter().map(|factor| self.least * factor);
         whole.into_iter().chain(damped).collect()
     }
 
-    /// After a step that gained `ratio` times what the parabola promised.
+    /// After a step whose decrease is `ratio` times the predicted one.
     ///
-    /// Nielsen's rule, `damping * max(1/3, 1 - (2 ratio - 1)^3)`, with 1/[`SPREAD`] in place of a third because several
+    /// Nielsen's rule, `damping * max(1/3, 1 - (2 ratio - 1)^3)`, with 1/[`SPREAD`] in place of 1/3 because several
     /// dampings are tried at once.
     pub(super) fn accept(&mut self, damping: f64, ratio: f64) {
         let from = damping.max(self.least / SPREAD);
@@ -49,7 +49,7 @@ impl Damping {
         };
     }
 
-    /// After a round without gain: shorter than all that was tried, and ever faster.
+    /// After a round without a decrease: more damping than any tried, growing ever faster.
     pub(super) fn reject(&mut self) {
         self.least *= TRIALS[TRIALS.len() - 1] * self.growth;
         self.growth *= 2.0;

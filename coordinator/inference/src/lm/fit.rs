@@ -1,4 +1,4 @@
-//! Run the rounds: list proposals, take their predicted values, and say when it is over.
+//! The rounds of a fit: list proposals, take their predicted values, finish.
 
 use super::damping::Damping;
 use super::objective::{Column, FitPoint, Objective};
@@ -28,14 +28,14 @@ pub struct LmFit {
     pub(super) best: Option<FitPoint>,
     /// The last known Jacobian: at the best point, or at one before it.
     pub(super) columns: Vec<Column>,
-    /// Differences around the best point.
+    /// The differences around the best point.
     pub(super) stencil: Stencil,
-    /// To which sides they were last asked for.
+    /// The sides to which they were last taken.
     pub(super) sides: Sides,
     /// Their steps along the axes.
     pub(super) lengths: Vec<f64>,
     pub(super) damping: Damping,
-    /// The last step gained too little to go on.
+    /// The last step decreased f too little to continue.
     pub(super) settled: bool,
     pub(super) steps: usize,
     pub(super) count: EvaluationCount,
@@ -120,7 +120,7 @@ impl LmFit {
     /// - `predicted`: the model's values as [`Likelihood::log_likelihood`] takes them; `None` where the model rejected the parameters.
     ///
     /// # Errors
-    /// [`TellError`]: told before, never asked for, not as many finite values as the likelihood takes. The fit is then unchanged.
+    /// [`TellError`]: told before, not pending, not as many finite values as the likelihood takes. The fit is then unchanged.
     pub fn tell(&mut self, particle: usize, predicted: Option<&[f64]>) -> Result<TellProgress, TellError> {
         if let Some(values) = predicted {
             self.check(values)?;
@@ -140,7 +140,7 @@ impl LmFit {
         Ok(self.objective.likelihood.check_values(values)?)
     }
 
-    /// Completes a round and asks for the next, unless the fit has ended.
+    /// Completes a round and opens the next, unless the fit has ended.
     fn advance(&mut self) {
         let (proposals, answers) = self.round.complete();
         self.count.add(answers.iter().map(Option::is_none));
@@ -167,7 +167,7 @@ impl LmFit {
 
     pub(super) fn finish(&mut self, stop: StopReason) {
         let Some(point) = &self.best else { return };
-        // A step that settled the fit ends it even where the budget has no room for another Jacobian.
+        // A step that converged ends the fit even where the budget has no room for another Jacobian.
         let stop = if self.settled { StopReason::Decrease } else { stop };
         let mut estimate = self.objective.estimate(point, &self.columns, stop);
         estimate.evaluations = self.count.evaluations as u64;

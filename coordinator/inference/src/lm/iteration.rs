@@ -1,4 +1,4 @@
-//! Go from round to round: what the results of one lead to.
+//! The iteration of a fit: starts, differences, trials, and what their results lead to.
 
 use super::damping::Damping;
 use super::fit::{Awaited, LmFit, PredictedValues};
@@ -10,7 +10,7 @@ use crate::round::Proposal;
 use crate::tell::InferenceFailure;
 use statistics::rng::Stream;
 
-/// A step so much longer is worth another Jacobian.
+/// Differences must be so many times longer to be worth another Jacobian.
 const MUCH_LONGER: f64 = 1.5;
 
 impl LmFit {
@@ -49,7 +49,7 @@ impl LmFit {
             })
     }
 
-    /// Goes on from the best start; if all were rejected, more are drawn with half of the budget.
+    /// Continues from the best start; if all were rejected, draws more, up to half of the budget.
     pub(super) fn after_starts(&mut self, proposals: &[Proposal], answers: &[PredictedValues]) {
         match self.least(proposals, answers) {
             Some((_, point)) => self.go_on_from(point, Sides::One),
@@ -66,7 +66,7 @@ impl LmFit {
     fn go_on_from(&mut self, point: FitPoint, sides: Sides) {
         self.best = Some(point);
         if self.objective.axes.is_empty() {
-            // Noise sds alone: they are the most probable ones already.
+            // Only noise sds: they are profiled already.
             self.finish(StopReason::Decrease);
         } else if !self.differentiate(sides) {
             self.finish(StopReason::Budget);
@@ -90,10 +90,10 @@ impl LmFit {
             .collect()
     }
 
-    /// Begins a better Jacobian at the best point: to both sides; then over longer steps, for as long as each shows the
-    /// parameters to be less certain than the last. `false` where there is none or the budget has no room for it.
+    /// Begins a better Jacobian at the best point: two-sided; then over longer steps, as long as each shows a larger
+    /// uncertainty than the last. `false` where there is none or the budget has no room for it.
     ///
-    /// The noise of a model looks like information that it does not have, the more so the shorter the step.
+    /// Over short steps the numerical noise of a model looks like information.
     fn refine(&mut self) -> bool {
         let Some(point) = &self.best else { return false };
         let mut steps = self
@@ -104,8 +104,8 @@ impl LmFit {
         better && self.differentiate(Sides::Both)
     }
 
-    /// Asks for differences; `false` if nothing is missing or the budget has no room for them and, where the search is
-    /// to go on, a trial.
+    /// Asks for the missing differences; `false` if none is missing or the budget has no room for them and, one-sided,
+    /// for a trial.
     fn ask_differences(&mut self, sides: Sides) -> bool {
         let Some(point) = &self.best else { return false };
         let differences = self.stencil.ask(sides);
@@ -138,16 +138,16 @@ impl LmFit {
         self.decide();
     }
 
-    /// With a Jacobian at the best point: stop there, or try steps.
+    /// With a Jacobian at the best point: finish there, or try steps.
     fn decide(&mut self) {
         let Some(point) = &self.best else { return };
         let parabola = self.objective.quadratic(point, &self.columns);
-        // Without a least of its own, the parabola falls further than any step tried will tell.
+        // A parabola without a minimum promises an unbounded decrease.
         let promised = parabola
             .step(0.0)
             .map_or(f64::INFINITY, |step| parabola.decrease(&step));
         if self.settled || promised <= self.least_decrease(point) {
-            // A better Jacobian has the last word; it may hold one more step.
+            // A better Jacobian confirms the optimum or gives one more step.
             if !self.refine() {
                 self.finish(StopReason::Decrease);
             }
@@ -174,7 +174,7 @@ impl LmFit {
             };
             let length = step.iter().fold(0.0_f64, |longest, part| longest.max(part.abs()));
             let position = self.objective.moved(point, &step);
-            // Steps that end in the same corner of the box are one.
+            // Steps that end in the same corner of the box are the same.
             if length >= self.settings.step_tolerance
                 && !positions.contains(&position)
                 && trials.len() < self.remaining()
@@ -190,7 +190,7 @@ impl LmFit {
         if !thetas.is_empty() {
             self.ask(Awaited::Trials(trials), thetas.into_iter());
         } else if self.refine() {
-            // It may yet show the way down.
+            // A better Jacobian may show a descent direction.
             self.damping = Damping::default();
         } else {
             self.finish(StopReason::Step);

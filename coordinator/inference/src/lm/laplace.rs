@@ -1,4 +1,4 @@
-//! Tell how sharply a point is known from the parabola around it.
+//! The Laplace approximation at the result of a fit.
 
 use nalgebra::{Cholesky, DMatrix};
 

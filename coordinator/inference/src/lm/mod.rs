@@ -1,4 +1,4 @@
-//! Fit the most probable parameters by Levenberg and Marquardt's method, asked and told from outside.
+//! The Levenberg-Marquardt fit of the most probable parameters, by ask and tell.
 //!
 //! Minimised is the negative log-posterior
 //!
@@ -7,31 +7,32 @@
 //! ```
 //!
 //! with `p_k` the density of the parameter as the job declares it, not of the coordinate in which the fit moves:
-//! another way to write down the same prior (a lognormal x, a normal ln x) has another maximum.
+//! another parametrisation of the same prior (a lognormal x, a normal ln x) has another maximum.
 //!
 //! [`LmFit`] never runs the model. It lists [`Proposal`](crate::Proposal)s of a round, which can be evaluated
 //! at the same time, and is told their predicted values in any order:
-//! 1. Starts: the prior mean and some prior draws; the fit goes on from the best.
+//! 1. Starts: the prior mean and some prior draws; the fit continues from the best.
 //! 2. Differences: the columns of the Jacobian, one parameter moved in each.
-//! 3. Trials: steps of several dampings; the best is taken if it is an improvement, else they grow shorter.
+//! 3. Trials: steps of several dampings; the best is accepted if it is an improvement, else the damping grows.
 //!
-//! Before it ends, a fit takes differences to both sides and over longer steps, because noise of the model looks like
-//! information over short ones.
+//! Before it ends, a fit takes differences to both sides and over longer steps, because over short ones the numerical
+//! noise of the model looks like information.
 //!
-//! Noise standard deviations cost no evaluation: given the residuals, each has a one-dimensional problem of its
-//! own, which is solved for every point before points are compared. A bound is a bound of every step, and a
+//! Noise standard deviations cost no evaluation: given the residuals, each is the solution of a one-dimensional
+//! problem, solved at every point before points are compared (profiling). Every step keeps to the bounds, and a
 //! parameter that ends at one is reported so.
 //!
 //! # Layout
 //! - `settings`: starts, budget, step of the differences.
 //! - `fit`: the rounds. `iteration`: what each leads to.
-//! - `noise`: one noise sd.
-//! - `objective`: f at a point, and its parabola there. `quadratic_model`: the least of a damped parabola in a box.
-//! - `stencil`: the differences. `damping`: how far to trust the parabola.
+//! - `noise`: one profiled noise sd.
+//! - `objective`: f at a point, and its parabola there. `quadratic_model`: the minimum of a damped parabola in a box.
+//! - `stencil`: the differences. `damping`: the damping of the steps.
 //! - `laplace`: the result, with its covariance.
 //!
 //! # Source
-//! Marquardt 1963, J. SIAM 11:431; the control of the damping after Nielsen 1999, IMM-REP-1999-05.
+//! Levenberg 1944, Q. Appl. Math. 2:164, doi:10.1090/qam/10666; Marquardt 1963, J. SIAM 11:431, doi:10.1137/0111030; the
+//! control of the damping after Nielsen 1999, IMM-REP-1999-05.
 
 mod damping;
 mod fit;

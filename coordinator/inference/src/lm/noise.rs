@@ -1,14 +1,14 @@
-//! Find the most probable noise sd for given residuals.
+//! The most probable noise sd for given residuals.
 
 use statistics::likelihood::{ErrorSd, Likelihood};
 use statistics::prior::{Marginal, Prior};
 
-/// Where the prior reaches down to 0, a noise sd ends at this share of the prior's: residuals that vanish would
-/// else have none.
+/// Where the prior reaches down to 0, the least noise sd as a share of the prior's sd: vanishing residuals would have
+/// no most probable one.
 const LEAST_SHARE: f64 = 1e-9;
-/// Cells in which the least value is looked for before it is refined.
+/// Cells of the grid on which the minimum is bracketed.
 const CELLS: u32 = 64;
-/// Halvings of the cell: below one unit in the last place.
+/// Bisections of the bracket: below one unit in the last place.
 const HALVINGS: u32 = 80;
 
 /// An inferred noise sd and the data that share it.
@@ -55,8 +55,8 @@ impl InferredNoise {
     /// - `residuals`: measured minus predicted, of all data, in the unit of the datum.
     ///
     /// # Returns
-    /// The sd in the unit of its data. The likelihood alone wants sqrt(S/n), the prior alone its mode, and the answer lies
-    /// between them; along ln sd the interval is searched in cells, then halved.
+    /// The sd in the unit of its data. It lies between the optimum of the likelihood, sqrt(S/n), and the mode of the prior;
+    /// along ln sd the minimum is bracketed on a grid and refined by bisection.
     /// Checked by `lm::noise_has_its_closed_form`.
     pub(super) fn profile(&self, residuals: &[f64]) -> Profiled {
         let squares: f64 = self.data.iter().map(|&i| residuals[i] * residuals[i]).sum();
@@ -86,7 +86,7 @@ impl InferredNoise {
             }
         }
         let v = 0.5 * (left + right);
-        // The ends are not rounded through their logarithm, so that a bound is met exactly.
+        // The ends do not pass through their logarithm, so that a bound is met exactly.
         let sd = if best == 0 && slope(low) >= 0.0 {
             least
         } else if best == CELLS && slope(high) <= 0.0 {
@@ -121,7 +121,7 @@ impl InferredNoise {
         )
     }
 
-    /// Where the prior is densest between two sds.
+    /// The mode of the prior between two sds.
     fn mode(&self, lower: f64, upper: f64) -> f64 {
         let (slope, curvature) = self.marginal.slope(0.0);
         if curvature > 0.0 {
@@ -129,7 +129,7 @@ impl InferredNoise {
         } else if slope > 0.0 {
             lower
         } else {
-            // Flat: no wish of its own. The likelihood's is then inside or at an end already.
+            // Flat: any value serves, as the optimum of the likelihood is inside or at an end.
             0.5 * (lower + upper)
         }
     }

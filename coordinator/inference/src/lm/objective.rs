@@ -1,4 +1,4 @@
-//! Evaluate the negative log-posterior at a point, and its parabola there.
+//! The negative log-posterior at a point, and its parabola there.
 
 use nalgebra::DMatrix;
 
@@ -17,13 +17,13 @@ pub(super) type Column = Option<Vec<f64>>;
 pub(super) struct Objective {
     pub(super) prior: Prior,
     pub(super) likelihood: Likelihood,
-    /// The parameters that the model takes.
+    /// The parameters of the model.
     pub(super) axes: Vec<PriorAxis>,
-    /// The others.
+    /// The inferred noise sds.
     pub(super) noises: Vec<InferredNoise>,
 }
 
-/// An evaluated point, its noise sds the most probable ones there.
+/// An evaluated point with the most probable noise sds there.
 #[derive(Debug, Clone)]
 pub(super) struct FitPoint {
     /// Position along every axis.
@@ -56,7 +56,7 @@ impl Objective {
         }
     }
 
-    /// The point of a parameter vector; its own noise sds are not looked at. `None` where f is infinite.
+    /// The point of a parameter vector, whose noise sds are ignored; `None` where f is infinite.
     pub(super) fn point(&self, theta: &[f64], predicted: &[f64]) -> Option<FitPoint> {
         let residuals: Vec<f64> = self
             .likelihood
@@ -106,12 +106,12 @@ impl Objective {
 
     /// The parabola of f along the axes around a point: slopes
     /// `-sum_i J_ik r_i / sd_i^2 + (-ln p_k)'`, curvatures `sum_i J_ik J_il / sd_i^2 + (-ln p_k)''`; of correlated or
-    /// heavy-tailed data with [`Whitening`](statistics::likelihood::Whitening) in the place of the sds.
+    /// heavy-tailed data with [`Whitening`](statistics::likelihood::Whitening) in place of the sds.
     ///
-    /// The model's own curvature is left out, as Gauss and Newton do; so is the change of the noise sds, whose mixed
+    /// The Gauss-Newton approximation: without the model's own curvature, nor that of the noise sds, whose mixed
     /// curvature with the axes has expectation zero. Axes without a column do not move.
     pub(super) fn quadratic(&self, point: &FitPoint, columns: &[Column]) -> QuadraticModel {
-        // What cannot be whitened has no finite f, and so no point.
+        // A point has a finite f, so it can be whitened.
         let whitening = self.likelihood.whitening(&point.predicted, &point.theta).ok();
         let scaled: Vec<Option<Vec<f64>>> = columns
             .iter()

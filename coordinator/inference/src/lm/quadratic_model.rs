@@ -1,11 +1,11 @@
-//! Minimise a damped parabola in a box.
+//! The minimum of a damped parabola in a box.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// g' p + p' H p / 2 for steps p between `lower` and `upper`, 0 among them.
 #[derive(Debug, Clone)]
 pub struct QuadraticModel {
-    /// Of the function, by axis.
+    /// Gradient, by axis.
     pub gradient: Vec<f64>,
     /// Second derivatives, symmetric.
     pub hessian: DMatrix<f64>,
@@ -18,13 +18,13 @@ pub struct QuadraticModel {
 }
 
 impl QuadraticModel {
-    /// The least of the parabola with `damping D` added to H, D = max(diagonal of H, 1); `None` where it has
+    /// The minimum of the parabola with `damping D` added to H, D = max(diagonal of H, 1); `None` where it has
     /// none.
     ///
-    /// Marquardt's scale, but no axis moves more freely than a prior of one width would let it.
+    /// Marquardt's scale, but each axis is damped at least as a prior of one width would do.
     ///
-    /// The active set: an axis at a bound from which the slope points outwards does not move. Of those that the step
-    /// would carry over a bound, the one that gets there first is put there, and the others are solved again.
+    /// Active set: an axis at a bound from which the slope points outwards does not move. Of the axes that the step
+    /// would carry over a bound, the first to reach it is fixed there, and the others are solved again.
     pub fn step(&self, damping: f64) -> Option<Vec<f64>> {
         let count = self.gradient.len();
         let mut step = vec![0.0; count];
@@ -37,7 +37,7 @@ impl QuadraticModel {
             .collect();
         while !free.is_empty() {
             let solved = self.solve(&free, &step, damping)?;
-            // The share of its way at which each axis meets its bound.
+            // The share of the step at which each axis meets its bound.
             let mut first: Option<(usize, f64)> = None;
             for (position, &k) in free.iter().enumerate() {
                 let target = solved[position];
@@ -68,7 +68,7 @@ impl QuadraticModel {
         Some(step)
     }
 
-    /// The free components of the least, the others given.
+    /// The free components of the minimum, the others given.
     fn solve(&self, free: &[usize], step: &[f64], damping: f64) -> Option<Vec<f64>> {
         let matrix = DMatrix::from_fn(free.len(), free.len(), |row, column| {
             let (k, l) = (free[row], free[column]);
@@ -91,8 +91,8 @@ impl QuadraticModel {
         solved.iter().all(|x| x.is_finite()).then_some(solved)
     }
 
-    /// Standard deviation along each axis that the curvature stands for, the others free; `None` for axes that do not
-    /// move, and where the parabola has no least.
+    /// Standard deviation along each axis by the curvature, the others free; `None` for axes that do not move, and where
+    /// the parabola has no minimum.
     pub fn uncertainty(&self) -> Vec<Option<f64>> {
         let moving: Vec<usize> = (0..self.held.len()).filter(|&k| !self.held[k]).collect();
         let mut uncertainty = vec![None; self.held.len()];
@@ -108,7 +108,7 @@ impl QuadraticModel {
         uncertainty
     }
 
-    /// How far the undamped parabola lies lower at a step.
+    /// The decrease of the undamped parabola at a step.
     pub fn decrease(&self, step: &[f64]) -> f64 {
         let mut decrease = 0.0;
         for (k, own) in step.iter().enumerate() {

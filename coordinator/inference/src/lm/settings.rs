@@ -1,4 +1,4 @@
-//! Hold the settings of a fit and refuse those that cannot work.
+//! The settings of a fit, and why some are refused.
 
 use super::stencil::Sides;
 
@@ -12,19 +12,19 @@ pub struct LmSettings {
     /// Shortest step of the differences, in units of the prior's width: its standard deviation, or that of a uniform
     /// density between its bounds where these are closer.
     ///
-    /// A difference over h is wrong by the model's curvature times h/2 and by its noise times 2/h. A model on a grid has
-    /// noise of some 0.3 % of a force; over a width of its prior a parameter that matters moves a force by a
-    /// third or more, so 2 % of a width moves it by twice the noise: each datum says which way is down, and a
-    /// fit has dozens. Where parameters can stand in for each other that is not enough: there the noise looks
-    /// like information. So once the parabola says how uncertain a parameter is, steps grow to a quarter of that and,
-    /// for the last Jacobian, to all of it, taken to both sides; to at most ten times the setting.
+    /// The error of a difference over h is the model's curvature times h/2 plus its noise times 2/h. A model on a grid has
+    /// noise of about 0.3 % of a force; over one width of its prior an influential parameter changes a force by a third
+    /// or more, so 2 % of a width changes it by twice the noise: enough for the direction of descent from dozens of
+    /// data. It is not enough where parameters can compensate each other: there the noise looks like information. So
+    /// once the parabola gives the uncertainty of a parameter, steps grow to a quarter of it and, for the last Jacobian,
+    /// to all of it, taken to both sides; to at most ten times the setting.
     /// Checked by `lm::a_model_with_the_noise_of_a_grid_is_fitted_within_its_uncertainty`.
     pub difference_step: f64,
     /// Seed of the prior draws.
     pub seed: u64,
-    /// The fit has settled when a step gains, or can gain, no more than this share of 1 + |f|.
+    /// The fit has converged when a step decreases f, or can decrease it, by no more than this share of 1 + |f|.
     pub decrease_tolerance: f64,
-    /// The fit gives up on steps shorter than this, in units of the prior's width.
+    /// The fit takes no steps shorter than this, in units of the prior's width.
     pub step_tolerance: f64,
 }
 
@@ -47,21 +47,21 @@ const MOST_EVALUATIONS: usize = 1_000_000;
 /// Longest difference: a step to one side always fits between the bounds.
 const LONGEST_DIFFERENCE: f64 = 0.5;
 
-/// A step grows with the uncertainty to so many times the setting.
+/// A step grows with the uncertainty to at most so many times the setting.
 const LONGER: f64 = 10.0;
-/// Steps to one side are so much shorter than the uncertainty, because the model's curvature stays in them.
+/// One-sided steps as a share of the uncertainty: short, because the model's curvature biases them.
 const SHARE_TO_ONE_SIDE: f64 = 0.25;
 
-/// Settings that cannot work.
+/// Why settings are refused.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LmSettingsError {
     /// The prior has no parameters.
     #[error("the prior has no parameters")]
     NoParameters,
-    /// Nothing to start from.
+    /// There is no start.
     #[error("starts = 0 is below 1")]
     NoStart,
-    /// The budget does not reach to a first step.
+    /// The budget does not suffice for a first step.
     #[error(
         "max_evaluations = {max_evaluations} is below {least}: {starts} starts, {dimension} differences and one step"
     )]
@@ -75,7 +75,7 @@ pub enum LmSettingsError {
         /// Number of parameters.
         dimension: usize,
     },
-    /// The budget is beyond reason.
+    /// The budget is too large.
     #[error("max_evaluations = {max_evaluations} is above {MOST_EVALUATIONS}")]
     TooManyEvaluations {
         /// The setting.
@@ -87,9 +87,9 @@ pub enum LmSettingsError {
         /// The setting.
         value: f64,
     },
-    /// A noise sd or a scatter is unknown whose most probable value has no closed form.
+    /// The most probable value of an unknown noise sd or scatter has no closed form.
     #[error(
-        "lm finds an unknown noise sd of independent normal errors alone: state the sds and scatters, or sample them with tmcmc, where errors are in common (discrepancy, run_scatter, plate and ring tests) or student_t"
+        "lm infers noise sds of independent normal errors only: with common errors (discrepancy, run_scatter, plate and ring tests) or student_t, state the sds and scatters, or sample them with tmcmc"
     )]
     EntangledNoise,
     /// A tolerance is not a finite number above 0.
@@ -103,7 +103,7 @@ pub enum LmSettingsError {
 }
 
 impl LmSettings {
-    /// Step of a difference in prior widths, along an axis of so much uncertainty in the same unit, if it is known.
+    /// Step of a difference along an axis with this uncertainty, if it is known; both in prior widths.
     pub(super) fn difference(&self, sides: Sides, uncertainty: Option<f64>) -> f64 {
         let share = match sides {
             Sides::One => SHARE_TO_ONE_SIDE,

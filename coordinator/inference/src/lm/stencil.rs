@@ -1,21 +1,21 @@
-//! Ask for the differences that make a Jacobian.
+//! The finite differences of a Jacobian.
 
 use super::objective::Column;
 use crate::point_estimate::PriorAxis;
 
-/// To which sides differences are taken.
+/// The sides to which differences are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sides {
-    /// To one, away from a bound: the direction of descent needs no more.
+    /// One side, away from a bound: enough for the direction of descent.
     One,
-    /// To both, within the bounds: no error from the model's curvature.
+    /// Both sides, within the bounds: no error from the model's curvature.
     Both,
 }
 
 /// A rejected difference is tried on the other side, then so much shorter on both.
 const SHORTER: f64 = 0.25;
 
-/// The differences around a point, as far as they are known.
+/// The known differences around a point.
 #[derive(Debug, Clone)]
 pub(super) struct Stencil {
     axes: Vec<Differences>,
@@ -27,7 +27,7 @@ pub(super) struct Stencil {
 struct Differences {
     /// Offset and predicted values there.
     known: Vec<(f64, Vec<f64>)>,
-    /// Offsets within the bounds that have not been tried, most wanted first.
+    /// Offsets within the bounds that have not been tried, the preferred first.
     untried: Vec<f64>,
 }
 
@@ -48,10 +48,10 @@ impl Stencil {
         }
     }
 
-    /// Asks for what is missing: a first difference of every axis or, to both sides, a second one across.
+    /// Asks for the missing differences: one along every axis or, two-sided, a second one on the other side.
     ///
     /// # Returns
-    /// Axis and offset of every difference; empty when nothing is missing or can be had.
+    /// Axis and offset of every difference; empty when none is missing or left to try.
     pub(super) fn ask(&mut self, sides: Sides) -> &[(usize, f64)] {
         self.asked.clear();
         for (k, axis) in self.axes.iter().enumerate() {
@@ -73,7 +73,7 @@ impl Stencil {
         &self.asked
     }
 
-    /// Takes the predicted values of what was asked for, in that order; `None` where the model refused.
+    /// Takes the predicted values at the asked differences, in their order; `None` where the model rejected.
     pub(super) fn accept(&mut self, answers: Vec<Option<Vec<f64>>>) {
         for ((k, offset), answer) in self.asked.drain(..).zip(answers) {
             let axis = &mut self.axes[k];
@@ -89,8 +89,8 @@ impl Stencil {
             .any(|axis| axis.known.is_empty() && !axis.untried.is_empty())
     }
 
-    /// The columns of the Jacobian. With a difference a and one across, b, that of the parabola through all three
-    /// points: `(b^2 (m_a - m) - a^2 (m_b - m)) / (a b (b - a))`.
+    /// The columns of the Jacobian. With differences at a and, on the other side, b: the slope of the parabola through
+    /// all three points: `(b^2 (m_a - m) - a^2 (m_b - m)) / (a b (b - a))`.
     pub(super) fn columns(&self, predicted: &[f64]) -> Vec<Column> {
         let column = |axis: &Differences| match axis.known.as_slice() {
             [] => None,

@@ -1,8 +1,8 @@
-//! Move one parameter in units of its prior's width.
+//! One parameter in units of its prior's width.
 
 use statistics::prior::Marginal;
 
-/// One parameter that the model takes, with t = u / width; u is the sampling coordinate of its marginal.
+/// One parameter of the model, with t = u / width; u is the sampling coordinate of its marginal.
 #[derive(Debug, Clone)]
 pub(crate) struct PriorAxis {
     /// Index in theta.
@@ -26,13 +26,13 @@ impl PriorAxis {
         }
     }
 
-    /// t of a parameter; exactly the bound's where it lies at a bound.
+    /// t of a parameter; exact at a bound.
     pub(crate) fn position(&self, x: f64) -> f64 {
         let t = self.marginal.coordinate(x) / self.width;
         t.max(self.lower).min(self.upper)
     }
 
-    /// The parameter at t; exactly the bound where t is one.
+    /// The parameter at t; exact at a bound.
     pub(crate) fn value(&self, t: f64) -> f64 {
         let (lower, upper) = self.marginal.support();
         if t <= self.lower {

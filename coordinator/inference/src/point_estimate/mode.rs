@@ -1,21 +1,20 @@
-//! Report where a search ended, how it came there, and how sharply that is known.
+//! The mode of the posterior: where it lies, its uncertainty, and why the optimisation stopped.
 
 use serde::{Deserialize, Serialize};
 
-/// Why a search ended.
+/// Why an optimisation stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StopReason {
-    /// No step gains more than the tolerance.
+    /// No step can decrease f by more than the tolerance.
     Decrease,
-    /// Only steps below the tolerance are left, and none of those tried gained anything: as far as the model's noise
-    /// lets one see.
+    /// No trial improves f, and shorter steps are below the tolerance: the resolution that the model's noise allows.
     Step,
     /// The budget of evaluations is spent; a better point may be near.
     Budget,
-    /// For many generations nobody was better than the best: the search that found it has settled.
+    /// No improvement for many generations: converged.
     Stagnation,
-    /// All generations have passed, and the best was still getting better; a better point may be near.
+    /// The generations are used up while the best still improved; a better point may be near.
     Generations,
 }
 
@@ -29,7 +28,7 @@ impl StopReason {
         Self::Generations,
     ];
 
-    /// Whether the search was cut short.
+    /// Whether it stopped before convergence.
     #[must_use]
     pub fn is_early(self) -> bool {
         matches!(self, Self::Budget | Self::Generations)
@@ -47,34 +46,37 @@ impl StopReason {
         }
     }
 
-    /// The reason of a word.
+    /// The reason with this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|stop| stop.name() == name)
     }
 }
 
-/// What the parabola around the most probable parameters says of their uncertainty.
+/// The Laplace approximation: the uncertainty by the curvature at the mode.
 ///
-/// Laplace's approximation (Tierney & Kadane 1986, J. Am. Stat. Assoc. 81:82): right for a normal posterior, checked
-/// there by `lm::a_linear_model_with_normal_priors_has_its_closed_form`.
+/// # Validity
+/// Exact for a normal posterior. Checked by `lm::a_linear_model_with_normal_priors_has_its_closed_form`.
+///
+/// # Source
+/// Tierney & Kadane 1986, J. Am. Stat. Assoc. 81:82, doi:10.1080/01621459.1986.10478240.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Laplace {
-    /// Standard deviation of each parameter, the others free; `None` at a bound and where nothing fixes it.
+    /// Standard deviation of each parameter, the others free; `None` at a bound and where it is not determined.
     pub sd: Vec<Option<f64>>,
-    /// Covariance in the units of the parameters: the inverse of the curvature of f, the model's own curvature left out.
+    /// Covariance in the units of the parameters: the inverse of the curvature of f, without the model's own curvature.
     /// Rows and columns of parameters without a standard deviation are 0.
     pub covariance: Vec<Vec<f64>>,
 }
 
-/// Where a search by generations stood after one of them.
+/// The state of an evolution after a generation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Generation {
     /// Evaluations so far.
     pub evaluations: u64,
     /// Highest log-posterior so far, in nats; `None` while the model rejected everything.
     pub best: Option<f64>,
-    /// Mean log-posterior of the generation's evaluated individuals that the model took; `None` if it took none.
+    /// Mean log-posterior of the generation's evaluated individuals that the model accepted; `None` if it accepted none.
     pub mean: Option<f64>,
 }
 
@@ -89,26 +91,26 @@ pub struct ModeEstimate {
     pub log_prior: f64,
     /// Whether each parameter lies exactly at a bound of its prior.
     pub at_bound: Vec<bool>,
-    /// Their uncertainty, where the search knows the curvature there.
+    /// Their uncertainty, where the algorithm knows the curvature.
     pub laplace: Option<Laplace>,
     /// Evaluations spent.
     pub evaluations: u64,
     /// Those that the model rejected.
     pub rejected: u64,
-    /// Why the search ended.
+    /// Why the optimisation stopped.
     pub stop: StopReason,
-    /// How a search by generations came there; empty for a search by steps.
+    /// The generations of an evolution; empty for a fit by steps.
     pub history: Vec<Generation>,
 }
 
 impl ModeEstimate {
-    /// ln p(data | theta) + ln p(theta), in nats; without the evidence, which no such search knows.
+    /// ln p(data | theta) + ln p(theta), in nats; without the evidence, which no point estimate knows.
     #[must_use]
     pub fn log_posterior(&self) -> f64 {
         self.log_likelihood + self.log_prior
     }
 
-    /// Standard deviation of a parameter after Laplace.
+    /// Standard deviation of a parameter by the Laplace approximation.
     #[must_use]
     pub fn sd(&self, parameter: usize) -> Option<f64> {
         *self.laplace.as_ref()?.sd.get(parameter)?

@@ -1,10 +1,10 @@
-//! Estimate the ratio of two neighbouring normalising constants from the states of both.
+//! The bridge estimate of the ratio of two neighbouring normalising constants.
 
 use super::weights::Weights;
 
-/// Most steps of the search for the ratio; Newton's method takes about five.
+/// Most iterations for the ratio; Newton's method takes about five.
 const MOST_STEPS: usize = 60;
-/// The search ends when a step changes the ratio by less, relative to its size or to 1.
+/// The iteration ends when a step changes the ratio by less, relative to its size or to 1.
 const TOLERANCE: f64 = 1e-13;
 
 /// The ratio Z(after) / Z(before) and each state's share of its error.
@@ -18,16 +18,18 @@ pub(super) struct Bridge {
 impl Bridge {
     /// Bridge between pools whose targets differ by the factor exp(step l).
     ///
-    /// `mean_before f(step l - r) = mean_after f(r - step l)` with f(x) = 1 / (1 + exp(-x)) (Bennett 1976,
-    /// J. Comput. Phys. 22:245, both pools given equal weight). It uses the later pool too, so what the
-    /// earlier one missed does not go unnoticed.
+    /// `mean_before f(step l - r) = mean_after f(r - step l)` with f(x) = 1 / (1 + exp(-x)), both pools given equal
+    /// weight. It uses the later pool too, so a region that the earlier one missed still counts.
+    ///
+    /// # Source
+    /// Bennett 1976, J. Comput. Phys. 22:245, doi:10.1016/0021-9991(76)90078-4; Meng & Wong 1996, Statistica Sinica 6:831.
     pub(super) fn between(before: &[f64], after: &[f64], step: f64) -> Self {
         let scaled = |values: &[f64]| values.iter().map(|l| step * l).collect::<Vec<f64>>();
         let (before, after) = (scaled(before), scaled(after));
         let all = || before.iter().chain(&after);
         let mut low = all().fold(f64::INFINITY, |low, &x| low.min(x));
         let mut high = all().fold(f64::NEG_INFINITY, |high, &x| high.max(x));
-        // The earlier pool alone has an estimate of its own; from there Newton's steps, kept in the bracket.
+        // Newton's steps from the one-sided estimate of the earlier pool, kept in the bracket.
         let mut r = Weights::new(&before, 1.0).log_mean;
         let mut balance = Balance::at(&before, &after, r);
         for _ in 0..MOST_STEPS {
@@ -121,7 +123,7 @@ mod tests {
         assert!(sum.abs() < 1e-12);
     }
 
-    /// The same population taken as both sides is between the one-sided answers: a sign error is not.
+    /// For one population on both sides the ratio lies between the one-sided estimates; with a sign error it does not.
     #[test]
     fn an_unmoved_population_gives_the_mean_of_both_sides() {
         let bridge = Bridge::between(&[0.0, 1.0, 4.0], &[0.0, 1.0, 4.0], 0.5);

@@ -1,4 +1,4 @@
-//! Lay out the chains of the original sampler of Ching and Chen (2007), whose scale BASIS shares.
+//! The chains of the original sampler of Ching and Chen (2007), whose scale BASIS shares.
 
 /// beta: the random walk's covariance is beta^2 = 0.04 times the weighted covariance of the pool.
 pub(super) const SCALE: f64 = 0.2;

@@ -1,4 +1,4 @@
-//! Tell whether a stage's chains have forgotten where they started.
+//! Whether a stage's chains have forgotten their start.
 
 use crate::diagnostics::rank_correlation;
 
@@ -11,7 +11,7 @@ const DRIFT_LIMIT: f64 = 2.0;
 /// |z| of the drift above which a stage is not in equilibrium.
 const DRIFT_ALARM: f64 = 3.0;
 
-/// The z-score of a change whose spread is unknown: alarming, and finite for whoever writes it down.
+/// The z-score of a change whose spread is unknown: alarming, and finite, so that JSON can hold it.
 const DRIFT_UNKNOWN: f64 = 1e6;
 
 /// How far the log-likelihoods of a stage moved.
@@ -69,8 +69,8 @@ pub(super) fn is_alarming(z: f64) -> bool {
 
 /// z-score of a drift that is too small to show in any one stage: sum / sqrt(count).
 ///
-/// Chance drifts of neighbouring stages cancel in part (what one stage ends too high with, the next falls
-/// from), so this errs on the quiet side.
+/// Chance drifts of neighbouring stages cancel in part (a stage that ends too high by chance is followed by a fall),
+/// so this understates the drift.
 pub(super) fn pooled_z(z: impl ExactSizeIterator<Item = f64>) -> f64 {
     let count = z.len().max(1) as f64;
     z.sum::<f64>() / count.sqrt()
@@ -82,7 +82,7 @@ pub(super) fn pooled_z(z: impl ExactSizeIterator<Item = f64>) -> f64 {
 /// Chains that start from one ancestor share their start, so only clusters are independent. The start's own
 /// sampling error is covered: a chain that forgets its start changes by (new - start), and the clusters' sums
 /// of the starts have the variance of the weighted sample they were drawn from. 0 when nothing changes. Where
-/// the clusters tell nothing of the spread (one cluster, or all alike) the z-score has no bound; it is then
+/// the clusters do not show the spread (one cluster, or all alike) the z-score is unbounded; it is then
 /// [`DRIFT_UNKNOWN`], with the sign of the change.
 fn clustered_z(changes: &[f64], clusters: &[usize]) -> f64 {
     let total: f64 = changes.iter().sum();

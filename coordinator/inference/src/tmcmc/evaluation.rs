@@ -1,30 +1,30 @@
-//! Tell a sampler what an evaluation gave.
+//! The result of an evaluation, as a sampler is told it.
 
 use statistics::log_likelihood::LogLikelihood;
 use statistics::metamodel::{ModelPair, SubchainEnd};
 
-/// What the evaluation of a proposal gave.
+/// The result of the evaluation of a proposal.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EvaluationResult {
-    /// The model was asked at the proposed parameters.
-    Here {
+    /// The model was evaluated at the proposed parameters.
+    AtProposal {
         /// ln p(data | theta) there.
         log_likelihood: LogLikelihood,
-        /// What both models say there, where a metamodel is to learn from it.
+        /// The predictions of both models there, where a metamodel learns from them.
         pair: Option<ModelPair>,
     },
-    /// The model was asked at the end of a subchain.
-    Moved {
+    /// The model was evaluated at the end of a subchain.
+    AtSubchainEnd {
         /// The end.
         end: SubchainEnd,
-        /// ln p(data | theta) and the pair there; `None` where no move was accepted, so that nothing had to be asked.
+        /// ln p(data | theta) and the pair there; `None` where no move was accepted, so that no evaluation was needed.
         found: Option<(LogLikelihood, Option<ModelPair>)>,
     },
 }
 
 impl From<LogLikelihood> for EvaluationResult {
     fn from(log_likelihood: LogLikelihood) -> Self {
-        Self::Here {
+        Self::AtProposal {
             log_likelihood,
             pair: None,
         }
@@ -32,16 +32,18 @@ impl From<LogLikelihood> for EvaluationResult {
 }
 
 impl EvaluationResult {
-    /// Whether the model was asked at all.
+    /// Whether the model was evaluated.
     pub(super) fn is_evaluated(&self) -> bool {
-        !matches!(self, Self::Moved { found: None, .. })
+        !matches!(self, Self::AtSubchainEnd { found: None, .. })
     }
 
-    /// Whether the model was asked and rejected the parameters.
+    /// Whether the model rejected the parameters.
     pub(super) fn is_rejected(&self) -> bool {
         match self {
-            Self::Here { log_likelihood, .. } => log_likelihood.is_impossible(),
-            Self::Moved { found, .. } => found.as_ref().is_some_and(|(value, _)| value.is_impossible()),
+            Self::AtProposal { log_likelihood, .. } => log_likelihood.is_impossible(),
+            Self::AtSubchainEnd { found, .. } => {
+                found.as_ref().is_some_and(|(value, _)| value.is_impossible())
+            }
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Add up the log-evidence and its standard error.
+//! The log-evidence and its standard error.
 
 use super::bridge::Bridge;
 use statistics::metamodel::Pool;

@@ -1,19 +1,29 @@
-//! Sample a posterior by transitional Markov chain Monte Carlo, asked and told from outside.
+//! Transitional Markov chain Monte Carlo (TMCMC) by ask and tell.
 //!
 //! Prior draws are weighted by a growing power of the likelihood, resampled, and moved by Metropolis-Hastings
-//! steps at each power (Ching & Chen 2007, J. Eng. Mech. 133:816). [`Sampler`] never calls the likelihood: it
-//! lists [`Proposal`](crate::Proposal)s and waits until each has been told, in any order.
+//! steps at each power. [`Sampler`] never calls the likelihood: it lists [`Proposal`](crate::Proposal)s and waits until
+//! each has been told, in any order.
 //!
 //! # Departures from the paper
 //! - Every particle moves, by several steps; [`Algorithm::ChingChen2007`] keeps the paper's moves, and
 //!   [`Algorithm::Basis`] those of its unbiased version.
-//! - Every state that a chain visits is weighted for the next stage, not its last one alone: the evaluations
-//!   are paid for (Dau & Chopin 2022, J. R. Stat. Soc. B 84:114).
-//! - The evidence bridges the states of neighbouring stages both ways instead of averaging weights one way.
+//! - Every state that a chain visits is weighted for the next stage, not its last one alone (Dau & Chopin 2022).
+//! - The evidence is a bridge estimate between neighbouring stages instead of a mean of the weights of the earlier one.
 //! - Prior draws that the model rejects are always dropped, and the evidence multiplied by the surviving
 //!   fraction.
-//! - A stage ends when its particles have forgotten their start; one that cannot is flagged, and the result
-//!   with it.
+//! - A stage ends when its particles have forgotten their start; a stage that does not reach this is flagged, and the
+//!   result with it.
+//!
+//! # Layout
+//! - `sampler`: the rounds. `stage_sequence`: from the prior draws through the stages to the posterior sample.
+//! - `settings`, `evaluation`, `record`, `particle`: what goes in and comes out.
+//! - `schedule`, `weights`, `resample`, `transition`: from the pool of a stage to the chains of the next.
+//! - `stage`, `scale`, `ching_chen`: the moves of the chains. `equilibrium`: when they end.
+//! - `bridge`, `evidence`: the log-evidence and its standard error.
+//!
+//! # Source
+//! Ching & Chen 2007, J. Eng. Mech. 133:816, doi:10.1061/(ASCE)0733-9399(2007)133:7(816); Dau & Chopin 2022, J. R. Stat.
+//! Soc. B 84:114, doi:10.1111/rssb.12475.
 
 mod bridge;
 mod ching_chen;

@@ -1,4 +1,4 @@
-//! What the outside sees of a population.
+//! A member of the population.
 
 use statistics::metamodel::ChainState;
 use statistics::{LogLikelihood, Prior};

@@ -1,4 +1,4 @@
-//! Report what the sampler did.
+//! The records of a sampler: finished stages, the stage in progress, the posterior sample.
 
 use super::particle::Particle;
 
@@ -13,8 +13,8 @@ pub struct StageRecord {
     pub acceptance: f64,
     /// z-score of the mean change of the log-likelihood over the moves; large in size: not in equilibrium.
     pub drift_z: f64,
-    /// The same of exp(step l), step being the growth of the exponent that led here: sees what lags among the
-    /// best particles, where `drift_z` is ruled by the worst.
+    /// The same of exp(step l), step being the growth of the exponent that led here: sensitive to the best particles,
+    /// where `drift_z` is dominated by the worst.
     pub weight_drift_z: f64,
     /// Rank correlation of the log-likelihoods before and after the moves.
     pub correlation: f64,
@@ -28,7 +28,7 @@ pub struct StageRecord {
     pub ess: f64,
     /// Scale of the proposals at the end.
     pub scale: f64,
-    /// Log-likelihoods asked for in this stage.
+    /// Evaluations in this stage.
     pub evaluations: u64,
     /// Whether drift and correlation say that the stage reached its target.
     pub equilibrated: bool,
@@ -49,7 +49,7 @@ pub struct StageProgress {
     pub acceptance: Option<f64>,
 }
 
-/// The result.
+/// The result: a sample of the posterior, with the evidence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PosteriorSample {
     /// Equally weighted draws.
@@ -65,8 +65,8 @@ pub struct PosteriorSample {
     /// Whether every stage reached its target and the drifts taken together stay below 3 in size; if not,
     /// neither draws nor evidence can be trusted.
     pub equilibrated: bool,
-    /// Log-likelihoods asked for.
+    /// Evaluations.
     pub evaluations: u64,
-    /// Those that were impossible.
+    /// Those that the model rejected.
     pub rejected: u64,
 }

@@ -1,4 +1,4 @@
-//! Draw indices in proportion to weights.
+//! Systematic resampling.
 
 /// Systematic resampling: `count` indices, ascending, with one uniform number in (0, 1) for all.
 ///
@@ -6,7 +6,7 @@
 pub(super) fn systematic(weights: &[f64], count: usize, uniform: f64) -> Vec<usize> {
     let mut indices = Vec::with_capacity(count);
     let mut cumulative = 0.0;
-    // Rounding may leave the sum just below the last comb tooth: the last possible index takes it.
+    // Rounding may leave the sum just below the last comb tooth: the last index of positive weight takes it.
     let last = weights.iter().rposition(|&w| w > 0.0).unwrap_or(0);
     for (index, weight) in weights.iter().enumerate() {
         cumulative += weight;

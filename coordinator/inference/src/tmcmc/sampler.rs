@@ -22,7 +22,7 @@ use statistics::rng::Stream;
 pub struct Sampler {
     pub(super) prior: Prior,
     pub(super) settings: TmcmcSettings,
-    /// What a metamodel scores its predictions with; `None`: there is none.
+    /// The likelihood by which a metamodel scores its predictions; `None`: there is no metamodel.
     pub(super) likelihood: Option<Likelihood>,
     pub(super) round: ProposalRound<EvaluationResult>,
     pub(super) phase: SamplerPhase,
@@ -72,11 +72,11 @@ impl Sampler {
         Ok(sampler)
     }
 
-    /// A sampler whose chains are moved by a metamodel between evaluations.
+    /// A sampler whose chains move by a metamodel between evaluations.
     ///
     /// # Arguments
-    /// - `settings`: of [`Algorithm::Tmcmc`]; `metamodel_moves` of 0 is a sampler without.
-    /// - `likelihood`: scores what the metamodel predicts; the answers have to be scored by the same.
+    /// - `settings`: of [`Algorithm::Tmcmc`]; with `metamodel_moves` = 0 there is no metamodel.
+    /// - `likelihood`: scores the metamodel's predictions; the told results must be scored by the same one.
     ///
     /// # Errors
     /// [`TmcmcSettingsError`] names the setting, its value and its bound.
@@ -151,24 +151,23 @@ impl Sampler {
         }
     }
 
-    /// Takes the answer for a pending particle, a log-likelihood or what a subchain came to; the last one of a round
-    /// advances the sampler.
+    /// Takes the result of a pending particle; the last one of a round advances the sampler.
     ///
     /// # Errors
     /// [`TellError::AlreadyTold`], [`TellError::NotPending`] and [`TellError::NotAsked`]; the sampler is then unchanged.
     pub fn tell(
         &mut self,
         particle: usize,
-        answer: impl Into<EvaluationResult>,
+        result: impl Into<EvaluationResult>,
     ) -> Result<TellProgress, TellError> {
-        let answer = answer.into();
-        let moved = matches!(answer, EvaluationResult::Moved { .. });
+        let result = result.into();
+        let moved = matches!(result, EvaluationResult::AtSubchainEnd { .. });
         let asked = self.round.proposal(particle);
         if asked.is_some_and(|proposal| proposal.subchain.is_some() != moved) {
             let round = self.round.number();
             return Err(TellError::NotAsked { round, particle });
         }
-        Ok(if self.round.tell(particle, answer)? {
+        Ok(if self.round.tell(particle, result)? {
             self.advance()
         } else {
             TellProgress::Waiting
@@ -179,13 +178,13 @@ impl Sampler {
     fn advance(&mut self) -> TellProgress {
         let stages = self.stages.len();
         loop {
-            let (proposals, answers) = self.round.complete();
-            let evaluated = answers.iter().filter(|answer| answer.is_evaluated());
+            let (proposals, results) = self.round.complete();
+            let evaluated = results.iter().filter(|result| result.is_evaluated());
             self.count.add(evaluated.map(EvaluationResult::is_rejected));
             let next = match std::mem::replace(&mut self.phase, Phase::Waiting(Awaited::Prior)) {
-                Phase::Waiting(Awaited::Prior) => self.finish_prior(&proposals, answers),
+                Phase::Waiting(Awaited::Prior) => self.finish_prior(&proposals, results),
                 Phase::Waiting(Awaited::Moves(mut stage)) => {
-                    stage.accept(&self.prior, answers);
+                    stage.accept(&self.prior, results);
                     self.after_step(stage)
                 }
                 ended @ (Phase::Done(_) | Phase::Failed(_)) => Ok(ended),

@@ -1,11 +1,14 @@
-//! The scale of a random walk: where it begins, and the acceptance rate that it is adapted to.
+//! The scale of a random walk: its initial value, and the acceptance rate that it is adapted to.
 
-/// The scale that is optimal for a random walk on a normal target (Roberts, Gelman & Gilks 1997).
+/// The optimal scale of a random walk on a normal target.
+///
+/// # Source
+/// Roberts, Gelman & Gilks 1997, Ann. Appl. Probab. 7:110, doi:10.1214/aoap/1034625254.
 pub(super) fn initial_scale(dimension: usize) -> f64 {
     2.38 / (dimension as f64).sqrt()
 }
 
-/// The acceptance rate to aim at: 0.44 in one dimension, 0.23 in many.
+/// The target acceptance rate: 0.44 in one dimension, 0.23 in many.
 pub(super) fn target_acceptance(dimension: usize) -> f64 {
     0.21 / dimension as f64 + 0.23
 }

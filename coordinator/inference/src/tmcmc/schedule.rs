@@ -1,4 +1,4 @@
-//! Choose the next tempering exponent.
+//! The next tempering exponent.
 
 use super::weights::Weights;
 
@@ -11,8 +11,11 @@ const MOST_TRIALS: usize = 200;
 /// `target`, or `remaining` = 1 - exponent if that comes first.
 ///
 /// The coefficient rises with the step, nearly in proportion where it is small, so false position on the
-/// logarithms of both finds it in a few trials (Illinois variant: Dowell & Jarratt 1971, BIT 11:168). The step
-/// is sought on a logarithmic scale because the first one can be 1e-10 or less. The log-likelihoods are finite and not empty.
+/// logarithms of both finds it in a few trials. The scale is logarithmic because the first step can be 1e-10 or less.
+/// The log-likelihoods are finite and not empty.
+///
+/// # Source
+/// Dowell & Jarratt 1971, BIT 11:168, doi:10.1007/BF01934364 (Illinois variant of false position).
 pub(super) fn exponent_step(log_likelihoods: &[f64], remaining: f64, target: f64) -> f64 {
     let cov = |step: f64| Weights::new(log_likelihoods, step).cov;
     if cov(remaining) <= target {
@@ -22,8 +25,7 @@ pub(super) fn exponent_step(log_likelihoods: &[f64], remaining: f64, target: f64
         .iter()
         .fold(f64::NEG_INFINITY, |max, &l| max.max(l));
     let min = log_likelihoods.iter().fold(f64::INFINITY, |min, &l| min.min(l));
-    // Weights between exp(-c) and 1 vary by at most sinh(c/2), which is below `target` for c = min(target,
-    // 1).
+    // Weights between exp(-c) and 1 vary by at most sinh(c/2), which is below `target` for c = min(target, 1).
     let least = target.min(1.0) / (max - min).min(f64::MAX);
     let excess = |log_step: f64| libm::log(cov(libm::exp(log_step)) / target);
     let (mut low, mut high) = (libm::log(least.min(remaining)), libm::log(remaining));
@@ -31,14 +33,14 @@ pub(super) fn exponent_step(log_likelihoods: &[f64], remaining: f64, target: f64
     let mut last_was_above = None;
     for _ in 0..MOST_TRIALS {
         let position = high - above * (high - low) / (above - below);
-        // No number, or no progress: a coefficient of 0 has no logarithm.
+        // Bisect where false position gives no number or no progress: a coefficient of 0 has no logarithm.
         let trial = if low < position && position < high {
             position
         } else {
             0.5 * (low + high)
         };
         let value = excess(trial);
-        // An end that stays twice is given half its weight, or the other would creep.
+        // The value at an end that stays twice is halved, or the other end would creep.
         let again = last_was_above.replace(value > 0.0) == Some(value > 0.0);
         if value > 0.0 {
             (high, above) = (trial, value);

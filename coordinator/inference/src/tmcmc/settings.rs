@@ -1,6 +1,6 @@
-//! Hold the sampler's settings and refuse those that cannot work.
+//! The settings of the sampler, and why some are refused.
 
-/// How the population moves from one exponent to the next.
+/// How the population moves at an exponent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Algorithm {
     /// Every particle moves by several steps of a mixed, self-scaling proposal; the default.
@@ -8,20 +8,20 @@ pub enum Algorithm {
     /// The original sampler: each particle is one step of a chain that is as long as its leader's
     /// multiplicity.
     ///
-    /// Ching & Chen 2007, J. Eng. Mech. 133:816. Kept because published calibrations used it. Its chains are
-    /// too short to forget where they started, so its runs are reported as not equilibrated.
+    /// Ching & Chen 2007, doi:10.1061/(ASCE)0733-9399(2007)133:7(816). Kept because published calibrations used it. Its
+    /// chains are too short to forget their start, so its runs are reported as not equilibrated.
     ChingChen2007,
     /// BASIS: every resampled particle takes one step of the original sampler's random walk.
     ///
-    /// Wu, Angelikopoulos, Papadimitriou & Koumoutsakos 2018, ASCE-ASME J. Risk Uncertainty B 4:011008, with
-    /// their chain length of 1. No chain is longer than another, so no particle is moved further from its
-    /// stage's target than another, and all are evaluated in one round. One step forgets even less than the
-    /// original sampler's chains, so its runs are reported as not equilibrated.
+    /// Wu, Angelikopoulos, Papadimitriou & Koumoutsakos 2018, ASCE-ASME J. Risk Uncertainty B 4:011008,
+    /// doi:10.1115/1.4037450, with their chain length of 1. All chains are equally long, which removes the bias of the
+    /// original sampler, and a stage takes one round. One step forgets even less than the original sampler's chains, so
+    /// its runs are reported as not equilibrated.
     Basis,
 }
 
 impl Algorithm {
-    /// Whether the population is every state that the chains took, not their last states alone.
+    /// Whether the population is every state of the chains, not their last states alone.
     pub(super) fn keeps_every_step(self) -> bool {
         matches!(self, Self::ChingChen2007 | Self::Basis)
     }
@@ -38,9 +38,9 @@ pub struct TmcmcSettings {
     pub moves: [usize; 2],
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Coefficient of variation of the incremental weights that picks the next exponent.
+    /// Coefficient of variation of the incremental weights by which the next exponent is chosen.
     pub target_cov: f64,
-    /// Moves that a metamodel takes between two evaluations; 0: there is no metamodel ([`Algorithm::Tmcmc`] only).
+    /// Moves by the metamodel between two evaluations; 0: no metamodel ([`Algorithm::Tmcmc`] only).
     pub metamodel_moves: usize,
 }
 
@@ -63,7 +63,7 @@ const MOST_PARTICLES: usize = 1_000_000;
 /// Most moves in a stage.
 const MOST_MOVES: usize = 10_000;
 
-/// Settings that cannot work.
+/// Why settings are refused.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TmcmcSettingsError {
     /// The prior has no parameters.
@@ -93,13 +93,13 @@ pub enum TmcmcSettingsError {
         /// Most moves.
         most: usize,
     },
-    /// The metamodel's moves are more than a worker should take at a time.
+    /// The metamodel has more moves than a worker should take at a time.
     #[error("metamodel_moves {value} is more than {MOST_MOVES}")]
     MetamodelMoves {
         /// The setting.
         value: usize,
     },
-    /// The algorithm has no steps for a metamodel to take moves in.
+    /// The algorithm does not support a metamodel.
     #[error("metamodel_moves {value}: only tmcmc takes a metamodel")]
     NoMetamodel {
         /// The setting.

@@ -1,4 +1,4 @@
-//! Move the chains of one stage, one step per round.
+//! The chains of one stage, moved one step per round.
 
 use std::sync::Arc;
 
@@ -32,19 +32,19 @@ struct Step {
     kind: Kind,
 }
 
-/// How a step finds its end.
+/// How a step finds its candidate.
 #[derive(Debug, Clone)]
 enum Kind {
-    /// Outside the prior's support: nothing is asked.
+    /// Outside the prior's support: rejected without evaluation.
     Outside { scaled: bool },
-    /// One proposal.
+    /// One move, to be evaluated.
     Plain { candidate: ProposedMove, log_prior: f64 },
-    /// Moves of the metamodel.
+    /// A subchain of the metamodel.
     Delayed,
 }
 
-/// What a step came to.
-struct Verdict {
+/// The decision on a step.
+struct Decision {
     state: Option<ChainState>,
     scaled: u32,
     scaled_accepted: u32,
@@ -56,10 +56,10 @@ pub(super) struct Stage {
     pub(super) index: usize,
     pub(super) exponent: f64,
     pub(super) chains: Vec<Chain>,
-    /// Every state that a chain took after its start.
+    /// Every state of the chains after their start.
     pub(super) pool: Pool,
     pub(super) mixture: ProposalMixture,
-    /// What takes moves between evaluations, if there is one.
+    /// The metamodel that takes moves between evaluations, if there is one.
     pub(super) metamodel: Option<Arc<Metamodel>>,
     pub(super) scale: f64,
     pub(super) adaptive: bool,
@@ -101,7 +101,7 @@ impl Stage {
         (self.proposed > 0).then(|| self.accepted as f64 / self.proposed as f64)
     }
 
-    /// Draws the next step of every chain that goes on; returns what has to be evaluated.
+    /// Draws the next step of every unfinished chain; returns the proposals to evaluate.
     pub(super) fn propose(&mut self, prior: &Prior, seed: u64) -> Vec<Proposal> {
         self.steps.clear();
         let mut proposals = Vec::new();
@@ -145,29 +145,29 @@ impl Stage {
         proposals
     }
 
-    /// Accepts or rejects every step; `answers` are those of the last proposals, in their order.
-    pub(super) fn accept(&mut self, prior: &Prior, answers: Vec<EvaluationResult>) {
-        let mut answers = answers.into_iter();
+    /// Accepts or rejects every step; `results` are those of the last proposals, in their order.
+    pub(super) fn accept(&mut self, prior: &Prior, results: Vec<EvaluationResult>) {
+        let mut results = results.into_iter();
         let (mut scaled, mut scaled_accepted) = (0_u64, 0_u64);
         for step in std::mem::take(&mut self.steps) {
-            let answer = match step.kind {
+            let result = match step.kind {
                 Kind::Outside { .. } => None,
-                Kind::Plain { .. } | Kind::Delayed => answers.next(),
+                Kind::Plain { .. } | Kind::Delayed => results.next(),
             };
-            self.evaluations += u64::from(answer.as_ref().is_some_and(EvaluationResult::is_evaluated));
+            self.evaluations += u64::from(result.as_ref().is_some_and(EvaluationResult::is_evaluated));
             let chain = &mut self.chains[step.chain];
-            let verdict = decide(
+            let decision = decide(
                 step.kind,
                 step.log_uniform,
-                answer,
+                result,
                 &chain.current,
                 self.exponent,
                 prior,
             );
             self.proposed += 1;
-            scaled += u64::from(verdict.scaled);
-            scaled_accepted += u64::from(verdict.scaled_accepted);
-            if let Some(state) = verdict.state {
+            scaled += u64::from(decision.scaled);
+            scaled_accepted += u64::from(decision.scaled_accepted);
+            if let Some(state) = decision.state {
                 chain.current = state;
                 self.accepted += 1;
             }
@@ -186,23 +186,26 @@ impl Stage {
     }
 }
 
-/// Decides a step from a state.
+/// Accepts or rejects a step.
 fn decide(
     kind: Kind,
     log_uniform: f64,
-    answer: Option<EvaluationResult>,
+    result: Option<EvaluationResult>,
     current: &ChainState,
     exponent: f64,
     prior: &Prior,
-) -> Verdict {
+) -> Decision {
     let gain = |log_likelihood: LogLikelihood| log_likelihood.value() - current.log_likelihood.value();
-    match (kind, answer) {
-        (Kind::Plain { candidate, log_prior }, Some(EvaluationResult::Here { log_likelihood, pair })) => {
+    match (kind, result) {
+        (
+            Kind::Plain { candidate, log_prior },
+            Some(EvaluationResult::AtProposal { log_likelihood, pair }),
+        ) => {
             let ratio =
                 exponent * gain(log_likelihood) + (log_prior - current.log_prior) + candidate.log_correction;
             let accepted = log_uniform < ratio;
             let scaled = u32::from(candidate.scaled);
-            Verdict {
+            Decision {
                 state: accepted.then(|| ChainState {
                     coordinates: candidate.coordinates,
                     log_prior,
@@ -213,23 +216,23 @@ fn decide(
                 scaled_accepted: scaled * u32::from(accepted),
             }
         }
-        (Kind::Delayed, Some(EvaluationResult::Moved { end, found })) => Verdict {
+        (Kind::Delayed, Some(EvaluationResult::AtSubchainEnd { end, found })) => Decision {
             scaled: end.scaled,
             scaled_accepted: end.scaled_accepted,
             state: found
                 .filter(|(log_likelihood, _)| {
-                    // The subchain has the prior and the metamodel's share in it already.
+                    // The subchain accounts for the prior and the metamodel already.
                     log_uniform < exponent * (gain(*log_likelihood) - end.log_gain)
                 })
                 .map(|(log_likelihood, pair)| moved(prior, &end, log_likelihood, pair)),
         },
-        (Kind::Outside { scaled }, _) => Verdict {
+        (Kind::Outside { scaled }, _) => Decision {
             state: None,
             scaled: u32::from(scaled),
             scaled_accepted: 0,
         },
-        // Answers are checked against what was asked when they are told.
-        _ => Verdict {
+        // `Sampler::tell` refuses a result of the wrong kind.
+        _ => Decision {
             state: None,
             scaled: 0,
             scaled_accepted: 0,

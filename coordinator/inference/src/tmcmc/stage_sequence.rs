@@ -24,12 +24,12 @@ impl Sampler {
     pub(super) fn finish_prior(
         &mut self,
         proposals: &[Proposal],
-        answers: Vec<EvaluationResult>,
+        results: Vec<EvaluationResult>,
     ) -> Result<SamplerPhase, InferenceFailure> {
-        let draws = answers.len();
+        let draws = results.len();
         let mut pool = Pool::default();
-        for (proposal, answer) in proposals.iter().zip(answers) {
-            if let EvaluationResult::Here { log_likelihood, pair } = answer
+        for (proposal, result) in proposals.iter().zip(results) {
+            if let EvaluationResult::AtProposal { log_likelihood, pair } = result
                 && !log_likelihood.is_impossible()
             {
                 let coordinates = self.prior.coordinates(&proposal.theta);
@@ -61,7 +61,7 @@ impl Sampler {
         self.begin_stage(&pool, 1, 0.0, None, survival)
     }
 
-    /// Starts the stage that follows a pool; `log_evidence` is already known of its increment.
+    /// Starts the stage that follows a pool; `log_evidence` is the part of its increment that is known already.
     fn begin_stage(
         &mut self,
         pool: &Pool,
@@ -106,7 +106,7 @@ impl Sampler {
         Ok(metamodel.map_err(InferenceFailure::Metamodel)?.map(Arc::new))
     }
 
-    /// Goes on with a stage, or ends it and starts the next or the posterior.
+    /// Continues a stage, or ends it and starts the next or finishes.
     pub(super) fn after_step(&mut self, stage: Box<Stage>) -> Result<SamplerPhase, InferenceFailure> {
         let [least, _] = self.settings.moves;
         let mut drift = None;
@@ -150,9 +150,9 @@ impl Sampler {
         })))
     }
 
-    /// Drift of a stage: of its chains from start to end or, after Ching and Chen, of every particle from the
-    /// leader of its chain (with one step, as BASIS has, they are the same). The chains have moved if they
-    /// accepted one step each on average.
+    /// Drift of a stage: of its chains from start to end or, in the original sampler, of every particle from the
+    /// leader of its chain (the same in BASIS, which takes one step). The chains have moved if they accepted one step
+    /// each on average.
     fn drift(&self, stage: &Stage) -> Drift {
         let chains = &stage.chains;
         let moved = stage.accepted >= chains.len() as u64;
@@ -167,7 +167,7 @@ impl Sampler {
         Drift::of(&start, &end, &clusters, self.passage.step, moved)
     }
 
-    /// Files a finished stage.
+    /// Records a finished stage.
     fn record(&mut self, stage: &Stage, drift: Drift) {
         let Passage {
             step,

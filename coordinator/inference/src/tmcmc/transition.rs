@@ -1,4 +1,4 @@
-//! Pass from the pool of one stage to the chains of the next.
+//! The transition from the pool of one stage to the chains of the next.
 
 use super::ching_chen;
 use super::resample::systematic;

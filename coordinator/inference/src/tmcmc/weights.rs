@@ -1,4 +1,4 @@
-//! Weigh a pool of states for the next tempering exponent.
+//! The incremental weights of a pool for the next tempering exponent.
 
 /// Incremental weights exp(step (l - max l)), relative to the largest.
 #[derive(Debug, Clone, PartialEq)]

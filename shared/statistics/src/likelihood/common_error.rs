@@ -1,4 +1,4 @@
-//! Errors that several data share, and the blocks of data that they tie together.
+//! Common errors of several data, and the blocks of correlated data.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,27 +9,27 @@ use super::datum::{Datum, ErrorSd, LikelihoodError};
 pub struct CommonError {
     /// Indices of the data, ascending.
     pub data: Vec<usize>,
-    /// What stands in v.
+    /// The elements of v.
     pub size: CommonErrorSize,
 }
 
-/// What a common error does to each of its data.
+/// How a common error acts on each of its data.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum CommonErrorSize {
-    /// Shifts all alike: `v_i` = this sd, in the unit of the data, >= 0.
+    /// Shifts all equally: `v_i` = this sd, in the unit of the data, >= 0.
     Shift(ErrorSd),
-    /// Shifts all alike by what the model cannot reach: `v_i = m sigma`, sigma the root mean square of their noise
+    /// Shifts all equally by the inadequacy of the model: `v_i = m sigma`, sigma the root mean square of their noise
     /// sds and m of [`Discrepancy`].
     Discrepancy,
-    /// Moves each along its sensitivity: `v_i` = this sd times the derivative of the prediction, which the
-    /// predicted values bring along. A datum has one such error at most.
+    /// Shifts each along its sensitivity: `v_i` = this sd times the derivative of the prediction, which the predicted
+    /// values include. A datum has at most one such error.
     Sensitivity(ErrorSd),
 }
 
-/// How far off the model may be, in noise sds.
+/// The inadequacy of the model, in noise sds.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum Discrepancy {
-    /// Not at all.
+    /// None.
     #[default]
     None,
     /// m itself, > 0.
@@ -39,7 +39,7 @@ pub enum Discrepancy {
     Unknown,
 }
 
-/// Values of an unknown m.
+/// Number of values of an unknown m.
 pub const DISCREPANCY_LEVELS: usize = 9;
 /// The least value of an unknown m.
 pub const LEAST_DISCREPANCY: f64 = 0.5;
@@ -75,7 +75,7 @@ impl Discrepancy {
     }
 }
 
-/// Data whose errors are correlated, all of them together.
+/// Data with correlated errors.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ErrorBlock {
     /// Indices of the data, ascending.
@@ -86,9 +86,9 @@ pub(super) struct ErrorBlock {
     pub(super) has_discrepancy: bool,
 }
 
-/// Splits the data into those that stand alone and blocks, in the order of their first datum.
+/// Splits the data into independent ones and blocks, in the order of their first datum.
 pub(super) fn blocks(data: &[Datum], common: &[CommonError]) -> (Vec<usize>, Vec<ErrorBlock>) {
-    // The block of a datum goes by its least member; joining two renames the larger.
+    // A block is named by its least member; joining two renames the larger.
     let mut least: Vec<usize> = (0..data.len()).collect();
     for error in common {
         let names: Vec<usize> = error.data.iter().map(|&i| least[i]).collect();
@@ -131,7 +131,7 @@ pub(super) fn sensitive(common: &[CommonError]) -> Vec<usize> {
     data
 }
 
-/// Refuses memberships that mean nothing.
+/// Refuses invalid memberships and sds.
 pub(super) fn check(count: usize, common: &[CommonError]) -> Result<(), LikelihoodError> {
     let refuse = |datum| LikelihoodError::Membership { datum, data: count };
     for error in common {

@@ -1,10 +1,10 @@
-//! One measured value and its noise, and what makes data or predictions unfit to be scored.
+//! One measured value and its noise, and the errors of data and predictions.
 
 use serde::{Deserialize, Serialize};
 
 use crate::log_likelihood::NotANumber;
 
-/// The size of an error.
+/// The standard deviation of an error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum ErrorSd {
     /// A known standard deviation, in the unit of the datum.
@@ -16,7 +16,7 @@ pub enum ErrorSd {
     },
 }
 
-/// One measured value; what was not measured is not in the list.
+/// One measured value.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Datum {
     /// Index of the test run.
@@ -29,7 +29,7 @@ pub struct Datum {
     pub sd: ErrorSd,
 }
 
-/// Data or predictions that cannot be scored.
+/// Why data or predictions have no likelihood.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LikelihoodError {
     /// A measured value is NaN or infinite.
@@ -70,12 +70,12 @@ pub enum LikelihoodError {
         /// The prediction.
         value: f64,
     },
-    /// There are not as many predicted values as the likelihood asks for.
+    /// The number of predicted values is wrong.
     #[error("{given} predicted values, {expected} are expected")]
     Length {
-        /// As many as [`Likelihood::values`](super::Likelihood::values) says.
+        /// The number by [`Likelihood::values`](super::Likelihood::values).
         expected: usize,
-        /// As many as were given.
+        /// The number given.
         given: usize,
     },
     /// A number of the error model is outside its bounds.
@@ -88,7 +88,7 @@ pub enum LikelihoodError {
         /// What it must be.
         bound: &'static str,
     },
-    /// A common error names a datum that is not there, or one twice.
+    /// A common error names a datum that does not exist, or one twice.
     #[error("a common error names datum {datum} of {data}, or names it twice")]
     Membership {
         /// The index.
@@ -134,7 +134,7 @@ impl Datum {
         }
     }
 
-    /// What is wrong with the measured value or its known sd, if anything is.
+    /// Checks the measured value and its known sd.
     pub(super) fn check(&self) -> Result<(), LikelihoodError> {
         let &Self {
             run, channel, value, ..

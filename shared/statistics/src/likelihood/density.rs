@@ -9,7 +9,7 @@ use super::spread::Spread;
 use crate::log_likelihood::LogLikelihood;
 use crate::prior::LN_SQRT_TAU;
 
-/// A factored block: its covariance and what is left of its residuals.
+/// A block with its factored covariance and whitened residuals.
 pub(super) struct ScoredBlock {
     pub(super) factor: CholeskyFactor,
     pub(super) whitened: Vec<f64>,
@@ -19,7 +19,7 @@ pub(super) struct ScoredBlock {
 impl Likelihood {
     /// ln p(data | theta), normalised: comparable between noise levels and between models.
     ///
-    /// Of data that share no error, `sum_i [ -ln(sqrt(2 pi) sd_i) - (y_i - m_i)^2 / (2 sd_i^2) ]`; then the density of
+    /// For independent data, `sum_i [ -ln(sqrt(2 pi) sd_i) - (y_i - m_i)^2 / (2 sd_i^2) ]`; then the density of
     /// each block; where the discrepancy is unknown, the logarithm of the mean over its values.
     ///
     /// # Arguments
@@ -36,8 +36,8 @@ impl Likelihood {
     /// [`LikelihoodError::Length`].
     ///
     /// # Source
-    /// The usual normal density. The paper's Eq. 13-15 lack the factor 1/sigma; without it an inferred sigma
-    /// grows without bound and evidences of different noise models cannot be compared, so we keep it.
+    /// The normal density. The paper's Eq. 13-15 lack the factor 1/sigma; without it an inferred sigma grows without
+    /// bound and evidences of different noise models are not comparable, so it is kept.
     /// Checked by `likelihood::hand_numbers` and `likelihood::blocks_match_a_dense_density`.
     pub fn log_likelihood(&self, values: &[f64], theta: &[f64]) -> Result<LogLikelihood, LikelihoodError> {
         self.check_values(values)?;
@@ -60,7 +60,7 @@ impl Likelihood {
         Ok(LogLikelihood::new(sum)?)
     }
 
-    /// The values of m with their probabilities after the data, at these parameters; empty without discrepancy.
+    /// The values of m with their posterior probabilities at these parameters; empty without discrepancy.
     ///
     /// # Errors
     /// Those of [`Likelihood::log_likelihood`].
@@ -75,7 +75,7 @@ impl Likelihood {
         let highest = densities.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let weights: Vec<f64> = match highest.is_finite() {
             true => densities.iter().map(|d| libm::exp(d - highest)).collect(),
-            // The data exclude every value: the prior is all there is.
+            // The data exclude every value: the prior probabilities remain.
             false => vec![1.0; levels.len()],
         };
         let sum: f64 = weights.iter().sum();
@@ -157,7 +157,7 @@ impl Likelihood {
     }
 }
 
-/// `ln mean exp`, minus infinity where all are.
+/// `ln mean exp`; minus infinity where all values are.
 fn log_mean_exp(values: &[f64]) -> f64 {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if let [only] = values {

@@ -14,13 +14,13 @@ pub struct Likelihood {
     pub(super) law: ErrorLaw,
     pub(super) common: Vec<CommonError>,
     pub(super) discrepancy: Discrepancy,
-    /// Data that share no error.
+    /// Data without a common error.
     pub(super) alone: Vec<usize>,
     pub(super) blocks: Vec<ErrorBlock>,
     pub(super) sensitive: Vec<usize>,
 }
 
-/// A likelihood as it travels: what it is made from.
+/// The serialised form of a likelihood: what it is made from.
 #[derive(Serialize, Deserialize)]
 struct SerialisedLikelihood {
     data: Vec<Datum>,
@@ -57,7 +57,7 @@ impl Likelihood {
         Self::with_common(data, ErrorLaw::Gaussian, Vec::new(), Discrepancy::None)
     }
 
-    /// Errors of a law, some of them in common.
+    /// Errors of a law, some of them common.
     ///
     /// # Arguments
     /// - `discrepancy`: m of the common errors that are [`CommonErrorSize::Discrepancy`].
@@ -99,19 +99,19 @@ impl Likelihood {
         self.law
     }
 
-    /// m of the errors that the model cannot reach.
+    /// The inadequacy m of the model.
     #[must_use]
     pub fn discrepancy(&self) -> Discrepancy {
         self.discrepancy
     }
 
-    /// The errors in common.
+    /// The common errors.
     #[must_use]
     pub fn common(&self) -> &[CommonError] {
         &self.common
     }
 
-    /// Data whose sensitivity is asked for, ascending: these follow the predictions in the predicted values.
+    /// Data whose sensitivity is needed, ascending: their derivatives follow the predictions in the predicted values.
     #[must_use]
     pub fn sensitive(&self) -> &[usize] {
         &self.sensitive
@@ -123,8 +123,7 @@ impl Likelihood {
         self.data.len() + self.sensitive.len()
     }
 
-    /// Whether a sd is to be inferred that has no closed form: one of correlated or heavy-tailed data, or of an error
-    /// in common.
+    /// Whether an inferred sd has no closed form: one of correlated or heavy-tailed data, or of a common error.
     #[must_use]
     pub fn entangles_unknown_sds(&self) -> bool {
         let inferred = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { .. });

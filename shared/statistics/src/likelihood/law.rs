@@ -5,17 +5,16 @@ use serde::{Deserialize, Serialize};
 use super::datum::LikelihoodError;
 use crate::prior::LN_SQRT_TAU;
 
-/// How errors scatter around their scale.
+/// The distribution of the errors.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum ErrorLaw {
     /// Normal; the scale is the standard deviation.
     #[default]
     Gaussian,
-    /// Student's t: an error of five scales is nothing to be alarmed at.
+    /// Student's t, with heavy tails.
     ///
     /// The declared sd is the *scale* of the t, not its standard deviation, which is `sqrt(nu / (nu - 2))` times as
-    /// large where `nu > 2`: the middle of the errors is what was declared, and the tails come on top. Errors that are
-    /// correlated are one multivariate t: the block as a whole may be far out.
+    /// large where `nu > 2`. Correlated errors have a multivariate t: the block as a whole may be far out.
     StudentT {
         /// Degrees of freedom nu, > 0.
         degrees_of_freedom: f64,
@@ -62,7 +61,7 @@ impl ErrorLaw {
     ///
     /// The slope of the t is `(nu + k) / (nu + q)` times the normal's at the squared distance q; its Fisher
     /// information is `(nu + k) / (nu + k + 2)` times the normal's (Lange, Little & Taylor 1989, J. Am. Stat. Assoc.
-    /// 84:881).
+    /// 84:881, doi:10.2307/2290063).
     pub(super) fn weights(self, count: usize, squared_distance: f64) -> [f64; 2] {
         let k = count as f64;
         match self {
@@ -88,7 +87,7 @@ impl ErrorLaw {
     }
 }
 
-/// Terms of the continued fraction: far more than it takes for any nu below 1e6.
+/// Most terms of the continued fraction: far more than any nu below 1e6 needs.
 const TERMS: u32 = 10_000;
 
 /// The regularised incomplete beta function `I_x(a, b)` by its continued fraction (Lentz's method).

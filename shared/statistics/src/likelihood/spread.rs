@@ -1,4 +1,4 @@
-//! How far errors reach: the noise of each datum, and what it shares with others.
+//! The covariance of a block: the noise of each datum, and the common errors.
 
 use super::common_error::{CommonError, CommonErrorSize, Discrepancy, ErrorBlock};
 use super::datum::LikelihoodError;
@@ -13,14 +13,14 @@ pub(super) struct Spread {
 }
 
 impl Likelihood {
-    /// Whether a datum shares no error with others.
+    /// Whether a datum has no common error.
     #[must_use]
     pub fn is_alone(&self, datum: usize) -> bool {
         self.alone.binary_search(&datum).is_ok()
     }
 
-    /// The variance of each datum's error: its noise, and its share of every error in common; an unknown discrepancy
-    /// counts with the mean over its values, weighted by their probabilities after the data.
+    /// The variance of each datum's error, noise and common errors; for an unknown discrepancy the mean over its values,
+    /// weighted by their posterior probabilities.
     ///
     /// # Arguments
     /// As those of [`Likelihood::log_likelihood`].

@@ -1,4 +1,4 @@
-//! Some of the data alone, with the errors that they still share.
+//! The likelihood of a subset of the data.
 
 use super::common_error::CommonError;
 use super::datum::LikelihoodError;
@@ -11,14 +11,14 @@ impl Likelihood {
     /// - `kept`: indices of the data, ascending.
     ///
     /// # Returns
-    /// The likelihood, and the place of each of its predicted values among those of the whole.
+    /// The likelihood, and the index of each of its predicted values among those of the whole.
     ///
     /// # Errors
     /// [`LikelihoodError::Membership`] for an index without a datum.
     ///
     /// # Validity
     /// A discrepancy keeps its size only where all data that share one are kept, or have the same noise sd. Checked by
-    /// `likelihood::a_part_has_the_density_of_its_data_alone`.
+    /// `likelihood::a_subset_has_the_density_of_its_data_alone`.
     pub fn subset(&self, kept: &[usize]) -> Result<(Likelihood, Vec<usize>), LikelihoodError> {
         let count = self.data.len();
         if let Some(&datum) = kept.iter().find(|&&i| i >= count) {
@@ -36,17 +36,17 @@ impl Likelihood {
             })
             .filter(|error| !error.data.is_empty())
             .collect();
-        let part = Self::with_common(data, self.law, common, self.discrepancy)?;
-        let places = self.places(kept, &part);
-        Ok((part, places))
+        let subset = Self::with_common(data, self.law, common, self.discrepancy)?;
+        let places = self.places(kept, &subset);
+        Ok((subset, places))
     }
 
-    fn places(&self, kept: &[usize], part: &Likelihood) -> Vec<usize> {
+    fn places(&self, kept: &[usize], subset: &Likelihood) -> Vec<usize> {
         let derivative = |&k: &usize| {
             let place = self.sensitive.binary_search(&kept[k]).unwrap_or_default();
             self.data.len() + place
         };
-        let derivatives = part.sensitive.iter().map(derivative);
+        let derivatives = subset.sensitive.iter().map(derivative);
         kept.iter().copied().chain(derivatives).collect()
     }
 }

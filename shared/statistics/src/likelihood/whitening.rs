@@ -1,4 +1,4 @@
-//! Make residuals and derivatives independent, for a fit by least squares.
+//! Whitening of residuals and derivatives, for a fit by least squares.
 
 use super::common_error::{Discrepancy, ErrorBlock};
 use super::datum::LikelihoodError;
@@ -6,13 +6,13 @@ use super::error_model::Likelihood;
 use super::factor::CholeskyFactor;
 use super::law::ErrorLaw;
 
-/// Turns residuals and derivatives of the data into those of independent errors of sd 1, at one point.
+/// The linear transform to independent errors of sd 1, at one point.
 ///
 /// With W the transform, r the residuals and c, d the derivatives of the predictions along two directions, the
 /// log-likelihood has the slope `sum_i a_i (W c)_i (W r)_i` along c and, in expectation, the curvature
-/// `-sum_i b_i (W c)_i (W d)_i`, with the weights a and b of the law: 1 for normal errors. The covariance is held, as
-/// a derivative of a derivative would be needed to do better. An unknown discrepancy enters with every value of m,
-/// weighted by its probability after the data: the slope is exact, the curvature that of expectation-maximisation.
+/// `-sum_i b_i (W c)_i (W d)_i`, with the weights a and b of the law: 1 for normal errors. The covariance is held
+/// constant; its change would need second derivatives. An unknown discrepancy enters with every value of m, weighted by
+/// its posterior probability: the slope is exact, the curvature that of expectation-maximisation.
 #[derive(Debug, Clone)]
 pub struct Whitening {
     alone: Vec<(usize, f64)>,
@@ -89,7 +89,7 @@ impl Whitening {
         }
     }
 
-    /// W v of one number for each datum; what follows them is not looked at.
+    /// W v, with one element of v for each datum; further elements are ignored.
     #[must_use]
     pub fn apply(&self, v: &[f64]) -> Vec<f64> {
         let mut whitened: Vec<f64> = self.alone.iter().map(|&(i, sd)| v[i] / sd).collect();

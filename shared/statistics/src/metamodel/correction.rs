@@ -1,4 +1,4 @@
-//! Regress what the fine model says beyond the coarse one on the parameters.
+//! The regression of the difference between fine and coarse model on the parameters.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -8,21 +8,20 @@ use super::pool::{ModelPair, Pool};
 
 /// Effective number of states for each coefficient of a regression.
 const STATES_PER_COEFFICIENT: f64 = 4.0;
-/// Added to the diagonal of the normal equations, whose features have about unit size: a direction in which the pool
+/// Ridge on the diagonal of the normal equations, whose features have about unit size: a direction in which the pool
 /// has no width gets no slope.
 const RIDGE: f64 = 1e-9;
 
 /// The mean of fine less coarse, as a polynomial in whitened coordinates, for each predicted value.
 ///
 /// The whitened coordinates are `w = A^-1 (u - m)`, m and A A' mean and covariance of the pool. Beyond
-/// `|w| = sqrt(d) + 2`, where nothing was seen, the correction is that of the border: a polynomial grows without bound
-/// where it was not fitted.
+/// `|w| = sqrt(d) + 2`, outside the data, the correction is that of the border: a polynomial does not extrapolate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Correction {
     degree: Degree,
     /// By predicted value, a coefficient for each feature.
     coefficients: Vec<Vec<f64>>,
-    /// Standard deviation that the regression leaves, by predicted value.
+    /// Residual standard deviation of the regression, by predicted value.
     residual_sd: Vec<f64>,
 }
 
@@ -57,15 +56,15 @@ impl Degree {
     }
 }
 
-/// A pair with its place and its weight.
-type Seen<'a> = (Vec<f64>, &'a ModelPair, f64);
+/// Whitened coordinates, pair and weight of a state.
+type WeightedPair<'a> = (Vec<f64>, &'a ModelPair, f64);
 
 impl Correction {
-    /// Weighted least squares of the highest degree that the pool can bear; `None` if it bears none.
+    /// Weighted least squares of the highest degree that the pool supports; `None` if it supports none.
     ///
     /// Checked by `metamodel::a_quadratic_difference_is_found` and `metamodel::the_posterior_is_that_of_the_fine_model`.
     pub(super) fn fit(pool: &Pool, weights: &[f64], factor: &CovarianceFactor) -> Option<Self> {
-        let seen: Vec<Seen> = pool
+        let pairs: Vec<WeightedPair> = pool
             .states
             .iter()
             .zip(weights)
@@ -74,22 +73,22 @@ impl Correction {
                 Some((within(factor.whiten(&state.coordinates)?), pair, weight))
             })
             .collect();
-        let squares: f64 = seen.iter().map(|(_, _, w)| w * w).sum();
-        let sum: f64 = seen.iter().map(|(_, _, w)| w).sum();
-        // Many states of a pool are one state that its chain kept.
+        let squares: f64 = pairs.iter().map(|(_, _, w)| w * w).sum();
+        let sum: f64 = pairs.iter().map(|(_, _, w)| w).sum();
+        // Many states of a pool are repeats of a state that its chain kept.
         let effective = if squares > 0.0 { sum * sum / squares } else { 0.0 };
         [Degree::Quadratic, Degree::Linear, Degree::Constant]
             .into_iter()
             .filter(|degree| STATES_PER_COEFFICIENT * degree.count(factor.dimension()) as f64 <= effective)
-            .find_map(|degree| Self::of_degree(degree, &seen, sum, effective))
+            .find_map(|degree| Self::of_degree(degree, &pairs, sum, effective))
     }
 
-    fn of_degree(degree: Degree, seen: &[Seen], sum: f64, effective: f64) -> Option<Self> {
-        let features: Vec<Vec<f64>> = seen.iter().map(|(w, _, _)| degree.features(w)).collect();
+    fn of_degree(degree: Degree, pairs: &[WeightedPair], sum: f64, effective: f64) -> Option<Self> {
+        let features: Vec<Vec<f64>> = pairs.iter().map(|(w, _, _)| degree.features(w)).collect();
         let count = features.first()?.len();
-        let values = seen.first()?.1.fine.len();
+        let values = pairs.first()?.1.fine.len();
         let mut normal = DMatrix::<f64>::zeros(count, count);
-        for (row, (_, _, weight)) in features.iter().zip(seen) {
+        for (row, (_, _, weight)) in features.iter().zip(pairs) {
             for i in 0..count {
                 let scaled = weight / sum * row[i];
                 for j in 0..=i {
@@ -107,7 +106,7 @@ impl Correction {
         let freedom = effective / (effective - count as f64);
         for value in 0..values {
             let mut right = DVector::<f64>::zeros(count);
-            for (row, (_, pair, weight)) in features.iter().zip(seen) {
+            for (row, (_, pair, weight)) in features.iter().zip(pairs) {
                 let scaled = weight / sum * (pair.fine[value] - pair.coarse[value]);
                 for (target, feature) in right.iter_mut().zip(row) {
                     *target += scaled * feature;
@@ -116,7 +115,7 @@ impl Correction {
             let solution: Vec<f64> = cholesky.solve(&right).iter().copied().collect();
             let left: f64 = features
                 .iter()
-                .zip(seen)
+                .zip(pairs)
                 .map(|(row, (_, pair, weight))| {
                     let off = pair.fine[value] - pair.coarse[value] - dot(row, &solution);
                     weight / sum * off * off
@@ -137,7 +136,7 @@ impl Correction {
         })
     }
 
-    /// Standard deviation that the regression leaves, by predicted value.
+    /// Residual standard deviation of the regression, by predicted value.
     pub(super) fn residual_sd(&self) -> &[f64] {
         &self.residual_sd
     }
@@ -154,7 +153,7 @@ impl Correction {
     }
 }
 
-/// Moves what lies beyond the region to its border.
+/// Moves coordinates beyond the region to its border.
 fn within(mut whitened: Vec<f64>) -> Vec<f64> {
     let radius = whitened.iter().map(|w| w * w).sum::<f64>().sqrt();
     let border = (whitened.len() as f64).sqrt() + 2.0;

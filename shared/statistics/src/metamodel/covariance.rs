@@ -102,7 +102,7 @@ impl CovarianceFactor {
     }
 }
 
-/// A square matrix travels by columns.
+/// A square matrix, serialised by columns.
 mod square {
     use nalgebra::DMatrix;
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};

@@ -1,27 +1,27 @@
-//! Propose steps: random walk, differential evolution, now and then an autoregressive jump.
+//! The proposals of a stage: random walk, differential evolution, autoregressive jumps.
 
 use serde::{Deserialize, Serialize};
 
 use super::covariance::CovarianceFactor;
 use crate::rng::Stream;
 
-/// Tries to find two different members of the frozen population before a random-walk step is taken instead.
+/// Tries to draw two different members of the frozen population before a random-walk step is taken instead.
 const PAIR_TRIES: usize = 8;
 
 /// Share of differential-evolution steps whose length is the full difference, which jump between modes.
 const FULL_DIFFERENCES: f64 = 0.2;
 
-/// sd of ln(length): steps of many lengths serve targets that are narrow in one place and wide in another.
+/// sd of ln(length): steps of many lengths suit targets whose width varies.
 const LENGTH_SPREAD: f64 = 0.7;
 
-/// Share of autoregressive jumps. They mix a nearly normal target many times faster than a random walk; more
-/// of them starve the others in a funnel, whose neck they miss.
+/// Share of autoregressive jumps. They mix a nearly normal target many times faster than a random walk; a larger share
+/// mixes worse in a funnel, whose neck they miss.
 const JUMPS: f64 = 0.1;
 
-/// Part of a jump that is new; sqrt(1 - 0.9^2) of the old deviation stays.
+/// Weight of the new deviation in a jump; the old one has sqrt(1 - 0.9^2).
 const JUMP_NOVELTY: f64 = 0.9;
 
-/// Proposals whose law is fixed for a stage.
+/// A mixture of proposals, fixed for a stage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ProposalMixture {
     /// Mean and covariance of the pool that the stage began with.
@@ -33,9 +33,9 @@ pub struct ProposalMixture {
 /// A proposed state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProposedMove {
-    /// Where it leads.
+    /// The proposed coordinates.
     pub coordinates: Vec<f64>,
-    /// Whether its distance follows the scale.
+    /// Whether its length is proportional to the scale.
     pub scaled: bool,
     /// ln q(from | candidate) - ln q(candidate | from).
     pub log_correction: f64,
@@ -52,6 +52,9 @@ impl ProposalMixture {
     ///   or `x + (a - b)` in one of five (ter Braak 2006).
     ///
     /// s is `scale` times a lognormal factor. Without frozen members: the random walk, s = `scale`.
+    ///
+    /// # Source
+    /// ter Braak 2006, Stat. Comput. 16:239, doi:10.1007/s11222-006-8769-1.
     pub fn candidate(&self, from: &[f64], scale: f64, stream: &mut Stream) -> ProposedMove {
         if self.frozen.is_empty() {
             return self.walk(from, scale, stream);

@@ -1,15 +1,15 @@
-//! Evaluated states, and what both models say there.
+//! Evaluated states, with the predictions of both models.
 
 use std::sync::Arc;
 
 use crate::log_likelihood::LogLikelihood;
 
-/// What both models say at one parameter vector.
+/// The predictions of both models at one parameter vector.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelPair {
     /// Predicted values of the fine model.
     pub fine: Vec<f64>,
-    /// The same of the coarse one.
+    /// Predicted values of the coarse model.
     pub coarse: Vec<f64>,
 }
 
@@ -22,7 +22,7 @@ pub struct ChainState {
     pub log_prior: f64,
     /// ln p(data | theta).
     pub log_likelihood: LogLikelihood,
-    /// What fine and coarse model say here, where a metamodel is to learn from it.
+    /// The predictions of both models, where a metamodel learns from them.
     pub pair: Option<Arc<ModelPair>>,
 }
 

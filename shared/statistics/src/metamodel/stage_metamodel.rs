@@ -8,7 +8,7 @@ use super::pool::Pool;
 use crate::likelihood::{Datum, ErrorSd, Likelihood, LikelihoodError};
 use crate::prior::Prior;
 
-/// All that a subchain needs but the coarse model itself, frozen for a stage.
+/// Everything that a subchain needs except the coarse model itself, frozen for a stage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Metamodel {
     pub(super) seed: u64,
@@ -21,7 +21,7 @@ pub struct Metamodel {
     pub(super) mixture: ProposalMixture,
 }
 
-/// The stage that a metamodel is made for, and its target.
+/// The stage of a metamodel, and its target.
 #[derive(Debug, Clone, Copy)]
 pub struct MetamodelStage<'a> {
     /// Seed of the calibration.
@@ -39,10 +39,9 @@ pub struct MetamodelStage<'a> {
 }
 
 impl Metamodel {
-    /// Learns from a pool with weights that sum to one; `None` where it holds too few pairs.
+    /// Fits the correction to a pool with weights that sum to one; `None` where the pool holds too few pairs.
     ///
-    /// What the regression leaves open is noise of the metamodel: its variance is added to that of the data whose noise
-    /// is known.
+    /// The residual variance of the regression is added to that of the data whose noise is known.
     ///
     /// # Errors
     /// [`LikelihoodError`] where the data cannot be scored with the wider noise.
@@ -82,13 +81,13 @@ impl Metamodel {
         }))
     }
 
-    /// The stage it is frozen for.
+    /// The stage that it is frozen for.
     #[must_use]
     pub fn stage(&self) -> usize {
         self.stage
     }
 
-    /// Log-likelihood of the corrected coarse model; minus infinity where the coarse model has no answer.
+    /// Log-likelihood of the corrected coarse model; minus infinity where the coarse model rejects the parameters.
     pub(super) fn log_likelihood(
         &self,
         theta: &[f64],

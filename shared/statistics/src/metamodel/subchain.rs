@@ -1,4 +1,4 @@
-//! Take the moves of a subchain, where the coarse model is at hand.
+//! The moves of a subchain.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,10 +6,10 @@ use super::stage_metamodel::Metamodel;
 use crate::likelihood::LikelihoodError;
 use crate::rng::Stream;
 
-/// Keeps the streams of subchains apart from those that decide about them.
+/// Offset that separates the streams of subchains from those of the steps that accept them.
 const SUBCHAINS: u64 = 1 << 32;
 
-/// Which subchain is asked for; its metamodel knows the rest.
+/// The request for a subchain; its metamodel holds the rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Subchain {
     /// The chain that it belongs to.
@@ -29,11 +29,11 @@ pub struct SubchainEnd {
     pub log_gain: f64,
     /// Moves proposed.
     pub moves: u32,
-    /// Of these, accepted.
+    /// Moves accepted.
     pub accepted: u32,
-    /// Of the proposed ones, those whose length follows the scale.
+    /// Moves proposed whose length is proportional to the scale.
     pub scaled: u32,
-    /// Of the scaled ones, accepted.
+    /// Accepted ones among them.
     pub scaled_accepted: u32,
 }
 
@@ -41,10 +41,10 @@ impl Metamodel {
     /// Takes the moves of a subchain that starts at `theta`.
     ///
     /// # Arguments
-    /// - `coarse`: the coarse model's predicted values at some parameters; `None` where it refuses them.
+    /// - `coarse`: the coarse model's predicted values at some parameters; `None` where it rejects them.
     ///
     /// # Returns
-    /// The end; without a move where the metamodel excludes the start.
+    /// The end; the start itself where the metamodel excludes it.
     ///
     /// # Errors
     /// [`LikelihoodError`] for predicted values that cannot be scored.

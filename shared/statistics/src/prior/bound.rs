@@ -1,6 +1,6 @@
-//! See whether a posterior leans on a bound of its prior.
+//! Whether a posterior touches a bound of its prior.
 
-/// Nearness to a bound that counts, as a share of the range.
+/// Distance that counts as touching, as a share of the range.
 const NEAR: f64 = 0.02;
 
 /// Whether `q05` or `q95` lies within 2 % of the range of a bound. False if the range is not finite.

@@ -1,4 +1,4 @@
-//! Let some of the parameters be jointly normal.
+//! Correlations of jointly normal parameters.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -11,7 +11,7 @@ use super::marginal::Marginal;
 /// marginals times `|R|^(-1/2) exp(-z' (R^-1 - I) z / 2)`.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Correlation {
-    /// Which parameters, ascending.
+    /// The parameters, ascending.
     parameters: Vec<usize>,
     /// R.
     correlations: Vec<Vec<f64>>,
@@ -26,9 +26,9 @@ pub(super) struct Correlation {
 /// Slope and curvature by parameter, in units of the marginals' standard deviations.
 #[derive(Debug, Default)]
 pub struct CorrelationSlopes {
-    /// Of parameters, by position.
+    /// Slope by position of the parameter.
     pub slopes: Vec<(usize, f64)>,
-    /// Of pairs of parameters, by positions.
+    /// Curvature by positions of both parameters.
     pub curvatures: Vec<(usize, usize, f64)>,
 }
 
@@ -82,7 +82,7 @@ impl Correlation {
         (self.parameters, self.correlations)
     }
 
-    /// What the correlations add to the sum of the marginals' log-densities at sampling coordinates.
+    /// The contribution of the correlations to the log-density at sampling coordinates.
     pub(super) fn log_density(&self, marginals: &[Marginal], coordinates: &[f64]) -> f64 {
         let z = self.standardised(marginals, coordinates);
         self.log_volume - 0.5 * z.dot(&(&self.excess * &z))
@@ -113,8 +113,8 @@ impl Correlation {
         }
     }
 
-    /// What the correlations add to the slope of -ln p along each parameter, and to its curvature between two, at sampling
-    /// coordinates; both in units of the marginals' standard deviations.
+    /// The contribution of the correlations to slope and curvature of -ln p at sampling coordinates, both in units of the
+    /// marginals' standard deviations.
     pub(super) fn slopes(&self, marginals: &[Marginal], coordinates: &[f64]) -> CorrelationSlopes {
         let slope = &self.excess * self.standardised(marginals, coordinates);
         let own = self.parameters.iter().copied();

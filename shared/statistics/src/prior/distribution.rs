@@ -1,4 +1,4 @@
-//! Name the distributions that a prior may have, and check their numbers.
+//! The distributions of priors, and the checks of their numbers.
 
 use serde::{Deserialize, Serialize};
 
@@ -83,7 +83,7 @@ fn finite(name: &'static str, value: f64) -> Result<(), PriorError> {
     }
 }
 
-/// Refuses what is not finite and above a bound.
+/// Refuses numbers that are not finite and above a bound.
 fn above(name: &'static str, value: f64, bound: f64) -> Result<(), PriorError> {
     finite(name, value)?;
     if value > bound {

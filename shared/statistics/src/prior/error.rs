@@ -1,6 +1,6 @@
-//! Say why a marginal is refused.
+//! Why a prior is refused.
 
-/// A marginal that cannot be built.
+/// Why a marginal or a correlation is refused.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PriorError {
     /// A number of the distribution or of the bounds is NaN or infinite.
@@ -49,8 +49,8 @@ pub enum PriorError {
         /// Position of the parameter.
         parameter: usize,
     },
-    /// The correlations are no positive definite matrix with ones on the diagonal and a row for each parameter.
-    #[error("the correlations are no positive definite, symmetric matrix with ones on its diagonal")]
+    /// The correlations are not a positive definite matrix with ones on the diagonal and a row for each parameter.
+    #[error("the correlations are not a positive definite, symmetric matrix with ones on its diagonal")]
     NotACorrelation,
     /// The distribution has no probability between the bounds.
     #[error("bounds [{lower}, {upper}] hold no probability")]

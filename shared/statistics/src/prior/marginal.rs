@@ -1,16 +1,14 @@
-//! Truncate and renormalise a distribution, and give it the coordinate in which the sampler moves.
+//! The prior of one parameter: a truncated distribution, and the coordinate in which the sampler moves.
 
 use serde::{Deserialize, Serialize};
 
 use super::bound::at_bound;
+use super::density::{Coordinate, Density, window};
 use super::distribution::{Distribution, ordered};
 use super::error::PriorError;
 use super::moments;
-use super::normal::{self, LN_SQRT_TAU};
+use super::normal;
 use crate::rng::Stream;
-
-/// Exponent below the peak at which the moments' integrals are cut: exp(-45) = 3e-20.
-const TAIL_NATS: f64 = 45.0;
 
 /// The prior of one parameter: a distribution, truncated to its bounds and renormalised.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -26,11 +24,11 @@ pub struct Marginal {
     sd: f64,
 }
 
-/// A marginal as it travels: what it is made from.
+/// The serialised form of a marginal: what it is made from.
 #[derive(Serialize, Deserialize)]
 struct SerialisedMarginal {
     distribution: Distribution,
-    /// Where the support was cut off; JSON has no infinite numbers.
+    /// The bounds where they truncate; JSON has no infinite numbers.
     lower: Option<f64>,
     upper: Option<f64>,
 }
@@ -53,46 +51,6 @@ impl TryFrom<SerialisedMarginal> for Marginal {
         let (lower, upper) = written.distribution.support();
         let ends = [written.lower.unwrap_or(lower), written.upper.unwrap_or(upper)];
         Self::new(written.distribution, Some(ends))
-    }
-}
-
-/// u(x): the coordinate in which the prior is uniform or normal.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Coordinate {
-    Identity,
-    Log,
-}
-
-/// The density of u, on the truncated support.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Density {
-    Uniform {
-        lower: f64,
-        width: f64,
-    },
-    /// `low` and `high` are the standardised ends, `mass` the probability between them.
-    Normal {
-        mean: f64,
-        sd: f64,
-        low: f64,
-        high: f64,
-        mass: f64,
-    },
-}
-
-impl Coordinate {
-    fn of(self, x: f64) -> f64 {
-        match self {
-            Self::Identity => x,
-            Self::Log => libm::log(x),
-        }
-    }
-
-    fn value(self, u: f64) -> f64 {
-        match self {
-            Self::Identity => u,
-            Self::Log => libm::exp(u),
-        }
     }
 }
 
@@ -208,7 +166,7 @@ impl Marginal {
         self.density.log_at(u) + jacobian
     }
 
-    /// The x below which a share `p` of the probability lies; the ends of the support for `p` <= 0 and >= 1.
+    /// The quantile x of probability `p`; the ends of the support for `p` <= 0 and >= 1.
     #[must_use]
     pub fn quantile(&self, p: f64) -> f64 {
         if p >= 1.0 {
@@ -227,10 +185,10 @@ impl Marginal {
         self.tails(x)[0]
     }
 
-    /// The standard normal number with as much probability below it as x has: `Phi^-1(P(X < x))`.
+    /// The normal score of x: `Phi^-1(P(X < x))`.
     ///
     /// Scores of draws from this distribution are standard normal, whatever it is. An x on an end of the support, or
-    /// outside, has the score of the least probability that a number can hold, +-37.5. Checked by
+    /// outside, has the score of the least representable probability, +-37.5. Checked by
     /// `priors::scores_are_normal_quantiles`.
     #[must_use]
     pub fn normal_score(&self, x: f64) -> f64 {
@@ -258,7 +216,7 @@ impl Marginal {
         }
     }
 
-    /// The probabilities below and above x, each with its digits.
+    /// The probabilities below and above x, each to full relative accuracy.
     pub fn tails(&self, x: f64) -> [f64; 2] {
         if x <= self.lower {
             [0.0, 1.0]
@@ -378,66 +336,4 @@ impl Marginal {
             }
         }
     }
-}
-
-impl Density {
-    fn log_at(&self, u: f64) -> f64 {
-        match *self {
-            Self::Uniform { width, .. } => -libm::log(width),
-            Self::Normal { mean, sd, mass, .. } => {
-                let z = (u - mean) / sd;
-                -0.5 * z * z - LN_SQRT_TAU - libm::log(sd) - libm::log(mass)
-            }
-        }
-    }
-
-    /// The probabilities below and above u, which lies inside.
-    fn tails(&self, u: f64) -> [f64; 2] {
-        match *self {
-            Self::Uniform { lower, width } => [(u - lower) / width, (lower + width - u) / width],
-            Self::Normal {
-                mean,
-                sd,
-                low,
-                high,
-                mass,
-            } => {
-                let z = (u - mean) / sd;
-                [normal::mass(low, z) / mass, normal::mass(z, high) / mass]
-            }
-        }
-    }
-
-    /// For 0 < p < 1.
-    fn quantile(&self, p: f64) -> f64 {
-        match *self {
-            Self::Uniform { lower, width } => lower + width * p,
-            Self::Normal {
-                mean,
-                sd,
-                low,
-                high,
-                mass,
-            } => {
-                // Work from the nearer tail, where the probability keeps its digits.
-                let below = normal::cdf(low) + p * mass;
-                let above = normal::cdf(-high) + (1.0 - p) * mass;
-                let z = if below < above {
-                    normal::lower_quantile(below)
-                } else {
-                    -normal::lower_quantile(above)
-                };
-                mean + sd * z
-            }
-        }
-    }
-}
-
-/// The part of [low, high] where a unit normal around `centre` lies within [`TAIL_NATS`] of its highest value
-/// there.
-fn window(low: f64, high: f64, centre: f64) -> (f64, f64) {
-    let peak = centre.max(low).min(high);
-    let offset = (peak - centre).abs();
-    let reach = (offset * offset + 2.0 * TAIL_NATS).sqrt() - offset;
-    (low.max(peak - reach), high.min(peak + reach))
 }

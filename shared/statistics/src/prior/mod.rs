@@ -1,7 +1,13 @@
-//! Describe what is known of the parameters before the measurements.
+//! The prior of the parameters.
+//!
+//! # Layout
+//! - here: [`Prior`]. `marginal`: one parameter, truncated. `correlation`: jointly normal parameters.
+//! - `distribution`: the distributions. `density`: densities and quantiles in the sampling coordinate.
+//! - `moments`, `normal`, `bound`: quadrature, the standard normal, nearness to a bound. `error`: refusals.
 
 mod bound;
 mod correlation;
+mod density;
 mod distribution;
 mod error;
 mod marginal;
@@ -27,7 +33,7 @@ pub struct Prior {
     correlation: Option<Correlation>,
 }
 
-/// A prior as it travels: what it is made from.
+/// The serialised form of a prior: what it is made from.
 #[derive(Serialize, Deserialize)]
 struct SerialisedPrior {
     marginals: Vec<Marginal>,
@@ -72,7 +78,7 @@ impl Prior {
     /// untruncated, so that they are jointly normal there.
     ///
     /// # Arguments
-    /// - `parameters`: which, as ascending positions in theta. `correlations`: one row for each, symmetric, 1 on the diagonal.
+    /// - `parameters`: ascending positions in theta. `correlations`: one row for each, symmetric, 1 on the diagonal.
     ///
     /// # Errors
     /// [`PriorError::NotNormal`] for a marginal that is not; [`PriorError::NotACorrelation`] for a matrix that is not
@@ -112,7 +118,7 @@ impl Prior {
         self.with_correlation(independent, || self.coordinates(theta))
     }
 
-    /// Adds what the correlations are worth where the marginals allow a vector at all.
+    /// Adds the contribution of the correlations, inside the support.
     fn with_correlation(&self, independent: f64, coordinates: impl FnOnce() -> Vec<f64>) -> f64 {
         match &self.correlation {
             Some(correlation) if independent.is_finite() => {
@@ -122,8 +128,7 @@ impl Prior {
         }
     }
 
-    /// Turns the marginals' normal scores into numbers that the prior makes independent: of correlated parameters, each given
-    /// those before it.
+    /// Turns the marginals' normal scores into independent ones: each correlated parameter given those before it.
     pub fn make_independent(&self, scores: &mut [f64]) {
         if let Some(correlation) = &self.correlation {
             correlation.whiten(scores);
@@ -149,7 +154,7 @@ impl Prior {
         theta
     }
 
-    /// What the correlations add to the slope and the curvature of -ln p at theta.
+    /// The contribution of the correlations to slope and curvature of -ln p at theta.
     pub fn slopes_of_correlation(&self, theta: &[f64]) -> CorrelationSlopes {
         self.correlation
             .as_ref()

@@ -1,4 +1,4 @@
-//! Integrate the mean and the standard deviation of a truncated marginal.
+//! Mean and standard deviation of a truncated marginal by quadrature.
 
 /// Intervals of the composite Simpson rule (even).
 const INTERVALS: usize = 4096;

@@ -1,4 +1,4 @@
-//! Evaluate the standard normal distribution, both tails to full relative accuracy.
+//! The standard normal distribution, both tails to full relative accuracy.
 
 /// ln sqrt(2 pi).
 pub const LN_SQRT_TAU: f64 = 0.918_938_533_204_672_8;
@@ -11,7 +11,7 @@ pub fn cdf(z: f64) -> f64 {
     0.5 * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// ln P(Z < z); below -30 by the first term of Mills' ratio, wrong there by 1/z^2.
+/// ln P(Z < z); below -30 by the first term of Mills' ratio, with an error of 1/z^2.
 pub fn log_cdf(z: f64) -> f64 {
     if z > -30.0 {
         libm::log(cdf(z))

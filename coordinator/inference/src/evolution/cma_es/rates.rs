@@ -1,27 +1,27 @@
-//! Set weights and learning rates as functions of dimension and population.
+//! Weights and learning rates as functions of dimension and population.
 //!
-//! Table 1 of Hansen 2016, without negative weights.
+//! Table 1 of Hansen 2016, arXiv:1604.00772, without negative weights.
 
-/// Population for a dimension.
-pub(super) fn usual_population(dimension: usize) -> usize {
+/// Default population for a dimension.
+pub(super) fn default_population(dimension: usize) -> usize {
     4 + (3.0 * libm::log(dimension.max(1) as f64)) as usize
 }
 
-/// What a run keeps fixed.
+/// The constants of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rates {
-    /// Of the better half, the best first; they sum to one.
+    /// Weights of the better half, the best first; they sum to one.
     pub(super) weights: Vec<f64>,
     /// Variance effective selection mass, 1 / sum of the squared weights.
     pub(super) effective: f64,
-    /// Of the path of the step size, and the damping of its effect.
+    /// Learning rate of the path of the step size, and its damping.
     pub(super) sigma: f64,
     pub(super) damping: f64,
-    /// Of the path of the covariance.
+    /// Learning rate of the path of the covariance.
     pub(super) path: f64,
-    /// Of the rank-one update.
+    /// Learning rate of the rank-one update.
     pub(super) rank_one: f64,
-    /// Of the rank-mu update.
+    /// Learning rate of the rank-mu update.
     pub(super) rank_mu: f64,
     /// Expected length of a standard normal vector.
     pub(super) length: f64,
@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn ten_dimensions_have_the_tutorial_s_numbers() {
-        assert_eq!(usual_population(10), 10);
+        assert_eq!(default_population(10), 10);
         let rates = Rates::new(10, 10);
         assert_eq!(rates.weights.len(), 5);
         assert!((rates.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! Run one search after the other, each with twice the population.
+//! The sequence of runs, each with twice the population of the last.
 
 use super::run::{CmaEsRun, End};
 use super::settings::CmaEsSettings;
@@ -16,13 +16,13 @@ const START: u64 = u64::MAX;
 pub(crate) struct Restarts {
     settings: CmaEsSettings,
     run: CmaEsRun,
-    /// Restarts after runs that found something.
+    /// Restarts after runs that found a possible point.
     restarts: usize,
     /// Starts drawn from the prior.
     starts: u64,
     /// Generations asked for so far, over all runs.
     generation: u64,
-    /// The best of the runs before this one, and whether a run that came to it has settled there.
+    /// The best of the earlier runs, and whether one of them converged there.
     found: (f64, bool),
 }
 
@@ -43,7 +43,7 @@ impl Restarts {
     pub(crate) fn next(&mut self, space: &PriorSpace, remaining: usize) -> NextGeneration {
         let mut population = self.run.population();
         if self.run.end.is_some() {
-            // A run that found nothing possible was no run: another start takes its place.
+            // A run that found no possible point does not count: another start replaces it.
             let found = self.run.best > f64::NEG_INFINITY;
             population *= if found { 2 } else { 1 };
             if (found && self.restarts == self.settings.restarts) || population > remaining {
@@ -68,16 +68,16 @@ impl Restarts {
         self.run.accept(generation, self.settings.tolerance);
     }
 
-    /// The best so far, and whether a run that came to it has settled there.
+    /// The best so far, and whether a run converged there.
     fn best(&self) -> (f64, bool) {
-        let (best, settled) = self.found;
-        let now = self.run.end == Some(End::Settled);
+        let (best, converged) = self.found;
+        let now = self.run.end == Some(End::Converged);
         let tolerance = self.settings.tolerance;
         if self.run.best > best + tolerance {
             (self.run.best, now)
         } else {
             let same = self.run.best > best - tolerance;
-            (best.max(self.run.best), settled || (same && now))
+            (best.max(self.run.best), converged || (same && now))
         }
     }
 

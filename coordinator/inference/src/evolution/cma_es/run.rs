@@ -1,4 +1,4 @@
-//! Run one search from a start to its end.
+//! One run of CMA-ES from its start to its end.
 
 use std::collections::VecDeque;
 
@@ -10,14 +10,14 @@ use statistics::rng::Stream;
 
 /// First standard deviation along every axis, in prior widths: 0.3 of the range of a uniform prior.
 const FIRST_STEP: f64 = 1.0;
-/// A run ends when its standard deviations are below this, in prior widths: no simulation tells such neighbours apart,
-/// and even a ridge between literal moduli is 1e-5 wide.
+/// A run ends when its standard deviations are below this, in prior widths: no simulation resolves such differences,
+/// and the thinnest ridge, between the literal moduli of Bekker's law, is 1e-5 wide.
 const SHORTEST: f64 = 1e-7;
 /// A run ends beyond this step: it has left the prior.
 const LONGEST: f64 = 1e4;
-/// A run ends when its covariance is so thin that rounding shapes it.
+/// A run ends when the condition number of its covariance exceeds this: rounding dominates.
 const THINNEST: f64 = 1e14;
-/// A run ends after so many generations that the model rejected altogether.
+/// A run ends after so many consecutive generations that the model rejected as a whole.
 const LOST: usize = 5;
 
 /// A run.
@@ -30,7 +30,7 @@ pub(super) struct CmaEsRun {
     draws: Vec<Vec<f64>>,
     /// Best log-posterior of the last generations, the newest last.
     recent: VecDeque<f64>,
-    /// Whole generations rejected, one after the other.
+    /// Consecutive generations that the model rejected as a whole.
     rejected: usize,
     /// Best log-posterior of the run.
     pub(super) best: f64,
@@ -40,8 +40,8 @@ pub(super) struct CmaEsRun {
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
-    /// It found nothing better any more.
-    Settled,
+    /// It converged.
+    Converged,
     /// The model rejected everything around it, or it left the prior.
     Lost,
 }
@@ -76,7 +76,7 @@ impl CmaEsRun {
         self.draws.iter().map(|draw| space.inside(draw)).collect()
     }
 
-    /// Lets the evaluated generation move the distribution; says whether the run has ended.
+    /// Updates the distribution by the evaluated generation, and ends the run where it is over.
     pub(super) fn accept(&mut self, generation: &[Individual], tolerance: f64) {
         let mut values: Vec<f64> = generation
             .iter()
@@ -98,16 +98,16 @@ impl CmaEsRun {
     }
 
     fn update(&mut self, generation: &[Individual], values: &[f64]) {
-        // Half of the generation's spread for a standard deviation beyond a bound.
+        // A standard deviation beyond a bound costs half of the generation's range.
         let spread = values[0] - values[values.len() / 2];
-        let price = spread.max(f64::MIN_POSITIVE) / self.distribution.mean_variance();
+        let penalty = spread.max(f64::MIN_POSITIVE) / self.distribution.mean_variance();
         let mut ranked: Vec<(f64, Option<&[f64]>)> = generation
             .iter()
             .zip(&self.draws)
             .map(|(individual, draw)| {
                 let pairs = individual.position.iter().zip(draw);
                 let beyond: f64 = pairs.map(|(inside, t)| (inside - t) * (inside - t)).sum();
-                let value = individual.log_posterior() - price * beyond;
+                let value = individual.log_posterior() - penalty * beyond;
                 (value, individual.is_possible().then_some(draw.as_slice()))
             })
             .collect();
@@ -135,7 +135,7 @@ impl CmaEsRun {
         let flat = self.recent.len() == window && highest - lowest < tolerance && range < tolerance;
         let widest = self.distribution.widest();
         if flat || widest < SHORTEST || self.distribution.condition() > THINNEST {
-            self.end = Some(End::Settled);
+            self.end = Some(End::Converged);
         } else if widest.is_nan() || widest > LONGEST {
             self.end = Some(End::Lost);
         }

@@ -1,10 +1,10 @@
-//! Draw from a normal distribution and let the better draws shape it.
+//! The normal distribution that a generation is drawn from, and its update.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::rates::Rates;
 
-/// N(mean, sigma^2 C) with the paths of its mean.
+/// N(mean, sigma^2 C) with its evolution paths.
 #[derive(Debug, Clone)]
 pub(super) struct SearchDistribution {
     pub(super) mean: DVector<f64>,
@@ -61,7 +61,7 @@ impl SearchDistribution {
 
     /// Moves and reshapes the distribution by its better draws, the best first; `None`: a draw that moves nothing.
     ///
-    /// Eq. 41 to 47 of Hansen 2016.
+    /// Eq. 41 to 47 of Hansen 2016, arXiv:1604.00772.
     pub(super) fn update(&mut self, rates: &Rates, better: &[Option<&[f64]>]) {
         let n = self.mean.len();
         let steps: Vec<(f64, DVector<f64>)> = rates

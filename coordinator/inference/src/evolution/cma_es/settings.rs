@@ -1,13 +1,13 @@
-//! Hold the settings of CMA-ES.
+//! The settings of CMA-ES.
 
-use super::rates::usual_population;
+use super::rates::default_population;
 use crate::evolution::settings_error::{EvolutionSettingsError, check_population};
 
 /// Settings of CMA-ES.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CmaEsSettings {
-    /// Individuals of a generation of the first run; `None`: 4 + floor(3 ln d) for d parameters. More of them keep
-    /// more workers busy.
+    /// Individuals of a generation of the first run; `None`: 4 + floor(3 ln d) for d parameters. More
+    /// individuals keep more workers busy.
     pub population: Option<usize>,
     /// Most evaluations, all runs together.
     pub max_evaluations: usize,
@@ -15,12 +15,12 @@ pub struct CmaEsSettings {
     pub restarts: usize,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// A run has settled when its best and its last generation lie so close together, in nats.
+    /// A run has converged when the best of its last generations and the last generation differ by less, in nats.
     pub tolerance: f64,
 }
 
 impl Default for CmaEsSettings {
-    /// The usual population, 5000 evaluations, 4 restarts, seed 1, tolerance 0.001 nats.
+    /// The default population, 5000 evaluations, 4 restarts, seed 1, tolerance 0.001 nats.
     fn default() -> Self {
         Self {
             population: None,
@@ -32,7 +32,7 @@ impl Default for CmaEsSettings {
     }
 }
 
-/// Half of them, at least two, make the next mean.
+/// The better half, at least two, makes the next mean.
 const LEAST_POPULATION: usize = 4;
 /// Most evaluations.
 const MOST_EVALUATIONS: usize = 1_000_000;
@@ -43,7 +43,7 @@ impl CmaEsSettings {
     /// Individuals of a generation of the first run.
     #[must_use]
     pub fn first_population(&self, dimension: usize) -> usize {
-        self.population.unwrap_or_else(|| usual_population(dimension))
+        self.population.unwrap_or_else(|| default_population(dimension))
     }
 
     pub(crate) fn check(&self, dimension: usize) -> Result<(), EvolutionSettingsError> {

@@ -1,4 +1,4 @@
-//! Make two children of two parents.
+//! Two children of two parents.
 
 use statistics::rng::Stream;
 
@@ -10,7 +10,7 @@ const CROSSOVER_INDEX: f64 = 3.0;
 const DRIFTING: f64 = 0.2;
 /// Longest usual mutation, in prior widths.
 const MUTATION: f64 = 0.5;
-/// Mutations are up to so many times shorter.
+/// Shortest mutation as a share of the longest.
 const SHORTEST: f64 = 1e-6;
 
 /// The positions that a mating draws from.
@@ -24,10 +24,10 @@ pub(super) struct MatingPair<'a> {
 /// Two children, not yet within the bounds.
 ///
 /// Half of the crossed pairs have one spread factor for all coordinates, so that children lie on the line through
-/// their parents and keep what correlates; the others have one for each. For the same reason some children move along
-/// the difference of two members, N(0, 1) times as far. Every coordinate mutates with probability 1 / dimension, a
-/// child that is not crossed at one coordinate at least: N(0, s^2) with ln s uniform over six decades, for there is
-/// a time for searching and a time for settling.
+/// their parents and keep correlations; the others have one for each coordinate. For the same reason some children move
+/// along the difference of two members, N(0, 1) times as far. Every coordinate mutates with probability 1 / dimension,
+/// a child that is not crossed in at least one: N(0, s^2) with ln s uniform over six decades, which serves exploration
+/// and convergence alike.
 pub(super) fn children(pair: &MatingPair, stream: &mut Stream) -> [Vec<f64>; 2] {
     let MatingPair { first, second, .. } = pair;
     let (mut one, mut other) = (first.to_vec(), second.to_vec());
@@ -60,7 +60,7 @@ fn drift(child: &mut [f64], [from, to]: [&[f64]; 2], stream: &mut Stream) {
     }
 }
 
-/// How far apart two children are over how far their parents were: beta with density
+/// The distance of two children over that of their parents: beta with density
 /// (n + 1) beta^n / 2 below 1 and (n + 1) beta^-(n + 2) / 2 above.
 fn spread_factor(stream: &mut Stream) -> f64 {
     let u = stream.uniform();

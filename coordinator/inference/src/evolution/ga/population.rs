@@ -1,4 +1,4 @@
-//! Decide who survives and who has children.
+//! The population: who survives and who has children.
 
 use super::mating::{MatingPair, children};
 use super::settings::GaSettings;
@@ -18,7 +18,7 @@ pub(crate) struct Population {
     /// The best first; empty before the first generation.
     members: Vec<Individual>,
     generation: usize,
-    /// The best when it last grew by more than the tolerance.
+    /// The best log-posterior at the last improvement by more than the tolerance.
     mark: f64,
     /// Generations since.
     idle: usize,
@@ -35,7 +35,7 @@ impl Population {
         }
     }
 
-    /// The positions of the next generation: prior draws for as long as the model has taken nobody, then children.
+    /// The positions of the next generation: prior draws as long as the model has accepted none, then children.
     pub(crate) fn next(&self, space: &PriorSpace) -> NextGeneration {
         let GaSettings {
             population,

@@ -1,4 +1,4 @@
-//! Hold the settings of a genetic algorithm.
+//! The settings of a genetic algorithm.
 
 use crate::evolution::settings_error::{EvolutionSettingsError, check_population};
 
@@ -11,11 +11,11 @@ pub struct GaSettings {
     pub generations: usize,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Best individuals that go on unchanged; they are not evaluated again.
+    /// Best individuals that survive unchanged; they are not evaluated again.
     pub elite: usize,
-    /// The search has settled after so many generations without a better best.
+    /// The evolution has converged after so many generations without an improvement.
     pub patience: usize,
-    /// What counts as better, in nats.
+    /// Least improvement that counts, in nats.
     pub tolerance: f64,
 }
 
@@ -33,7 +33,7 @@ impl Default for GaSettings {
     }
 }
 
-/// Tournaments need somebody to win against, and the elite must leave room for children.
+/// Tournaments need several members, and the elite must leave room for children.
 const LEAST_POPULATION: usize = 8;
 /// Most generations.
 const MOST_GENERATIONS: usize = 100_000;

@@ -1,0 +1,108 @@
+//! Densities and quantiles in the sampling coordinate.
+
+use super::normal::{self, LN_SQRT_TAU};
+
+/// Exponent below the peak at which the moments' integrals are cut: exp(-45) = 3e-20.
+const TAIL_NATS: f64 = 45.0;
+
+/// u(x): the coordinate in which the prior is uniform or normal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Coordinate {
+    Identity,
+    Log,
+}
+
+/// The density of u, on the truncated support.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Density {
+    Uniform {
+        lower: f64,
+        width: f64,
+    },
+    /// `low` and `high` are the standardised ends, `mass` the probability between them.
+    Normal {
+        mean: f64,
+        sd: f64,
+        low: f64,
+        high: f64,
+        mass: f64,
+    },
+}
+
+impl Coordinate {
+    pub(super) fn of(self, x: f64) -> f64 {
+        match self {
+            Self::Identity => x,
+            Self::Log => libm::log(x),
+        }
+    }
+
+    pub(super) fn value(self, u: f64) -> f64 {
+        match self {
+            Self::Identity => u,
+            Self::Log => libm::exp(u),
+        }
+    }
+}
+
+impl Density {
+    pub(super) fn log_at(&self, u: f64) -> f64 {
+        match *self {
+            Self::Uniform { width, .. } => -libm::log(width),
+            Self::Normal { mean, sd, mass, .. } => {
+                let z = (u - mean) / sd;
+                -0.5 * z * z - LN_SQRT_TAU - libm::log(sd) - libm::log(mass)
+            }
+        }
+    }
+
+    /// The probabilities below and above u, which lies inside.
+    pub(super) fn tails(&self, u: f64) -> [f64; 2] {
+        match *self {
+            Self::Uniform { lower, width } => [(u - lower) / width, (lower + width - u) / width],
+            Self::Normal {
+                mean,
+                sd,
+                low,
+                high,
+                mass,
+            } => {
+                let z = (u - mean) / sd;
+                [normal::mass(low, z) / mass, normal::mass(z, high) / mass]
+            }
+        }
+    }
+
+    /// For 0 < p < 1.
+    pub(super) fn quantile(&self, p: f64) -> f64 {
+        match *self {
+            Self::Uniform { lower, width } => lower + width * p,
+            Self::Normal {
+                mean,
+                sd,
+                low,
+                high,
+                mass,
+            } => {
+                // Work from the nearer tail, where the probability keeps its digits.
+                let below = normal::cdf(low) + p * mass;
+                let above = normal::cdf(-high) + (1.0 - p) * mass;
+                let z = if below < above {
+                    normal::lower_quantile(below)
+                } else {
+                    -normal::lower_quantile(above)
+                };
+                mean + sd * z
+            }
+        }
+    }
+}
+
+/// The part of [low, high] where a unit normal around `centre` lies within [`TAIL_NATS`] of its highest value
+/// there.
+pub(super) fn window(low: f64, high: f64, centre: f64) -> (f64, f64) {
+    let peak = centre.max(low).min(high);
+    let offset = (peak - centre).abs();
+    let reach = (offset * offset + 2.0 * TAIL_NATS).sqrt() - offset;
+    (low.max(peak - reach), high.min(peak + reach))
+}
