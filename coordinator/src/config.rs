@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use tracing_subscriber::filter::{LevelFilter, Targets};
 
 /// Finds the physics that a wheel-soil model is missing.
 #[derive(Debug, Parser)]
@@ -255,4 +256,14 @@ pub struct AddRuns {
     /// Threads that simulate here, for a folder; by default, one for each core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
+}
+
+/// What is logged: `RUST_LOG`, as a level or as `target=level` between commas, else `info,sqlx::query=warn`.
+pub fn log_filter() -> Targets {
+    let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
+    stated.unwrap_or_else(|| {
+        Targets::new()
+            .with_default(LevelFilter::INFO)
+            .with_target("sqlx::query", LevelFilter::WARN)
+    })
 }

@@ -3,6 +3,9 @@
 use clap::Parser;
 use coordinator::config::Config;
 use shared::sentence::of_causes;
+use tracing_subscriber::Layer as _;
+use tracing_subscriber::layer::SubscriberExt as _;
+use tracing_subscriber::util::SubscriberInitExt as _;
 
 fn main() -> std::process::ExitCode {
     if let Err(error) = coordinator::embedded::check_processor() {
@@ -15,13 +18,11 @@ fn main() -> std::process::ExitCode {
 #[tokio::main]
 async fn run() -> std::process::ExitCode {
     let config = Config::parse();
-    tracing_subscriber::fmt()
-        .with_env_filter(
-            tracing_subscriber::EnvFilter::try_from_default_env()
-                .unwrap_or_else(|_| "info,sqlx::query=warn".into()),
-        )
+    let log = tracing_subscriber::fmt::layer()
         .with_writer(std::io::stderr)
-        .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()))
+        .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()));
+    tracing_subscriber::registry()
+        .with(log.with_filter(coordinator::config::log_filter()))
         .init();
     match coordinator::command::execute(config.command).await {
         Ok(()) => std::process::ExitCode::SUCCESS,

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use tracing_subscriber::filter::{LevelFilter, Targets};
+
 /// Simulates wheel-soil contact for a Grouser coordinator.
 #[derive(Debug, clap::Parser)]
 #[command(version, args_conflicts_with_subcommands = true)]
@@ -60,4 +62,10 @@ pub struct Simulate {
     /// Where to write the shear stresses under the experiment's rings, with the columns of shear.csv.
     #[arg(long, value_name = "CSV")]
     pub shear: Option<PathBuf>,
+}
+
+/// What is logged: `RUST_LOG`, as a level or as `target=level` between commas, else `info`.
+pub fn log_filter() -> Targets {
+    let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
+    stated.unwrap_or_else(|| Targets::new().with_default(LevelFilter::INFO))
 }

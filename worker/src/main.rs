@@ -5,6 +5,9 @@ use std::sync::Arc;
 use anyhow::Context;
 use clap::Parser;
 use shared::sentence::of_causes;
+use tracing_subscriber::Layer as _;
+use tracing_subscriber::layer::SubscriberExt as _;
+use tracing_subscriber::util::SubscriberInitExt as _;
 use worker::client::HttpCoordinator;
 use worker::config::{PullArguments, WorkerCommand, WorkerConfig};
 use worker::evaluator::SimulationClock;
@@ -15,12 +18,11 @@ fn main() -> std::process::ExitCode {
         eprintln!("error: {error}");
         return std::process::ExitCode::FAILURE;
     }
-    tracing_subscriber::fmt()
-        .with_env_filter(
-            tracing_subscriber::EnvFilter::try_from_default_env().unwrap_or_else(|_| "info".into()),
-        )
+    let log = tracing_subscriber::fmt::layer()
         .with_writer(std::io::stderr)
-        .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()))
+        .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()));
+    tracing_subscriber::registry()
+        .with(log.with_filter(worker::config::log_filter()))
         .init();
     let config = WorkerConfig::parse();
     let done = match (config.command, config.serve) {

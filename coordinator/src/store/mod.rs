@@ -9,6 +9,7 @@ mod facts;
 mod file;
 mod health;
 mod json;
+mod migrations;
 mod prior;
 mod read;
 mod reader;
@@ -51,7 +52,7 @@ impl Store {
             .synchronous(SqliteSynchronous::Full);
         let mut connection = SqliteConnection::connect_with(&options).await.map_err(wrap)?;
         recognise(&mut connection, path).await?;
-        sqlx::migrate!("../migrations")
+        migrations::migrator()
             .run(&mut connection)
             .await
             .map_err(|source| StoreError::Migrate {

@@ -1,5 +1,8 @@
 //! The rules of the house, held by manifests, `use` lines and file sizes.
 
+mod circle;
+mod import;
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

@@ -1,0 +1,82 @@
+//! The store's tables, in the order in which they came about.
+
+use sqlx::SqlSafeStr;
+use sqlx::migrate::{Migration, MigrationType, Migrator};
+
+/// Number, name and text of each file of `migrations/`.
+///
+/// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
+const FILES: [(i64, &str, &str); 8] = [
+    (
+        1,
+        "experiments",
+        include_str!("../../../migrations/0001_experiments.sql"),
+    ),
+    (
+        2,
+        "calibrations",
+        include_str!("../../../migrations/0002_calibrations.sql"),
+    ),
+    (
+        3,
+        "evaluations",
+        include_str!("../../../migrations/0003_evaluations.sql"),
+    ),
+    (
+        4,
+        "estimates",
+        include_str!("../../../migrations/0004_estimates.sql"),
+    ),
+    (
+        5,
+        "search estimates",
+        include_str!("../../../migrations/0005_search_estimates.sql"),
+    ),
+    (
+        6,
+        "metamodel",
+        include_str!("../../../migrations/0006_metamodel.sql"),
+    ),
+    (
+        7,
+        "discoveries",
+        include_str!("../../../migrations/0007_discoveries.sql"),
+    ),
+    (
+        8,
+        "members experiment",
+        include_str!("../../../migrations/0008_members_experiment.sql"),
+    ),
+];
+
+/// Brings the tables of a store up to date.
+pub(super) fn migrator() -> Migrator {
+    let migration = |(version, name, sql): (i64, &'static str, &'static str)| {
+        Migration::new(
+            version,
+            name.into(),
+            MigrationType::Simple,
+            sql.into_sql_str(),
+            false,
+        )
+    };
+    Migrator::with_migrations(FILES.map(migration).to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_file_is_listed_under_its_number_and_name() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../migrations");
+        let mut files: Vec<String> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .filter(|name| name.ends_with(".sql"))
+            .collect();
+        files.sort();
+        let listed = FILES.map(|(version, name, _)| format!("{version:04}_{}.sql", name.replace(' ', "_")));
+        assert_eq!(files, listed);
+    }
+}

@@ -1,0 +1,230 @@
+//! The imports between the files of a crate, each followed to the file that defines what it names.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use proc_macro2::{TokenStream, TokenTree};
+use quote::ToTokens;
+use syn::{Item, UseTree};
+
+use farm_tests::workspace::{files, root, text};
+
+/// Most names and re-exports that are followed from one path.
+const DEPTH: usize = 16;
+
+/// A file of a crate as a module.
+#[derive(Default)]
+struct Module {
+    /// What it defines.
+    defined: BTreeSet<String>,
+    /// What it brings into scope under a name, as a path from the crate's root.
+    imported: BTreeMap<String, Vec<String>>,
+    /// Modules that it brings into scope as a whole.
+    globs: Vec<Vec<String>>,
+    /// Every path of two or more words that its code has.
+    named: BTreeSet<Vec<String>>,
+}
+
+/// The modules of a crate by their paths from its root.
+pub(super) struct Crate {
+    files: BTreeMap<Vec<String>, String>,
+    modules: BTreeMap<Vec<String>, Module>,
+}
+
+impl Crate {
+    /// Reads the sources below a folder.
+    pub(super) fn read(folder: &str) -> Self {
+        let below = root().join(folder);
+        let (mut paths, mut modules) = (BTreeMap::new(), BTreeMap::new());
+        for file in files(folder, ".rs") {
+            let relative = file.strip_prefix(&below).expect("a file of the folder");
+            let path = module_path(relative);
+            let source = syn::parse_file(&text(&file)).expect("the compiler reads it, too");
+            let mut module = Module::default();
+            for item in source.items.iter().filter(|item| !is_test(item)) {
+                module.take(item, &path);
+            }
+            paths.insert(path.clone(), format!("{folder}/{}", relative.display()));
+            modules.insert(path, module);
+        }
+        Self {
+            files: paths,
+            modules,
+        }
+    }
+
+    /// Whom each file imports.
+    pub(super) fn imports(&self) -> BTreeMap<&str, BTreeSet<&str>> {
+        let edges = self.modules.iter().map(|(path, module)| {
+            let imported = module.imported.values();
+            let imported = imported.filter_map(|absolute| self.definition(&[], absolute, DEPTH));
+            let named = module.named.iter();
+            let named = named.filter_map(|relative| self.definition(path, relative, DEPTH));
+            let globs = module.globs.iter().filter(|glob| self.files.contains_key(*glob));
+            let own = &self.files[path];
+            let targets = imported
+                .chain(named)
+                .chain(globs.cloned())
+                .map(|target| &self.files[&target]);
+            let targets = targets.filter(|target| *target != own).map(String::as_str);
+            (own.as_str(), targets.collect())
+        });
+        edges.collect()
+    }
+
+    /// The module that defines what a path means in another one; `None` for other crates, and for a module itself.
+    fn definition(&self, at: &[String], path: &[String], depth: usize) -> Option<Vec<String>> {
+        let (first, rest) = path.split_first()?;
+        let depth = depth.checked_sub(1)?;
+        match first.as_str() {
+            "crate" => return self.definition(&[], rest, depth),
+            "self" => return self.definition(at, rest, depth),
+            "super" => return self.definition(at.split_last()?.1, rest, depth),
+            _ => {}
+        }
+        let child: Vec<String> = at.iter().chain([first]).cloned().collect();
+        if self.modules.contains_key(&child) {
+            return self.definition(&child, rest, depth);
+        }
+        let module = self.modules.get(at)?;
+        if module.defined.contains(first) {
+            return Some(at.to_vec());
+        }
+        if let Some(target) = module.imported.get(first) {
+            let whole: Vec<String> = target.iter().chain(rest).cloned().collect();
+            return self.definition(&[], &whole, depth);
+        }
+        let globs = module.globs.iter();
+        let mut found = globs.filter_map(|glob| self.definition(glob, path, depth));
+        found.next()
+    }
+}
+
+impl Module {
+    fn take(&mut self, item: &Item, own: &[String]) {
+        let name = match item {
+            Item::Use(import) => return self.import(&import.tree, &mut Vec::new(), own),
+            Item::Struct(item) => Some(&item.ident),
+            Item::Enum(item) => Some(&item.ident),
+            Item::Trait(item) => Some(&item.ident),
+            Item::Type(item) => Some(&item.ident),
+            Item::Const(item) => Some(&item.ident),
+            Item::Static(item) => Some(&item.ident),
+            Item::Fn(item) => Some(&item.sig.ident),
+            _ => None,
+        };
+        self.defined.extend(name.map(ToString::to_string));
+        self.paths(item.to_token_stream());
+    }
+
+    /// Takes the leaves of a `use`, as paths from the crate's root; those of other crates lead nowhere.
+    fn import(&mut self, tree: &UseTree, before: &mut Vec<String>, own: &[String]) {
+        match tree {
+            UseTree::Path(path) => {
+                before.push(path.ident.to_string());
+                self.import(&path.tree, before, own);
+                before.pop();
+            }
+            UseTree::Group(group) => {
+                for tree in &group.items {
+                    self.import(tree, before, own);
+                }
+            }
+            UseTree::Glob(_) => self.globs.extend(absolute(before, own)),
+            UseTree::Name(name) => self.leaf(&name.ident.to_string(), &name.ident.to_string(), before, own),
+            UseTree::Rename(name) => {
+                self.leaf(&name.ident.to_string(), &name.rename.to_string(), before, own)
+            }
+        }
+    }
+
+    fn leaf(&mut self, name: &str, scope: &str, before: &[String], own: &[String]) {
+        let mut path = before.to_vec();
+        let mut scope = scope.to_owned();
+        if name == "self" {
+            scope = before.last().cloned().unwrap_or_default();
+        } else {
+            path.push(name.to_owned());
+        }
+        if let Some(path) = absolute(&path, own) {
+            self.imported.insert(scope, path);
+        }
+    }
+
+    /// Takes every path of two or more words out of code, that in macros included.
+    fn paths(&mut self, tokens: TokenStream) {
+        let mut path: Vec<String> = Vec::new();
+        let mut colons = 0;
+        for token in tokens {
+            match token {
+                TokenTree::Ident(word) => {
+                    if colons != 2 {
+                        self.end(&mut path);
+                    }
+                    path.push(word.to_string());
+                    colons = 0;
+                }
+                TokenTree::Punct(mark) if mark.as_char() == ':' => colons += 1,
+                TokenTree::Group(group) => {
+                    self.end(&mut path);
+                    self.paths(group.stream());
+                    colons = 0;
+                }
+                _ => {
+                    self.end(&mut path);
+                    colons = 0;
+                }
+            }
+        }
+        self.end(&mut path);
+    }
+
+    fn end(&mut self, path: &mut Vec<String>) {
+        let path = std::mem::take(path);
+        if path.len() > 1 {
+            self.named.insert(path);
+        }
+    }
+}
+
+/// A path from the crate's root; `None` where it begins with another crate, or with a name that is in scope already.
+fn absolute(path: &[String], own: &[String]) -> Option<Vec<String>> {
+    let mut at = own.to_vec();
+    let mut words = path.iter().peekable();
+    match words.next()?.as_str() {
+        "crate" => at.clear(),
+        "self" => {}
+        "super" => {
+            at.pop();
+        }
+        first => at.push(first.to_owned()),
+    }
+    while words.next_if(|word| *word == "super").is_some() {
+        at.pop();
+    }
+    at.extend(words.cloned());
+    Some(at)
+}
+
+fn module_path(relative: &Path) -> Vec<String> {
+    let words = relative.with_extension("");
+    let words = words.iter().map(|word| word.to_string_lossy().into_owned());
+    let mut words: Vec<String> = words.collect();
+    words.pop_if(|last| ["mod", "lib", "main"].contains(&last.as_str()));
+    words
+}
+
+fn is_test(item: &Item) -> bool {
+    let attributes = match item {
+        Item::Mod(item) => &item.attrs,
+        Item::Fn(item) => &item.attrs,
+        Item::Impl(item) => &item.attrs,
+        Item::Use(item) => &item.attrs,
+        Item::Const(item) => &item.attrs,
+        Item::Struct(item) => &item.attrs,
+        _ => return false,
+    };
+    let text = attributes.iter().map(|a| a.to_token_stream().to_string());
+    text.into_iter()
+        .any(|text| text.contains("cfg") && text.contains("test"))
+}
