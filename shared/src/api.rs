@@ -98,7 +98,7 @@ pub struct RunsAdded {
     pub experiment: i64,
 }
 
-/// Where a calibration stands.
+/// The state of a calibration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CalibrationState {
@@ -108,13 +108,13 @@ pub enum CalibrationState {
     Running,
     /// Stopped by a user, or because a machine's faults used up an evaluation's attempts.
     Paused,
-    /// A decision is asked of the user.
+    /// It waits for a decision of the user.
     Waiting,
-    /// The posterior is there.
+    /// The posterior is complete.
     Finished,
-    /// It cannot go on; the message says why.
+    /// It cannot continue; the message says why.
     Failed,
-    /// Stopped for good by a user.
+    /// Stopped permanently by a user.
     Cancelled,
 }
 
@@ -148,7 +148,7 @@ impl CalibrationState {
         Self::ALL.into_iter().find(|s| s.name() == name)
     }
 
-    /// Whether nothing will happen any more.
+    /// Whether the state is final.
     pub fn is_final(self) -> bool {
         matches!(
             self,
@@ -168,7 +168,7 @@ pub struct CalibrationStatus {
     pub study: i64,
     /// The experiment it is about.
     pub experiment: i64,
-    /// Where it stands.
+    /// Its state.
     pub state: CalibrationState,
     /// Why it is paused or failed.
     pub message: Option<String>,
@@ -195,7 +195,7 @@ pub struct Progress {
     pub acceptance: f64,
     /// Evaluations done, over all stages.
     pub evaluations: u64,
-    /// Of these, refused by the model.
+    /// Of these, rejected by the model.
     pub rejected: u64,
     /// Evaluations of the present step that are done.
     pub step_done: u64,
@@ -203,7 +203,7 @@ pub struct Progress {
     pub step_size: u64,
     /// Evaluations per second, lately.
     pub evaluations_per_s: f64,
-    /// Rough time to go `[s]`; `None` while nothing is known.
+    /// Estimated remaining time `[s]`; `None` while it is not known.
     pub remaining_s: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Names what a test rig measures.
+//! The channels that a test rig measures.
 
 use serde::{Deserialize, Serialize};
 

@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 
 use crate::outcome::Outcome;
 
-/// Version of these messages; a coordinator answers another one with 426.
+/// Version of these messages; a coordinator answers any other version with 426.
 pub const PROTOCOL_VERSION: u32 = 5;
 
 /// `POST /v1/work/exchange`: results of finished leases, and how many more are wanted.
@@ -45,7 +45,7 @@ pub struct WorkResult {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Object>)]
     pub end: Option<SubchainEnd>,
-    /// What came out; of a subchain, at its end. Absent where none of its moves was accepted: there was nothing to evaluate.
+    /// The outcome; of a subchain, at its end. Absent where none of its moves was accepted, so that there was nothing to evaluate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outcome: Option<Outcome>,
 }
@@ -60,11 +60,11 @@ pub struct ExchangeResponse {
     pub lease_ms: u64,
     /// Evaluations not yet leased in the calibrations at hand; bounds the next `want`.
     pub remaining: u64,
-    /// Workers heard of lately; bounds the next `want`.
+    /// Workers active recently; bounds the next `want`.
     pub workers: u32,
     /// Results that changed nothing: late duplicates, or of a calibration that ended.
     pub duplicates: u32,
-    /// Why a worker that asked got no lease of a waiting calibration, if so.
+    /// Why the worker got no lease although a calibration is waiting, if so.
     pub refused: Option<String>,
 }
 

@@ -15,13 +15,13 @@ pub struct FileSet {
 }
 
 impl FileSet {
-    /// The text of a file that the file `by` names.
+    /// The text of a file that is named in the file `by`.
     ///
     /// # Errors
-    /// [`FileError`] of `by`, where the file did not come along.
+    /// [`FileError`] of `by`, where the file is not in the set.
     pub fn named(&self, by: &str, file: &str) -> Result<&str, FileError> {
         let text = self.files.get(file).map(String::as_str);
-        text.ok_or_else(|| FileError::whole(by, format!("file \"{file}\" is named but was not sent along")))
+        text.ok_or_else(|| FileError::whole(by, format!("file \"{file}\" is named but was not sent")))
     }
 }
 
@@ -91,7 +91,7 @@ pub fn read_beside(beside: &Path, names: &[String]) -> Result<BTreeMap<String, S
     names.iter().map(read).collect()
 }
 
-/// Deepest nesting of brackets in a file of ours; a job needs three.
+/// Deepest nesting of brackets; a job needs three.
 const DEEPEST: usize = 16;
 
 /// Parses TOML into `T`; an unknown key is an error that names its line and the nearest known key.
@@ -119,7 +119,7 @@ fn line_of(text: &str, offset: usize) -> usize {
     text.bytes().take(offset).filter(|&b| b == b'\n').count() + 1
 }
 
-/// A number as people write it: an integer is one, too.
+/// A number; an integer counts as one.
 pub fn number(value: &toml::Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
 }

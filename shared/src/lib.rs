@@ -6,14 +6,14 @@
 //! - [`experiment`]: an experiment as its files describe it: wheels, rig, noise, protocol, test runs.
 //! - [`model`]: which forward model is meant ([`model::ModelSettings`]) and the self-contained
 //!   [`model::ModelVariant`] that a worker evaluates.
-//! - [`outcome`]: what an evaluation gives: observables, a rejection of the parameters, or a fault.
+//! - [`outcome`]: the outcome of an evaluation: observables, a rejection of the parameters, or a fault.
 //! - [`predicted`]: which of the observables a likelihood takes.
 //! - [`exchange`]: the messages between worker and coordinator.
 //! - [`api`]: the messages between a user and the service.
-//! - [`sentence`]: what went wrong, with its causes.
+//! - [`sentence`]: an error and its causes in one sentence.
 //! - [`mod@file`]: text files by name, and errors that name file, line and the nearest known word.
 //!
-//! No behaviour lives here but parsing and validation; no clock, no network, no database.
+//! The crate only parses and validates: no clock, no network, no database.
 
 pub mod api;
 pub mod channel;

@@ -1,4 +1,4 @@
-//! What an evaluation gives: observables, a rejection of the parameters, or a fault of the machine.
+//! The outcome of an evaluation: observables, a rejection of the parameters, or a fault of the machine.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -15,15 +15,15 @@ use crate::channel::Channel;
 pub enum Outcome {
     /// The model gave observables.
     Evaluated(Observables),
-    /// The model refuses these parameters: a fact about them, recorded and never retried.
+    /// The model rejects these parameters: a property of them, recorded and never retried.
     Rejected(ParameterRejection),
-    /// The machine failed: a fact about it; the evaluation is leased again elsewhere.
+    /// The machine failed; the evaluation is leased again elsewhere.
     Fault(Fault),
 }
 
 /// Averages of every run, one vector per channel and per diagnostic, in the order of the conditions.
 ///
-/// Not-a-number has no form in JSON: a simulation that yields one is a rejection.
+/// JSON cannot represent NaN: a simulation that yields one is a rejection.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Observables {
@@ -39,7 +39,7 @@ pub struct Observables {
     pub b_eff_m: Vec<f64>,
     /// Mean contact length `[m]`.
     pub contact_length_m: Vec<f64>,
-    /// What the vertical balance leaves over `[N]`.
+    /// Residual of the vertical balance `[N]`.
     pub residual_load_n: Vec<f64>,
     /// Nodes, or quadrature points, in contact.
     pub nodes_in_contact: Vec<u32>,
@@ -68,15 +68,15 @@ pub struct Observables {
     /// Shear stress under each ring of the variant `[Pa]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shear_stress_pa: Vec<f64>,
-    /// The predicted values of the quasi-static model beside; `None` where the variant has none, or it refuses.
+    /// The predicted values of the companion, the quasi-static model; `None` where there is none, or it rejects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coarse: Option<Vec<f64>>,
-    /// What each run felt over time; empty unless the variant asks for it.
+    /// Time histories of the runs; empty unless the variant asks for them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub histories: Vec<SimulatedHistory>,
 }
 
-/// What a simulated run felt over time: means over intervals of 0.1 s, from its beginning, transients included, unfiltered.
+/// Time histories of a simulated run: means over intervals of 0.1 s from its beginning, transients included, unfiltered.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SimulatedHistory {
@@ -140,7 +140,7 @@ impl Observables {
         }
     }
 
-    /// A number that two results share only if they agree to the bit, as good as surely (64 bits).
+    /// A 64-bit hash: results with different bits almost certainly differ in it.
     pub fn fingerprint(&self) -> u64 {
         let vectors = [
             &self.drawbar_pull_n,
@@ -171,13 +171,13 @@ impl Observables {
     }
 }
 
-/// Why the model refuses a parameter vector.
+/// Why the model rejects a parameter vector.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterRejection {
     /// Stable word: `no_support`, `no_convergence`, `not_finite`, `energy_gained`, `protocol`, `formula`, `invalid_parameter`.
     pub kind: String,
-    /// Position of the condition that was refused, plates counted behind the runs and rings behind the plates.
+    /// Position of the rejected condition; plates are counted after the runs, and rings after the plates.
     pub condition: u32,
     /// Quantity, value, unit, bound.
     pub message: String,

@@ -19,7 +19,7 @@ pub struct BaseParameter {
     pub lower: f64,
     /// Largest admissible value.
     pub upper: f64,
-    /// Value where a job says nothing; `None` = the job must say.
+    /// Value where the job gives none; `None` = the job must give one.
     pub default: Option<f64>,
 }
 
@@ -53,7 +53,7 @@ pub const BASE: [BaseParameter; 10] = [
     base("gamma_exponent", "1", 0.0, 100.0, Some(0.5)),
 ];
 
-/// Parameters of the soil's deformation, which the three-dimensional model alone has.
+/// Parameters of the soil's deformation, which only the three-dimensional model has.
 pub const SPATIAL: [BaseParameter; 3] = [
     base("elastic_stiffness_pa_m", "Pa/m", 1e6, 1e13, Some(1e9)),
     base("flow_fraction", "1", 0.0, 1.0, Some(0.25)),
@@ -81,7 +81,7 @@ impl From<&BaseParameter> for ParameterBounds {
     }
 }
 
-/// Whether a name means something in jobs already, so that no effect may have it.
+/// Whether a name already has a meaning in jobs, so that no effect may have it.
 pub(crate) fn is_taken(name: &str) -> bool {
     // "none" is the absence of effects in results
     ["none", "noise", "bevameter"].contains(&name) || BASE.iter().chain(&SPATIAL).any(|p| p.name == name)
@@ -96,7 +96,7 @@ pub const B_REF_M: f64 = 0.03;
 /// Sinkage at which `p_ref` is defined `[m]`.
 pub const Z_REF_M: f64 = 0.01;
 
-/// Bekker's moduli `k_c` `[N/m^(n+1)]` and `k_phi` `[N/m^(n+2)]` in the place of `log10_p_ref`, `kappa` and n.
+/// Bekker's moduli `k_c` `[N/m^(n+1)]` and `k_phi` `[N/m^(n+2)]` from `log10_p_ref`, `kappa` and n.
 ///
 /// `p_ref = (k_c / b_ref + k_phi) z_ref^n`, `kappa = k_c / (k_phi b_ref)`, hence `k_phi = p_ref / (z_ref^n (1 + kappa))` and
 /// `k_c = kappa k_phi b_ref`. Infinite at `kappa = -1`. The models' own conversion gives the same bits: checked by
@@ -109,17 +109,17 @@ pub fn bekker_moduli(log10_p_ref: f64, kappa: f64, n: f64) -> (f64, f64) {
 /// Prefix of the inferred noise standard deviations.
 pub const NOISE_PREFIX: &str = "noise.";
 
-/// The parameter that a noise sd of a channel is inferred as: `noise.drawbar_pull_n`.
+/// The parameter for the noise sd of a channel: `noise.drawbar_pull_n`.
 pub fn noise_parameter(channel: Channel) -> String {
     format!("{NOISE_PREFIX}{}", channel.column())
 }
 
-/// The parameter that a relative scatter is inferred as: `noise.run_scatter`.
+/// The parameter for a relative scatter: `noise.run_scatter`.
 pub fn scatter_parameter(scatter: Scatter) -> String {
     format!("{NOISE_PREFIX}{}", scatter.key())
 }
 
-/// A unit behind a number in a sentence: ` m`, and nothing for a number without unit.
+/// A unit after a number in a sentence: ` m`, or nothing for a dimensionless number.
 pub fn behind(unit: &str) -> String {
     if unit == "1" {
         String::new()

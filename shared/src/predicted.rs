@@ -1,4 +1,4 @@
-//! Name the values that a likelihood takes out of the observables.
+//! The values that a likelihood takes from the observables.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -39,7 +39,7 @@ pub enum PredictedValue {
 }
 
 impl PredictedValue {
-    /// The value; `observables` must cover the variant that this was made for.
+    /// The value in `observables`, which must cover the variant that this was made for.
     pub fn of(self, observables: &Observables) -> f64 {
         match self {
             PredictedValue::Average { channel, run } => observables.channel(channel)[run],

@@ -1,7 +1,6 @@
-//! Say what went wrong, with its causes, in one sentence.
+//! An error and its causes in one sentence.
 
-/// Puts an error and its causes behind one another, from the outermost in; a cause that the text before it already
-/// contains is not said again.
+/// Joins an error and its causes, from the outermost in; a cause that the text already contains is not repeated.
 pub fn of_causes(causes: impl Iterator<Item = impl ToString>) -> String {
     causes
         .map(|cause| cause.to_string())

@@ -212,7 +212,7 @@ fn forward_runs_need_a_value_for_every_strength_and_take_shapes_from_the_file() 
     assert_eq!(
         message,
         format!(
-            "{}: torque_gain.gain_error has no value: effect torque_gain has it",
+            "{}: torque_gain.gain_error has no value: it is a parameter of effect torque_gain",
             folder.path().join("theta.toml").display()
         )
     );
@@ -265,7 +265,7 @@ fn the_catalogue_is_listed_and_shown() {
         (
             "\"my_gain\"",
             "\"hard_pan\"",
-            " line 1: name \"hard_pan\" is an effect's of the catalogue",
+            " line 1: name \"hard_pan\" belongs to an effect of the catalogue",
         ),
         (
             "\"my_gain\"",
@@ -275,7 +275,7 @@ fn the_catalogue_is_listed_and_shown() {
         (
             "drawbar_pull = ",
             "mechanism = \"rebound\"\ndrawbar_pull = ",
-            " line 4: mechanism is for the effects of the catalogue: a file has formulas",
+            " line 4: mechanism is reserved for the catalogue: a file has formulas",
         ),
         (
             "[0.0, 0.2]",

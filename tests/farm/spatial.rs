@@ -79,7 +79,7 @@ fn a_model_without_time_refuses_histories_and_leaves_no_file() {
     std::fs::write(&model, "kind = \"quasi_static\"\n").unwrap();
     let error = simulate(folder.path(), &model).refusal();
     assert!(
-        error.contains("--histories: quasi_static knows the steady state alone; use kind = \"scm\""),
+        error.contains("--histories: quasi_static has only a steady state; use kind = \"scm\""),
         "{error}"
     );
     assert!(!folder.path().join("runs.csv").exists());

@@ -1,4 +1,4 @@
-//! The coordinator over HTTP; the only place of the worker that knows HTTP.
+//! HTTP client of the coordinator; no other file of the worker uses HTTP.
 
 use std::time::Duration;
 
@@ -82,7 +82,7 @@ impl HttpCoordinator {
             Ok(body) => body.error.message,
             Err(_) => format!("status {status}"),
         };
-        // Only a client's mistake is for ever; a busy or broken coordinator may mend.
+        // only a client's error is permanent; a busy or broken coordinator may recover
         if status.is_client_error() && status != StatusCode::TOO_MANY_REQUESTS {
             Err(ExchangeError::Refused(message))
         } else {
@@ -115,7 +115,7 @@ impl Coordinator for HttpCoordinator {
             .text()
             .await
             .map_err(|e| ExchangeError::Away(root_cause(&e)))?;
-        // What arrived whole and cannot be read will not be readable the next time either.
+        // a complete answer that cannot be read will not be readable the next time either
         serde_json::from_str(&text)
             .map(Some)
             .map_err(|e| ExchangeError::Refused(format!("variant {hash} cannot be read: {e}")))

@@ -27,14 +27,14 @@ pub struct PullArguments {
     pub threads: Option<std::num::NonZeroUsize>,
 }
 
-/// What else a worker does.
+/// What a worker does besides serving a coordinator.
 #[derive(Debug, clap::Subcommand)]
 pub enum WorkerCommand {
     /// Forward runs of an experiment, without a coordinator.
     Simulate(Simulate),
 }
 
-/// Forward runs of an experiment; each of `--out`, `--plates` and `--shear` asks for one table, at least one must.
+/// Forward runs of an experiment; at least one of `--out`, `--plates` and `--shear` must be given, one for each table.
 #[derive(Debug, clap::Args)]
 #[command(group = clap::ArgGroup::new("tables").required(true).multiple(true).args(["out", "plates", "shear"]))]
 pub struct Simulate {
@@ -47,7 +47,7 @@ pub struct Simulate {
     #[arg(long)]
     pub parameters: PathBuf,
     /// Adds noise of the experiment's standard deviations to the runs, drawn from this seed; plates and shear
-    /// readings get none, because none is declared for them.
+    /// readings get no noise, because none is declared for them.
     #[arg(long, requires = "out")]
     pub noise_seed: Option<u64>,
     /// Folder for the time histories of each run, RUN.csv at 10 Hz (kind = "scm").

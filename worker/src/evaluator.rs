@@ -74,14 +74,14 @@ impl Evaluator {
         })
     }
 
-    /// Queues evaluations behind those that wait; a panic of the model is a fault, not a loss.
+    /// Queues evaluations behind those that wait; a panic of the model becomes a fault.
     pub fn start(&self, batch: Vec<(Lease, Arc<CompiledVariant>)>) {
         let outstanding = self.bench.outstanding.fetch_add(batch.len(), Ordering::AcqRel) + batch.len();
         self.bench.wake_at.store(outstanding / 2, Ordering::Release);
         for (lease, variant) in batch {
             let (bench, clock) = (self.bench.clone(), self.clock.clone());
             self.pool.spawn_fifo(move || {
-                // Once the worker stops, what has not begun is given back instead.
+                // once the worker stops, evaluations that have not begun are given back instead
                 if !bench.cancelled.load(Ordering::Acquire) {
                     let result = evaluate(lease, &variant, &clock);
                     bench
@@ -108,7 +108,7 @@ impl Evaluator {
         std::mem::take(&mut *self.bench.results.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Evaluates nothing more that has not begun, and waits for what has.
+    /// Drops the evaluations that have not begun, and waits for the others.
     pub async fn cancel(&self) {
         self.bench.cancelled.store(true, Ordering::Release);
         self.bench.wake_at.store(0, Ordering::Release);

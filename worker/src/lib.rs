@@ -1,10 +1,10 @@
 //! A stateless worker: pulls parameter vectors, simulates, posts observables.
 //!
 //! # Layout
-//! - [`model`]: a variant made ready to evaluate: shared names become the physics' types.
+//! - [`model`]: a variant compiled for evaluation.
 //! - [`evaluator`]: a pool of threads that evaluates leases and counts the time it simulates.
 //! - [`pull`]: the loop of a worker: exchange, evaluate, resend, renew, give back.
-//! - [`client`]: the coordinator over HTTP; the only place that knows HTTP.
+//! - [`client`]: HTTP client of the coordinator.
 //! - [`simulate`]: forward runs of an experiment without a coordinator.
 //! - [`processor`]: whether this machine can run what was built.
 //! - [`config`]: command line and environment.

@@ -1,6 +1,6 @@
-//! Say so, in words, if this program was built for a processor that this machine does not have.
+//! Check of the processor against the build.
 
-/// What the build asks of the processor, by the name Linux gives it.
+/// The processor feature that the build needs, as named by Linux.
 const NEEDED: &str = "avx2";
 
 /// This machine's processor lacks what the build asks for.
@@ -11,7 +11,7 @@ const NEEDED: &str = "avx2";
 )]
 pub struct ProcessorError;
 
-/// Checks the processor; without, the first vector instruction would end the program without a word.
+/// Checks the processor; otherwise the first vector instruction would end the program without a message.
 ///
 /// # Errors
 /// [`ProcessorError`] says how to build for this machine.

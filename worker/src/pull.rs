@@ -1,7 +1,7 @@
 //! The loop of a worker: exchange, evaluate, resend, renew, give back.
 //!
-//! New leases are asked for while the last ones are still being evaluated, so threads wait only where the
-//! sampler itself does: at the end of a step.
+//! New leases are requested while the last ones are still being evaluated, so threads wait only where the
+//! sampler does: at the end of a step.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::future::Future;
@@ -61,10 +61,10 @@ pub struct PullSettings {
     pub threads: usize,
 }
 
-/// Runs until `shutdown` is ready; then what has not begun is given back.
+/// Runs until `shutdown` is ready; then gives back the leases that have not begun.
 ///
 /// # Errors
-/// [`ExchangeError::Refused`], or the threads cannot be started (as `Refused`, too: nothing can mend it).
+/// [`ExchangeError::Refused`], also where the threads cannot be started, because retrying would not help.
 pub async fn run<C: Coordinator>(
     coordinator: Arc<C>,
     settings: PullSettings,
@@ -95,7 +95,7 @@ pub async fn run<C: Coordinator>(
     worker.run(shutdown).await
 }
 
-/// What the last answer told.
+/// The state of the coordinator in its last answer.
 #[derive(Debug)]
 struct Known {
     remaining: u64,
@@ -109,7 +109,7 @@ struct Known {
 
 /// Why a variant is not in the cache.
 enum Missing {
-    /// It cannot be had now.
+    /// It cannot be fetched now.
     Away,
     /// This worker cannot compute it.
     Unusable(String),
@@ -143,7 +143,7 @@ impl<C: Coordinator> Worker<C> {
                 tokio::select! {
                     () = &mut shutdown => return self.stop().await,
                     () = self.evaluator.woken() => {}
-                    // Short leases are looked after more often.
+                    // short leases are renewed more often
                     () = tokio::time::sleep(FLUSH.min(self.renewal_period())) => {}
                 }
                 continue;
@@ -154,7 +154,7 @@ impl<C: Coordinator> Worker<C> {
             tokio::pin!(exchange);
             let answer = tokio::select! {
                 () = &mut shutdown => {
-                    // Leases may be under way: the answer gets a moment, so that they go back too.
+                    // leases may be under way: wait briefly for the answer, to give them back too
                     match tokio::time::timeout(PARTING, exchange).await {
                         Ok(Ok(response)) => self.held.extend(response.leases.iter().map(|l| l.lease)),
                         Ok(Err((_, results))) => self.outbox.extend(results),
@@ -192,7 +192,7 @@ impl<C: Coordinator> Worker<C> {
         }
     }
 
-    /// Takes what the threads have done.
+    /// Collects the results of the threads.
     fn collect(&mut self) {
         for result in self.evaluator.take() {
             self.take(result);
@@ -204,7 +204,7 @@ impl<C: Coordinator> Worker<C> {
         self.outbox.push(result);
     }
 
-    /// An exchange is due when half of the last batch is done, when hands are empty, or when results or
+    /// An exchange is due when half of the last batch is done, when no lease is held, or when results or
     /// renewals have waited long enough.
     fn is_time_to_exchange(&self) -> bool {
         let more_to_get = self.known.remaining > 0 && self.held.len() * 2 <= self.known.asked;
@@ -254,7 +254,7 @@ impl<C: Coordinator> Worker<C> {
             },
             returned: std::mem::take(&mut self.returned),
             want: self.want().max(u32::from(idle)),
-            // Whoever still has work in hand comes back for more by itself.
+            // a worker that still holds work returns for more by itself
             wait_ms: if idle { WAIT_MS } else { 0 },
         }
     }
@@ -319,7 +319,7 @@ impl<C: Coordinator> Worker<C> {
         });
     }
 
-    /// Sees to it that a variant is in the cache.
+    /// Makes sure that a variant is in the cache.
     async fn fetch(&mut self, hash: &str) -> Result<(), Missing> {
         if self.variants.get(hash).is_some() {
             return Ok(());
@@ -330,12 +330,12 @@ impl<C: Coordinator> Worker<C> {
                 .add(hash, &variant)
                 .map_err(|e| Missing::Unusable(e.to_string())),
             Err(ExchangeError::Refused(reason)) => Err(Missing::Unusable(reason)),
-            // The calibration has ended meanwhile, or the coordinator is away: nobody is to blame.
+            // the calibration has ended meanwhile, or the coordinator is away: not an error
             Ok(None) | Err(ExchangeError::Away(_)) => Err(Missing::Away),
         }
     }
 
-    /// Gives back what has not begun and sends what is done; leases in hand end with the process otherwise.
+    /// Gives back the leases that have not begun and sends the finished results.
     async fn stop(mut self) -> Result<(), ExchangeError> {
         self.evaluator.cancel().await;
         self.collect();
@@ -352,7 +352,7 @@ impl<C: Coordinator> Worker<C> {
             Ok(Ok(_)) => tracing::info!(worker = self.settings.name, sent, returned, "stopped"),
             _ => tracing::warn!(
                 worker = self.settings.name,
-                "stopped; the coordinator could not be told"
+                "stopped; the coordinator could not be notified"
             ),
         }
         Ok(())

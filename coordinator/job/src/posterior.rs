@@ -488,7 +488,7 @@ mod tests {
             (
                 "posterior = \"q.csv\"",
                 csv(),
-                "job.toml: file \"q.csv\" is named but was not sent along",
+                "job.toml: file \"q.csv\" is named but was not sent",
             ),
             (
                 "posterior = \"p.csv\"\nmoduli = \"literal\"",

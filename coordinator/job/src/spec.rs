@@ -114,12 +114,9 @@ impl Spec {
         let mut parameters = Vec::new();
         let mut joint_prior = None;
         if let Some(posterior) = job.posterior {
-            let text = texts.get(&posterior.file).ok_or_else(|| {
-                in_job(format!(
-                    "file \"{}\" is named but was not sent along",
-                    posterior.file
-                ))
-            })?;
+            let text = texts
+                .get(&posterior.file)
+                .ok_or_else(|| in_job(format!("file \"{}\" is named but was not sent", posterior.file)))?;
             let entry = |name: &str| job.priors.iter().find(|entry| entry.name == name);
             let fixed = |name: &str| {
                 let stated = || entry(name).and_then(|entry| number(&entry.value));

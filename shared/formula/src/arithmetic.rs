@@ -1,4 +1,4 @@
-//! Compute one operation, at one point or at many: the same bits either way.
+//! One operation, at one point or at many, with the same bits.
 //!
 //! The functions that vectorise, [`elementary`]'s, are used wherever they are defined and `libm`'s elsewhere, at one point
 //! as at many, so that no comparison and no table can tell how a formula was evaluated.

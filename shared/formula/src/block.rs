@@ -1,4 +1,4 @@
-//! Evaluate formulas at many points at a time.
+//! Evaluation of formulas at many points at a time.
 
 pub use crate::address::BLOCK;
 use crate::address::{Address, COLUMNS};
@@ -50,7 +50,7 @@ impl Block {
         }
     }
 
-    /// Replaces a variable at the first `points` points, at most [`BLOCK`], by what a program makes of all of them.
+    /// Replaces a variable at the first `points` points, at most [`BLOCK`], by the values of a program.
     ///
     /// `scalars` are those that [`Program::settle`] left. Values beyond the last point are unspecified. Each value has the
     /// bits that [`Program::settle`] gives where nothing differs from point to point. Checked by

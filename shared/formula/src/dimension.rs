@@ -1,6 +1,6 @@
-//! Check that the units of a formula can be right.
+//! Check of the units of a formula.
 //!
-//! Only what units say for certain is an error. A number has whatever unit its neighbour needs, as in `v_t / 0.02` or
+//! Only a certain contradiction is an error. A number has whatever unit its neighbour needs, as in `v_t / 0.02` or
 //! `1.5 * p`; so has a quantity whose unit depends on a parameter, such as `k_star` or `z^n`.
 
 use crate::graph::{Binary, Graph, Id, Node, Unary};

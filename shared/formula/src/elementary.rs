@@ -1,4 +1,4 @@
-//! Give `exp`, `ln` and powers that vectorise and have the same bits on every machine.
+//! `exp`, `ln` and powers that vectorise and have the same bits on every machine.
 //!
 //! A contact spends most of its time in these three. They have no branches and use only IEEE additions,
 //! multiplications, divisions and integer arithmetic, so that a loop over points compiles to vector code

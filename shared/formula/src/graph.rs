@@ -1,4 +1,4 @@
-//! Hold the operations of one effect's formulas, each of them once.
+//! The operations of one effect's formulas, without repetition.
 
 use std::collections::BTreeMap;
 

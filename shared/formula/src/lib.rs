@@ -1,23 +1,23 @@
-//! Effects as formulas: their grammar, their files, and how they are evaluated a block of points at a time.
+//! Effects as formulas: their grammar, their files and their evaluation at blocks of points.
 //!
 //! # Layout
-//! What stands in a file:
+//! Content of an effect file:
 //! - [`effect`]: an effect file, read and checked.
 //! - [`catalogue`]: the effect files that come with the program.
-//! - [`variable`], [`hook`]: what a formula sees, and which quantity of the model it replaces.
+//! - [`variable`], [`hook`]: the variables of a formula, and the quantity of the model that it replaces.
 //! - [`mod@unit`]: units, and the dimensions behind them.
 //!
 //! From text to numbers:
 //! - `token`, `parse`: text to a graph of operations.
-//! - `graph`: the operations of one effect, each of them once.
-//! - `dimension`: whether the units of a formula can be right; `proportion`: whether it only scales what it replaces.
-//! - [`program`]: a formula made ready; [`block`]: its evaluation at many points; `arithmetic`: one operation.
+//! - `graph`: the operations of one effect, without repetition.
+//! - `dimension`: check of units; `proportion`: whether a formula only scales the quantity that it replaces.
+//! - [`program`]: a compiled formula; [`block`]: its evaluation at many points, with `address` and `arithmetic`.
 //! - [`nesting`]: whether a file is too deep to be parsed.
-//! - [`word`]: what was probably meant.
+//! - [`word`]: the known word nearest to an unknown one.
 //! - [`elementary`]: `exp`, `ln` and powers that vectorise and give the same bits on every machine.
 //!
-//! Everything is pure, and safe to feed with a stranger's text: no loops, no names but the declared ones, limits on every
-//! size. The crate knows neither the wheel-soil models nor probability: a prior is kept as it was written.
+//! Everything is pure and safe for untrusted text: no loops, only declared names, limits on every size. The crate knows
+//! neither the wheel-soil models nor probability: a prior is kept as written.
 //!
 //! # An effect file
 //! ```
@@ -43,7 +43,7 @@
 //! # let effect = formula::Effect::read(text).unwrap();
 //! # assert!(effect.is_neutral(&[0.0, 0.3]) && !effect.is_neutral(&[0.2, 0.3]));
 //! ```
-//! A key for each quantity that the effect replaces; the formula sees what the effects before it have made of the quantity.
+//! A key for each quantity that the effect replaces; the formula sees the quantity after the effects before it.
 //! At the neutral value of all its strengths an effect is not evaluated. An effect without parameters is a law that always
 //! holds. `mechanism` names a part of a model that has the effect in code of its own.
 //!
@@ -61,7 +61,7 @@
 //! - Functions of one argument: `exp`, `log` (natural), `sqrt`, `tanh`, `abs`, `sin`, `cos`, `tan` (of rad). Of two: `min`,
 //!   `max`, `pow` (the same as `^`).
 //! - `if(a < b, then, otherwise)` with `<`, `<=`, `>`, `>=`, `==` or `!=`: the only place for a comparison. Both values are
-//!   computed and one is taken, so neither is protected from the other's condition, and none can do harm.
+//!   always computed, and one is taken.
 //!
 //! # What formulas see
 //! | key of the formula | replaces | in | must be | sees, beside what every formula sees |
@@ -83,14 +83,14 @@
 //! `k_star` (N/m^(n+2)). [`Variable`] says what each is.
 //!
 //! # Units
-//! Parameters have a unit of `1 kg m s deg rad N Pa J W Hz`, with `^`, `/` and spaces, without prefixes. Units are checked as
-//! far as they say something for certain. A number takes the unit that its neighbour needs, as in `v_t / 0.02`, and so does
+//! Parameters have a unit of `1 kg m s deg rad N Pa J W Hz`, with `^`, `/` and spaces, without prefixes. Only certain
+//! contradictions of units are errors. A number takes the unit that its neighbour needs, as in `v_t / 0.02`, and so does
 //! what has a unit that depends on a parameter: `k_star`, or a power whose exponent is no number. A degree is no radian:
 //! `sin(tilt_deg * pi / 180)`.
 //!
 //! # Numbers
-//! IEEE double precision; no value is an error and none is clamped. What is undefined is NaN, and models reject a NaN that
-//! reaches a quantity of theirs.
+//! IEEE double precision; no value is an error and none is clamped. Undefined values are NaN, and models reject a NaN in
+//! any of their quantities.
 //! - `1/0` is infinite and `0/0` NaN; `log(0)` is −∞; `log` and `sqrt` of what is below 0 are NaN.
 //! - `exp` above 709.78 is infinite and below −700 (where it would be under 1e-304) it is 0.
 //! - `x^0` is 1, also for 0 and NaN, and so is `1^x`; `0^b` is 0 for b > 0 and infinite for b < 0. A negative base needs a whole exponent, else

@@ -1,7 +1,7 @@
-//! Tell how deep the brackets of a TOML file go, before it is parsed.
+//! Depth of the brackets of a TOML file, found before it is parsed.
 //!
-//! What reads TOML recurses, and a stranger's file must not exhaust the stack: the parser itself limits brackets to 80, but goes
-//! down 80 tables more for each of them, by a key with dots.
+//! The TOML parser recurses, and an untrusted file must not exhaust the stack: the parser limits brackets to 80, but allows a
+//! dotted key of 80 tables within each of them.
 
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;

@@ -1,4 +1,4 @@
-//! Turn the text of a formula into operations.
+//! Parser: the text of a formula to operations.
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }

@@ -1,4 +1,4 @@
-//! Make a formula ready: what is the same everywhere is computed once, the rest point by point.
+//! A compiled formula: values that all points share are computed once, the others point by point.
 
 use crate::address::Address;
 use crate::arithmetic::{binary, choose, unary};
@@ -80,7 +80,7 @@ impl<T> Operation<T> {
     }
 }
 
-/// A formula ready to be evaluated, for one choice of what differs from point to point.
+/// A compiled formula, for one choice of the variables that differ from point to point.
 #[derive(Debug, Clone)]
 pub struct Program {
     /// What is the same at all points; arguments are positions among themselves.
@@ -189,7 +189,7 @@ impl Program {
         self.kinks
     }
 
-    /// Computes what is the same at all points, and gives the result if it is.
+    /// Computes the values that all points share, and returns the result if it is one of them.
     ///
     /// # Arguments
     /// - `variables`: by [`Variable`], in their units; those that differ from point to point are not read.

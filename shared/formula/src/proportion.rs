@@ -1,4 +1,4 @@
-//! Tell whether a formula only scales what it replaces.
+//! Whether a formula only scales the quantity that it replaces.
 
 use crate::graph::{Binary, Graph, Id, Node, Unary};
 use crate::variable::Variable;

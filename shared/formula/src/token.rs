@@ -1,4 +1,4 @@
-//! Cut a formula into words.
+//! The tokens of a formula.
 
 /// A word of a formula.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
-//! Name what was probably meant.
+//! The known word nearest to an unknown one.
 
-/// A longer word is no slip of the pen: it is shown by its beginning and compared with nothing, so that a stranger's
-/// megabyte costs nothing.
+/// A longer word is not a misspelling: only its beginning is shown and it is not compared, so that a very long text costs
+/// nothing.
 const LONGEST: usize = 60;
 
 /// `unknown key "radus_m"; the nearest known is "radius_m"`, or the list where nothing is near.

@@ -1,4 +1,4 @@
-//! Average a history as a protocol says: filter, cut the transient, take the mean over whole periods.
+//! The average of a history by a protocol: filter, cut the transient, take the mean over whole periods.
 
 use super::error::SignalError;
 use super::low_pass::LowPass;

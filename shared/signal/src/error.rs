@@ -1,6 +1,6 @@
-//! Say what is wrong with a history or a setting.
+//! Errors of histories and settings.
 
-/// A history or a setting that has no answer. Messages are fragments that complete "failed to average: …".
+/// What is wrong with a history or a setting. Messages are fragments that complete "failed to average: …".
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SignalError {
@@ -40,7 +40,7 @@ pub enum SignalError {
     },
 }
 
-/// Ok if `accepted`; NaN fails every comparison, so a bound that is written positively refuses it.
+/// Ok if `accepted`; NaN fails every comparison, so a bound written as a positive condition rejects it.
 pub(super) fn require(
     accepted: bool,
     name: &'static str,

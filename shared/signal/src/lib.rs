@@ -2,13 +2,13 @@
 //!
 //! # Layout
 //! - [`mod@resample`]: steps of uneven length to intervals of equal length.
-//! - [`low_pass`]: a filter that shifts nothing in time.
+//! - [`low_pass`]: a filter without time shift.
 //! - [`mod@period_mean`]: the mean over a whole number of periods at the end of a window.
-//! - [`mod@average`]: filter and mean as a protocol has them, of simulated and measured histories alike.
-//! - `error`: what is wrong with a history or a setting.
+//! - [`mod@average`]: filter and mean by a protocol, for simulated and measured histories alike.
+//! - `error`: errors of histories and settings.
 //!
 //! A history is a sequence of means over intervals of equal length: what a rig's data logger gives, and what
-//! [`resample()`] makes of a simulation. Buffers are the caller's; nothing here allocates.
+//! [`resample()`] makes of a simulation. The caller provides the buffers; nothing allocates.
 //! Steps and results depend on the arguments alone, bit for bit: sums run from the first sample to the last.
 
 pub mod average;

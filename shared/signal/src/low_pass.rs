@@ -1,8 +1,7 @@
-//! Filter a history without shifting it in time.
+//! A low-pass filter that does not shift a history in time.
 //!
-//! Own code, because what matters is that every machine gets the same bits: crates of filters take the tangent of
-//! the cut-off from the platform as soon as any crate of a build asks for `std`, or do not show the state of the
-//! filter that the ends of a history need.
+//! Own code, for the same bits on every machine: filter crates take the tangent of the cut-off from the platform as
+//! soon as any crate of a build enables `std`, or do not expose the state that the ends of a history need.
 
 use super::error::{SignalError, require};
 
@@ -29,8 +28,8 @@ impl LowPass {
     /// The filter with this cut-off for histories of this sampling rate.
     ///
     /// # Arguments
-    /// - `cutoff_hz`: `f_c` \[Hz\], above 0 and below half the sampling rate. A history that shall not be filtered
-    ///   is not brought here: [`LowPass::unless_zero`] has a word for that.
+    /// - `cutoff_hz`: `f_c` \[Hz\], above 0 and below half the sampling rate. Use [`LowPass::unless_zero`]
+    ///   where 0 means no filter.
     /// - `sample_hz`: `f_s` \[Hz\], > 0.
     ///
     /// # Errors
@@ -89,7 +88,7 @@ impl LowPass {
         }
         let end = if pad > 0 { tail[pad - 1] } else { history[last] };
         let mut backward = self.at_rest_on(end);
-        // What would come out before the first sample is not wanted, so the way back ends there.
+        // output before the first sample is not needed, so the backward pass ends there
         for x in tail[..pad].iter_mut().rev() {
             backward.next(*x);
         }
@@ -98,7 +97,7 @@ impl LowPass {
         }
     }
 
-    /// The filter as it stands after this value has come in for ever.
+    /// The state of the filter after a constant input of this value.
     fn at_rest_on(&self, x: f64) -> State<'_> {
         State {
             filter: self,
@@ -107,7 +106,7 @@ impl LowPass {
     }
 }
 
-/// A filter on its way (transposed direct form II).
+/// The state of a filter (transposed direct form II).
 struct State<'a> {
     filter: &'a LowPass,
     s: [f64; 2],

@@ -1,4 +1,4 @@
-//! Average over a whole number of periods at the end of a window.
+//! The mean over a whole number of periods at the end of a window.
 
 use super::error::{SignalError, require};
 
@@ -50,7 +50,7 @@ pub struct Window {
     pub from_s: f64,
     /// Where it ends `[s]`, after the beginning.
     pub to_s: f64,
-    /// Period of what swings, such as one grouser after another `[s]`, > 0; `None`: nothing swings.
+    /// Period of the oscillation, such as from grouser to grouser `[s]`, > 0; `None`: no oscillation.
     pub period_s: Option<f64>,
 }
 
@@ -81,7 +81,7 @@ pub struct PeriodMean {
 /// is not above 0, the interval is not.
 ///
 /// # Validity
-/// A swing of period P drops out; where P is no multiple of the interval dt, all but about `π A dt² / (4 N P²)` of
+/// An oscillation of period P drops out; where P is not a multiple of the interval dt, all but about `π A dt² / (4 N P²)` of
 /// its amplitude A does (the one cut interval is taken as constant).
 ///
 /// # Source

@@ -1,4 +1,4 @@
-//! Turn steps of uneven length into intervals of equal length.
+//! Resampling of steps of uneven length to intervals of equal length.
 
 use super::error::{SignalError, require};
 

@@ -1,4 +1,4 @@
-//! What a run recorded over time, and its averages.
+//! The recorded time history of a run, and its averages.
 
 use signal::{LowPass, SignalError, average};
 
@@ -11,7 +11,7 @@ use crate::file::FileError;
 /// A step between two times may differ from the first one by this share of it: loggers round their times.
 const UNEVEN: f64 = 0.01;
 
-/// The recording of a run: what its file has, filtered, and averaged by the experiment's protocol.
+/// The recording of a run: the samples of its file, filtered and averaged by the experiment's protocol.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredHistory {
     /// Name of the file.
@@ -29,13 +29,13 @@ pub struct MeasuredHistory {
 /// One channel of a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recorded {
-    /// As the file has it [channel's unit].
+    /// Samples of the file [channel's unit].
     pub raw: Vec<f64>,
     /// After the protocol's low-pass [channel's unit].
     pub filtered: Vec<f64>,
     /// Mean of the filtered samples over whole grouser periods behind the transient [channel's unit].
     pub average: f64,
-    /// How many periods that is; 0: all of it, because the wheel has no grousers or no period fits.
+    /// Number of periods; 0: the whole recording, because the wheel has no grousers or no period fits.
     pub periods: u32,
     /// The length of time that the average covers `[s]`.
     pub covered_s: f64,
@@ -138,7 +138,7 @@ pub(super) fn averaged(
     })
 }
 
-/// The equal step between the times `[s]`, or the position of the time to blame and what is wrong with it.
+/// The equal step between the times `[s]`, or the position of the wrong time and what is wrong with it.
 fn interval(t_s: &[f64]) -> Result<f64, (usize, String)> {
     let [first, second, .., last] = t_s else {
         return Err((

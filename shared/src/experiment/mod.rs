@@ -3,7 +3,7 @@
 //! # Layout
 //! - `settings`: the tables of `experiment.toml`; `wheel`: those of the wheels; `scatter`: relative noise.
 //! - `mesh`: a wheel given as a surface of triangles.
-//! - `runs`: the rows of `runs.csv`; `history`: what a run recorded over time, and its averages.
+//! - `runs`: the rows of `runs.csv`; `history`: the recorded time history of a run, and its averages.
 //! - `more_runs`: an experiment with further runs.
 //! - `bevameter`: the rows of `plates.csv` and `shear.csv`.
 //! - `check`: checks of single numbers.
@@ -34,14 +34,14 @@ pub use wheel::{WheelGeometry, rim_speed_m_s};
 use crate::channel::Channel;
 use crate::file::{FileError, FileSet, read_text, sibling};
 
-/// A measured data set: everything that stands in `experiment.toml` and the files it names.
+/// A measured data set: the content of `experiment.toml` and of the files it names.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
     /// Wheels by name.
     pub wheels: BTreeMap<String, WheelGeometry>,
     /// Soils by name.
     pub soils: BTreeMap<String, SoilProperties>,
-    /// What holds the wheel.
+    /// The test rig.
     pub rig: Rig,
     /// Standard deviation of the measurement noise by channel.
     pub noise: Noise,
@@ -56,7 +56,7 @@ pub struct Experiment {
 }
 
 impl Experiment {
-    /// Reads an experiment's file and those that it names, unparsed but for binary STL, which becomes ASCII STL.
+    /// Reads an experiment's file and those that it names, unparsed except for binary STL, which becomes ASCII STL.
     ///
     /// # Errors
     /// [`FileError`] names the file that is missing or cannot be read.
@@ -80,7 +80,7 @@ impl Experiment {
         Ok(FileSet { toml, files })
     }
 
-    /// Parses and validates an experiment; `name` is how messages call its TOML file.
+    /// Parses and validates an experiment; `name` is the name of its TOML file in messages.
     ///
     /// # Errors
     /// [`FileError`] names the file, the line, the value, the unit and the bound.
@@ -267,7 +267,7 @@ mod tests {
         );
         assert_eq!(
             with("a,w,s,0.2,100,0.01,,,other.csv,fit").unwrap_err(),
-            "runs.csv: file \"other.csv\" is named but was not sent along"
+            "runs.csv: file \"other.csv\" is named but was not sent"
         );
     }
 

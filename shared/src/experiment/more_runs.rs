@@ -1,4 +1,4 @@
-//! An experiment with further runs: what was measured since joins what was measured before.
+//! Further runs added to an experiment.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,7 +6,7 @@ use super::{Experiment, settings, table};
 use crate::file::{FileError, FileSet};
 
 impl Experiment {
-    /// The files of an experiment with the rows of another `runs.csv` behind its own, and the number of its runs then.
+    /// The files of an experiment with the rows of another `runs.csv` appended, and the resulting number of runs.
     ///
     /// Columns are matched by name; where one of the two files lacks a column of the other, its rows leave it blank. Comments of
     /// both are left out.
@@ -19,7 +19,7 @@ impl Experiment {
         let file = file.ok_or_else(|| {
             FileError::whole(
                 name,
-                "runs = \"runs.csv\" is missing: there are no runs that others could join",
+                "runs = \"runs.csv\" is missing: the experiment has no runs to append to",
             )
         })?;
         let fail = |e: csv::Error| FileError::whole(&file, e.to_string());
@@ -28,7 +28,7 @@ impl Experiment {
             all.files.insert(file.clone(), text);
             all
         };
-        // Alone first: so messages name the lines of the new file.
+        // first alone, so that messages name the lines of the new file
         Experiment::parse(name, &with(csv.to_owned()))?;
         let (mut header, mut rows) = records(&file, files.named(name, &file)?)?;
         let (new_header, new_rows) = records(&file, csv)?;
@@ -148,9 +148,6 @@ mod tests {
             )]),
         };
         let error = Experiment::with_runs("experiment.toml", &plates, MORE).unwrap_err();
-        assert!(
-            error.to_string().contains("no runs that others could join"),
-            "{error}"
-        );
+        assert!(error.to_string().contains("no runs to append to"), "{error}");
     }
 }

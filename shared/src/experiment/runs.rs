@@ -27,19 +27,19 @@ pub struct TestRun {
     pub sled_speed_m_s: f64,
     /// From wheel heading to travel `[deg]`.
     pub slip_angle_deg: f64,
-    /// How often the wheel passes; the last pass is measured.
+    /// Number of passes; the last one is measured.
     pub pass: u32,
     /// Measured value by channel [channel's unit], stated or averaged from the history; `None` = unmeasured.
     pub measured: [Option<f64>; 4],
     /// The history that some of the measured values are averages of.
     pub history: Option<MeasuredHistory>,
-    /// Standard deviation that wins over the experiment's, by channel.
+    /// Standard deviation that takes precedence over the experiment's, by channel.
     pub sd: [Option<f64>; 4],
-    /// Fitted, or kept to judge the fit.
+    /// Fitted, or held out to judge the fit.
     pub usage: RunUse,
 }
 
-/// What a run is for.
+/// The use of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RunUse {
     /// Enters the likelihood.

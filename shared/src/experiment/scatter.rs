@@ -1,8 +1,8 @@
-//! Scatter that is stated relative to what it scatters: of the soil from run to run, of bevameter tests and readings.
+//! Relative scatter: of the soil from run to run, of bevameter tests and readings.
 
 use super::check::{RawSd, ValueError};
 
-/// What scatters.
+/// A source of relative scatter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scatter {
     /// The soil's stiffness, from run to run of a wheel.
@@ -52,7 +52,7 @@ impl Scatter {
         }
     }
 
-    /// Value where an experiment says nothing.
+    /// Value where the experiment gives none.
     pub fn usual(self) -> f64 {
         match self {
             Scatter::Run => 0.0,
@@ -62,8 +62,8 @@ impl Scatter {
         }
     }
 
-    /// Scale of the half-normal prior of an unknown one where a job says nothing: twice what is usual, and of the soil
-    /// from run to run 0.2.
+    /// Scale of the half-normal prior of an unknown scatter where the job gives none: twice the usual value, and 0.2 for the
+    /// soil from run to run.
     pub fn prior_scale(self) -> f64 {
         match self {
             Scatter::Run => 0.2,

@@ -20,7 +20,7 @@ pub struct SoilProperties {
     pub repose_angle_deg: Option<f64>,
 }
 
-/// What holds the wheel.
+/// The test rig.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rig {

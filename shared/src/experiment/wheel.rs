@@ -37,12 +37,12 @@ pub struct WheelGeometry {
 }
 
 impl WheelGeometry {
-    /// Whether grousers are declared, be it only by a height.
+    /// Whether grousers are declared, by their count or their height.
     pub fn has_grousers(&self) -> bool {
         self.grouser_count > 0 || self.grouser_height_m > 0.0
     }
 
-    /// Refuses a sinkage `[m]` beyond the wheel's diameter, which is a mistake of units.
+    /// Rejects a sinkage `[m]` beyond the wheel's diameter, which indicates a mistake of units.
     pub(super) fn check_sinkage(&self, sinkage_m: f64) -> Result<(), ValueError> {
         let diameter = 2.0 * self.radius_m;
         if sinkage_m.abs() > diameter {
@@ -53,10 +53,10 @@ impl WheelGeometry {
         Ok(())
     }
 
-    /// Time from one grouser to the next `[s]`, by the rig's reckoning of the rim's speed: `2 pi R_s / (N omega R_s)` with
+    /// Time from one grouser to the next `[s]`, with the rim speed computed by the rig: `2 pi R_s / (N omega R_s)` with
     /// `omega R_s = v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the sled speed `[m/s]`.
     ///
-    /// `None` without grousers that are counted, and for a wheel that does not turn. A surface mesh counts none.
+    /// `None` without a count of grousers, and for a wheel that does not turn. A surface mesh has no count.
     pub fn grouser_period_s(&self, slip: f64, sled_speed_m_s: f64) -> Option<f64> {
         let rim_speed_m_s = rim_speed_m_s(slip, sled_speed_m_s);
         let turns = self.grouser_count > 0 && rim_speed_m_s > 0.0;

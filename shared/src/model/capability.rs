@@ -1,4 +1,4 @@
-//! What a forward model can express of what a variant asks.
+//! Whether a forward model can express a variant.
 
 use std::collections::BTreeSet;
 
@@ -13,8 +13,8 @@ use super::variant::ModelVariant;
 use crate::parameters;
 
 impl ModelVariant {
-    /// Checks that the forward model can express what the variant and its effects ask of a wheel. Without conditions no
-    /// wheel rolls, and nothing is asked of it.
+    /// Checks that the forward model can express the variant and its effects. Without conditions no wheel rolls, and there is
+    /// nothing to check.
     ///
     /// # Errors
     /// [`ModelError`] names what the model of this kind lacks.
@@ -54,7 +54,7 @@ impl ModelVariant {
         }
     }
 
-    /// Checks that nothing asks of a surface mesh what only a rim can do.
+    /// Checks that nothing changes the shape of a surface mesh.
     fn check_meshes(
         &self,
         effects: &EffectSet,

@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 
 use crate::predicted::PredictedValue;
 
-/// The quasi-static model beside a variant of the three-dimensional one.
+/// The quasi-static companion of a variant of the three-dimensional model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Companion {

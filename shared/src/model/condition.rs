@@ -19,7 +19,7 @@ pub struct RunCondition {
     pub sled_speed_m_s: f64,
     /// From wheel heading to travel `[deg]`.
     pub slip_angle_deg: f64,
-    /// How often the wheel passes; the last pass counts.
+    /// Number of passes; the last one is averaged.
     pub pass: u32,
     /// Angle of repose of the run's soil `[deg]`, for a model whose soil slides; absent: the model's default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -44,7 +44,7 @@ impl RunCondition {
     }
 }
 
-/// A plate in the soil; what it measured stays with the coordinator.
+/// A plate in the soil; its measurement stays with the coordinator.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlateCondition {
@@ -54,7 +54,7 @@ pub struct PlateCondition {
     pub sinkage_m: f64,
 }
 
-/// A ring on the soil; what it measured stays with the coordinator.
+/// A ring on the soil; its measurement stays with the coordinator.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RingCondition {

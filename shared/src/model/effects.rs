@@ -1,4 +1,4 @@
-//! The effects of a job: which, in which order, and where the values of their parameters stand.
+//! The effects of a job, their order and their parameters.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ use super::error::ModelError;
 use crate::file::{FileError, unknown_word};
 use crate::parameters::{self, ParameterBounds};
 
-/// An effect as it travels: a worker may come from another version of the catalogue, or have never seen the file.
+/// An effect on the wire, with its file: the worker may have another version of the catalogue, and no file of the user.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EffectText {
@@ -22,8 +22,8 @@ pub struct EffectText {
     pub text: String,
 }
 
-/// The effects of a job, read, in the order in which they follow each other at a hook: those of the catalogue as the
-/// catalogue has them, then those of files as the job lists them.
+/// The effects of a job in the order of their evaluation at a hook: those of the catalogue in its order, then those of
+/// files in the order of the job.
 #[derive(Debug, Clone, Default)]
 pub struct EffectSet(Vec<Chosen>);
 
@@ -32,11 +32,11 @@ pub struct EffectSet(Vec<Chosen>);
 pub struct Chosen {
     /// The effect.
     pub effect: Effect,
-    /// The user's file that it stands in; `None` for one of the catalogue.
+    /// The user's file; `None` for an effect of the catalogue.
     pub file: Option<String>,
 }
 
-/// A parameter of an effect that a job says nothing of.
+/// A parameter of an effect that a job does not mention.
 #[derive(Debug, Clone)]
 pub struct Unsaid<'a> {
     /// Its name in the job: `EFFECT.PARAMETER`, or `EFFECT.PARAMETER.WHEEL`.
@@ -61,7 +61,7 @@ impl EffectSet {
     /// Reads the effects that a model lists and, from the catalogue, those whose parameters are named.
     ///
     /// # Arguments
-    /// - `file`: how messages call the job.
+    /// - `file`: the name of the job in messages.
     /// - `effects`, `files`: the effects of the catalogue and the effect files that the model lists.
     /// - `names`: every parameter that the job names.
     /// - `texts`: the texts of the files.
@@ -86,12 +86,12 @@ impl EffectSet {
             .collect();
         for named in files {
             let text = texts.get(named).ok_or_else(|| {
-                FileError::whole(file, format!("file \"{named}\" is named but was not sent along"))
+                FileError::whole(file, format!("file \"{named}\" is named but was not sent"))
             })?;
             let effect = own(named, text)?;
             if let Some(other) = chosen.iter().find(|c| c.effect.name == effect.name) {
                 let message = format!(
-                    "effect {} stands in {} already",
+                    "effect {} is already in {}",
                     effect.name,
                     other.file.as_deref().unwrap_or("the catalogue")
                 );
@@ -106,7 +106,7 @@ impl EffectSet {
         Ok(EffectSet(chosen))
     }
 
-    /// Refuses more effects than a job may have.
+    /// Rejects more effects than a job may have.
     pub(super) fn check_count(count: usize) -> Result<(), ModelError> {
         if count > Self::MOST {
             let message = format!("{count} effects must be at most {}", Self::MOST);
@@ -115,7 +115,7 @@ impl EffectSet {
         Ok(())
     }
 
-    /// Reads effects that have travelled.
+    /// Reads effects that were sent.
     ///
     /// # Errors
     /// [`ModelError`] names the effect and what is wrong with its file.
@@ -153,7 +153,7 @@ impl EffectSet {
         self.iter().find(|effect| effect.uses().contains(variable))
     }
 
-    /// The parameter of an effect behind a name, `None` where the name is none of an effect.
+    /// The bounds of an effect's parameter; `None` where the name is not that of an effect's parameter.
     ///
     /// # Errors
     /// [`ModelError`] names what is unknown, and the nearest known.
@@ -170,7 +170,7 @@ impl EffectSet {
                 return Err(ModelError::Unknown(unknown_word("wheel", unknown, known)));
             }
             let parameter = &effect.parameters[place];
-            // the prior of the file says whether it is a magnitude; nothing else is known of it
+            // only the prior in the file shows whether it is a magnitude
             let magnitude = ["half_normal", "lognormal", "loguniform"];
             let positive = magnitude.iter().any(|d| parameter.prior.get(d).is_some());
             Ok(ParameterBounds {
@@ -189,8 +189,8 @@ impl EffectSet {
         })
     }
 
-    /// What must still be said of effects once these names are: the parameters of effects on all wheels, and of
-    /// effects with a strength for one wheel on that wheel.
+    /// The parameters of effects that are still missing beside these names: those of effects on all wheels and, of effects
+    /// with a strength for one wheel, those of that wheel.
     pub fn unsaid<'a>(&'a self, names: &BTreeSet<&str>, wheels: &BTreeSet<&str>) -> Vec<Unsaid<'a>> {
         let mut unsaid = Vec::new();
         for chosen in &self.0 {
@@ -264,8 +264,8 @@ impl EffectSet {
         Reach::of(effect, names, wheels).wheels
     }
 
-    /// What names the effects in a model's version: nothing without effects, otherwise the beginning of the SHA-256 of
-    /// their files in order.
+    /// The effects in a model's version: empty without effects, otherwise the first bytes of the SHA-256 of their files in
+    /// order.
     pub fn version(texts: &[EffectText]) -> String {
         if texts.is_empty() {
             return String::new();
@@ -317,7 +317,7 @@ impl<'a, 'n> Reach<'a, 'n> {
     }
 }
 
-/// Reads a user's effect file, which may take nothing that is the catalogue's.
+/// Reads a user's effect file, which may not use names or mechanisms of the catalogue.
 ///
 /// # Errors
 /// [`FileError`] with the line, and the column where one is to blame.
@@ -337,11 +337,11 @@ pub fn own(file: &str, text: &str) -> Result<Effect, FileError> {
         message,
     };
     if effect.mechanism.is_some() {
-        let message = "mechanism is for the effects of the catalogue: a file has formulas".to_owned();
+        let message = "mechanism is reserved for the catalogue: a file has formulas".to_owned();
         return Err(wrong("mechanism", message));
     }
     if find(name).is_some() {
-        let message = format!("name \"{name}\" is an effect's of the catalogue");
+        let message = format!("name \"{name}\" belongs to an effect of the catalogue");
         return Err(wrong("name", message));
     }
     if parameters::is_taken(name) {
@@ -430,7 +430,7 @@ mod tests {
         for (text, message) in [
             (
                 named("bulldozing"),
-                "mine.toml line 1: name \"bulldozing\" is an effect's of the catalogue",
+                "mine.toml line 1: name \"bulldozing\" belongs to an effect of the catalogue",
             ),
             (
                 named("noise"),
@@ -438,7 +438,7 @@ mod tests {
             ),
             (
                 MINE.replace("source = \"s\"", "source = \"s\"\nmechanism = \"rebound\""),
-                "mine.toml line 4: mechanism is for the effects of the catalogue: a file has formulas",
+                "mine.toml line 4: mechanism is reserved for the catalogue: a file has formulas",
             ),
             (
                 MINE.replace("exp(-v_t", "exp(-vt"),

@@ -7,7 +7,7 @@ use super::error::ModelError;
 use crate::file::unknown_word;
 use crate::parameters::{BASE, ParameterBounds, RING_TRANSFER, SPATIAL};
 
-/// What is known of the parameter behind a name: of the model, of one of its wheels, of an effect.
+/// Unit and bounds of a parameter by name: of the model, of one of its wheels, of an effect.
 ///
 /// # Errors
 /// [`ModelError`] names the unknown name and the nearest known one.
@@ -49,7 +49,7 @@ pub fn lookup(
 }
 
 /// Checks that a set of names determines a model: one way to state the stiffness, `n` and the friction
-/// angle present, everything said of every effect, nothing given both for one wheel and for all.
+/// angle present, every parameter of every effect given, nothing given both for one wheel and for all.
 ///
 /// # Errors
 /// [`ModelError`] names what is missing or given twice.

@@ -1,4 +1,4 @@
-//! The table `[model]` of a job, or a model file of `worker simulate`.
+//! The table `[model]` of a job, or the model file of `worker simulate`.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use crate::parameters;
 pub struct ModelSettings {
     /// Which forward model.
     pub kind: ModelKind,
-    /// What the three-dimensional model needs beside.
+    /// Settings of the three-dimensional model.
     pub spatial: Option<SpatialSettings>,
     /// Parameters that are fixed.
     pub fixed: BTreeMap<String, f64>,
@@ -85,14 +85,14 @@ impl ModelSettings {
     /// Adds effects of the catalogue by name, and files of others.
     ///
     /// # Errors
-    /// [`ModelError`] names the effect that is unknown or stands there already, or how many are too many.
+    /// [`ModelError`] names the effect that is unknown or listed already, or the number of effects.
     pub fn add_effects(&mut self, effects: &[String], files: &[String]) -> Result<(), ModelError> {
-        // First of all: what follows takes each name against every other.
+        // first, because the checks below compare every name with every other
         EffectSet::check_count(self.effects.len() + self.effect_files.len() + effects.len() + files.len())?;
         for name in effects {
             if name.ends_with(".toml") {
                 return Err(ModelError::Invalid(format!(
-                    "effects: \"{name}\" looks like a file, which stands under effect_files"
+                    "effects: \"{name}\" looks like a file, which belongs under effect_files"
                 )));
             }
             if catalogue::find(name).is_none() {
@@ -136,7 +136,7 @@ fn fixed_parameter(key: &str, value: &toml::Value) -> Result<f64, ModelError> {
             "write the name in quotes: \"{key}.{within}\""
         )));
     }
-    // what stands before a dot may be an effect of a file that is still to be read
+    // the part before a dot may be an effect of a file that is read later
     let base = parameters::BASE
         .iter()
         .chain(&parameters::SPATIAL)

@@ -1,4 +1,4 @@
-//! What the three-dimensional model needs beside parameters: spacing, laws' variants, when a steady run ends.
+//! Settings of the three-dimensional model: grid spacing, variants of the laws, end of a steady run.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -29,7 +29,7 @@ pub struct SpatialSettings {
     pub damping_n_s_m: f64,
     /// Change of the averages from one window to the next at which a steady run ends `[–]`.
     pub steady_tolerance: f64,
-    /// Travel at which a steady run ends anyhow `[m]`.
+    /// Travel at which a steady run ends in any case `[m]`.
     pub steady_travel_m: f64,
 }
 

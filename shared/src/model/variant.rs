@@ -26,7 +26,7 @@ use crate::parameters::check_value;
 pub struct ModelVariant {
     /// Which forward model.
     pub kind: ModelKind,
-    /// What the three-dimensional model needs beside; absent for the others.
+    /// Settings of the three-dimensional model; absent for the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spatial: Option<SpatialSettings>,
     /// The effects, in the order of their evaluation.
@@ -48,29 +48,29 @@ pub struct ModelVariant {
     /// How histories become averages.
     #[schema(value_type = Object)]
     pub protocol: AveragingProtocol,
-    /// Whether each condition is simulated once more on soil that is a little stiffer, for the derivatives by ln k*.
+    /// Whether each condition is simulated once more on slightly stiffer soil, for the derivatives by ln k*.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub stiffness_sensitivity: bool,
-    /// Whether what each run felt over time comes back, too; only a model that rolls in time has that.
+    /// Whether the time histories of the runs are returned, too; only the three-dimensional model has them.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub histories: bool,
-    /// Readings of plates to predict beside.
+    /// Readings of plates to predict as well.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plates: Vec<PlateCondition>,
-    /// Readings of rings to predict beside.
+    /// Readings of rings to predict as well.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rings: Vec<RingCondition>,
-    /// The quasi-static model beside, where a metamodel is made of it.
+    /// The quasi-static model for a metamodel, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub companion: Option<Companion>,
 }
 
 impl ModelVariant {
-    /// Puts together the variant of some of an experiment's runs; base parameters that are neither free
-    /// nor fixed take their defaults.
+    /// The variant for some of an experiment's runs; base parameters that are neither free nor fixed take
+    /// their defaults.
     ///
     /// # Errors
-    /// [`ModelError`] names a parameter that is unknown, out of bounds, missing or said twice.
+    /// [`ModelError`] names a parameter that is unknown, out of bounds, missing or given twice.
     pub fn new<'a>(
         experiment: &Experiment,
         settings: &ModelSettings,
@@ -149,8 +149,7 @@ impl ModelVariant {
         Ok(variant)
     }
 
-    /// The same runs with what each felt over time, and nothing beside; `None` of a model that knows no time, and without
-    /// runs.
+    /// The same runs with their time histories and nothing else; `None` for a steady-state model and without runs.
     pub fn with_histories(&self) -> Option<Self> {
         let rolls = self.kind == ModelKind::Scm && !self.conditions.is_empty();
         rolls.then(|| ModelVariant {
@@ -171,8 +170,8 @@ impl ModelVariant {
             .map(String::as_str)
     }
 
-    /// Version of the model that a worker with these equations computes: its own, and that of the effects. A
-    /// calibration is pinned to both; [`equations_of`] is the part that a worker can know.
+    /// Version of the model that a worker with these equations computes: that of the equations and that of the effects. A
+    /// calibration is pinned to both; [`equations_of`] is the part that a worker knows.
     pub fn model_version(&self, equations: &str) -> String {
         format!("{equations}{}", EffectSet::version(&self.effects))
     }
@@ -188,14 +187,14 @@ impl ModelVariant {
     }
 }
 
-/// The part of a model's version that names the equations: what stands before the effects.
+/// The part of a model's version that names the equations.
 pub fn equations_of(version: &str) -> &str {
     version
         .split_once('+')
         .map_or(version, |(equations, _)| equations)
 }
 
-/// Checks that effects of grousers act on a wheel that has some.
+/// Checks that effects of grousers act on a wheel with grousers.
 fn check_grousers(
     effects: &EffectSet,
     names: &BTreeSet<&str>,

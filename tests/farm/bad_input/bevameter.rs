@@ -113,7 +113,7 @@ fn forward_runs_refuse_tables_and_parameters_that_they_cannot_give() {
     let stiff: String = lines.map(|line| format!("{line}\n")).collect();
     let message = simulate(both(), &(stiff + "k_c = -1e9\n"), &["plates", "shear"]);
     assert!(
-        message.starts_with("test p1: the model refuses these parameters: invalid parameter: k_star = -")
+        message.starts_with("test p1: the model rejects these parameters: invalid parameter: k_star = -")
             && message.ends_with("must be above 0 under the plate"),
         "{message}"
     );

@@ -50,7 +50,7 @@ fn unknown_effects_and_parameters_name_the_nearest_known() {
     );
     refused(
         model("effects = [\"mine.toml\"]"),
-        "job.toml: [model] effects: \"mine.toml\" looks like a file, which stands under effect_files",
+        "job.toml: [model] effects: \"mine.toml\" looks like a file, which belongs under effect_files",
     );
     refused(
         priors("sled_tare.tare_n = 0.0"),
@@ -118,17 +118,17 @@ fn malformed_effect_files_name_file_line_and_column() {
     );
     refused(
         mine("\"my_gain\"", "\"hard_pan\""),
-        "mine.toml line 1: name \"hard_pan\" is an effect's of the catalogue",
+        "mine.toml line 1: name \"hard_pan\" belongs to an effect of the catalogue",
     );
     refused(
         mine("drawbar_pull = ", "mechanism = \"rebound\"\ndrawbar_pull = "),
-        "mine.toml line 4: mechanism is for the effects of the catalogue: a file has formulas",
+        "mine.toml line 4: mechanism is reserved for the catalogue: a file has formulas",
     );
     refused(
         model("effect_files = [\"mine.toml\", \"copy.toml\"]")
             .beside("mine.toml", GAIN)
             .beside("copy.toml", GAIN),
-        "copy.toml: effect my_gain stands in mine.toml already",
+        "copy.toml: effect my_gain is already in mine.toml",
     );
     let message = refusal(&model("effect_files = [\"mine.toml\"]"));
     assert!(message.starts_with("mine.toml: No such file"), "{message}");

@@ -294,7 +294,7 @@ fn forward_runs_refuse_wrong_models_and_parameters() {
     let soft = without("k_phi") + "k_phi = 1.0\n";
     let said = simulate(model, &soft);
     assert!(
-        said.starts_with("run r00: the model refuses these parameters: "),
+        said.starts_with("run r00: the model rejects these parameters: "),
         "{said}"
     );
 }
@@ -318,7 +318,7 @@ fn noise_of_an_unknown_sd_and_histories_are_refused() {
     );
     let message = simulate(&["--histories", &text(folder.path())]);
     assert!(
-        message.contains("--histories: quasi_static knows the steady state alone"),
+        message.contains("--histories: quasi_static has only a steady state"),
         "{message}"
     );
     assert!(!folder.path().join("out.csv").exists());

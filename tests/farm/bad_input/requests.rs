@@ -33,7 +33,7 @@ fn malformed_files_over_http_are_422_and_leave_nothing() {
         &missing,
         422,
         "invalid_file",
-        "experiment.toml: file \"runs.csv\" is named but was not sent along",
+        "experiment.toml: file \"runs.csv\" is named but was not sent",
     );
 
     let experiment = service

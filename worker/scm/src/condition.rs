@@ -1,4 +1,4 @@
-//! Describe one run of the single-wheel rig.
+//! The conditions of one run of the single-wheel rig.
 
 use crate::rejection::{Rejection, require};
 
@@ -20,7 +20,7 @@ pub struct Condition {
 }
 
 impl Condition {
-    /// The same condition, if every field lies within its bounds.
+    /// Checks that every field lies within its bounds, and returns the condition.
     ///
     /// # Errors
     /// [`Rejection::InvalidParameter`] for the first that does not.
@@ -65,7 +65,7 @@ impl Condition {
         Ok(self)
     }
 
-    /// Speed of the rim by the rig's reckoning, `omega R_s = v / (1 − s)` for s ≥ 0 and `v (1 + s)` for s < 0 `[m/s]`.
+    /// Rim speed as computed by the rig, `omega R_s = v / (1 − s)` for s ≥ 0 and `v (1 + s)` for s < 0 `[m/s]`.
     pub fn rig_rim_speed_m_s(&self) -> f64 {
         if self.slip < 0.0 {
             self.sled_speed_m_s * (1.0 + self.slip)

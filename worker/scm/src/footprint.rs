@@ -1,4 +1,4 @@
-//! Give the effective width of a footprint.
+//! Effective width of a footprint.
 
 /// Effective width of a footprint of area A and contour length L.
 ///

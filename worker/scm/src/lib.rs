@@ -1,4 +1,4 @@
-//! Terramechanics: what a soil does to the wheel that rolls, spins or skids over it.
+//! Terramechanics: forces, torque and sinkage of a wheel that rolls, spins or skids on soil.
 //!
 //! # Layout
 //! Constitutive laws, each usable for a single point of the contact:
@@ -10,8 +10,8 @@
 //!
 //! Boundary of the crate:
 //! - [`wheel`], [`condition`]: the rigid wheel and one run of the rig.
-//! - [`averages`]: what a run gives.
-//! - [`rejection`]: why a parameter vector has no answer.
+//! - [`averages`]: the result of a run.
+//! - [`rejection`]: why a parameter vector has no solution.
 //!
 //! Between them and the models:
 //! - [`effects`]: formulas and mechanisms that replace quantities of the base.
@@ -21,8 +21,6 @@
 //! - [`spatial`]: a wheel with grousers, or any surface, that rolls over a terrain it deforms.
 //! - [`bevameter`]: a plate pressed into the soil and a ring turned on it, by the same laws as the wheel.
 //!
-//! After a model:
-//!
 //! Numerics:
 //! - [`elementary`], of the crate `formula`: `exp`, `ln` and powers that vectorise and give the same bits on every machine.
 //! - `quadrature`: the Gauss rule of the rim.
@@ -30,6 +28,17 @@
 //! Everything is pure: no clock, no random numbers, no input or output. Units are SI. Results depend on
 //! the arguments alone, bit for bit: only `+ - * /`, square roots, this crate's [`elementary`] functions
 //! and the pure-Rust `libm` are used, and every sum has a fixed order.
+//!
+//! # Literature
+//! - Bekker, M. G. 1969, *Introduction to Terrain-Vehicle Systems*, University of Michigan Press: pressure–sinkage.
+//! - Janosi, Z. & Hanamoto, B. 1961, 1st International Conference on the Mechanics of Soil–Vehicle Systems, Turin: shear
+//!   stress and displacement.
+//! - Wong, J.-Y. & Reece, A. R. 1967, J. Terramechanics 4(1):81, <https://doi.org/10.1016/0022-4898(67)90105-X>: stresses
+//!   along a driven rigid wheel.
+//! - Krenn, R. & Hirzinger, G. 2008, ASTRA, Noordwijk; 2009, 11th European Regional Conference of the ISTVS, Bremen: the
+//!   soil contact model (SCM).
+//! - Ishigami, G. et al. 2007, J. Field Robotics 24(3), <https://doi.org/10.1002/rob.20187>: lateral forces and
+//!   bulldozing.
 
 pub mod averages;
 pub mod bevameter;

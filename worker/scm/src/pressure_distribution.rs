@@ -1,4 +1,4 @@
-//! Weight the pressure over a footprint: gamma, zero at the border, highest in the middle, of mean one.
+//! Distribution of the pressure over a footprint: gamma, zero at the border, highest in the middle, of mean one.
 
 use crate::elementary::fraction_pow;
 
@@ -8,8 +8,8 @@ use crate::elementary::fraction_pow;
 /// modulus; m = 0 makes gamma 1 everywhere.
 ///
 /// # Source
-/// The soil contact model asks for a weight that raises the pressure in the middle and vanishes at the
-/// border, without a formula; this power law is ours.
+/// Krenn & Hirzinger's model requires a weight that is highest in the middle and vanishes at the border, without
+/// giving a formula; this power law is our own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PressureDistribution {
     /// m = 0.

@@ -1,4 +1,4 @@
-//! Give the normal pressure of a soil at a sinkage (Bekker).
+//! Normal pressure of a soil at a sinkage (Bekker).
 
 use crate::soil::Soil;
 
@@ -10,11 +10,11 @@ use crate::soil::Soil;
 /// - `b_eff`: `[m]`, > 0; see [`footprint`](crate::footprint).
 ///
 /// # Returns
-/// k* `[N/m^(n+2)]`. Not positive for a small footprint when `k_c` < 0: there is then no support, and it is
-/// the caller who must say so; no value is guarded here.
+/// k* `[N/m^(n+2)]`. Not positive for a small footprint when `k_c` < 0: there is then no support, which the
+/// caller must detect; nothing is clamped here.
 ///
 /// # Source
-/// Bekker 1969, pressure–sinkage relation. Checked by `closed_forms::plate_load_is_area_times_bekker_pressure`.
+/// Bekker 1969, pressure–sinkage relation, see [Literature](crate#literature). Checked by `closed_forms::plate_load_is_area_times_bekker_pressure`.
 #[inline]
 pub fn k_star(soil: &Soil, b_eff: f64) -> f64 {
     soil.k_c / b_eff + soil.k_phi

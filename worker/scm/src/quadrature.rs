@@ -1,4 +1,4 @@
-//! Integrate over a panel whose ends carry roots or thin layers.
+//! Quadrature over a panel whose integrand has roots or thin layers at its ends.
 //!
 //! Gauss–Legendre in s on (0, 1) with `x = a + h S(s)`, `S = s² (3 − 2 s)`, `dx = h · 6 s (1 − s) ds`. Near
 //! an end the distance to it goes with s²: the root of gamma and of the sinkage law become smooth there,

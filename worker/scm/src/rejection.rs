@@ -1,9 +1,9 @@
-//! Say why a parameter vector has no answer.
+//! Why a parameter vector has no solution.
 
 /// A fact about the parameters: the model has no equilibrium there, or they lie outside its validity.
 ///
-/// A rejection is an answer (likelihood zero), not a fault of the machine: the same arguments are
-/// rejected everywhere and always. Messages are fragments that complete "failed to simulate: …".
+/// A rejection is a result (likelihood zero), not a fault of the machine: the same arguments are always
+/// rejected, on every machine. Messages are fragments that complete "failed to simulate: …".
 #[non_exhaustive]
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Rejection {
@@ -115,7 +115,7 @@ impl Rejection {
     }
 }
 
-/// Ok if `accepted`; NaN fails every comparison, so a caller that writes the bound positively refuses it.
+/// Ok if `accepted`; NaN fails every comparison, so a bound written as a positive condition rejects it.
 pub(crate) fn require(
     accepted: bool,
     name: &'static str,

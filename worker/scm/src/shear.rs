@@ -1,4 +1,4 @@
-//! Give the shear stress that a soil sets against a sliding surface.
+//! Shear stress of a soil against a sliding surface.
 
 /// Strength of a soil under a normal pressure (Mohr–Coulomb).
 ///
@@ -23,7 +23,7 @@ pub struct ShearVelocity {
 }
 
 impl ShearVelocity {
-    /// The law with reference velocity v0 `[m/s]`, ≥ 0; with v0 = 0 any motion mobilises everything.
+    /// The law with reference velocity v0 `[m/s]`, ≥ 0; with v0 = 0 any motion mobilises the whole strength.
     pub fn new(reference_velocity: f64) -> Self {
         // 1/0 would turn a point at rest into 0 · ∞; the largest number gives 0 there and ∞ elsewhere.
         Self {
@@ -43,7 +43,7 @@ impl ShearVelocity {
     /// `[s/m]`, ≥ 0 and finite.
     ///
     /// # Source
-    /// Krenn & Hirzinger's soil contact model. Depends on speed, unlike a displacement law.
+    /// Krenn & Hirzinger 2009, see [Literature](crate#literature). Depends on speed, unlike a displacement law.
     #[inline]
     pub fn mobilised_per_velocity(&self, speed: f64) -> f64 {
         // with v0 = 0 there is no exponential to compute; the test is the same for every point of a loop
@@ -70,9 +70,9 @@ pub struct ShearDisplacement {
 }
 
 impl ShearDisplacement {
-    /// The law with shear modulus K `[m]`, ≥ 0; with K = 0 any displacement mobilises everything.
+    /// The law with shear modulus K `[m]`, ≥ 0; with K = 0 any displacement mobilises the whole strength.
     pub fn new(modulus_m: f64) -> Self {
-        // As for the velocity law: 0 · ∞ at no displacement would be no number.
+        // as for the velocity law: 0 · ∞ at zero displacement would be NaN
         Self {
             per_displacement: (1.0 / modulus_m).min(f64::MAX),
         }
@@ -89,10 +89,10 @@ impl ShearDisplacement {
     /// `[–]`, in [0, 1]; exactly 0 at j = 0, also with K = 0.
     ///
     /// # Validity
-    /// Monotonic shearing: j is the whole way since the surface touched the soil.
+    /// Monotonic shearing: j is the total displacement since the surface touched the soil.
     ///
     /// # Source
-    /// Janosi & Hanamoto 1961. Checked by this file's tests and `bevameter::strength_is_reached_by_way`.
+    /// Janosi & Hanamoto 1961, see [Literature](crate#literature). Checked by this file's tests and `bevameter::strength_is_reached_by_way`.
     #[inline]
     pub fn mobilised(&self, displacement_m: f64) -> f64 {
         1.0 - crate::elementary::exp(-displacement_m * self.per_displacement)

@@ -1,4 +1,4 @@
-//! Hold the parameters of a soil and check that the laws are defined for them.
+//! The parameters of a soil, and their bounds.
 
 use crate::rejection::{Rejection, require};
 
@@ -27,11 +27,11 @@ pub struct Soil {
 }
 
 impl Soil {
-    /// The same soil, if the laws are defined for it.
+    /// Checks that the laws are defined for the soil, and returns it.
     ///
     /// # Errors
     /// [`Rejection::InvalidParameter`] for the first field outside its bounds (see the fields) or not
-    /// finite. A negative `k_c` is accepted: whether the soil then carries the wheel is for the balance to say.
+    /// finite. A negative `k_c` is accepted: the balance decides whether the soil then carries the wheel.
     pub fn checked(self) -> Result<Self, Rejection> {
         let quarter_turn = core::f64::consts::FRAC_PI_2;
         let phi = self.friction_angle_rad;

@@ -1,4 +1,4 @@
-//! Describe the rigid wheel.
+//! The rigid wheel.
 
 use crate::rejection::{Rejection, require};
 
@@ -14,7 +14,7 @@ pub struct Wheel {
 }
 
 impl Wheel {
-    /// The same wheel, if its dimensions are positive and finite.
+    /// Checks that the dimensions are positive and finite, and returns the wheel.
     ///
     /// # Errors
     /// [`Rejection::InvalidParameter`] for the first that is not.

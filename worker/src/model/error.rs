@@ -12,8 +12,8 @@ pub enum CompileError {
     /// The model of this worker has no form of an effect.
     #[error(transparent)]
     Effect(#[from] FormError),
-    /// Histories of a model that knows no time.
-    #[error("histories: quasi_static knows the steady state alone; use kind = \"scm\"")]
+    /// Histories of a steady-state model.
+    #[error("histories: quasi_static has only a steady state; use kind = \"scm\"")]
     NoHistories,
     /// A condition names a wheel that does not exist.
     #[error("unknown wheel \"{0}\"")]

@@ -1,4 +1,4 @@
-//! A variant made ready to evaluate.
+//! A model variant, compiled for evaluation.
 //!
 //! # Layout
 //! - `variant`: [`CompiledVariant`], a forward model with its companion; `cache`: the variants at hand.

@@ -1,4 +1,4 @@
-//! What a run felt over time, at the rate of a rig's data logger.
+//! Time histories of a run, at the rate of a rig's data logger.
 
 use scm::Rejection;
 use scm::spatial::History;
@@ -20,7 +20,7 @@ pub fn at_10_hz(history: &History) -> Result<[Vec<f64>; 5], SignalError> {
     Ok(columns)
 }
 
-/// The channels of a run for the wire, which has no word for what is no number.
+/// The channels of a run for the wire, which cannot represent NaN or infinity.
 pub(super) fn recorded(history: &History) -> Result<SimulatedHistory, Rejection> {
     let columns = at_10_hz(history)?;
     if let Some(&value) = columns[..4].iter().flatten().find(|x| !x.is_finite()) {

@@ -14,7 +14,7 @@ use super::forward::ForwardModel;
 #[derive(Debug)]
 pub struct CompiledVariant {
     forward: ForwardModel,
-    /// The quasi-static model beside, where a metamodel is made of it.
+    /// The quasi-static model for a metamodel, where there is one.
     companion: Option<CompiledCompanion>,
 }
 

@@ -8,8 +8,8 @@ pub enum SimulateError {
     /// A file cannot be used.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The model refuses the parameters.
-    #[error("{what} {name}: the model refuses these parameters: {message}")]
+    /// The model rejects the parameters.
+    #[error("{what} {name}: the model rejects these parameters: {message}")]
     Rejected {
         /// A run of the wheel, or a test of the bevameter.
         what: &'static str,

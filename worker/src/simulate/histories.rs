@@ -30,7 +30,7 @@ pub(super) fn histories(
 ) -> Result<Vec<(PathBuf, Vec<u8>)>, SimulateError> {
     if rolled.is_empty() {
         let message = format!(
-            "--histories: {} knows the steady state alone; use kind = \"scm\"",
+            "--histories: {} has only a steady state; use kind = \"scm\"",
             variant.kind.name()
         );
         return Err(FileError::whole(&folder.display().to_string(), message).into());

@@ -3,7 +3,7 @@
 //! # Layout
 //! - here: the wheel's runs, and which table goes where.
 //! - `bevameter`: the tables of plates and rings.
-//! - `histories`: what each run felt over time.
+//! - `histories`: the time histories of each run.
 
 mod bevameter;
 mod error;
@@ -27,8 +27,8 @@ use crate::model::{CompiledBevameter, CompiledVariant, without_action};
 
 /// Simulates an experiment and writes each table that is asked for as CSV.
 ///
-/// The tables: averages of the wheel's runs, pressures under plates, shear stresses under rings. A refusal of the
-/// model in any of them leaves no file.
+/// The tables: averages of the wheel's runs, pressures under plates, shear stresses under rings. If the model rejects
+/// any of them, no file is written.
 ///
 /// # Errors
 /// [`SimulateError`].
@@ -45,7 +45,7 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
             return Err(FileError::whole(&name, message).into());
         }
     }
-    // Where no table of runs is asked for, no wheel rolls, and a model need not be able to roll it.
+    // without a table of runs no wheel rolls, and the model need not support it
     let runs: &[TestRun] = command.out.as_ref().map_or(&[], |_| &experiment.runs);
     let variant = variant(&experiment, runs, &command.model, &command.parameters)?;
     let mut tables: Vec<(PathBuf, Vec<u8>)> = Vec::new();
@@ -136,7 +136,7 @@ fn variant(
 ) -> Result<ModelVariant, FileError> {
     let (model_name, parameters_name) = (model.display().to_string(), parameters.display().to_string());
     let mut table: toml::Table = parse_toml(&model_name, &read_text(model)?)?;
-    // A job file serves as well: its [model] counts.
+    // a job file is accepted, too: its table [model] is used
     if let Some(toml::Value::Table(inner)) = table.remove("model") {
         table = inner;
     }
@@ -158,7 +158,7 @@ fn variant(
         .map_err(|e| FileError::whole(&parameters_name, e))
 }
 
-/// Takes what the files of effects fix; the rest must be stated.
+/// Adds the values that effect files fix; all others must be given.
 fn state_shapes(
     experiment: &Experiment,
     effects: &EffectSet,
@@ -175,7 +175,7 @@ fn state_shapes(
                 unit => format!(" [{unit}]"),
             };
             let message = format!(
-                "{}{unit} has no value: effect {} has it",
+                "{}{unit} has no value: it is a parameter of effect {}",
                 unsaid.name, unsaid.chosen.effect.name
             );
             return Err(FileError::whole(file, message));
@@ -186,9 +186,9 @@ fn state_shapes(
     Ok(())
 }
 
-/// A dotted name without quotes is a table to TOML; says so.
+/// Rejects a dotted name without quotes, which is a table in TOML.
 fn check_quotes(file: &str, parameters: &str) -> Result<(), FileError> {
-    // What is no TOML at all is for the parser to say.
+    // the parser reports text that is not TOML
     for (name, value) in parameters.parse::<toml::Table>().unwrap_or_default() {
         if let Some(key) = value.as_table().and_then(|table| table.keys().next()) {
             let message = format!("write the name in quotes: \"{name}.{key}\"");
@@ -211,7 +211,10 @@ fn noise(experiment: &Experiment, command: &Simulate) -> Result<Vec<[f64; 4]>, F
         ))
     };
     if experiment.noise.scatter(Scatter::Run) != ScatterSd::Known(0.0) {
-        return fail("--noise-seed draws independent noise alone: [noise] run_scatter is not available there in this version".into());
+        return fail(
+            "--noise-seed draws independent noise only: [noise] run_scatter is not supported in this version"
+                .into(),
+        );
     }
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     for (row, run) in noise.iter_mut().zip(&experiment.runs) {

@@ -1,4 +1,4 @@
-//! Read an effect file.
+//! Effects and their files.
 
 mod file;
 mod names;
@@ -48,7 +48,7 @@ pub struct Parameter {
     pub line: usize,
 }
 
-/// What a model may have of an effect in code of its own, because no formula at a point can say it.
+/// An effect that a model has in code, because no formula at a point can express it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mechanism {
     /// The soil springs back behind the axle.
@@ -159,8 +159,8 @@ impl Effect {
         self.parameters.iter().position(|p| p.name == name)
     }
 
-    /// Whether it changes nothing at these values of its parameters: all of its strengths are neutral. An effect without
-    /// strengths is a law that always holds. `values` are those of its parameters, in their order and units; −0 is 0, and NaN is
+    /// Whether all strengths are neutral at these values of the parameters, so that the effect changes nothing. An effect
+    /// without strengths always acts. `values` are those of its parameters, in their order and units; −0 is 0, and NaN is
     /// no neutral value. Checked by `evaluation::zero_of_either_sign_is_neutral`.
     pub fn is_neutral(&self, values: &[f64]) -> bool {
         let mut strengths = self.parameters.iter().zip(values);

@@ -1,4 +1,4 @@
-//! Find where in a file a mistake stands.
+//! The place of a mistake in a file.
 
 /// Line and column of a byte, each counted from 1; columns in characters.
 pub(super) fn line_and_column(text: &str, byte: usize) -> (usize, usize) {

@@ -7,8 +7,8 @@
 //! - `obj`: Wavefront OBJ files.
 //!
 //! Files travel as text. ASCII STL and OBJ are text as they are; binary STL becomes ASCII STL when it is read from disk
-//! ([`Experiment::read_files`](super::Experiment::read_files)), without a change in any coordinate. Who talks to the
-//! service directly sends ASCII STL or OBJ.
+//! ([`Experiment::read_files`](super::Experiment::read_files)), without a change in any coordinate. A client of
+//! the service sends ASCII STL or OBJ.
 
 mod error;
 mod obj;
@@ -22,7 +22,7 @@ pub use surface::{MOST_TRIANGLES, WheelMesh};
 
 use crate::file::{FileError, read_text};
 
-/// A file with more bytes is refused; the service takes bodies of 64 MiB.
+/// Largest file; the service accepts bodies of 64 MiB.
 pub const MOST_BYTES: usize = 48 << 20;
 
 impl WheelMesh {

@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::error::MeshError;
 
-/// A surface with more triangles is refused: a wheel needs no finer one than the soil's grid.
+/// Largest number of triangles: a wheel needs no finer surface than the soil's grid.
 pub const MOST_TRIANGLES: usize = 200_000;
 
-/// Part of the radius by which a surface may miss it: coordinates of STL files have 24 bits.
+/// Relative tolerance of the radius: coordinates of STL files have 24 bits.
 const ROUNDING: f64 = 1e-6;
 /// The surface reaches at most so many times `radius_m` from the axle: grousers are no longer.
 const LARGEST_REACH: f64 = 1.5;
@@ -28,7 +28,7 @@ pub struct WheelMesh {
 }
 
 impl WheelMesh {
-    /// Checks what the fields promise.
+    /// Checks that the fields are consistent.
     ///
     /// # Errors
     /// [`MeshError`] names the vertex or triangle, the value and the bound.
@@ -106,7 +106,7 @@ fn shown(metres: f64) -> f64 {
     format!("{metres:.5e}").parse().unwrap_or(metres)
 }
 
-/// What was probably meant by an extent that is so many times too large.
+/// The probable mistake behind an extent that is too large by a ratio.
 fn mistake(ratio: f64) -> &'static str {
     if ratio > 100.0 {
         "metres are expected, were these millimetres?"
@@ -115,7 +115,7 @@ fn mistake(ratio: f64) -> &'static str {
     }
 }
 
-/// Refuses a surface without triangles, or with too many.
+/// Rejects a surface without triangles, or with too many.
 pub(super) fn check_count(triangles: usize) -> Result<(), MeshError> {
     match triangles {
         0 => Err(MeshError::Empty),

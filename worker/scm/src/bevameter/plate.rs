@@ -1,4 +1,4 @@
-//! Predict the pressure under a plate that is pressed into the soil, lifted and pressed again.
+//! Pressure under a plate that is pressed into the soil, lifted and pressed again.
 
 use crate::pressure_sinkage::{self, k_star};
 use crate::rejection::{Rejection, require};
@@ -39,7 +39,7 @@ impl Plate {
     }
 }
 
-/// Pressure under a plate on its first way down.
+/// Pressure under a plate during first loading.
 ///
 /// `p = (k_c / b + k_phi) z^n`, uniform over the plate, with b the radius or the short side.
 ///
@@ -76,7 +76,7 @@ pub fn pressure(soil: &Soil, plate: &Plate, sinkage_m: f64) -> Result<f64, Rejec
     }
 }
 
-/// Load on a plate on its first way down `[N]`: its area times [`pressure`].
+/// Load on a plate during first loading `[N]`: its area times [`pressure`].
 ///
 /// # Errors
 /// Those of [`pressure`].
@@ -108,8 +108,8 @@ impl Unloading {
     /// Pressure under a plate that has been `deepest_m` deep and now is at `sinkage_m`.
     ///
     /// # Arguments
-    /// - `deepest_m`: `z_u` `[m]`, ≥ 0; `sinkage_m`: z `[m]`, ≥ 0. A plate deeper than it has ever been is on
-    ///   its first way down.
+    /// - `deepest_m`: `z_u` `[m]`, ≥ 0; `sinkage_m`: z `[m]`, ≥ 0. A plate deeper than ever before is in
+    ///   first loading.
     ///
     /// # Returns
     /// Pressure `[Pa]`. The soil does not pull: where the line falls below 0 the plate has left the soil, and 0 is

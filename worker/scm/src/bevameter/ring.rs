@@ -1,4 +1,4 @@
-//! Predict the shear stress under a ring that is turned on the soil.
+//! Shear stress under a ring that is turned on the soil.
 
 use crate::rejection::{Rejection, require};
 use crate::shear::{ShearDisplacement, strength};
@@ -48,7 +48,7 @@ pub struct Ring {
 }
 
 impl Ring {
-    /// The same ring, if its radii are finite and in order.
+    /// Checks that the radii are finite and in order, and returns the ring.
     ///
     /// # Errors
     /// [`Rejection::InvalidParameter`] for the first radius that is not.
@@ -75,7 +75,7 @@ impl Ring {
         displacement_m / self.mean_radius_m()
     }
 
-    /// Shear stress `[Pa]` that a torque M `[N m]` means, were it uniform: `tau = 3 M / (2 pi (r_2³ − r_1³))`.
+    /// Shear stress `[Pa]` that corresponds to a torque M `[N m]`, taken as uniform: `tau = 3 M / (2 pi (r_2³ − r_1³))`.
     ///
     /// Checked by `bevameter::torque_of_a_ring_is_the_moment_of_its_stress_and_back`.
     pub fn shear_stress_pa(&self, torque_n_m: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! A run as effects on slip, dimensions, exponent and load leave it.
+//! A run after the effects on slip, dimensions, exponent and load.
 
 use formula::variable::Variables;
 use formula::{Hook, Program, Variable};
@@ -95,8 +95,8 @@ impl Active<'_> {
         self.at(Hook::WheelLoad).any(|law| law.0.kinks().meets(reaction))
     }
 
-    /// The load that the soil must carry while it exerts a pull and a torque: what the formulas from the first one on that
-    /// asks for them make of the case's load.
+    /// The load that the soil must carry while it exerts a pull and a torque: the case's load after the formulas from the first
+    /// that uses pull or torque.
     pub(crate) fn wheel_load(&self, case: &Case, drawbar_pull: f64, torque: f64) -> Result<f64, Rejection> {
         let mut variables = case.variables;
         variables[Variable::DrawbarPull as usize] = drawbar_pull;
@@ -109,7 +109,7 @@ impl Active<'_> {
     }
 }
 
-/// What the soil answers to a load.
+/// The reaction of the soil to a load.
 const REACTION: [Variable; 2] = [Variable::DrawbarPull, Variable::Torque];
 
 fn follows_reaction(program: &Program) -> bool {

@@ -1,4 +1,4 @@
-//! What the rig measures of what the soil does.
+//! Effects on the measured channels.
 
 use formula::{Hook, Variable};
 
@@ -11,8 +11,8 @@ impl Active<'_> {
         Hook::CHANNELS.into_iter().any(|hook| self.enter(hook))
     }
 
-    /// Replace the channels by what is measured of them. The formulas of one effect all see the channels as the effects
-    /// before it left them.
+    /// Replace the channels by their measured values. The formulas of one effect all see the channels as they are after the
+    /// effects before it.
     pub(crate) fn measure(&self, variables: &mut [f64; Variable::COUNT]) -> Result<(), Rejection> {
         let mut scalars = Vec::new();
         for (law, parameters) in &self.laws {

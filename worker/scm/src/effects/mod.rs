@@ -1,8 +1,8 @@
-//! Let effects enter the models: formulas and mechanisms that replace quantities of the base.
+//! Effects: formulas and mechanisms that replace quantities of the base model.
 //!
 //! # Layout
 //! - here: [`CompiledEffects`], compiled for one model, and [`Active`], those of them whose strength is not neutral.
-//! - `case`: the run as effects on slip, dimensions, exponent and load leave it.
+//! - `case`: the run after the effects on slip, dimensions, exponent and load.
 //! - `error`: why a model cannot express an effect.
 //! - `law`: an effect as one model knows it.
 //! - `node`: pressure, strength and stress at many nodes.
@@ -27,7 +27,7 @@ use formula::{Effect, Hook, Program, Variable};
 
 use law::{Law, formulas_at};
 
-/// A forward model, as far as effects tell models apart.
+/// A forward model, as far as effects distinguish models.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ModelForm {
     /// [`quasi_static`](crate::quasi_static): the footprint is one, so its modulus and width are the same at all nodes.
@@ -45,7 +45,7 @@ impl ModelForm {
         }
     }
 
-    /// What the model has in code of its own; it then leaves such an effect's formulas alone.
+    /// The mechanisms that the model has in code of its own; it then ignores the effect's formulas.
     fn mechanisms(self) -> &'static [Mechanism] {
         match self {
             ModelForm::QuasiStatic => &[Mechanism::Rebound, Mechanism::FlatPatch],
@@ -64,7 +64,7 @@ impl ModelForm {
     }
 }
 
-/// What effects may ask of a run beyond soil, wheel and condition.
+/// Properties of the test site that effects may use, beyond soil, wheel and condition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Site {
     /// Density of the soil `[kg/m³]`, where it is known.

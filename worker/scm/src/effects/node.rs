@@ -1,4 +1,4 @@
-//! Pressure, strength and shear stress at many nodes, as effects leave them.
+//! Pressure, strength and shear stress at many nodes after the effects.
 
 use formula::block::Block;
 use formula::variable::Variables;

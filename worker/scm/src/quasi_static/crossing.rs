@@ -1,4 +1,4 @@
-//! Tell which balance a sinking wheel meets first.
+//! The first of several balances that a sinking wheel meets.
 //!
 //! A driving rim presses back harder the deeper it stands, so there is one balance. In skid the shear
 //! stress pulls the rim down where it slopes, and the load that the soil carries may rise, fall and rise
@@ -13,13 +13,13 @@ const SAMPLES: u32 = 64;
 /// Steps of the search for a peak between samples: the bracket shrinks by 0.618 each.
 const PEAK_STEPS: u32 = 40;
 
-/// Whether the carried load surely rises with depth up to this contact length, from bounds on its terms.
+/// Whether the carried load certainly rises with depth up to this contact length, from bounds on its terms.
 ///
 /// At a fixed fraction of the contact each term is bounded by its slope in ln l: the pressure by at least
 /// `2n` from the sinkage, 1 from `k* l` unless `k_c` > 0, less `m/2` from the changing shape of gamma; the
 /// friction that pulls down, relative to the pressure, by at most `sec²(theta_1)`; so does the cohesion,
-/// which must grow more slowly than the rest. False means "not known". Effects on pressure and shear are left out of account:
-/// with a law whose pressure falls with depth a balance may be found that is not the first.
+/// which must grow more slowly than the rest. False means "not known". Effects on pressure and shear are ignored:
+/// with a law whose pressure falls with depth, the balance found may not be the first.
 pub(super) fn rises_up_to(rim: &Rim, contact_length: f64) -> bool {
     let soil = &rim.soil;
     let pressure_slope = 2.0 * soil.n - 0.5 * soil.gamma_exponent + if soil.k_c > 0.0 { 0.0 } else { 1.0 };
@@ -38,11 +38,11 @@ pub(super) fn rises_up_to(rim: &Rim, contact_length: f64) -> bool {
     pull_down < 1.0 && slope > cohesion_slope
 }
 
-/// What a scan from the surface down has found.
+/// Result of a scan from the surface down.
 pub(super) enum Scan {
     /// The carried load first passes the wheel load between these contact lengths.
     Between(f64, f64),
-    /// It never does; this is the most that is carried `[N]`.
+    /// It never does; the largest load carried `[N]`.
     Never(f64),
 }
 

@@ -1,16 +1,16 @@
-//! How far the rim has slid since it met the soil.
+//! Shear displacement of the rim: how far it has slid since it met the soil.
 
 use super::kinematics::RimMotion;
 
-/// What a rim that hardly turns has slid at most `[m]`: a locked wheel has slid ever since.
+/// Largest displacement of a rim that hardly turns `[m]`: a locked wheel would slide for ever.
 const FARTHEST: f64 = 1e3;
 
-/// The way that elements of the rim slide along the soil, in steady motion.
+/// The distance that elements of the rim slide along the soil, in steady motion.
 ///
 /// An element enters the contact at its front end and moves backwards; at a place x ahead of the axle it has slid
 /// `j(x) = ∫ |v_t| dt` since. On the arc, with θ = asin(x/R) and `v_t = omega R − v cos θ`, the integral is
-/// `R θ − (v / omega) sin θ` between both places (Wong & Reece 1967), taken piece by piece where `v_t` changes sign; on a rim
-/// that its load has flattened to the radius `R_b` it is `|1 − v / (omega R_b)|` times the way along. A wheel that moves
+/// `R θ − (v / omega) sin θ` between both places (Wong & Reece 1967, <https://doi.org/10.1016/0022-4898(67)90105-X>), taken piece by piece where `v_t` changes sign; on a rim
+/// that its load has flattened to the radius `R_b` it is `|1 − v / (omega R_b)|` times the distance along it. A wheel that moves
 /// sideways slides across as well, for as long: `sqrt(j² + (v sin β t)²)`, exact where the direction of sliding does
 /// not change.
 ///

@@ -5,7 +5,7 @@ use super::reshaped::Reshaping;
 use super::rim::Rim;
 use crate::Rejection;
 
-/// A rim, and what effects make of its run.
+/// A rim, and the effects on its run.
 #[derive(Debug, Clone)]
 pub(super) struct Footing<'r, 'e> {
     pub(super) rim: Rim,
@@ -17,7 +17,7 @@ impl Footing<'_, '_> {
     /// The soil's force on the rim when the contact reaches a length of 0 < l ≤ R ahead of the axle.
     ///
     /// # Errors
-    /// [`Rejection::Formula`]: a formula gives what the model cannot use.
+    /// [`Rejection::Formula`]: a formula gives an inadmissible value.
     pub(super) fn react(&mut self, contact_length: f64) -> Result<Reaction, Rejection> {
         let Some(reshaping) = &mut self.reshaping else {
             return Ok(self.rim.react(contact_length));

@@ -1,4 +1,4 @@
-//! Give the velocity at which the rim slides over the soil.
+//! Velocity at which the rim slides over the soil.
 
 use crate::{Condition, Wheel};
 

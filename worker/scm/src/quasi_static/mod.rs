@@ -1,8 +1,8 @@
-//! Simulate a smooth rigid wheel in steady motion: stresses along the rim, balance of the wheel load.
+//! A smooth rigid wheel in steady motion: stresses along the rim, balance of the wheel load.
 //!
 //! # Layout
 //! - `kinematics`: the slip velocity along the rim.
-//! - `rim`: what of a run does not depend on how deep the wheel stands.
+//! - `rim`: the quantities of a run that do not depend on the sinkage.
 //! - `reaction`: the soil's force and torque on the rim for a given contact length.
 //! - `footing`: the rim with or without effects.
 //! - `panel`: nodes of the quadrature on a piece of the rim.
@@ -70,7 +70,8 @@ use crate::{Averages, Condition, Rejection, Soil, Wheel};
 /// other m, for v0 below 1e-3 of the rim speed and up to z = 0.75 R; 5e-4 beyond. Balance to 1e-9 of the load.
 ///
 /// # Source
-/// Wong & Reece 1967 (integration along the rim); Krenn & Hirzinger's soil contact model (stresses).
+/// Wong & Reece 1967, <https://doi.org/10.1016/0022-4898(67)90105-X> (integration along the rim); Krenn & Hirzinger 2009
+/// (stresses); see [Literature](crate#literature).
 /// Departure: surface elements in place of projected ones with unit normals.
 /// Checked by `reference_table`, `brute_force`, `invariants`.
 ///
@@ -93,8 +94,8 @@ pub fn simulate(soil: &Soil, wheel: &Wheel, condition: &Condition) -> Result<Ave
 ///
 /// In the order of [`Hook::ALL`](formula::Hook::ALL): slip, dimensions and sinkage exponent are replaced before anything else; at
 /// every node of the rim the pressure, the strength and the shear stress; the load where it depends on pull and torque at every
-/// trial of the balance; the channels at the end. Formulas at nodes and the flat see the load without what follows pull and
-/// torque, channels the load that is carried. Two mechanisms are in code:
+/// trial of the balance; the channels at the end. Formulas at nodes and the flat see the load before the formulas that depend on pull and
+/// torque; channels see the load that is carried. Two mechanisms are in code:
 ///
 /// - *rebound*, with the compliance a: the soil behind the axle springs back by `e = min(a p_0, z_0/2)`, `p_0 = k* z_0^n`, and
 ///   carries `gamma p_0 (1 − h/e)` where it has risen by h; gamma spreads over the whole contact.
@@ -105,14 +106,14 @@ pub fn simulate(soil: &Soil, wheel: &Wheel, condition: &Condition) -> Result<Ave
 /// # Arguments
 /// - `effects`: compiled for [`ModelForm::QuasiStatic`](crate::effects::ModelForm::QuasiStatic), with room to compute in. With none active the result is that of
 ///   [`simulate`], bit for bit.
-/// - `site`: what formulas may ask beyond soil, wheel and condition.
+/// - `site`: properties of the test site that formulas may use.
 ///
 /// # Errors
-/// Those of [`simulate`], and [`Rejection::Formula`] where a formula gives what the model cannot use, at any trial of the balance.
+/// Those of [`simulate`], and [`Rejection::Formula`] where a formula gives an inadmissible value, at any trial of the balance.
 ///
 /// # Validity
-/// As [`simulate`]. The displacement `j` is that of an element of the rim in steady motion; `pass` tells passes apart, the soil
-/// remembers nothing else of them. Where a law jumps between two nodes of the quadrature the jump is shared out, so that
+/// As [`simulate`]. The displacement `j` is that of an element of the rim in steady motion; `pass` is the only
+/// difference between passes. Where a law jumps between two nodes of the quadrature the jump is shared out, so that
 /// forces are continuous in the parameters.
 ///
 /// # Source

@@ -1,4 +1,4 @@
-//! Integrate the soil's stresses over the rim.
+//! The soil's stresses, integrated over the rim.
 
 use super::panel::{Contact, Panel};
 use super::rim::Rim;

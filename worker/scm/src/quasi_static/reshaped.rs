@@ -1,4 +1,4 @@
-//! Integrate the soil's stresses over a rim that effects reshape: formulas at its nodes, a flat, soil that springs back.
+//! The soil's stresses, integrated over a rim with effects: formulas at its nodes, a flat, soil that springs back.
 
 use formula::block::BLOCK;
 use formula::effect::Mechanism;
@@ -26,7 +26,7 @@ const ENDS: usize = 10;
 /// Passes in which rebound and footprint find each other, where the modulus depends on the footprint's width.
 const PASSES: usize = 3;
 
-/// What effects make of a run.
+/// The effects on a run.
 #[derive(Debug, Clone)]
 pub(super) struct Reshaping<'r, 'e> {
     active: &'r Active<'e>,
@@ -72,7 +72,7 @@ pub(super) struct Mechanics {
 
 impl Mechanics {
     /// # Errors
-    /// [`Rejection::InvalidParameter`]: a deflection or a compliance that no wheel and no soil can have.
+    /// [`Rejection::InvalidParameter`]: a deflection or a compliance outside its bounds.
     pub(super) fn new(active: &Active, case: &Case) -> Result<Self, Rejection> {
         let first = |mechanism| {
             let values = active.mechanism(mechanism);

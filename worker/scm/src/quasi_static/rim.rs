@@ -1,11 +1,11 @@
-//! The rim of a run: what does not depend on how deep the wheel stands.
+//! The rim of a run: the quantities that do not depend on the sinkage.
 
 use super::kinematics::RimMotion;
 use crate::pressure_distribution::PressureDistribution;
 use crate::shear::ShearVelocity;
 use crate::{Condition, Soil, Wheel};
 
-/// Everything about a run that does not depend on how deep the wheel stands.
+/// The quantities of a run that do not depend on the sinkage.
 #[derive(Debug, Clone)]
 pub(super) struct Rim {
     pub(super) soil: Soil,

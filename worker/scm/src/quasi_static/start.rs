@@ -1,4 +1,4 @@
-//! Guess the contact length from Bekker's small-angle closed form.
+//! First guess of the contact length from Bekker's small-angle closed form.
 
 use super::rim::Rim;
 

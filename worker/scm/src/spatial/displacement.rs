@@ -1,4 +1,4 @@
-//! Follow how far wheel and soil have slid along each other.
+//! Shear displacement between wheel and soil.
 
 use super::contact::Contact;
 use super::pack::{PACK, Pack, load, splat, store};

@@ -1,4 +1,4 @@
-//! The soil, the wheel and the condition from which this module's tests depart.
+//! The soil, the wheel and the condition that this module's tests start from.
 
 use super::{Ground, Scene, Shape};
 use crate::effects::{Active, Site};

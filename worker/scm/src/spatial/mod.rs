@@ -1,8 +1,8 @@
-//! Simulate a wheel that rolls over a deformable terrain, in three dimensions.
+//! A wheel that rolls over a deformable terrain, in three dimensions.
 //!
 //! # Layout
 //! - [`Scene`], [`RunSettings`], [`Ground`], [`Shape`], [`SurfaceMesh`]: what a run is made of.
-//! - `run`: the wheel along its track, and the averages of what it feels.
+//! - `run`: the wheel along its track, and the averages of force, torque and sinkage.
 //! - `wheel`: the underside that the soil meets, and its motion.
 //! - `contact`: which nodes the wheel touches at a height, their pressure, force and torque.
 //! - `displacement`: how far wheel and soil have slid along each other, where a formula asks for it.
@@ -31,7 +31,7 @@ pub use surface::{Normals, SurfaceMesh};
 use crate::rejection::require;
 use crate::{Condition, Rejection};
 
-/// Speeds of the sled at which times and lengths of a step are numbers to compute with `[m/s]`.
+/// Range of sled speeds for which the time and length of a step stay representable `[m/s]`.
 const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 
 /// A rigid wheel rolls over deformable soil at prescribed speeds of sled and rim.
@@ -53,21 +53,20 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 /// which the wheel's surface moves; slopes steeper than the angle of repose slide, never into the wheel.
 ///
 /// # Effects
-/// Where effects are active, the run has the slip, radius, width, exponent and load that their formulas leave: a wheel given
-/// as a mesh keeps its size, and a formula that would change it is refused. At the nodes formulas replace the plastic
-/// pressure before the elastic line bounds it, then the strength, then the size of the shear stress, whose direction stays.
+/// Where effects are active, the run has the slip, radius, width, exponent and load that their formulas give. A wheel given
+/// as a mesh keeps its size: a formula that would change it is rejected. At the nodes formulas replace the plastic
+/// pressure before the elastic line bounds it, then the strength, then the magnitude of the shear stress, whose direction stays.
 /// The shear displacement j is followed where a formula uses it. `pass` counts from pass to pass at nodes and channels; for
 /// dimensions it is the one averaged.
 ///
 /// - A load that depends on pull or torque is that of the step before, the nominal one at first.
-/// - What is measured enters histories and averages, and what settles is the measured. Balance, power and the check of
-///   energy are the soil's own. Channels see the contact length of their step, k* weighted by area over the footprint's patches,
-///   and the effective width of the last look at the contour.
+/// - Histories and averages hold the measured channels. The balance, the power and the energy check use the soil's own forces. Channels see the contact length of their step, k* weighted by area over the footprint's patches,
+///   and the effective width when the contour was last measured.
 /// - Mechanisms: rebound `1 / K_e' = 1 / K_e + a`; a flat patch cuts the rim off at `R − a W`, from where sinkage is then counted;
 ///   digging lowers the reference surface by `(d / l) |v_t| dt` under the sliding wheel; end walls make k*
 ///   `1 + w (exp(−x / l) + exp(−(L − x) / l))` times as large, x from the rear wall to the hub, x = R at the start of each pass.
 ///
-/// Without effects nothing of this is evaluated. Checked by `spatial::effects`, `spatial::signatures`.
+/// Without effects none of this is evaluated. Checked by `spatial::effects`, `spatial::signatures`.
 ///
 /// # Arguments
 /// - `scene`, `condition`, `settings`: fields carry units and bounds. omega comes from the slip and the *rig's* radius.
@@ -81,14 +80,14 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 /// - [`Rejection::NoSupport`]: no balance before the hub reaches the undisturbed surface; also where k* ≤ 0 everywhere.
 /// - [`Rejection::NoConvergence`]: the mean residual of the balance exceeds 2 % of the load, over the averaged steps or the run:
 ///   the load jumps as patches join.
-/// - [`Rejection::EnergyGained`]: motor and sled got work out of the soil, on average: `T omega − F v < 0`.
-/// - [`Rejection::Formula`]: a formula gives what cannot be used, at a node that bears or of the run.
+/// - [`Rejection::EnergyGained`]: motor and sled gained work from the soil, on average: `T omega − F v < 0`.
+/// - [`Rejection::Formula`]: a formula gives an inadmissible value, at a loaded node or for the run.
 /// - [`Rejection::NotFinite`]: forces overflow. [`Rejection::Protocol`]: the protocol does not fit the run.
 ///
 /// # Validity
 /// Rigid wheel, dry granular soil, motion slow enough for the vertical balance (or [`Vertical::Dynamic`]). Stresses act on
-/// the wheel's surface. A height field cannot show the flanks of grousers: their thrust beyond the sheared tips is
-/// no part of this model. With a negative `k_c` a small patch of the footprint, such as a grouser's tip or a lip of a berm,
+/// the wheel's surface. A height field cannot represent the flanks of grousers: their thrust beyond the sheared tips is
+/// not modelled. With a negative `k_c` a small patch of the footprint, such as a grouser's tip or a lip of a berm,
 /// carries nothing, and the load jumps as patches join: from about kappa = −0.5 on, wheels with grousers find no support and smooth
 /// ones on flowing soil no balance, where the quasi-static model, which knows one patch, still does. Wheels up to 126 lanes wide straight ahead, 62 at a slip angle.
 ///
@@ -98,8 +97,8 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 /// load, or to 1 µm where patches join. Where left and right are alike, half the wheel is modelled.
 ///
 /// # Source
-/// Krenn & Hirzinger's soil contact model as the source paper describes it (section 4, Eq. 5–10); what it leaves open (gamma,
-/// flow, memory of compaction, grousers) is ours. Checked by `spatial::*`.
+/// Krenn & Hirzinger's soil contact model (2008, 2009; see [Literature](crate#literature)) as the source paper describes it
+/// (section 4, Eq. 5–10); what it leaves open (gamma, flow, memory of compaction, grousers) is our own. Checked by `spatial::*`.
 ///
 /// # Example
 /// ```
@@ -143,7 +142,7 @@ pub fn simulate(
     }
 }
 
-/// The same run where effects are active: with the soil, wheel, sled speed and load that they leave.
+/// The same run where effects are active: with the soil, wheel, sled speed and load after them.
 fn simulate_with_effects(
     scene: &Scene,
     condition: &Condition,

@@ -1,4 +1,4 @@
-//! Work on four lanes at a time, with the same bits on every machine.
+//! Arithmetic on four lanes at a time, with the same bits on every machine.
 
 use wide::f64x4;
 

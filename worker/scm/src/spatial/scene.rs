@@ -1,10 +1,10 @@
-//! What a run is made of.
+//! The scene of a run: soil, wheel and effects.
 
 use super::settings::{Ground, Shape};
 use crate::effects::{Active, Site};
 use crate::{Soil, Wheel};
 
-/// What the wheel rolls on, and the wheel.
+/// The soil, the wheel and the effects of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Scene<'a> {
     /// Pressure and shear of the soil.
@@ -15,8 +15,8 @@ pub struct Scene<'a> {
     pub wheel: &'a Wheel,
     /// The rest of the wheel's shape.
     pub shape: &'a Shape,
-    /// Effects that enter; `Active::default()` is none.
+    /// The active effects; `Active::default()` for none.
     pub effects: &'a Active<'a>,
-    /// What effects may ask of the run beyond the rest.
+    /// Properties of the test site that effects may use.
     pub site: Site,
 }

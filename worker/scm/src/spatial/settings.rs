@@ -1,4 +1,4 @@
-//! Say what the model needs beyond soil, wheel and condition.
+//! Inputs of the model beyond soil, wheel and condition.
 
 use super::surface::{Normals, SurfaceMesh};
 use crate::Wheel;
@@ -30,7 +30,7 @@ impl Default for Ground {
 }
 
 impl Ground {
-    /// The same ground, if the laws are defined for it.
+    /// Checks that the laws are defined for the ground, and returns it.
     ///
     /// # Errors
     /// [`Rejection::InvalidParameter`] for the first field outside its bounds.
@@ -85,7 +85,7 @@ pub enum Shape {
     Mesh {
         /// The surface.
         surface: SurfaceMesh,
-        /// How often the surface looks the same in one turn, ≥ 1: grousers around it. Averages are taken over whole
+        /// Number of identical sectors in one turn, ≥ 1, such as the number of grousers. Averages are taken over whole
         /// periods. `None`: found from the vertices, up to 1e-5 of the wheel's size; a mesh on which no part repeats is
         /// averaged over whole turns if the travel holds two. A faceted cylinder repeats with its facets.
         /// Checked by `spatial::mesh::the_period_is_found_from_the_vertices`.
@@ -107,7 +107,7 @@ impl From<SurfaceMesh> for Shape {
 }
 
 impl Shape {
-    /// The same shape, if it can be.
+    /// Checks the fields, and returns the shape.
     ///
     /// # Errors
     /// [`Rejection::InvalidParameter`] for the first field outside its bounds.
@@ -196,7 +196,7 @@ pub enum Protocol {
         /// Change from one window to the next, relative to the wheel load, to load times radius and to the sinkage,
         /// at which averages have settled.
         tolerance: f64,
-        /// Travel at which the run ends anyhow `[m]`.
+        /// Travel at which the run ends in any case `[m]`.
         most_travel_m: f64,
     },
     /// A fixed time, transients cut.
@@ -255,7 +255,7 @@ impl Default for RunSettings {
 }
 
 impl RunSettings {
-    /// The same settings, if they can be followed.
+    /// Checks the fields, and returns the settings.
     ///
     /// # Errors
     /// [`Rejection::InvalidParameter`] for the first outside its bounds.

@@ -1,4 +1,4 @@
-//! Describe a rigid wheel by the triangles of its surface.
+//! A rigid wheel given by the triangles of its surface.
 
 use crate::rejection::{Rejection, require};
 
@@ -6,7 +6,7 @@ use crate::rejection::{Rejection, require};
 ///
 /// The axle is the y axis through the origin, z points up, x forward; a wheel that rolls forward turns what is at the
 /// top forward. Only the lowest point above each place of the soil counts, h(x, y) = min z, so that neither the order
-/// of a triangle's vertices nor what hides inside matters. Where nothing lies above the soil, nothing touches it.
+/// of a triangle's vertices nor hidden parts matter.
 ///
 /// # Validity
 /// The surface is sampled in the middle of each of the terrain's lanes, and along travel at most 1 mm apart, exactly on
@@ -30,7 +30,7 @@ pub struct SurfaceMesh {
 pub enum Normals {
     /// The normal of the triangle, flanks of grousers included: per area seen from above a triangle of slopes
     /// (dh/dx, dh/dy) is pressed with p (−dh/dx, −dh/dy, 1). A triangle steeper than 10 : 1 (84°) keeps its place but
-    /// presses as though its slope were 10, because a rare hit would stand for more flank than there is. One that
+    /// presses as though its slope were 10, because a sample that hits it would represent more flank than there is. One that
     /// stands vertical has no area from above and does not press, though its edge is where the step is.
     ///
     /// The flanks of 12 straight grousers add 0.07 W to the drawbar pull and 0.08 W R to the torque of the analytic wheel
@@ -42,7 +42,7 @@ pub enum Normals {
 }
 
 impl SurfaceMesh {
-    /// The same surface, if it can be a wheel's.
+    /// Checks that the surface can be that of a wheel, and returns it.
     ///
     /// # Errors
     /// [`Rejection::InvalidParameter`] with `triangles` for none, or for a position beyond the vertices (the value is

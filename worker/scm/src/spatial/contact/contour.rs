@@ -1,4 +1,4 @@
-//! Measure the contour of each patch of a footprint.
+//! The contour of each patch of a footprint.
 
 use super::super::pack::PACK;
 use super::super::terrain::Terrain;

@@ -1,4 +1,4 @@
-//! Measure a footprint: ends of the contact between nodes, areas, distances from the border.
+//! The geometry of a footprint: ends of the contact between nodes, areas, distances from the border.
 
 use super::super::pack::{LANES, PACK, Pack, greater, least_of, lesser, most_of, splat, sum};
 use super::super::terrain::Terrain;

@@ -1,8 +1,8 @@
-//! Press the wheel onto the terrain: which nodes it touches, and with what pressure.
+//! The contact of wheel and terrain: which nodes touch, and with what pressure.
 //!
 //! # Layout
 //! - `quad`: what is known of four neighbouring nodes.
-//! - `patch`: which nodes in contact hang together.
+//! - `patch`: which nodes in contact are connected.
 //! - `distance`: ends of the contact between nodes, areas, distances from the border.
 //! - `contour`: contour lengths of the patches.
 //! - `laws`: pressure and its distribution; `power`: z^n for many nodes.

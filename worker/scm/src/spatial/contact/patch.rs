@@ -1,4 +1,4 @@
-//! Find the patches of a footprint: nodes in contact that hang together.
+//! The patches of a footprint: connected nodes in contact.
 
 use super::super::pack::{PACK, Pack, lanes_of, splat};
 
@@ -66,7 +66,7 @@ pub(crate) fn lanes_in_runs(mut mask: u64) -> impl Iterator<Item = (usize, usize
 impl Patches {
     /// Label the runs of the strips `first..first + masks.len()`; bit j of a mask says that lane j is in contact.
     ///
-    /// Nodes hang together along strips and lanes, not across corners.
+    /// Nodes are connected along strips and lanes, not across corners.
     pub(crate) fn label(&mut self, first: usize, masks: &[u64]) {
         let zero = splat(0.0);
         let blank = Patch {

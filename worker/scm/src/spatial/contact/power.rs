@@ -1,4 +1,4 @@
-//! Give z^n for one exponent and many z: a table of powers and a short binomial series.
+//! z^n for one exponent and many z: a table of powers and a short binomial series.
 
 use super::super::pack::{Pack, splat};
 

@@ -1,4 +1,4 @@
-//! Hold what is known of four neighbouring lanes of a strip.
+//! Four neighbouring nodes under the wheel.
 
 use super::super::pack::{PACK, Pack, greater, most_of, splat};
 use super::super::wheel::envelope::NOWHERE;

@@ -1,4 +1,4 @@
-//! Add up the soil's force and torque on the wheel.
+//! The soil's force and torque on the wheel.
 
 use super::super::pack::{PACK, Pack, splat, sum};
 use super::super::terrain::Terrain;

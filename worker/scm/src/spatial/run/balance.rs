@@ -1,4 +1,4 @@
-//! Find the height of the hub at which the soil carries the wheel load.
+//! The height of the hub at which the soil carries the wheel load.
 
 /// Residual load, relative to the wheel load, at which a step is in balance.
 const TOLERANCE: f64 = 2e-3;

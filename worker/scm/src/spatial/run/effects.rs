@@ -1,4 +1,4 @@
-//! Let effects enter a run: what they change of the wheel, the soil, the load and what is measured.
+//! Effects on a run: on the wheel, the soil, the load and the measured channels.
 
 use formula::Variable;
 use formula::effect::Mechanism;

@@ -1,4 +1,4 @@
-//! Keep what each step of a run gave.
+//! Time histories of a run.
 
 /// Time histories of a run, one entry for each step of equal length.
 #[derive(Debug, Clone, Default, PartialEq)]

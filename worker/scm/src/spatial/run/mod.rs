@@ -1,13 +1,13 @@
-//! Roll the wheel along its track and average what it feels.
+//! The run of a wheel along its track, and its averages.
 //!
 //! # Layout
 //! - `balance`: the height of the hub at which the soil carries the load.
 //! - `track`: the terrain a run needs, and the size of its steps.
 //! - `rolling`: one step after the other.
-//! - `effects`: what effects change of it.
-//! - `history`: what each step gave.
-//! - `result`: what a run gives.
-//! - `record`: what the steps gave, its averages, and whether they can be.
+//! - `effects`: effects on the run.
+//! - `history`: the time histories of a run.
+//! - `result`: the result of a run.
+//! - `record`: the results of the steps, their averages and their checks.
 //! - `protocol`: when a run ends, and which steps are averaged.
 
 mod balance;

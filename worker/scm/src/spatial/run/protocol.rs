@@ -1,4 +1,4 @@
-//! Decide when a run ends, and average it.
+//! The protocol of a run: when it ends, and what is averaged.
 
 use super::record::{Record, Windows};
 use super::result::SpatialRun;
@@ -13,7 +13,7 @@ use signal::{INTERVAL_S, LowPass, average};
 
 /// Roll the wheel by the settings' protocol, pass after pass; the last one counts.
 ///
-/// `case`: where effects are active, what they have made of soil, wheel and condition, which scene and condition then hold.
+/// `case`: where effects are active, soil, wheel and condition after them, as in scene and condition.
 pub(crate) fn roll(
     scene: &Scene,
     condition: &Condition,
@@ -98,7 +98,7 @@ fn steady(
         let whole = period.unwrap_or(rolling.steps.to_column as f64);
         let most = libm::floor(0.5 * most_steps as f64 / whole).max(1.0);
         let wanted = whole * libm::ceil(contact / whole).max(1.0).min(most);
-        // no window is cut: part of a period says nothing of the whole
+        // no window is cut: part of a period does not represent the whole
         if end + wanted > most_steps as f64 {
             break;
         }

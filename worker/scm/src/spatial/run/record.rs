@@ -1,4 +1,4 @@
-//! Keep what each step gives, and make a run of it.
+//! Record of the steps of a run, and its averages.
 
 use super::history::History;
 use super::result::SpatialRun;
@@ -7,11 +7,12 @@ use crate::rejection::Rejection;
 use crate::{Averages, Condition};
 use signal::{Window, period_mean};
 
-/// Steps from one look at the contour to the next: no multiple of which is a column's, whose phase the contour shows.
+/// Steps between measurements of the contour; not a divisor of a column's steps, because the contour depends on the phase
+/// within a column.
 const CONTOUR_EVERY: usize = 7;
-/// Power that the soil may seem to give, relative to that through the wheel and to load times speed: what the search for the
-/// balance leaves of the load, and, on hard ground, springs under grousers, whose force acts along the spoke while their depth
-/// is measured downwards (0.2 % of load times speed).
+/// Tolerated power from the soil, relative to that through the wheel and to load times speed. It arises from the residual of
+/// the balance and, on hard ground, from springs under grousers, whose force acts along the spoke while their depth is measured
+/// downwards (0.2 % of load times speed).
 const ENERGY_TOLERANCE: f64 = 5e-3;
 /// Largest mean residual of the vertical balance, relative to the wheel load, over the averaged steps and over the run.
 const MOST_RESIDUAL: f64 = 0.02;
@@ -25,7 +26,7 @@ pub(super) struct Windows {
 /// What a run gives, step by step.
 pub(super) struct Record {
     pub(super) history: History,
-    /// Drawbar pull, torque, sinkage and lateral force as the soil has them, where something else is measured.
+    /// Drawbar pull, torque, sinkage and lateral force of the soil, where the measured ones differ.
     soils_own: [Vec<f64>; 4],
     pub(super) contact_length_m: Vec<f64>,
     b_eff_m: Vec<f64>,
@@ -60,11 +61,11 @@ impl Record {
         }
     }
 
-    /// Keep what a step gave, as it is measured; power and balance are the soil's own.
+    /// Add the measured channels of a step; power and balance are the soil's own.
     ///
     /// # Errors
-    /// [`Rejection::NoConvergence`] as soon as the steps so far miss so much that the mean over the run will be too large: what
-    /// comes then is no balance, and finding none at every step takes long.
+    /// [`Rejection::NoConvergence`] as soon as the residuals so far make the mean over the run too large, because
+    /// further steps without a balance would take long.
     pub(super) fn push(&mut self, rolling: &mut Rolling, step: &Step) -> Result<(), Rejection> {
         let reaction = &step.reaction;
         if self.history.len().is_multiple_of(CONTOUR_EVERY) {
@@ -112,7 +113,7 @@ impl Record {
         Ok(())
     }
 
-    /// Whether the soil has other channels than those measured.
+    /// Whether the measured channels differ from the soil's own.
     fn measured_otherwise(&self) -> bool {
         !self.soils_own[0].is_empty()
     }
@@ -136,7 +137,7 @@ impl Record {
         means([pull, torque, sinkage, lateral], from, to)
     }
 
-    /// The same as the soil has them: an offset of what is measured must not decide when a run has settled.
+    /// The same of the soil's own channels: a measurement offset must not decide when a run has settled.
     pub(super) fn own_means(&self, from: f64, to: f64) -> Result<[f64; 4], Rejection> {
         if !self.measured_otherwise() {
             return self.means(from, to);
@@ -186,7 +187,7 @@ impl Record {
         let throughput = (torque * rolling.motion.rotation).abs()
             + (pull * rolling.motion.forward).abs()
             + (lateral * rolling.motion.lateral).abs();
-        // a wheel that hardly slips on hard ground has next to no throughput
+        // a wheel that hardly slips on hard ground has almost no throughput
         let scale = throughput + wheel_load_n * condition.sled_speed_m_s;
         if dissipated_power_w < -ENERGY_TOLERANCE * scale {
             return Err(Rejection::EnergyGained {

@@ -1,9 +1,9 @@
-//! What a run gives.
+//! The result of a run.
 
 use super::history::History;
 use crate::Averages;
 
-/// What a run gives.
+/// The result of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpatialRun {
     /// Averages by the protocol, with the diagnostics of the contact.

@@ -31,7 +31,7 @@ const SLOWEST_TURN: f64 = 2.0;
 /// Slopes of the load between which the search for a balance starts, relative to load / radius.
 const SLOPES: [f64; 2] = [-5e3, -2.0];
 
-/// What one step gave.
+/// The result of a step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Step {
     pub(crate) reaction: Reaction,
@@ -45,7 +45,7 @@ pub(crate) struct Step {
     pub(crate) residual: f64,
 }
 
-/// A wheel on its way.
+/// A wheel that rolls along its track.
 pub(crate) struct Rolling<'a> {
     wheel: &'a Wheel,
     condition: &'a Condition,
@@ -91,8 +91,8 @@ impl<'a> Rolling<'a> {
     /// The wheel above undisturbed soil, which it is to travel for a distance `[m]`.
     ///
     /// A steady run gets room for two grouser periods at least. A wheel that turns so slowly that they would take more than
-    /// [`SLOWEST_TURN`] times the travel counts as locked. `case`: where effects are active, what they have made of soil, wheel and
-    /// condition, which scene and condition then hold.
+    /// [`SLOWEST_TURN`] times the travel counts as locked. `case`: where effects are active, soil, wheel and condition after
+    /// them, as in scene and condition.
     pub(crate) fn new(
         scene: &Scene<'a>,
         condition: &'a Condition,
@@ -210,7 +210,7 @@ impl<'a> Rolling<'a> {
         let time = self.steps.time;
         self.pose.x += self.motion.forward * time;
         // Lanes fit the width, so a wheel that drifts sideways stands on the nearest whole lane: a lane covered by a sliver would
-        // never be pressed down, and its undisturbed soil would join patches and lengthen contours however thin it is.
+        // never be pressed down, and its undisturbed soil would join patches and lengthen contours, however thin it is.
         self.drifted += self.motion.lateral * time;
         self.pose.y = libm::round(self.drifted / self.terrain.dy) * self.terrain.dy;
         self.pose.turned += self.motion.rotation * time;
@@ -387,7 +387,7 @@ impl<'a> Rolling<'a> {
         self.period
     }
 
-    /// The load that the condition says `[N]`.
+    /// The load of the condition `[N]`.
     pub(crate) fn nominal_load(&self) -> f64 {
         self.condition.wheel_load_n
     }

@@ -1,4 +1,4 @@
-//! Lay out the terrain that a run needs, and the size of its steps.
+//! The terrain that a run needs, and the size of its steps.
 
 use super::super::contact::MOST_LANES;
 use super::super::settings::{RunSettings, Vertical};

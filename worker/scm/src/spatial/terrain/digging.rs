@@ -1,4 +1,4 @@
-//! Let the sliding wheel carry soil away from under itself.
+//! Slip digging: the sliding wheel carries soil away from under itself.
 
 use super::super::contact::Contact;
 use super::super::pack::{PACK, load, splat, store};
@@ -21,9 +21,9 @@ impl Contact {
     /// Let the reference surface of the nodes in contact sink while the wheel slides over them for a time.
     ///
     /// `dz_ref = (d / l) |v_t| dt`: over one passage of a contact of length l at the sled's speed v that is `d |v_t| / v`, the
-    /// quasi-static model's added sinkage `d s / (1 − s)`, which so builds up from the front of the contact to its rear.
+    /// quasi-static model's added sinkage `d s / (1 − s)`, which thus builds up from the front of the contact to its rear.
     /// Only the depth that Bekker's law reads is changed here. The surface follows because softer soil yields: it is lowered,
-    /// and a share flows away, as all soil that yields, so that the balance of volumes stays. Checked by
+    /// and a share flows away, as for all soil that yields, so that volume is conserved. Checked by
     /// `rolling::tests::the_soil_that_does_not_compact_is_all_there` and `spatial::effects::digging_deepens_…`.
     ///
     /// # Arguments

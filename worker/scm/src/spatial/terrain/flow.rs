@@ -1,4 +1,4 @@
-//! Lower the soil that yields, and let a share of it flow to the border of the footprint.
+//! Flow: soil that yields is lowered, and a share of it flows to the border of the footprint.
 
 use super::super::contact::Contact;
 use super::super::contact::laws::Laws;

@@ -1,4 +1,4 @@
-//! Hold the soil as a height field: what each node of a regular grid remembers.
+//! The soil as a height field on a regular grid.
 //!
 //! # Layout
 //! - `flow`: soil that yields is pressed down, and a share of it flows to the border of the footprint.

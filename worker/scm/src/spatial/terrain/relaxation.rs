@@ -1,4 +1,4 @@
-//! Let slopes steeper than the angle of repose slide.
+//! Relaxation: slopes steeper than the angle of repose slide.
 
 use super::super::contact::Contact;
 use super::super::pack::{PACK, Pack, greater, lesser, splat};

@@ -1,4 +1,4 @@
-//! Say which lanes of the terrain the wheel covers.
+//! The lanes of the terrain that the wheel covers.
 
 use super::super::pack::{PACK, Pack};
 use super::super::terrain::Terrain;

@@ -1,4 +1,4 @@
-//! Lay an analytic wheel, a rim with straight grousers, over the columns of the terrain.
+//! An analytic wheel, a rim with straight grousers, over the columns of the terrain.
 
 use super::super::settings::Grousers;
 use super::super::terrain::Terrain;

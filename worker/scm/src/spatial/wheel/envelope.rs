@@ -1,4 +1,4 @@
-//! Describe the underside of a wheel over the columns of the terrain.
+//! The underside of a wheel over the columns of the terrain.
 
 use super::super::pack::Pack;
 

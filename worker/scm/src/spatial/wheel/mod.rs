@@ -1,4 +1,4 @@
-//! What the soil feels of the wheel: its underside, the lanes it covers, how it moves.
+//! The wheel as the soil meets it: its underside, the lanes it covers, its motion.
 //!
 //! # Layout
 //! - `envelope`: the underside over the columns of the terrain, strip by strip.
@@ -32,7 +32,7 @@ pub(crate) enum Underside {
 }
 
 impl Underside {
-    /// A wheel whose rim is flattened by a deflection `[m]`; a mesh is as rigid as it was given.
+    /// A wheel whose rim is flattened by a deflection `[m]`; a mesh stays rigid.
     pub(crate) fn new(wheel: &Wheel, shape: &Shape, deflection: f64) -> Self {
         match shape {
             Shape::Rim(grousers) => Self::Cylinder(Cylinder::new(wheel.radius_m, grousers, deflection)),
@@ -60,7 +60,7 @@ impl Underside {
         }
     }
 
-    /// How often the wheel looks the same in one turn; none if turning changes nothing.
+    /// Number of identical sectors in one turn; none if turning changes nothing.
     pub(crate) fn repeats_per_turn(&self) -> Option<u32> {
         match self {
             Self::Cylinder(cylinder) => cylinder.grousers(),

@@ -1,4 +1,4 @@
-//! Give the velocity of the wheel's surface against the soil and the direction of the shear stress.
+//! Velocity of the wheel's surface against the soil, and direction of the shear stress.
 
 use super::super::pack::{Pack, splat};
 use super::envelope::Facet;

@@ -1,4 +1,4 @@
-//! Give pressure and shear stress at the nodes of a contact as the formulas of effects leave them.
+//! Pressure and shear stress at the nodes of a contact after the formulas of effects.
 //!
 //! # Layout
 //! - here: the formulas, and what a step gives them to see.
@@ -23,10 +23,10 @@ use crate::effects::NodeLaws;
 
 /// Formulas at nodes, with what a step and a trial height give them to see.
 ///
-/// At every node in contact that bears, p > 0:
+/// At every loaded node in contact, p > 0:
 ///
-/// - `p = min(p', K_e (z_s − h))`, where formulas have made p' of the plastic pressure `gamma k* z^n`: the elastic line
-///   stays the last word, so that what the terrain remembers of its compaction fits what it carries
+/// - `p = min(p', K_e (z_s − h))`, with p' the plastic pressure `gamma k* z^n` after the formulas: the elastic line bounds it
+///   afterwards, so that the compaction that the terrain remembers agrees with the pressure it carries
 /// - `tau_max' ← c + p tan(phi)`, then `tau' ← tau_max' (1 − exp(−|v_t| / v0))`
 ///
 /// A formula gives the size of the stress; its direction stays against the slip velocity. So `tau' / (1 − exp(−|v_t| / v0))`

@@ -1,4 +1,4 @@
-//! Scale the shear tractions of a step by formulas that do nothing else.
+//! Formulas that only scale the shear stress, once in a step.
 
 use formula::block::BLOCK;
 use formula::{Hook, Variable};

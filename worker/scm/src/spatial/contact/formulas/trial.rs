@@ -1,4 +1,4 @@
-//! Evaluate formulas at a trial height of the hub, a block of nodes at a time.
+//! Formulas at a trial height of the hub, a block of nodes at a time.
 
 use formula::block::BLOCK;
 use formula::{Hook, Variable};

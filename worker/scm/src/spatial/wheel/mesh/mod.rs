@@ -1,11 +1,11 @@
-//! Lay a wheel given as triangles over the columns of the terrain.
+//! A wheel given as triangles, over the columns of the terrain.
 //!
 //! # Layout
 //! - here: which triangles and columns a step looks at.
 //! - `triangle`: one triangle, and where it stands when the wheel has turned.
 //! - `raster`: the lowest point above each of a grid of samples, with its slopes.
 //! - `strips`: samples in a row that lie on one smooth surface become a strip of the envelope.
-//! - `symmetry`: how often the wheel looks the same in one turn, and whether left mirrors right.
+//! - `symmetry`: the number of identical sectors in one turn, and whether left mirrors right.
 
 mod raster;
 mod strips;
@@ -90,7 +90,7 @@ impl Mesh {
         self.width
     }
 
-    /// How often the surface looks the same in one turn.
+    /// Number of identical sectors in one turn.
     pub(crate) fn repeats_per_turn(&self) -> u32 {
         self.repeats
     }

@@ -1,4 +1,4 @@
-//! Find the lowest point of the wheel above each of a grid of samples.
+//! The lowest point of the wheel above each of a grid of samples.
 
 use super::super::super::pack::PACK;
 use super::super::super::terrain::Terrain;

@@ -1,4 +1,4 @@
-//! Make strips of the samples of a mesh: as few as its steps and edges allow.
+//! Strips made of the samples of a mesh: as few as its steps and edges allow.
 
 use super::super::super::pack::{PACK, Pack};
 use super::super::super::terrain::Terrain;

@@ -1,4 +1,4 @@
-//! Find the symmetries of a wheel from the corners of its triangles.
+//! Symmetries of a wheel, found from the corners of its triangles.
 
 use core::f64::consts::TAU;
 

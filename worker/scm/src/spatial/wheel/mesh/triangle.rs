@@ -1,4 +1,4 @@
-//! Turn a triangle of the wheel's surface with the wheel.
+//! A triangle of the wheel's surface, and its place when the wheel has turned.
 
 use core::f64::consts::{PI, TAU};
 
