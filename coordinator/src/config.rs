@@ -8,54 +8,54 @@ use tracing_subscriber::filter::{LevelFilter, Targets};
 /// Finds the physics that a wheel-soil model is missing.
 #[derive(Debug, Parser)]
 #[command(version, name = "coordinator")]
-pub struct Config {
+pub struct CoordinatorConfig {
     /// What to do.
     #[command(subcommand)]
-    pub command: Command,
+    pub command: CoordinatorCommand,
 }
 
 /// The verbs.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub enum CoordinatorCommand {
     /// Calibrate in one process: coordinator, local workers, results in a folder. Run again to go on.
-    Run(Run),
+    Run(RunArguments),
     /// Validate a job and say what it will cost.
-    Check(JobFile),
+    Check(JobArguments),
     /// Run the service: REST interface and workers' endpoint.
-    Serve(Serve),
+    Serve(ServeArguments),
     /// Send a job to a service.
-    Submit(Submit),
+    Submit(SubmitArguments),
     /// List calibrations.
-    List(Source),
+    List(SourceArguments),
     /// Say where a calibration stands.
-    Status(Target),
+    Status(TargetArguments),
     /// Stop a calibration for good.
-    Cancel(Target),
+    Cancel(TargetArguments),
     /// Lease no more evaluations of a calibration.
-    Pause(Target),
+    Pause(TargetArguments),
     /// Go on with a paused calibration.
-    Resume(Target),
+    Resume(TargetArguments),
     /// Compare model and measurement, run by run.
-    Compare(Target),
+    Compare(TargetArguments),
     /// Write a calibration's report.
-    Report(Report),
+    Report(ReportArguments),
     /// Write a calibration's draws and comparison.
-    Export(Export),
+    Export(ExportArguments),
     /// Say how far a calibration can be trusted, and where its model fails.
-    Diagnose(Target),
+    Diagnose(TargetArguments),
     /// Find the effect that a calibration's model misses.
-    Discover(Discover),
+    Discover(DiscoverArguments),
     /// Add to a study a calibration with an effect more.
-    Extend(Extend),
+    Extend(ExtendArguments),
     /// Add measurements to a study, and a calibration of all of them.
-    AddRuns(AddRuns),
+    AddRuns(AddRunsArguments),
     /// List the effects that a model may miss, or show one: its file, and what it does.
-    Effects(Effects),
+    Effects(EffectsArguments),
 }
 
 /// A job file, and effects that it does not name itself.
 #[derive(Debug, Args)]
-pub struct JobFile {
+pub struct JobArguments {
     /// The job.
     pub job: PathBuf,
     /// Adds an effect of the catalogue to the job; may be repeated.
@@ -68,7 +68,7 @@ pub struct JobFile {
 
 /// List the effects, or show one.
 #[derive(Debug, Args)]
-pub struct Effects {
+pub struct EffectsArguments {
     /// An effect of the catalogue; by default, all of them are listed.
     #[arg(conflicts_with = "file")]
     pub name: Option<String>,
@@ -76,13 +76,13 @@ pub struct Effects {
     #[arg(long)]
     pub file: Option<PathBuf>,
     /// The model in which its deeds are shown.
-    #[arg(long, value_enum, default_value_t = Model::QuasiStatic)]
-    pub model: Model,
+    #[arg(long, value_enum, default_value_t = ModelChoice::QuasiStatic)]
+    pub model: ModelChoice,
 }
 
 /// A forward model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Model {
+pub enum ModelChoice {
     /// The smooth rim in steady motion.
     #[value(name = "quasi_static")]
     QuasiStatic,
@@ -92,10 +92,10 @@ pub enum Model {
 
 /// Calibrate in one process.
 #[derive(Debug, Args)]
-pub struct Run {
+pub struct RunArguments {
     /// The job.
     #[command(flatten)]
-    pub file: JobFile,
+    pub file: JobArguments,
     /// Where results and store go; by default out/NAME, after the job file or its folder.
     #[arg(long)]
     pub out: Option<PathBuf>,
@@ -109,7 +109,7 @@ pub struct Run {
 
 /// Run the service.
 #[derive(Debug, Args)]
-pub struct Serve {
+pub struct ServeArguments {
     /// Address to listen on.
     #[arg(long, env = "GROUSER_LISTEN", default_value = "127.0.0.1:7070")]
     pub listen: std::net::SocketAddr,
@@ -131,10 +131,10 @@ pub struct Serve {
 
 /// Send a job to a service.
 #[derive(Debug, Args)]
-pub struct Submit {
+pub struct SubmitArguments {
     /// The job.
     #[command(flatten)]
-    pub file: JobFile,
+    pub file: JobArguments,
     /// The service.
     #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
     pub url: String,
@@ -143,7 +143,7 @@ pub struct Submit {
 /// Where calibrations are looked up.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
-pub struct Source {
+pub struct SourceArguments {
     /// A service; by default, the one of `GROUSER_URL` in the environment, or port 7070 of this machine.
     #[arg(long)]
     pub url: Option<String>,
@@ -152,7 +152,7 @@ pub struct Source {
     pub out: Option<PathBuf>,
 }
 
-impl Source {
+impl SourceArguments {
     /// The service: the one named, or the environment's, which a folder that is named outdoes.
     pub fn url(&self) -> String {
         let environment = || std::env::var("GROUSER_URL").ok();
@@ -165,20 +165,20 @@ impl Source {
 
 /// One calibration.
 #[derive(Debug, Args)]
-pub struct Target {
+pub struct TargetArguments {
     /// The calibration's id; may be left out where there is only one.
     pub id: Option<i64>,
     /// Where it is.
     #[command(flatten)]
-    pub source: Source,
+    pub source: SourceArguments,
 }
 
 /// Write a calibration's report.
 #[derive(Debug, Args)]
-pub struct Report {
+pub struct ReportArguments {
     /// Which calibration.
     #[command(flatten)]
-    pub target: Target,
+    pub target: TargetArguments,
     /// Where to write it; by default, standard output.
     #[arg(long)]
     pub output: Option<PathBuf>,
@@ -186,13 +186,13 @@ pub struct Report {
 
 /// Write a calibration's draws and comparison.
 #[derive(Debug, Args)]
-pub struct Export {
+pub struct ExportArguments {
     /// Which calibration.
     #[command(flatten)]
-    pub target: Target,
+    pub target: TargetArguments,
     /// csv: the posterior; json: summary, posterior and comparison.
-    #[arg(long, value_enum, default_value_t = Format::Csv)]
-    pub format: Format,
+    #[arg(long, value_enum, default_value_t = ExportFormat::Csv)]
+    pub format: ExportFormat,
     /// Where to write it; by default, standard output.
     #[arg(long)]
     pub output: Option<PathBuf>,
@@ -200,7 +200,7 @@ pub struct Export {
 
 /// Format of an export.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Format {
+pub enum ExportFormat {
     /// Equally weighted draws, one a row.
     Csv,
     /// Summary, posterior and comparison.
@@ -209,10 +209,10 @@ pub enum Format {
 
 /// Find the effect that a calibration's model misses.
 #[derive(Debug, Args)]
-pub struct Discover {
+pub struct DiscoverArguments {
     /// Which calibration.
     #[command(flatten)]
-    pub target: Target,
+    pub target: TargetArguments,
     /// Threads that simulate here, for a folder; by default, one for each core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
@@ -220,10 +220,10 @@ pub struct Discover {
 
 /// Add to a study a calibration with an effect more.
 #[derive(Debug, Args)]
-pub struct Extend {
+pub struct ExtendArguments {
     /// Which calibration is extended.
     #[command(flatten)]
-    pub target: Target,
+    pub target: TargetArguments,
     /// An effect of the catalogue.
     #[arg(
         long,
@@ -245,14 +245,14 @@ pub struct Extend {
 
 /// Add measurements to a study.
 #[derive(Debug, Args)]
-pub struct AddRuns {
+pub struct AddRunsArguments {
     /// A calibration of the study.
     pub id: i64,
     /// Rows with a header, as in runs.csv.
     pub runs: PathBuf,
     /// Where it is.
     #[command(flatten)]
-    pub source: Source,
+    pub source: SourceArguments,
     /// Threads that simulate here, for a folder; by default, one for each core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,

@@ -1,6 +1,6 @@
 //! The rules of leasing: who may claim, renew, complete, give back; what expiry and faults cost.
 //!
-//! Pure: the caller brings the clock and the lease numbers. One [`Queue`] holds the evaluations of a
+//! Pure: the caller brings the clock and the lease numbers. One [`LeaseQueue`] holds the evaluations of a
 //! calibration that are asked for at present.
 //!
 //! A lost lease makes its evaluation a *suspect*: it is then leased alone, to a worker that holds nothing
@@ -36,7 +36,7 @@ struct Entry {
 
 /// The evaluations of one calibration that are asked for at present.
 #[derive(Debug, Default)]
-pub struct Queue {
+pub struct LeaseQueue {
     entries: BTreeMap<u64, Entry>,
     ready: VecDeque<u64>,
     suspects: VecDeque<u64>,
@@ -58,7 +58,7 @@ pub enum Completion {
 
 /// A lease that failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Failure {
+pub struct LeaseFailure {
     /// The evaluation.
     pub evaluation: u64,
     /// Who held it.
@@ -67,17 +67,17 @@ pub struct Failure {
     pub attempt: u32,
 }
 
-impl Failure {
+impl LeaseFailure {
     /// Whether the evaluation is given up.
     pub fn exhausted(&self) -> bool {
         self.attempt >= MAX_ATTEMPTS
     }
 }
 
-impl Queue {
+impl LeaseQueue {
     /// Replaces what is asked for; `failed` tells how many leases of an evaluation failed before a restart.
     pub fn ask(&mut self, evaluations: impl IntoIterator<Item = u64>, failed: impl Fn(u64) -> u32) {
-        *self = Queue::default();
+        *self = LeaseQueue::default();
         for evaluation in evaluations {
             let failed = failed(evaluation);
             self.entries.insert(
@@ -241,14 +241,14 @@ impl Queue {
     }
 
     /// Records the failure of a lease: the evaluation becomes a suspect, or is given up.
-    pub fn fail(&mut self, lease: u64) -> Option<Failure> {
+    pub fn fail(&mut self, lease: u64) -> Option<LeaseFailure> {
         let (evaluation, claim) = self.take_claim(lease)?;
         self.release(lease, &claim.worker);
         let entry = self.entries.get_mut(&evaluation)?;
         entry.failed += 1;
         let attempt = entry.failed;
         self.suspects.push_back(evaluation);
-        Some(Failure {
+        Some(LeaseFailure {
             evaluation,
             worker: claim.worker,
             attempt,
@@ -269,7 +269,7 @@ impl Queue {
     }
 
     /// Fails every lease whose time has come.
-    pub fn expire(&mut self, now_ms: u64) -> Vec<Failure> {
+    pub fn expire(&mut self, now_ms: u64) -> Vec<LeaseFailure> {
         let due: Vec<u64> = self
             .leased
             .iter()
@@ -287,13 +287,13 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn queue(evaluations: u64) -> Queue {
-        let mut queue = Queue::default();
+    fn queue(evaluations: u64) -> LeaseQueue {
+        let mut queue = LeaseQueue::default();
         queue.ask(0..evaluations, |_| 0);
         queue
     }
 
-    fn claim(queue: &mut Queue, worker: &str, want: usize, holds: usize, first: u64) -> Vec<(u64, u64)> {
+    fn claim(queue: &mut LeaseQueue, worker: &str, want: usize, holds: usize, first: u64) -> Vec<(u64, u64)> {
         let mut next = first;
         queue.claim(worker, want, holds, 100, || {
             next += 1;

@@ -1,7 +1,7 @@
 //! The program `coordinator`: parse, carry out, say what went wrong.
 
 use clap::Parser;
-use coordinator::config::Config;
+use coordinator::config::CoordinatorConfig;
 use shared::sentence::of_causes;
 use tracing_subscriber::Layer as _;
 use tracing_subscriber::layer::SubscriberExt as _;
@@ -17,7 +17,7 @@ fn main() -> std::process::ExitCode {
 
 #[tokio::main]
 async fn run() -> std::process::ExitCode {
-    let config = Config::parse();
+    let config = CoordinatorConfig::parse();
     let log = tracing_subscriber::fmt::layer()
         .with_writer(std::io::stderr)
         .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()));

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use coordinator::calibration::{Calibration, Finding, Identity, result_of};
+use coordinator::calibration::{Calibration, CalibrationIdentity, CalibrationResult, result_of};
 use coordinator::embedded::Evaluate;
 use coordinator::missing_effect::candidate::extended;
 use record::Extension;
@@ -115,7 +115,7 @@ impl Sampled {
         };
         let spec = spec(&job, &case.experiment())?;
         let model = Evaluate::new(&spec.fit_variant)?;
-        let identity = Identity {
+        let identity = CalibrationIdentity {
             id: 0,
             name: "hidden effect".into(),
             study: 0,
@@ -123,7 +123,7 @@ impl Sampled {
         };
         let mut calibration = Calibration::new(identity, Arc::new(spec)).map_err(|e| e.to_string())?;
         loop {
-            if let Some(Finding::Posterior(posterior)) = calibration.engine().finding() {
+            if let Some(CalibrationResult::Posterior(posterior)) = calibration.engine().finding() {
                 let particles = posterior.particles.iter().map(|p| p.log_likelihood.value());
                 return Ok(Self {
                     log_evidence: posterior.log_evidence,

@@ -14,7 +14,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use coordinator::calibration::{Calibration, Finding, Identity, result_of};
+use coordinator::calibration::{Calibration, CalibrationIdentity, CalibrationResult, result_of};
 use coordinator::embedded::Evaluate;
 use inference::diagnostics::chi_square_tail;
 use inference::diagnostics::quantile;
@@ -142,7 +142,7 @@ impl Study {
             refused,
         } = self.measure(&blank, &model, set)?;
         let spec = self.spec(&measured, self.seed + 1 + set)?;
-        let identity = Identity {
+        let identity = CalibrationIdentity {
             id: 0,
             name: "sbc".into(),
             study: 0,
@@ -152,10 +152,10 @@ impl Study {
         loop {
             match calibration.engine().finding() {
                 None => {}
-                Some(Finding::Estimate(_) | Finding::Discovery(_)) => {
+                Some(CalibrationResult::Estimate(_) | CalibrationResult::Discovery(_)) => {
                     return Err("what was found is no posterior".into());
                 }
-                Some(Finding::Posterior(posterior)) => {
+                Some(CalibrationResult::Posterior(posterior)) => {
                     let draws = |parameter: usize| -> Vec<f64> {
                         posterior.particles.iter().map(|p| p.theta[parameter]).collect()
                     };

@@ -28,7 +28,7 @@ pub struct Reading<C> {
 
 /// The measured readings of an experiment.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Bevameter {
+pub struct BevameterReadings {
     /// Of plates, in the order of the file.
     pub plates: Vec<Reading<PlateCondition>>,
     /// Of rings.
@@ -45,7 +45,7 @@ pub(super) struct Table<'a> {
     pub(super) between_tests: Scatter,
 }
 
-impl Bevameter {
+impl BevameterReadings {
     /// The readings that were measured.
     ///
     /// # Errors
@@ -60,7 +60,7 @@ impl Bevameter {
                 stress.0, stress.1, way.0, way.1
             ))
         };
-        let mut readings = Bevameter::default();
+        let mut readings = BevameterReadings::default();
         for row in &experiment.plates {
             let Some(stress_pa) = row.pressure_pa else {
                 continue;

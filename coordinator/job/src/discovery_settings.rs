@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use shared::file::unknown_word;
 
-use super::Method;
+use super::AlgorithmSettings;
 
 /// Most effects that a job may allow: as many as a model takes.
 const MOST_EFFECTS: usize = 10;
@@ -47,7 +47,7 @@ impl Default for RawDiscovery {
 
 impl RawDiscovery {
     /// The settings of a job with this algorithm.
-    pub(super) fn settings(&self, method: &Method) -> Result<DiscoverySettings, String> {
+    pub(super) fn settings(&self, method: &AlgorithmSettings) -> Result<DiscoverySettings, String> {
         let max_effects = self.max_effects;
         if !(1..=MOST_EFFECTS).contains(&max_effects) {
             return Err(format!(
@@ -60,7 +60,7 @@ impl RawDiscovery {
             "auto" => Apply::Auto,
             other => return Err(unknown_word("value of apply", other, ["off", "ask", "auto"])),
         };
-        if apply != Apply::Off && !matches!(method, Method::Sample(_)) {
+        if apply != Apply::Off && !matches!(method, AlgorithmSettings::Sample(_)) {
             return Err(format!(
                 "apply = \"{}\" needs a sampler: {} keeps no ledger of errors",
                 self.apply,

@@ -7,7 +7,7 @@ use shared::parameters::scatter_parameter;
 use statistics::likelihood::{DISCREPANCY_LEVELS, GREATEST_DISCREPANCY, LEAST_DISCREPANCY};
 use statistics::{CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood};
 
-use super::bevameter::{Bevameter, PLATE};
+use super::bevameter::{BevameterReadings, PLATE};
 use super::priors::FreeParameter;
 use super::{Spec, noise};
 
@@ -162,7 +162,7 @@ pub(super) fn scatter_sd(
 pub(super) fn likelihood(
     experiment: &Experiment,
     fit_runs: &[usize],
-    bevameter: &Bevameter,
+    bevameter: &BevameterReadings,
     parameters: &[FreeParameter],
     settings: LikelihoodSettings,
 ) -> Result<Likelihood, String> {

@@ -8,7 +8,7 @@ use shared::model::ModelSettings;
 
 use super::discovery_settings::{DiscoverySettings, RawDiscovery};
 use super::errors::{LikelihoodSettings, RawLikelihood};
-use super::method::{Method, RawSampler};
+use super::method::{AlgorithmSettings, RawSampler};
 use super::posterior::PosteriorPrior;
 use super::priors::PriorEntry;
 
@@ -24,9 +24,9 @@ pub struct Job {
     /// The posterior that is the prior of what the entries leave unsaid.
     pub posterior: Option<PosteriorPrior>,
     /// The algorithm with its settings.
-    pub method: Method,
+    pub method: AlgorithmSettings,
     /// The fits and searches that stand beside the sample in its study.
-    pub point_estimates: Vec<Method>,
+    pub point_estimates: Vec<AlgorithmSettings>,
     /// What an independent test says of parameters, for the figures alone: name and value.
     pub reference: BTreeMap<String, f64>,
     /// How measurements scatter around the model.

@@ -15,7 +15,7 @@ mod priors;
 mod sampler_keys;
 mod spec;
 
-pub use bevameter::{Bevameter, PLATE, RING, Reading};
+pub use bevameter::{BevameterReadings, PLATE, RING, Reading};
 pub use discovery_job::{
     DISCOVERY, continued_job, discovery_job, effect_name, is_discovery, without_effects,
 };
@@ -23,7 +23,7 @@ pub use discovery_settings::{Apply, DiscoverySettings};
 pub use errors::LikelihoodSettings;
 pub use extended_job::extended_job;
 pub use job_file::Job;
-pub use method::{Method, MethodError};
+pub use method::{AlgorithmSettings, AlgorithmSettingsError};
 pub use noise::repeat_scatter;
 pub use point_job::point_job;
 pub use posterior::{ImpliedModuli, JointPrior, PosteriorPrior};

@@ -10,7 +10,7 @@ use super::sampler_keys::Keys;
 
 /// How parameters are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Method {
+pub enum AlgorithmSettings {
     /// A sample of the posterior.
     Sample(TmcmcSettings),
     /// The most probable parameters, by steps.
@@ -29,7 +29,7 @@ const DISCOVERY_WIDTH: usize = 100_000;
 
 /// Settings that do not fit the prior.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum MethodError {
+pub enum AlgorithmSettingsError {
     /// The sampler's.
     #[error(transparent)]
     Sample(#[from] TmcmcSettingsError),
@@ -41,19 +41,19 @@ pub enum MethodError {
     Evolve(#[from] EvolutionSettingsError),
 }
 
-impl Method {
+impl AlgorithmSettings {
     /// The algorithm's name in files.
     pub fn name(&self) -> &'static str {
         match self {
-            Method::Sample(settings) => match settings.algorithm {
+            AlgorithmSettings::Sample(settings) => match settings.algorithm {
                 Algorithm::Tmcmc => "tmcmc",
                 Algorithm::ChingChen2007 => "ching-chen-2007",
                 Algorithm::Basis => "basis",
             },
-            Method::Fit(_) => "lm",
-            Method::Evolve(EvolutionSettings::Ga(_)) => "ga",
-            Method::Evolve(EvolutionSettings::CmaEs(_)) => "cma-es",
-            Method::Discover { .. } => "discovery",
+            AlgorithmSettings::Fit(_) => "lm",
+            AlgorithmSettings::Evolve(EvolutionSettings::Ga(_)) => "ga",
+            AlgorithmSettings::Evolve(EvolutionSettings::CmaEs(_)) => "cma-es",
+            AlgorithmSettings::Discover { .. } => "discovery",
         }
     }
 
@@ -61,16 +61,18 @@ impl Method {
     pub fn words(&self) -> String {
         let name = self.name();
         match self {
-            Method::Sample(settings) => format!("{name} with {} particles", settings.particles),
-            Method::Evolve(EvolutionSettings::Ga(settings)) => format!(
+            AlgorithmSettings::Sample(settings) => format!("{name} with {} particles", settings.particles),
+            AlgorithmSettings::Evolve(EvolutionSettings::Ga(settings)) => format!(
                 "{name} with at most {} generations of {}",
                 settings.generations, settings.population
             ),
-            Method::Fit(LmSettings { max_evaluations, .. })
-            | Method::Evolve(EvolutionSettings::CmaEs(CmaEsSettings { max_evaluations, .. })) => {
+            AlgorithmSettings::Fit(LmSettings { max_evaluations, .. })
+            | AlgorithmSettings::Evolve(EvolutionSettings::CmaEs(CmaEsSettings {
+                max_evaluations, ..
+            })) => {
                 format!("{name} with at most {max_evaluations} evaluations")
             }
-            Method::Discover { .. } => name.to_owned(),
+            AlgorithmSettings::Discover { .. } => name.to_owned(),
         }
     }
 
@@ -82,60 +84,64 @@ impl Method {
     /// Moves of a metamodel between two evaluations.
     pub fn metamodel_moves(&self) -> usize {
         match self {
-            Method::Sample(settings) => settings.metamodel_moves,
-            Method::Fit(_) | Method::Evolve(_) | Method::Discover { .. } => 0,
+            AlgorithmSettings::Sample(settings) => settings.metamodel_moves,
+            AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => {
+                0
+            }
         }
     }
 
     /// The key of the budget that a longer run needs more of.
     pub fn budget_key(&self) -> &'static str {
         match self {
-            Method::Sample(_) | Method::Discover { .. } => "particles",
-            Method::Evolve(EvolutionSettings::Ga(_)) => "generations",
-            Method::Fit(_) | Method::Evolve(EvolutionSettings::CmaEs(_)) => "max_evaluations",
+            AlgorithmSettings::Sample(_) | AlgorithmSettings::Discover { .. } => "particles",
+            AlgorithmSettings::Evolve(EvolutionSettings::Ga(_)) => "generations",
+            AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(EvolutionSettings::CmaEs(_)) => {
+                "max_evaluations"
+            }
         }
     }
 
     /// The seed.
     pub fn seed(&self) -> u64 {
         match self {
-            Method::Sample(settings) => settings.seed,
-            Method::Fit(settings) => settings.seed,
-            Method::Evolve(settings) => settings.seed(),
-            Method::Discover { seed } => *seed,
+            AlgorithmSettings::Sample(settings) => settings.seed,
+            AlgorithmSettings::Fit(settings) => settings.seed,
+            AlgorithmSettings::Evolve(settings) => settings.seed(),
+            AlgorithmSettings::Discover { seed } => *seed,
         }
     }
 
     /// More proposals than this are in no round: evaluations are numbered by it.
     pub fn width(&self) -> usize {
         match self {
-            Method::Sample(settings) => settings.particles,
-            Method::Fit(settings) => settings.max_evaluations,
-            Method::Evolve(EvolutionSettings::Ga(settings)) => settings.population,
-            Method::Evolve(EvolutionSettings::CmaEs(settings)) => settings.max_evaluations,
-            Method::Discover { .. } => DISCOVERY_WIDTH,
+            AlgorithmSettings::Sample(settings) => settings.particles,
+            AlgorithmSettings::Fit(settings) => settings.max_evaluations,
+            AlgorithmSettings::Evolve(EvolutionSettings::Ga(settings)) => settings.population,
+            AlgorithmSettings::Evolve(EvolutionSettings::CmaEs(settings)) => settings.max_evaluations,
+            AlgorithmSettings::Discover { .. } => DISCOVERY_WIDTH,
         }
     }
 
     /// Most evaluations, where the job says so.
     pub fn max_evaluations(&self) -> Option<usize> {
         match self {
-            Method::Sample(_) | Method::Discover { .. } => None,
-            Method::Fit(settings) => Some(settings.max_evaluations),
-            Method::Evolve(settings) => Some(settings.max_evaluations()),
+            AlgorithmSettings::Sample(_) | AlgorithmSettings::Discover { .. } => None,
+            AlgorithmSettings::Fit(settings) => Some(settings.max_evaluations),
+            AlgorithmSettings::Evolve(settings) => Some(settings.max_evaluations()),
         }
     }
 
     /// Checks the settings for so many parameters.
     ///
     /// # Errors
-    /// [`MethodError`] names the setting, its value and its bound.
-    pub fn check(&self, dimension: usize) -> Result<(), MethodError> {
+    /// [`AlgorithmSettingsError`] names the setting, its value and its bound.
+    pub fn check(&self, dimension: usize) -> Result<(), AlgorithmSettingsError> {
         match self {
-            Method::Sample(settings) => settings.check(dimension)?,
-            Method::Fit(settings) => settings.check(dimension)?,
-            Method::Evolve(settings) => settings.check(dimension)?,
-            Method::Discover { .. } => {}
+            AlgorithmSettings::Sample(settings) => settings.check(dimension)?,
+            AlgorithmSettings::Fit(settings) => settings.check(dimension)?,
+            AlgorithmSettings::Evolve(settings) => settings.check(dimension)?,
+            AlgorithmSettings::Discover { .. } => {}
         }
         Ok(())
     }
@@ -166,7 +172,7 @@ pub(super) struct RawSampler {
 
 impl RawSampler {
     /// The algorithm with its settings.
-    pub(super) fn method(&self) -> Result<Method, String> {
+    pub(super) fn method(&self) -> Result<AlgorithmSettings, String> {
         let keys = Keys::of(self.algorithm.as_deref().unwrap_or("tmcmc"))?;
         keys.refuse(&[
             ("particles", self.particles.is_some()),
@@ -186,7 +192,7 @@ impl RawSampler {
             "lm" => self.fit(),
             "ga" => self.ga(),
             "cma-es" => self.cma_es(),
-            "discovery" => Method::Discover {
+            "discovery" => AlgorithmSettings::Discover {
                 seed: self.seed.unwrap_or(TmcmcSettings::default().seed),
             },
             _ => self.sample(Algorithm::Tmcmc),
@@ -194,7 +200,7 @@ impl RawSampler {
     }
 
     /// The fits and searches beside the sample: each with its usual settings and the sample's seed.
-    pub(super) fn point_estimates(&self, seed: u64) -> Result<Vec<Method>, String> {
+    pub(super) fn point_estimates(&self, seed: u64) -> Result<Vec<AlgorithmSettings>, String> {
         let names = self.point_estimates.as_deref().unwrap_or_default();
         let method = |(i, name): (usize, &String)| {
             if !POINT_ESTIMATES.contains(&name.as_str()) {
@@ -213,7 +219,7 @@ impl RawSampler {
         names.iter().enumerate().map(method).collect()
     }
 
-    fn sample(&self, algorithm: Algorithm) -> Method {
+    fn sample(&self, algorithm: Algorithm) -> AlgorithmSettings {
         let usual = TmcmcSettings::default();
         let metamodel_moves = self.metamodel_moves.unwrap_or(usual.metamodel_moves);
         // A step of many moves forgets more than one of one.
@@ -222,7 +228,7 @@ impl RawSampler {
         } else {
             usual.moves
         };
-        Method::Sample(TmcmcSettings {
+        AlgorithmSettings::Sample(TmcmcSettings {
             algorithm,
             particles: self.particles.unwrap_or(usual.particles),
             moves: self.moves.unwrap_or(moves),
@@ -232,9 +238,9 @@ impl RawSampler {
         })
     }
 
-    fn fit(&self) -> Method {
+    fn fit(&self) -> AlgorithmSettings {
         let usual = LmSettings::default();
-        Method::Fit(LmSettings {
+        AlgorithmSettings::Fit(LmSettings {
             starts: self.starts.unwrap_or(usual.starts),
             max_evaluations: self.max_evaluations.unwrap_or(usual.max_evaluations),
             difference_step: self.difference_step.unwrap_or(usual.difference_step),
@@ -243,9 +249,9 @@ impl RawSampler {
         })
     }
 
-    fn ga(&self) -> Method {
+    fn ga(&self) -> AlgorithmSettings {
         let usual = GaSettings::default();
-        Method::Evolve(EvolutionSettings::Ga(GaSettings {
+        AlgorithmSettings::Evolve(EvolutionSettings::Ga(GaSettings {
             population: self.population.unwrap_or(usual.population),
             generations: self.generations.unwrap_or(usual.generations),
             seed: self.seed.unwrap_or(usual.seed),
@@ -253,9 +259,9 @@ impl RawSampler {
         }))
     }
 
-    fn cma_es(&self) -> Method {
+    fn cma_es(&self) -> AlgorithmSettings {
         let usual = CmaEsSettings::default();
-        Method::Evolve(EvolutionSettings::CmaEs(CmaEsSettings {
+        AlgorithmSettings::Evolve(EvolutionSettings::CmaEs(CmaEsSettings {
             population: self.population,
             max_evaluations: self.max_evaluations.unwrap_or(usual.max_evaluations),
             restarts: self.restarts.unwrap_or(usual.restarts),

@@ -5,7 +5,7 @@ use shared::experiment::{Experiment, NoiseSd, RunUse, Scatter, ScatterSd, TestRu
 use shared::parameters::{NOISE_PREFIX, noise_parameter, scatter_parameter};
 use statistics::{Datum, Distribution, ErrorSd, Marginal};
 
-use super::bevameter::Bevameter;
+use super::bevameter::BevameterReadings;
 use super::priors::FreeParameter;
 
 /// Prior scale of an unknown noise sd where the job states none: the run-to-run scatter that is usual
@@ -16,7 +16,7 @@ const USUAL_SD: [f64; 4] = [2.0, 0.2, 0.001, 2.0];
 /// parameters behind the model's.
 pub(super) fn add_unknown_sds(
     experiment: &Experiment,
-    bevameter: &Bevameter,
+    bevameter: &BevameterReadings,
     parameters: &mut Vec<FreeParameter>,
 ) {
     for scatter in Scatter::ALL {
@@ -58,7 +58,7 @@ pub(super) fn add_unknown_sds(
 /// Refuses a prior for a noise sd that is not inferred.
 pub(super) fn check_names(
     experiment: &Experiment,
-    bevameter: &Bevameter,
+    bevameter: &BevameterReadings,
     parameters: &[FreeParameter],
 ) -> Result<(), String> {
     for scatter in Scatter::ALL {
@@ -92,7 +92,7 @@ pub(super) fn check_names(
 }
 
 /// Whether anything that is fitted scatters so.
-fn needs_scatter(experiment: &Experiment, bevameter: &Bevameter, scatter: Scatter) -> bool {
+fn needs_scatter(experiment: &Experiment, bevameter: &BevameterReadings, scatter: Scatter) -> bool {
     let fitted = || Channel::ALL.iter().any(|&c| experiment.measures(c, RunUse::Fit));
     bevameter.scatters(scatter) || (scatter == Scatter::Run && fitted())
 }

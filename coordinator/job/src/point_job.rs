@@ -3,7 +3,7 @@
 use shared::file::FileError;
 use toml_edit::{DocumentMut, Item};
 
-use super::Method;
+use super::AlgorithmSettings;
 
 /// The text of a job with a fit or a search in place of its sampler; the seed and everything else stay as written.
 ///
@@ -11,7 +11,7 @@ use super::Method;
 ///
 /// # Errors
 /// [`FileError`] where the text is no job.
-pub fn point_job(name: &str, toml: &str, method: &Method) -> Result<String, FileError> {
+pub fn point_job(name: &str, toml: &str, method: &AlgorithmSettings) -> Result<String, FileError> {
     with_algorithm(name, toml, method.name())
 }
 
@@ -61,7 +61,7 @@ mod tests {
     #[test]
     fn a_point_estimate_has_the_job_s_seed_and_the_usual_settings() {
         let job = Job::parse("job.toml", JOB).unwrap();
-        let names: Vec<&str> = job.point_estimates.iter().map(Method::name).collect();
+        let names: Vec<&str> = job.point_estimates.iter().map(AlgorithmSettings::name).collect();
         assert_eq!(names, ["ga", "lm"]);
         for method in &job.point_estimates {
             let text = point_job("job.toml", JOB, method).unwrap();

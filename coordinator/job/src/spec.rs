@@ -10,11 +10,11 @@ use shared::parameters;
 use shared::predicted::PredictedValue;
 use statistics::{Likelihood, Prior, PriorError};
 
-use crate::bevameter::{Bevameter, PLATE};
+use crate::bevameter::{BevameterReadings, PLATE};
 use crate::discovery_settings::DiscoverySettings;
 use crate::errors::{self, LikelihoodSettings};
 use crate::job_file::Job;
-use crate::method::Method;
+use crate::method::AlgorithmSettings;
 use crate::noise;
 use crate::posterior::JointPrior;
 use crate::predicted::predicted;
@@ -32,9 +32,9 @@ pub struct Spec {
     /// The posterior of another calibration that is the prior of the first of them, if there is one.
     pub joint_prior: Option<JointPrior>,
     /// The algorithm with its settings.
-    pub method: Method,
+    pub method: AlgorithmSettings,
     /// The fits and searches that stand beside the sample in its study.
-    pub point_estimates: Vec<Method>,
+    pub point_estimates: Vec<AlgorithmSettings>,
     /// The fitted runs, as positions in the experiment.
     pub fit_runs: Vec<usize>,
     /// The runs that are not fitted, as positions in the experiment.
@@ -52,7 +52,7 @@ pub struct Spec {
     /// What the job says of the errors.
     pub likelihood_settings: LikelihoodSettings,
     /// The measured readings of plates and rings; all are fitted.
-    pub bevameter: Bevameter,
+    pub bevameter: BevameterReadings,
     /// Whether its study looks for missing effects.
     pub discovery: DiscoverySettings,
 }
@@ -101,7 +101,7 @@ impl Spec {
         let experiment = Experiment::parse(experiment_name, files)?;
         let in_job = |message: String| FileError::whole(job_name, message);
         let in_experiment = |message: String| FileError::whole(experiment_name, message);
-        let bevameter = Bevameter::new(&experiment).map_err(in_experiment)?;
+        let bevameter = BevameterReadings::new(&experiment).map_err(in_experiment)?;
         let wheels = experiment.wheel_names();
         let mut model = job.model;
         let named = job.priors.iter().map(|entry| entry.name.as_str());
@@ -171,7 +171,7 @@ impl Spec {
             method
                 .check(parameters.len())
                 .map_err(|e| in_job(format!("[sampler] {e}")))?;
-            if matches!(method, Method::Fit(_)) && likelihood.entangles_unknown_sds() {
+            if matches!(method, AlgorithmSettings::Fit(_)) && likelihood.entangles_unknown_sds() {
                 return Err(in_job(format!(
                     "[sampler] {}",
                     inference::lm::LmSettingsError::EntangledNoise

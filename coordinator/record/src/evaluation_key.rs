@@ -10,9 +10,9 @@ pub const HISTORIES: u64 = 2 * PREDICTIONS_FROM;
 /// What an evaluation is for. Its number depends on the job alone, so it is the same after a restart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EvaluationKey {
-    /// A proposal of the sampler or the fit: number = round x width + particle, the width of [`Method::width`].
+    /// A proposal of the sampler or the fit: number = round x width + particle, the width of [`AlgorithmSettings::width`].
     ///
-    /// [`Method::width`]: job::Method::width
+    /// [`AlgorithmSettings::width`]: job::AlgorithmSettings::width
     Sampling {
         /// The round, counted from 0.
         round: u64,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use inference::evolution::{EvolutionSettings, GaSettings};
 use inference::point_estimate::{Generation, StopReason};
-use job::{Method, Spec};
+use job::{AlgorithmSettings, Spec};
 use record::{CalibrationRow, EstimateRow, Outside, Prediction, PriorDraw, Sample, StageRow};
 use shared::api::CalibrationState;
 use shared::file::FileSet;
@@ -77,7 +77,7 @@ pub(crate) fn all_refused() -> FinishedCalibration {
 /// A fit of the same job, one parameter at a bound.
 pub(crate) fn fit() -> FinishedCalibration {
     let mut outcome = outcome();
-    outcome.spec.method = Method::Fit(inference::lm::LmSettings::default());
+    outcome.spec.method = AlgorithmSettings::Fit(inference::lm::LmSettings::default());
     let first = outcome.predictions.remove(0);
     let mut sd: Vec<Option<f64>> = first.theta.iter().map(|x| Some(0.1 * x)).collect();
     let mut at_bound = vec![false; sd.len()];
@@ -106,7 +106,7 @@ pub(crate) fn fit() -> FinishedCalibration {
 /// A search of the same job that its generations cut short.
 pub(crate) fn search() -> FinishedCalibration {
     let mut outcome = fit();
-    outcome.spec.method = Method::Evolve(EvolutionSettings::Ga(GaSettings::default()));
+    outcome.spec.method = AlgorithmSettings::Evolve(EvolutionSettings::Ga(GaSettings::default()));
     if let Some(estimate) = &mut outcome.estimate {
         estimate.sd = None;
         estimate.stop = StopReason::Generations;

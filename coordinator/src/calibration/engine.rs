@@ -7,12 +7,12 @@ use inference::{EvaluationResult, PosteriorSample, Proposal, Sampler, StageRecor
 use statistics::{LogLikelihood, Metamodel, ModelPair, SubchainEnd};
 
 use crate::missing_effect::{Investigation, InvestigationError, Models};
-use job::{Method, MethodError, Spec};
+use job::{AlgorithmSettings, AlgorithmSettingsError, Spec};
 use record::Discovery;
 
 /// What asks for evaluations and is told their results.
 #[derive(Debug)]
-pub enum Engine {
+pub enum CalibrationEngine {
     /// Samples the posterior; told log-likelihoods.
     Sampler(Box<Sampler>),
     /// Fits the most probable parameters by steps; told predicted values.
@@ -28,7 +28,7 @@ pub enum Engine {
 pub enum BeginError {
     /// The settings do not fit the prior.
     #[error("[sampler] {0}")]
-    Method(#[from] MethodError),
+    AlgorithmSettings(#[from] AlgorithmSettingsError),
     /// The search has a model that cannot be made.
     #[error(transparent)]
     Search(#[from] InvestigationError),
@@ -50,7 +50,7 @@ pub(super) enum EngineError {
 
 /// The result of an evaluation, scored.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scored<'a> {
+pub(super) struct EvaluationScore<'a> {
     /// ln p(data | theta) at the parameters that were asked for.
     pub log_likelihood: LogLikelihood,
     /// The predicted values that the likelihood takes; `None` where the model refused.
@@ -61,7 +61,7 @@ pub(super) struct Scored<'a> {
     pub end: Option<&'a SubchainEnd>,
 }
 
-impl Scored<'_> {
+impl EvaluationScore<'_> {
     /// What a sampler is told.
     fn answer(&self) -> EvaluationResult {
         let log_likelihood = self.log_likelihood;
@@ -81,7 +81,7 @@ impl Scored<'_> {
 
 /// What an engine ends with.
 #[derive(Debug, Clone)]
-pub enum Finding<'a> {
+pub enum CalibrationResult<'a> {
     /// A sample of the posterior.
     Posterior(&'a PosteriorSample),
     /// The most probable parameters.
@@ -90,7 +90,7 @@ pub enum Finding<'a> {
     Discovery(Box<Discovery>),
 }
 
-impl Engine {
+impl CalibrationEngine {
     /// An engine whose first round is pending.
     ///
     /// # Arguments
@@ -101,21 +101,21 @@ impl Engine {
     pub(super) fn new(spec: &Spec, models: Option<Models>) -> Result<Self, BeginError> {
         let (prior, likelihood) = (spec.prior(), &spec.likelihood);
         Ok(match spec.method {
-            Method::Sample(settings) => {
+            AlgorithmSettings::Sample(settings) => {
                 let sampler = Sampler::with_metamodel(prior, settings, likelihood.clone());
-                let sampler = sampler.map_err(MethodError::from)?;
-                Engine::Sampler(Box::new(sampler))
+                let sampler = sampler.map_err(AlgorithmSettingsError::from)?;
+                CalibrationEngine::Sampler(Box::new(sampler))
             }
-            Method::Fit(settings) => {
+            AlgorithmSettings::Fit(settings) => {
                 let fit = LmFit::new(prior, likelihood.clone(), settings);
-                Engine::Fit(Box::new(fit.map_err(MethodError::from)?))
+                CalibrationEngine::Fit(Box::new(fit.map_err(AlgorithmSettingsError::from)?))
             }
-            Method::Evolve(settings) => Engine::Evolution(Box::new(
-                Evolution::new(prior, settings).map_err(MethodError::from)?,
+            AlgorithmSettings::Evolve(settings) => CalibrationEngine::Evolution(Box::new(
+                Evolution::new(prior, settings).map_err(AlgorithmSettingsError::from)?,
             )),
-            Method::Discover { .. } => {
+            AlgorithmSettings::Discover { .. } => {
                 let models = models.ok_or(BeginError::NoModels)?;
-                Engine::Discovery(Box::new(Investigation::new(models)?))
+                CalibrationEngine::Discovery(Box::new(Investigation::new(models)?))
             }
         })
     }
@@ -123,66 +123,76 @@ impl Engine {
     /// Number of completed rounds.
     pub(super) fn round(&self) -> u64 {
         match self {
-            Engine::Sampler(sampler) => sampler.round().number(),
-            Engine::Fit(fit) => fit.round().number(),
-            Engine::Evolution(evolution) => evolution.round().number(),
-            Engine::Discovery(investigation) => investigation.round(),
+            CalibrationEngine::Sampler(sampler) => sampler.round().number(),
+            CalibrationEngine::Fit(fit) => fit.round().number(),
+            CalibrationEngine::Evolution(evolution) => evolution.round().number(),
+            CalibrationEngine::Discovery(investigation) => investigation.round(),
         }
     }
 
     /// This round's proposals, by ascending particle.
     pub(super) fn pending(&self) -> &[Proposal] {
         match self {
-            Engine::Sampler(sampler) => sampler.round().pending(),
-            Engine::Fit(fit) => fit.round().pending(),
-            Engine::Evolution(evolution) => evolution.round().pending(),
-            Engine::Discovery(investigation) => investigation.pending(),
+            CalibrationEngine::Sampler(sampler) => sampler.round().pending(),
+            CalibrationEngine::Fit(fit) => fit.round().pending(),
+            CalibrationEngine::Evolution(evolution) => evolution.round().pending(),
+            CalibrationEngine::Discovery(investigation) => investigation.pending(),
         }
     }
 
     /// Takes the result of a pending particle.
-    pub(super) fn tell(&mut self, particle: usize, scored: Scored) -> Result<TellProgress, EngineError> {
+    pub(super) fn tell(
+        &mut self,
+        particle: usize,
+        scored: EvaluationScore,
+    ) -> Result<TellProgress, EngineError> {
         Ok(match self {
-            Engine::Sampler(sampler) => sampler.tell(particle, scored.answer())?,
-            Engine::Fit(fit) => fit.tell(particle, scored.fitted)?,
-            Engine::Evolution(evolution) => evolution.tell(particle, scored.log_likelihood)?,
-            Engine::Discovery(investigation) => investigation.tell(particle, scored.fitted)?,
+            CalibrationEngine::Sampler(sampler) => sampler.tell(particle, scored.answer())?,
+            CalibrationEngine::Fit(fit) => fit.tell(particle, scored.fitted)?,
+            CalibrationEngine::Evolution(evolution) => evolution.tell(particle, scored.log_likelihood)?,
+            CalibrationEngine::Discovery(investigation) => investigation.tell(particle, scored.fitted)?,
         })
     }
 
     /// The search for a missing effect, if this is one.
     pub(super) fn investigation(&self) -> Option<&Investigation> {
         match self {
-            Engine::Discovery(investigation) => Some(investigation),
-            Engine::Sampler(_) | Engine::Fit(_) | Engine::Evolution(_) => None,
+            CalibrationEngine::Discovery(investigation) => Some(investigation),
+            CalibrationEngine::Sampler(_) | CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) => {
+                None
+            }
         }
     }
 
     /// What takes the subchains of the stage in progress, if anything does.
     pub(super) fn metamodel(&self) -> Option<&Metamodel> {
         match self {
-            Engine::Sampler(sampler) => sampler.metamodel(),
-            Engine::Fit(_) | Engine::Evolution(_) | Engine::Discovery(_) => None,
+            CalibrationEngine::Sampler(sampler) => sampler.metamodel(),
+            CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) | CalibrationEngine::Discovery(_) => {
+                None
+            }
         }
     }
 
     /// The finished stages; only a sampler has any.
     pub fn stages(&self) -> &[StageRecord] {
         match self {
-            Engine::Sampler(sampler) => sampler.stages(),
-            Engine::Fit(_) | Engine::Evolution(_) | Engine::Discovery(_) => &[],
+            CalibrationEngine::Sampler(sampler) => sampler.stages(),
+            CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) | CalibrationEngine::Discovery(_) => {
+                &[]
+            }
         }
     }
 
     /// The result, once finished.
-    pub fn finding(&self) -> Option<Finding<'_>> {
+    pub fn finding(&self) -> Option<CalibrationResult<'_>> {
         match self {
-            Engine::Sampler(sampler) => sampler.posterior().map(Finding::Posterior),
-            Engine::Fit(fit) => fit.estimate().map(Finding::Estimate),
-            Engine::Evolution(evolution) => evolution.estimate().map(Finding::Estimate),
-            Engine::Discovery(investigation) => {
+            CalibrationEngine::Sampler(sampler) => sampler.posterior().map(CalibrationResult::Posterior),
+            CalibrationEngine::Fit(fit) => fit.estimate().map(CalibrationResult::Estimate),
+            CalibrationEngine::Evolution(evolution) => evolution.estimate().map(CalibrationResult::Estimate),
+            CalibrationEngine::Discovery(investigation) => {
                 let record = investigation.record();
-                record.map(|record| Finding::Discovery(Box::new(record)))
+                record.map(|record| CalibrationResult::Discovery(Box::new(record)))
             }
         }
     }

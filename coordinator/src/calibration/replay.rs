@@ -3,7 +3,8 @@
 use shared::api::CalibrationState;
 use statistics::LogLikelihood;
 
-use super::{Calibration, Scored};
+use super::engine::EvaluationScore;
+use super::process::Calibration;
 use job::EffectsChanged;
 use record::{Fact, Stored, StoredEvaluation};
 
@@ -99,7 +100,7 @@ impl Calibration {
             }
         };
         self.queue.complete(evaluation);
-        let scored = scored.map(|log_likelihood| Scored {
+        let scored = scored.map(|log_likelihood| EvaluationScore {
             log_likelihood,
             fitted: stored.fitted.as_deref(),
             coarse: stored.coarse.as_deref(),
@@ -122,7 +123,7 @@ mod tests {
     use shared::file::FileSet;
     use shared::outcome::{Observables, SimulatedHistory};
 
-    use super::super::Identity;
+    use super::super::process::CalibrationIdentity;
     use super::*;
     use job::Spec;
     use record::fact::{EvaluationRow, Kept};
@@ -156,7 +157,7 @@ mod tests {
             files: Default::default(),
         };
         let spec = Spec::new("job.toml", &job, "experiment.toml", &files).unwrap();
-        let identity = Identity {
+        let identity = CalibrationIdentity {
             id: 1,
             name: "toy".into(),
             study: 1,

@@ -6,10 +6,10 @@ use std::time::Instant;
 
 use super::job_on_disk;
 use super::output::say;
-use crate::calibration::{Calibration, Computed, Engine, Identity, result_of};
-use crate::config::JobFile;
+use crate::calibration::{Calibration, CalibrationEngine, CalibrationIdentity, SimulationResult, result_of};
+use crate::config::JobArguments;
 use crate::embedded::Evaluate;
-use job::Method;
+use job::AlgorithmSettings;
 use result::{model_limits, terminal};
 
 /// Particles of the pilot: enough to find the number of stages, which hardly depends on them.
@@ -17,7 +17,7 @@ const PILOT_PARTICLES: usize = 100;
 /// The pilot ends after so long; what it has seen by then is extrapolated `[s]`.
 const PILOT_S: f64 = 30.0;
 
-pub(super) async fn check(file: &JobFile) -> anyhow::Result<()> {
+pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(file)?;
     let mut text = terminal::specification(&job.spec);
     for note in model_limits(&job.spec) {
@@ -33,21 +33,23 @@ pub(super) async fn check(file: &JobFile) -> anyhow::Result<()> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let mut text = String::new();
     text += &match pilot.method {
-        Method::Sample(s) => {
+        AlgorithmSettings::Sample(s) => {
             format!(
                 "\nA pilot of {} particles took {} evaluations.\n",
                 s.particles, pilot.evaluations
             )
         }
-        Method::Fit(_) | Method::Evolve(_) | Method::Discover { .. } => format!(
-            "\nThe {} itself took {} evaluations.\n",
-            if matches!(pilot.method, Method::Fit(_)) {
-                "fit"
-            } else {
-                "search"
-            },
-            pilot.evaluations
-        ),
+        AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => {
+            format!(
+                "\nThe {} itself took {} evaluations.\n",
+                if matches!(pilot.method, AlgorithmSettings::Fit(_)) {
+                    "fit"
+                } else {
+                    "search"
+                },
+                pilot.evaluations
+            )
+        }
     };
     if !pilot.complete {
         text += &match pilot.method.max_evaluations() {
@@ -91,7 +93,7 @@ pub(super) async fn check(file: &JobFile) -> anyhow::Result<()> {
 
 struct Pilot {
     /// What ran: a smaller sampler, or the fit or the search itself.
-    method: Method,
+    method: AlgorithmSettings,
     evaluations: u64,
     runs: usize,
     seconds_per_evaluation: f64,
@@ -103,9 +105,9 @@ struct Pilot {
 impl Pilot {
     /// Evaluations that the whole job will take: stages hardly depend on the particles; a fit or a search is
     /// what it is.
-    fn expected(&self, method: Method) -> f64 {
+    fn expected(&self, method: AlgorithmSettings) -> f64 {
         match (method, self.method) {
-            (Method::Sample(whole), Method::Sample(small)) => {
+            (AlgorithmSettings::Sample(whole), AlgorithmSettings::Sample(small)) => {
                 self.evaluations as f64 * whole.particles as f64 / small.particles as f64
             }
             (whole, _) if !self.complete => whole
@@ -119,7 +121,7 @@ impl Pilot {
 /// The same calibration in memory, a sampler in small.
 fn pilot(mut spec: job::Spec) -> anyhow::Result<Pilot> {
     let least = PILOT_PARTICLES.max(2 * spec.parameters.len() + 2);
-    if let Method::Sample(settings) = &mut spec.method {
+    if let AlgorithmSettings::Sample(settings) = &mut spec.method {
         settings.particles = settings.particles.min(least);
     }
     let method = spec.method;
@@ -131,7 +133,7 @@ fn pilot(mut spec: job::Spec) -> anyhow::Result<Pilot> {
             1
         };
     let mut models: BTreeMap<String, Evaluate> = BTreeMap::new();
-    let identity = Identity {
+    let identity = CalibrationIdentity {
         id: 0,
         name: "pilot".into(),
         study: 0,
@@ -161,7 +163,7 @@ fn pilot(mut spec: job::Spec) -> anyhow::Result<Pilot> {
             let (outcome, end) = model.serve(question.theta, question.subchain.as_ref());
             simulated_s += start.elapsed().as_secs_f64();
             let outcome = outcome.map(result_of).transpose().map_err(anyhow::Error::msg)?;
-            calibration.complete(evaluation, Computed { end, outcome }, "pilot")?;
+            calibration.complete(evaluation, SimulationResult { end, outcome }, "pilot")?;
         }
     }
     if let Some(message) = calibration.message {
@@ -175,8 +177,10 @@ fn pilot(mut spec: job::Spec) -> anyhow::Result<Pilot> {
         seconds_per_evaluation: simulated_s / evaluations as f64,
         rejected_share: calibration.rejected as f64 / evaluations as f64,
         exponent: match calibration.engine() {
-            Engine::Sampler(sampler) => sampler.progress().tempering_exponent,
-            Engine::Fit(_) | Engine::Evolution(_) | Engine::Discovery(_) => 1.0,
+            CalibrationEngine::Sampler(sampler) => sampler.progress().tempering_exponent,
+            CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) | CalibrationEngine::Discovery(_) => {
+                1.0
+            }
         },
         complete: calibration.engine().finding().is_some(),
     })

@@ -11,7 +11,7 @@ use shared::model::settings::unknown_effect;
 use shared::parameters::behind;
 
 use super::output::say;
-use crate::config::{Effects, Model};
+use crate::config::{EffectsArguments, ModelChoice};
 use crate::effect::signature::{ChannelSignature, Signature, signature};
 use crate::effect::{EffectCard, Group};
 use job::check_own;
@@ -21,10 +21,10 @@ const COLUMNS: usize = 100;
 /// Steps of a curve's height.
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-pub(super) async fn effects(config: &Effects) -> anyhow::Result<()> {
+pub(super) async fn effects(config: &EffectsArguments) -> anyhow::Result<()> {
     let kind = match config.model {
-        Model::QuasiStatic => ModelKind::QuasiStatic,
-        Model::Scm => ModelKind::Scm,
+        ModelChoice::QuasiStatic => ModelKind::QuasiStatic,
+        ModelChoice::Scm => ModelKind::Scm,
     };
     let effect = match (&config.file, &config.name) {
         (Some(path), _) => {

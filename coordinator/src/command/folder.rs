@@ -8,9 +8,9 @@ use shared::api::CalibrationState;
 use shared::model::equations_of;
 use tokio::net::TcpListener;
 
-use super::Stop;
 use super::output::{note, say};
 use super::progress::Display;
+use super::shutdown::{Shutdown, stop_signal};
 use crate::embedded::{LocalWorkers, model_version};
 use crate::farm::Control;
 use crate::service::{LEASE_MS, Service, finished_study, next_step_of};
@@ -141,7 +141,7 @@ impl Folder {
     async fn calibrate(&mut self, study: i64) -> anyhow::Result<End> {
         let listener = self.listener.take();
         let service = &self.service;
-        let stop = Stop::new();
+        let stop = Shutdown::new();
         let server = listener.map(|listener| {
             if let Ok(address) = listener.local_addr() {
                 note(&format!(
@@ -210,7 +210,7 @@ async fn watch_until_over(
         }
     };
     tokio::pin!(failure);
-    let stop = super::stop_signal()?;
+    let stop = stop_signal()?;
     tokio::pin!(stop);
     let store_fails = service.store().writer().stopped();
     tokio::pin!(store_fails);

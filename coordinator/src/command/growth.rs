@@ -12,8 +12,8 @@ use shared::file::read_text;
 
 use super::folder::Folder;
 use super::output::say;
-use super::source::{Client, Place};
-use crate::config::{AddRuns, Discover, Extend};
+use super::source::{CalibrationSource, ServiceClient};
+use crate::config::{AddRunsArguments, DiscoverArguments, ExtendArguments};
 use crate::service::{Service, ServiceError};
 use record::{Discovery, Extension};
 use result::discovery::effect_file;
@@ -22,8 +22,8 @@ use result::terminal::discovery;
 /// How often a service is asked whether a search is over.
 const LOOK: Duration = Duration::from_millis(500);
 
-pub(super) async fn discover(config: &Discover) -> anyhow::Result<()> {
-    let place = Place::open(&config.target.source).await?;
+pub(super) async fn discover(config: &DiscoverArguments) -> anyhow::Result<()> {
+    let place = CalibrationSource::open(&config.target.source).await?;
     let id = place.id(&config.target).await?;
     let client = match (&config.target.source.out, place) {
         (Some(out), _) => {
@@ -32,8 +32,8 @@ pub(super) async fn discover(config: &Discover) -> anyhow::Result<()> {
             })
             .await;
         }
-        (None, Place::Service(client)) => client,
-        (None, Place::Folder(_)) => bail!("--url or --out"),
+        (None, CalibrationSource::Service(client)) => client,
+        (None, CalibrationSource::Folder(_)) => bail!("--url or --out"),
     };
     let path = format!("/v1/calibrations/{id}/discovery");
     let search: CalibrationCreated = client.post(&path, &json!({})).await?;
@@ -58,9 +58,9 @@ fn write_file(record: &Discovery) -> anyhow::Result<()> {
     }
 }
 
-pub(super) async fn extend(config: &Extend) -> anyhow::Result<()> {
+pub(super) async fn extend(config: &ExtendArguments) -> anyhow::Result<()> {
     let source = &config.target.source;
-    let place = Place::open(source).await?;
+    let place = CalibrationSource::open(source).await?;
     let id = place.id(&config.target).await?;
     let file = config.effect_file.as_deref().map(named_text).transpose()?;
     if let Some(out) = &source.out {
@@ -83,7 +83,7 @@ pub(super) async fn extend(config: &Extend) -> anyhow::Result<()> {
         wheel: config.wheel.clone(),
         effect_file: file,
     };
-    let created: CalibrationCreated = Client::new(&source.url())?
+    let created: CalibrationCreated = ServiceClient::new(&source.url())?
         .post(&format!("/v1/calibrations/{id}/extend"), &new)
         .await?;
     Ok(say(&format!(
@@ -100,10 +100,10 @@ fn named_text(path: &Path) -> anyhow::Result<NamedText> {
     })
 }
 
-pub(super) async fn add_runs(config: &AddRuns) -> anyhow::Result<()> {
-    let AddRuns { id, source, .. } = config;
+pub(super) async fn add_runs(config: &AddRunsArguments) -> anyhow::Result<()> {
+    let AddRunsArguments { id, source, .. } = config;
     let runs = read_text(&config.runs)?;
-    let study = Place::open(source).await?.status(*id).await?.study;
+    let study = CalibrationSource::open(source).await?.status(*id).await?.study;
     if let Some(out) = &source.out {
         return grow(out, *id, config.local_workers, async |service| {
             let last = Some(*id);
@@ -111,7 +111,7 @@ pub(super) async fn add_runs(config: &AddRuns) -> anyhow::Result<()> {
         })
         .await;
     }
-    let added: RunsAdded = Client::new(&source.url())?
+    let added: RunsAdded = ServiceClient::new(&source.url())?
         .post(
             &format!("/v1/studies/{study}/runs"),
             &NewRuns {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet, read_beside, read_text, sibling};
 
-use crate::config::JobFile;
+use crate::config::JobArguments;
 use job::{Job, Spec, extended_job};
 
 /// A job with everything it names, read and validated.
@@ -22,7 +22,7 @@ pub(super) struct JobOnDisk {
 }
 
 /// Reads and validates a job and its experiment.
-pub(super) fn read(file: &JobFile) -> Result<JobOnDisk, FileError> {
+pub(super) fn read(file: &JobArguments) -> Result<JobOnDisk, FileError> {
     let path = &file.job;
     let job_name = path.display().to_string();
     let toml = read_text(path)?;

@@ -9,10 +9,10 @@ use tokio::net::TcpListener;
 use super::folder::Folder;
 use super::job_on_disk::{self, JobOnDisk};
 use super::output::note;
-use crate::config::Run;
+use crate::config::RunArguments;
 use result::model_limits;
 
-pub(super) async fn run(config: Run) -> anyhow::Result<()> {
+pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file)?;
     for text in model_limits(&job.spec) {
         note(&format!("note: {text}"));

@@ -3,12 +3,12 @@
 use anyhow::{Context, bail};
 use tokio::net::TcpListener;
 
-use super::Stop;
-use crate::config::Serve;
+use super::shutdown::{Shutdown, stop_signal};
+use crate::config::ServeArguments;
 use crate::embedded::LocalWorkers;
 use crate::service::Service;
 
-pub(super) async fn serve(config: Serve) -> anyhow::Result<()> {
+pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     if config.lease_ms < 100 {
         bail!("--lease-ms {} ms must be >= 100 ms", config.lease_ms);
     }
@@ -19,11 +19,11 @@ pub(super) async fn serve(config: Serve) -> anyhow::Result<()> {
     let address = listener.local_addr()?;
     tracing::info!(%address, store = config.store, "serving");
 
-    let stop = Stop::new();
+    let stop = Shutdown::new();
     let workers = (config.local_workers > 0)
         .then(|| LocalWorkers::start(service.dispatcher().clone(), config.local_workers, stop.wait()));
     let server = tokio::spawn(crate::http::serve(listener, service.clone(), stop.wait()));
-    let signal = super::stop_signal()?;
+    let signal = stop_signal()?;
     tokio::select! {
         () = service.keep_growing() => {}
         () = signal => tracing::info!("stopping; workers will find us again"),

@@ -4,32 +4,34 @@ use anyhow::{Context, bail};
 use serde::de::DeserializeOwned;
 use shared::api::{CalibrationStatus, ErrorBody};
 
-use crate::config::{Source, Target};
+use crate::config::{SourceArguments, TargetArguments};
 use crate::service::{calibration_row, finished_calibration, finished_study, stored_status};
 use crate::store::Reader;
 use result::{self, Comparison, Diagnostics, FinishedCalibration, PosteriorTable, Study, Summary, report};
 
 /// A service or a folder.
-pub(super) enum Place {
-    Service(Client),
+pub(super) enum CalibrationSource {
+    Service(ServiceClient),
     Folder(Reader),
 }
 
-impl Place {
-    pub(super) async fn open(source: &Source) -> anyhow::Result<Place> {
+impl CalibrationSource {
+    pub(super) async fn open(source: &SourceArguments) -> anyhow::Result<CalibrationSource> {
         match &source.out {
             Some(out) => {
                 let file = out.join("grouser.db");
-                Ok(Place::Folder(Reader::open(&file.display().to_string()).await?))
+                Ok(CalibrationSource::Folder(
+                    Reader::open(&file.display().to_string()).await?,
+                ))
             }
-            None => Ok(Place::Service(Client::new(&source.url())?)),
+            None => Ok(CalibrationSource::Service(ServiceClient::new(&source.url())?)),
         }
     }
 
     pub(super) async fn list(&self) -> anyhow::Result<Vec<CalibrationStatus>> {
         match self {
-            Place::Service(client) => client.get("/v1/calibrations").await,
-            Place::Folder(reader) => {
+            CalibrationSource::Service(client) => client.get("/v1/calibrations").await,
+            CalibrationSource::Folder(reader) => {
                 let rows = reader.calibrations().await?;
                 Ok(rows.iter().map(stored_status).collect())
             }
@@ -37,7 +39,7 @@ impl Place {
     }
 
     /// The calibration that is meant: the one named, or the first of the only study.
-    pub(super) async fn id(&self, target: &Target) -> anyhow::Result<i64> {
+    pub(super) async fn id(&self, target: &TargetArguments) -> anyhow::Result<i64> {
         if let Some(id) = target.id {
             return Ok(id);
         }
@@ -50,22 +52,26 @@ impl Place {
 
     pub(super) async fn status(&self, id: i64) -> anyhow::Result<CalibrationStatus> {
         match self {
-            Place::Service(client) => client.get(&format!("/v1/calibrations/{id}")).await,
-            Place::Folder(reader) => Ok(stored_status(&calibration_row(reader, id).await?)),
+            CalibrationSource::Service(client) => client.get(&format!("/v1/calibrations/{id}")).await,
+            CalibrationSource::Folder(reader) => Ok(stored_status(&calibration_row(reader, id).await?)),
         }
     }
 
     pub(super) async fn comparison(&self, id: i64) -> anyhow::Result<Comparison> {
         match self {
-            Place::Service(client) => client.get(&format!("/v1/calibrations/{id}/comparison")).await,
-            Place::Folder(reader) => Ok(outcome(reader, id).await?.comparison()),
+            CalibrationSource::Service(client) => {
+                client.get(&format!("/v1/calibrations/{id}/comparison")).await
+            }
+            CalibrationSource::Folder(reader) => Ok(outcome(reader, id).await?.comparison()),
         }
     }
 
     pub(super) async fn diagnostics(&self, id: i64) -> anyhow::Result<Diagnostics> {
         match self {
-            Place::Service(client) => client.get(&format!("/v1/calibrations/{id}/diagnostics")).await,
-            Place::Folder(reader) => {
+            CalibrationSource::Service(client) => {
+                client.get(&format!("/v1/calibrations/{id}/diagnostics")).await
+            }
+            CalibrationSource::Folder(reader) => {
                 let outcome = outcome(reader, id).await?;
                 Ok(outcome.diagnostics(&outcome.comparison()))
             }
@@ -74,22 +80,24 @@ impl Place {
 
     pub(super) async fn posterior(&self, id: i64) -> anyhow::Result<PosteriorTable> {
         match self {
-            Place::Service(client) => client.get(&format!("/v1/calibrations/{id}/posterior")).await,
-            Place::Folder(reader) => Ok(outcome(reader, id).await?.posterior_table()),
+            CalibrationSource::Service(client) => {
+                client.get(&format!("/v1/calibrations/{id}/posterior")).await
+            }
+            CalibrationSource::Folder(reader) => Ok(outcome(reader, id).await?.posterior_table()),
         }
     }
 
     pub(super) async fn summary(&self, id: i64) -> anyhow::Result<Summary> {
         match self {
-            Place::Service(client) => client.get(&format!("/v1/calibrations/{id}/summary")).await,
-            Place::Folder(reader) => Ok(study(reader, id).await?.summary()),
+            CalibrationSource::Service(client) => client.get(&format!("/v1/calibrations/{id}/summary")).await,
+            CalibrationSource::Folder(reader) => Ok(study(reader, id).await?.summary()),
         }
     }
 
     pub(super) async fn report(&self, id: i64) -> anyhow::Result<String> {
         match self {
-            Place::Service(client) => client.text(&format!("/v1/calibrations/{id}/report")).await,
-            Place::Folder(reader) => Ok(report::page(&study(reader, id).await?)),
+            CalibrationSource::Service(client) => client.text(&format!("/v1/calibrations/{id}/report")).await,
+            CalibrationSource::Folder(reader) => Ok(report::page(&study(reader, id).await?)),
         }
     }
 }
@@ -103,18 +111,18 @@ async fn study(reader: &Reader, id: i64) -> anyhow::Result<Study> {
 }
 
 /// A service over HTTP.
-pub(super) struct Client {
+pub(super) struct ServiceClient {
     client: reqwest::Client,
     url: String,
 }
 
-impl Client {
-    pub(super) fn new(url: &str) -> anyhow::Result<Client> {
+impl ServiceClient {
+    pub(super) fn new(url: &str) -> anyhow::Result<ServiceClient> {
         let parsed = reqwest::Url::parse(url).with_context(|| format!("--url {url}"))?;
         if parsed.scheme() != "http" {
             bail!("--url {url}: scheme {} is not http", parsed.scheme());
         }
-        Ok(Client {
+        Ok(ServiceClient {
             client: reqwest::Client::new(),
             url: url.trim_end_matches('/').to_owned(),
         })

@@ -8,13 +8,15 @@ use shared::api::{CalibrationCreated, ExperimentCreated, NewCalibration, NewExpe
 
 use super::job_on_disk;
 use super::output::say;
-use super::source::{Client, Place};
-use crate::config::{Export, Format, Report, Source, Submit, Target};
+use super::source::{CalibrationSource, ServiceClient};
+use crate::config::{
+    ExportArguments, ExportFormat, ReportArguments, SourceArguments, SubmitArguments, TargetArguments,
+};
 use result::{self, terminal};
 
-pub(super) async fn submit(config: &Submit) -> anyhow::Result<()> {
+pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file)?;
-    let client = Client::new(&config.url)?;
+    let client = ServiceClient::new(&config.url)?;
     let experiment = NewExperiment {
         toml: job.experiment.toml,
         files: job.experiment.files,
@@ -34,20 +36,20 @@ pub(super) async fn submit(config: &Submit) -> anyhow::Result<()> {
     Ok(say(&text)?)
 }
 
-pub(super) async fn list(source: &Source) -> anyhow::Result<()> {
-    let statuses = Place::open(source).await?.list().await?;
+pub(super) async fn list(source: &SourceArguments) -> anyhow::Result<()> {
+    let statuses = CalibrationSource::open(source).await?.list().await?;
     Ok(say(&terminal::status_table(&statuses))?)
 }
 
-pub(super) async fn status(target: &Target) -> anyhow::Result<()> {
-    let place = Place::open(&target.source).await?;
+pub(super) async fn status(target: &TargetArguments) -> anyhow::Result<()> {
+    let place = CalibrationSource::open(&target.source).await?;
     let status = place.status(place.id(target).await?).await?;
     Ok(say(&terminal::status_table(&[status]))?)
 }
 
-pub(super) async fn control(target: &Target, verb: &str) -> anyhow::Result<()> {
-    let place = Place::open(&target.source).await?;
-    let Place::Service(client) = &place else {
+pub(super) async fn control(target: &TargetArguments, verb: &str) -> anyhow::Result<()> {
+    let place = CalibrationSource::open(&target.source).await?;
+    let CalibrationSource::Service(client) = &place else {
         bail!(
             "{verb} needs a service (--url): the run of a folder is stopped by ^C and goes on by running it again"
         );
@@ -60,32 +62,32 @@ pub(super) async fn control(target: &Target, verb: &str) -> anyhow::Result<()> {
     Ok(say(&format!("calibration {id} is {state}\n"))?)
 }
 
-pub(super) async fn compare(target: &Target) -> anyhow::Result<()> {
-    let place = Place::open(&target.source).await?;
+pub(super) async fn compare(target: &TargetArguments) -> anyhow::Result<()> {
+    let place = CalibrationSource::open(&target.source).await?;
     let comparison = place.comparison(place.id(target).await?).await?;
     Ok(say(
         &(terminal::comparison(&comparison) + &terminal::groups(&comparison))
     )?)
 }
 
-pub(super) async fn diagnose(target: &Target) -> anyhow::Result<()> {
-    let place = Place::open(&target.source).await?;
+pub(super) async fn diagnose(target: &TargetArguments) -> anyhow::Result<()> {
+    let place = CalibrationSource::open(&target.source).await?;
     let diagnostics = place.diagnostics(place.id(target).await?).await?;
     Ok(say(&terminal::diagnostics(&diagnostics))?)
 }
 
-pub(super) async fn report(config: &Report) -> anyhow::Result<()> {
-    let place = Place::open(&config.target.source).await?;
+pub(super) async fn report(config: &ReportArguments) -> anyhow::Result<()> {
+    let place = CalibrationSource::open(&config.target.source).await?;
     let page = place.report(place.id(&config.target).await?).await?;
     write(config.output.as_deref(), &page)
 }
 
-pub(super) async fn export(config: &Export) -> anyhow::Result<()> {
-    let place = Place::open(&config.target.source).await?;
+pub(super) async fn export(config: &ExportArguments) -> anyhow::Result<()> {
+    let place = CalibrationSource::open(&config.target.source).await?;
     let id = place.id(&config.target).await?;
     let text = match config.format {
-        Format::Csv => place.posterior(id).await?.to_csv(),
-        Format::Json => {
+        ExportFormat::Csv => place.posterior(id).await?.to_csv(),
+        ExportFormat::Json => {
             let all = json!({
                 "summary": place.summary(id).await?,
                 "posterior": place.posterior(id).await?,

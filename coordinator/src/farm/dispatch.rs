@@ -12,7 +12,10 @@ use shared::exchange::{ExchangeRequest, ExchangeResponse};
 use shared::model::ModelVariant;
 use tokio::sync::oneshot;
 
-use super::{Control, ControlError, Counters, Farm, WorkerRecord};
+use super::control::{Control, ControlError};
+use super::metrics::FarmMetrics;
+use super::state::Farm;
+use super::worker_record::WorkerRecord;
 use crate::calibration::Calibration;
 use crate::store::FactSink;
 use record::fact::Fact;
@@ -62,19 +65,6 @@ pub struct Dispatcher {
 #[error("the coordinator is shutting down")]
 pub struct Stopped;
 
-/// Figures for the metrics page.
-#[derive(Debug, Clone)]
-pub struct Figures {
-    /// Counters since the start.
-    pub counters: Counters,
-    /// Leases that are out.
-    pub leased: usize,
-    /// Calibrations in hand.
-    pub calibrations: usize,
-    /// Workers heard of.
-    pub workers: usize,
-}
-
 impl Dispatcher {
     /// Starts the farm's thread. Facts go to `sink`; when the store fails, the thread ends.
     ///
@@ -98,14 +88,19 @@ impl Dispatcher {
         self.sender.send(message).map_err(|_| Stopped)
     }
 
+    /// Sends a message and waits for its reply.
+    async fn reply<T>(&self, message: impl FnOnce(oneshot::Sender<T>) -> Message) -> Result<T, Stopped> {
+        let (reply, answer) = oneshot::channel();
+        self.send(message(reply))?;
+        answer.await.map_err(|_| Stopped)
+    }
+
     /// A worker's exchange; parked until there is work or its patience ends.
     ///
     /// # Errors
     /// [`Stopped`].
     pub async fn exchange(&self, request: ExchangeRequest) -> Result<Durable<ExchangeResponse>, Stopped> {
-        let (reply, answer) = oneshot::channel();
-        self.send(Message::Exchange { request, reply })?;
-        answer.await.map_err(|_| Stopped)
+        self.reply(|reply| Message::Exchange { request, reply }).await
     }
 
     /// Takes a calibration in hand, with facts of its replay that may have been lost.
@@ -113,13 +108,13 @@ impl Dispatcher {
     /// # Errors
     /// [`Stopped`].
     pub async fn add(&self, calibration: Calibration, facts: Vec<Fact>) -> Result<(), Stopped> {
-        let (reply, answer) = oneshot::channel();
-        self.send(Message::Add {
-            calibration: Box::new(calibration),
+        let calibration = Box::new(calibration);
+        let add = |reply| Message::Add {
+            calibration,
             facts,
             reply,
-        })?;
-        answer.await.map_err(|_| Stopped)
+        };
+        self.reply(add).await
     }
 
     /// A user's command on a calibration.
@@ -127,9 +122,7 @@ impl Dispatcher {
     /// # Errors
     /// [`Stopped`]; inside, [`ControlError`].
     pub async fn control(&self, id: i64, control: Control) -> Result<Controlled, Stopped> {
-        let (reply, answer) = oneshot::channel();
-        self.send(Message::Control { id, control, reply })?;
-        answer.await.map_err(|_| Stopped)
+        self.reply(|reply| Message::Control { id, control, reply }).await
     }
 
     /// Where a calibration in hand stands; `None` where it is over or unknown.
@@ -170,31 +163,26 @@ impl Dispatcher {
         self.look(move |farm, _| farm.variant(&hash)).await
     }
 
-    /// Figures for the metrics page.
+    /// Numbers for the metrics page.
     ///
     /// # Errors
     /// [`Stopped`].
-    pub async fn figures(&self) -> Result<Figures, Stopped> {
-        self.look(|farm, _| Figures {
-            counters: farm.counters().clone(),
-            leased: farm.leased(),
-            calibrations: farm.calibrations.len(),
-            workers: farm.workers.len(),
-        })
-        .await
+    pub async fn metrics(&self) -> Result<FarmMetrics, Stopped> {
+        self.look(|farm, _| farm.metrics()).await
     }
 
     async fn look<T: Send + 'static>(
         &self,
         look: impl FnOnce(&Farm, u64) -> T + Send + 'static,
     ) -> Result<T, Stopped> {
-        let (reply, answer) = oneshot::channel();
-        let look = move |farm: &Farm, now| {
-            // The asker may have gone away meanwhile; nobody misses the answer then.
-            let _ = reply.send(look(farm, now));
+        let message = |reply: oneshot::Sender<T>| {
+            let look = move |farm: &Farm, now| {
+                // The asker may have gone away meanwhile; nobody misses the answer then.
+                let _ = reply.send(look(farm, now));
+            };
+            Message::Look { look: Box::new(look) }
         };
-        self.send(Message::Look { look: Box::new(look) })?;
-        answer.await.map_err(|_| Stopped)
+        self.reply(message).await
     }
 
     /// Ends the farm's thread; parked workers are told nothing and try again.

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use shared::api::{CalibrationStatus, Progress};
 
-use crate::calibration::{Calibration, Engine};
+use crate::calibration::{Calibration, CalibrationEngine};
 
 /// The pace is an average over so much of the past `[ms]`.
 const WINDOW_MS: u64 = 10_000;
@@ -44,13 +44,13 @@ impl Pace {
 pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> CalibrationStatus {
     let identity = &calibration.identity;
     let (stage, tempering_exponent, step, acceptance) = match calibration.engine() {
-        Engine::Sampler(sampler) => {
+        CalibrationEngine::Sampler(sampler) => {
             let now = sampler.progress();
             (now.stage, now.tempering_exponent, now.step, now.acceptance)
         }
-        Engine::Fit(fit) => (fit.steps(), 1.0, 0, None),
-        Engine::Evolution(evolution) => (evolution.history().len(), 1.0, 0, None),
-        Engine::Discovery(search) => (search.round() as usize, 1.0, 0, None),
+        CalibrationEngine::Fit(fit) => (fit.steps(), 1.0, 0, None),
+        CalibrationEngine::Evolution(evolution) => (evolution.history().len(), 1.0, 0, None),
+        CalibrationEngine::Discovery(search) => (search.round() as usize, 1.0, 0, None),
     };
     let queue = &calibration.queue;
     let per_second = pace.per_second(calibration.evaluations, now_ms);

@@ -32,10 +32,10 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(health))
 }
 
-/// Figures of farm and store in the text format of Prometheus.
+/// Numbers of farm and store in the text format of Prometheus.
 #[utoipa::path(get, path = "/metrics", responses((status = 200, content_type = "text/plain", body = String)))]
 async fn metrics(State(service): State<Service>) -> Result<String, HttpError> {
-    let figures = service.dispatcher().figures().await?;
+    let metrics = service.dispatcher().metrics().await?;
     let health = service.store().writer().health();
     let stored = |value: &std::sync::atomic::AtomicU64| value.load(Ordering::Relaxed);
     let mut registry = Registry::with_prefix("grouser");
@@ -44,33 +44,33 @@ async fn metrics(State(service): State<Service>) -> Result<String, HttpError> {
         r,
         "evaluations_completed",
         "Results that counted",
-        figures.counters.completed,
+        metrics.counters.completed,
     );
     counter(
         r,
         "evaluations_duplicate",
         "Results that changed nothing",
-        figures.counters.duplicates,
+        metrics.counters.duplicates,
     );
-    counter(r, "leases_given", "Leases given out", figures.counters.leased);
+    counter(r, "leases_given", "Leases given out", metrics.counters.leased);
     counter(
         r,
         "leases_failed",
         "Leases that expired or ended in a fault",
-        figures.counters.failed_leases,
+        metrics.counters.failed_leases,
     );
-    gauge(r, "leases_out", "Leases that are out", figures.leased);
+    gauge(r, "leases_out", "Leases that are out", metrics.leased);
     gauge(
         r,
         "calibrations_in_hand",
         "Calibrations that are not over",
-        figures.calibrations,
+        metrics.calibrations,
     );
     gauge(
         r,
         "workers_connected",
         "Workers heard of in the last minute",
-        figures.workers,
+        metrics.workers,
     );
     counter(
         r,
@@ -106,7 +106,7 @@ struct Health {
 /// Answers while farm and store work.
 #[utoipa::path(get, path = "/health", responses((status = 200, body = Health)))]
 async fn health(State(service): State<Service>) -> Result<Json<Health>, HttpError> {
-    service.dispatcher().figures().await?;
+    service.dispatcher().metrics().await?;
     Ok(Json(Health {
         status: "ok",
         version: env!("CARGO_PKG_VERSION"),

@@ -6,7 +6,7 @@ use super::error::ServiceError;
 use super::stored_calibration::spec_of;
 use super::study_step::{is_search_of, next_step_from};
 use crate::store::Reader;
-use job::{Method, is_discovery};
+use job::{AlgorithmSettings, is_discovery};
 use record::CalibrationRow;
 use result::{FinishedCalibration, Round, Study, first_population, likeliest};
 
@@ -32,16 +32,18 @@ pub async fn finished_calibration(
         spec.check_effects(pinned)?;
     }
     let estimate = match spec.method {
-        Method::Sample(_) | Method::Discover { .. } => None,
-        Method::Fit(_) | Method::Evolve(_) => reader.estimate(row.id).await?,
+        AlgorithmSettings::Sample(_) | AlgorithmSettings::Discover { .. } => None,
+        AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) => reader.estimate(row.id).await?,
     };
     let prior_draws = match spec.method {
-        Method::Sample(_) => reader.prior_draws(row.id, spec.method.width()).await?,
-        Method::Fit(_) | Method::Evolve(_) | Method::Discover { .. } => Vec::new(),
+        AlgorithmSettings::Sample(_) => reader.prior_draws(row.id, spec.method.width()).await?,
+        AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => {
+            Vec::new()
+        }
     };
     let mut populations = reader.populations(row.id).await?;
     let posterior = populations.pop().unwrap_or_default();
-    if let Method::Sample(_) = spec.method {
+    if let AlgorithmSettings::Sample(_) = spec.method {
         populations.insert(0, first_population(&spec, &prior_draws));
     }
     let likeliest_values = match likeliest(&posterior) {

@@ -12,12 +12,12 @@ use super::clock::now_ms;
 use super::error::ServiceError;
 use super::handle::Service;
 use super::study_step::{next_step_of, search_of};
-use crate::calibration::{Calibration, Identity};
+use crate::calibration::{Calibration, CalibrationIdentity};
 use crate::farm::dispatch::Stopped;
 use crate::missing_effect::candidate::extended;
 use crate::store::NewCalibrationRow;
 use crate::study::Step;
-use job::{Method, Spec, continued_job, discovery_job, is_discovery, without_effects};
+use job::{AlgorithmSettings, Spec, continued_job, discovery_job, is_discovery, without_effects};
 use record::CalibrationRow;
 use record::Extension;
 use record::effect_of;
@@ -69,7 +69,7 @@ impl Service {
             .filter(meant)
         {
             match self.spec_of(row).await?.method {
-                Method::Sample(_) => ledger = Some(row),
+                AlgorithmSettings::Sample(_) => ledger = Some(row),
                 _ => beside = Some(row),
             }
         }
@@ -202,7 +202,7 @@ impl Service {
         job: FileSet,
         files: FileSet,
     ) -> Result<(Calibration, FileSet), ServiceError> {
-        let identity = Identity {
+        let identity = CalibrationIdentity {
             id: 0,
             name,
             study: beside.study,

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::error::ServiceError;
 use super::stored_calibration::{calibration_row, experiment_files, spec_of};
-use crate::calibration::{Calibration, Identity};
+use crate::calibration::{Calibration, CalibrationIdentity};
 use crate::farm::dispatch::{Dispatcher, Stopped};
 use crate::store::Store;
-use job::Method;
+use job::AlgorithmSettings;
 
 /// Takes up what is not over; returns what this version cannot take up, with the reason. Nothing is written
 /// of those: another version may be able to.
@@ -28,11 +28,13 @@ pub(super) async fn recover(
                 continue;
             }
         };
-        let fitted =
-            matches!(spec.method, Method::Fit(_) | Method::Discover { .. }) || spec.method.has_metamodel();
+        let fitted = matches!(
+            spec.method,
+            AlgorithmSettings::Fit(_) | AlgorithmSettings::Discover { .. }
+        ) || spec.method.has_metamodel();
         let stored = reader.stored(id, fitted).await?;
         let evaluations = stored.evaluations.len();
-        let identity = Identity {
+        let identity = CalibrationIdentity {
             id,
             name: row.name.clone(),
             study: row.study,

@@ -6,7 +6,7 @@ use super::error::ServiceError;
 use super::stored_calibration::spec_of;
 use crate::store::Reader;
 use crate::study::{Member, Part, Step, next_step};
-use job::{Apply, Job, Method, discovery_job, is_discovery};
+use job::{AlgorithmSettings, Apply, Job, discovery_job, is_discovery};
 use record::{CalibrationRow, Discovery};
 
 /// The next step of a study.
@@ -48,7 +48,7 @@ async fn part(reader: &Reader, row: &CalibrationRow, study: &[CalibrationRow]) -
     }
     let spec = spec_of(reader, row).await?;
     Ok(match spec.method {
-        Method::Sample(_) => Part::Ledger {
+        AlgorithmSettings::Sample(_) => Part::Ledger {
             effects: spec.fit_variant.effects.iter().map(|e| e.name.clone()).collect(),
             search: find_search(row, study)?.map(|row| row.id),
         },

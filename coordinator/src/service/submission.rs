@@ -9,10 +9,10 @@ use shared::file::{FileError, FileSet};
 use super::clock::now_ms;
 use super::error::ServiceError;
 use super::handle::Service;
-use crate::calibration::{Calibration, Identity};
+use crate::calibration::{Calibration, CalibrationIdentity};
 use crate::farm::dispatch::Stopped;
 use crate::store::{NewCalibrationRow, NewStudy, StudyIds};
-use job::{Job, Method, Spec, point_job};
+use job::{AlgorithmSettings, Job, Spec, point_job};
 
 impl Service {
     /// Stores an experiment after validating it; its id.
@@ -40,7 +40,7 @@ impl Service {
             files: new.files,
         };
         // The samplers are built once before anything is stored: what they refuse leaves nothing half-written.
-        let trial = Identity {
+        let trial = CalibrationIdentity {
             id: 0,
             name,
             study: 0,
@@ -76,7 +76,7 @@ impl Service {
 /// The calibrations that a job begins its study with, each with its own job: the job itself, then the point estimates
 /// that it asks for.
 fn members(
-    identity: &Identity,
+    identity: &CalibrationIdentity,
     job: &FileSet,
     experiment: &FileSet,
 ) -> Result<Vec<(Calibration, FileSet)>, ServiceError> {
@@ -84,7 +84,7 @@ fn members(
     let parsed = Job::parse(file, &job.toml)?;
     parsed.check_files(file, &job.files)?;
     let spec = Spec::of(file, parsed, &job.files, "experiment.toml", experiment)?;
-    if matches!(spec.method, Method::Discover { .. }) {
+    if matches!(spec.method, AlgorithmSettings::Discover { .. }) {
         let message = "[sampler] algorithm = \"discovery\" is a search that a study runs by itself: say apply = \"ask\" or \"auto\" under [discovery]";
         return Err(FileError::whole(file, message).into());
     }
@@ -96,7 +96,7 @@ fn members(
             files: job.files.clone(),
         };
         let spec = Spec::new(file, &job, "experiment.toml", experiment)?;
-        let identity = Identity {
+        let identity = CalibrationIdentity {
             name: format!("{} ({})", identity.name, method.name()),
             ..identity.clone()
         };

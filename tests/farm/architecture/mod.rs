@@ -340,7 +340,7 @@ fn pure_rooms_read_no_clock() {
     nowhere(&pure, &clocks, &[]);
     for file in [
         "coordinator/src/lease.rs",
-        "coordinator/src/farm/mod.rs",
+        "coordinator/src/farm/state.rs",
         "coordinator/src/farm/progress.rs",
     ] {
         let found = code(&root().join(file))

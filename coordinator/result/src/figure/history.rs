@@ -1,6 +1,6 @@
 //! Measured and simulated histories, filtered.
 
-use job::Method;
+use job::AlgorithmSettings;
 use serde::Serialize;
 use shared::channel::Channel;
 use shared::experiment::MeasuredHistory;
@@ -56,8 +56,8 @@ impl FinishedCalibration {
     pub fn histories(&self) -> Option<Vec<ChannelHistory>> {
         let simulated = self.simulated_histories.as_ref()?;
         let label = match self.spec.method {
-            Method::Sample(_) => "maximum likelihood".to_owned(),
-            Method::Fit(_) | Method::Evolve(_) | Method::Discover { .. } => {
+            AlgorithmSettings::Sample(_) => "maximum likelihood".to_owned(),
+            AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => {
                 format!("{} optimum", self.spec.method.name().to_uppercase())
             }
         };

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use inference::diagnostics::mean;
-use job::{Bevameter, Spec};
+use job::{BevameterReadings, Spec};
 
 /// Values of parameters by name: those that the job states, then what the readings of plates and rings say.
 pub(super) fn values(spec: &Spec) -> BTreeMap<String, f64> {
@@ -15,7 +15,7 @@ pub(super) fn values(spec: &Spec) -> BTreeMap<String, f64> {
 }
 
 /// Sinkage exponent of plates: slope of ln p over ln z, each test with a level of its own (least squares).
-fn sinkage_exponent(bevameter: &Bevameter) -> Option<f64> {
+fn sinkage_exponent(bevameter: &BevameterReadings) -> Option<f64> {
     let mut tests: BTreeMap<&str, Vec<[f64; 2]>> = BTreeMap::new();
     for reading in &bevameter.plates {
         let point = [
@@ -38,7 +38,7 @@ fn sinkage_exponent(bevameter: &Bevameter) -> Option<f64> {
 
 /// Friction angle of rings in soil without cohesion `[deg]`: of each test the reading after the longest way, where the
 /// strength is mobilised; tan(phi) = shear stress over normal stress, averaged in its logarithm as the likelihood does.
-fn friction_angle_deg(bevameter: &Bevameter) -> Option<f64> {
+fn friction_angle_deg(bevameter: &BevameterReadings) -> Option<f64> {
     let mut last: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
     for reading in &bevameter.rings {
         let way = reading.condition.shear_displacement_m;
@@ -77,7 +77,7 @@ mod tests {
             },
             stress_pa: mobilised * sigma * 30.0_f64.to_radians().tan(),
         };
-        let bevameter = Bevameter {
+        let bevameter = BevameterReadings {
             plates: vec![
                 plate("a", 1e7, 0.002),
                 plate("a", 1e7, 0.01),
@@ -92,7 +92,7 @@ mod tests {
         };
         assert!((sinkage_exponent(&bevameter).unwrap() - 1.1).abs() < 1e-12);
         assert!((friction_angle_deg(&bevameter).unwrap() - 30.0).abs() < 1e-12);
-        let none = Bevameter::default();
+        let none = BevameterReadings::default();
         assert_eq!((sinkage_exponent(&none), friction_angle_deg(&none)), (None, None));
     }
 }

@@ -1,7 +1,7 @@
 //! Where the result comes from, enough to make it again.
 
 use inference::evolution::EvolutionSettings;
-use job::Method;
+use job::AlgorithmSettings;
 use maud::{Markup, html};
 use shared::experiment::RunUse;
 
@@ -52,14 +52,14 @@ pub(in crate::report) fn provenance(outcome: &FinishedCalibration) -> Markup {
             dd {
                 (spec.method.words())
                 @match spec.method {
-                    Method::Sample(s) => {
+                    AlgorithmSettings::Sample(s) => {
                         @if s.algorithm == inference::Algorithm::Tmcmc { ", " (s.moves[0]) " to " (s.moves[1]) " moves per stage" }
                     }
-                    Method::Fit(s) => {
+                    AlgorithmSettings::Fit(s) => {
                         ", " (number::count(s.starts, "start")) ", differences of at least " (number::as_written(s.difference_step)) " prior widths"
                     }
-                    Method::Evolve(EvolutionSettings::Ga(_)) | Method::Discover { .. } => {}
-                    Method::Evolve(EvolutionSettings::CmaEs(s)) => {
+                    AlgorithmSettings::Evolve(EvolutionSettings::Ga(_)) | AlgorithmSettings::Discover { .. } => {}
+                    AlgorithmSettings::Evolve(EvolutionSettings::CmaEs(s)) => {
                         ", " (s.first_population(spec.parameters.len())) " individuals and at most " (number::count(s.restarts, "restart")) " with twice as many each"
                     }
                 }

@@ -11,18 +11,18 @@ const BITS: u32 = 25;
 
 /// Gives out lease numbers and knows them again.
 #[derive(Debug)]
-pub(super) struct Tokens {
+pub(super) struct LeaseNumbers {
     past: BTreeSet<u64>,
     epoch: u64,
     given: u64,
 }
 
-impl Tokens {
+impl LeaseNumbers {
     /// The numbers of a store whose starts, this one included, have these epochs (see the table `epochs`).
     pub(super) fn new(epochs: impl IntoIterator<Item = u64>) -> Self {
         let mut past: BTreeSet<u64> = epochs.into_iter().collect();
         let epoch = past.pop_last().unwrap_or_default();
-        Tokens {
+        LeaseNumbers {
             past,
             epoch,
             given: 0,
@@ -30,15 +30,15 @@ impl Tokens {
     }
 
     /// The next number: larger than every one before.
-    pub(super) fn next_token(&mut self) -> u64 {
+    pub(super) fn next_number(&mut self) -> u64 {
         self.given += 1;
         (self.epoch << BITS) + self.given
     }
 
     /// Whether this store gave out a number, now or before a restart.
-    pub(super) fn is_ours(&self, token: u64) -> bool {
+    pub(super) fn is_ours(&self, number: u64) -> bool {
         let first = self.epoch << BITS;
-        (token > first && token - first <= self.given) || self.past.contains(&(token >> BITS))
+        (number > first && number - first <= self.given) || self.past.contains(&(number >> BITS))
     }
 }
 
@@ -48,13 +48,13 @@ mod tests {
 
     #[test]
     fn numbers_grow_over_restarts_and_are_known_again() {
-        let mut before = Tokens::new([700]);
-        let old = [before.next_token(), before.next_token()];
-        let mut after = Tokens::new([700, 701]);
-        let new = after.next_token();
+        let mut before = LeaseNumbers::new([700]);
+        let old = [before.next_number(), before.next_number()];
+        let mut after = LeaseNumbers::new([700, 701]);
+        let new = after.next_number();
         assert!(old[0] < old[1] && old[1] < new);
         assert!(after.is_ours(old[1]) && after.is_ours(new));
         assert!(!after.is_ours(new + 1), "not given out yet");
-        assert!(!Tokens::new([702]).is_ours(new), "another store's");
+        assert!(!LeaseNumbers::new([702]).is_ours(new), "another store's");
     }
 }

@@ -7,31 +7,31 @@ use statistics::{Prior, SubchainEnd};
 
 /// What a model said, or that it had not to be asked.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Computed {
+pub struct SimulationResult {
     /// Where the subchain ended, if one was asked for.
     pub end: Option<SubchainEnd>,
     /// Observables, or why the model refused; `None` where a subchain stayed at its start.
     pub outcome: Option<Result<Observables, String>>,
 }
 
-impl From<Result<Observables, String>> for Computed {
+impl From<Result<Observables, String>> for SimulationResult {
     fn from(outcome: Result<Observables, String>) -> Self {
-        Computed {
+        SimulationResult {
             end: None,
             outcome: Some(outcome),
         }
     }
 }
 
-impl Computed {
+impl SimulationResult {
     /// Turns what a worker says into what a calibration takes.
     ///
     /// # Errors
     /// What the machine said that failed: a fault is no result.
-    pub fn of(result: WorkResult) -> Result<Computed, String> {
+    pub fn of(result: WorkResult) -> Result<SimulationResult, String> {
         let outcome = result.outcome.map(result_of).transpose()?;
         let end = result.end;
-        Ok(Computed { end, outcome })
+        Ok(SimulationResult { end, outcome })
     }
 
     /// Whether it answers what was asked: of a subchain of so many moves its end, at parameters that the prior allows, with
@@ -112,7 +112,7 @@ mod tests {
             scaled_accepted: 2,
         };
         change(&mut end);
-        let computed = Computed {
+        let computed = SimulationResult {
             end: Some(end),
             outcome: Some(Ok(Observables::default())),
         };

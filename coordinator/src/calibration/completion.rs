@@ -1,0 +1,311 @@
+//! The results of a calibration: what they count, what follows from them, what is stored.
+
+use inference::TellProgress;
+use shared::api::CalibrationState;
+use shared::outcome::Observables;
+use statistics::{LikelihoodError, LogLikelihood};
+
+use super::engine::{CalibrationResult, EvaluationScore};
+use super::final_draws::{FinalDraws, final_draws};
+use super::process::Calibration;
+use super::simulation_result::SimulationResult;
+use crate::lease::{Completion, LeaseFailure, LeaseQueue};
+use record::{EvaluationKey, EvaluationRow, Fact, Kept};
+
+/// A message that is no result: the calibration and the reason.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ResultError {
+    /// The observables do not have one entry per run.
+    #[error("the observables of evaluation {evaluation} do not cover the {runs} conditions of the variant")]
+    WrongShape {
+        /// The evaluation.
+        evaluation: u64,
+        /// How many entries are expected.
+        runs: usize,
+    },
+    /// A subchain's end where none was asked for, or none where one was, or one that cannot be.
+    #[error("the result of evaluation {evaluation} does not answer what its lease asked for")]
+    OtherQuestion {
+        /// The evaluation.
+        evaluation: u64,
+    },
+}
+
+impl Calibration {
+    /// Takes the result of an evaluation; late duplicates change nothing.
+    ///
+    /// Returns the facts to store, in order, and whether the result counted.
+    ///
+    /// # Errors
+    /// [`ResultError`] for a result that does not fit its variant: the worker's fault, nothing is recorded.
+    pub fn complete(
+        &mut self,
+        evaluation: u64,
+        computed: impl Into<SimulationResult>,
+        worker: &str,
+    ) -> Result<(Vec<Fact>, bool), ResultError> {
+        let computed = computed.into();
+        self.check_shape(evaluation, &computed)?;
+        match self.queue.complete(evaluation) {
+            Completion::First => {}
+            Completion::Duplicate | Completion::Unknown => {
+                let fingerprint = computed.fingerprint();
+                let (calibration, worker) = (self.identity.id, worker.to_owned());
+                return Ok((
+                    vec![Fact::Duplicate {
+                        calibration,
+                        evaluation,
+                        fingerprint,
+                        worker,
+                    }],
+                    false,
+                ));
+            }
+        }
+        let asked = self
+            .theta(evaluation)
+            .expect("the queue holds only evaluations asked for");
+        let theta = computed.end.as_ref().map_or(asked, |end| &end.theta).to_vec();
+        let fingerprint = computed.fingerprint();
+        let rejected = computed.is_refused();
+        let SimulationResult { end, outcome } = computed;
+        let scored = if self.draws.is_some() || self.engine.investigation().is_some() {
+            Ok(None)
+        } else {
+            outcome.as_ref().map(|o| self.score(o, &theta)).transpose()
+        };
+        let log_likelihood = match scored {
+            Ok(scored) => scored,
+            Err(error) => {
+                let mut facts = Vec::new();
+                self.finish(CalibrationState::Failed, Some(error.to_string()), &mut facts);
+                return Ok((facts, false));
+            }
+        };
+        let coarse = match &outcome {
+            Some(Ok(observables)) if self.draws.is_none() => observables.coarse.clone(),
+            _ => None,
+        };
+        let kept = self.kept(evaluation, outcome);
+        let fitted = match &kept {
+            Kept::Fitted(values) => Some(values.as_slice()),
+            Kept::Whole(_) | Kept::Refused(_) => None,
+        };
+        let scored = self.draws.is_none().then(|| EvaluationScore {
+            // Where a subchain stayed there is nothing to score, and nothing is asked of the score.
+            log_likelihood: log_likelihood.unwrap_or(LogLikelihood::Impossible),
+            fitted,
+            coarse: coarse.as_deref(),
+            end: end.as_ref(),
+        });
+        let mut consequences = Vec::new();
+        self.record(evaluation, rejected, scored, &mut consequences);
+        let row = EvaluationRow {
+            evaluation,
+            theta,
+            log_likelihood: log_likelihood.map(LogLikelihood::value).filter(|l| l.is_finite()),
+            kept,
+            coarse,
+            end,
+            fingerprint,
+            worker: worker.to_owned(),
+        };
+        let mut facts = vec![Fact::Evaluated {
+            calibration: self.identity.id,
+            row,
+        }];
+        facts.append(&mut consequences);
+        Ok((facts, true))
+    }
+
+    /// Checks that a result answers what is asked for at present; of what is not, nothing is known.
+    fn check_shape(&self, evaluation: u64, computed: &SimulationResult) -> Result<(), ResultError> {
+        if self.theta(evaluation).is_none() {
+            return Ok(());
+        }
+        let subchain = self.subchain(evaluation).is_some();
+        let moves = self.spec.method.metamodel_moves();
+        if !computed.answers(subchain, moves, || self.spec.prior()) {
+            return Err(ResultError::OtherQuestion { evaluation });
+        }
+        let searched = self.searched(evaluation).and_then(|(hash, _)| self.variant(hash));
+        let variant = match (self.key(evaluation), &self.spec.holdout_variant, &self.histories) {
+            _ if searched.is_some() => searched.unwrap_or(&self.spec.fit_variant),
+            (EvaluationKey::Prediction { holdout: true, .. }, Some(variant), _) => variant,
+            (EvaluationKey::Histories, _, Some((_, variant))) => variant,
+            _ => &self.spec.fit_variant,
+        };
+        let values = self.spec.likelihood.values();
+        match &computed.outcome {
+            Some(Ok(observables))
+                if !observables.covers(variant)
+                    || observables.coarse.as_ref().is_some_and(|c| c.len() != values) =>
+            {
+                let runs = variant.conditions.len();
+                Err(ResultError::WrongShape { evaluation, runs })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The log-likelihood of an outcome.
+    fn score(
+        &self,
+        outcome: &Result<Observables, String>,
+        theta: &[f64],
+    ) -> Result<LogLikelihood, LikelihoodError> {
+        let Ok(observables) = outcome else {
+            return Ok(LogLikelihood::Impossible);
+        };
+        let values = self.spec.predicted_values(observables);
+        self.spec.likelihood.log_likelihood(&values, theta)
+    }
+
+    /// Lets a completed evaluation take effect on counts, engine and phase.
+    pub(super) fn record(
+        &mut self,
+        evaluation: u64,
+        rejected: bool,
+        scored: Option<EvaluationScore>,
+        facts: &mut Vec<Fact>,
+    ) {
+        // A subchain that stayed where it was has evaluated nothing.
+        let stayed = scored.is_some_and(|s| s.end.is_some_and(|end| end.accepted == 0));
+        self.evaluations += u64::from(!stayed);
+        self.rejected += u64::from(rejected);
+        self.done.insert(evaluation);
+        let Some(scored) = scored else {
+            if self.done.len() == self.queue.len() {
+                self.finish(CalibrationState::Finished, None, facts);
+            }
+            return;
+        };
+        let EvaluationKey::Sampling { particle, .. } = self.key(evaluation) else {
+            return;
+        };
+        let stages = self.engine.stages().len();
+        let progress = self.engine.tell(particle, scored);
+        for record in &self.engine.stages()[stages..] {
+            facts.push(Fact::Stage {
+                calibration: self.identity.id,
+                record: Box::new(record.clone()),
+                busy_ms: self.busy_ms,
+            });
+        }
+        match progress {
+            Ok(TellProgress::Waiting) => {}
+            Ok(TellProgress::NextRound | TellProgress::StageFinished) => self.ask(),
+            Ok(TellProgress::Finished) => {
+                let calibration = self.identity.id;
+                match self.engine.finding() {
+                    Some(CalibrationResult::Posterior(posterior)) => {
+                        self.draws = Some(final_draws(posterior));
+                        facts.push(Fact::Posterior {
+                            calibration,
+                            posterior: Box::new(posterior.clone()),
+                        });
+                    }
+                    Some(CalibrationResult::Estimate(estimate)) => {
+                        self.draws = Some(FinalDraws {
+                            thetas: vec![estimate.theta.clone()],
+                            likeliest: estimate.theta.clone(),
+                        });
+                        facts.push(Fact::Estimate {
+                            calibration,
+                            estimate: Box::new(estimate.clone()),
+                        });
+                    }
+                    Some(CalibrationResult::Discovery(record)) => {
+                        facts.push(Fact::Discovery { calibration, record });
+                        return self.finish(CalibrationState::Finished, None, facts);
+                    }
+                    None => {}
+                }
+                self.ask();
+            }
+            Ok(TellProgress::Failed(failure)) => {
+                self.finish(CalibrationState::Failed, Some(failure.to_string()), facts);
+            }
+            Err(error) => self.finish(CalibrationState::Failed, Some(error.to_string()), facts),
+        }
+    }
+
+    fn finish(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
+        self.queue = LeaseQueue::default();
+        self.change_state(state, message, facts);
+    }
+
+    /// Changes the state and says so to the store.
+    pub fn change_state(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
+        self.state = state;
+        self.message.clone_from(&message);
+        facts.push(Fact::State {
+            calibration: self.identity.id,
+            state,
+            message,
+            busy_ms: self.busy_ms,
+        });
+    }
+
+    /// Records that a lease failed: kept over restarts; when the attempts are used up, the calibration pauses.
+    pub fn lease_failed(&mut self, failure: &LeaseFailure, message: &str) -> Vec<Fact> {
+        self.failed.insert(failure.evaluation, failure.attempt);
+        let mut facts = vec![Fact::Fault {
+            calibration: self.identity.id,
+            evaluation: failure.evaluation,
+            attempt: failure.attempt,
+            worker: failure.worker.clone(),
+            message: message.to_owned(),
+        }];
+        if failure.exhausted() {
+            let theta = self
+                .theta(failure.evaluation)
+                .map(<[f64]>::to_vec)
+                .unwrap_or_default();
+            let message = format!(
+                "evaluation {} at theta = {theta:?} failed on {} attempts, the last on worker {}: {message}",
+                failure.evaluation, failure.attempt, failure.worker
+            );
+            self.change_state(CalibrationState::Paused, Some(message), &mut facts);
+        }
+        facts
+    }
+
+    /// Goes on after a pause; evaluations that had used up their attempts get new ones.
+    pub fn resume(&mut self, facts: &mut Vec<Fact>) {
+        // An attempt 0 in the list of faults: the new attempts outlive a restart.
+        facts.extend(
+            std::mem::take(&mut self.failed)
+                .into_keys()
+                .map(|evaluation| Fact::Fault {
+                    calibration: self.identity.id,
+                    evaluation,
+                    attempt: 0,
+                    worker: String::new(),
+                    message: "given new attempts by a user".into(),
+                }),
+        );
+        let done = std::mem::take(&mut self.done);
+        self.ask();
+        for &evaluation in &done {
+            self.queue.complete(evaluation);
+        }
+        self.done = done;
+        self.change_state(CalibrationState::Running, None, facts);
+    }
+
+    fn kept(&self, evaluation: u64, outcome: Option<Result<Observables, String>>) -> Kept {
+        let searched = |observables: &Observables| {
+            let particle = self.proposal(evaluation)?.particle;
+            self.engine.investigation()?.values(particle, observables)
+        };
+        match outcome {
+            None => Kept::Fitted(Vec::new()),
+            Some(Err(reason)) => Kept::Refused(reason),
+            Some(Ok(observables)) if self.draws.is_some() => Kept::Whole(Box::new(observables)),
+            Some(Ok(observables)) => Kept::Fitted(
+                searched(&observables).unwrap_or_else(|| self.spec.predicted_values(&observables)),
+            ),
+        }
+    }
+}

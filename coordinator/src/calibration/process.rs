@@ -1,0 +1,283 @@
+//! A calibration in progress: its state, and what it asks for.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use inference::Proposal;
+use shared::api::CalibrationState;
+use shared::file::FileSet;
+use shared::model::ModelVariant;
+use statistics::{Metamodel, Subchain};
+
+use super::engine::{BeginError, CalibrationEngine};
+use super::final_draws::FinalDraws;
+use crate::lease::LeaseQueue;
+use crate::missing_effect::{InvestigationError, Models};
+use job::{AlgorithmSettings, Spec};
+use record::EvaluationKey;
+
+/// Most effects that a search looks for together.
+const EFFECTS_TOGETHER: usize = 3;
+
+/// What the farm needs to know of a calibration besides its specification.
+#[derive(Debug, Clone)]
+pub struct CalibrationIdentity {
+    /// Id in the store.
+    pub id: i64,
+    /// Name for lists.
+    pub name: String,
+    /// The study it belongs to.
+    pub study: i64,
+    /// The experiment it is about.
+    pub experiment: i64,
+}
+
+/// A calibration in progress.
+#[derive(Debug)]
+pub struct Calibration {
+    /// Who it is.
+    pub identity: CalibrationIdentity,
+    /// What it is about.
+    pub spec: Arc<Spec>,
+    /// Where it stands.
+    pub state: CalibrationState,
+    /// Why it is paused or failed.
+    pub message: Option<String>,
+    /// Version of the equations and the effects, pinned by the first lease.
+    pub model_version: Option<String>,
+    /// Evaluations asked for at present, and who holds them.
+    pub queue: LeaseQueue,
+    /// Wall time spent `[ms]`.
+    pub busy_ms: u64,
+    /// Evaluations completed, over all stages.
+    pub evaluations: u64,
+    /// Of these, refused by the model.
+    pub rejected: u64,
+    pub(super) engine: CalibrationEngine,
+    fit_hash: String,
+    pub(super) holdout_hash: Option<String>,
+    /// The fitted runs with the metamodel of the present stage: its number, the hash and the variant.
+    stage_variant: Option<(usize, (String, ModelVariant))>,
+    /// What is simulated once more for its histories, with its hash; `None` of a model that knows no time.
+    pub(super) histories: Option<(String, ModelVariant)>,
+    /// What the calibration ends with; `None` while sampling.
+    pub(super) draws: Option<FinalDraws>,
+    /// Evaluations of the present round that are done.
+    pub(super) done: BTreeSet<u64>,
+    /// Failed leases by evaluation, kept over a restart.
+    pub(super) failed: BTreeMap<u64, u32>,
+}
+
+/// What an evaluation is leased with.
+#[derive(Debug, Clone, Copy)]
+pub struct Question<'a> {
+    /// Hash of the variant.
+    pub variant: &'a str,
+    /// The parameters: those of the model, of a subchain all.
+    pub theta: &'a [f64],
+    /// The subchain that starts there.
+    pub subchain: Option<Subchain>,
+}
+
+impl Calibration {
+    /// A fresh calibration; its first evaluations are draws from the prior.
+    ///
+    /// # Errors
+    /// [`BeginError`]: the settings do not fit the prior, or this is a search, which [`Calibration::of`] begins.
+    pub fn new(identity: CalibrationIdentity, spec: Arc<Spec>) -> Result<Self, BeginError> {
+        Self::begin(identity, spec, None)
+    }
+
+    /// The same, with the texts that a search for a missing effect makes its models from.
+    ///
+    /// # Errors
+    /// As those of [`Calibration::new`], or a model of a search cannot be made.
+    pub fn of(
+        identity: CalibrationIdentity,
+        spec: Arc<Spec>,
+        job: &FileSet,
+        experiment: &FileSet,
+    ) -> Result<Self, BeginError> {
+        let models = match spec.method {
+            AlgorithmSettings::Discover { .. } => {
+                let models = Models::new(job, experiment, EFFECTS_TOGETHER);
+                Some(models.map_err(InvestigationError::from)?)
+            }
+            AlgorithmSettings::Sample(_) | AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) => None,
+        };
+        Self::begin(identity, spec, models)
+    }
+
+    fn begin(
+        identity: CalibrationIdentity,
+        spec: Arc<Spec>,
+        models: Option<Models>,
+    ) -> Result<Self, BeginError> {
+        let engine = CalibrationEngine::new(&spec, models)?;
+        let mut calibration = Calibration {
+            identity,
+            fit_hash: spec.fit_variant.hash(),
+            holdout_hash: spec.holdout_variant.as_ref().map(ModelVariant::hash),
+            histories: spec
+                .fit_variant
+                .with_histories()
+                .map(|variant| (variant.hash(), variant)),
+            spec,
+            state: CalibrationState::Queued,
+            message: None,
+            model_version: None,
+            queue: LeaseQueue::default(),
+            busy_ms: 0,
+            evaluations: 0,
+            rejected: 0,
+            engine,
+            stage_variant: None,
+            draws: None,
+            done: BTreeSet::new(),
+            failed: BTreeMap::new(),
+        };
+        calibration.ask();
+        Ok(calibration)
+    }
+
+    /// What asks for evaluations, for progress.
+    pub fn engine(&self) -> &CalibrationEngine {
+        &self.engine
+    }
+
+    /// Whether evaluations may be leased.
+    pub fn is_open(&self) -> bool {
+        matches!(self.state, CalibrationState::Queued | CalibrationState::Running)
+    }
+
+    /// What an evaluation is leased with.
+    pub fn question(&self, evaluation: u64) -> Option<Question<'_>> {
+        let theta = self.theta(evaluation)?;
+        if let Some((variant, theta)) = self.searched(evaluation) {
+            return Some(Question {
+                variant,
+                theta,
+                subchain: None,
+            });
+        }
+        if let Some(subchain) = self.subchain(evaluation) {
+            let (_, (variant, _)) = self.stage_variant.as_ref()?;
+            return Some(Question {
+                variant,
+                theta,
+                subchain: Some(subchain),
+            });
+        }
+        let variant = match self.key(evaluation) {
+            EvaluationKey::Prediction { holdout: true, .. } => self.holdout_hash.as_deref()?,
+            EvaluationKey::Histories => &self.histories.as_ref()?.0,
+            _ => &self.fit_hash,
+        };
+        Some(Question {
+            variant,
+            theta: self.spec.model_theta(theta),
+            subchain: None,
+        })
+    }
+
+    /// What an evaluation of a search is leased with; `None` of anything else.
+    pub(super) fn searched(&self, evaluation: u64) -> Option<(&str, &[f64])> {
+        let particle = self.proposal(evaluation)?.particle;
+        self.engine.investigation()?.lease(particle)
+    }
+
+    /// What an evaluation is for.
+    pub(super) fn key(&self, evaluation: u64) -> EvaluationKey {
+        EvaluationKey::of(evaluation, self.spec.method.width())
+    }
+
+    /// The variant of a hash, if it is one of this calibration's.
+    pub fn variant(&self, hash: &str) -> Option<&ModelVariant> {
+        match hash {
+            h if h == self.fit_hash => Some(&self.spec.fit_variant),
+            h if Some(h) == self.holdout_hash.as_deref() => self.spec.holdout_variant.as_ref(),
+            h => {
+                let of_stage = self.stage_variant.iter().map(|(_, variant)| variant);
+                let mut others = of_stage.chain(&self.histories);
+                let searched = || self.engine.investigation()?.variant(h);
+                others
+                    .find(|(own, _)| own == h)
+                    .map(|(_, variant)| variant)
+                    .or_else(searched)
+            }
+        }
+    }
+
+    /// The whole parameter vector of an evaluation that is asked for at present; of a subchain, where it starts.
+    pub(super) fn theta(&self, evaluation: u64) -> Option<&[f64]> {
+        match (self.key(evaluation), &self.draws) {
+            (EvaluationKey::Prediction { draw, .. }, Some(draws)) => {
+                draws.thetas.get(draw).map(Vec::as_slice)
+            }
+            (EvaluationKey::Histories, Some(draws)) => Some(&draws.likeliest),
+            _ => self.proposal(evaluation).map(|p| p.theta.as_slice()),
+        }
+    }
+
+    /// The proposal of an evaluation that is asked for at present, while sampling.
+    pub(super) fn proposal(&self, evaluation: u64) -> Option<&Proposal> {
+        let pending = self.engine.pending();
+        match self.key(evaluation) {
+            EvaluationKey::Sampling { round, particle }
+                if self.draws.is_none() && round == self.engine.round() =>
+            {
+                let place = pending.binary_search_by_key(&particle, |p| p.particle).ok()?;
+                Some(&pending[place])
+            }
+            _ => None,
+        }
+    }
+
+    /// The subchain that an evaluation asks for.
+    pub(super) fn subchain(&self, evaluation: u64) -> Option<Subchain> {
+        self.proposal(evaluation).and_then(|p| p.subchain)
+    }
+
+    /// Asks for the evaluations of the present round.
+    pub(super) fn ask(&mut self) {
+        self.prepare_stage();
+        let particles = self.spec.method.width();
+        self.done.clear();
+        let failed = |evaluation| self.failed.get(&evaluation).copied().unwrap_or(0);
+        match &self.draws {
+            Some(draws) => {
+                let parts = if self.holdout_hash.is_some() { 2 } else { 1 };
+                let keys = (0..draws.thetas.len()).flat_map(|draw| {
+                    let part = move |holdout| EvaluationKey::Prediction { draw, holdout }.number(particles);
+                    [false, true].into_iter().take(parts).map(part)
+                });
+                let histories = self.histories.iter().map(|_| EvaluationKey::Histories);
+                let keys = keys.chain(histories.map(|key| key.number(particles)));
+                self.queue.ask(keys, failed);
+            }
+            None => {
+                let round = self.engine.round();
+                let keys = self.engine.pending().iter().map(|p| {
+                    EvaluationKey::Sampling {
+                        round,
+                        particle: p.particle,
+                    }
+                    .number(particles)
+                });
+                self.queue.ask(keys, failed);
+            }
+        }
+    }
+
+    /// Makes the variant of the stage in progress, whose metamodel is frozen until the next one.
+    fn prepare_stage(&mut self) {
+        let metamodel = self.engine.metamodel();
+        let stage = metamodel.map(Metamodel::stage);
+        if self.stage_variant.as_ref().map(|(stage, ..)| *stage) != stage {
+            self.stage_variant = metamodel.map(|metamodel| {
+                let variant = self.spec.fit_variant.with_metamodel(metamodel);
+                (metamodel.stage(), (variant.hash(), variant))
+            });
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! Numbers of the farm for the metrics page.
+
+/// Counters for the metrics page.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct FarmCounters {
+    /// Results that counted.
+    pub completed: u64,
+    /// Results that changed nothing.
+    pub duplicates: u64,
+    /// Leases given out.
+    pub leased: u64,
+    /// Leases that expired or ended in a fault.
+    pub failed_leases: u64,
+}
+
+/// Numbers for the metrics page.
+#[derive(Debug, Clone)]
+pub struct FarmMetrics {
+    /// Counters since the start.
+    pub counters: FarmCounters,
+    /// Leases that are out.
+    pub leased: usize,
+    /// Calibrations in hand.
+    pub calibrations: usize,
+    /// Workers heard of.
+    pub workers: usize,
+}

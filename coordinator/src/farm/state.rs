@@ -1,0 +1,366 @@
+//! All calibrations at hand and all workers heard of: who gets which work.
+
+use std::collections::BTreeMap;
+
+use shared::api::{CalibrationState, CalibrationStatus};
+use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
+use shared::model::{ModelVariant, equations_of};
+
+use super::control::{Control, ControlError};
+use super::lease_numbers::LeaseNumbers;
+use super::metrics::{FarmCounters, FarmMetrics};
+use super::progress::{self, Pace};
+use super::worker_record::WorkerRecord;
+use crate::calibration::{Calibration, SimulationResult};
+use record::fact::Fact;
+
+/// A worker is counted as connected for so long after its last message `[ms]`.
+const WORKER_SILENCE_MS: u64 = 60_000;
+
+/// All calibrations at hand and all workers heard of.
+#[derive(Debug)]
+pub struct Farm {
+    calibrations: BTreeMap<i64, Entry>,
+    workers: BTreeMap<String, WorkerRecord>,
+    counters: FarmCounters,
+    facts: Vec<Fact>,
+    lease_numbers: LeaseNumbers,
+    lease_ms: u64,
+}
+
+#[derive(Debug)]
+struct Entry {
+    calibration: Calibration,
+    pace: Pace,
+    /// When busy time was last added up `[ms]`.
+    counted_ms: u64,
+}
+
+impl Farm {
+    /// An empty farm; `epochs` number the starts of the coordinator, this one included, so lease numbers never repeat.
+    pub fn new(epochs: &[u64], lease_ms: u64) -> Self {
+        Farm {
+            calibrations: BTreeMap::new(),
+            workers: BTreeMap::new(),
+            counters: FarmCounters::default(),
+            facts: Vec::new(),
+            lease_numbers: LeaseNumbers::new(epochs.iter().copied()),
+            lease_ms,
+        }
+    }
+
+    /// Takes a calibration in hand, with facts of its replay that may have been lost.
+    pub fn add(&mut self, calibration: Calibration, facts: Vec<Fact>, now_ms: u64) {
+        self.facts.extend(facts);
+        if !calibration.state.is_final() {
+            let pace = Pace::new(calibration.evaluations, now_ms);
+            let entry = Entry {
+                calibration,
+                pace,
+                counted_ms: now_ms,
+            };
+            self.calibrations.insert(entry.calibration.identity.id, entry);
+        }
+    }
+
+    /// The facts since the last call, in order.
+    pub fn take_facts(&mut self) -> Vec<Fact> {
+        std::mem::take(&mut self.facts)
+    }
+
+    /// Numbers for the metrics page.
+    pub fn metrics(&self) -> FarmMetrics {
+        let leased = |e: &Entry| e.calibration.queue.leased();
+        FarmMetrics {
+            counters: self.counters.clone(),
+            leased: self.calibrations.values().map(leased).sum(),
+            calibrations: self.calibrations.len(),
+            workers: self.workers.len(),
+        }
+    }
+
+    /// Whether an exchange would give a lease to somebody.
+    pub fn has_work(&self) -> bool {
+        self.remaining() > 0
+    }
+
+    fn remaining(&self) -> u64 {
+        let open = self.calibrations.values().filter(|e| e.calibration.is_open());
+        open.map(|e| e.calibration.queue.unleased() as u64).sum()
+    }
+
+    /// Takes a worker's results, renewals and returns, and leases it what it wants.
+    pub fn exchange(&mut self, request: ExchangeRequest, now_ms: u64) -> ExchangeResponse {
+        let worker = request.worker;
+        let record = self
+            .workers
+            .entry(worker.clone())
+            .or_insert_with(|| WorkerRecord {
+                model_version: request.model_version.clone(),
+                holds: 0,
+                completed: 0,
+                faults: 0,
+                silent_ms: 0,
+                last_seen_ms: now_ms,
+            });
+        record.last_seen_ms = now_ms;
+        let mut duplicates = 0;
+        for result in request.results {
+            if !self.take_result(&worker, result, now_ms) {
+                duplicates += 1;
+            }
+        }
+        for lease in request.holding {
+            let until = now_ms + self.lease_ms;
+            self.calibrations
+                .values_mut()
+                .any(|e| e.calibration.queue.renew(lease, until));
+        }
+        for lease in request.returned {
+            self.give_back(lease);
+        }
+        self.account(now_ms);
+        let (leases, refused) = self.lease(&worker, &request.model_version, request.want as usize, now_ms);
+        ExchangeResponse {
+            leases,
+            lease_ms: self.lease_ms,
+            remaining: self.remaining(),
+            workers: self.workers.len() as u32,
+            duplicates,
+            refused,
+        }
+    }
+
+    /// Takes a result; `false` where it changes nothing.
+    fn take_result(&mut self, worker: &str, result: WorkResult, now_ms: u64) -> bool {
+        let ours = self.lease_numbers.is_ours(result.lease);
+        let Some(entry) = self.calibrations.get_mut(&result.calibration).filter(|_| ours) else {
+            self.counters.duplicates += 1;
+            return false;
+        };
+        let calibration = &mut entry.calibration;
+        let (lease, evaluation) = (result.lease, result.evaluation);
+        let leased = calibration.queue.evaluation_of(lease);
+        let taken = match SimulationResult::of(result) {
+            // A lapsed lease is taken on trust; one that is out must be answered for what it was given for.
+            Ok(_) if leased.is_some_and(|e| e != evaluation) => Err(format!(
+                "the result of lease {lease} names evaluation {evaluation}, not its own"
+            )),
+            Ok(computed) => match calibration.complete(evaluation, computed, worker) {
+                Ok((facts, counted)) => {
+                    self.facts.extend(facts);
+                    entry.pace.count(calibration.evaluations, now_ms);
+                    Ok(counted)
+                }
+                Err(error) => Err(error.to_string()),
+            },
+            Err(fault) => Err(fault),
+        };
+        let record = self
+            .workers
+            .get_mut(worker)
+            .expect("the worker of an exchange is on record");
+        match taken {
+            Ok(true) => {
+                record.completed += 1;
+                self.counters.completed += 1;
+                true
+            }
+            Ok(false) => {
+                self.counters.duplicates += 1;
+                false
+            }
+            Err(message) => {
+                record.faults += 1;
+                self.counters.failed_leases += 1;
+                if let Some(failure) = calibration.queue.fail(lease) {
+                    self.facts.extend(calibration.lease_failed(&failure, &message));
+                }
+                true
+            }
+        }
+    }
+
+    pub(super) fn give_back(&mut self, lease: u64) {
+        self.calibrations
+            .values_mut()
+            .any(|e| e.calibration.queue.give_back(lease));
+    }
+
+    fn held_by(&self, worker: &str) -> usize {
+        self.calibrations
+            .values()
+            .map(|e| e.calibration.queue.held_by(worker))
+            .sum()
+    }
+
+    /// Leases up to `want` evaluations, oldest calibration first.
+    fn lease(
+        &mut self,
+        worker: &str,
+        version: &str,
+        want: usize,
+        now_ms: u64,
+    ) -> (Vec<Lease>, Option<String>) {
+        let mut leases = Vec::new();
+        let mut refused = None;
+        let expires_ms = now_ms + self.lease_ms;
+        let mut holds = self.held_by(worker);
+        for (&id, entry) in &mut self.calibrations {
+            let calibration = &mut entry.calibration;
+            if leases.len() >= want || !calibration.is_open() || calibration.queue.unleased() == 0 {
+                continue;
+            }
+            match &calibration.model_version {
+                // The files of effects travel with the variant: a worker need not know them.
+                Some(pinned) if equations_of(pinned) != equations_of(version) => {
+                    let pinned = equations_of(pinned);
+                    refused = Some(format!(
+                        "calibration {id} was begun with model version {pinned}, worker {worker} computes {version}"
+                    ));
+                    continue;
+                }
+                Some(_) => {}
+                None => {
+                    let variant = &calibration.spec.fit_variant;
+                    let version = variant.model_version(equations_of(version));
+                    calibration.model_version = Some(version.clone());
+                    self.facts.push(Fact::ModelVersion {
+                        calibration: id,
+                        version,
+                    });
+                }
+            }
+            let lease_numbers = &mut self.lease_numbers;
+            let next_lease = || lease_numbers.next_number();
+            let claims = calibration
+                .queue
+                .claim(worker, want - leases.len(), holds, expires_ms, next_lease);
+            holds += claims.len();
+            self.counters.leased += claims.len() as u64;
+            if !claims.is_empty() && calibration.state == CalibrationState::Queued {
+                calibration.change_state(CalibrationState::Running, None, &mut self.facts);
+            }
+            for (lease, evaluation) in claims {
+                let question = calibration
+                    .question(evaluation)
+                    .expect("a claimed evaluation is asked for at present");
+                leases.push(Lease {
+                    lease,
+                    calibration: id,
+                    evaluation,
+                    variant: question.variant.to_owned(),
+                    theta: question.theta.to_vec(),
+                    subchain: question.subchain,
+                });
+            }
+        }
+        (leases, refused)
+    }
+
+    /// Lets time pass: expires leases, forgets silent workers, adds up busy time.
+    pub fn tick(&mut self, now_ms: u64) {
+        for entry in self.calibrations.values_mut() {
+            for failure in entry.calibration.queue.expire(now_ms) {
+                self.counters.failed_leases += 1;
+                if let Some(record) = self.workers.get_mut(&failure.worker) {
+                    record.faults += 1;
+                }
+                let message = format!("the lease expired after {} ms without renewal", self.lease_ms);
+                self.facts
+                    .extend(entry.calibration.lease_failed(&failure, &message));
+            }
+        }
+        self.workers
+            .retain(|_, w| now_ms.saturating_sub(w.last_seen_ms) < WORKER_SILENCE_MS);
+        self.account(now_ms);
+    }
+
+    /// Adds up busy time and lets go of what is over.
+    fn account(&mut self, now_ms: u64) {
+        for entry in self.calibrations.values_mut() {
+            // What waits for others has not begun to cost anything.
+            let calibration = &entry.calibration;
+            if calibration.state == CalibrationState::Running && calibration.queue.leased() > 0 {
+                entry.calibration.busy_ms += now_ms.saturating_sub(entry.counted_ms);
+            }
+            entry.counted_ms = now_ms;
+        }
+        self.calibrations.retain(|_, e| !e.calibration.state.is_final());
+    }
+
+    /// Carries out a user's command.
+    ///
+    /// # Errors
+    /// [`ControlError`] where the calibration is over or the command does not fit.
+    pub fn control(
+        &mut self,
+        id: i64,
+        control: Control,
+        now_ms: u64,
+    ) -> Result<CalibrationState, ControlError> {
+        let entry = self
+            .calibrations
+            .get_mut(&id)
+            .ok_or(ControlError::NotInProgress(id))?;
+        let calibration = &mut entry.calibration;
+        let state = calibration.state;
+        match (control, state) {
+            (Control::Cancel, _) => {
+                calibration.change_state(CalibrationState::Cancelled, None, &mut self.facts)
+            }
+            (Control::Pause, CalibrationState::Queued | CalibrationState::Running) => {
+                let message = Some("paused by a user".to_owned());
+                calibration.change_state(CalibrationState::Paused, message, &mut self.facts);
+            }
+            (Control::Resume, CalibrationState::Paused) => calibration.resume(&mut self.facts),
+            (Control::Pause, _) => {
+                return Err(ControlError::WrongState {
+                    id,
+                    state,
+                    verb: "paused",
+                });
+            }
+            (Control::Resume, _) => {
+                return Err(ControlError::WrongState {
+                    id,
+                    state,
+                    verb: "resumed",
+                });
+            }
+        }
+        let state = calibration.state;
+        self.account(now_ms);
+        Ok(state)
+    }
+
+    /// Where a calibration in hand stands.
+    pub fn status(&self, id: i64, now_ms: u64) -> Option<CalibrationStatus> {
+        self.calibrations
+            .get(&id)
+            .map(|e| progress::status(&e.calibration, &e.pace, now_ms))
+    }
+
+    /// The calibrations in hand.
+    pub fn ids(&self) -> Vec<i64> {
+        self.calibrations.keys().copied().collect()
+    }
+
+    /// The workers heard of.
+    pub fn workers(&self, now_ms: u64) -> BTreeMap<String, WorkerRecord> {
+        let mut workers = self.workers.clone();
+        for (name, record) in &mut workers {
+            record.holds = self.held_by(name) as u64;
+            record.silent_ms = now_ms.saturating_sub(record.last_seen_ms);
+        }
+        workers
+    }
+
+    /// The variant of a hash, if a calibration in hand uses it.
+    pub fn variant(&self, hash: &str) -> Option<ModelVariant> {
+        self.calibrations
+            .values()
+            .find_map(|e| e.calibration.variant(hash))
+            .cloned()
+    }
+}
