@@ -8,13 +8,10 @@
 //! - [`mod@unit`]: units, and the dimensions behind them.
 //!
 //! From text to numbers:
-//! - `token`, `parse`: text to a graph of operations.
-//! - `graph`: the operations of one effect, without repetition.
-//! - `dimension`: check of units; `proportion`: whether a formula only scales the quantity that it replaces.
-//! - [`program`]: a compiled formula; [`block`]: its evaluation at many points, with `address` and `arithmetic`.
+//! - `syntax`: from the text of a formula to operations, with a check of units.
+//! - `evaluation`: from operations to numbers: [`program`] is a compiled formula, [`block`] evaluates it at many points.
 //! - [`nesting`]: whether a file is too deep to be parsed.
 //! - [`word`]: the known word nearest to an unknown one.
-//! - [`elementary`]: `exp`, `ln` and powers that vectorise and give the same bits on every machine.
 //!
 //! Everything is pure and safe for untrusted text: no loops, only declared names, limits on every size. The crate knows
 //! neither the wheel-soil models nor probability: a prior is kept as written.
@@ -106,23 +103,17 @@
 //! A file of 32 768 bytes, 16 parameters, 32 definitions; a formula of 2000 characters, parentheses and signs 50 deep; names
 //! of 60 characters; 1000 different operations in an effect; tables nested 8 deep; powers of units up to 9.
 
-mod address;
-mod arithmetic;
-pub mod block;
 pub mod catalogue;
-mod dimension;
 pub mod effect;
-pub mod elementary;
-mod graph;
+mod evaluation;
 pub mod hook;
 pub mod nesting;
-mod parse;
-pub mod program;
-mod proportion;
-mod token;
+mod syntax;
 pub mod unit;
 pub mod variable;
 pub mod word;
+
+pub use evaluation::{block, elementary, program};
 
 pub use effect::{Effect, EffectError, Parameter};
 pub use hook::Hook;

@@ -7,11 +7,11 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::{Effect, EffectError, Parameter, names, place};
-use crate::graph::{Graph, Node};
 use crate::hook::Hook;
 use crate::nesting::too_deep;
-use crate::parse::{Definition, Scope, parse};
-use crate::token::{Mistake, Token, Tokens};
+use crate::syntax::graph::{Graph, Node};
+use crate::syntax::parse::{Definition, Scope, parse};
+use crate::syntax::token::{Mistake, Token, Tokens};
 use crate::unit::Unit;
 use crate::variable::{Variable, Variables};
 use crate::word::unknown_word;

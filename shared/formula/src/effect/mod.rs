@@ -4,10 +4,10 @@ mod file;
 mod names;
 mod place;
 
-use crate::graph::{Graph, Id};
+use crate::evaluation::program::Program;
 use crate::hook::Hook;
-use crate::program::Program;
-use crate::proportion::is_proportional;
+use crate::syntax::graph::{Graph, Id};
+use crate::syntax::proportion::is_proportional;
 use crate::variable::{Variable, Variables};
 
 /// A mechanism that may be missing from the model: formulas for some of its quantities, with their parameters.
@@ -122,7 +122,7 @@ impl Effect {
 
     /// The formula for a quantity, ready where the variables `local` differ from point to point; none if it leaves it alone.
     ///
-    /// `local` may hold the first [`Variable::LOCAL`] variables: only they have columns in a [`Block`](crate::block::Block). The
+    /// `local` may hold the first [`Variable::LOCAL`] variables: only they have columns in a [`Block`](crate::evaluation::block::Block). The
     /// choice changes no bit of a value. Checked by `fuzzed::any_formula_has_the_same_bits_at_one_point_and_in_blocks`.
     ///
     /// # Panics

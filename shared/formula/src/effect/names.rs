@@ -2,7 +2,7 @@
 
 use super::Mechanism;
 use crate::hook::Hook;
-use crate::parse::reserved;
+use crate::syntax::parse::reserved;
 use crate::variable::Variable;
 use crate::word::unknown_word;
 

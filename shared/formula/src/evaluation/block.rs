@@ -1,10 +1,10 @@
 //! Evaluation of formulas at many points at a time.
 
-pub use crate::address::BLOCK;
-use crate::address::{Address, COLUMNS};
-use crate::arithmetic::{LANES, Lanes, binary_lanes, choose_lanes, unary_lanes};
-use crate::graph::{Binary, Unary};
-use crate::program::{Arithmetic, Operation, Program, Then};
+pub use crate::evaluation::address::BLOCK;
+use crate::evaluation::address::{Address, COLUMNS};
+use crate::evaluation::arithmetic::{LANES, Lanes, binary_lanes, choose_lanes, unary_lanes};
+use crate::evaluation::program::{Arithmetic, Operation, Program, Then};
+use crate::syntax::graph::{Binary, Unary};
 use crate::variable::Variable;
 
 /// Variables at so many points, and room to compute with them.

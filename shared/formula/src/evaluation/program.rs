@@ -1,8 +1,8 @@
 //! A compiled formula: values that all points share are computed once, the others point by point.
 
-use crate::address::Address;
-use crate::arithmetic::{binary, choose, unary};
-use crate::graph::{Binary, Graph, Id, Node, Unary};
+use crate::evaluation::address::Address;
+use crate::evaluation::arithmetic::{binary, choose, unary};
+use crate::syntax::graph::{Binary, Graph, Id, Node, Unary};
 use crate::variable::{Variable, Variables};
 
 /// Where an operation at a point finds a number.
@@ -205,7 +205,7 @@ impl Program {
     ///
     /// Checked by `evaluation::operators_bind_as_in_mathematics` and `fuzzed::formulas_mean_what_their_signs_say`.
     ///
-    /// [`Block::replace`]: crate::block::Block::replace
+    /// [`Block::replace`]: crate::evaluation::block::Block::replace
     /// [`Hook::admits`]: crate::Hook::admits
     pub fn settle(
         &self,

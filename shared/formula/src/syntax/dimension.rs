@@ -3,7 +3,7 @@
 //! Only a certain contradiction is an error. A number has whatever unit its neighbour needs, as in `v_t / 0.02` or
 //! `1.5 * p`; so has a quantity whose unit depends on a parameter, such as `k_star` or `z^n`.
 
-use crate::graph::{Binary, Graph, Id, Node, Unary};
+use crate::syntax::graph::{Binary, Graph, Id, Node, Unary};
 use crate::unit::Unit;
 
 /// A contradiction between units, with the operation that it is in.

@@ -1,6 +1,6 @@
 //! Whether a formula only scales the quantity that it replaces.
 
-use crate::graph::{Binary, Graph, Id, Node, Unary};
+use crate::syntax::graph::{Binary, Graph, Id, Node, Unary};
 use crate::variable::Variable;
 
 /// How a value depends on a variable.

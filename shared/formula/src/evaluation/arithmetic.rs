@@ -3,8 +3,8 @@
 //! The functions that vectorise, [`elementary`]'s, are used wherever they are defined and `libm`'s elsewhere, at one point
 //! as at many, so that no comparison and no table can tell how a formula was evaluated.
 
-use crate::elementary;
-use crate::graph::{Binary, Unary};
+use crate::evaluation::elementary;
+use crate::syntax::graph::{Binary, Unary};
 
 /// Points are computed so many at a time: a multiple of the width of vector registers.
 pub(crate) const LANES: usize = 8;

@@ -1,6 +1,6 @@
 //! Addresses in the memory of a block.
 
-use crate::arithmetic::LANES;
+use crate::evaluation::arithmetic::LANES;
 use crate::variable::Variable;
 
 /// Most points of a block.

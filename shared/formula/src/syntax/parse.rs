@@ -10,10 +10,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::dimension::unit_of;
-use crate::graph::{Binary, Graph, Id, Node, Unary};
 use crate::hook::Hook;
-use crate::token::{Mistake, Token, Tokens};
+use crate::syntax::dimension::unit_of;
+use crate::syntax::graph::{Binary, Graph, Id, Node, Unary};
+use crate::syntax::token::{Mistake, Token, Tokens};
 use crate::unit::Unit;
 use crate::variable::{Variable, Variables};
 use crate::word::unknown_word;
