@@ -4,13 +4,13 @@ use crate::tell::{InferenceFailure, TellProgress};
 
 /// What an algorithm waits for, or how it ended.
 #[derive(Debug, Clone)]
-pub(crate) enum Phase<W, R> {
+pub(crate) enum RunPhase<W, R> {
     Waiting(W),
     Done(Box<R>),
     Failed(InferenceFailure),
 }
 
-impl<W, R> Phase<W, R> {
+impl<W, R> RunPhase<W, R> {
     pub(crate) fn result(&self) -> Option<&R> {
         match self {
             Self::Done(result) => Some(result),

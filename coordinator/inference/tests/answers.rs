@@ -1,4 +1,4 @@
-//! Check evidence and moments on problems with known answers.
+//! Evidence and moments on problems with known answers.
 
 use crate::problems::{self, Problem};
 use inference::TmcmcSettings;

@@ -1,4 +1,4 @@
-//! Check the protocol: order, refusals, impossible likelihoods, rounds without proposals.
+//! The ask/tell protocol: order, refusals, impossible likelihoods, rounds without proposals.
 
 use crate::problems;
 use inference::{

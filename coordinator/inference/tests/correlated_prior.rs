@@ -1,4 +1,4 @@
-//! Check the sampler under a correlated prior against the conjugate normal.
+//! The sampler under a correlated prior against the conjugate normal.
 
 use inference::{Sampler, TmcmcSettings};
 use statistics::{Distribution, LogLikelihood, Marginal, Prior};

@@ -1,4 +1,4 @@
-//! Check diagnostics on linear models with normal errors, where every answer is known.
+//! Diagnostics on linear models with normal errors, where every answer is known.
 
 use inference::diagnostics::{self, BINS, PredictedDraw, Region, Side};
 use nalgebra::{Cholesky, DMatrix, DVector};

@@ -1,4 +1,4 @@
-//! Searches by generations: optima that are known, bounds, rejections, determinism.
+//! Optima by generations: known ones, bounds, rejections, determinism.
 
 use crate::problems::{self, Problem};
 use inference::evolution::{CmaEsSettings, Evolution, EvolutionSettings, EvolutionSettingsError, GaSettings};
@@ -32,36 +32,36 @@ fn uniform(lower: f64, upper: f64) -> Marginal {
     Marginal::new(Distribution::Uniform { lower, upper }, None).unwrap()
 }
 
-/// Runs a search to its end, each generation told in an order of its own.
+/// Runs an evolution to its end, each generation told in an order of its own.
 fn run(
     prior: &[Marginal],
     settings: EvolutionSettings,
     score: impl Fn(&[f64]) -> f64,
     order: impl Fn(&mut Vec<usize>, u64),
 ) -> Evolution {
-    let mut search = Evolution::new(Prior::new(prior.to_vec()), settings).unwrap();
-    while !search.round().pending().is_empty() {
-        let pending = search.round().pending().to_vec();
+    let mut evolution = Evolution::new(Prior::new(prior.to_vec()), settings).unwrap();
+    while !evolution.round().pending().is_empty() {
+        let pending = evolution.round().pending().to_vec();
         let mut indices: Vec<usize> = (0..pending.len()).collect();
-        order(&mut indices, search.round().number());
+        order(&mut indices, evolution.round().number());
         for (told, &k) in indices.iter().enumerate() {
             let value = LogLikelihood::new(score(&pending[k].theta)).unwrap();
-            let progress = search.tell(k, value).unwrap();
+            let progress = evolution.tell(k, value).unwrap();
             assert_eq!(progress == TellProgress::Waiting, told + 1 < indices.len());
         }
     }
-    search
+    evolution
 }
 
 fn find(prior: &[Marginal], settings: EvolutionSettings, score: impl Fn(&[f64]) -> f64) -> ModeEstimate {
     run(prior, settings, score, |_, _| ()).estimate().unwrap().clone()
 }
 
-/// Every search ends within `loss` nats of the optimum, which it does not exceed.
+/// Every evolution ends within `loss` nats of the optimum, which it does not exceed.
 fn check(problem: &Problem, settings: impl Iterator<Item = EvolutionSettings>, loss: f64) {
     for settings in settings {
-        let search = problem.search(settings);
-        let estimate = search.estimate().unwrap();
+        let evolution = problem.evolve(settings);
+        let estimate = evolution.estimate().unwrap();
         let found = estimate.log_posterior();
         assert!(
             (problem.optimum - loss..problem.optimum + 1e-6).contains(&found),
@@ -76,7 +76,7 @@ fn check(problem: &Problem, settings: impl Iterator<Item = EvolutionSettings>, l
         let settled = estimate.stop == StopReason::Stagnation || matches!(settings, EvolutionSettings::Ga(_));
         assert!(settled, "{} {settings:?}", problem.name);
         assert!(estimate.evaluations <= settings.max_evaluations() as u64);
-        assert_eq!(search.count().evaluations as u64, estimate.evaluations);
+        assert_eq!(evolution.count().evaluations as u64, estimate.evaluations);
     }
 }
 
@@ -146,7 +146,7 @@ fn the_density_as_declared_counts() {
 }
 
 #[test]
-fn rejected_individuals_are_counted_and_the_wall_is_searched_along() {
+fn rejected_individuals_are_counted_and_the_wall_is_explored() {
     // The free optimum lies behind the wall x + y < 1.
     let prior = [uniform(0.0, 1.0), uniform(0.0, 1.0)];
     let score = |x: &[f64]| {
@@ -233,8 +233,8 @@ fn the_order_within_a_generation_does_not_matter() {
 #[test]
 fn the_history_rises_to_the_best() {
     for settings in [genetic(1), adapting(1)] {
-        let search = problems::shear_building().search(settings);
-        let estimate = search.estimate().unwrap();
+        let evolution = problems::shear_building().evolve(settings);
+        let estimate = evolution.estimate().unwrap();
         let bests: Vec<f64> = estimate.history.iter().map(|g| g.best.unwrap()).collect();
         assert!(bests.is_sorted());
         assert_eq!(bests.last(), Some(&estimate.log_posterior()));
@@ -245,18 +245,18 @@ fn the_history_rises_to_the_best() {
                 .all(|g| g.mean.unwrap() <= g.best.unwrap())
         );
         assert_eq!(estimate.history.last().unwrap().evaluations, estimate.evaluations);
-        assert_eq!(estimate.history.len() as u64, search.round().number());
+        assert_eq!(estimate.history.len() as u64, evolution.round().number());
     }
 }
 
 #[test]
-fn a_search_that_is_cut_short_says_so() {
+fn an_evolution_that_is_cut_short_says_so() {
     let problem = problems::correlated_gaussian();
     let short = EvolutionSettings::Ga(GaSettings {
         generations: 10,
         ..GaSettings::default()
     });
-    let estimate = problem.search(short).estimate().unwrap().clone();
+    let estimate = problem.evolve(short).estimate().unwrap().clone();
     assert_eq!(
         (estimate.stop, estimate.history.len()),
         (StopReason::Generations, 10)
@@ -268,20 +268,20 @@ fn a_search_that_is_cut_short_says_so() {
             max_evaluations,
             ..CmaEsSettings::default()
         });
-        let estimate = problem.search(short).estimate().unwrap().clone();
+        let estimate = problem.evolve(short).estimate().unwrap().clone();
         assert_eq!(estimate.stop, StopReason::Budget, "{max_evaluations}");
         assert!(estimate.evaluations <= max_evaluations as u64);
     }
 }
 
 #[test]
-fn a_search_without_restarts_ends_when_it_has_settled() {
+fn an_evolution_without_restarts_ends_when_it_has_converged() {
     let once = EvolutionSettings::CmaEs(CmaEsSettings {
         restarts: 0,
         ..CmaEsSettings::default()
     });
-    let search = problems::correlated_gaussian().search(once);
-    let estimate = search.estimate().unwrap();
+    let evolution = problems::correlated_gaussian().evolve(once);
+    let estimate = evolution.estimate().unwrap();
     assert!(
         estimate.stop == StopReason::Stagnation && estimate.evaluations < 2000,
         "{estimate:?}"
@@ -290,21 +290,24 @@ fn a_search_without_restarts_ends_when_it_has_settled() {
 
 #[test]
 fn what_nobody_asked_for_is_refused_and_changes_nothing() {
-    let mut search = Evolution::new(Prior::new(vec![uniform(0.0, 1.0)]), genetic(1)).unwrap();
+    let mut evolution = Evolution::new(Prior::new(vec![uniform(0.0, 1.0)]), genetic(1)).unwrap();
     let value = LogLikelihood::new(-1.0).unwrap();
-    assert_eq!(search.tell(7, value), Ok(TellProgress::Waiting));
-    assert!(search.round().is_told(7) && !search.round().is_told(8));
+    assert_eq!(evolution.tell(7, value), Ok(TellProgress::Waiting));
+    assert!(evolution.round().is_told(7) && !evolution.round().is_told(8));
     let (round, particle) = (0, 7);
     assert_eq!(
-        search.tell(7, value),
+        evolution.tell(7, value),
         Err(TellError::AlreadyTold { round, particle })
     );
     let particle = 100;
     assert_eq!(
-        search.tell(100, value),
+        evolution.tell(100, value),
         Err(TellError::NotPending { round, particle })
     );
-    assert_eq!((search.round().told(), search.round().pending().len()), (1, 100));
+    assert_eq!(
+        (evolution.round().told(), evolution.round().pending().len()),
+        (1, 100)
+    );
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Check that what is not right is flagged.
+//! Runs out of equilibrium are flagged.
 
 use crate::problems::{self, Problem};
 use inference::{Algorithm, TmcmcSettings};

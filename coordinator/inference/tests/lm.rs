@@ -1,4 +1,4 @@
-//! Fits against closed forms, and on models as unpleasant as real ones.
+//! Fits against closed forms, and on models with noise, ridges and rejections.
 
 use inference::lm::{LmFit, LmSettings, LmSettingsError};
 use inference::point_estimate::{ModeEstimate, StopReason};

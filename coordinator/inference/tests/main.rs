@@ -1,4 +1,4 @@
-//! Check priors, likelihood and sampler against known answers.
+//! Samplers, point estimates and diagnostics against known answers.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic as tests do")]
 

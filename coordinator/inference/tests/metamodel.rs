@@ -1,4 +1,4 @@
-//! A metamodel saves evaluations and leaves the posterior as it is.
+//! A metamodel saves evaluations and keeps the posterior.
 
 use inference::diagnostics::mean_and_sd;
 use inference::{EvaluationResult, PosteriorSample, Sampler, TmcmcSettings};

@@ -1,4 +1,4 @@
-//! Hold sampler problems with known evidence and moments, for tests and bench.
+//! Problems with known evidence and moments, for tests and bench.
 
 use inference::evolution::{Evolution, EvolutionSettings};
 use inference::{Sampler, TellProgress, TmcmcSettings};
@@ -41,16 +41,16 @@ impl Problem {
         LogLikelihood::new((self.log_likelihood)(theta)).unwrap()
     }
 
-    /// Runs a search to its end.
-    pub(crate) fn search(&self, settings: EvolutionSettings) -> Evolution {
-        let mut search = Evolution::new(self.prior(), settings).unwrap();
-        while !search.round().pending().is_empty() {
-            for proposal in search.round().pending().to_vec() {
+    /// Runs an evolution to its end.
+    pub(crate) fn evolve(&self, settings: EvolutionSettings) -> Evolution {
+        let mut evolution = Evolution::new(self.prior(), settings).unwrap();
+        while !evolution.round().pending().is_empty() {
+            for proposal in evolution.round().pending().to_vec() {
                 let value = self.score(&proposal.theta);
-                search.tell(proposal.particle, value).unwrap();
+                evolution.tell(proposal.particle, value).unwrap();
             }
         }
-        search
+        evolution
     }
 
     /// Runs a sampler to its end.

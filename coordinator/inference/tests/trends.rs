@@ -1,4 +1,4 @@
-//! Check the test for trends in residuals on linear models with normal errors, where every answer is known.
+//! The test for trends in residuals on linear models with normal errors, where every answer is known.
 
 use inference::diagnostics::{PredictedDraw, Trend, TrendTest};
 use nalgebra::{Cholesky, DMatrix, DVector};

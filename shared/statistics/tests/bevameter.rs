@@ -1,4 +1,4 @@
-//! Plates and rings as data: what they can say of the soil, against the table of another implementation.
+//! Plate and ring tests as data: their information on the soil, against the table of another implementation.
 
 use nalgebra::DMatrix;
 use statistics::{CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood};

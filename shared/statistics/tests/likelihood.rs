@@ -1,4 +1,4 @@
-//! Check the likelihood against hand numbers.
+//! The likelihood against hand numbers.
 
 use nalgebra::{DMatrix, DVector};
 use statistics::likelihood::{DISCREPANCY_LEVELS, GREATEST_DISCREPANCY, LEAST_DISCREPANCY};

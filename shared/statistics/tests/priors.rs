@@ -1,4 +1,4 @@
-//! Check marginals against numerical integration.
+//! Marginals against numerical integration.
 
 use proptest::prelude::*;
 use statistics::rng::Stream;

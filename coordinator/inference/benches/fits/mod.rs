@@ -1,11 +1,11 @@
-//! Print what it costs to find the most probable parameters.
+//! The cost of the point estimates, as a table.
 //!
-//! Of each problem and algorithm: how many seeds came within 0.1 nats of the optimum, mean evaluations of these until
-//! then and of all to their end; how often the search itself said that it was cut short; the worst loss in nats.
+//! For each problem and algorithm: how many seeds came within 0.1 nats of the optimum, their mean evaluations until
+//! then, and those of all seeds to their end; how often the stop reason was an early one; the worst loss in nats.
 //!
-//! Levenberg and Marquardt's fit is told residuals, so it has the problems that are sums of squares: a, b, and c5 with the
-//! noise sd itself as a parameter (c5 has its decimal logarithm, whose density has another maximum). It keeps no history:
-//! what it took until then is not known.
+//! The Levenberg-Marquardt fit takes predictions, so it has the problems that are sums of squares: a, b, and c5 with the
+//! noise sd itself as a parameter (c5 has its decimal logarithm, whose density has another maximum). It keeps no history,
+//! so the evaluations until then are unknown.
 
 mod residuals;
 
@@ -42,9 +42,9 @@ fn row(name: &str, algorithm: &str, optimum: f64, runs: &[ModeEstimate]) {
     );
 }
 
-fn searched(problem: &Problem, settings: impl Fn(u64) -> EvolutionSettings, seeds: u64) -> Vec<ModeEstimate> {
+fn evolved(problem: &Problem, settings: impl Fn(u64) -> EvolutionSettings, seeds: u64) -> Vec<ModeEstimate> {
     (1..=seeds)
-        .map(|seed| problem.search(settings(seed)).estimate().unwrap().clone())
+        .map(|seed| problem.evolve(settings(seed)).estimate().unwrap().clone())
         .collect()
 }
 
@@ -80,11 +80,11 @@ pub(crate) fn print(seeds: u64) {
     ] {
         let print =
             |algorithm: &str, runs: &[ModeEstimate]| row(problem.name, algorithm, problem.optimum, runs);
-        print("ga", &searched(&problem, genetic, seeds));
-        print("cma-es", &searched(&problem, |seed| adapting(seed, 4), seeds));
+        print("ga", &evolved(&problem, genetic, seeds));
+        print("cma-es", &evolved(&problem, |seed| adapting(seed, 4), seeds));
         print(
             "cma-es, one run",
-            &searched(&problem, |seed| adapting(seed, 0), seeds),
+            &evolved(&problem, |seed| adapting(seed, 0), seeds),
         );
     }
     residuals::print(seeds);

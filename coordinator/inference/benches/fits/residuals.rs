@@ -1,4 +1,4 @@
-//! The problems that are sums of squares, for the fit that is told residuals.
+//! The problems that are sums of squares, for the Levenberg-Marquardt fit.
 
 use inference::lm::{LmFit, LmSettings};
 use inference::point_estimate::ModeEstimate;

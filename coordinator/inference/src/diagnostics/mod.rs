@@ -6,7 +6,7 @@
 //! - `moments`, `quantile`, `ess`: draws of one parameter.
 //! - `spectrum`: the combinations of parameters that the data determine best and worst.
 //! - `conflict`: prior-data conflict.
-//! - `density`, `joint_density`: kernel densities, and highest-density regions.
+//! - `density`: kernel densities, and highest-density regions.
 //! - `predicted_draw`: draws with their predictions. `information`: the prior signal of a channel. `residual`: studentised
 //!   residuals and their chi-square. `trend`: trends of residuals with a regressor.
 //! - `region`: where in the prior failures concentrate.
@@ -16,7 +16,6 @@ mod conflict;
 mod density;
 mod ess;
 mod information;
-mod joint_density;
 mod moments;
 mod predicted_draw;
 mod quantile;
@@ -27,10 +26,9 @@ mod tail;
 mod trend;
 
 pub use conflict::{Conflict, conflict};
-pub use density::{bandwidth, density};
+pub use density::{bandwidth, density, highest_density_levels, joint_density};
 pub use ess::{kish_ess, rank_correlation, weight_cov};
 pub use information::{ChannelSignal, signals};
-pub use joint_density::{highest_density_levels, joint_density};
 pub use moments::{mean, mean_and_sd};
 pub use predicted_draw::PredictedDraw;
 pub use quantile::{DrawSummary, quantile, summary};

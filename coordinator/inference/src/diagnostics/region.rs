@@ -36,7 +36,9 @@ pub fn bin(probability: f64) -> usize {
 }
 
 /// The region with the least probability by chance, among the ends of every parameter and of every pair; `None` where all
-/// draws failed or none did. Of equal regions the first; one parameter goes before two.
+/// draws failed or none did.
+///
+/// Of equal regions the first; one parameter goes before two.
 ///
 /// # Equation
 /// Fisher's exact test: with N draws, R failures and K draws in a region, the failures there are hypergeometric if

@@ -6,7 +6,7 @@ use super::settings_error::EvolutionSettingsError;
 use super::strategy::Strategy;
 use crate::evolution::individual::Individual;
 use crate::evolution::prior_space::PriorSpace;
-use crate::phase::{EvaluationCount, Phase};
+use crate::phase::{EvaluationCount, RunPhase};
 use crate::point_estimate::{Generation, ModeEstimate, StopReason};
 use crate::round::{Proposal, ProposalRound};
 use crate::tell::{InferenceFailure, TellError, TellProgress};
@@ -22,7 +22,7 @@ pub struct Evolution {
     space: PriorSpace,
     settings: EvolutionSettings,
     round: ProposalRound<LogLikelihood>,
-    phase: Phase<(), ModeEstimate>,
+    phase: RunPhase<(), ModeEstimate>,
     /// The best so far; the first of equals.
     best: Option<Individual>,
     history: Vec<Generation>,
@@ -45,7 +45,7 @@ impl Evolution {
             space,
             settings,
             round: ProposalRound::default(),
-            phase: Phase::Waiting(()),
+            phase: RunPhase::Waiting(()),
             best: None,
             history: Vec::new(),
             count: EvaluationCount::default(),
@@ -159,14 +159,14 @@ impl Evolution {
 
     fn fail(&mut self) {
         let draws = self.count.evaluations;
-        self.phase = Phase::Failed(InferenceFailure::AllImpossible { draws });
+        self.phase = RunPhase::Failed(InferenceFailure::AllImpossible { draws });
     }
 
     fn finish(&mut self, stop: StopReason) {
         let Some(best) = &self.best else {
             return self.fail();
         };
-        self.phase = Phase::Done(Box::new(ModeEstimate {
+        self.phase = RunPhase::Done(Box::new(ModeEstimate {
             theta: best.theta.clone(),
             log_likelihood: best.log_likelihood.value(),
             log_prior: best.log_prior,

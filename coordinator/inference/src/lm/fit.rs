@@ -4,7 +4,7 @@ use super::damping::Damping;
 use super::objective::{Column, FitPoint, Objective};
 use super::settings::{LmSettings, LmSettingsError};
 use super::stencil::{Sides, Stencil};
-use crate::phase::{EvaluationCount, Phase};
+use crate::phase::{EvaluationCount, RunPhase};
 use crate::point_estimate::{ModeEstimate, StopReason};
 use crate::round::{Proposal, ProposalRound};
 use crate::tell::{InferenceFailure, TellError, TellProgress};
@@ -23,7 +23,7 @@ pub struct LmFit {
     pub(super) objective: Objective,
     pub(super) settings: LmSettings,
     pub(super) round: ProposalRound<PredictedValues>,
-    pub(super) phase: Phase<Awaited, ModeEstimate>,
+    pub(super) phase: RunPhase<FitRound, ModeEstimate>,
     /// The best point so far.
     pub(super) best: Option<FitPoint>,
     /// The last known Jacobian: at the best point, or at one before it.
@@ -43,7 +43,7 @@ pub struct LmFit {
 
 /// What the fit waits for.
 #[derive(Debug, Clone)]
-pub(super) enum Awaited {
+pub(super) enum FitRound {
     Starts,
     Differences,
     /// Dampings and predicted decreases of the steps that are tried.
@@ -71,7 +71,7 @@ impl LmFit {
             objective,
             settings,
             round: ProposalRound::default(),
-            phase: Phase::Waiting(Awaited::Starts),
+            phase: RunPhase::Waiting(FitRound::Starts),
             best: None,
             sides: Sides::One,
             lengths: Vec::new(),
@@ -144,11 +144,11 @@ impl LmFit {
     fn advance(&mut self) {
         let (proposals, answers) = self.round.complete();
         self.count.add(answers.iter().map(Option::is_none));
-        match std::mem::replace(&mut self.phase, Phase::Waiting(Awaited::Starts)) {
-            Phase::Waiting(Awaited::Starts) => self.after_starts(&proposals, &answers),
-            Phase::Waiting(Awaited::Differences) => self.after_differences(answers),
-            Phase::Waiting(Awaited::Trials(trials)) => self.after_trials(&trials, &proposals, &answers),
-            ended @ (Phase::Done(_) | Phase::Failed(_)) => self.phase = ended,
+        match std::mem::replace(&mut self.phase, RunPhase::Waiting(FitRound::Starts)) {
+            RunPhase::Waiting(FitRound::Starts) => self.after_starts(&proposals, &answers),
+            RunPhase::Waiting(FitRound::Differences) => self.after_differences(answers),
+            RunPhase::Waiting(FitRound::Trials(trials)) => self.after_trials(&trials, &proposals, &answers),
+            ended @ (RunPhase::Done(_) | RunPhase::Failed(_)) => self.phase = ended,
         }
     }
 
@@ -156,13 +156,13 @@ impl LmFit {
         self.settings.max_evaluations - self.count.evaluations
     }
 
-    pub(super) fn ask(&mut self, awaited: Awaited, thetas: impl Iterator<Item = Vec<f64>>) {
+    pub(super) fn ask(&mut self, awaited: FitRound, thetas: impl Iterator<Item = Vec<f64>>) {
         let proposals = thetas
             .enumerate()
             .map(|(particle, theta)| Proposal::plain(particle, theta))
             .collect();
         self.round.ask(proposals);
-        self.phase = Phase::Waiting(awaited);
+        self.phase = RunPhase::Waiting(awaited);
     }
 
     pub(super) fn finish(&mut self, stop: StopReason) {
@@ -172,6 +172,6 @@ impl LmFit {
         let mut estimate = self.objective.estimate(point, &self.columns, stop);
         estimate.evaluations = self.count.evaluations as u64;
         estimate.rejected = self.count.rejected as u64;
-        self.phase = Phase::Done(Box::new(estimate));
+        self.phase = RunPhase::Done(Box::new(estimate));
     }
 }

@@ -1,10 +1,10 @@
 //! The iteration of a fit: starts, differences, trials, and what their results lead to.
 
 use super::damping::Damping;
-use super::fit::{Awaited, LmFit, PredictedValues};
+use super::fit::{FitRound, LmFit, PredictedValues};
 use super::objective::FitPoint;
 use super::stencil::{Sides, Stencil};
-use crate::phase::Phase;
+use crate::phase::RunPhase;
 use crate::point_estimate::StopReason;
 use crate::round::Proposal;
 use crate::tell::InferenceFailure;
@@ -24,7 +24,7 @@ impl LmFit {
                 _ => prior.sample(&mut Stream::new(seed, 0, k as u64, 0)),
             })
             .collect();
-        self.ask(Awaited::Starts, starts.into_iter());
+        self.ask(FitRound::Starts, starts.into_iter());
     }
 
     /// The point with the least f; the first of equals.
@@ -58,7 +58,7 @@ impl LmFit {
             }
             None => {
                 let draws = self.count.evaluations;
-                self.phase = Phase::Failed(InferenceFailure::AllImpossible { draws });
+                self.phase = RunPhase::Failed(InferenceFailure::AllImpossible { draws });
             }
         }
     }
@@ -124,7 +124,7 @@ impl LmFit {
             })
             .collect();
         self.sides = sides;
-        self.ask(Awaited::Differences, thetas.into_iter());
+        self.ask(FitRound::Differences, thetas.into_iter());
         true
     }
 
@@ -188,7 +188,7 @@ impl LmFit {
             .map(|position| self.objective.theta(point, position))
             .collect();
         if !thetas.is_empty() {
-            self.ask(Awaited::Trials(trials), thetas.into_iter());
+            self.ask(FitRound::Trials(trials), thetas.into_iter());
         } else if self.refine() {
             // A better Jacobian may show a descent direction.
             self.damping = Damping::default();

@@ -137,7 +137,7 @@ mod tests {
                 .collect();
             let sum: f64 = weights.iter().sum();
             let weights: Vec<f64> = weights.iter().map(|w| w / sum).collect();
-            let ancestors = super::super::resample::systematic(&weights, 200, stream.uniform());
+            let ancestors = super::super::transition::systematic(&weights, 200, stream.uniform());
             let ends = stream.normals(200);
             let changes: Vec<f64> = ancestors
                 .iter()

@@ -17,30 +17,25 @@
 //! # Layout
 //! - `sampler`: the rounds. `stage_sequence`: from the prior draws through the stages to the posterior sample.
 //! - `settings`, `evaluation`, `record`, `particle`: what goes in and comes out.
-//! - `schedule`, `weights`, `resample`, `transition`: from the pool of a stage to the chains of the next.
-//! - `stage`, `scale`, `ching_chen`: the moves of the chains. `equilibrium`: when they end.
-//! - `bridge`, `evidence`: the log-evidence and its standard error.
+//! - `transition`: from the pool of a stage to the chains of the next.
+//! - `stage`, `scale`: the moves of the chains. `equilibrium`: when they end.
+//! - `evidence`: the log-evidence and its standard error.
 //!
 //! # Source
 //! Ching & Chen 2007, J. Eng. Mech. 133:816, doi:10.1061/(ASCE)0733-9399(2007)133:7(816); Dau & Chopin 2022, J. R. Stat.
 //! Soc. B 84:114, doi:10.1111/rssb.12475.
 
-mod bridge;
-mod ching_chen;
 mod equilibrium;
 mod evaluation;
 mod evidence;
 mod particle;
 mod record;
-mod resample;
 mod sampler;
 mod scale;
-mod schedule;
 mod settings;
 mod stage;
 mod stage_sequence;
 mod transition;
-mod weights;
 
 pub use evaluation::EvaluationResult;
 pub use particle::Particle;

@@ -6,7 +6,7 @@ use super::record::{PosteriorSample, StageProgress, StageRecord};
 use super::settings::{TmcmcSettings, TmcmcSettingsError};
 use super::stage::Stage;
 use super::transition::Passage;
-use crate::phase::{EvaluationCount, Phase};
+use crate::phase::{EvaluationCount, RunPhase};
 use crate::round::{Proposal, ProposalRound};
 use crate::tell::{InferenceFailure, TellError, TellProgress};
 use statistics::likelihood::Likelihood;
@@ -34,7 +34,7 @@ pub struct Sampler {
 
 /// What the sampler waits for.
 #[derive(Debug, Clone)]
-pub(super) enum Awaited {
+pub(super) enum SamplerRound {
     /// The prior draws.
     Prior,
     /// Moves of the chains of a stage.
@@ -42,7 +42,7 @@ pub(super) enum Awaited {
 }
 
 /// Where a sampler is.
-pub(super) type SamplerPhase = Phase<Awaited, PosteriorSample>;
+pub(super) type SamplerPhase = RunPhase<SamplerRound, PosteriorSample>;
 
 impl Sampler {
     /// A sampler whose round 0 holds the prior draws.
@@ -62,7 +62,7 @@ impl Sampler {
             settings,
             likelihood: None,
             round: ProposalRound::default(),
-            phase: Phase::Waiting(Awaited::Prior),
+            phase: RunPhase::Waiting(SamplerRound::Prior),
             evidence: Evidence::default(),
             passage: Passage::default(),
             stages: Vec::new(),
@@ -103,7 +103,7 @@ impl Sampler {
     #[must_use]
     pub fn metamodel(&self) -> Option<&Metamodel> {
         match &self.phase {
-            Phase::Waiting(Awaited::Moves(stage)) => stage.metamodel.as_deref(),
+            RunPhase::Waiting(SamplerRound::Moves(stage)) => stage.metamodel.as_deref(),
             _ => None,
         }
     }
@@ -130,7 +130,7 @@ impl Sampler {
     #[must_use]
     pub fn progress(&self) -> StageProgress {
         match (&self.phase, self.stages.last()) {
-            (Phase::Waiting(Awaited::Moves(stage)), _) => StageProgress {
+            (RunPhase::Waiting(SamplerRound::Moves(stage)), _) => StageProgress {
                 stage: stage.index,
                 tempering_exponent: stage.exponent,
                 step: stage.step,
@@ -181,17 +181,17 @@ impl Sampler {
             let (proposals, results) = self.round.complete();
             let evaluated = results.iter().filter(|result| result.is_evaluated());
             self.count.add(evaluated.map(EvaluationResult::is_rejected));
-            let next = match std::mem::replace(&mut self.phase, Phase::Waiting(Awaited::Prior)) {
-                Phase::Waiting(Awaited::Prior) => self.finish_prior(&proposals, results),
-                Phase::Waiting(Awaited::Moves(mut stage)) => {
+            let next = match std::mem::replace(&mut self.phase, RunPhase::Waiting(SamplerRound::Prior)) {
+                RunPhase::Waiting(SamplerRound::Prior) => self.finish_prior(&proposals, results),
+                RunPhase::Waiting(SamplerRound::Moves(mut stage)) => {
                     stage.accept(&self.prior, results);
                     self.after_step(stage)
                 }
-                ended @ (Phase::Done(_) | Phase::Failed(_)) => Ok(ended),
+                ended @ (RunPhase::Done(_) | RunPhase::Failed(_)) => Ok(ended),
             };
-            self.phase = next.unwrap_or_else(Phase::Failed);
+            self.phase = next.unwrap_or_else(RunPhase::Failed);
             match &mut self.phase {
-                Phase::Waiting(Awaited::Moves(stage)) => {
+                RunPhase::Waiting(SamplerRound::Moves(stage)) => {
                     let proposals = stage.propose(&self.prior, self.settings.seed);
                     self.round.ask(proposals);
                 }

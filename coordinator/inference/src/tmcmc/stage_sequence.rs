@@ -6,11 +6,11 @@ use super::equilibrium::{Drift, is_alarming, pooled_z};
 use super::evaluation::EvaluationResult;
 use super::particle::Particle;
 use super::record::{PosteriorSample, StageRecord};
-use super::sampler::{Awaited, Sampler, SamplerPhase};
+use super::sampler::{Sampler, SamplerPhase, SamplerRound};
 use super::settings::Algorithm;
 use super::stage::Stage;
 use super::transition::{Passage, Transition};
-use crate::phase::Phase;
+use crate::phase::RunPhase;
 use crate::round::Proposal;
 use crate::tell::InferenceFailure;
 use statistics::metamodel::{ChainState, Metamodel, MetamodelStage, Pool};
@@ -81,7 +81,7 @@ impl Sampler {
             weight_cov: weights.cov,
             log_evidence,
         };
-        Ok(Phase::Waiting(Awaited::Moves(Box::new(stage))))
+        Ok(RunPhase::Waiting(SamplerRound::Moves(Box::new(stage))))
     }
 
     /// The metamodel of a stage, from the pool that it begins with.
@@ -117,7 +117,7 @@ impl Sampler {
             drift = Some(self.drift(&stage)).filter(|drift| drift.is_settled());
         }
         if drift.is_none() && !stage.is_exhausted() {
-            return Ok(Phase::Waiting(Awaited::Moves(stage)));
+            return Ok(RunPhase::Waiting(SamplerRound::Moves(stage)));
         }
         let drift = drift.unwrap_or_else(|| self.drift(&stage));
         self.record(&stage, drift);
@@ -132,7 +132,7 @@ impl Sampler {
         }
         let drift_z = pooled_z(self.stages.iter().map(|stage| stage.drift_z));
         let weight_drift_z = pooled_z(self.stages.iter().map(|stage| stage.weight_drift_z));
-        Ok(Phase::Done(Box::new(PosteriorSample {
+        Ok(RunPhase::Done(Box::new(PosteriorSample {
             particles: self
                 .stages
                 .last()

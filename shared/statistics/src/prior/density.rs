@@ -7,7 +7,7 @@ const TAIL_NATS: f64 = 45.0;
 
 /// u(x): the coordinate in which the prior is uniform or normal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Coordinate {
+pub(super) enum SamplingCoordinate {
     Identity,
     Log,
 }
@@ -29,7 +29,7 @@ pub(super) enum Density {
     },
 }
 
-impl Coordinate {
+impl SamplingCoordinate {
     pub(super) fn of(self, x: f64) -> f64 {
         match self {
             Self::Identity => x,

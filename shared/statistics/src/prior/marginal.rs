@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::bound::at_bound;
-use super::density::{Coordinate, Density, window};
+use super::density::{Density, SamplingCoordinate, window};
 use super::distribution::{Distribution, ordered};
 use super::error::PriorError;
 use super::moments;
@@ -18,7 +18,7 @@ pub struct Marginal {
     /// Support of x.
     lower: f64,
     upper: f64,
-    coordinate: Coordinate,
+    coordinate: SamplingCoordinate,
     density: Density,
     mean: f64,
     sd: f64,
@@ -78,8 +78,8 @@ impl Marginal {
             (lower, upper) = (low, high);
         }
         let coordinate = match distribution {
-            Distribution::Loguniform { .. } | Distribution::Lognormal { .. } => Coordinate::Log,
-            _ => Coordinate::Identity,
+            Distribution::Loguniform { .. } | Distribution::Lognormal { .. } => SamplingCoordinate::Log,
+            _ => SamplingCoordinate::Identity,
         };
         let (low, high) = (coordinate.of(lower), coordinate.of(upper));
         let gaussian = |mean: f64, sd: f64| {
@@ -154,11 +154,11 @@ impl Marginal {
     /// ln p(x); minus infinity outside the support.
     #[must_use]
     pub fn log_density(&self, x: f64) -> f64 {
-        if !(self.lower <= x && x <= self.upper) || (self.coordinate == Coordinate::Log && x <= 0.0) {
+        if !(self.lower <= x && x <= self.upper) || (self.coordinate == SamplingCoordinate::Log && x <= 0.0) {
             return f64::NEG_INFINITY;
         }
         let u = self.coordinate.of(x);
-        let jacobian = if self.coordinate == Coordinate::Log {
+        let jacobian = if self.coordinate == SamplingCoordinate::Log {
             -u
         } else {
             0.0
@@ -251,7 +251,7 @@ impl Marginal {
     /// In its coordinate every distribution here is a parabola or a straight line, so the curvature is constant
     /// and never negative. A log coordinate adds u, because ln p(x) = ln p(u) - u there.
     pub fn slope(&self, u: f64) -> (f64, f64) {
-        let jacobian = if self.coordinate == Coordinate::Log {
+        let jacobian = if self.coordinate == SamplingCoordinate::Log {
             1.0
         } else {
             0.0
@@ -283,14 +283,14 @@ impl Marginal {
 
     /// Whether the sampling coordinate is ln x.
     pub fn is_logarithmic(&self) -> bool {
-        self.coordinate == Coordinate::Log
+        self.coordinate == SamplingCoordinate::Log
     }
 
     /// dx/du.
     pub fn rate(&self, x: f64) -> f64 {
         match self.coordinate {
-            Coordinate::Identity => 1.0,
-            Coordinate::Log => x,
+            SamplingCoordinate::Identity => 1.0,
+            SamplingCoordinate::Log => x,
         }
     }
 
@@ -324,7 +324,7 @@ impl Marginal {
                 mean, sd, low, high, ..
             } => {
                 // x^2 = exp(2u) moves the peak of the integrand up by two standard deviations' worth of sd.
-                let shift = if self.coordinate == Coordinate::Log {
+                let shift = if self.coordinate == SamplingCoordinate::Log {
                     2.0 * sd
                 } else {
                     0.0

@@ -1,6 +1,6 @@
 //! The bridge estimate of the ratio of two neighbouring normalising constants.
 
-use super::weights::Weights;
+use crate::tmcmc::transition::Weights;
 
 /// Most iterations for the ratio; Newton's method takes about five.
 const MOST_STEPS: usize = 60;
@@ -9,10 +9,10 @@ const TOLERANCE: f64 = 1e-13;
 
 /// The ratio Z(after) / Z(before) and each state's share of its error.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Bridge {
-    pub(super) log_ratio: f64,
-    pub(super) errors_before: Vec<f64>,
-    pub(super) errors_after: Vec<f64>,
+pub(crate) struct Bridge {
+    pub(crate) log_ratio: f64,
+    pub(crate) errors_before: Vec<f64>,
+    pub(crate) errors_after: Vec<f64>,
 }
 
 impl Bridge {
@@ -23,7 +23,7 @@ impl Bridge {
     ///
     /// # Source
     /// Bennett 1976, J. Comput. Phys. 22:245, doi:10.1016/0021-9991(76)90078-4; Meng & Wong 1996, Statistica Sinica 6:831.
-    pub(super) fn between(before: &[f64], after: &[f64], step: f64) -> Self {
+    pub(crate) fn between(before: &[f64], after: &[f64], step: f64) -> Self {
         let scaled = |values: &[f64]| values.iter().map(|l| step * l).collect::<Vec<f64>>();
         let (before, after) = (scaled(before), scaled(after));
         let all = || before.iter().chain(&after);

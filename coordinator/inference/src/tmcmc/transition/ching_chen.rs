@@ -1,11 +1,11 @@
 //! The chains of the original sampler of Ching and Chen (2007), whose scale BASIS shares.
 
 /// beta: the random walk's covariance is beta^2 = 0.04 times the weighted covariance of the pool.
-pub(super) const SCALE: f64 = 0.2;
+pub(crate) const SCALE: f64 = 0.2;
 
 /// Leaders and their chain lengths from resampled indices (ascending): an index drawn m times leads a chain
 /// of m steps.
-pub(super) fn leaders(indices: &[usize]) -> Vec<(usize, usize)> {
+pub(crate) fn leaders(indices: &[usize]) -> Vec<(usize, usize)> {
     indices
         .chunk_by(|a, b| a == b)
         .map(|group| (group[0], group.len()))

@@ -14,8 +14,8 @@ use statistics::metamodel::Pool;
 /// descendants of their common parent (after Chan & Lai 2013). The surviving fraction f of n prior draws adds
 /// (1 - f) / (f n).
 #[derive(Debug, Clone, Default)]
-pub(super) struct Evidence {
-    pub(super) log: f64,
+pub(crate) struct Evidence {
+    pub(crate) log: f64,
     survival_variance: f64,
     levels: Vec<Level>,
 }
@@ -32,7 +32,7 @@ struct Level {
 
 impl Evidence {
     /// Accounts for prior draws that the model rejected; returns the logarithm of the surviving fraction.
-    pub(super) fn survive(&mut self, survivors: usize, draws: usize) -> f64 {
+    pub(crate) fn survive(&mut self, survivors: usize, draws: usize) -> f64 {
         let fraction = survivors as f64 / draws as f64;
         let log = libm::log(fraction);
         self.log += log;
@@ -41,7 +41,7 @@ impl Evidence {
     }
 
     /// Adds a pool, at an exponent `step` above the pool before; returns the increment of the log-evidence.
-    pub(super) fn add(&mut self, pool: &Pool, ancestors: Vec<usize>, step: f64) -> f64 {
+    pub(crate) fn add(&mut self, pool: &Pool, ancestors: Vec<usize>, step: f64) -> f64 {
         let chains = pool.chains.clone();
         let count = chains.iter().max().map_or(0, |max| max + 1);
         let log_likelihoods = pool.log_likelihoods();
@@ -70,7 +70,7 @@ impl Evidence {
     }
 
     /// Standard error of the log-evidence.
-    pub(super) fn standard_error(&self) -> f64 {
+    pub(crate) fn standard_error(&self) -> f64 {
         let mut variance = self.survival_variance;
         for (index, level) in self.levels.iter().enumerate() {
             // The family of each chain: its siblings and all their descendants.

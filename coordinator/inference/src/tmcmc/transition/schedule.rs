@@ -16,7 +16,7 @@ const MOST_TRIALS: usize = 200;
 ///
 /// # Source
 /// Dowell & Jarratt 1971, BIT 11:168, doi:10.1007/BF01934364 (Illinois variant of false position).
-pub(super) fn exponent_step(log_likelihoods: &[f64], remaining: f64, target: f64) -> f64 {
+pub(crate) fn exponent_step(log_likelihoods: &[f64], remaining: f64, target: f64) -> f64 {
     let cov = |step: f64| Weights::new(log_likelihoods, step).cov;
     if cov(remaining) <= target {
         return remaining;

@@ -2,18 +2,18 @@
 
 /// Incremental weights exp(step (l - max l)), relative to the largest.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Weights {
+pub(crate) struct Weights {
     /// Each in [0, 1]; at least one is 1.
-    pub(super) relative: Vec<f64>,
+    pub(crate) relative: Vec<f64>,
     /// ln of the mean weight: the increment of the log-evidence.
-    pub(super) log_mean: f64,
+    pub(crate) log_mean: f64,
     /// Coefficient of variation.
-    pub(super) cov: f64,
+    pub(crate) cov: f64,
 }
 
 impl Weights {
     /// Weights of finite log-likelihoods for a step of the exponent, 0 < `step` <= 1.
-    pub(super) fn new(log_likelihoods: &[f64], step: f64) -> Self {
+    pub(crate) fn new(log_likelihoods: &[f64], step: f64) -> Self {
         let max = log_likelihoods
             .iter()
             .fold(f64::NEG_INFINITY, |max, &l| max.max(l));
@@ -32,7 +32,7 @@ impl Weights {
     }
 
     /// Weights that sum to one.
-    pub(super) fn normalised(&self) -> Vec<f64> {
+    pub(crate) fn normalised(&self) -> Vec<f64> {
         let sum: f64 = self.relative.iter().sum();
         self.relative.iter().map(|w| w / sum).collect()
     }

@@ -1,9 +1,7 @@
 //! The joint density of two parameters by a Gaussian kernel.
 
-use super::moments::mean_and_sd;
-
-/// Reach of the kernel in bandwidths: exp(-32) of its height is neglected.
-const REACH: f64 = 8.0;
+use super::kernel::REACH;
+use crate::diagnostics::moments::mean_and_sd;
 
 /// The joint density of draws of two parameters on a grid, by a Gaussian kernel of constant window.
 ///

@@ -3,7 +3,7 @@
 /// Systematic resampling: `count` indices, ascending, with one uniform number in (0, 1) for all.
 ///
 /// Index i is drawn floor or ceil of `count * weights[i]` times. The weights sum to one.
-pub(super) fn systematic(weights: &[f64], count: usize, uniform: f64) -> Vec<usize> {
+pub(crate) fn systematic(weights: &[f64], count: usize, uniform: f64) -> Vec<usize> {
     let mut indices = Vec::with_capacity(count);
     let mut cumulative = 0.0;
     // Rounding may leave the sum just below the last comb tooth: the last index of positive weight takes it.

@@ -1,10 +1,8 @@
 //! The density of draws by a Gaussian kernel.
 
-use super::moments::mean_and_sd;
-use super::quantile::quantile;
-
-/// Reach of the kernel in bandwidths: exp(-32) of its height is neglected.
-const REACH: f64 = 8.0;
+use super::kernel::REACH;
+use crate::diagnostics::moments::mean_and_sd;
+use crate::diagnostics::quantile::quantile;
 
 /// The bandwidth that is optimal for a normal density: h = (4 / (3 n))^(1/5) s.
 ///

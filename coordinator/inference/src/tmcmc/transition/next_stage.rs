@@ -2,12 +2,12 @@
 
 use super::ching_chen;
 use super::resample::systematic;
-use super::scale::initial_scale;
 use super::schedule::exponent_step;
-use super::settings::{Algorithm, TmcmcSettings};
-use super::stage::{Chain, Stage};
 use super::weights::Weights;
 use crate::tell::InferenceFailure;
+use crate::tmcmc::scale::initial_scale;
+use crate::tmcmc::settings::{Algorithm, TmcmcSettings};
+use crate::tmcmc::stage::{Chain, Stage};
 use statistics::metamodel::{CovarianceFactor, Pool, ProposalMixture};
 use statistics::rng::Stream;
 
@@ -16,27 +16,27 @@ const RESAMPLING: u64 = u64::MAX;
 
 /// How the stage in progress was reached.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Passage {
+pub(crate) struct Passage {
     /// Growth of the exponent.
-    pub(super) step: f64,
-    pub(super) weight_cov: f64,
+    pub(crate) step: f64,
+    pub(crate) weight_cov: f64,
     /// Part of the increment of the log-evidence that is known already.
-    pub(super) log_evidence: f64,
+    pub(crate) log_evidence: f64,
 }
 
 /// A stage about to start, with the weights that led to it.
-pub(super) struct Transition {
-    pub(super) stage: Stage,
-    pub(super) weights: Weights,
+pub(crate) struct Transition {
+    pub(crate) stage: Stage,
+    pub(crate) weights: Weights,
     /// Growth of the exponent.
-    pub(super) step: f64,
+    pub(crate) step: f64,
 }
 
 impl Transition {
     /// Weighs the pool of the stage before, whose exponent was `exponent`, and resamples it.
     ///
     /// `scale` is the scale reached so far, `None` before the first stage.
-    pub(super) fn new(
+    pub(crate) fn new(
         pool: &Pool,
         index: usize,
         exponent: f64,
