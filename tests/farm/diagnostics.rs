@@ -129,7 +129,7 @@ fn refusals_are_shown_where_they_concentrate() {
         "{words}"
     );
     assert!(
-        text.contains("refused (of drawn) in each fifth of the prior"),
+        text.contains("rejected (of drawn) in each fifth of the prior"),
         "{text}"
     );
 }

@@ -126,7 +126,7 @@ fn a_run_of_a_fit_prints_it_again_and_check_says_what_it_costs() {
     ] {
         assert!(first.contains(words), "{words} in\n{first}");
     }
-    assert!(!first.contains("90 % intervals hold"), "{first}");
+    assert!(!first.contains("90 % intervals contain"), "{first}");
     same(&command(), &first);
     // A point is no draw.
     let csv = std::fs::read_to_string(folder.path().join("out/posterior.csv")).expect("posterior.csv");

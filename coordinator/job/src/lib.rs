@@ -23,7 +23,7 @@ pub use discovery_settings::{Apply, DiscoverySettings};
 pub use errors::LikelihoodSettings;
 pub use extended_job::extended_job;
 pub use job_file::Job;
-pub use method::{AlgorithmSettings, AlgorithmSettingsError};
+pub use method::{AlgorithmName, AlgorithmSettings, AlgorithmSettingsError};
 pub use noise::repeat_scatter;
 pub use point_job::point_job;
 pub use posterior::{ImpliedModuli, JointPrior, PosteriorPrior};

@@ -41,20 +41,66 @@ pub enum AlgorithmSettingsError {
     Evolve(#[from] EvolutionSettingsError),
 }
 
+/// An algorithm by its name in files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum AlgorithmName {
+    /// Transitional Markov chain Monte Carlo.
+    #[serde(rename = "tmcmc")]
+    Tmcmc,
+    /// The same as published by Ching and Chen in 2007.
+    #[serde(rename = "ching-chen-2007")]
+    ChingChen2007,
+    /// BASIS.
+    #[serde(rename = "basis")]
+    Basis,
+    /// Levenberg-Marquardt.
+    #[serde(rename = "lm")]
+    Lm,
+    /// Genetic algorithm.
+    #[serde(rename = "ga")]
+    Ga,
+    /// Covariance matrix adaptation.
+    #[serde(rename = "cma-es")]
+    CmaEs,
+    /// Search for a missing effect.
+    #[serde(rename = "discovery")]
+    Discovery,
+}
+
+impl AlgorithmName {
+    /// The name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            AlgorithmName::Tmcmc => "tmcmc",
+            AlgorithmName::ChingChen2007 => "ching-chen-2007",
+            AlgorithmName::Basis => "basis",
+            AlgorithmName::Lm => "lm",
+            AlgorithmName::Ga => "ga",
+            AlgorithmName::CmaEs => "cma-es",
+            AlgorithmName::Discovery => "discovery",
+        }
+    }
+}
+
 impl AlgorithmSettings {
-    /// The algorithm's name in files.
-    pub fn name(&self) -> &'static str {
+    /// The algorithm.
+    pub fn algorithm(&self) -> AlgorithmName {
         match self {
             AlgorithmSettings::Sample(settings) => match settings.algorithm {
-                Algorithm::Tmcmc => "tmcmc",
-                Algorithm::ChingChen2007 => "ching-chen-2007",
-                Algorithm::Basis => "basis",
+                Algorithm::Tmcmc => AlgorithmName::Tmcmc,
+                Algorithm::ChingChen2007 => AlgorithmName::ChingChen2007,
+                Algorithm::Basis => AlgorithmName::Basis,
             },
-            AlgorithmSettings::Fit(_) => "lm",
-            AlgorithmSettings::Evolve(EvolutionSettings::Ga(_)) => "ga",
-            AlgorithmSettings::Evolve(EvolutionSettings::CmaEs(_)) => "cma-es",
-            AlgorithmSettings::Discover { .. } => "discovery",
+            AlgorithmSettings::Fit(_) => AlgorithmName::Lm,
+            AlgorithmSettings::Evolve(EvolutionSettings::Ga(_)) => AlgorithmName::Ga,
+            AlgorithmSettings::Evolve(EvolutionSettings::CmaEs(_)) => AlgorithmName::CmaEs,
+            AlgorithmSettings::Discover { .. } => AlgorithmName::Discovery,
         }
+    }
+
+    /// The algorithm's name in files.
+    pub fn name(&self) -> &'static str {
+        self.algorithm().name()
     }
 
     /// The algorithm with its size: `tmcmc with 1000 particles`.

@@ -50,12 +50,12 @@ impl FinishedCalibration {
 }
 
 /// The final draws with the values that the likelihood takes.
-fn posterior_draws(outcome: &FinishedCalibration) -> Vec<PredictedDraw> {
-    let draws = outcome.predictive_draws().iter();
+fn posterior_draws(calibration: &FinishedCalibration) -> Vec<PredictedDraw> {
+    let draws = calibration.predictive_draws().iter();
     let predicted = draws.filter_map(|draw| {
         Some(PredictedDraw {
             theta: draw.theta.clone(),
-            values: outcome.spec.predicted_values(draw.fit.as_ref().ok()?),
+            values: calibration.spec.predicted_values(draw.fit.as_ref().ok()?),
         })
     });
     predicted.collect()
@@ -68,8 +68,8 @@ mod tests {
 
     #[test]
     fn all_of_it_comes_back_from_json() {
-        for outcome in [fixture::outcome(), fixture::all_refused(), fixture::fit()] {
-            let diagnostics = outcome.diagnostics(&outcome.comparison());
+        for calibration in [fixture::calibration(), fixture::all_refused(), fixture::fit()] {
+            let diagnostics = calibration.diagnostics(&calibration.comparison());
             let json = serde_json::to_string(&diagnostics).unwrap();
             assert_eq!(serde_json::from_str::<Diagnostics>(&json).unwrap(), diagnostics);
         }
@@ -77,8 +77,8 @@ mod tests {
 
     #[test]
     fn a_fit_claims_nothing_that_it_cannot_know() {
-        let outcome = fixture::fit();
-        let diagnostics = outcome.diagnostics(&outcome.comparison());
+        let calibration = fixture::fit();
+        let diagnostics = calibration.diagnostics(&calibration.comparison());
         assert_eq!(diagnostics.sampler, None);
         assert_eq!(diagnostics.chi_square, None);
         assert!(diagnostics.residuals.is_empty() && diagnostics.directions.is_empty());

@@ -50,7 +50,7 @@ e,a,sand,0.4,25,0.01,1.2,0.022,LAST
 ";
 
 /// An outcome with a holdout run.
-pub(crate) fn outcome() -> FinishedCalibration {
+pub(crate) fn calibration() -> FinishedCalibration {
     build("holdout")
 }
 
@@ -61,28 +61,28 @@ pub(crate) fn without_holdout() -> FinishedCalibration {
 
 /// The same where the model refused all final draws, drifted, and has no evidence.
 pub(crate) fn all_refused() -> FinishedCalibration {
-    let mut outcome = outcome();
-    for prediction in &mut outcome.predictions {
+    let mut calibration = calibration();
+    for prediction in &mut calibration.predictions {
         prediction.fit = Err("no_support".into());
         prediction.holdout = prediction.holdout.take().map(|_| Err("no_support".into()));
     }
-    for stage in &mut outcome.stages {
+    for stage in &mut calibration.stages {
         (stage.equilibrated, stage.drift_z, stage.tempering_exponent) = (false, 1e6, 0.0);
     }
-    outcome.row.equilibrated = Some(false);
-    outcome.row.log_evidence = None;
-    outcome
+    calibration.row.equilibrated = Some(false);
+    calibration.row.log_evidence = None;
+    calibration
 }
 
 /// A fit of the same job, one parameter at a bound.
 pub(crate) fn fit() -> FinishedCalibration {
-    let mut outcome = outcome();
-    outcome.spec.method = AlgorithmSettings::Fit(inference::lm::LmSettings::default());
-    let first = outcome.predictions.remove(0);
+    let mut calibration = calibration();
+    calibration.spec.method = AlgorithmSettings::Fit(inference::lm::LmSettings::default());
+    let first = calibration.predictions.remove(0);
     let mut sd: Vec<Option<f64>> = first.theta.iter().map(|x| Some(0.1 * x)).collect();
     let mut at_bound = vec![false; sd.len()];
     (sd[1], at_bound[1]) = (None, true);
-    outcome.estimate = Some(EstimateRow {
+    calibration.estimate = Some(EstimateRow {
         theta: first.theta.clone(),
         log_likelihood: -20.0,
         log_prior: -1.0,
@@ -91,23 +91,23 @@ pub(crate) fn fit() -> FinishedCalibration {
         stop: StopReason::Decrease,
         history: Vec::new(),
     });
-    outcome.predictions = vec![first];
-    outcome.posterior.clear();
-    outcome.prior_draws.clear();
-    outcome.populations.clear();
-    outcome.likeliest_values = None;
-    outcome.stages.clear();
-    outcome.row.log_evidence = None;
-    outcome.row.log_evidence_se = None;
-    outcome.row.equilibrated = None;
-    outcome
+    calibration.predictions = vec![first];
+    calibration.posterior.clear();
+    calibration.prior_draws.clear();
+    calibration.populations.clear();
+    calibration.likeliest_values = None;
+    calibration.stages.clear();
+    calibration.row.log_evidence = None;
+    calibration.row.log_evidence_se = None;
+    calibration.row.equilibrated = None;
+    calibration
 }
 
 /// A search of the same job that its generations cut short.
 pub(crate) fn search() -> FinishedCalibration {
-    let mut outcome = fit();
-    outcome.spec.method = AlgorithmSettings::Evolve(EvolutionSettings::Ga(GaSettings::default()));
-    if let Some(estimate) = &mut outcome.estimate {
+    let mut calibration = fit();
+    calibration.spec.method = AlgorithmSettings::Evolve(EvolutionSettings::Ga(GaSettings::default()));
+    if let Some(estimate) = &mut calibration.estimate {
         estimate.sd = None;
         estimate.stop = StopReason::Generations;
         estimate.history = vec![Generation {
@@ -116,20 +116,20 @@ pub(crate) fn search() -> FinishedCalibration {
             mean: None,
         }];
     }
-    outcome
+    calibration
 }
 
 /// A sample with a search beside it.
 pub(crate) fn study() -> Study {
     Study {
-        beside: vec![search()],
-        ..Study::from(outcome())
+        point_estimates: vec![search()],
+        ..Study::from(calibration())
     }
 }
 
 /// A sample that was searched and extended.
 pub(crate) fn grown() -> Study {
-    let mut extension = outcome();
+    let mut extension = calibration();
     (extension.row.id, extension.experiment) = (3, "<script>sand+slip_sinkage".into());
     let mut record =
         serde_json::from_str::<record::Discovery>(include_str!("../../record/discovery.json")).unwrap();

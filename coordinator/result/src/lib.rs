@@ -11,7 +11,7 @@
 //! - `summary`: `summary.json`. `discovery`: its block on missing effects.
 //! - [`figure`]: the numbers of the source paper's figures.
 //! - [`report`]: the HTML page. [`terminal`]: text for a terminal.
-//! - `words`: numbers and probabilities as people read them.
+//! - `words`: numbers, units and probabilities as people read them.
 
 mod diagnosis;
 pub mod diagnostics;
@@ -30,18 +30,20 @@ mod words;
 
 pub use diagnostics::Diagnostics;
 pub use discovery::{DiscoverySummary, Round};
-pub use figure::{ChannelHistory, Figures, ModelSeries, Series};
+pub use figure::{ChannelHistory, MeasuredSeries, ModelSeries, StudyFigures};
 pub use finished_calibration::{FinishedCalibration, first_population, likeliest};
-pub use flag::kind::Flag;
+pub use flag::kind::{Flag, FlagKind};
 pub use flag::model_limit::model_limits;
 pub use study::Study;
 pub use summary::calibration::CalibrationSummary;
 pub use summary::parameter::ParameterSummary;
 pub use summary::point_estimate::PointEstimate;
-pub use summary::study::Summary;
+pub use summary::study::StudySummary;
 pub use table::comparison::Comparison;
 pub use table::errors::{ChannelError, ErrorTable};
-pub use table::group::{ErrorGroup, GroupError};
+pub use table::group::{ErrorGroup, GroupBy, GroupError};
 pub use table::posterior::PosteriorTable;
 pub use table::predictive::Predictive;
 pub use table::row::ComparisonRow;
+pub use words::data_channel::{BevameterTest, DataChannel};
+pub use words::number;

@@ -13,7 +13,7 @@ pub struct Study {
     /// The first: the job as it was submitted.
     pub lead: FinishedCalibration,
     /// Those of the same model and measurements beside it: the point estimates that the job asks for.
-    pub beside: Vec<FinishedCalibration>,
+    pub point_estimates: Vec<FinishedCalibration>,
     /// Those of other models or measurements: extended by effects, or by runs.
     pub extensions: Vec<FinishedCalibration>,
     /// The searches for missing effects.
@@ -22,18 +22,19 @@ pub struct Study {
 
 impl Study {
     /// Every finished calibration of the submitted model and measurements, oldest first.
-    pub fn outcomes(&self) -> impl Iterator<Item = &FinishedCalibration> {
-        std::iter::once(&self.lead).chain(&self.beside)
+    pub fn submitted(&self) -> impl Iterator<Item = &FinishedCalibration> {
+        std::iter::once(&self.lead).chain(&self.point_estimates)
     }
 
     /// Every finished calibration: the submitted one, those beside it, then the extensions.
-    pub fn all(&self) -> impl Iterator<Item = &FinishedCalibration> {
-        self.outcomes().chain(&self.extensions)
+    pub fn calibrations(&self) -> impl Iterator<Item = &FinishedCalibration> {
+        self.submitted().chain(&self.extensions)
     }
 
     /// The lines of the error ledger: the calibrations that have a posterior.
     pub fn ledger(&self) -> impl Iterator<Item = &FinishedCalibration> {
-        self.all().filter(|outcome| outcome.estimate.is_none())
+        self.calibrations()
+            .filter(|calibration| calibration.estimate.is_none())
     }
 }
 
@@ -43,7 +44,7 @@ impl From<FinishedCalibration> for Study {
         Study {
             state: lead.row.state,
             lead,
-            beside: Vec::new(),
+            point_estimates: Vec::new(),
             extensions: Vec::new(),
             rounds: Vec::new(),
         }

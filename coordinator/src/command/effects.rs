@@ -15,6 +15,7 @@ use crate::config::{EffectsArguments, ModelChoice};
 use crate::effect::signature::{ChannelSignature, Signature, signature};
 use crate::effect::{EffectCard, Group};
 use job::check_own;
+use result::number;
 
 /// Columns of a terminal that every line fits into.
 const COLUMNS: usize = 100;
@@ -70,7 +71,11 @@ fn entry(card: &EffectCard) -> String {
         let unit = if p.unit == "1" { "" } else { &p.unit };
         let role = match (p.neutral, p.typical) {
             (Some(neutral), Some(typical)) => {
-                format!("absent at {}, typical {}", number(neutral), number(typical))
+                format!(
+                    "absent at {}, typical {}",
+                    number::plain(neutral),
+                    number::plain(typical)
+                )
             }
             _ => String::new(),
         };
@@ -83,9 +88,12 @@ fn entry(card: &EffectCard) -> String {
 /// A prior as a job would have it, without braces.
 fn prior(prior: &serde_json::Value) -> String {
     let value = |v: &serde_json::Value| match (v.as_f64(), v.as_array()) {
-        (Some(x), _) => number(x),
+        (Some(x), _) => number::plain(x),
         (None, Some(list)) => {
-            let list: Vec<String> = list.iter().filter_map(|v| v.as_f64().map(number)).collect();
+            let list: Vec<String> = list
+                .iter()
+                .filter_map(|v| v.as_f64().map(number::plain))
+                .collect();
             format!("[{}]", list.join(", "))
         }
         _ => v.to_string(),
@@ -171,17 +179,7 @@ fn deeds(signature: &Signature) -> String {
 
 /// `v_a = 0.01 m/s`.
 fn set(name: &str, value: f64, unit: &str) -> String {
-    format!("{name} = {}{}", number(value), behind(unit))
-}
-
-/// A number as a file would have it.
-fn number(x: f64) -> String {
-    if x.abs() < f64::MIN_POSITIVE || (1e-3..1e6).contains(&x.abs()) {
-        let rounded = format!("{x:.6}");
-        rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        format!("{x:e}")
-    }
+    format!("{name} = {}{}", number::plain(value), behind(unit))
 }
 
 fn unchanged(channels: &[ChannelSignature]) -> bool {

@@ -7,7 +7,9 @@ use shared::api::{CalibrationStatus, ErrorBody};
 use crate::config::{SourceArguments, TargetArguments};
 use crate::service::{calibration_row, finished_calibration, finished_study, stored_status};
 use crate::store::Reader;
-use result::{self, Comparison, Diagnostics, FinishedCalibration, PosteriorTable, Study, Summary, report};
+use result::{
+    self, Comparison, Diagnostics, FinishedCalibration, PosteriorTable, Study, StudySummary, report,
+};
 
 /// A service or a folder.
 pub(super) enum CalibrationSource {
@@ -87,7 +89,7 @@ impl CalibrationSource {
         }
     }
 
-    pub(super) async fn summary(&self, id: i64) -> anyhow::Result<Summary> {
+    pub(super) async fn summary(&self, id: i64) -> anyhow::Result<StudySummary> {
         match self {
             CalibrationSource::Service(client) => client.get(&format!("/v1/calibrations/{id}/summary")).await,
             CalibrationSource::Folder(reader) => Ok(study(reader, id).await?.summary()),

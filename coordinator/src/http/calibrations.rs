@@ -14,8 +14,8 @@ use crate::farm::Control;
 use crate::service::{Service, finished_calibration, finished_study};
 use record::{Sample, StageRow};
 use result::{
-    ChannelHistory, Comparison, Diagnostics, Figures, FinishedCalibration, Flag, PosteriorTable, Study,
-    Summary, report,
+    ChannelHistory, Comparison, Diagnostics, FinishedCalibration, Flag, PosteriorTable, Study, StudyFigures,
+    StudySummary, report,
 };
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -200,15 +200,15 @@ async fn flags(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<Fl
 
 /// The summary of its study, as `summary.json` has it.
 #[utoipa::path(get, path = "/calibrations/{id}/summary", params(("id" = i64, Path)), responses(
-    (status = 200, body = Summary), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
-async fn summary(State(service): State<Service>, Id(id): Id) -> Result<Json<Summary>, HttpError> {
+    (status = 200, body = StudySummary), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn summary(State(service): State<Service>, Id(id): Id) -> Result<Json<StudySummary>, HttpError> {
     Ok(Json(study(&service, id).await?.summary()))
 }
 
 /// What the figures of its study show, as numbers.
 #[utoipa::path(get, path = "/calibrations/{id}/figures", params(("id" = i64, Path)), responses(
-    (status = 200, body = Figures), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
-async fn figures(State(service): State<Service>, Id(id): Id) -> Result<Json<Figures>, HttpError> {
+    (status = 200, body = StudyFigures), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn figures(State(service): State<Service>, Id(id): Id) -> Result<Json<StudyFigures>, HttpError> {
     Ok(Json(study(&service, id).await?.figures()))
 }
 

@@ -80,11 +80,16 @@ pub async fn finished_study(reader: &Reader, row: &CalibrationRow) -> Result<Stu
     let mut calibrations = calibrations.into_iter();
     // Without any, the calibration that was asked for says why there is nothing to show.
     let lead = finished_calibration(reader, calibrations.next().unwrap_or(row)).await?;
-    let (mut beside, mut extensions) = (Vec::new(), Vec::new());
+    let (mut point_estimates, mut extensions) = (Vec::new(), Vec::new());
     for row in calibrations {
         let outcome = finished_calibration(reader, row).await?;
         let is_same = outcome.row.experiment == lead.row.experiment && outcome.effects() == lead.effects();
-        if is_same { &mut beside } else { &mut extensions }.push(outcome);
+        if is_same {
+            &mut point_estimates
+        } else {
+            &mut extensions
+        }
+        .push(outcome);
     }
     let mut rounds = Vec::new();
     for search in searches {
@@ -102,7 +107,7 @@ pub async fn finished_study(reader: &Reader, row: &CalibrationRow) -> Result<Stu
     Ok(Study {
         state,
         lead,
-        beside,
+        point_estimates,
         extensions,
         rounds,
     })

@@ -40,7 +40,8 @@ pub struct TestRun {
 }
 
 /// The use of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum RunUse {
     /// Enters the likelihood.
     Fit,

@@ -1,15 +1,18 @@
-//! What each channel can say, how well it is met, how its intervals hold.
+//! Information, misfit and coverage of each channel.
 
 use std::collections::BTreeMap;
 
 use inference::diagnostics::{self, ChannelSignal, PredictedDraw};
+use shared::experiment::RunUse;
 use statistics::ErrorSd;
 
-use super::data_channel::{DataChannel, size};
+use super::data_channel::fitted_channels;
 use super::residuals::ResidualDiagnostics;
 use crate::finished_calibration::FinishedCalibration;
 use crate::table::comparison::Comparison;
 use crate::table::coverage::Coverage;
+use crate::table::row::rows_of;
+use crate::words::data_channel::DataChannel;
 use crate::words::number;
 use crate::words::probability::{LEVEL, p_words};
 
@@ -17,16 +20,17 @@ use crate::words::probability::{LEVEL, p_words};
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ChannelDiagnostics {
     /// Channel without unit; `plates` and `rings` for readings of the bevameter.
-    pub channel: String,
+    #[schema(value_type = String)]
+    pub channel: DataChannel,
     /// Unit of the next figures; plates and rings count by their natural logarithm.
     pub unit: String,
     /// Fitted data.
     pub data: usize,
-    /// Root mean square of the standard deviations of the errors, with what they share.
+    /// Root mean square of the total error standard deviations: noise, discrepancy and shared errors.
     pub error_sd: Option<f64>,
-    /// Root mean square of the prior predictive standard deviations: what the prior allows the channel to vary.
+    /// Root mean square of the prior predictive standard deviations: the spread that the prior allows.
     pub prior_predictive_sd: Option<f64>,
-    /// Root mean square of the latter over the former; below 1 a datum says less than the prior did.
+    /// Root mean square of the latter over the former; below 1 a datum is less informative than the prior.
     pub information: Option<f64>,
     /// Parameters that the fit spends on the channel: the sum of its leverages.
     pub effective_parameters: Option<f64>,
@@ -36,7 +40,7 @@ pub struct ChannelDiagnostics {
     pub coverage90_fit: Option<CoverageCount>,
     /// Measurements that were not fitted in theirs.
     pub coverage90_holdout: Option<CoverageCount>,
-    /// A sentence where the channel cannot inform, or hardly.
+    /// A sentence where the channel is uninformative, or nearly so.
     pub silence: Option<String>,
 }
 
@@ -64,7 +68,7 @@ impl ChiSquareTest {
         );
         match self.p {
             Some(p) => format!("{size} ({}): {}", p_words(p), judgement(p)),
-            None => format!("{size}: the fit leaves nothing to judge it by"),
+            None => format!("{size}: no degree of freedom is left for a test"),
         }
     }
 }
@@ -76,7 +80,7 @@ fn judgement(p: f64) -> &'static str {
     if p < LEVEL {
         "more than the declared errors explain"
     } else if p < SUSPECT {
-        "rather more than the declared errors explain"
+        "slightly more than the declared errors explain"
     } else if p > 1.0 - LEVEL {
         "less than expected, the declared errors may be too large"
     } else {
@@ -111,42 +115,41 @@ impl CoverageCount {
 
 /// The channels that have fitted data.
 pub(crate) fn channels(
-    outcome: &FinishedCalibration,
+    calibration: &FinishedCalibration,
     comparison: &Comparison,
     posterior: &[PredictedDraw],
     residuals: &[ResidualDiagnostics],
 ) -> Vec<ChannelDiagnostics> {
-    let data = outcome.spec.likelihood.data();
-    let signals = signals(outcome, residuals);
+    let data = calibration.spec.likelihood.data();
+    let signals = signals(calibration, residuals);
     let is_inferred = |index: usize| {
         let mut own = data.iter().filter(|d| d.channel == index);
         own.any(|d| matches!(d.sd, ErrorSd::Inferred { .. }))
     };
     let channel = |(index, channel): (usize, DataChannel)| {
-        let own = || residuals.iter().filter(|r| r.channel == channel.name());
-        let count = |usage: &str| {
-            let rows = comparison.rows.iter();
-            let rows = rows.filter(|r| r.usage == usage && r.channel == channel.name());
+        let own = || residuals.iter().filter(|r| r.channel == channel);
+        let count = |usage| {
+            let rows = rows_of(&comparison.rows, usage).filter(|r| DataChannel::Wheel(r.channel) == channel);
             Coverage::count(rows).map(CoverageCount::new)
         };
         let signal = signals.get(&index);
         let rows = own().count();
         let squares: f64 = own().map(|r| r.error_sd * r.error_sd).sum();
         ChannelDiagnostics {
-            channel: channel.name().into(),
-            unit: channel.unit().into(),
+            channel,
+            unit: channel.si_unit().into(),
             data: data.iter().filter(|d| d.channel == index).count(),
             error_sd: (rows > 0).then(|| (squares / rows as f64).sqrt()),
             prior_predictive_sd: signal.map(|s| s.prior_sd),
             information: signal.map(|s| s.ratio),
             effective_parameters: (rows > 0).then(|| own().map(|r| r.leverage).sum()),
-            chi_square: chi_square(outcome, posterior, |i| data[i].channel == index),
-            coverage90_fit: count("fit"),
-            coverage90_holdout: count("holdout"),
+            chi_square: chi_square(calibration, posterior, |i| data[i].channel == index),
+            coverage90_fit: count(RunUse::Fit),
+            coverage90_holdout: count(RunUse::Holdout),
             silence: signal.and_then(|signal| silence(channel, signal, is_inferred(index))),
         }
     };
-    DataChannel::fitted(&outcome.spec)
+    fitted_channels(&calibration.spec)
         .into_iter()
         .map(channel)
         .collect()
@@ -154,12 +157,12 @@ pub(crate) fn channels(
 
 /// The chi-square of some of the data.
 pub(crate) fn chi_square(
-    outcome: &FinishedCalibration,
+    calibration: &FinishedCalibration,
     posterior: &[PredictedDraw],
     keep: impl Fn(usize) -> bool,
 ) -> Option<ChiSquareTest> {
-    // These values were scored while sampling.
-    let found = diagnostics::chi_square(&outcome.spec.likelihood, posterior, keep).ok()??;
+    // These values were already scored by the sampler.
+    let found = diagnostics::chi_square(&calibration.spec.likelihood, posterior, keep).ok()??;
     Some(ChiSquareTest {
         chi_square: found.value,
         data: found.data,
@@ -168,12 +171,12 @@ pub(crate) fn chi_square(
     })
 }
 
-/// What the prior allows each channel to vary; none of a fit, which has no draws from the prior.
+/// The spread that the prior allows each channel; none of a fit, which has no draws from the prior.
 fn signals(
-    outcome: &FinishedCalibration,
+    calibration: &FinishedCalibration,
     residuals: &[ResidualDiagnostics],
 ) -> BTreeMap<usize, ChannelSignal> {
-    let prior = outcome.prior_draws.iter().filter_map(|draw| {
+    let prior = calibration.prior_draws.iter().filter_map(|draw| {
         Some(PredictedDraw {
             theta: draw.theta.clone(),
             values: draw.result.as_ref().ok()?.clone(),
@@ -181,7 +184,7 @@ fn signals(
     });
     let variances: Vec<f64> = residuals.iter().map(|r| r.error_sd * r.error_sd).collect();
     diagnostics::signals(
-        outcome.spec.likelihood.data(),
+        calibration.spec.likelihood.data(),
         &variances,
         &prior.collect::<Vec<_>>(),
     )
@@ -192,10 +195,10 @@ fn silence(channel: DataChannel, signal: &ChannelSignal, is_inferred: bool) -> O
         return None;
     }
     let size = format!(
-        "its error of {}{} is {} times what the prior allows it to vary",
-        size(channel.name(), signal.error_sd),
+        "its total error of {} (noise, discrepancy and shared errors{}) is {} times the spread that the prior allows",
+        channel.shown().size(signal.error_sd),
         if is_inferred {
-            ", inferred from the misfit,"
+            "; inferred from the misfit"
         } else {
             ""
         },
@@ -203,12 +206,12 @@ fn silence(channel: DataChannel, signal: &ChannelSignal, is_inferred: bool) -> O
     );
     Some(if signal.is_heard_together() {
         format!(
-            "{} hardly informs: {size}; only its {} rows together say more than the prior",
+            "{} is nearly uninformative: {size}; only its {} rows together are more informative than the prior",
             channel.words(),
             signal.data
         )
     } else {
-        format!("{} cannot inform: {size}", channel.words())
+        format!("{} is uninformative: {size}", channel.words())
     })
 }
 
@@ -229,11 +232,11 @@ mod tests {
         let torque = DataChannel::Wheel(Channel::Torque);
         assert_eq!(
             silence(torque, &signal(24, 1.0 / 14.0), false).unwrap(),
-            "torque cannot inform: its error of 20 N m is 14 times what the prior allows it to vary"
+            "torque is uninformative: its total error of 20 N m (noise, discrepancy and shared errors) is 14 times the spread that the prior allows"
         );
         assert_eq!(
             silence(torque, &signal(24, 0.5), true).unwrap(),
-            "torque hardly informs: its error of 20 N m, inferred from the misfit, is 2.0 times what the prior allows it to vary; only its 24 rows together say more than the prior"
+            "torque is nearly uninformative: its total error of 20 N m (noise, discrepancy and shared errors; inferred from the misfit) is 2.0 times the spread that the prior allows; only its 24 rows together are more informative than the prior"
         );
         assert_eq!(silence(torque, &signal(24, 1.0), false), None);
     }
@@ -258,13 +261,17 @@ mod tests {
         assert!(
             test(Some(0.02))
                 .words()
-                .ends_with("rather more than the declared errors explain")
+                .ends_with("slightly more than the declared errors explain")
         );
         assert!(
             test(Some(0.999))
                 .words()
                 .ends_with("the declared errors may be too large")
         );
-        assert!(test(None).words().ends_with("nothing to judge it by"));
+        assert!(
+            test(None)
+                .words()
+                .ends_with("no degree of freedom is left for a test")
+        );
     }
 }

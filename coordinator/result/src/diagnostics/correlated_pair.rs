@@ -1,8 +1,8 @@
-//! The pairs of parameters that the data leave entangled.
+//! Strongly correlated pairs of parameters.
 
 use inference::diagnostics;
 
-/// At most so many pairs are shown, and none that hangs together less.
+/// Most pairs that are shown, and the least rank correlation of them.
 const PAIRS: usize = 3;
 pub(crate) const LEAST_CORRELATION: f64 = 0.2;
 

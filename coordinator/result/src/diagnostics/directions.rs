@@ -1,4 +1,4 @@
-//! Combinations of parameters: what is known only together.
+//! Principal directions of the posterior: combinations of parameters that the data determine well or badly.
 
 use inference::diagnostics::{self, Direction};
 
@@ -7,9 +7,9 @@ use crate::words::number;
 
 /// A parameter with a smaller share of a direction's squared length is not named.
 const LEAST_SHARE: f64 = 0.1;
-/// Parameters whose best combination is known so many times better than their worst are known only together.
+/// Ratio of the best to the worst combination's standard deviation below which parameters are known only in combination.
 const NARROW: f64 = 0.5;
-/// A direction with more of the prior's spread is not known at all.
+/// A direction with more of the prior's standard deviation is unknown.
 const UNKNOWN: f64 = 0.95;
 
 /// Most directions in a list of the worst known.
@@ -52,16 +52,16 @@ impl DirectionDiagnostics {
     }
 }
 
-/// The principal directions, the worst known first; none of a fit, and none where the prior itself is correlated: what it
-/// ties together the data need not.
-pub(crate) fn directions(outcome: &FinishedCalibration) -> Vec<DirectionDiagnostics> {
-    if outcome.spec.prior().is_correlated() {
+/// The principal directions, the worst known first; none of a fit, and none where the prior itself is correlated, since
+/// the data need not cause its correlations.
+pub(crate) fn directions(calibration: &FinishedCalibration) -> Vec<DirectionDiagnostics> {
+    if calibration.spec.prior().is_correlated() {
         return Vec::new();
     }
-    let all: Vec<usize> = (0..outcome.spec.parameters.len()).collect();
+    let all: Vec<usize> = (0..calibration.spec.parameters.len()).collect();
     let named = |direction: &Direction| DirectionDiagnostics {
         sd_ratio: direction.variance.sqrt(),
-        loadings: outcome
+        loadings: calibration
             .spec
             .parameters
             .iter()
@@ -72,33 +72,33 @@ pub(crate) fn directions(outcome: &FinishedCalibration) -> Vec<DirectionDiagnost
             })
             .collect(),
     };
-    diagnostics::principal_directions(&whitened(outcome, &all))
+    diagnostics::principal_directions(&whitened(calibration, &all))
         .iter()
         .map(named)
         .collect()
 }
 
 /// The draws of some parameters, in prior standard deviations of the sampler's coordinates.
-fn whitened(outcome: &FinishedCalibration, parameters: &[usize]) -> Vec<Vec<f64>> {
+fn whitened(calibration: &FinishedCalibration, parameters: &[usize]) -> Vec<Vec<f64>> {
     let scales: Vec<(usize, f64, f64)> = parameters
         .iter()
         .map(|&i| {
-            let (mean, sd) = outcome.spec.parameters[i].marginal.coordinate_moments();
+            let (mean, sd) = calibration.spec.parameters[i].marginal.coordinate_moments();
             (i, mean, sd)
         })
         .collect();
     let draw = |theta: &[f64]| {
         let coordinate = |&(i, mean, sd): &(usize, f64, f64)| {
-            (outcome.spec.parameters[i].marginal.coordinate(theta[i]) - mean) / sd
+            (calibration.spec.parameters[i].marginal.coordinate(theta[i]) - mean) / sd
         };
         scales.iter().map(coordinate).collect()
     };
-    outcome.posterior.iter().map(|s| draw(&s.theta)).collect()
+    calibration.posterior.iter().map(|s| draw(&s.theta)).collect()
 }
 
 /// A sentence on the worst-known direction.
 pub(crate) fn worst_known(
-    outcome: &FinishedCalibration,
+    calibration: &FinishedCalibration,
     directions: &[DirectionDiagnostics],
 ) -> Option<String> {
     let worst = directions.first()?;
@@ -109,7 +109,7 @@ pub(crate) fn worst_known(
         let size = |i: usize| worst.loadings[i].loading.abs();
         size(b).total_cmp(&size(a))
     });
-    let own = diagnostics::principal_directions(&whitened(outcome, &named));
+    let own = diagnostics::principal_directions(&whitened(calibration, &named));
     let (wide, narrow) = (own.first()?, own.last()?);
     let names: Vec<String> = named
         .iter()
@@ -123,18 +123,18 @@ fn sentence(names: &[String], wide: &Direction, narrow: &Direction) -> String {
     let who = number::list(names);
     if names.len() == 1 {
         return format!(
-            "the data know {who} least: {} % of its prior's spread is left",
+            "the data determine {who} least: {} % of its prior standard deviation remains",
             percent(wide)
         );
     }
     if narrow.variance.sqrt() > NARROW * wide.variance.sqrt() {
         let what = if wide.variance.sqrt() > UNKNOWN {
-            "say next to nothing about"
+            "say almost nothing about"
         } else {
-            "know least"
+            "determine least"
         };
         return format!(
-            "the data {what} {who}: {} % of the prior's spread is left in their worst combination, {} % in their best",
+            "the data {what} {who}: {} % of the prior standard deviation remains in their worst combination, {} % in their best",
             percent(wide),
             percent(narrow)
         );
@@ -145,7 +145,7 @@ fn sentence(names: &[String], wide: &Direction, narrow: &Direction) -> String {
         .map(|(name, loading)| format!("{name} by {loading:+.1}"))
         .collect();
     format!(
-        "{who} are known only together: moving {} prior standard deviations leaves the fit much as it is ({} % of the prior's spread is left along this line, {} % where they are known best)",
+        "{who} are known only in combination: moving {} prior standard deviations hardly changes the fit ({} % of the prior standard deviation remains along this line, {} % along the best-known one)",
         number::list(&moves),
         percent(wide),
         percent(narrow)
@@ -170,31 +170,31 @@ mod tests {
         let (wide, narrow) = (direction(0.7, &[0.8, -0.6]), direction(0.05, &[0.6, 0.8]));
         assert_eq!(
             sentence(&names, &wide, &narrow),
-            "n and friction_angle_deg are known only together: moving n by +0.8 and friction_angle_deg by -0.6 prior standard deviations leaves the fit much as it is (70 % of the prior's spread is left along this line, 5.0 % where they are known best)"
+            "n and friction_angle_deg are known only in combination: moving n by +0.8 and friction_angle_deg by -0.6 prior standard deviations hardly changes the fit (70 % of the prior standard deviation remains along this line, 5.0 % along the best-known one)"
         );
         let round = sentence(&names, &wide, &direction(0.6, &[0.6, 0.8]));
         assert!(
-            round.starts_with("the data know least n and friction_angle_deg: 70 %"),
+            round.starts_with("the data determine least n and friction_angle_deg: 70 %"),
             "{round}"
         );
         let single = sentence(&names[..1], &wide, &wide);
         assert_eq!(
             single,
-            "the data know n least: 70 % of its prior's spread is left"
+            "the data determine n least: 70 % of its prior standard deviation remains"
         );
     }
 
     #[test]
-    fn draws_on_a_line_are_known_only_together() {
-        let mut outcome = fixture::outcome();
-        let priors: Vec<_> = outcome
+    fn draws_on_a_line_are_known_only_in_combination() {
+        let mut calibration = fixture::calibration();
+        let priors: Vec<_> = calibration
             .spec
             .parameters
             .iter()
             .map(|p| p.marginal.clone())
             .collect();
         // n wanders over half its prior and the friction angle with it; everything else stands still.
-        for (k, sample) in outcome.posterior.iter_mut().enumerate() {
+        for (k, sample) in calibration.posterior.iter_mut().enumerate() {
             let share = 0.25 + 0.5 * (k as f64 + 0.5) / 40.0;
             sample.theta = priors
                 .iter()
@@ -202,12 +202,12 @@ mod tests {
                 .map(|(i, marginal)| marginal.quantile(if i == 1 || i == 2 { share } else { 0.5 }))
                 .collect();
         }
-        let directions = directions(&outcome);
+        let directions = directions(&calibration);
         assert!(directions[0].sd_ratio > 0.4 && directions[1].sd_ratio < 0.1);
-        let words = worst_known(&outcome, &directions).unwrap();
+        let words = worst_known(&calibration, &directions).unwrap();
         assert!(
             words.starts_with(
-                "n and friction_angle_deg are known only together: moving n by +0.8 and friction_angle_deg by +0.6"
+                "n and friction_angle_deg are known only in combination: moving n by +0.8 and friction_angle_deg by +0.6"
             ),
             "{words}"
         );

@@ -8,7 +8,7 @@
 //! - `parameters`: contraction, bounds, conflict with the prior. `directions`: combinations of parameters;
 //!   `correlated_pair`: strongly correlated pairs.
 //! - `rejections`: rejections and faults by region of the prior.
-//! - `data_channel`: names and units of data.
+//! - `data_channel`: channels and runs of the fitted data.
 //!
 //! The statistics are [`inference::diagnostics`]'s. Nothing here but the coverage of holdout rows, which decides nothing,
 //! reads a holdout row.
@@ -28,7 +28,7 @@ pub use calibration::Diagnostics;
 pub use channels::{ChannelDiagnostics, ChiSquareTest, CoverageCount};
 pub use directions::{DirectionDiagnostics, Loading};
 pub use parameters::{ParameterDiagnostics, PriorConflict};
-pub use rejections::{Bin, BinnedParameter, PriorRegion, RegionSide, RejectionDiagnostics};
+pub use rejections::{BinnedParameter, PriorBin, PriorRegion, RegionSide, RejectionDiagnostics};
 pub use residuals::ResidualDiagnostics;
 pub use sampler::SamplerDiagnostics;
-pub use trends::{Against, TrendDiagnostics};
+pub use trends::{TrendDiagnostics, TrendVariable};

@@ -1,4 +1,4 @@
-//! What the data did to each parameter.
+//! Contraction, bounds and prior conflict of each parameter.
 
 use inference::diagnostics::{self, Conflict};
 use job::FreeParameter;
@@ -13,11 +13,11 @@ pub struct ParameterDiagnostics {
     /// Unit.
     pub unit: String,
     /// 1 - sd after / sd before, in the sampler's coordinate (the logarithm of lognormal and log-uniform parameters):
-    /// 0 where the data say nothing, 1 where they say everything. Null of a fit.
+    /// 0 where the data are uninformative, 1 where they determine it. Null of a fit.
     pub contraction: Option<f64>,
     /// Whether it lies at a bound of its prior.
     pub at_bound: bool,
-    /// Probability that a right prior has the posterior so far out; null where the data say too little.
+    /// Probability of a posterior so far out if the prior is right; null where the data are uninformative.
     pub conflict_p: Option<f64>,
 }
 
@@ -32,30 +32,30 @@ pub struct PriorConflict {
     pub p: Option<f64>,
 }
 
-/// Where the model refuses more of the prior than this share, the prior's accepted draws take its place.
+/// Share of rejected prior draws above which the accepted draws replace the declared prior.
 const CUT: f64 = 0.05;
 
 /// Every parameter, in the order of the job, and all of them together.
 pub(crate) fn parameters(
-    outcome: &FinishedCalibration,
+    calibration: &FinishedCalibration,
 ) -> (Vec<ParameterDiagnostics>, Option<PriorConflict>) {
-    let draws: Vec<&[f64]> = outcome.posterior.iter().map(|s| s.theta.as_slice()).collect();
-    let accepted: Vec<&[f64]> = outcome
+    let draws: Vec<&[f64]> = calibration.posterior.iter().map(|s| s.theta.as_slice()).collect();
+    let accepted: Vec<&[f64]> = calibration
         .prior_draws
         .iter()
         .filter(|draw| draw.result.is_ok())
         .map(|draw| draw.theta.as_slice())
         .collect();
-    let refused = outcome.prior_draws.len() - accepted.len();
-    let is_cut = refused as f64 > CUT * outcome.prior_draws.len() as f64;
-    // What the model refuses the data never saw: there the prior is another than the one declared.
+    let refused = calibration.prior_draws.len() - accepted.len();
+    let is_cut = refused as f64 > CUT * calibration.prior_draws.len() as f64;
+    // The data never act where the model rejects: the effective prior differs from the declared one.
     let conflict = if is_cut {
         None
     } else {
-        diagnostics::conflict(&outcome.spec.prior(), &draws)
+        diagnostics::conflict(&calibration.spec.prior(), &draws)
     };
     let parameter = |(i, free): (usize, &FreeParameter)| {
-        let draws = outcome.draws(i);
+        let draws = calibration.draws(i);
         let of = |c: &Conflict| c.parameters[i];
         ParameterDiagnostics {
             name: free.name.clone(),
@@ -65,7 +65,7 @@ pub(crate) fn parameters(
                     .and_then(|before| contraction(free, &draws, before)),
                 false => contraction(free, &draws, free.marginal.coordinate_moments().1),
             },
-            at_bound: match &outcome.estimate {
+            at_bound: match &calibration.estimate {
                 Some(estimate) => estimate.at_bound[i],
                 None => diagnostics::summary(&draws).is_some_and(|s| free.marginal.at_bound(s.q05, s.q95)),
             },
@@ -77,11 +77,11 @@ pub(crate) fn parameters(
         degrees_of_freedom: c.degrees_of_freedom,
         p: c.p,
     });
-    let parameters = outcome.spec.parameters.iter().enumerate().map(parameter);
+    let parameters = calibration.spec.parameters.iter().enumerate().map(parameter);
     (parameters.collect(), together)
 }
 
-/// One less the posterior's spread over what it was before the data.
+/// One minus the posterior's standard deviation over the prior's.
 fn contraction(free: &FreeParameter, draws: &[f64], before: f64) -> Option<f64> {
     let after = spread(free, draws.iter().copied())?;
     (before > 0.0).then(|| 1.0 - after / before)
@@ -132,20 +132,20 @@ mod tests {
     }
 
     #[test]
-    fn where_the_model_refuses_much_the_accepted_draws_are_the_prior() {
-        let mut outcome = fixture::outcome();
-        let (whole, conflict) = parameters(&outcome);
+    fn where_the_model_rejects_much_the_accepted_draws_are_the_prior() {
+        let mut calibration = fixture::calibration();
+        let (whole, conflict) = parameters(&calibration);
         assert!(conflict.is_some());
         // Of the draws from the prior the model now takes only those in the lower half of the first parameter.
-        let mut first: Vec<f64> = outcome.prior_draws.iter().map(|draw| draw.theta[0]).collect();
+        let mut first: Vec<f64> = calibration.prior_draws.iter().map(|draw| draw.theta[0]).collect();
         first.sort_by(f64::total_cmp);
         let middle = first[first.len() / 2];
-        for draw in &mut outcome.prior_draws {
+        for draw in &mut calibration.prior_draws {
             if draw.theta[0] > middle {
                 draw.result = Err("no_support: condition 0: toy".into());
             }
         }
-        let (cut, conflict) = parameters(&outcome);
+        let (cut, conflict) = parameters(&calibration);
         assert!(conflict.is_none());
         assert!(
             cut[0].contraction.unwrap() < whole[0].contraction.unwrap() - 0.02,

@@ -1,30 +1,31 @@
-//! Refusals and faults by region of the prior.
+//! Rejections and faults by region of the prior.
 
 use std::collections::BTreeMap;
 
 use inference::diagnostics::{self, BINS, Region, Side};
 use job::{FreeParameter, Spec};
 use record::PriorDraw;
+use shared::parameters::behind;
 
 use crate::finished_calibration::FinishedCalibration;
 use crate::words::number;
 use crate::words::probability::{LEVEL, p_words};
 
-/// What the model refused and which leases failed.
+/// Rejected parameter vectors and failed leases.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct RejectionDiagnostics {
-    /// How often the model refused in the whole calibration, by reason.
+    /// How often the model rejected in the whole calibration, by reason.
     pub refused: BTreeMap<String, u64>,
-    /// How often a lease failed in the whole calibration, by what was said of it. Each was retried: a failed lease says
-    /// nothing of the parameters.
+    /// How often a lease failed in the whole calibration, by message. Each was retried: a failed lease is independent of the
+    /// parameters.
     pub faults: BTreeMap<String, u64>,
     /// Draws from the prior, which the regions are made of.
     pub prior_draws: u64,
-    /// Of these, refused.
+    /// Of these, rejected.
     pub prior_refused: u64,
     /// Each parameter's prior in parts of equal probability.
     pub parameters: Vec<BinnedParameter>,
-    /// Where refusals concentrate, if they do beyond chance.
+    /// Where rejections concentrate beyond chance.
     pub region: Option<PriorRegion>,
 }
 
@@ -36,34 +37,34 @@ pub struct BinnedParameter {
     /// Unit.
     pub unit: String,
     /// The parts, from below.
-    pub bins: Vec<Bin>,
+    pub bins: Vec<PriorBin>,
 }
 
 /// A part of a prior.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
-pub struct Bin {
+pub struct PriorBin {
     /// Lower end; null where the prior has none.
     pub from: Option<f64>,
     /// Upper end.
     pub to: Option<f64>,
     /// Draws from the prior.
     pub draws: u64,
-    /// How often the model refused, by reason.
+    /// How often the model rejected, by reason.
     pub refused: BTreeMap<String, u64>,
     /// Leases of these draws that failed.
     pub faults: u64,
 }
 
-/// A region of the prior in which refusals concentrate.
+/// A region of the prior in which rejections concentrate.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct PriorRegion {
     /// Bounds of one parameter, or of two that must both hold.
     pub sides: Vec<RegionSide>,
     /// Draws from the prior.
     pub draws: u64,
-    /// How often the model refused, by reason.
+    /// How often the model rejected, by reason.
     pub refused: BTreeMap<String, u64>,
-    /// Probability of so many there by chance, corrected for the regions that were looked at.
+    /// Probability of so many there by chance, corrected for the number of regions tested.
     pub p: f64,
 }
 
@@ -81,10 +82,10 @@ pub struct RegionSide {
 }
 
 /// Counts of the draws from the prior.
-pub(crate) fn rejections(outcome: &FinishedCalibration) -> RejectionDiagnostics {
-    let draws = &outcome.prior_draws;
-    // The sds of noise are no concern of the model that refuses.
-    let free = &outcome.spec.parameters[..outcome.spec.fit_variant.parameters.len()];
+pub(crate) fn rejections(calibration: &FinishedCalibration) -> RejectionDiagnostics {
+    let draws = &calibration.prior_draws;
+    // Noise standard deviations do not enter the model that rejects.
+    let free = &calibration.spec.parameters[..calibration.spec.fit_variant.parameters.len()];
     let bin_of = |draw: &PriorDraw| -> Vec<usize> {
         let parameters = free.iter().zip(&draw.theta);
         parameters
@@ -112,12 +113,12 @@ pub(crate) fn rejections(outcome: &FinishedCalibration) -> RejectionDiagnostics 
     });
     let found = diagnostics::concentration(&binned).filter(|region| region.p < LEVEL);
     RejectionDiagnostics {
-        refused: outcome.rejections.clone(),
-        faults: outcome.faults.clone(),
+        refused: calibration.rejections.clone(),
+        faults: calibration.faults.clone(),
         prior_draws: draws.len() as u64,
         prior_refused: draws.iter().filter(|d| d.result.is_err()).count() as u64,
         parameters: parameters.collect(),
-        region: found.map(|region| prior_region(&outcome.spec, &region, draws, &binned)),
+        region: found.map(|region| prior_region(&calibration.spec, &region, draws, &binned)),
     }
 }
 
@@ -130,9 +131,9 @@ fn edge(free: &FreeParameter, bin: usize) -> f64 {
     free.marginal.quantile(bin as f64 / BINS as f64)
 }
 
-fn bin<'a>(free: &FreeParameter, number: usize, draws: impl Iterator<Item = &'a PriorDraw>) -> Bin {
+fn bin<'a>(free: &FreeParameter, number: usize, draws: impl Iterator<Item = &'a PriorDraw>) -> PriorBin {
     let own: Vec<&PriorDraw> = draws.collect();
-    Bin {
+    PriorBin {
         from: finite(edge(free, number)),
         to: finite(edge(free, number + 1)),
         draws: own.len() as u64,
@@ -141,7 +142,7 @@ fn bin<'a>(free: &FreeParameter, number: usize, draws: impl Iterator<Item = &'a 
     }
 }
 
-/// Refusals by reason: what stands before the colon.
+/// Rejections by reason, the part before the colon.
 fn reasons<'a>(draws: impl Iterator<Item = &'a PriorDraw>) -> BTreeMap<String, u64> {
     let mut reasons = BTreeMap::new();
     for reason in draws.filter_map(|d| d.result.as_ref().err()) {
@@ -184,11 +185,7 @@ fn prior_region(
 impl RegionSide {
     /// `k_c below -2.0e8 N/m^2.1`.
     fn words(&self) -> String {
-        let unit = if self.unit == "1" {
-            String::new()
-        } else {
-            format!(" {}", self.unit)
-        };
+        let unit = behind(&self.unit);
         let bound =
             |word: &str, x: Option<f64>| x.map(|x| format!("{word} {}{unit}", number::significant(x, 3)));
         let bounds: Vec<String> = bound("above", self.above)
@@ -200,7 +197,7 @@ impl RegionSide {
 }
 
 impl RejectionDiagnostics {
-    /// A sentence on where refusals concentrate; none where they do not.
+    /// A sentence on where rejections concentrate; none where they do not.
     pub fn words(&self) -> Option<String> {
         let region = self.region.as_ref()?;
         let refused: u64 = region.refused.values().sum();
@@ -212,7 +209,7 @@ impl RejectionDiagnostics {
             .map(|(kind, n)| format!("{kind} {n}"))
             .collect();
         Some(format!(
-            "{} % of the {} refusals among {} draws from the prior have {}: {}; this is {} % of the prior, and {} % of it is refused ({} by chance)",
+            "{} % of the {} rejections among {} draws from the prior have {}: {}; this region holds {} % of the prior, and {} % of it is rejected ({} by chance)",
             percent(refused, self.prior_refused),
             self.prior_refused,
             self.prior_draws,
@@ -230,21 +227,21 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// 200 draws spread evenly over the prior, of which those are refused whose n is in its lowest part.
-    fn with_low_n_refused() -> FinishedCalibration {
-        let mut outcome = fixture::outcome();
-        let priors: Vec<_> = outcome
+    /// 200 draws spread evenly over the prior, of which those with n in its lowest part are rejected.
+    fn with_low_n_rejected() -> FinishedCalibration {
+        let mut calibration = fixture::calibration();
+        let priors: Vec<_> = calibration
             .spec
             .parameters
             .iter()
             .map(|p| p.marginal.clone())
             .collect();
-        let kept = outcome
+        let kept = calibration
             .prior_draws
             .iter()
             .find_map(|d| d.result.as_ref().ok().cloned())
             .unwrap();
-        outcome.prior_draws = (0..200)
+        calibration.prior_draws = (0..200)
             .map(|k| {
                 let share = |i: usize| (f64::from(k / 5_i32.pow(i as u32) % 5) + 0.5) / 5.0;
                 PriorDraw {
@@ -262,12 +259,12 @@ mod tests {
                 }
             })
             .collect();
-        outcome
+        calibration
     }
 
     #[test]
-    fn refusals_of_low_n_are_found_there() {
-        let found = rejections(&with_low_n_refused());
+    fn rejections_at_low_n_are_found_there() {
+        let found = rejections(&with_low_n_rejected());
         // n is uniform from 0.8 to 1.6: its lowest fifth ends at 0.96.
         let side = &found.region.as_ref().unwrap().sides;
         assert_eq!(
@@ -277,7 +274,7 @@ mod tests {
         assert!((side[0].below.unwrap() - 0.96).abs() < 1e-12);
         assert_eq!(
             found.words().unwrap(),
-            "100 % of the 40 refusals among 200 draws from the prior have n below 0.960: no_support 40; this is 20 % of the prior, and 100 % of it is refused (p < 1e-12 by chance)"
+            "100 % of the 40 rejections among 200 draws from the prior have n below 0.960: no_support 40; this region holds 20 % of the prior, and 100 % of it is rejected (p < 1e-12 by chance)"
         );
         let n = &found.parameters[1];
         let counts: Vec<(u64, u64)> = n
@@ -297,8 +294,8 @@ mod tests {
     }
 
     #[test]
-    fn a_few_refusals_prove_no_region() {
-        let found = rejections(&fixture::outcome());
+    fn a_few_rejections_prove_no_region() {
+        let found = rejections(&fixture::calibration());
         assert_eq!((found.prior_refused, found.region), (2, None));
     }
 }

@@ -2,8 +2,9 @@
 
 use inference::diagnostics::{self, PredictedDraw};
 
-use super::data_channel::{DataChannel, run_name};
+use super::data_channel::run_name;
 use crate::finished_calibration::FinishedCalibration;
+use crate::words::data_channel::DataChannel;
 
 /// Most residuals in a list of the largest.
 const LARGEST: usize = 5;
@@ -14,14 +15,15 @@ pub struct ResidualDiagnostics {
     /// Run, or test of plates or rings.
     pub run: String,
     /// Channel without unit.
-    pub channel: String,
+    #[schema(value_type = String)]
+    pub channel: DataChannel,
     /// Unit of the next two; plates and rings count by their natural logarithm.
     pub unit: String,
     /// Measured minus predicted.
     pub residual: f64,
-    /// Standard deviation of the error, with what it shares with other data.
+    /// Standard deviation of the total error: noise, discrepancy and shared errors.
     pub error_sd: f64,
-    /// Share of the error's variance that the fit takes up.
+    /// Share of the error's variance that the fit absorbs.
     pub leverage: f64,
     /// Residual over its own standard deviation, which the leverage makes smaller; null where nothing is left of it.
     pub studentised: Option<f64>,
@@ -31,20 +33,20 @@ pub struct ResidualDiagnostics {
 
 /// In the order of the likelihood's data; empty of a fit.
 pub(crate) fn residuals(
-    outcome: &FinishedCalibration,
+    calibration: &FinishedCalibration,
     posterior: &[PredictedDraw],
 ) -> Vec<ResidualDiagnostics> {
-    let likelihood = &outcome.spec.likelihood;
-    // These values were scored while sampling; what cannot be scored never became a final draw.
+    let likelihood = &calibration.spec.likelihood;
+    // These values were already scored by the sampler; a draw that cannot be scored is no final draw.
     let rows = diagnostics::residuals(likelihood, posterior).unwrap_or_default();
     rows.iter()
         .zip(likelihood.data())
         .map(|(row, datum)| {
             let channel = DataChannel::of(datum.channel);
             ResidualDiagnostics {
-                run: run_name(&outcome.spec, datum).to_owned(),
-                channel: channel.name().to_owned(),
-                unit: channel.unit().to_owned(),
+                run: run_name(&calibration.spec, datum).to_owned(),
+                channel,
+                unit: channel.si_unit().to_owned(),
                 residual: row.value,
                 error_sd: row.error_sd,
                 leverage: row.leverage,

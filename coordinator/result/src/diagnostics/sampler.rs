@@ -1,4 +1,4 @@
-//! What the sampler did.
+//! Equilibrium and effective sample size of the sampler.
 
 use std::collections::BTreeSet;
 
@@ -6,7 +6,7 @@ use record::StageRow;
 
 use crate::finished_calibration::FinishedCalibration;
 
-/// Whether the draws can be read as the posterior, and how many they are worth.
+/// Whether the draws represent the posterior, and how many independent draws they are worth.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct SamplerDiagnostics {
     /// Whether every stage reached equilibrium.
@@ -22,14 +22,14 @@ pub struct SamplerDiagnostics {
 }
 
 /// None of a fit.
-pub(crate) fn sampler(outcome: &FinishedCalibration) -> Option<SamplerDiagnostics> {
+pub(crate) fn sampler(calibration: &FinishedCalibration) -> Option<SamplerDiagnostics> {
     let bits = |theta: &[f64]| theta.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
-    let distinct: BTreeSet<Vec<u64>> = outcome.posterior.iter().map(|s| bits(&s.theta)).collect();
-    outcome.estimate.is_none().then(|| SamplerDiagnostics {
-        equilibrated: outcome.row.equilibrated,
-        draws: outcome.posterior.len(),
+    let distinct: BTreeSet<Vec<u64>> = calibration.posterior.iter().map(|s| bits(&s.theta)).collect();
+    calibration.estimate.is_none().then(|| SamplerDiagnostics {
+        equilibrated: calibration.row.equilibrated,
+        draws: calibration.posterior.len(),
         distinct_draws: distinct.len(),
-        effective_sample_size: outcome.stages.last().map(|stage| stage.ess),
-        stages: outcome.stages.clone(),
+        effective_sample_size: calibration.stages.last().map(|stage| stage.ess),
+        stages: calibration.stages.clone(),
     })
 }

@@ -1,4 +1,4 @@
-//! Whether what the fit leaves follows a condition of the runs.
+//! Trends of the residuals with the conditions of the runs.
 
 use inference::diagnostics::{PredictedDraw, TrendTest};
 use shared::channel::Channel;
@@ -7,10 +7,10 @@ use shared::experiment::TestRun;
 use crate::finished_calibration::FinishedCalibration;
 use crate::table::level::levels;
 
-/// What residuals are held against.
+/// The condition that residuals are tested against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Against {
+pub enum TrendVariable {
     /// The same everywhere.
     Constant,
     /// Slip.
@@ -23,51 +23,53 @@ pub enum Against {
     SlipXSledSpeed,
 }
 
-impl Against {
-    const ALL: [Against; 5] = [
-        Against::Constant,
-        Against::Slip,
-        Against::WheelLoad,
-        Against::SledSpeed,
-        Against::SlipXSledSpeed,
+impl TrendVariable {
+    const ALL: [TrendVariable; 5] = [
+        TrendVariable::Constant,
+        TrendVariable::Slip,
+        TrendVariable::WheelLoad,
+        TrendVariable::SledSpeed,
+        TrendVariable::SlipXSledSpeed,
     ];
 
     /// Name in tables: `slip_x_sled_speed`.
     pub fn name(self) -> &'static str {
         match self {
-            Against::Constant => "constant",
-            Against::Slip => "slip",
-            Against::WheelLoad => "wheel_load",
-            Against::SledSpeed => "sled_speed",
-            Against::SlipXSledSpeed => "slip_x_sled_speed",
+            TrendVariable::Constant => "constant",
+            TrendVariable::Slip => "slip",
+            TrendVariable::WheelLoad => "wheel_load",
+            TrendVariable::SledSpeed => "sled_speed",
+            TrendVariable::SlipXSledSpeed => "slip_x_sled_speed",
         }
     }
 
     fn value(self, run: &TestRun) -> f64 {
         match self {
-            Against::Constant => 1.0,
-            Against::Slip => run.slip,
-            Against::WheelLoad => run.wheel_load_n,
-            Against::SledSpeed => run.sled_speed_m_s,
-            Against::SlipXSledSpeed => run.slip * run.sled_speed_m_s,
+            TrendVariable::Constant => 1.0,
+            TrendVariable::Slip => run.slip,
+            TrendVariable::WheelLoad => run.wheel_load_n,
+            TrendVariable::SledSpeed => run.sled_speed_m_s,
+            TrendVariable::SlipXSledSpeed => run.slip * run.sled_speed_m_s,
         }
     }
 
     /// Whether these runs vary it on enough levels: two, of slip three.
     fn is_varied(self, runs: &[&TestRun]) -> bool {
-        let count = |of: Against| levels(runs.iter().map(|run| of.value(run))).len();
+        let count = |of: TrendVariable| levels(runs.iter().map(|run| of.value(run))).len();
         match self {
-            Against::Constant => true,
-            Against::Slip => count(Against::Slip) >= 3,
-            Against::WheelLoad | Against::SledSpeed => count(self) >= 2,
-            Against::SlipXSledSpeed => Against::Slip.is_varied(runs) && Against::SledSpeed.is_varied(runs),
+            TrendVariable::Constant => true,
+            TrendVariable::Slip => count(TrendVariable::Slip) >= 3,
+            TrendVariable::WheelLoad | TrendVariable::SledSpeed => count(self) >= 2,
+            TrendVariable::SlipXSledSpeed => {
+                TrendVariable::Slip.is_varied(runs) && TrendVariable::SledSpeed.is_varied(runs)
+            }
         }
     }
 
     /// Its values at these runs about their mean, in units of their range; of the constant, 1.
     fn regressor(self, runs: &[&TestRun]) -> Vec<f64> {
         let values: Vec<f64> = runs.iter().map(|run| self.value(run)).collect();
-        if self == Against::Constant {
+        if self == TrendVariable::Constant {
             return values;
         }
         let mean = values.iter().sum::<f64>() / values.len() as f64;
@@ -81,26 +83,30 @@ impl Against {
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct TrendDiagnostics {
     /// Channel without unit.
-    pub channel: String,
+    #[schema(value_type = String)]
+    pub channel: Channel,
     /// The condition.
-    pub against: Against,
+    pub against: TrendVariable,
     /// Unit of the next two.
     pub unit: String,
-    /// By how much the measurements rise beyond the model from the condition's least to its largest value, or lie above it in
-    /// all, had the fit not bent towards them.
+    /// By how much the measurements rise above the model from the condition's least to its largest value, or lie above it in
+    /// all, before the fit compensates.
     pub change: f64,
     /// Standard deviation of the change where there is no trend.
     pub change_sd: f64,
-    /// Share of the condition's pattern that the fit cannot take up.
+    /// Share of the condition's pattern that the fit cannot absorb.
     pub share_left: f64,
     /// Two-sided probability of so large a change, before correction for the number of tests.
     pub p: f64,
 }
 
-/// Every channel against every condition that its fitted runs vary and that the fit does not take up; empty of a fit.
-pub(crate) fn trends(outcome: &FinishedCalibration, posterior: &[PredictedDraw]) -> Vec<TrendDiagnostics> {
-    let spec = &outcome.spec;
-    // These values were scored while sampling.
+/// Every channel against every condition that its fitted runs vary and that the fit does not absorb; empty of a fit.
+pub(crate) fn trends(
+    calibration: &FinishedCalibration,
+    posterior: &[PredictedDraw],
+) -> Vec<TrendDiagnostics> {
+    let spec = &calibration.spec;
+    // These values were already scored by the sampler.
     let Ok(Some(test)) = TrendTest::new(&spec.likelihood, &spec.prior(), posterior) else {
         return Vec::new();
     };
@@ -114,7 +120,7 @@ pub(crate) fn trends(outcome: &FinishedCalibration, posterior: &[PredictedDraw])
             .iter()
             .map(|&i| &spec.experiment.runs[spec.fit_runs[data[i].run]])
             .collect();
-        for against in Against::ALL {
+        for against in TrendVariable::ALL {
             if own.is_empty() || !against.is_varied(&runs) {
                 continue;
             }
@@ -123,7 +129,7 @@ pub(crate) fn trends(outcome: &FinishedCalibration, posterior: &[PredictedDraw])
                 regressor[i] = value;
             }
             found.extend(test.against(&regressor).map(|trend| TrendDiagnostics {
-                channel: channel.name().into(),
+                channel,
                 against,
                 unit: channel.unit().into(),
                 change: trend.slope,
@@ -143,7 +149,7 @@ mod tests {
 
     /// Runs with these slips, loads and speeds.
     fn runs(conditions: &[[f64; 3]]) -> Vec<TestRun> {
-        let first = fixture::outcome().spec.experiment.runs[0].clone();
+        let first = fixture::calibration().spec.experiment.runs[0].clone();
         let run = |&[slip, wheel_load_n, sled_speed_m_s]: &[f64; 3]| TestRun {
             slip,
             wheel_load_n,
@@ -156,8 +162,8 @@ mod tests {
     fn varied(conditions: &[[f64; 3]]) -> Vec<&'static str> {
         let runs = runs(conditions);
         let runs: Vec<&TestRun> = runs.iter().collect();
-        let all = Against::ALL.into_iter().filter(|a| a.is_varied(&runs));
-        all.map(Against::name).collect()
+        let all = TrendVariable::ALL.into_iter().filter(|a| a.is_varied(&runs));
+        all.map(TrendVariable::name).collect()
     }
 
     #[test]
@@ -174,11 +180,11 @@ mod tests {
     fn a_regressor_has_the_mean_zero_and_the_range_one() {
         let runs = runs(&[[0.1, 60.0, 0.01], [0.2, 60.0, 0.02], [0.6, 70.0, 0.01]]);
         let runs: Vec<&TestRun> = runs.iter().collect();
-        let slip = Against::Slip.regressor(&runs);
+        let slip = TrendVariable::Slip.regressor(&runs);
         for (found, expected) in slip.iter().zip([-0.4, -0.2, 0.6]) {
             assert!((found - expected).abs() < 1e-12, "{slip:?}");
         }
-        assert_eq!(Against::Constant.regressor(&runs), [1.0; 3]);
+        assert_eq!(TrendVariable::Constant.regressor(&runs), [1.0; 3]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
-//! How searches and sampler came to their results: the source paper's Fig. 5.
+//! Convergence of searches and sampler: the source paper's Fig. 5.
 
 use inference::diagnostics;
+use job::AlgorithmName;
 use record::Sample;
 
 use super::axis_parameter::AxisParameter;
@@ -12,11 +13,12 @@ const POINTS: usize = 400;
 /// The parameters that the source paper shows its samples in.
 const PAPER: [&str; 2] = ["n", "friction_angle_deg"];
 
-/// The way of a search by generations.
+/// Convergence of a search by generations.
 #[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
 pub struct SearchConvergence {
     /// Algorithm.
-    pub algorithm: String,
+    #[schema(value_type = String)]
+    pub algorithm: AlgorithmName,
     /// Best and mean log-posterior after every generation, by evaluations.
     pub history: Vec<GenerationSummary>,
 }
@@ -67,11 +69,11 @@ pub struct StagePopulation {
     pub points: Vec<[f64; 2]>,
 }
 
-/// The way of a search; `None` of a sample, and of a fit by steps, which keeps none.
-pub(super) fn search(outcome: &FinishedCalibration) -> Option<SearchConvergence> {
-    let history = generations(&outcome.estimate.as_ref()?.history);
+/// Convergence of a search; `None` of a sample, and of a fit by steps, which keeps no history.
+pub(super) fn search(calibration: &FinishedCalibration) -> Option<SearchConvergence> {
+    let history = generations(&calibration.estimate.as_ref()?.history);
     (!history.is_empty()).then(|| SearchConvergence {
-        algorithm: outcome.spec.method.name().to_owned(),
+        algorithm: calibration.spec.method.algorithm(),
         history,
     })
 }
@@ -85,8 +87,8 @@ struct Population<'a> {
 }
 
 /// The populations from the prior, which is stage 0, to the posterior.
-fn all(outcome: &FinishedCalibration) -> Vec<Population<'_>> {
-    let Some((prior, later)) = outcome.populations.split_first() else {
+fn all(calibration: &FinishedCalibration) -> Vec<Population<'_>> {
+    let Some((prior, later)) = calibration.populations.split_first() else {
         return Vec::new();
     };
     let mut evaluations = prior.len() as u64;
@@ -96,8 +98,8 @@ fn all(outcome: &FinishedCalibration) -> Vec<Population<'_>> {
         evaluations,
         samples: prior,
     }];
-    let later = later.iter().chain([&outcome.posterior]);
-    for (row, samples) in outcome.stages.iter().zip(later) {
+    let later = later.iter().chain([&calibration.posterior]);
+    for (row, samples) in calibration.stages.iter().zip(later) {
         evaluations += row.evaluations;
         populations.push(Population {
             stage: row.stage,
@@ -110,14 +112,14 @@ fn all(outcome: &FinishedCalibration) -> Vec<Population<'_>> {
 }
 
 /// The stages of a sampler.
-pub(super) fn stages(outcome: &FinishedCalibration) -> Vec<StageConvergence> {
+pub(super) fn stages(calibration: &FinishedCalibration) -> Vec<StageConvergence> {
     let stage = |population: &Population| StageConvergence {
         stage: population.stage,
         tempering_exponent: population.tempering_exponent,
         evaluations: population.evaluations,
         log_likelihood: range(population.samples),
     };
-    all(outcome).iter().map(stage).collect()
+    all(calibration).iter().map(stage).collect()
 }
 
 fn range(population: &[Sample]) -> Option<LogLikelihoodRange> {
@@ -132,15 +134,15 @@ fn range(population: &[Sample]) -> Option<LogLikelihoodRange> {
 }
 
 /// The populations of the first, a middle and the last stage; in the source paper's parameters where the job has them.
-pub(super) fn populations(outcome: &FinishedCalibration) -> Option<Populations> {
-    let free = &outcome.spec.parameters;
+pub(super) fn populations(calibration: &FinishedCalibration) -> Option<Populations> {
+    let free = &calibration.spec.parameters;
     let place = |name: &str| free.iter().position(|p| p.name == name);
     let [x, y] = match PAPER.map(place) {
         [Some(x), Some(y)] => [x, y],
         _ if free.len() > 1 => [0, 1],
         _ => return None,
     };
-    let all = all(outcome);
+    let all = all(calibration);
     let last = all.len().checked_sub(1)?;
     let mut shown = vec![0, last / 2, last];
     shown.dedup();
@@ -171,7 +173,7 @@ mod tests {
 
     #[test]
     fn evaluations_add_up_and_every_population_has_its_range() {
-        let stages = stages(&fixture::outcome());
+        let stages = stages(&fixture::calibration());
         let evaluations: Vec<u64> = stages.iter().map(|s| s.evaluations).collect();
         assert_eq!(evaluations, [40, 520, 1000, 1480]);
         let range = stages[0].log_likelihood.unwrap();
@@ -180,13 +182,13 @@ mod tests {
 
     #[test]
     fn a_middle_stage_stands_between_the_first_and_the_last() {
-        let mut outcome = fixture::outcome();
-        let populations = populations(&outcome).unwrap();
+        let mut calibration = fixture::calibration();
+        let populations = populations(&calibration).unwrap();
         let stages: Vec<u32> = populations.stages.iter().map(|s| s.stage).collect();
         assert_eq!(stages, [0, 1, 3]);
         assert_eq!(populations.parameters[1].unit, "deg");
         assert!(populations.stages.iter().all(|s| s.points.len() == 40));
-        outcome.populations.clear();
-        assert!(super::populations(&outcome).is_none());
+        calibration.populations.clear();
+        assert!(super::populations(&calibration).is_none());
     }
 }

@@ -1,4 +1,4 @@
-//! How far off the model is over the posterior: the source paper's Fig. 8.
+//! Prediction errors over the posterior: the source paper's Fig. 8.
 
 use inference::diagnostics;
 use job::Spec;
@@ -18,7 +18,8 @@ const GRID: usize = 160;
 #[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
 pub struct ErrorDensity {
     /// Channel without unit.
-    pub channel: String,
+    #[schema(value_type = String)]
+    pub channel: Channel,
     /// Unit of the errors.
     pub unit: String,
     /// Fitted runs that measured it.
@@ -52,13 +53,13 @@ fn error(spec: &Spec, values: &[f64], channel: Channel) -> Option<f64> {
 }
 
 fn density(study: &Study, sample: &FinishedCalibration, channel: Channel) -> Option<ErrorDensity> {
-    let errors = |outcome: &FinishedCalibration| -> Vec<f64> {
-        let accepted = outcome
+    let errors = |calibration: &FinishedCalibration| -> Vec<f64> {
+        let accepted = calibration
             .predictive_draws()
             .iter()
             .filter_map(|d| d.fit.as_ref().ok());
         accepted
-            .filter_map(|o| error(&outcome.spec, &outcome.spec.predicted_values(o), channel))
+            .filter_map(|o| error(&calibration.spec, &calibration.spec.predicted_values(o), channel))
             .collect()
     };
     let over_draws = errors(sample);
@@ -67,8 +68,8 @@ fn density(study: &Study, sample: &FinishedCalibration, channel: Channel) -> Opt
     if let Some(at) = likeliest.and_then(|values| error(&sample.spec, values, channel)) {
         marks.push(Mark::new(MarkKind::MaximumLikelihood, "maximum likelihood", at));
     }
-    for (label, outcome) in study.optima() {
-        let at = errors(outcome).first().copied();
+    for (label, calibration) in study.optima() {
+        let at = errors(calibration).first().copied();
         marks.extend(at.map(|at| Mark::new(MarkKind::PointEstimate, label, at)));
     }
     let most = over_draws.iter().chain(marks.iter().map(|m| &m.at)).copied();
@@ -76,7 +77,7 @@ fn density(study: &Study, sample: &FinishedCalibration, channel: Channel) -> Opt
     let grid: Vec<f64> = (0..GRID).map(|k| reach * k as f64 / (GRID - 1) as f64).collect();
     let data = sample.spec.likelihood.data();
     Some(ErrorDensity {
-        channel: channel.name().to_owned(),
+        channel,
         unit: channel.unit().to_owned(),
         runs: data.iter().filter(|d| d.channel == channel.index()).count(),
         draws: over_draws.len(),
@@ -101,7 +102,11 @@ mod tests {
                 .windows(2)
                 .map(|f| 0.5 * (f[0] + f[1]) * step)
                 .sum();
-            assert!((inner - 1.0).abs() < 0.01, "{} holds {inner}", of_channel.channel);
+            assert!(
+                (inner - 1.0).abs() < 0.01,
+                "{} holds {inner}",
+                of_channel.channel.name()
+            );
             let labels: Vec<&str> = of_channel.marks.iter().map(|m| m.label.as_str()).collect();
             assert_eq!(labels, ["mean", "maximum likelihood", "GA optimum"]);
             let last = *of_channel.grid.last().unwrap();

@@ -3,12 +3,12 @@
 use super::convergence::{self, Populations, SearchConvergence, StageConvergence};
 use super::error::{self, ErrorDensity};
 use super::history::{self, ChannelHistory};
-use super::posterior::{self, Posterior};
+use super::posterior::{self, JointPosterior};
 use crate::study::Study;
 
 /// What the figures of a study show.
 #[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
-pub struct Figures {
+pub struct StudyFigures {
     /// Name of the experiment.
     pub experiment: String,
     /// How searches by generations came to their points.
@@ -18,14 +18,14 @@ pub struct Figures {
     /// The populations of some stages in two parameters; null without a sample, or of one parameter.
     pub populations: Option<Populations>,
     /// Joint posterior densities.
-    pub posteriors: Vec<Posterior>,
+    pub posteriors: Vec<JointPosterior>,
     /// Measurement and model over time; null of a model that knows no time.
     pub histories: Option<Vec<ChannelHistory>>,
     /// Prediction errors over the posterior, by channel.
     pub errors: Vec<ErrorDensity>,
 }
 
-impl Figures {
+impl StudyFigures {
     /// Whether there is nothing to show.
     pub fn is_empty(&self) -> bool {
         // populations stand beside stages
@@ -39,11 +39,13 @@ impl Figures {
 
 impl Study {
     /// What the figures show: of the first sample, and of what stands beside it.
-    pub fn figures(&self) -> Figures {
-        let sample = self.outcomes().find(|outcome| outcome.estimate.is_none());
-        Figures {
+    pub fn figures(&self) -> StudyFigures {
+        let sample = self
+            .submitted()
+            .find(|calibration| calibration.estimate.is_none());
+        StudyFigures {
             experiment: self.lead.experiment.clone(),
-            searches: self.outcomes().filter_map(convergence::search).collect(),
+            searches: self.submitted().filter_map(convergence::search).collect(),
             stages: sample.map(convergence::stages).unwrap_or_default(),
             populations: sample.and_then(convergence::populations),
             posteriors: sample.map(|s| posterior::all(self, s)).unwrap_or_default(),
@@ -70,7 +72,7 @@ mod tests {
             .map(|p| [p.parameters[0].name.as_str(), p.parameters[1].name.as_str()])
             .collect();
         assert_eq!(pairs[0], ["n", "friction_angle_deg"]);
-        let channels: Vec<&str> = figures.errors.iter().map(|e| e.channel.as_str()).collect();
+        let channels: Vec<&str> = figures.errors.iter().map(|e| e.channel.name()).collect();
         assert_eq!(channels, ["drawbar_pull", "sinkage"]);
         assert!(figures.histories.is_none() && !figures.is_empty());
         assert!(Study::from(fixture::fit()).figures().is_empty());

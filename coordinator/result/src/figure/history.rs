@@ -15,20 +15,21 @@ use crate::study::Study;
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct ChannelHistory {
     /// Name of the channel without its unit.
-    pub channel: &'static str,
+    #[schema(value_type = String)]
+    pub channel: Channel,
     /// SI unit.
     pub unit: &'static str,
     /// Name of the run.
     pub run: String,
     /// What the rig recorded; null where the run has averages alone.
-    pub measured: Option<Series>,
+    pub measured: Option<MeasuredSeries>,
     /// What the model gives, its averages' transients included.
     pub model: Vec<ModelSeries>,
 }
 
 /// Means over intervals of equal length.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-pub struct Series {
+pub struct MeasuredSeries {
     /// Ends of the intervals, from the beginning of the recording `[s]`.
     pub t_s: Vec<f64>,
     /// After the protocol's low-pass [channel's unit].
@@ -72,7 +73,7 @@ impl FinishedCalibration {
                     continue;
                 }
                 histories.push(ChannelHistory {
-                    channel: channel.name(),
+                    channel,
                     unit: channel.unit(),
                     run: run.name.clone(),
                     measured: run.history.as_ref().and_then(|h| measured(h, channel)),
@@ -86,7 +87,7 @@ impl FinishedCalibration {
 
 /// The histories of a study's calibrations in the same pictures; `None` where none has any.
 pub(super) fn all(study: &Study) -> Option<Vec<ChannelHistory>> {
-    let mut each = study.outcomes().filter_map(FinishedCalibration::histories);
+    let mut each = study.submitted().filter_map(FinishedCalibration::histories);
     let mut histories = each.next()?;
     for others in each {
         // The calibrations of a study fit the same runs.
@@ -102,9 +103,9 @@ fn ends(intervals: usize, interval_s: f64) -> Vec<f64> {
     (1..=intervals).map(|k| k as f64 * interval_s).collect()
 }
 
-fn measured(history: &MeasuredHistory, channel: Channel) -> Option<Series> {
+fn measured(history: &MeasuredHistory, channel: Channel) -> Option<MeasuredSeries> {
     let recorded = history.channel(channel)?;
-    Some(Series {
+    Some(MeasuredSeries {
         t_s: ends(recorded.raw.len(), history.interval_s),
         value: recorded.filtered.clone(),
         raw: recorded.raw.clone(),

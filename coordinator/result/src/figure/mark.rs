@@ -27,16 +27,16 @@ pub struct Mark<T> {
 
 /// A place in a plane; a coordinate is null where only the other is known.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, utoipa::ToSchema)]
-pub struct Place {
+pub struct PlanePoint {
     /// Horizontal.
     pub x: Option<f64>,
     /// Vertical.
     pub y: Option<f64>,
 }
 
-impl From<[Option<f64>; 2]> for Place {
+impl From<[Option<f64>; 2]> for PlanePoint {
     fn from([x, y]: [Option<f64>; 2]) -> Self {
-        Place { x, y }
+        PlanePoint { x, y }
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use inference::diagnostics;
 
 use super::axis_parameter::AxisParameter;
-use super::mark::{Mark, MarkKind, Place};
+use super::mark::{Mark, MarkKind, PlanePoint};
 use super::reference;
 use crate::diagnostics::correlated_pair::most_correlated;
 use crate::finished_calibration::FinishedCalibration;
@@ -27,7 +27,7 @@ const MARGIN: f64 = 0.15;
 
 /// The joint posterior density of two parameters.
 #[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
-pub struct Posterior {
+pub struct JointPosterior {
     /// The parameters, the horizontal one first.
     pub parameters: [AxisParameter; 2],
     /// Draws that the density is estimated from, equally weighted.
@@ -45,9 +45,9 @@ pub struct Posterior {
     /// Rank correlation of the draws.
     pub rank_correlation: f64,
     /// Single points.
-    pub marks: Vec<Mark<Place>>,
+    pub marks: Vec<Mark<PlanePoint>>,
     /// Lines with a meaning.
-    pub lines: Vec<Line>,
+    pub lines: Vec<LabelledLine>,
 }
 
 /// A highest-density contour.
@@ -61,7 +61,7 @@ pub struct Contour {
 
 /// A straight line with a meaning.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
-pub struct Line {
+pub struct LabelledLine {
     /// What it says.
     pub label: String,
     /// Two points of it.
@@ -70,7 +70,7 @@ pub struct Line {
 
 /// The source paper's pairs that the job has; with parameters beyond those of the paper, the most correlated pairs
 /// that one of them is in. Pairs whose draws lie on a line have no density and are left out.
-pub(super) fn all(study: &Study, sample: &FinishedCalibration) -> Vec<Posterior> {
+pub(super) fn all(study: &Study, sample: &FinishedCalibration) -> Vec<JointPosterior> {
     let free = &sample.spec.parameters;
     let draws: Vec<Vec<f64>> = (0..free.len()).map(|i| sample.draws(i)).collect();
     let place = |name: &str| free.iter().position(|p| p.name == name);
@@ -92,7 +92,7 @@ fn posterior(
     draws: &[Vec<f64>],
     pair: [usize; 2],
     reference: &BTreeMap<String, f64>,
-) -> Option<Posterior> {
+) -> Option<JointPosterior> {
     let parameters = pair.map(|i| &sample.spec.parameters[i]);
     let values = pair.map(|i| draws[i].as_slice());
     let support = parameters.map(|p| p.marginal.support());
@@ -119,7 +119,7 @@ fn posterior(
         share,
         density: level / highest,
     };
-    Some(Posterior {
+    Some(JointPosterior {
         parameters: parameters.map(AxisParameter::from),
         draws: values[0].len(),
         range,
@@ -155,7 +155,7 @@ fn marks(
     sample: &FinishedCalibration,
     pair: [usize; 2],
     reference: &BTreeMap<String, f64>,
-) -> Vec<Mark<Place>> {
+) -> Vec<Mark<PlanePoint>> {
     let names = pair.map(|i| sample.spec.parameters[i].name.as_str());
     let mut marks = Vec::new();
     if let Some(draw) = sample.likeliest() {
@@ -166,10 +166,10 @@ fn marks(
             at.into(),
         ));
     }
-    for (label, outcome) in study.optima() {
+    for (label, calibration) in study.optima() {
         let value = |name: &str| {
-            let place = outcome.spec.parameters.iter().position(|p| p.name == name)?;
-            Some(outcome.estimate.as_ref()?.theta[place])
+            let place = calibration.spec.parameters.iter().position(|p| p.name == name)?;
+            Some(calibration.estimate.as_ref()?.theta[place])
         };
         marks.push(Mark::new(MarkKind::PointEstimate, label, names.map(value).into()));
     }
@@ -188,7 +188,7 @@ fn stiffness_line(
     names: [&str; 2],
     range: [[f64; 2]; 2],
     reference: &BTreeMap<String, f64>,
-) -> Option<Line> {
+) -> Option<LabelledLine> {
     if names != PAPER[0] {
         return None;
     }
@@ -200,7 +200,7 @@ fn stiffness_line(
     let widths: Vec<f64> = accepted.flat_map(|o| o.b_eff_m.iter().copied()).collect();
     let b = diagnostics::mean(&widths).filter(|b| *b > 0.0)?;
     let k_star = k_c / b + k_phi;
-    Some(Line {
+    Some(LabelledLine {
         label: format!(
             "k* = {} N/m^(n+2) at b = {:.1} mm",
             number::significant(k_star, 3),
@@ -217,8 +217,8 @@ mod tests {
 
     #[test]
     fn the_line_of_k_star_has_the_mean_width_s_slope() {
-        let mut outcome = fixture::outcome();
-        for (k, draw) in outcome.predictions.iter_mut().enumerate() {
+        let mut calibration = fixture::calibration();
+        for (k, draw) in calibration.predictions.iter_mut().enumerate() {
             if let Ok(o) = &mut draw.fit {
                 // the first draw is the most probable one, which is no random draw
                 o.b_eff_m = vec![if k == 0 { 9.0 } else { 0.02 }, if k == 0 { 9.0 } else { 0.03 }];
@@ -226,14 +226,14 @@ mod tests {
         }
         let reference = BTreeMap::from([("k_c".to_owned(), 0.0), ("k_phi".to_owned(), 1e7)]);
         let range = [[-1e5, 1e5], [0.0, 1e8]];
-        let line = stiffness_line(&outcome, PAPER[0], range, &reference).unwrap();
+        let line = stiffness_line(&calibration, PAPER[0], range, &reference).unwrap();
         assert_eq!(line.label, "k* = 1.00e7 N/m^(n+2) at b = 25.0 mm");
         // 1e7 - k_c / 0.025
         let expected = [[-1e5, 1.4e7], [1e5, 6e6]];
         for (point, expected) in line.points.iter().zip(expected) {
             assert!((point[0] - expected[0]).abs() < 1e-6 && (point[1] - expected[1]).abs() < 1e-3);
         }
-        assert_eq!(stiffness_line(&outcome, PAPER[1], range, &reference), None);
+        assert_eq!(stiffness_line(&calibration, PAPER[1], range, &reference), None);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What an independent test says of the soil: the job's own words, or else the experiment's plates and rings.
+//! Reference values of the soil: stated in the job, or else from the experiment's plates and rings.
 
 use std::collections::BTreeMap;
 

@@ -1,7 +1,9 @@
-//! What deserves attention, each with a sentence a test engineer understands.
+//! Flags of a calibration.
+
+use shared::parameters::behind;
 
 use super::finding::findings_that_alarm;
-use super::kind::Flag;
+use super::kind::{Flag, FlagKind};
 use crate::diagnostics::calibration::Diagnostics;
 use crate::finished_calibration::FinishedCalibration;
 use crate::summary::parameter::ParameterSummary;
@@ -9,63 +11,64 @@ use crate::summary::point_estimate::fitted;
 use crate::table::predictive::discrepancy_posterior;
 use crate::words::number;
 
-/// A posterior as wide as so much of its prior, in the sampler's coordinate, has learnt nothing worth the name.
+/// Ratio of posterior to prior standard deviation, in the sampler's coordinate, above which the data are called uninformative.
 const NO_CONTRACTION: f64 = 0.95;
-/// A share of refused vectors above which the prior deserves another look.
+/// Share of rejected parameter vectors above which the prior is questioned.
 const MANY_REJECTED: f64 = 0.5;
 
 impl FinishedCalibration {
-    /// What deserves attention; what casts doubt on all the others stands first.
+    /// All flags; a flag that casts doubt on the others comes first.
     pub(crate) fn flags(&self, diagnostics: &Diagnostics) -> Vec<Flag> {
         let mut flags: Vec<Flag> = self.unbalanced().into_iter().collect();
         flags.extend(findings_that_alarm(diagnostics));
-        let mut flag = |kind: &str, text: String| flags.push(Flag::plain(kind, text));
+        let mut flag = |kind: FlagKind, text: String| flags.push(Flag::plain(kind, text));
         for ((name, parameter), found) in self.parameter_summaries().iter().zip(&diagnostics.parameters) {
             if parameter.at_bound {
-                flag("bound", bound_text(name, parameter));
+                flag(FlagKind::Bound, bound_text(name, parameter));
             }
             if let Some(contraction) = found.contraction.filter(|c| *c < 1.0 - NO_CONTRACTION) {
                 let left = 100.0 * (1.0 - contraction);
-                let text =
-                    format!("the data say nothing about {name}: {left:.0} % of its prior's spread is left");
-                flag("no_information", text);
+                let text = format!(
+                    "the data say nothing about {name}: {left:.0} % of its prior standard deviation remains"
+                );
+                flag(FlagKind::NoInformation, text);
             }
         }
         if let Some(estimate) = &self.estimate {
             if estimate.stop.is_early() {
                 let (what, rough) = match estimate.sd {
-                    Some(_) => ("fit", ", and the standard deviations are rough"),
+                    Some(_) => ("fit", ", and the standard deviations are approximate"),
                     None => ("search", ""),
                 };
                 let text = format!(
-                    "the {what} spent its budget before it settled: a better point may be near{rough}; allow more {}",
+                    "the {what} used its budget before it converged: a better point may be near{rough}; allow more {}",
                     self.spec.method.budget_key()
                 );
-                flag("not_equilibrated", text);
+                flag(FlagKind::NotEquilibrated, text);
             }
             for p in fitted(estimate, &self.spec.parameters) {
                 let (name, prior_sd) = (&p.free.name, p.free.marginal.sd());
                 if p.at_bound {
                     let text = format!(
-                        "{name} lies at a bound of its prior, {} {}: the data ask for a value that the prior excludes, or an effect is missing",
+                        "{name} lies at a bound of its prior, {}{}: the data favour a value that the prior excludes, or an effect is missing",
                         number::significant(p.value, 4),
-                        p.free.unit
+                        behind(&p.free.unit)
                     );
-                    flag("bound", text);
+                    flag(FlagKind::Bound, text);
                 } else if estimate.sd.is_some() && p.sd.is_none_or(|sd| sd > NO_CONTRACTION * prior_sd) {
                     let sd = p.sd.map_or("unbounded".into(), |sd| format!("{sd:.3e}"));
                     let text = format!(
                         "the data say nothing about {name}: its standard deviation is {sd} after the fit and {prior_sd:.3e} before"
                     );
-                    flag("no_information", text);
+                    flag(FlagKind::NoInformation, text);
                 }
             }
         }
         if let Some((m, probability)) = discrepancy_posterior(self).last().filter(|(_, p)| *p > 0.5) {
             let text = format!(
-                "the largest discrepancy that is allowed, {m:.1} noise sds, has the probability {probability:.2}: the model misses conditions by more, an effect is missing or the noise sds are too small"
+                "the largest allowed discrepancy, {m:.1} noise sds, has probability {probability:.2}: the model error is larger still, an effect is missing, or the noise sds are too small"
             );
-            flag("bound", text);
+            flag(FlagKind::Bound, text);
         }
         let (evaluations, rejected) = (self.row.evaluations.unwrap_or(0), self.row.rejected.unwrap_or(0));
         if rejected as f64 > MANY_REJECTED * evaluations as f64 {
@@ -75,24 +78,24 @@ impl FinishedCalibration {
                 .map(|(kind, n)| format!("{kind} {n}"))
                 .collect();
             let mut text = format!(
-                "the model refused {rejected} of {evaluations} parameter vectors ({}): much of the prior means nothing to it",
+                "the model rejected {rejected} of {evaluations} parameter vectors ({}): much of the prior lies outside its validity",
                 kinds.join(", ")
             );
             if let Some(words) = diagnostics.rejections.words() {
                 text.push_str("; ");
                 text.push_str(&words);
             }
-            flag("rejections", text);
+            flag(FlagKind::Rejections, text);
         }
         let holdout = self.predictions.iter().filter_map(|p| p.holdout.as_ref());
         let refused: Vec<&String> = holdout.filter_map(|h| h.as_ref().err()).collect();
         if let Some(reason) = refused.first() {
             let text = format!(
-                "the model refuses {} of {} final draws on the holdout runs ({reason}): a condition outside the fit is beyond it",
+                "the model rejects {} of {} final draws on the holdout runs ({reason}): a holdout condition lies outside its validity",
                 refused.len(),
                 self.predictions.len()
             );
-            flag("rejections", text);
+            flag(FlagKind::Rejections, text);
         }
         flags
     }
@@ -104,22 +107,23 @@ impl FinishedCalibration {
         }
         let stages = self.stages.iter().filter(|s| !s.equilibrated);
         let stages: Vec<String> = stages.map(|s| s.stage.to_string()).collect();
-        let doubt = "neither draws nor evidence can be trusted, nor any flag that follows from them";
+        let doubt = "neither the draws nor the evidence can be trusted, nor any flag derived from them";
         let text = if stages.is_empty() {
             format!("the sampler did not reach equilibrium: {doubt}")
         } else {
             format!(
-                "stages {} ended before the moves reached equilibrium: {doubt}; allow more moves or particles",
-                stages.join(", ")
+                "stage{} {} ended before the moves reached equilibrium: {doubt}; allow more moves or particles",
+                if stages.len() == 1 { "" } else { "s" },
+                number::list(&stages)
             )
         };
-        Some(Flag::plain("not_equilibrated", text))
+        Some(Flag::plain(FlagKind::NotEquilibrated, text))
     }
 }
 
 fn bound_text(name: &str, p: &ParameterSummary) -> String {
     format!(
-        "{name} lies at a bound of its prior (90 % of the posterior in {} to {}): the data ask for a value that the prior excludes, or an effect is missing",
+        "{name} lies at a bound of its prior (90 % of the posterior in {} to {}): the data favour a value that the prior excludes, or an effect is missing",
         number::significant(p.q05, 4),
         number::significant(p.q95, 4)
     )

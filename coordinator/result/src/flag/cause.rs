@@ -1,18 +1,20 @@
-//! What trends look like in words, and which effect they may come from.
+//! Trends of the residuals in words, and the effects that may cause them.
 
-use super::kind::Flag;
-use crate::diagnostics::data_channel::size;
-use crate::diagnostics::trends::{Against, TrendDiagnostics};
+use shared::channel::Channel;
+
+use super::kind::{Flag, FlagKind};
+use crate::diagnostics::trends::{TrendDiagnostics, TrendVariable};
+use crate::words::data_channel::{DataChannel, ShownUnit};
 use crate::words::number;
 use crate::words::probability::{LEVEL, p_words};
 
-const PULL: &str = "drawbar_pull";
-const TORQUE: &str = "torque";
-const SINKAGE: &str = "sinkage";
+const PULL: Channel = Channel::DrawbarPull;
+const TORQUE: Channel = Channel::Torque;
+const SINKAGE: Channel = Channel::Sinkage;
 
-/// What may lie behind the trends of some channels.
+/// A possible cause of trends in some channels.
 struct Cause {
-    channels: Vec<&'static str>,
+    channels: Vec<Channel>,
     words: &'static str,
 }
 
@@ -46,19 +48,19 @@ pub(crate) fn trend_flags(trends: &[TrendDiagnostics]) -> Vec<Flag> {
     let causes = causes(&alarming);
     let flag = |(trend, p): (&TrendDiagnostics, f64)| {
         let mut text = format!(
-            "{} ({} among {} tests)",
+            "{} ({} among {})",
             sentence(trend),
             p_words(p),
-            trends.len()
+            number::count(trends.len(), "test")
         );
-        for cause in causes.iter().filter(|c| c.channels.contains(&&*trend.channel)) {
+        for cause in causes.iter().filter(|c| c.channels.contains(&trend.channel)) {
             text.push_str(": ");
             text.push_str(cause.words);
         }
         Flag {
-            kind: "trend".into(),
-            channel: Some(trend.channel.clone()),
-            against: Some(trend.against.name().into()),
+            kind: FlagKind::Trend,
+            channel: Some(DataChannel::Wheel(trend.channel)),
+            against: Some(trend.against),
             p: Some(p),
             text,
         }
@@ -66,34 +68,32 @@ pub(crate) fn trend_flags(trends: &[TrendDiagnostics]) -> Vec<Flag> {
     strongest(&alarming).into_iter().map(flag).collect()
 }
 
-/// A sentence for each cause that several channels point at.
+/// A sentence for each cause that several channels share.
 pub(crate) fn shared_causes(trends: &[TrendDiagnostics]) -> Vec<String> {
     let causes = causes(&alarming(trends));
     let shared = causes.iter().filter(|cause| cause.channels.len() > 1);
     let sentence = |cause: &Cause| {
-        let names: Vec<String> = cause.channels.iter().map(|c| c.replace('_', " ")).collect();
-        format!(
-            "{} miss the measurements alike: {}",
-            number::list(&names),
-            cause.words
-        )
+        let names: Vec<String> = cause.channels.iter().map(|c| c.words().to_owned()).collect();
+        format!("{} show the same trend: {}", number::list(&names), cause.words)
     };
     shared.map(sentence).collect()
 }
 
-/// `drawbar pull is over-predicted at low slip and under-predicted at high slip, by 4.1 N in all`.
+/// `drawbar pull is over-predicted at low slip and under-predicted at high slip, by about 4.1 N from one end to the other`.
 fn sentence(trend: &TrendDiagnostics) -> String {
-    let channel = trend.channel.replace('_', " ");
-    let by = size(&trend.channel, trend.change.abs());
+    let channel = trend.channel.words();
+    let by = ShownUnit::of(trend.channel).size(trend.change.abs());
     let [low, high] = match trend.against {
-        Against::Constant => {
+        TrendVariable::Constant => {
             let how = if trend.change > 0.0 { "under" } else { "over" };
-            return format!("{channel} is {how}-predicted by about {by} in all runs");
+            return format!(
+                "{channel} is {how}-predicted by about {by} in all runs, before the fit compensates"
+            );
         }
-        Against::Slip => ["at low slip", "at high slip"],
-        Against::WheelLoad => ["under low loads", "under high loads"],
-        Against::SledSpeed => ["at low speed", "at high speed"],
-        Against::SlipXSledSpeed => ["where slip times speed is low", "where it is high"],
+        TrendVariable::Slip => ["at low slip", "at high slip"],
+        TrendVariable::WheelLoad => ["under low loads", "under high loads"],
+        TrendVariable::SledSpeed => ["at low speed", "at high speed"],
+        TrendVariable::SlipXSledSpeed => ["where slip times speed is low", "where it is high"],
     };
     let [first, then] = if trend.change > 0.0 {
         ["over", "under"]
@@ -101,38 +101,41 @@ fn sentence(trend: &TrendDiagnostics) -> String {
         ["under", "over"]
     };
     format!(
-        "{channel} is {first}-predicted {low} and {then}-predicted {high}, by about {by} from one end to the other"
+        "{channel} is {first}-predicted {low} and {then}-predicted {high}, by about {by} from one end to the other, before the fit compensates"
     )
 }
 
-/// What the strongest trends are known to come from; hints, since other effects can leave the same trends.
+/// Known causes of the strongest trends; hints, since other effects can leave the same trends.
 fn causes(alarming: &[(&TrendDiagnostics, f64)]) -> Vec<Cause> {
     let strongest = strongest(alarming);
-    let change = |channel: &str, against: Against| {
+    let change = |channel: Channel, against: TrendVariable| {
         let mut own = strongest.iter().map(|(trend, _)| trend);
         own.find(|t| t.channel == channel && t.against == against)
             .map(|t| t.change)
     };
-    // Of pull and torque one may follow something else still more.
-    let weaker = |channel: &str| {
+    // One of pull and torque may follow another condition more strongly.
+    let weaker = |channel: Channel| {
         let mut own = alarming.iter().map(|(trend, _)| trend);
-        own.find(|t| t.channel == channel && t.against == Against::Slip)
+        own.find(|t| t.channel == channel && t.against == TrendVariable::Slip)
             .map(|t| t.change)
     };
     let mut causes = Vec::new();
-    let mut cause = |channels: &[&'static str], words| {
+    let mut cause = |channels: &[Channel], words| {
         causes.push(Cause {
             channels: channels.to_vec(),
             words,
         });
     };
-    let (pull, torque) = (change(PULL, Against::Slip), change(TORQUE, Against::Slip));
+    let (pull, torque) = (
+        change(PULL, TrendVariable::Slip),
+        change(TORQUE, TrendVariable::Slip),
+    );
     if let Some(leading) = pull.or(torque) {
         let agrees = |other: Option<f64>| other.is_some_and(|c| c * leading > 0.0);
         let words = if leading > 0.0 {
-            "shear may be mobilised later than the model has it"
+            "shear may be mobilised later than in the model"
         } else {
-            "shear may be mobilised earlier than the model has it"
+            "shear may be mobilised earlier than in the model"
         };
         match (agrees(weaker(PULL)), agrees(weaker(TORQUE))) {
             (true, true) => cause(&[PULL, TORQUE], words),
@@ -140,24 +143,24 @@ fn causes(alarming: &[(&TrendDiagnostics, f64)]) -> Vec<Cause> {
             _ => {}
         }
     }
-    if let Some(change) = change(SINKAGE, Against::SledSpeed) {
+    if let Some(change) = change(SINKAGE, TrendVariable::SledSpeed) {
         let words = if change < 0.0 {
-            "the soil's pressure may depend on the rate, and carry more where the wheel is faster"
+            "the soil's pressure may depend on the rate and be higher at higher speed"
         } else {
-            "the soil's pressure may depend on the rate, and carry less where the wheel is faster"
+            "the soil's pressure may depend on the rate and be lower at higher speed"
         };
         cause(&[SINKAGE], words);
     }
-    if let Some(change) = change(SINKAGE, Against::Slip) {
+    if let Some(change) = change(SINKAGE, TrendVariable::Slip) {
         let words = if change > 0.0 {
-            "the wheel may dig itself in as it slips (slip-sinkage)"
+            "the wheel may sink deeper as it slips (slip-sinkage)"
         } else {
-            "slip-sinkage may be weaker than the model has it"
+            "slip-sinkage may be weaker than in the model"
         };
         cause(&[SINKAGE], words);
     }
-    if change(PULL, Against::Constant).is_some() {
-        cause(&[PULL], "the rig's zero of the pull (its tare) may be off");
+    if change(PULL, TrendVariable::Constant).is_some() {
+        cause(&[PULL], "the rig's zero of the pull (its tare) may be wrong");
     }
     causes
 }
@@ -167,9 +170,9 @@ mod tests {
     use super::*;
 
     /// A change of so many standard deviations.
-    fn trend(channel: &str, against: Against, z: f64) -> TrendDiagnostics {
+    fn trend(channel: Channel, against: TrendVariable, z: f64) -> TrendDiagnostics {
         TrendDiagnostics {
-            channel: channel.into(),
+            channel,
             against,
             unit: "SI".into(),
             change: 0.001 * z,
@@ -185,44 +188,42 @@ mod tests {
 
     #[test]
     fn chance_raises_no_flag_and_more_tests_raise_the_bar() {
-        let one = trend(PULL, Against::Slip, 3.0);
+        let one = trend(PULL, TrendVariable::Slip, 3.0);
         assert_eq!(trend_flags(std::slice::from_ref(&one)).len(), 1);
         let mut many = vec![one];
-        many.resize(4, trend(TORQUE, Against::Slip, 0.1));
+        many.resize(4, trend(TORQUE, TrendVariable::Slip, 0.1));
         assert_eq!(trend_flags(&many), []);
     }
 
     #[test]
     fn the_strongest_trend_speaks_for_its_channel() {
         let flags = trend_flags(&[
-            trend(SINKAGE, Against::Constant, 5.0),
-            trend(SINKAGE, Against::WheelLoad, -50.0),
-            trend(SINKAGE, Against::Slip, 45.0),
+            trend(SINKAGE, TrendVariable::Constant, 5.0),
+            trend(SINKAGE, TrendVariable::WheelLoad, -50.0),
+            trend(SINKAGE, TrendVariable::Slip, 45.0),
         ]);
         let [flag] = flags.as_slice() else {
             panic!("{flags:?}")
         };
-        assert_eq!((flag.kind.as_str(), flag.p), ("trend", Some(0.0)));
-        assert_eq!(flag.channel.as_deref(), Some(SINKAGE));
-        assert_eq!(flag.against.as_deref(), Some("wheel_load"));
+        assert_eq!((flag.kind, flag.p), (FlagKind::Trend, Some(0.0)));
+        assert_eq!(flag.channel, Some(DataChannel::Wheel(SINKAGE)));
+        assert_eq!(flag.against, Some(TrendVariable::WheelLoad));
         assert_eq!(
             flag.text,
-            "sinkage is under-predicted under low loads and over-predicted under high loads, by about 50 mm from one end to the other (p < 1e-12 among 3 tests)"
+            "sinkage is under-predicted under low loads and over-predicted under high loads, by about 50 mm from one end to the other, before the fit compensates (p < 1e-12 among 3 tests)"
         );
     }
 
     #[test]
     fn pull_and_torque_together_point_at_shear() {
         let later = [
-            trend(PULL, Against::Slip, 8.0),
-            trend(TORQUE, Against::Slip, 6.0),
-            trend(TORQUE, Against::SledSpeed, -7.0),
+            trend(PULL, TrendVariable::Slip, 8.0),
+            trend(TORQUE, TrendVariable::Slip, 6.0),
+            trend(TORQUE, TrendVariable::SledSpeed, -7.0),
         ];
         assert_eq!(
             shared_causes(&later),
-            [
-                "drawbar pull and torque miss the measurements alike: shear may be mobilised later than the model has it"
-            ]
+            ["drawbar pull and torque show the same trend: shear may be mobilised later than in the model"]
         );
         let found = texts(&later);
         assert!(
@@ -238,15 +239,15 @@ mod tests {
         assert!(
             found
                 .iter()
-                .all(|t| t.ends_with("shear may be mobilised later than the model has it"))
+                .all(|t| t.ends_with("shear may be mobilised later than in the model"))
         );
-        let earlier = [trend(PULL, Against::Slip, -8.0)];
-        assert!(texts(&earlier)[0].ends_with("shear may be mobilised earlier than the model has it"));
+        let earlier = [trend(PULL, TrendVariable::Slip, -8.0)];
+        assert!(texts(&earlier)[0].ends_with("shear may be mobilised earlier than in the model"));
         assert_eq!(shared_causes(&earlier), [""; 0], "one channel says it itself");
         // Opposite signs are not what shear does.
         let opposed = [
-            trend(PULL, Against::Slip, 8.0),
-            trend(TORQUE, Against::Slip, -6.0),
+            trend(PULL, TrendVariable::Slip, 8.0),
+            trend(TORQUE, TrendVariable::Slip, -6.0),
         ];
         assert!(
             texts(&opposed).iter().all(|t| t.ends_with("tests)")),
@@ -260,26 +261,26 @@ mod tests {
         for (channel, against, z, ending) in [
             (
                 SINKAGE,
-                Against::SledSpeed,
+                TrendVariable::SledSpeed,
                 -6.0,
-                "carry more where the wheel is faster",
+                "be higher at higher speed",
             ),
-            (
-                SINKAGE,
-                Against::SledSpeed,
-                6.0,
-                "carry less where the wheel is faster",
-            ),
-            (SINKAGE, Against::Slip, 6.0, "as it slips (slip-sinkage)"),
-            (SINKAGE, Against::Slip, -6.0, "weaker than the model has it"),
-            (PULL, Against::Constant, 6.0, "(its tare) may be off"),
+            (SINKAGE, TrendVariable::SledSpeed, 6.0, "be lower at higher speed"),
+            (SINKAGE, TrendVariable::Slip, 6.0, "as it slips (slip-sinkage)"),
+            (SINKAGE, TrendVariable::Slip, -6.0, "weaker than in the model"),
+            (PULL, TrendVariable::Constant, 6.0, "(its tare) may be wrong"),
             (
                 TORQUE,
-                Against::Constant,
+                TrendVariable::Constant,
                 6.0,
-                "in all runs (p = 2e-9 among 1 tests)",
+                "in all runs, before the fit compensates (p = 2e-9 among 1 test)",
             ),
-            (PULL, Against::SlipXSledSpeed, 6.0, "(p = 2e-9 among 1 tests)"),
+            (
+                PULL,
+                TrendVariable::SlipXSledSpeed,
+                6.0,
+                "(p = 2e-9 among 1 test)",
+            ),
         ] {
             let found = texts(&[trend(channel, against, z)]);
             assert!(found[0].ends_with(ending), "{found:?}");

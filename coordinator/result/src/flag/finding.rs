@@ -1,12 +1,12 @@
-//! What of the diagnostics deserves attention. Each family of tests is corrected for their number (Bonferroni), so that
-//! in a calibration where nothing is wrong a family raises a flag once in a hundred times.
+//! Flags of the diagnostics' tests. Each family is corrected for its number of tests (Bonferroni), so that a family raises a
+//! flag in one of a hundred calibrations where nothing is wrong.
 
 use super::cause::trend_flags;
-use super::kind::Flag;
+use super::kind::{Flag, FlagKind};
 use crate::diagnostics::calibration::Diagnostics;
 use crate::diagnostics::channels::ChiSquareTest;
-use crate::diagnostics::data_channel::size;
 use crate::diagnostics::residuals::ResidualDiagnostics;
+use crate::words::data_channel::DataChannel;
 use crate::words::number;
 use crate::words::probability::{LEVEL, p_words};
 
@@ -20,10 +20,10 @@ pub(crate) fn findings_that_alarm(diagnostics: &Diagnostics) -> Vec<Flag> {
         .collect()
 }
 
-fn flag(kind: &str, channel: Option<&str>, p: Option<f64>, text: String) -> Flag {
+fn flag(kind: FlagKind, channel: Option<DataChannel>, p: Option<f64>, text: String) -> Flag {
     Flag {
-        kind: kind.into(),
-        channel: channel.map(Into::into),
+        kind,
+        channel,
         against: None,
         p,
         text,
@@ -38,7 +38,7 @@ fn alarming(p: Option<f64>, tests: usize) -> Option<f64> {
 fn silent_channels(diagnostics: &Diagnostics) -> impl Iterator<Item = Flag> {
     diagnostics.channels.iter().filter_map(|channel| {
         let text = channel.silence.clone()?;
-        Some(flag("no_information", Some(&channel.channel), None, text))
+        Some(flag(FlagKind::NoInformation, Some(channel.channel), None, text))
     })
 }
 
@@ -50,19 +50,17 @@ fn misfits(diagnostics: &Diagnostics) -> impl Iterator<Item = Flag> {
         .filter(|c| c.chi_square.is_some())
         .count();
     let tests = if judged > 1 { judged + 1 } else { 1 };
-    let misfit = move |channel: Option<&str>, test: &ChiSquareTest| {
+    let misfit = move |channel: Option<DataChannel>, test: &ChiSquareTest| {
         let p = alarming(test.p, tests)?;
-        let what = channel.map_or("all fitted data: ".into(), |c| {
-            format!("{}: ", c.replace('_', " "))
-        });
-        Some(flag("chi2", channel, Some(p), what + &test.words()))
+        let what = channel.map_or("all fitted data: ".into(), |c| format!("{}: ", c.words()));
+        Some(flag(FlagKind::Chi2, channel, Some(p), what + &test.words()))
     };
     let all = diagnostics
         .chi_square
         .as_ref()
         .and_then(|test| misfit(None, test));
     let channels = diagnostics.channels.iter().filter(move |_| tests > 1);
-    let channels = channels.filter_map(move |c| misfit(Some(&c.channel), c.chi_square.as_ref()?));
+    let channels = channels.filter_map(move |c| misfit(Some(c.channel), c.chi_square.as_ref()?));
     all.into_iter().chain(channels)
 }
 
@@ -85,19 +83,19 @@ fn outliers(residuals: &[ResidualDiagnostics]) -> Vec<Flag> {
     let text = |(row, p, count): (&ResidualDiagnostics, f64, usize)| {
         let others = match count {
             1 => String::new(),
-            n => format!("; {} more of this channel are out as well", n - 1),
+            2 => "; 1 more residual of this channel is beyond chance".to_owned(),
+            n => format!("; {} more residuals of this channel are beyond chance", n - 1),
         };
         let text = format!(
-            "{} of run {} lies {} {} the prediction, {} of its standard deviations ({} among {tests} residuals): a mistake in the measurement, or a condition that the model does not reach{others}",
-            row.channel.replace('_', " "),
+            "{} of run {} lies {} {} the prediction, {} of its standard deviations ({} among {tests} residuals): a measurement error, or a condition outside the model's validity{others}",
+            row.channel.words(),
             row.run,
-            size(&row.channel, row.residual.abs()),
+            row.channel.shown().size(row.residual.abs()),
             if row.residual > 0.0 { "above" } else { "below" },
-            row.studentised
-                .map_or(number::NONE.into(), |t| number::significant(t.abs(), 2)),
+            number::or_none(row.studentised, |t| number::significant(t.abs(), 2)),
             p_words(p)
         );
-        flag("outlier", Some(&row.channel), Some(p), text)
+        flag(FlagKind::Outlier, Some(row.channel), Some(p), text)
     };
     worst.into_iter().map(text).collect()
 }
@@ -112,33 +110,37 @@ fn conflicts(diagnostics: &Diagnostics) -> Vec<Flag> {
     let single = diagnostics.parameters.iter().filter_map(|parameter| {
         let p = alarming(parameter.conflict_p, tests)?;
         let text = format!(
-            "the data pull {} into the tail of its prior ({} among {tests} tests): the prior is wrong, or an effect is missing",
+            "the data pull {} into the tail of its prior ({} among {}): the prior is wrong, or an effect is missing",
             parameter.name,
-            p_words(p)
+            p_words(p),
+            number::count(tests, "test")
         );
-        Some(flag("conflict", None, Some(p), text))
+        Some(flag(FlagKind::Conflict, None, Some(p), text))
     });
     let all = diagnostics.conflict.and_then(|conflict| {
         let p = alarming(conflict.p, tests)?;
         let text = format!(
-            "the data contradict the prior as a whole (squared distance {} where {} is expected, {} among {tests} tests): the prior is wrong, or an effect is missing",
+            "the data contradict the prior as a whole (squared distance {} where {} is expected, {} among {}): the prior is wrong, or an effect is missing",
             number::significant(conflict.statistic, 3),
             conflict.degrees_of_freedom,
-            p_words(p)
+            p_words(p),
+            number::count(tests, "test")
         );
-        Some(flag("conflict", None, Some(p), text))
+        Some(flag(FlagKind::Conflict, None, Some(p), text))
     });
     all.into_iter().chain(single).collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use shared::channel::Channel;
+
     use super::*;
     use crate::fixture;
 
     fn quiet() -> Diagnostics {
-        let outcome = fixture::outcome();
-        let mut diagnostics = outcome.diagnostics(&outcome.comparison());
+        let calibration = fixture::calibration();
+        let mut diagnostics = calibration.diagnostics(&calibration.comparison());
         for channel in &mut diagnostics.channels {
             (channel.silence, channel.chi_square) = (None, None);
         }
@@ -155,7 +157,7 @@ mod tests {
         diagnostics
     }
 
-    fn kinds(diagnostics: &Diagnostics) -> Vec<(String, Option<String>, Option<f64>)> {
+    fn kinds(diagnostics: &Diagnostics) -> Vec<(FlagKind, Option<DataChannel>, Option<f64>)> {
         let flags = findings_that_alarm(diagnostics);
         flags.into_iter().map(|f| (f.kind, f.channel, f.p)).collect()
     }
@@ -172,7 +174,11 @@ mod tests {
         diagnostics.residuals[0].p = Some(1.01 * LEVEL / tests);
         assert_eq!(kinds(&diagnostics), [], "just above the level");
         diagnostics.residuals[0].p = Some(0.5 * LEVEL / tests);
-        let expected = ("outlier".into(), Some("drawbar_pull".into()), Some(0.5 * LEVEL));
+        let expected = (
+            FlagKind::Outlier,
+            Some(DataChannel::Wheel(Channel::DrawbarPull)),
+            Some(0.5 * LEVEL),
+        );
         assert_eq!(kinds(&diagnostics), [expected]);
         let text = &findings_that_alarm(&diagnostics)[0].text;
         assert!(
@@ -192,7 +198,7 @@ mod tests {
         assert!(
             flags[0]
                 .text
-                .ends_with("; 1 more of this channel are out as well"),
+                .ends_with("; 1 more residual of this channel is beyond chance"),
             "{}",
             flags[0].text
         );
@@ -208,8 +214,8 @@ mod tests {
             p: Some(1e-8),
         });
         diagnostics.parameters[1].conflict_p = Some(1e-6);
-        let found: Vec<String> = kinds(&diagnostics).into_iter().map(|k| k.0).collect();
-        assert_eq!(found, ["chi2", "conflict"]);
+        let found: Vec<FlagKind> = kinds(&diagnostics).into_iter().map(|k| k.0).collect();
+        assert_eq!(found, [FlagKind::Chi2, FlagKind::Conflict]);
         let text = &findings_that_alarm(&diagnostics)[1].text;
         assert!(
             text.starts_with("the data pull n into the tail of its prior"),

@@ -1,26 +1,69 @@
 //! A flag: something that deserves attention.
 
+use crate::diagnostics::trends::TrendVariable;
+use crate::words::data_channel::DataChannel;
+
 /// Something that deserves attention.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Flag {
-    /// `trend`, `chi2`, `outlier`, `conflict`, `bound`, `not_equilibrated`, `no_information`, `rejections`; later versions
-    /// add others.
-    pub kind: String,
+    /// What it is about.
+    #[schema(value_type = String)]
+    pub kind: FlagKind,
     /// The channel it is about.
-    pub channel: Option<String>,
-    /// The condition it varies with: `constant`, `slip`, `wheel_load`, `sled_speed`, `slip_x_sled_speed`.
-    pub against: Option<String>,
+    #[schema(value_type = Option<String>)]
+    pub channel: Option<DataChannel>,
+    /// The condition it varies with.
+    #[schema(value_type = Option<String>)]
+    pub against: Option<TrendVariable>,
     /// Probability of the observation if nothing were wrong.
     pub p: Option<f64>,
     /// What it means.
     pub text: String,
 }
 
+/// What a flag is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FlagKind {
+    /// Residuals follow a condition of the runs.
+    Trend,
+    /// Residuals are larger than the declared errors.
+    Chi2,
+    /// One residual is beyond chance.
+    Outlier,
+    /// Data and prior contradict each other.
+    Conflict,
+    /// A parameter lies at a bound of its prior.
+    Bound,
+    /// A sampler, a fit or a search did not reach its target.
+    NotEquilibrated,
+    /// The data say nothing about a parameter, or a channel says nothing.
+    NoInformation,
+    /// The model rejected parameter vectors.
+    Rejections,
+}
+
+impl FlagKind {
+    /// Name in `summary.json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            FlagKind::Trend => "trend",
+            FlagKind::Chi2 => "chi2",
+            FlagKind::Outlier => "outlier",
+            FlagKind::Conflict => "conflict",
+            FlagKind::Bound => "bound",
+            FlagKind::NotEquilibrated => "not_equilibrated",
+            FlagKind::NoInformation => "no_information",
+            FlagKind::Rejections => "rejections",
+        }
+    }
+}
+
 impl Flag {
     /// A flag that is about no channel and no probability.
-    pub(crate) fn plain(kind: &str, text: String) -> Self {
+    pub(crate) fn plain(kind: FlagKind, text: String) -> Self {
         Flag {
-            kind: kind.into(),
+            kind,
             channel: None,
             against: None,
             p: None,

@@ -22,18 +22,18 @@ pub fn model_limits(spec: &Spec) -> Vec<String> {
         ModelKind::QuasiStatic => {
             if !lugged.is_empty() && !named(&[Variable::GrouserCount, Variable::GrouserHeight]) {
                 limits.push(format!(
-                    "quasi_static models the smooth rim: the grousers of {lugged} enter only through a radius of their own (wheel_radius_m.NAME)"
+                    "quasi_static models the smooth rim: the grousers of {lugged} enter only through a wheel radius of their own (wheel_radius_m.NAME)"
                 ));
             }
             if spec.experiment.runs.iter().any(|r| r.pass > 1) && !named(&[Variable::Pass]) {
                 limits.push(
-                    "quasi_static has no memory between passes: every pass is predicted like the first".into(),
+                    "quasi_static keeps no state between passes: every pass is predicted like the first".into(),
                 );
             }
         }
         ModelKind::Scm if lugged.is_empty() => {}
         ModelKind::Scm => limits.push(format!(
-            "scm rolls the grousers of {lugged}, but a height field cannot show their flanks: thrust beyond their sheared tips is left out"
+            "scm includes the grousers of {lugged}, but a height field cannot represent their flanks: thrust beyond their sheared tips is left out"
         )),
     }
     limits

@@ -1,23 +1,23 @@
 //! Flags of a study: those of its calibrations, and calibrations that missed a mode.
 
-use super::kind::Flag;
+use super::kind::{Flag, FlagKind};
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 
-/// The best of a thousand draws lies some nats below the mode, and more in many dimensions; this is beyond chance.
+/// Difference of log-posteriors beyond which a calibration missed a mode `[nats]`: the best of a thousand draws lies a few nats
+/// below the mode, more in many dimensions.
 const MISSED_NATS: f64 = 15.0;
 
 impl Study {
-    /// What deserves attention; of a calibration beside the first, under the name of its algorithm, of an extension under its
-    /// own.
+    /// All flags: of a point estimate with the name of its algorithm, of an extension with its own name.
     pub fn flags(&self) -> Vec<Flag> {
-        let of = |outcome: &FinishedCalibration| outcome.diagnostics(&outcome.comparison()).flags;
+        let of = |calibration: &FinishedCalibration| calibration.diagnostics(&calibration.comparison()).flags;
         let mut flags = self.missed_modes();
         flags.extend(of(&self.lead));
-        let beside = self.beside.iter().map(|o| (o.spec.method.name(), o));
+        let beside = self.point_estimates.iter().map(|o| (o.spec.method.name(), o));
         let extensions = self.extensions.iter().map(|o| (o.experiment.as_str(), o));
-        for (name, outcome) in beside.chain(extensions) {
-            flags.extend(of(outcome).into_iter().map(|flag| Flag {
+        for (name, calibration) in beside.chain(extensions) {
+            flags.extend(of(calibration).into_iter().map(|flag| Flag {
                 text: format!("{name}: {}", flag.text),
                 ..flag
             }));
@@ -25,18 +25,18 @@ impl Study {
         flags
     }
 
-    /// A calibration whose best parameters are far less probable than what another one of the study found has missed them.
+    /// Flags of the calibrations whose best parameters are far less probable than those that another one of the study found.
     pub(crate) fn missed_modes(&self) -> Vec<Flag> {
-        let best = |outcome: &FinishedCalibration| match &outcome.estimate {
+        let best = |calibration: &FinishedCalibration| match &calibration.estimate {
             Some(estimate) => Some(estimate.log_likelihood + estimate.log_prior),
             None => {
-                let sample = outcome.most_probable()?;
+                let sample = calibration.most_probable()?;
                 Some(sample.log_likelihood? + sample.log_prior)
             }
         };
         let found: Vec<(&str, f64)> = self
-            .outcomes()
-            .filter_map(|outcome| Some((outcome.spec.method.name(), best(outcome)?)))
+            .submitted()
+            .filter_map(|calibration| Some((calibration.spec.method.name(), best(calibration)?)))
             .collect();
         let Some(&(winner, highest)) = found.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else {
             return Vec::new();
@@ -46,10 +46,10 @@ impl Study {
             .filter(|(_, log_posterior)| highest - log_posterior > MISSED_NATS)
             .map(|(name, log_posterior)| {
                 let text = format!(
-                    "{name} has missed what {winner} found, parameters whose log-posterior is {:.0} nats higher: its result is not the answer",
+                    "{name} missed a mode that {winner} found, with a log-posterior {:.0} nats higher: do not use the result of {name}",
                     highest - log_posterior
                 );
-                Flag::plain("not_equilibrated", text)
+                Flag::plain(FlagKind::NotEquilibrated, text)
             })
             .collect()
     }
@@ -60,20 +60,20 @@ mod tests {
     use crate::fixture;
 
     #[test]
-    fn what_another_calibration_found_is_held_against_those_that_missed_it() {
+    fn a_calibration_that_missed_a_mode_found_by_another_is_flagged() {
         let mut study = fixture::study();
         let missed = |study: &super::Study| {
             let flags = study.flags();
-            let found = flags.iter().filter(|f| f.text.contains("has missed what"));
+            let found = flags.iter().filter(|f| f.text.contains("missed a mode that"));
             found.map(|f| f.text.clone()).collect::<Vec<String>>()
         };
         assert_eq!(missed(&study), Vec::<String>::new());
-        if let Some(estimate) = &mut study.beside[0].estimate {
+        if let Some(estimate) = &mut study.point_estimates[0].estimate {
             estimate.log_likelihood += 100.0;
         }
         let texts = missed(&study);
         assert!(
-            texts.len() == 1 && texts[0].starts_with("tmcmc has missed what ga found"),
+            texts.len() == 1 && texts[0].starts_with("tmcmc missed a mode that ga found"),
             "{texts:?}"
         );
         assert_eq!(

@@ -4,14 +4,12 @@
 //! - `page`: the page. `section`: its parts, in reading order.
 //! - `chart`: the pictures, drawn as inline SVG.
 //! - `script`: the modules that draw the figures in the reader's browser, and their numbers.
-//! - `quantity`: channels as people read them.
 //!
 //! Names come from users; the templates escape every text, and so do the modules. Without scripts everything but the figures
 //! stands there, and in place of each figure its numbers.
 
 mod chart;
 mod page;
-mod quantity;
 mod script;
 mod section;
 

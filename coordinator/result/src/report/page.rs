@@ -10,32 +10,32 @@ const STYLE: &str = include_str!("style.css");
 
 /// The report as one HTML page.
 pub fn page(study: &Study) -> String {
-    let outcome = &study.lead;
-    let comparison = outcome.comparison();
-    let diagnostics = outcome.diagnostics(&comparison);
-    let (parameters, method) = match &outcome.estimate {
+    let calibration = &study.lead;
+    let comparison = calibration.comparison();
+    let diagnostics = calibration.diagnostics(&comparison);
+    let (parameters, method) = match &calibration.estimate {
         Some(estimate) => (
-            section::estimate(outcome, estimate),
+            section::estimate(calibration, estimate),
             match estimate.sd {
-                Some(_) => ("fit", "Fit", section::fit(outcome, estimate)),
-                None => ("search", "Search", section::fit(outcome, estimate)),
+                Some(_) => ("fit", "Fit", section::fit(calibration, estimate)),
+                None => ("search", "Search", section::fit(calibration, estimate)),
             },
         ),
         None => (
-            section::parameters(outcome),
-            ("stages", "Sampler", section::stages(outcome)),
+            section::parameters(calibration),
+            ("stages", "Sampler", section::stages(calibration)),
         ),
     };
     let mut sections: Vec<(&str, &str, Markup)> = vec![
         (
             "comparison",
             "Model against measurement",
-            section::comparison(outcome, &comparison),
+            section::comparison(calibration, &comparison),
         ),
         (
             "errors",
             "Errors by channel",
-            html! { (section::errors(outcome, &comparison)) (section::groups(&comparison)) },
+            html! { (section::errors(calibration, &comparison)) (section::groups(&comparison)) },
         ),
         ("parameters", "Parameters", parameters),
         method,
@@ -46,17 +46,17 @@ pub fn page(study: &Study) -> String {
             ("diagnostics", "Diagnostics", section::diagnostics(&diagnostics)),
             (
                 "rejections",
-                "Refusals by region of the prior",
+                "Rejections by region of the prior",
                 section::rejections(&diagnostics.rejections),
             ),
         ];
         sections.splice(3..3, after_parameters);
     }
-    if !study.beside.is_empty() {
+    if !study.point_estimates.is_empty() {
         sections.push((
             "beside",
             "Point estimates",
-            section::point_estimates(&study.beside),
+            section::point_estimates(&study.point_estimates),
         ));
     }
     if let Some(discovery) = section::discovery(study) {
@@ -66,7 +66,7 @@ pub fn page(study: &Study) -> String {
     if !figures.is_empty() {
         sections.push(("figures", "Figures", section::figures(&figures)));
     }
-    sections.push(("provenance", "Provenance", section::provenance(outcome)));
+    sections.push(("provenance", "Provenance", section::provenance(calibration)));
     let markup = html! {
         (DOCTYPE)
         html lang="en" {
@@ -74,13 +74,13 @@ pub fn page(study: &Study) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                title { "Calibration report: " (outcome.experiment) }
+                title { "Calibration report: " (calibration.experiment) }
                 style { (PreEscaped(STYLE)) }
             }
             body {
                 header {
-                    h1 { "Calibration report: " (outcome.experiment) }
-                    p.subtitle { (section::subtitle(outcome)) }
+                    h1 { "Calibration report: " (calibration.experiment) }
+                    p.subtitle { (section::subtitle(calibration)) }
                     nav {
                         @for (id, title, _) in &sections { a href={ "#" (id) } { (title) } " " }
                     }
@@ -102,11 +102,10 @@ pub fn page(study: &Study) -> String {
 mod tests {
     use crate::finished_calibration::FinishedCalibration;
     use crate::fixture;
-
     use crate::study::Study;
 
-    fn page(outcome: FinishedCalibration) -> String {
-        super::page(&Study::from(outcome))
+    fn page(calibration: FinishedCalibration) -> String {
+        super::page(&Study::from(calibration))
     }
 
     #[test]
@@ -126,7 +125,7 @@ mod tests {
 
     #[test]
     fn the_page_needs_nothing_from_elsewhere() {
-        let page = page(fixture::outcome());
+        let page = page(fixture::calibration());
         for word in ["http://", "https://", "src=", "@import", "url("] {
             assert!(!page.contains(word), "{word}");
         }
@@ -134,14 +133,14 @@ mod tests {
 
     #[test]
     fn no_number_is_missing_from_a_picture() {
-        for outcome in [
-            fixture::outcome(),
+        for calibration in [
+            fixture::calibration(),
             fixture::without_holdout(),
             fixture::all_refused(),
             fixture::fit(),
             fixture::search(),
         ] {
-            let page = page(outcome);
+            let page = page(calibration);
             for word in ["NaN", "inf ", "inf\"", "-inf"] {
                 assert!(!page.contains(word), "{word}");
             }
@@ -150,7 +149,7 @@ mod tests {
 
     #[test]
     fn equal_outcomes_give_equal_pages() {
-        assert_eq!(page(fixture::outcome()), page(fixture::outcome()));
+        assert_eq!(page(fixture::calibration()), page(fixture::calibration()));
     }
 
     #[test]
@@ -158,7 +157,7 @@ mod tests {
         let page = page(fixture::fit());
         for words in [
             "AT BOUND",
-            "no step gains anything",
+            "no step improves the posterior",
             "lm with at most 200 evaluations",
             "interpolation",
         ] {
@@ -167,7 +166,7 @@ mod tests {
         for words in [
             "posterior mean",
             "posterior-mean",
-            "predictive intervals lie",
+            "predictive intervals contain",
             "equilibrium",
             "log-evidence",
             "90 % ",
@@ -182,7 +181,7 @@ mod tests {
         let page = page(fixture::search());
         for words in [
             "ga with at most 200 generations of 100",
-            "its generations had passed",
+            "its last generation was reached",
             "allow more generations",
             "there are no standard deviations",
         ] {
@@ -195,12 +194,12 @@ mod tests {
     #[test]
     fn without_holdout_the_report_says_what_that_means() {
         assert!(page(fixture::without_holdout()).contains("No run was held out"));
-        assert!(!page(fixture::outcome()).contains("No run was held out"));
+        assert!(!page(fixture::calibration()).contains("No run was held out"));
     }
 
     #[test]
     fn the_model_s_limits_and_the_likelihood_s_departure_are_always_stated() {
-        let page = page(fixture::outcome());
+        let page = page(fixture::calibration());
         assert!(page.contains("Grousers are not modelled here"));
         assert!(page.contains("lack 1/sigma"));
     }

@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use crate::figure::Figures;
+use crate::figure::StudyFigures;
 
 /// The modules, each behind those that it imports.
 const MODULES: [(&str, &str); 11] = [
@@ -31,7 +31,7 @@ const MODULES: [(&str, &str); 11] = [
 const PAGE: (&str, &str) = ("page", include_str!("../../../page/figures/page.js"));
 
 /// The numbers of the figures, and the modules that draw them.
-pub(super) fn scripts(figures: &Figures) -> Markup {
+pub(super) fn scripts(figures: &StudyFigures) -> Markup {
     let program = format!(
         "const modules = {{}};\n{}modules.page.draw(document);\n",
         program()
@@ -43,7 +43,7 @@ pub(super) fn scripts(figures: &Figures) -> Markup {
 }
 
 /// Numbers and names as JSON in which no text can end the element that it stands in.
-fn data(figures: &Figures) -> String {
+fn data(figures: &StudyFigures) -> String {
     let json = serde_json::to_string(figures).expect("figures have a JSON form");
     // `<` stands in texts alone, where its escape means the same
     json.replace('<', "\\u003c")

@@ -3,13 +3,15 @@
 use std::collections::BTreeMap;
 
 use inference::diagnostics;
+use job::AlgorithmName;
 use shared::channel::Channel;
+use shared::experiment::RunUse;
 
 use super::error::{BaselineSummary, ErrorSummary};
 use super::parameter::ParameterSummary;
 use crate::finished_calibration::FinishedCalibration;
 use crate::table::coverage::Coverage;
-use crate::table::row::ComparisonRow;
+use crate::table::row::{ComparisonRow, rows_of};
 
 /// A calibration of the ledger.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -17,7 +19,8 @@ pub struct CalibrationSummary {
     /// Effects switched on.
     pub effects: Vec<String>,
     /// Algorithm.
-    pub algorithm: String,
+    #[schema(value_type = String)]
+    pub algorithm: AlgorithmName,
     /// Log-evidence.
     pub log_evidence: Option<f64>,
     /// Its standard error.
@@ -98,14 +101,14 @@ impl FinishedCalibration {
                 let rows = comparison
                     .rows
                     .iter()
-                    .filter(|r| r.usage == "fit" && r.channel == c.name());
+                    .filter(|r| r.usage == RunUse::Fit && r.channel == *c);
                 let sds: Vec<f64> = rows.filter_map(|r| r.noise_sd).collect();
                 Some((c.name().to_owned(), diagnostics::mean(&sds)?))
             })
             .collect();
         Some(CalibrationSummary {
             effects: self.effects(),
-            algorithm: self.spec.method.name().to_owned(),
+            algorithm: self.spec.method.algorithm(),
             log_evidence: self.row.log_evidence,
             log_evidence_se: self.row.log_evidence_se,
             equilibrated: self.row.equilibrated,
@@ -131,8 +134,8 @@ impl FinishedCalibration {
             baseline: BaselineSummary::of(&comparison),
             noise_sd,
             coverage90: CoverageSummary {
-                fit: coverage(&comparison.rows, "fit"),
-                holdout: coverage(&comparison.rows, "holdout"),
+                fit: coverage(&comparison.rows, RunUse::Fit),
+                holdout: coverage(&comparison.rows, RunUse::Holdout),
             },
             error: ErrorSummary {
                 fit: comparison.fit,
@@ -142,7 +145,7 @@ impl FinishedCalibration {
     }
 }
 
-fn coverage(rows: &[ComparisonRow], usage: &str) -> Option<f64> {
-    let coverage = Coverage::count(rows.iter().filter(|r| r.usage == usage))?;
+fn coverage(rows: &[ComparisonRow], usage: RunUse) -> Option<f64> {
+    let coverage = Coverage::count(rows_of(rows, usage))?;
     Some(coverage.inside as f64 / coverage.of as f64)
 }

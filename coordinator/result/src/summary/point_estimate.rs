@@ -1,9 +1,9 @@
-//! The result of a fit or a search: the most probable parameters, beside no posterior.
+//! The result of a fit or a search: the most probable parameters.
 
 use std::collections::BTreeMap;
 
 use inference::point_estimate::{Generation, StopReason};
-use job::FreeParameter;
+use job::{AlgorithmName, FreeParameter};
 use record::EstimateRow;
 
 use super::error::{BaselineSummary, ErrorSummary};
@@ -13,7 +13,8 @@ use crate::finished_calibration::FinishedCalibration;
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct PointEstimate {
     /// Algorithm.
-    pub algorithm: String,
+    #[schema(value_type = String)]
+    pub algorithm: AlgorithmName,
     /// The most probable parameters by name.
     pub parameters: BTreeMap<String, f64>,
     /// Their standard deviations after Laplace; null at a bound, and where nothing fixes a parameter. Null for a search
@@ -92,7 +93,7 @@ impl FinishedCalibration {
         let fitted = || fitted(estimate, &self.spec.parameters);
         let name = |p: FittedParameter| p.free.name.clone();
         Some(PointEstimate {
-            algorithm: self.spec.method.name().to_owned(),
+            algorithm: self.spec.method.algorithm(),
             parameters: fitted().map(|p| (name(p), p.value)).collect(),
             sd: estimate
                 .sd

@@ -9,7 +9,7 @@ use crate::study::Study;
 
 /// The summary of a study; what does not apply is null.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
-pub struct Summary {
+pub struct StudySummary {
     /// Name of the experiment.
     pub experiment: String,
     /// Seed of the job.
@@ -31,20 +31,6 @@ pub struct Summary {
 }
 
 impl Study {
-    /// The error ledger: the calibrations that have a posterior.
-    pub fn calibrations(&self) -> Vec<CalibrationSummary> {
-        self.all()
-            .filter_map(FinishedCalibration::calibration_summary)
-            .collect()
-    }
-
-    /// What fits and searches found.
-    pub fn point_estimates(&self) -> Vec<PointEstimate> {
-        self.all()
-            .filter_map(FinishedCalibration::point_estimate)
-            .collect()
-    }
-
     /// Effects that the first calibration did not have, of the line of the ledger with the most evidence on the newest data.
     fn added(&self) -> Vec<String> {
         let had = self.lead.effects();
@@ -60,16 +46,22 @@ impl Study {
     }
 
     /// `summary.json`.
-    pub fn summary(&self) -> Summary {
+    pub fn summary(&self) -> StudySummary {
         let lead = &self.lead;
-        Summary {
+        StudySummary {
             experiment: lead.experiment.clone(),
             seed: lead.spec.method.seed(),
             model_version: lead.row.model_version.clone().unwrap_or_default(),
             model_kind: lead.spec.model.kind.name().to_owned(),
             status: self.state.name().to_owned(),
-            calibrations: self.calibrations(),
-            point_estimates: self.point_estimates(),
+            calibrations: self
+                .calibrations()
+                .filter_map(FinishedCalibration::calibration_summary)
+                .collect(),
+            point_estimates: self
+                .calibrations()
+                .filter_map(FinishedCalibration::point_estimate)
+                .collect(),
             flags: self.flags(),
             discovery: DiscoverySummary::of(&self.rounds, self.added()),
         }
@@ -83,9 +75,13 @@ mod tests {
     #[test]
     fn a_sample_stands_in_the_ledger_and_a_search_beside_it() {
         let summary = fixture::study().summary();
-        let algorithms: Vec<&str> = summary.calibrations.iter().map(|c| &*c.algorithm).collect();
+        let algorithms: Vec<&str> = summary.calibrations.iter().map(|c| c.algorithm.name()).collect();
         assert_eq!(algorithms, ["tmcmc"]);
-        let estimates: Vec<&str> = summary.point_estimates.iter().map(|e| &*e.algorithm).collect();
+        let estimates: Vec<&str> = summary
+            .point_estimates
+            .iter()
+            .map(|e| e.algorithm.name())
+            .collect();
         assert_eq!(estimates, ["ga"]);
         let of_search = summary.flags.iter().filter(|f| f.text.starts_with("ga: "));
         assert!(of_search.count() > 0, "{:?}", summary.flags);

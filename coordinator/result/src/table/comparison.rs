@@ -7,7 +7,7 @@ use super::baseline::Baseline;
 use super::errors::ErrorTable;
 use super::group::{ErrorGroup, error_groups};
 use super::predictive::{Levels, predictive};
-use super::row::ComparisonRow;
+use super::row::{ComparisonRow, rows_of};
 use crate::finished_calibration::FinishedCalibration;
 
 /// Model against measurement.
@@ -40,13 +40,13 @@ impl FinishedCalibration {
                 let holdout = run.usage == RunUse::Holdout;
                 rows.push(ComparisonRow {
                     run: run.name.clone(),
-                    usage: run.usage.name().into(),
+                    usage: run.usage,
                     wheel: run.wheel.clone(),
                     slip: run.slip,
                     wheel_load_n: run.wheel_load_n,
                     sled_speed_m_s: run.sled_speed_m_s,
                     slip_angle_deg: run.slip_angle_deg,
-                    channel: channel.name().into(),
+                    channel,
                     unit: channel.unit().into(),
                     measured,
                     predicted: p.map(|p| p.mean),
@@ -62,11 +62,11 @@ impl FinishedCalibration {
                 });
             }
         }
-        let errors = |usage: &str| ErrorTable::of_model(rows.iter().filter(|r| r.usage == usage));
+        let errors = |usage| ErrorTable::of_model(rows_of(&rows, usage));
         Comparison {
-            fit: errors("fit"),
-            holdout: errors("holdout"),
-            baseline_holdout: ErrorTable::of_baseline(rows.iter().filter(|r| r.usage == "holdout")),
+            fit: errors(RunUse::Fit),
+            holdout: errors(RunUse::Holdout),
+            baseline_holdout: ErrorTable::of_baseline(rows_of(&rows, RunUse::Holdout)),
             groups: error_groups(&rows),
             rows,
         }

@@ -3,17 +3,14 @@
 use super::predictive::discrepancy_posterior;
 use crate::finished_calibration::FinishedCalibration;
 
-/// Sentences on how the errors of measurements are modelled, with what came of it, for terminal and report.
-pub(crate) fn error_model(outcome: &FinishedCalibration) -> Vec<String> {
-    let mut words = outcome.spec.likelihood_settings.words();
-    let after = discrepancy_posterior(outcome);
+/// Sentences on the error model, with the posterior of an unknown discrepancy.
+pub(crate) fn error_model(calibration: &FinishedCalibration) -> Vec<String> {
+    let mut words = calibration.spec.likelihood_settings.words();
+    let after = discrepancy_posterior(calibration);
     if !after.is_empty() {
         let levels: Vec<String> = after.iter().map(|(m, p)| format!("{m:.2}: {p:.3}")).collect();
-        words.push(format!(
-            "probability of each m after the data: {}",
-            levels.join(", ")
-        ));
+        words.push(format!("posterior probability of each m: {}", levels.join(", ")));
     }
-    words.extend(outcome.spec.scatter_words());
+    words.extend(calibration.spec.scatter_words());
     words
 }

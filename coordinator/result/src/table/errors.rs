@@ -71,12 +71,12 @@ struct Squares {
 }
 
 fn table<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, f64)>) -> Option<ErrorTable> {
-    let mut squares: BTreeMap<&str, Squares> = BTreeMap::new();
+    let mut squares: BTreeMap<Channel, Squares> = BTreeMap::new();
     let mut all = Squares::default();
     for (row, predicted) in rows {
         let error = row.measured - predicted;
         let sd = row.noise_sd;
-        for s in [squares.entry(row.channel.as_str()).or_default(), &mut all] {
+        for s in [squares.entry(row.channel).or_default(), &mut all] {
             s.sum += error * error;
             s.rows += 1;
             if let Some(sd) = sd {
@@ -90,7 +90,7 @@ fn table<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, f64)>) -> Option<Err
     }
     let sigma = |s: &Squares| (s.rows_sigma > 0).then(|| (s.sum_sigma / s.rows_sigma as f64).sqrt());
     let channel = |c: Channel| {
-        squares.get(c.name()).map(|s| ChannelError {
+        squares.get(&c).map(|s| ChannelError {
             rmse: (s.sum / s.rows as f64).sqrt(),
             rmse_sigma: sigma(s),
             runs: s.rows,

@@ -1,9 +1,11 @@
-//! Errors by level of a condition: where in the test range the model misses.
+//! Errors by level of a condition, and by wheel.
 
 use std::collections::BTreeMap;
 
+use shared::experiment::RunUse;
+
 use super::level::{Level, few_levels};
-use super::row::ComparisonRow;
+use super::row::{ComparisonRow, rows_of};
 use crate::words::number;
 
 /// Reads a condition from a row.
@@ -14,9 +16,11 @@ type Condition = fn(&ComparisonRow) -> f64;
 pub struct ErrorGroup {
     /// `fit` or `holdout`.
     #[serde(rename = "use")]
-    pub usage: String,
-    /// What the rows have in common: `slip`, `wheel_load`, `sled_speed`, `wheel`.
-    pub by: String,
+    #[schema(value_type = String)]
+    pub usage: RunUse,
+    /// What the rows have in common.
+    #[schema(value_type = String)]
+    pub by: GroupBy,
     /// The wheel, of a group by wheel.
     pub wheel: Option<String>,
     /// Least value of the condition `[N, m/s, of slip 1]`; null of a wheel.
@@ -25,6 +29,20 @@ pub struct ErrorGroup {
     pub to: Option<f64>,
     /// The errors by channel without unit.
     pub channels: BTreeMap<String, GroupError>,
+}
+
+/// What the rows of a group have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GroupBy {
+    /// A level of slip.
+    Slip,
+    /// A level of wheel load.
+    WheelLoad,
+    /// A level of sled speed.
+    SledSpeed,
+    /// The wheel.
+    Wheel,
 }
 
 /// The error of a channel within a group, in units of each row's noise sd.
@@ -41,10 +59,10 @@ pub struct GroupError {
 impl ErrorGroup {
     /// `slip 0.050`, `load 60.0 to 61.2 N`, `wheel w`.
     pub(crate) fn words(&self) -> String {
-        let (what, scale, decimals, unit) = match self.by.as_str() {
-            "wheel_load" => ("load", 1.0, 1, " N"),
-            "sled_speed" => ("speed", 1000.0, 2, " mm/s"),
-            other => (other, 1.0, 3, ""),
+        let (what, scale, decimals, unit) = match self.by {
+            GroupBy::WheelLoad => ("load", 1.0, 1, " N"),
+            GroupBy::SledSpeed => ("speed", 1000.0, 2, " mm/s"),
+            GroupBy::Slip | GroupBy::Wheel => ("slip", 1.0, 3, ""),
         };
         let value = |x: f64| number::fixed(scale * x, decimals);
         match (&self.wheel, self.from.map(value), self.to.map(value)) {
@@ -64,14 +82,14 @@ impl GroupError {
 
 /// Fitted rows, then the others, each by slip, load, speed and wheel; conditions on one level only are left out.
 pub(crate) fn error_groups(rows: &[ComparisonRow]) -> Vec<ErrorGroup> {
-    let conditions: [(&str, Condition); 3] = [
-        ("slip", |r| r.slip),
-        ("wheel_load", |r| r.wheel_load_n),
-        ("sled_speed", |r| r.sled_speed_m_s),
+    let conditions: [(GroupBy, Condition); 3] = [
+        (GroupBy::Slip, |r| r.slip),
+        (GroupBy::WheelLoad, |r| r.wheel_load_n),
+        (GroupBy::SledSpeed, |r| r.sled_speed_m_s),
     ];
     let mut groups = Vec::new();
-    for usage in ["fit", "holdout"] {
-        let own = || rows.iter().filter(|r| r.usage == usage);
+    for usage in [RunUse::Fit, RunUse::Holdout] {
+        let own = || rows_of(rows, usage);
         for (by, value) in conditions {
             // The same levels for both uses, so that they can be compared.
             let levels = few_levels(rows.iter().map(value));
@@ -79,8 +97,8 @@ pub(crate) fn error_groups(rows: &[ComparisonRow]) -> Vec<ErrorGroup> {
                 let Level { from, to } = *level;
                 let channels = errors(own().filter(|r| level.holds(value(r))));
                 groups.push(ErrorGroup {
-                    usage: usage.into(),
-                    by: by.into(),
+                    usage,
+                    by,
                     wheel: None,
                     from: Some(from),
                     to: Some(to),
@@ -93,8 +111,8 @@ pub(crate) fn error_groups(rows: &[ComparisonRow]) -> Vec<ErrorGroup> {
         wheels.dedup();
         for wheel in wheels.iter().filter(|_| wheels.len() > 1) {
             groups.push(ErrorGroup {
-                usage: usage.into(),
-                by: "wheel".into(),
+                usage,
+                by: GroupBy::Wheel,
                 wheel: Some((*wheel).to_owned()),
                 from: None,
                 to: None,
@@ -110,7 +128,10 @@ fn errors<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> BTreeMap<String,
     let mut residuals: BTreeMap<String, Vec<f64>> = BTreeMap::new();
     for row in rows {
         if let Some(residual) = row.residual_sigma {
-            residuals.entry(row.channel.clone()).or_default().push(residual);
+            residuals
+                .entry(row.channel.name().to_owned())
+                .or_default()
+                .push(residual);
         }
     }
     let error = |own: &Vec<f64>| {
@@ -129,6 +150,8 @@ fn errors<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> BTreeMap<String,
 
 #[cfg(test)]
 mod tests {
+    use shared::channel::Channel;
+
     use super::*;
     use crate::fixture;
 
@@ -138,15 +161,15 @@ mod tests {
         let pull = |g: &ErrorGroup| {
             let pull = g.channels.get("drawbar_pull")?;
             let figures = [pull.rmse_sigma, pull.mean_sigma, pull.runs as f64];
-            Some((g.usage.clone(), g.words(), figures))
+            Some((g.usage.name().to_owned(), g.words(), figures))
         };
         groups.iter().filter_map(pull).collect()
     }
 
     #[test]
     fn errors_stand_by_use_and_level_with_their_sign() {
-        let mut rows = fixture::outcome().comparison().rows;
-        rows.retain(|r| r.channel == "drawbar_pull");
+        let mut rows = fixture::calibration().comparison().rows;
+        rows.retain(|r| r.channel == Channel::DrawbarPull);
         for (row, (slip, residual)) in
             rows.iter_mut()
                 .zip([(0.1, 3.0), (0.101, -1.0), (0.4, 2.0), (0.4, -2.0)])
@@ -172,14 +195,14 @@ mod tests {
 
     #[test]
     fn the_terminal_shows_a_line_for_each_group() {
-        let comparison = fixture::outcome().comparison();
+        let comparison = fixture::calibration().comparison();
         let text = crate::terminal::groups(&comparison);
         assert_eq!(text.lines().count(), 2 + comparison.groups.len());
         let line = text.lines().find(|line| line.starts_with("holdout  slip 0.400"));
         let pull = comparison
             .groups
             .iter()
-            .find(|g| g.usage == "holdout")
+            .find(|g| g.usage == RunUse::Holdout)
             .unwrap()
             .channels["drawbar_pull"];
         assert!(line.unwrap().contains(&pull.words()), "{text}");
@@ -187,7 +210,7 @@ mod tests {
 
     #[test]
     fn rows_without_a_prediction_or_noise_do_not_count() {
-        let mut rows = fixture::outcome().comparison().rows;
+        let mut rows = fixture::calibration().comparison().rows;
         for row in &mut rows {
             row.residual_sigma = None;
         }

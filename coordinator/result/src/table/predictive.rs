@@ -16,15 +16,15 @@ pub struct Predictive {
     /// Mean of the model over the posterior, or its value at the point that a fit found [channel's unit].
     pub mean: f64,
     /// 5 % and 95 % quantile of a new measurement on a new soil bed, in a condition not seen before: model, noise, scatter
-    /// of the soil and what the model cannot reach. `None` of a fit, which has no distribution.
+    /// of the soil and discrepancy. `None` of a fit, which has no distribution.
     pub interval: Option<[f64; 2]>,
     /// Noise standard deviation: declared, its posterior mean, or fitted.
     pub noise_sd: Option<f64>,
 }
 
 /// Where the noise sd of a channel of a run stands.
-fn noise_source(outcome: &FinishedCalibration, run: usize, channel: Channel) -> Option<ErrorSd> {
-    let spec = &outcome.spec;
+fn noise_source(calibration: &FinishedCalibration, run: usize, channel: Channel) -> Option<ErrorSd> {
+    let spec = &calibration.spec;
     let c = channel.index();
     match (spec.experiment.runs[run].sd[c], spec.experiment.noise.sd[c]) {
         (Some(sd), _) | (None, Some(NoiseSd::Known(sd))) => Some(ErrorSd::Known(sd)),
@@ -46,24 +46,24 @@ fn noise_source(outcome: &FinishedCalibration, run: usize, channel: Channel) -> 
     }
 }
 
-/// The predictive distribution of a run and channel; `None` where every draw was refused.
+/// The predictive distribution of a run and channel; `None` where every draw was rejected.
 pub(crate) fn predictive(
-    outcome: &FinishedCalibration,
+    calibration: &FinishedCalibration,
     levels: &Levels,
     run: usize,
     channel: Channel,
 ) -> Option<Predictive> {
-    let source = noise_source(outcome, run, channel);
-    let spec = &outcome.spec;
+    let source = noise_source(calibration, run, channel);
+    let spec = &calibration.spec;
     let position = |runs: &[usize]| runs.iter().position(|&r| r == run);
     let place = match position(&spec.fit_runs) {
-        Some(position) => Place::Fit(position),
-        None => Place::Holdout(position(&spec.holdout_runs)?),
+        Some(position) => RunPosition::Fit(position),
+        None => RunPosition::Holdout(position(&spec.holdout_runs)?),
     };
     let scatter = Scatter::of(spec);
     let mut draws = Vec::new();
     let mut sds = Vec::new();
-    for (draw, theta, observables, position) in accepted(outcome, place) {
+    for (draw, theta, observables, position) in accepted(calibration, place) {
         let sd = source.map(|s| match s {
             ErrorSd::Known(sd) => sd,
             ErrorSd::Inferred { parameter } => theta[parameter],
@@ -80,7 +80,7 @@ pub(crate) fn predictive(
     let mean = weighted_mean(&values)?;
     Some(Predictive {
         mean,
-        interval: outcome
+        interval: calibration
             .estimate
             .is_none()
             .then(|| [0.05, 0.95].map(|p| mixture_quantile(&draws, spec.likelihood.law(), p))),
@@ -122,9 +122,9 @@ impl Scatter {
 pub(crate) struct Levels(Vec<Vec<(f64, f64)>>);
 
 impl Levels {
-    pub(crate) fn of(outcome: &FinishedCalibration) -> Self {
-        let draws = outcome.predictive_draws().iter();
-        Levels(draws.map(|draw| Self::at(&outcome.spec, draw)).collect())
+    pub(crate) fn of(calibration: &FinishedCalibration) -> Self {
+        let draws = calibration.predictive_draws().iter();
+        Levels(draws.map(|draw| Self::at(&calibration.spec, draw)).collect())
     }
 
     fn at(spec: &Spec, draw: &Prediction) -> Vec<(f64, f64)> {
@@ -151,13 +151,13 @@ fn widened(sd: f64, others: [f64; 2]) -> f64 {
 }
 
 /// The probabilities of the discrepancy's values after the data, averaged over the final draws; empty where m is known.
-pub(crate) fn discrepancy_posterior(outcome: &FinishedCalibration) -> Vec<(f64, f64)> {
-    if outcome.spec.likelihood.discrepancy() != Discrepancy::Unknown {
+pub(crate) fn discrepancy_posterior(calibration: &FinishedCalibration) -> Vec<(f64, f64)> {
+    if calibration.spec.likelihood.discrepancy() != Discrepancy::Unknown {
         return Vec::new();
     }
     let levels = Discrepancy::Unknown.levels();
     let mut sum: Vec<(f64, f64)> = levels.into_iter().map(|m| (m, 0.0)).collect();
-    let draws = Levels::of(outcome).0;
+    let draws = Levels::of(calibration).0;
     for levels in &draws {
         for (total, (_, weight)) in sum.iter_mut().zip(levels) {
             total.1 += weight / draws.len() as f64;
@@ -179,21 +179,21 @@ fn weighted_mean(values: &[(f64, f64)]) -> Option<f64> {
 
 /// Where a run stands in the observables of a final draw.
 #[derive(Clone, Copy)]
-enum Place {
+enum RunPosition {
     Fit(usize),
     Holdout(usize),
 }
 
 /// The final draws that the model took: number, parameters, observables, position of the run in them.
 fn accepted(
-    outcome: &FinishedCalibration,
-    place: Place,
+    calibration: &FinishedCalibration,
+    place: RunPosition,
 ) -> impl Iterator<Item = (usize, &[f64], &Observables, usize)> {
-    let draws = outcome.predictive_draws().iter().enumerate();
+    let draws = calibration.predictive_draws().iter().enumerate();
     draws.filter_map(move |(number, p)| {
         let (result, position) = match place {
-            Place::Fit(position) => (&p.fit, position),
-            Place::Holdout(position) => (p.holdout.as_ref()?, position),
+            RunPosition::Fit(position) => (&p.fit, position),
+            RunPosition::Holdout(position) => (p.holdout.as_ref()?, position),
         };
         let observables = result.as_ref().ok()?;
         Some((number, p.theta.as_slice(), observables, position))

@@ -5,12 +5,14 @@ use std::collections::BTreeSet;
 use job::{PLATE, RING};
 
 use crate::finished_calibration::FinishedCalibration;
+use crate::words::data_channel::BevameterTest;
+use crate::words::number;
 
-/// How well the model meets the readings of plates, or of rings.
+/// Errors of the model against the readings of plates, or of rings.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ReadingError {
-    /// `plates` or `rings`.
-    pub(crate) what: &'static str,
+    /// What was measured.
+    pub(crate) test: BevameterTest,
     /// Tests.
     pub(crate) tests: usize,
     /// Readings.
@@ -25,10 +27,10 @@ impl ReadingError {
     /// `60 readings in 6 tests of plates: ...`.
     pub(crate) fn words(&self) -> String {
         format!(
-            "{} readings in {} tests of {}: root mean square error {:.1} %, {:.1} % within tests",
-            self.readings,
-            self.tests,
-            self.what,
+            "{} in {} of {}: root mean square error {:.1} %, {:.1} % within tests",
+            number::count(self.readings, "reading"),
+            number::count(self.tests, "test"),
+            self.test.name(),
             100.0 * self.rms_ln,
             100.0 * self.rms_ln_within
         )
@@ -36,28 +38,31 @@ impl ReadingError {
 }
 
 /// The errors of plates and of rings, where there are any.
-pub(crate) fn reading_errors(outcome: &FinishedCalibration) -> Vec<ReadingError> {
-    let bevameter = &outcome.spec.bevameter;
+pub(crate) fn reading_errors(calibration: &FinishedCalibration) -> Vec<ReadingError> {
+    let bevameter = &calibration.spec.bevameter;
     let plates = bevameter.plates.iter().map(|r| &*r.test).collect();
     let rings = bevameter.rings.iter().map(|r| &*r.test).collect();
-    [("plates", PLATE, plates), ("rings", RING, rings)]
-        .into_iter()
-        .filter_map(|(what, channel, tests)| error(outcome, what, channel, tests))
-        .collect()
+    [
+        (BevameterTest::Plates, PLATE, plates),
+        (BevameterTest::Rings, RING, rings),
+    ]
+    .into_iter()
+    .filter_map(|(test, channel, names)| error(calibration, test, channel, names))
+    .collect()
 }
 
 fn error(
-    outcome: &FinishedCalibration,
-    what: &'static str,
+    calibration: &FinishedCalibration,
+    test: BevameterTest,
     channel: usize,
     tests: Vec<&str>,
 ) -> Option<ReadingError> {
-    let draws: Vec<Vec<f64>> = outcome
+    let draws: Vec<Vec<f64>> = calibration
         .predictive_draws()
         .iter()
-        .filter_map(|p| Some(outcome.spec.predicted_values(p.fit.as_ref().ok()?)))
+        .filter_map(|p| Some(calibration.spec.predicted_values(p.fit.as_ref().ok()?)))
         .collect();
-    let data = outcome.spec.likelihood.data();
+    let data = calibration.spec.likelihood.data();
     let residuals: Vec<f64> = (0..data.len())
         .filter(|&i| data[i].channel == channel)
         .map(|i| {
@@ -80,7 +85,7 @@ fn error(
         within.extend(own.iter().map(|r| r - mean));
     }
     Some(ReadingError {
-        what,
+        test,
         tests: names.len(),
         readings: residuals.len(),
         rms_ln: rms(&residuals),

@@ -1,5 +1,8 @@
 //! A measured channel of a run beside its prediction.
 
+use shared::channel::Channel;
+use shared::experiment::RunUse;
+
 /// A run and channel.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ComparisonRow {
@@ -7,7 +10,8 @@ pub struct ComparisonRow {
     pub run: String,
     /// `fit` or `holdout`.
     #[serde(rename = "use")]
-    pub usage: String,
+    #[schema(value_type = String)]
+    pub usage: RunUse,
     /// Wheel.
     pub wheel: String,
     /// Slip.
@@ -19,12 +23,13 @@ pub struct ComparisonRow {
     /// Slip angle `[deg]`.
     pub slip_angle_deg: f64,
     /// Channel without unit.
-    pub channel: String,
+    #[schema(value_type = String)]
+    pub channel: Channel,
     /// Unit of the next figures.
     pub unit: String,
     /// Measured.
     pub measured: f64,
-    /// Posterior mean of the model, or its value at the point that a fit found; `None` where every draw was refused.
+    /// Posterior mean of the model, or its value at the point that a fit found; `None` where every draw was rejected.
     pub predicted: Option<f64>,
     /// 5 % quantile of a new measurement; `None` of a fit, which has no distribution.
     pub q05: Option<f64>,
@@ -43,4 +48,15 @@ impl ComparisonRow {
     pub fn covered(&self) -> Option<bool> {
         Some((self.q05?..=self.q95?).contains(&self.measured))
     }
+}
+
+/// The rows of the fitted runs, or of the holdout runs.
+pub(crate) fn rows_of(rows: &[ComparisonRow], usage: RunUse) -> impl Iterator<Item = &ComparisonRow> + Clone {
+    rows.iter().filter(move |row| row.usage == usage)
+}
+
+/// The channels that any row has, in the order of all tables.
+pub(crate) fn measured_channels(rows: &[ComparisonRow]) -> Vec<Channel> {
+    let has = |c: &Channel| rows.iter().any(|r| r.channel == *c);
+    Channel::ALL.into_iter().filter(has).collect()
 }

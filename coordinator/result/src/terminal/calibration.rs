@@ -5,7 +5,7 @@ use std::fmt::Write;
 use job::FreeParameter;
 use record::EstimateRow;
 
-use super::column::width;
+use super::column::{cell, width};
 use super::comparison::{comparison, errors};
 use super::diagnostics::{findings, flags};
 use crate::finished_calibration::{FinishedCalibration, prior_mean};
@@ -17,95 +17,97 @@ use crate::table::readings::reading_errors;
 use crate::words::number;
 
 /// The result of a run: parameters, errors, table of model against measurement, flags.
-pub(super) fn summary(outcome: &FinishedCalibration) -> String {
-    let compared = outcome.comparison();
-    let table = if outcome.spec.experiment.runs.is_empty() {
+pub(super) fn summary(calibration: &FinishedCalibration) -> String {
+    let compared = calibration.comparison();
+    let table = if calibration.spec.experiment.runs.is_empty() {
         String::new()
     } else {
         comparison(&compared)
     };
-    told(outcome, &compared, &table)
+    told(calibration, &compared, &table)
 }
 
 /// The same without the table.
-pub(super) fn brief(outcome: &FinishedCalibration) -> String {
-    let compared = outcome.comparison();
-    told(outcome, &compared, &errors(&compared))
+pub(super) fn brief(calibration: &FinishedCalibration) -> String {
+    let compared = calibration.comparison();
+    told(calibration, &compared, &errors(&compared))
 }
 
-fn told(outcome: &FinishedCalibration, compared: &Comparison, table: &str) -> String {
+fn told(calibration: &FinishedCalibration, compared: &Comparison, table: &str) -> String {
     let mut text = String::new();
-    let row = &outcome.row;
-    let how = match &outcome.estimate {
+    let row = &calibration.row;
+    let how = match &calibration.estimate {
         Some(estimate) => format!(
             "{} stopped by {}",
-            outcome.spec.method.name(),
+            calibration.spec.method.name(),
             estimate.stop.name()
         ),
-        None => format!("{} stages", outcome.stages.len()),
+        None => number::count(calibration.stages.len(), "stage"),
     };
     let _ = writeln!(
         text,
-        "{}: {how}, {} evaluations ({} refused by the model), {:.1} s",
-        outcome.experiment,
-        row.evaluations.unwrap_or(0),
+        "{}: {how}, {} ({} rejected by the model), {:.1} s",
+        calibration.experiment,
+        number::count(row.evaluations.unwrap_or(0) as usize, "evaluation"),
         row.rejected.unwrap_or(0),
         row.busy_ms as f64 / 1000.0
     );
-    if let Some(metamodel) = &outcome.subchains {
+    if let Some(metamodel) = &calibration.subchains {
         let _ = writeln!(
             text,
-            "metamodel: {} moves by quasi_static in {} subchains, {} of which moved and were evaluated",
-            metamodel.moves, metamodel.subchains, metamodel.moved
+            "metamodel: {} of quasi_static in {}, {} of which moved and were evaluated",
+            number::count(metamodel.moves as usize, "move"),
+            number::count(metamodel.subchains as usize, "subchain"),
+            metamodel.moved
         );
     }
     if let (Some(z), Some(se)) = (row.log_evidence, row.log_evidence_se) {
         let _ = writeln!(text, "log-evidence {z:.2} +- {se:.2}");
     }
-    if !outcome.spec.fit_variant.effects.is_empty() {
-        let _ = writeln!(text, "model {}", outcome.spec.model_words());
+    if !calibration.spec.fit_variant.effects.is_empty() {
+        let _ = writeln!(text, "model {}", calibration.spec.model_words());
     }
-    if let Some(estimate) = &outcome.estimate {
+    if let Some(estimate) = &calibration.estimate {
         let _ = writeln!(text, "log-posterior {:.2}", estimate.log_posterior());
     }
-    for words in error_model(outcome) {
+    for words in error_model(calibration) {
         let _ = writeln!(text, "{words}");
     }
     text.push('\n');
     text.push_str(table);
-    for error in reading_errors(outcome) {
+    for error in reading_errors(calibration) {
         let _ = writeln!(text, "{}", error.words());
     }
-    text.push_str(&match &outcome.estimate {
-        Some(estimate) => point(outcome, estimate),
-        None => parameters(outcome),
+    text.push_str(&match &calibration.estimate {
+        Some(estimate) => point(calibration, estimate),
+        None => parameters(calibration),
     });
-    let diagnostics = outcome.diagnostics(compared);
+    let diagnostics = calibration.diagnostics(compared);
     for words in [findings(&diagnostics), flags(&diagnostics)] {
         if !words.is_empty() {
             let _ = write!(text, "\n{words}");
         }
     }
-    if let Some(note) = unsettled(outcome) {
+    if let Some(note) = unsettled(calibration) {
         let _ = writeln!(text, "\nnote: {note}");
     }
     text
 }
 
 /// The most probable parameters, with their standard deviations after Laplace where they are known.
-fn point(outcome: &FinishedCalibration, estimate: &EstimateRow) -> String {
-    let width = width(outcome.spec.parameters.iter().map(|p| &p.name));
+fn point(calibration: &FinishedCalibration, estimate: &EstimateRow) -> String {
+    let width = width(calibration.spec.parameters.iter().map(|p| &p.name));
     let mut text = format!(
         "\n{:<width$} {:>10} {:>10}  {:<12} prior\n",
         "parameter", "best", "sd", "unit"
     );
-    for p in fitted(estimate, &outcome.spec.parameters) {
+    for p in fitted(estimate, &calibration.spec.parameters) {
         let _ = writeln!(
             text,
             "{:<width$} {:>10} {:>10}  {:<12} {}{}",
             p.free.name,
             number::four_digits(p.value),
-            p.sd.map_or("-".into(), number::four_digits),
+            cell(p.sd, number::four_digits),
             p.free.unit,
             prior(p.free),
             if p.at_bound { "  AT BOUND" } else { "" }
@@ -123,15 +125,19 @@ fn prior(free: &FreeParameter) -> String {
 }
 
 /// The parameters after and before the data.
-fn parameters(outcome: &FinishedCalibration) -> String {
+fn parameters(calibration: &FinishedCalibration) -> String {
     let mut text = String::new();
-    let width = width(outcome.spec.parameters.iter().map(|p| &p.name));
+    let width = width(calibration.spec.parameters.iter().map(|p| &p.name));
     let _ = writeln!(
         text,
         "\n{:<width$} {:>10} {:>10} {:>10} {:>10} {:>10}  {:<12} prior",
         "parameter", "mean", "sd", "5 %", "95 %", "best", "unit"
     );
-    for ((name, p), free) in outcome.parameter_summaries().iter().zip(&outcome.spec.parameters) {
+    for ((name, p), free) in calibration
+        .parameter_summaries()
+        .iter()
+        .zip(&calibration.spec.parameters)
+    {
         let prior = prior(free);
         let bound = if p.at_bound { "  AT BOUND" } else { "" };
         let _ = writeln!(

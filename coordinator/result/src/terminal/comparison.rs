@@ -3,11 +3,14 @@
 use std::fmt::Write;
 
 use shared::channel::Channel;
+use shared::experiment::RunUse;
 
+use super::column::cell;
 use crate::table::comparison::Comparison;
 use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;
-use crate::table::row::ComparisonRow;
+use crate::table::row::rows_of;
+use crate::words::data_channel::{ShownUnit, short_name};
 
 /// Model against measurement, run by run, with errors by channel.
 pub fn comparison(comparison: &Comparison) -> String {
@@ -18,8 +21,8 @@ pub fn comparison(comparison: &Comparison) -> String {
         "run", "use", "slip", "load N", "channel", "measured", "model", "90 % interval", "sigma"
     );
     for row in &comparison.rows {
-        let (scale, _) = shown(row);
-        let value = |v: Option<f64>| v.map_or("-".into(), |v| format!("{:.2}", v * scale));
+        let unit = ShownUnit::of(row.channel);
+        let value = |v: Option<f64>| cell(v, |v| format!("{:.2}", v * unit.factor));
         let interval = match row.q05 {
             Some(_) => format!("{} to {}", value(row.q05), value(row.q95)),
             None => "-".into(),
@@ -28,14 +31,14 @@ pub fn comparison(comparison: &Comparison) -> String {
             text,
             "{:<22} {:<8} {:>7.3} {:>8.1} {:<13} {:>10} {:>10} {:>23} {:>7}",
             row.run,
-            row.usage,
+            row.usage.name(),
             row.slip,
             row.wheel_load_n,
-            format!("{} {}", short(&row.channel), shown(row).1),
+            format!("{} {}", short_name(row.channel), unit.name),
             value(Some(row.measured)),
             value(row.predicted),
             interval,
-            row.residual_sigma.map_or("-".into(), |r| format!("{r:+.1}"))
+            cell(row.residual_sigma, |r| format!("{r:+.1}"))
         );
     }
     text.push('\n');
@@ -60,30 +63,33 @@ pub(super) fn errors(comparison: &Comparison) -> String {
             text.push_str(&error_line(name, table));
         }
     }
-    for usage in ["fit", "holdout"] {
-        let rows = comparison.rows.iter().filter(|r| r.usage == usage);
-        if let Some(coverage) = Coverage::count(rows) {
+    for usage in [RunUse::Fit, RunUse::Holdout] {
+        if let Some(coverage) = Coverage::count(rows_of(&comparison.rows, usage)) {
             let words = coverage.words();
-            let _ = writeln!(text, "90 % intervals hold {words} {usage} measurements");
+            let _ = writeln!(
+                text,
+                "90 % intervals contain {words} {} measurements",
+                usage.name()
+            );
         }
     }
     text
 }
 
 fn error_line(name: &str, table: &ErrorTable) -> String {
-    let cell = |c: Channel| {
-        let scale = if c == Channel::Sinkage { 1000.0 } else { 1.0 };
+    let rmse = |c: Channel| {
+        let scale = ShownUnit::of(c).factor;
         table
             .channel(c)
             .map_or("-".into(), |e| format!("{:.2} ({})", e.rmse * scale, e.runs))
     };
-    let sigma = table.all.rmse_sigma.map_or("-".into(), |s| format!("{s:.2}"));
+    let sigma = cell(table.all.rmse_sigma, |s| format!("{s:.2}"));
     format!(
         "{name:<28} {:>16} {:>16} {:>16} {:>14} {sigma:>8}\n",
-        cell(Channel::DrawbarPull),
-        cell(Channel::Torque),
-        cell(Channel::Sinkage),
-        cell(Channel::LateralForce)
+        rmse(Channel::DrawbarPull),
+        rmse(Channel::Torque),
+        rmse(Channel::Sinkage),
+        rmse(Channel::LateralForce)
     )
 }
 
@@ -97,29 +103,12 @@ pub fn groups(comparison: &Comparison) -> String {
         "use", "sigma: rmse (mean) runs", "pull", "torque", "sinkage", "lateral"
     );
     for group in &comparison.groups {
-        let _ = write!(text, "{:<8} {:<28}", group.usage, group.words());
+        let _ = write!(text, "{:<8} {:<28}", group.usage.name(), group.words());
         for channel in Channel::ALL {
             let error = group.channels.get(channel.name());
-            let _ = write!(text, " {:>18}", error.map_or("-".into(), |e| e.words()));
+            let _ = write!(text, " {:>18}", cell(error, |e| e.words()));
         }
         text.push('\n');
     }
     text
-}
-
-/// Factor and unit in which a row's channel is shown: sinkage in millimetres.
-fn shown(row: &ComparisonRow) -> (f64, &str) {
-    if row.channel == "sinkage" {
-        (1000.0, "mm")
-    } else {
-        (1.0, &row.unit)
-    }
-}
-
-fn short(channel: &str) -> &str {
-    match channel {
-        "drawbar_pull" => "pull",
-        "lateral_force" => "lateral",
-        other => other,
-    }
 }

@@ -2,14 +2,15 @@
 
 use std::fmt::Write;
 
+use super::column::{cell, width};
 use crate::diagnostics::calibration::Diagnostics;
 use crate::diagnostics::channels::{ChannelDiagnostics, CoverageCount};
-use crate::diagnostics::data_channel::shown;
 use crate::diagnostics::directions::{DirectionDiagnostics, WORST_KNOWN};
 use crate::diagnostics::rejections::RejectionDiagnostics;
 use crate::diagnostics::residuals::{ResidualDiagnostics, largest};
 use crate::diagnostics::sampler::SamplerDiagnostics;
 use crate::diagnostics::trends::TrendDiagnostics;
+use crate::words::data_channel::ShownUnit;
 use crate::words::number;
 use crate::words::probability::probability;
 
@@ -45,36 +46,22 @@ pub(crate) fn findings(diagnostics: &Diagnostics) -> String {
 pub(crate) fn flags(diagnostics: &Diagnostics) -> String {
     let lines = diagnostics.flags.iter();
     lines
-        .map(|flag| format!("flag {}: {}\n", flag.kind, flag.text))
+        .map(|flag| format!("flag {}: {}\n", flag.kind.name(), flag.text))
         .collect()
-}
-
-fn cell(value: Option<f64>) -> String {
-    value.map_or("-".into(), number::four_digits)
-}
-
-fn short(value: Option<f64>) -> String {
-    value.map_or("-".into(), |x| number::significant(x, 2))
-}
-
-fn p_cell(value: Option<f64>) -> String {
-    value.map_or("-".into(), probability)
 }
 
 fn sampler(sampler: &SamplerDiagnostics) -> String {
     let mut text = match sampler.equilibrated {
-        Some(true) => "equilibrium was reached in every stage".to_owned(),
-        Some(false) => "equilibrium was not reached".to_owned(),
-        None => "whether equilibrium was reached is not known".to_owned(),
+        Some(true) => "every stage reached equilibrium".to_owned(),
+        Some(false) => "the sampler did not reach equilibrium".to_owned(),
+        None => "whether the sampler reached equilibrium is unknown".to_owned(),
     };
     let _ = writeln!(
         text,
-        "; {} draws, {} of them different; effective sample size {} at the last stage",
-        sampler.draws,
+        "; {}, {} of them distinct; effective sample size {} at the last stage",
+        number::count(sampler.draws, "draw"),
         sampler.distinct_draws,
-        sampler
-            .effective_sample_size
-            .map_or("-".into(), |ess| format!("{ess:.0}"))
+        cell(sampler.effective_sample_size, |ess| format!("{ess:.0}"))
     );
     let _ = writeln!(
         text,
@@ -110,7 +97,7 @@ fn channels(channels: &[ChannelDiagnostics]) -> String {
         "unit",
         "data",
         "error sd",
-        "prior allows",
+        "prior spread",
         "information",
         "parameters",
         "chi-square",
@@ -119,7 +106,7 @@ fn channels(channels: &[ChannelDiagnostics]) -> String {
         "inside 90 %: fit"
     );
     let count = |c: &Option<CoverageCount>| {
-        c.map_or("-".into(), |c| {
+        cell(*c, |c| {
             format!(
                 "{} of {} ({} to {})",
                 c.inside, c.of, c.expected_from, c.expected_to
@@ -128,20 +115,23 @@ fn channels(channels: &[ChannelDiagnostics]) -> String {
     };
     for c in channels {
         let square = c.chi_square.as_ref();
-        let (scale, unit) = shown(&c.channel);
+        let unit = c.channel.shown();
         let _ = writeln!(
             text,
             "{:<14} {:<4} {:>5} {:>10} {:>12} {:>11} {:>10} {:>10} {:>8} {:>9}  {:<26} {}",
-            c.channel,
-            unit,
+            c.channel.name(),
+            unit.name,
             c.data,
-            cell(c.error_sd.map(|sd| scale * sd)),
-            cell(c.prior_predictive_sd.map(|sd| scale * sd)),
-            short(c.information),
-            short(c.effective_parameters),
-            cell(square.map(|s| s.chi_square)),
-            cell(square.map(|s| s.degrees_of_freedom)),
-            p_cell(square.and_then(|s| s.p)),
+            cell(c.error_sd.map(|sd| unit.factor * sd), number::four_digits),
+            cell(
+                c.prior_predictive_sd.map(|sd| unit.factor * sd),
+                number::four_digits
+            ),
+            cell(c.information, |x| number::significant(x, 2)),
+            cell(c.effective_parameters, |x| number::significant(x, 2)),
+            cell(square.map(|s| s.chi_square), number::four_digits),
+            cell(square.map(|s| s.degrees_of_freedom), number::four_digits),
+            cell(square.and_then(|s| s.p), probability),
             count(&c.coverage90_fit),
             count(&c.coverage90_holdout)
         );
@@ -155,18 +145,18 @@ fn residuals(all: &[ResidualDiagnostics]) -> String {
         "largest residuals: run", "channel", "unit", "residual", "error sd", "leverage", "studentised", "p"
     );
     for r in largest(all) {
-        let (scale, unit) = shown(&r.channel);
+        let unit = r.channel.shown();
         let _ = writeln!(
             text,
             "{:<28} {:<14} {:<4} {:>10} {:>10} {:>9.2} {:>12} {:>9}",
             r.run,
-            r.channel,
-            unit,
-            number::four_digits(scale * r.residual),
-            number::four_digits(scale * r.error_sd),
+            r.channel.name(),
+            unit.name,
+            number::four_digits(unit.factor * r.residual),
+            number::four_digits(unit.factor * r.error_sd),
             r.leverage,
-            short(r.studentised),
-            p_cell(r.p)
+            cell(r.studentised, |x| number::significant(x, 2)),
+            cell(r.p, probability)
         );
     }
     text
@@ -178,15 +168,15 @@ fn trends(all: &[TrendDiagnostics]) -> String {
         "trend of", "against", "unit", "change", "sd", "share left", "p"
     );
     for t in all {
-        let (scale, unit) = shown(&t.channel);
+        let unit = ShownUnit::of(t.channel);
         let _ = writeln!(
             text,
             "{:<14} {:<18} {:<4} {:>10} {:>10} {:>10.2} {:>9}",
-            t.channel,
+            t.channel.name(),
             t.against.name(),
-            unit,
-            number::four_digits(scale * t.change),
-            number::four_digits(scale * t.change_sd),
+            unit.name,
+            number::four_digits(unit.factor * t.change),
+            number::four_digits(unit.factor * t.change_sd),
             t.share_left,
             probability(t.p)
         );
@@ -195,38 +185,34 @@ fn trends(all: &[TrendDiagnostics]) -> String {
 }
 
 fn parameters(diagnostics: &Diagnostics) -> String {
-    let width = diagnostics
-        .parameters
-        .iter()
-        .map(|p| p.name.len())
-        .fold(28, usize::max);
+    let width = width(diagnostics.parameters.iter().map(|p| &p.name));
     let mut text = format!(
         "{:<width$} {:>11} {:>23}\n",
-        "parameter", "contraction", "p of prior against data"
+        "parameter", "contraction", "p of prior conflict"
     );
     for p in &diagnostics.parameters {
         let _ = writeln!(
             text,
             "{:<width$} {:>11} {:>23}{}",
             p.name,
-            p.contraction.map_or("-".into(), |c| number::fixed(c, 2)),
-            p_cell(p.conflict_p),
+            cell(p.contraction, |c| number::fixed(c, 2)),
+            cell(p.conflict_p, probability),
             if p.at_bound { "  AT BOUND" } else { "" }
         );
     }
     if let Some(all) = &diagnostics.conflict {
         let distance = format!(
-            "all together: squared distance {} for {} directions",
+            "all together: squared distance {} for {}",
             number::significant(all.statistic, 3),
-            all.degrees_of_freedom
+            number::count(all.degrees_of_freedom, "direction")
         );
-        let _ = writeln!(text, "{distance}, p {}", p_cell(all.p));
+        let _ = writeln!(text, "{distance}, p {}", cell(all.p, probability));
     }
     text
 }
 
 fn directions(all: &[DirectionDiagnostics]) -> String {
-    let mut text = format!("{:<24} direction, in prior sds\n", "share of prior spread");
+    let mut text = format!("{:<24} direction, in prior sds\n", "share of prior sd");
     let line =
         |d: &DirectionDiagnostics| format!("{:<24} {}\n", number::significant(d.sd_ratio, 2), d.words());
     text.extend(all.iter().take(WORST_KNOWN).map(line));
@@ -237,11 +223,16 @@ fn directions(all: &[DirectionDiagnostics]) -> String {
     text
 }
 
-/// What was refused in each fifth of each prior; nothing where nothing was refused and nothing failed.
+/// Rejections in each fifth of each prior; empty where nothing was rejected and nothing failed.
 fn rejections(rejections: &RejectionDiagnostics) -> String {
     let mut text = String::new();
     for (message, count) in &rejections.faults {
-        let _ = writeln!(text, "{count} leases failed and were given out again: {message}");
+        let _ = writeln!(
+            text,
+            "{} failed and {} retried: {message}",
+            number::count(*count as usize, "lease"),
+            if *count == 1 { "was" } else { "were" }
+        );
     }
     let faults = rejections
         .parameters
@@ -251,20 +242,16 @@ fn rejections(rejections: &RejectionDiagnostics) -> String {
     if rejections.prior_refused == 0 && !faults {
         return text;
     }
-    let width = rejections
-        .parameters
-        .iter()
-        .map(|p| p.name.len())
-        .fold(28, usize::max);
+    let width = width(rejections.parameters.iter().map(|p| &p.name));
     let _ = writeln!(
         text,
-        "refused (of drawn) in each fifth of the prior, {} of {} draws in all",
+        "rejected (of drawn) in each fifth of the prior, {} of {} draws in all",
         rejections.prior_refused, rejections.prior_draws
     );
     for p in &rejections.parameters {
         let cells = p.bins.iter().map(|b| {
             let faults = if b.faults > 0 {
-                format!(", {} faults", b.faults)
+                format!(", {}", number::count(b.faults as usize, "fault"))
             } else {
                 String::new()
             };

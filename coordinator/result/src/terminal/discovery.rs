@@ -5,6 +5,7 @@ use std::path::Path;
 
 use record::{ChiSquare, Discovery};
 
+use super::column::{cell, width};
 use crate::discovery::{arguments, effect_file, word};
 use crate::study::Study;
 use crate::table::errors::ErrorTable;
@@ -31,15 +32,15 @@ pub fn story(study: &Study) -> String {
         "error ledger", "ln evidence", "fit, sigma", "held out, sigma", "intervals"
     );
     let lines = study.ledger().filter_map(|o| Some((o, o.calibration_summary()?)));
-    for (outcome, line) in lines {
+    for (calibration, line) in lines {
         let mut effects = match line.effects.as_slice() {
             [] => "base".to_owned(),
             effects => format!("with {}", effects.join(", ")),
         };
-        if outcome.row.experiment != study.lead.row.experiment {
-            let _ = write!(effects, ", {} fitted runs", outcome.spec.fit_runs.len());
+        if calibration.row.experiment != study.lead.row.experiment {
+            let _ = write!(effects, ", {} fitted runs", calibration.spec.fit_runs.len());
         }
-        let number = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.2}"));
+        let number = |x: Option<f64>| cell(x, |x| format!("{x:.2}"));
         let sigma = |table: &Option<ErrorTable>| number(table.as_ref().and_then(|t| t.all.rmse_sigma));
         let _ = writeln!(
             text,
@@ -61,7 +62,7 @@ pub fn story(study: &Study) -> String {
 /// `calibration` is the one that was searched, `place` the argument that says where it is, `folder` where effect files lie.
 pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) -> String {
     let mut text = format!("discovery: {}\n{}\n\n", word(record.verdict), record.text);
-    let width = record.effects.iter().map(|e| e.name.len()).fold(28, usize::max);
+    let width = width(record.effects.iter().map(|e| &e.name));
     let _ = writeln!(
         text,
         "{:<width$} {:>9} {:>11} {:>6} {:>9}  strength prior",

@@ -4,7 +4,7 @@
 //! - `specification`: a job before it runs. `status`: where calibrations stand.
 //! - `study`: the results of a study; `calibration`: of one calibration; `comparison`: its errors.
 //! - `diagnostics`: how far a result can be trusted. [`discovery`]: a search for a missing effect.
-//! - `column`: widths of columns.
+//! - `column`: widths and cells of columns.
 
 mod calibration;
 mod column;

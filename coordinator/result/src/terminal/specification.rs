@@ -9,15 +9,16 @@ use super::column::width;
 use crate::finished_calibration::prior_mean;
 use crate::words::number;
 
-/// What a job means, before it runs.
+/// Data, model, algorithm and priors of a job.
 pub fn specification(spec: &Spec) -> String {
     let mut text = String::new();
     let holdout = spec.experiment.runs.len() - spec.fit_runs.len();
     let _ = writeln!(
         text,
-        "{} fit runs with {} measurements, {holdout} holdout runs; model {}; {}, seed {}",
-        spec.fit_runs.len(),
-        spec.wheel_data(),
+        "{} with {}, {}; model {}; {}, seed {}",
+        number::count(spec.fit_runs.len(), "fit run"),
+        number::count(spec.wheel_data(), "measurement"),
+        number::count(holdout, "holdout run"),
         spec.model_words(),
         spec.method.words(),
         spec.method.seed()
@@ -28,7 +29,7 @@ pub fn specification(spec: &Spec) -> String {
         (bevameter.rings.len(), "rings"),
     ] {
         if readings > 0 {
-            let _ = writeln!(text, "{readings} readings of {what}");
+            let _ = writeln!(text, "{} of {what}", number::count(readings, "reading"));
         }
     }
     for run in &spec.experiment.runs {
@@ -83,7 +84,7 @@ pub fn specification(spec: &Spec) -> String {
     text
 }
 
-/// What was cut from a run's recording, and averaged: samples, periods.
+/// The part of a run's recording that is averaged: samples, periods.
 fn averaging(run: &str, history: &MeasuredHistory, protocol: &AveragingProtocol) -> String {
     let filter = match protocol.lowpass_hz {
         0.0 => "not filtered".to_owned(),

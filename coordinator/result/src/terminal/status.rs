@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use shared::api::CalibrationStatus;
 
+use super::column::cell;
+
 /// Where calibrations stand, a line each.
 pub fn status_table(statuses: &[CalibrationStatus]) -> String {
     let mut text = format!(
@@ -12,18 +14,17 @@ pub fn status_table(statuses: &[CalibrationStatus]) -> String {
     );
     for s in statuses {
         let p = s.progress.as_ref();
-        let cell = |value: Option<String>| value.unwrap_or_else(|| "-".into());
         let _ = writeln!(
             text,
             "{:>4} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}",
             s.id,
             s.name,
             s.state.name(),
-            cell(p.map(|p| p.stage.to_string())),
-            cell(p.map(|p| format!("{:.3e}", p.tempering_exponent))),
-            cell(p.map(|p| p.evaluations.to_string())),
-            cell(p.map(|p| format!("{:.0}", p.evaluations_per_s))),
-            cell(p.and_then(|p| p.remaining_s).map(|s| format!("{s:.0}")))
+            cell(p, |p| p.stage.to_string()),
+            cell(p, |p| format!("{:.3e}", p.tempering_exponent)),
+            cell(p, |p| p.evaluations.to_string()),
+            cell(p, |p| format!("{:.0}", p.evaluations_per_s)),
+            cell(p.and_then(|p| p.remaining_s), |s| format!("{s:.0}"))
         );
         if let Some(message) = &s.message {
             let _ = writeln!(text, "     {message}");

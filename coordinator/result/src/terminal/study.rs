@@ -8,12 +8,12 @@ use crate::study::Study;
 /// The results of a study, one calibration after the other; of one that has grown without the tables of their runs.
 pub fn study(study: &Study) -> String {
     let results: Vec<String> = match study.rounds.as_slice() {
-        [] => study.all().map(summary).collect(),
-        _ => study.all().map(brief).collect(),
+        [] => study.calibrations().map(summary).collect(),
+        _ => study.calibrations().map(brief).collect(),
     };
     let mut text = results.join("\n");
     for flag in study.missed_modes() {
-        let _ = writeln!(text, "\nflag {}: {}", flag.kind, flag.text);
+        let _ = writeln!(text, "\nflag {}: {}", flag.kind.name(), flag.text);
     }
     text
 }

@@ -1,4 +1,5 @@
-//! Numbers and probabilities as people read them.
+//! Numbers, units and probabilities as people read them.
 
-pub(crate) mod number;
+pub(crate) mod data_channel;
+pub mod number;
 pub(crate) mod probability;

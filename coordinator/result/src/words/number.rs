@@ -1,6 +1,6 @@
-//! Numbers with as many digits as they deserve.
+//! Numbers in words, with as many digits as are significant.
 
-/// What stands where there is no number.
+/// Stands where there is no number.
 pub(crate) const NONE: &str = "\u{2013}";
 
 /// Beyond these sizes a number is written with an exponent.
@@ -38,6 +38,21 @@ pub(crate) fn to_spread(x: f64, spread: f64) -> String {
         return format!("{x:.digits$e}");
     }
     fixed(x, decimals)
+}
+
+/// A number that may be missing, in words of the page.
+pub(crate) fn or_none<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> String {
+    value.map_or_else(|| NONE.into(), words)
+}
+
+/// A number as its author may have written it: at most six decimals, none of them a closing zero.
+pub fn plain(x: f64) -> String {
+    if x.abs() < f64::MIN_POSITIVE || (1e-3..1e6).contains(&x.abs()) {
+        let rounded = format!("{x:.6}");
+        rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        format!("{x:e}")
+    }
 }
 
 /// Four significant digits, for a column.

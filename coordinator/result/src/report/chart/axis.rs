@@ -4,7 +4,7 @@ use crate::words::number::{self, magnitude};
 
 /// How values are laid out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Scale {
+pub(super) enum AxisScale {
     /// Equal steps.
     Linear,
     /// Equal steps, ticks at whole numbers alone.
@@ -15,23 +15,23 @@ pub(super) enum Scale {
 
 /// A range of values, laid out from pixel `start` to pixel `end`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Axis {
+pub(super) struct ChartAxis {
     pub(super) low: f64,
     pub(super) high: f64,
-    scale: Scale,
+    scale: AxisScale,
     start: f64,
     end: f64,
 }
 
-impl Axis {
+impl ChartAxis {
     /// An axis of exactly this range; an empty or unusable one is widened until it has a length.
-    pub(super) fn new(low: f64, high: f64, scale: Scale) -> Self {
+    pub(super) fn new(low: f64, high: f64, scale: AxisScale) -> Self {
         let (low, high) = if low.is_finite() && high.is_finite() {
             (low, high)
         } else {
             (0.0, 1.0)
         };
-        let (low, high) = if scale == Scale::Log && low <= 0.0 {
+        let (low, high) = if scale == AxisScale::Log && low <= 0.0 {
             (high.abs() * 1e-3, high.abs())
         } else {
             (low, high)
@@ -39,11 +39,11 @@ impl Axis {
         let least = 1e-9 * low.abs().max(high.abs());
         let (low, high) = match scale {
             _ if high - low > least => (low, high),
-            Scale::Log if low > 0.0 => (0.5 * low, 2.0 * low),
-            Scale::Log => (0.1, 1.0),
+            AxisScale::Log if low > 0.0 => (0.5 * low, 2.0 * low),
+            AxisScale::Log => (0.1, 1.0),
             _ => (low - 0.05 * low.abs().max(1e-9), low + 0.05 * low.abs().max(1e-9)),
         };
-        Axis {
+        ChartAxis {
             low,
             high,
             scale,
@@ -53,18 +53,18 @@ impl Axis {
     }
 
     /// An axis around all finite values, with a margin on both sides as a share of the range.
-    pub(super) fn around(values: impl IntoIterator<Item = f64>, margin: f64, scale: Scale) -> Self {
-        let usable = |v: &f64| v.is_finite() && (scale != Scale::Log || *v > 0.0);
+    pub(super) fn around(values: impl IntoIterator<Item = f64>, margin: f64, scale: AxisScale) -> Self {
+        let usable = |v: &f64| v.is_finite() && (scale != AxisScale::Log || *v > 0.0);
         let (low, high) = values
             .into_iter()
             .filter(usable)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
                 (low.min(v), high.max(v))
             });
-        let axis = Axis::new(low, high, scale);
+        let axis = ChartAxis::new(low, high, scale);
         let pad = margin * (axis.forward(axis.high) - axis.forward(axis.low));
         let (low, high) = (axis.forward(axis.low) - pad, axis.forward(axis.high) + pad);
-        Axis {
+        ChartAxis {
             low: axis.backward(low),
             high: axis.backward(high),
             ..axis
@@ -73,7 +73,7 @@ impl Axis {
 
     /// The same axis on other pixels.
     pub(super) fn on(self, start: f64, end: f64) -> Self {
-        Axis { start, end, ..self }
+        ChartAxis { start, end, ..self }
     }
 
     /// Pixel of a value; a value outside the range lies on the nearer end.
@@ -96,21 +96,21 @@ impl Axis {
 
     /// Whether the axis shows equal ratios.
     pub(super) fn is_log(self) -> bool {
-        self.scale == Scale::Log
+        self.scale == AxisScale::Log
     }
 
     /// About so many ticks with their labels; none for 0.
     pub(super) fn ticks(self, about: usize) -> Vec<(f64, String)> {
         match self.scale {
             _ if about == 0 => Vec::new(),
-            Scale::Log => self.log_ticks(about),
+            AxisScale::Log => self.log_ticks(about),
             _ => self.linear_ticks(about),
         }
     }
 
     fn linear_ticks(self, about: usize) -> Vec<(f64, String)> {
         let mut step = nice_step((self.high - self.low) / about as f64);
-        if self.scale == Scale::Whole {
+        if self.scale == AxisScale::Whole {
             step = step.max(1.0);
         }
         let decimals = -magnitude(step * 1.000_001);
@@ -151,7 +151,7 @@ impl Axis {
     }
 
     fn forward(self, value: f64) -> f64 {
-        if self.scale == Scale::Log {
+        if self.scale == AxisScale::Log {
             value.ln()
         } else {
             value
@@ -159,7 +159,7 @@ impl Axis {
     }
 
     fn backward(self, u: f64) -> f64 {
-        if self.scale == Scale::Log { u.exp() } else { u }
+        if self.scale == AxisScale::Log { u.exp() } else { u }
     }
 }
 
@@ -200,8 +200,8 @@ fn minus(text: &str) -> String {
 mod tests {
     use super::*;
 
-    fn labels(low: f64, high: f64, scale: Scale) -> Vec<String> {
-        Axis::new(low, high, scale)
+    fn labels(low: f64, high: f64, scale: AxisScale) -> Vec<String> {
+        ChartAxis::new(low, high, scale)
             .ticks(5)
             .into_iter()
             .map(|t| t.1)
@@ -211,35 +211,35 @@ mod tests {
     #[test]
     fn linear_ticks_step_by_one_two_or_five() {
         assert_eq!(
-            labels(0.0, 1.0, Scale::Linear),
+            labels(0.0, 1.0, AxisScale::Linear),
             ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]
         );
         assert_eq!(
-            labels(-27.0, 12.0, Scale::Linear),
+            labels(-27.0, 12.0, AxisScale::Linear),
             ["\u{2212}20", "\u{2212}10", "0", "10"]
         );
         assert_eq!(
-            labels(20.0, 32.0, Scale::Linear),
+            labels(20.0, 32.0, AxisScale::Linear),
             ["20", "22", "24", "26", "28", "30", "32"]
         );
         assert_eq!(
-            labels(0.0575, 0.0623, Scale::Linear),
+            labels(0.0575, 0.0623, AxisScale::Linear),
             ["0.058", "0.059", "0.060", "0.061", "0.062"]
         );
         assert_eq!(
-            labels(0.0, 2.1e6, Scale::Linear),
+            labels(0.0, 2.1e6, AxisScale::Linear),
             ["0", "5e5", "1.0e6", "1.5e6", "2.0e6"]
         );
     }
 
     #[test]
     fn whole_and_log_ticks() {
-        assert_eq!(labels(1.0, 3.0, Scale::Whole), ["1", "2", "3"]);
+        assert_eq!(labels(1.0, 3.0, AxisScale::Whole), ["1", "2", "3"]);
         assert_eq!(
-            labels(1e-4, 1.0, Scale::Log),
+            labels(1e-4, 1.0, AxisScale::Log),
             ["1e\u{2212}4", "0.001", "0.01", "0.1", "1"]
         );
-        assert_eq!(labels(0.8, 12.0, Scale::Log), ["1", "2", "5", "10"]);
+        assert_eq!(labels(0.8, 12.0, AxisScale::Log), ["1", "2", "5", "10"]);
     }
 
     #[test]
@@ -251,8 +251,8 @@ mod tests {
             (f64::INFINITY, f64::NEG_INFINITY),
             (-2.0, -2.0),
         ] {
-            for scale in [Scale::Linear, Scale::Whole, Scale::Log] {
-                let axis = Axis::new(low, high, scale).on(0.0, 100.0);
+            for scale in [AxisScale::Linear, AxisScale::Whole, AxisScale::Log] {
+                let axis = ChartAxis::new(low, high, scale).on(0.0, 100.0);
                 assert!(axis.high > axis.low, "{low} {high} {scale:?}");
                 for value in [low, high, -1.0, 0.0, 1e9] {
                     assert!(axis.at(value).is_finite(), "{low} {high} {scale:?} {value}");
@@ -263,7 +263,7 @@ mod tests {
 
     #[test]
     fn values_outside_lie_on_the_edge() {
-        let axis = Axis::new(0.0, 10.0, Scale::Linear).on(100.0, 0.0);
+        let axis = ChartAxis::new(0.0, 10.0, AxisScale::Linear).on(100.0, 0.0);
         let pixels = [-5.0, 2.5, 20.0].map(|v| axis.at(v).round() as i32);
         assert_eq!(pixels, [100, 75, 0]);
     }

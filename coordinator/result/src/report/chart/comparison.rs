@@ -1,11 +1,13 @@
 //! Measured points and predictive intervals of one wheel and channel, run by run.
 
 use maud::{Markup, html};
+use shared::channel::Channel;
+use shared::experiment::RunUse;
 
-use super::axis::{Axis, Scale};
-use super::frame::{Frame, Marker, interval, line, marker, px};
-use crate::report::quantity::Quantity;
+use super::axis::{AxisScale, ChartAxis};
+use super::frame::{ChartFrame, Marker, interval, line, marker, px};
 use crate::table::row::ComparisonRow;
+use crate::words::data_channel::{ShownUnit, title};
 use crate::words::number;
 
 const WIDTH: f64 = 460.0;
@@ -23,14 +25,14 @@ const LEAST_ANGLE_DEG: f64 = 2.0;
 
 /// What a wheel's runs are laid out against: the first condition that varies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Against {
+enum Abscissa {
     Slip,
     WheelLoad,
     SlipAngle,
     Run,
 }
 
-impl Against {
+impl Abscissa {
     fn of(rows: &[&ComparisonRow]) -> Self {
         let ends = |value: fn(&ComparisonRow) -> f64| {
             rows.iter()
@@ -45,39 +47,39 @@ impl Against {
             ends(|r| r.slip_angle_deg),
         );
         if slip.1 - slip.0 >= LEAST_SLIP {
-            Against::Slip
+            Abscissa::Slip
         } else if load.1 >= LEAST_LOAD_FACTOR * load.0 {
-            Against::WheelLoad
+            Abscissa::WheelLoad
         } else if angle.1 - angle.0 >= LEAST_ANGLE_DEG {
-            Against::SlipAngle
+            Abscissa::SlipAngle
         } else {
-            Against::Run
+            Abscissa::Run
         }
     }
 
     fn value(self, row: &ComparisonRow, position: usize) -> f64 {
         match self {
-            Against::Slip => row.slip,
-            Against::WheelLoad => row.wheel_load_n,
-            Against::SlipAngle => row.slip_angle_deg,
-            Against::Run => (position + 1) as f64,
+            Abscissa::Slip => row.slip,
+            Abscissa::WheelLoad => row.wheel_load_n,
+            Abscissa::SlipAngle => row.slip_angle_deg,
+            Abscissa::Run => (position + 1) as f64,
         }
     }
 
     fn label(self) -> &'static str {
         match self {
-            Against::Slip => "slip [1]",
-            Against::WheelLoad => "wheel load [N]",
-            Against::SlipAngle => "slip angle [deg]",
-            Against::Run => "run, in the order of the table",
+            Abscissa::Slip => "slip [1]",
+            Abscissa::WheelLoad => "wheel load [N]",
+            Abscissa::SlipAngle => "slip angle [deg]",
+            Abscissa::Run => "run, in the order of the table",
         }
     }
 
-    fn scale(self) -> Scale {
-        if self == Against::Run {
-            Scale::Whole
+    fn scale(self) -> AxisScale {
+        if self == Abscissa::Run {
+            AxisScale::Whole
         } else {
-            Scale::Linear
+            AxisScale::Linear
         }
     }
 }
@@ -86,28 +88,33 @@ impl Against {
 #[derive(Debug)]
 pub(in crate::report) struct ComparisonChart<'a> {
     rows: Vec<&'a ComparisonRow>,
-    quantity: Quantity,
+    channel: Channel,
+    unit: ShownUnit,
 }
 
 impl<'a> ComparisonChart<'a> {
     /// The rows of one wheel and channel; `None` without any.
-    pub(in crate::report) fn new(rows: &'a [ComparisonRow], wheel: &str, quantity: Quantity) -> Option<Self> {
+    pub(in crate::report) fn new(rows: &'a [ComparisonRow], wheel: &str, channel: Channel) -> Option<Self> {
         let rows: Vec<_> = rows
             .iter()
-            .filter(|r| r.wheel == wheel && quantity.is_of(r))
+            .filter(|r| r.wheel == wheel && r.channel == channel)
             .collect();
-        (!rows.is_empty()).then_some(ComparisonChart { rows, quantity })
+        (!rows.is_empty()).then(|| ComparisonChart {
+            rows,
+            channel,
+            unit: ShownUnit::of(channel),
+        })
     }
 
     /// The picture; `range` (SI) replaces the vertical range of its own.
     pub(in crate::report) fn draw(&self, range: Option<(f64, f64)>) -> Markup {
-        let against = Against::of(&self.rows);
-        let scale = self.quantity.scale;
+        let against = Abscissa::of(&self.rows);
+        let scale = self.unit.factor;
         let places = self.rows.iter().enumerate().map(|(i, r)| against.value(r, i));
-        let x = Axis::around(places.clone(), 0.06, against.scale());
+        let x = ChartAxis::around(places.clone(), 0.06, against.scale());
         let (low, high) = range.unwrap_or_else(|| ends(self.values()));
-        let y = Axis::around([low * scale, high * scale], 0.05, Scale::Linear);
-        let frame = Frame::new(WIDTH, HEIGHT, x, y);
+        let y = ChartAxis::around([low * scale, high * scale], 0.05, AxisScale::Linear);
+        let frame = ChartFrame::new(WIDTH, HEIGHT, x, y);
         let pixels = side_by_side(&places.map(|v| frame.x.at(v)).collect::<Vec<_>>());
         let at = |si: f64| frame.y.at(si * scale);
         let [left, right, ..] = frame.edges();
@@ -122,17 +129,17 @@ impl<'a> ComparisonChart<'a> {
                 }
             }
             @for (row, place) in self.rows.iter().zip(&pixels) {
-                @let kind = if row.usage == "holdout" { Marker::Holdout } else { Marker::Fit };
+                @let kind = if row.usage == RunUse::Holdout { Marker::Holdout } else { Marker::Fit };
                 (marker(kind, place.x, at(row.measured), &self.hint(row)))
             }
         };
         let label = format!(
             "{} of wheel {}, measured and predicted, against {}",
-            self.quantity.channel.words(),
+            self.channel.words(),
             self.rows[0].wheel,
             against.label()
         );
-        frame.draw(&label, against.label(), &self.quantity.label(), [7, 6], &marks)
+        frame.draw(&label, against.label(), &title(self.channel), [7, 6], &marks)
     }
 
     /// Every value that must find room (SI).
@@ -152,11 +159,11 @@ impl<'a> ComparisonChart<'a> {
             near(r.wheel_load_n, first.wheel_load_n)
                 && near(r.sled_speed_m_s, first.sled_speed_m_s)
                 && (r.slip_angle_deg - first.slip_angle_deg).abs() < LEAST_ANGLE_DEG
-        }) && Against::of(&self.rows) != Against::Run
+        }) && Abscissa::of(&self.rows) != Abscissa::Run
     }
 
     /// Mean prediction of the runs at each place, from left to right.
-    fn trend(&self, pixels: &[Place], at: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+    fn trend(&self, pixels: &[RunPlace], at: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         let groups = pixels.iter().map(|p| p.group + 1).max().unwrap_or(0);
         (0..groups)
             .filter_map(|g| {
@@ -171,26 +178,25 @@ impl<'a> ComparisonChart<'a> {
     }
 
     fn hint(&self, row: &ComparisonRow) -> String {
-        let value =
-            |v: Option<f64>| v.map_or(number::NONE.into(), |v| number::fixed(v * self.quantity.scale, 2));
+        let value = |v: Option<f64>| number::or_none(v, |v| number::fixed(v * self.unit.factor, 2));
         let interval = match (row.q05, row.q95) {
             (None, None) => String::new(),
             (q05, q95) => format!(
                 ", 90 % interval {} to {} {}",
                 value(q05),
                 value(q95),
-                self.quantity.unit
+                self.unit.name
             ),
         };
         format!(
             "{} ({}): slip {}, load {} N; measured {} {unit}, model {} {unit}{interval}",
             row.run,
-            row.usage,
+            row.usage.name(),
             number::fixed(row.slip, 3),
             number::fixed(row.wheel_load_n, 1),
             value(Some(row.measured)),
             value(row.predicted),
-            unit = self.quantity.unit
+            unit = self.unit.name
         )
     }
 }
@@ -214,7 +220,7 @@ fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
 
 /// Where a run is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Place {
+struct RunPlace {
     /// Pixel.
     x: f64,
     /// Pixel of the middle of its group.
@@ -224,7 +230,7 @@ struct Place {
 }
 
 /// Spreads runs that would hide each other; their order within a group is the order of the rows.
-fn side_by_side(pixels: &[f64]) -> Vec<Place> {
+fn side_by_side(pixels: &[f64]) -> Vec<RunPlace> {
     let mut order: Vec<usize> = (0..pixels.len()).collect();
     order.sort_by(|&a, &b| pixels[a].total_cmp(&pixels[b]));
     let mut groups: Vec<Vec<usize>> = Vec::new();
@@ -235,7 +241,7 @@ fn side_by_side(pixels: &[f64]) -> Vec<Place> {
         }
     }
     let mut places = vec![
-        Place {
+        RunPlace {
             x: 0.0,
             centre: 0.0,
             group: 0
@@ -248,7 +254,7 @@ fn side_by_side(pixels: &[f64]) -> Vec<Place> {
         let apart = APART.min(ROOM / group.len() as f64);
         let middle = 0.5 * (group.len() - 1) as f64;
         for (k, &i) in group.iter().enumerate() {
-            places[i] = Place {
+            places[i] = RunPlace {
                 x: centre + apart * (k as f64 - middle),
                 centre,
                 group: number,

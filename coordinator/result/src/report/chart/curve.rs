@@ -1,17 +1,17 @@
-//! What a law outside the library does along its variable.
+//! The curve of a law outside the library.
 
 use maud::Markup;
 
-use super::axis::{Axis, Scale};
-use super::frame::{Frame, line};
+use super::axis::{AxisScale, ChartAxis};
+use super::frame::{ChartFrame, line};
 
 const WIDTH: f64 = 460.0;
 const HEIGHT: f64 = 240.0;
 
 /// A curve through points; `x` and `y` are the titles of the axes.
 pub(in crate::report) fn curve(points: &[[f64; 2]], x: &str, y: &str) -> Markup {
-    let axis = |i: usize| Axis::around(points.iter().map(|point| point[i]), 0.05, Scale::Linear);
-    let frame = Frame::new(WIDTH, HEIGHT, axis(0), axis(1));
+    let axis = |i: usize| ChartAxis::around(points.iter().map(|point| point[i]), 0.05, AxisScale::Linear);
+    let frame = ChartFrame::new(WIDTH, HEIGHT, axis(0), axis(1));
     let places: Vec<_> = points
         .iter()
         .map(|[px, py]| (frame.x.at(*px), frame.y.at(*py)))

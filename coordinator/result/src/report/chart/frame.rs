@@ -2,20 +2,20 @@
 
 use maud::{Markup, html};
 
-use super::axis::Axis;
+use super::axis::ChartAxis;
 
 /// Room for labels around the plotted area: left, right, top, bottom.
 const MARGINS: [f64; 4] = [52.0, 12.0, 12.0, 42.0];
 
 /// A picture's axes, placed on its pixels.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
+pub(super) struct ChartFrame {
     width: f64,
     height: f64,
     /// Left to right.
-    pub(super) x: Axis,
+    pub(super) x: ChartAxis,
     /// Bottom to top.
-    pub(super) y: Axis,
+    pub(super) y: ChartAxis,
 }
 
 /// A point's mark; every kind has a shape of its own.
@@ -31,11 +31,11 @@ pub(in crate::report) enum Marker {
     Alarming,
 }
 
-impl Frame {
+impl ChartFrame {
     /// Lays two axes out on a picture of this size.
-    pub(super) fn new(width: f64, height: f64, x: Axis, y: Axis) -> Self {
+    pub(super) fn new(width: f64, height: f64, x: ChartAxis, y: ChartAxis) -> Self {
         let [left, right, top, bottom] = MARGINS;
-        Frame {
+        ChartFrame {
             width,
             height,
             x: x.on(left, width - right),

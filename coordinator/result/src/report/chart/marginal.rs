@@ -3,8 +3,8 @@
 use job::FreeParameter;
 use maud::{Markup, html};
 
-use super::axis::{Axis, Scale};
-use super::frame::{Frame, px};
+use super::axis::{AxisScale, ChartAxis};
+use super::frame::{ChartFrame, px};
 use super::scale::scale;
 use crate::summary::parameter::ParameterSummary;
 
@@ -30,7 +30,12 @@ pub(in crate::report) fn marginal(
         .map(|b| b.density)
         .chain(curve.iter().map(|p| p.1))
         .fold(0.0, f64::max);
-    let frame = Frame::new(WIDTH, HEIGHT, x, Axis::new(0.0, 1.15 * top, Scale::Linear));
+    let frame = ChartFrame::new(
+        WIDTH,
+        HEIGHT,
+        x,
+        ChartAxis::new(0.0, 1.15 * top, AxisScale::Linear),
+    );
     let [_, _, above, floor] = frame.edges();
     let path: Vec<String> = curve
         .iter()
@@ -67,10 +72,10 @@ pub(in crate::report) fn marginal(
 }
 
 /// The range worth seeing: every draw, and the prior as far as it lies near.
-fn span(parameter: &FreeParameter, draws: &[f64], summary: &ParameterSummary) -> Axis {
+fn span(parameter: &FreeParameter, draws: &[f64], summary: &ParameterSummary) -> ChartAxis {
     let prior = &parameter.marginal;
     let scale = scale(parameter, draws);
-    let log = scale == Scale::Log;
+    let log = scale == AxisScale::Log;
     let forward = |x: f64| if log { x.ln() } else { x };
     let backward = |u: f64| if log { u.exp() } else { u };
     let reach = REACH * (forward(summary.q95) - forward(summary.q05));
@@ -88,7 +93,7 @@ fn span(parameter: &FreeParameter, draws: &[f64], summary: &ParameterSummary) ->
         .copied()
         .chain([low, high])
         .chain(bounds.map(|b| b.0));
-    Axis::around(values, 0.03, scale)
+    ChartAxis::around(values, 0.03, scale)
 }
 
 /// A bar of the histogram.
@@ -100,7 +105,7 @@ struct Bar {
 }
 
 /// Bars of equal width on the axis over the range of the draws; their density is that of the axis' coordinate.
-fn histogram(draws: &[f64], x: Axis) -> Vec<Bar> {
+fn histogram(draws: &[f64], x: ChartAxis) -> Vec<Bar> {
     let unit = x.on(0.0, 1.0);
     let mut shares: Vec<f64> = draws.iter().map(|v| unit.at(*v)).collect();
     shares.sort_by(f64::total_cmp);
@@ -132,7 +137,7 @@ fn histogram(draws: &[f64], x: Axis) -> Vec<Bar> {
 }
 
 /// The prior's density of the axis' coordinate, with the foot of each jump at a bound.
-fn prior_curve(parameter: &FreeParameter, x: Axis) -> Vec<(f64, f64)> {
+fn prior_curve(parameter: &FreeParameter, x: ChartAxis) -> Vec<(f64, f64)> {
     let prior = &parameter.marginal;
     let (lower, upper) = prior.support();
     let density = |v: f64| {
@@ -141,7 +146,15 @@ fn prior_curve(parameter: &FreeParameter, x: Axis) -> Vec<(f64, f64)> {
         if density.is_finite() { density } else { 0.0 }
     };
     let (from, to) = (x.low.max(lower), x.high.min(upper));
-    let inner = Axis::new(from, to, if x.is_log() { Scale::Log } else { Scale::Linear });
+    let inner = ChartAxis::new(
+        from,
+        to,
+        if x.is_log() {
+            AxisScale::Log
+        } else {
+            AxisScale::Linear
+        },
+    );
     let mut points = Vec::new();
     if x.holds(lower) {
         points.push((from, 0.0));
@@ -157,7 +170,7 @@ fn prior_curve(parameter: &FreeParameter, x: Axis) -> Vec<(f64, f64)> {
 }
 
 /// Length of the axis in its coordinate.
-fn axis_length(x: Axis) -> f64 {
+fn axis_length(x: ChartAxis) -> f64 {
     if x.is_log() {
         (x.high / x.low).ln()
     } else {
@@ -205,9 +218,9 @@ mod tests {
             None,
         );
         for (parameter, axis) in [
-            (&normal, Axis::new(0.0, 3.0, Scale::Linear)),
-            (&flat, Axis::new(-1.0, 5.0, Scale::Linear)),
-            (&lognormal, Axis::new(0.01, 400.0, Scale::Log)),
+            (&normal, ChartAxis::new(0.0, 3.0, AxisScale::Linear)),
+            (&flat, ChartAxis::new(-1.0, 5.0, AxisScale::Linear)),
+            (&lognormal, ChartAxis::new(0.01, 400.0, AxisScale::Log)),
         ] {
             let curve = prior_curve(parameter, axis);
             assert!(
@@ -221,7 +234,7 @@ mod tests {
     #[test]
     fn the_histogram_encloses_one() {
         let draws: Vec<f64> = (0..500).map(|k| f64::from(k * k % 337)).collect();
-        let axis = Axis::new(-50.0, 400.0, Scale::Linear);
+        let axis = ChartAxis::new(-50.0, 400.0, AxisScale::Linear);
         let sum: f64 = histogram(&draws, axis)
             .iter()
             .map(|b| b.density * (b.high - b.low))
@@ -231,7 +244,7 @@ mod tests {
 
     #[test]
     fn equal_draws_still_make_a_bar() {
-        let bars = histogram(&[2.0; 10], Axis::new(1.0, 3.0, Scale::Linear));
+        let bars = histogram(&[2.0; 10], ChartAxis::new(1.0, 3.0, AxisScale::Linear));
         assert!(bars.iter().all(|b| b.density.is_finite()) && bars.iter().any(|b| b.density > 0.0));
     }
 }

@@ -3,8 +3,8 @@
 use job::FreeParameter;
 use maud::{Markup, html};
 
-use super::axis::Axis;
-use super::frame::{Frame, px};
+use super::axis::ChartAxis;
+use super::frame::{ChartFrame, px};
 use super::scale::scale;
 
 const WIDTH: f64 = 320.0;
@@ -14,8 +14,8 @@ const DOTS: usize = 500;
 
 /// A scatter of the draws, evenly thinned.
 pub(in crate::report) fn pair(parameters: [&FreeParameter; 2], draws: [&[f64]; 2]) -> Markup {
-    let axis = |i: usize| Axis::around(draws[i].iter().copied(), 0.04, scale(parameters[i], draws[i]));
-    let frame = Frame::new(WIDTH, HEIGHT, axis(0), axis(1));
+    let axis = |i: usize| ChartAxis::around(draws[i].iter().copied(), 0.04, scale(parameters[i], draws[i]));
+    let frame = ChartFrame::new(WIDTH, HEIGHT, axis(0), axis(1));
     let every = draws[0].len().div_ceil(DOTS).max(1);
     // A segment without length under a round cap is a dot.
     let dots: String = draws[0]

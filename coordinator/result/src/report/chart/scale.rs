@@ -2,21 +2,21 @@
 
 use job::FreeParameter;
 
-use super::axis::Scale;
+use super::axis::AxisScale;
 
 /// Draws over more than this factor are drawn against equal ratios, where the prior is made of ratios too.
 const WIDE: f64 = 10.0;
 
 /// The scale that suits a parameter's draws.
-pub(super) fn scale(parameter: &FreeParameter, draws: &[f64]) -> Scale {
+pub(super) fn scale(parameter: &FreeParameter, draws: &[f64]) -> AxisScale {
     // Only priors in ln x have a coordinate of their own.
     let in_ratios = parameter.marginal.coordinate(2.0) < 1.0;
     let low = draws.iter().copied().fold(f64::INFINITY, f64::min);
     let high = draws.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if in_ratios && low > 0.0 && high > WIDE * low {
-        Scale::Log
+        AxisScale::Log
     } else {
-        Scale::Linear
+        AxisScale::Linear
     }
 }
 
@@ -41,8 +41,8 @@ mod tests {
             lower: 1.0,
             upper: 1e6,
         });
-        assert_eq!(scale(&ratios, &[1.0, 20.0]), Scale::Log);
-        assert_eq!(scale(&ratios, &[1.0, 2.0]), Scale::Linear);
-        assert_eq!(scale(&steps, &[1.0, 20.0]), Scale::Linear);
+        assert_eq!(scale(&ratios, &[1.0, 20.0]), AxisScale::Log);
+        assert_eq!(scale(&ratios, &[1.0, 2.0]), AxisScale::Linear);
+        assert_eq!(scale(&steps, &[1.0, 20.0]), AxisScale::Linear);
     }
 }

@@ -1,10 +1,10 @@
-//! The way from the prior to the posterior, stage by stage.
+//! Tempering exponent and drift by stage.
 
 use maud::{Markup, html};
 use record::StageRow;
 
-use super::axis::{Axis, Scale};
-use super::frame::{Frame, Marker, line, marker, px};
+use super::axis::{AxisScale, ChartAxis};
+use super::frame::{ChartFrame, Marker, line, marker, px};
 use crate::words::number;
 
 const WIDTH: f64 = 460.0;
@@ -17,8 +17,8 @@ const FARTHEST: f64 = 12.0;
 /// Tempering exponent by stage, on a scale of ratios.
 pub(in crate::report) fn exponent(stages: &[StageRow]) -> Markup {
     let shown: Vec<&StageRow> = stages.iter().filter(|s| s.tempering_exponent > 0.0).collect();
-    let y = Axis::around(shown.iter().map(|s| s.tempering_exponent), 0.05, Scale::Log);
-    let frame = Frame::new(WIDTH, HEIGHT, numbers(stages), y);
+    let y = ChartAxis::around(shown.iter().map(|s| s.tempering_exponent), 0.05, AxisScale::Log);
+    let frame = ChartFrame::new(WIDTH, HEIGHT, numbers(stages), y);
     let place = |s: &StageRow| (frame.x.at(f64::from(s.stage)), frame.y.at(s.tempering_exponent));
     let points: Vec<_> = shown.iter().map(|s| place(s)).collect();
     let marks = html! {
@@ -45,11 +45,11 @@ pub(in crate::report) fn drift(stages: &[StageRow]) -> Markup {
         .filter(|z| z.is_finite())
         .fold(ALARM + 1.0, f64::max);
     let half = largest.min(FARTHEST) * 1.05;
-    let frame = Frame::new(
+    let frame = ChartFrame::new(
         WIDTH,
         HEIGHT,
         numbers(stages),
-        Axis::new(-half, half, Scale::Linear),
+        ChartAxis::new(-half, half, AxisScale::Linear),
     );
     let [left, right, ..] = frame.edges();
     let (top, bottom) = (frame.y.at(CALM), frame.y.at(-CALM));
@@ -73,8 +73,8 @@ pub(in crate::report) fn drift(stages: &[StageRow]) -> Markup {
     )
 }
 
-fn numbers(stages: &[StageRow]) -> Axis {
-    Axis::around(stages.iter().map(|s| f64::from(s.stage)), 0.05, Scale::Whole)
+fn numbers(stages: &[StageRow]) -> ChartAxis {
+    ChartAxis::around(stages.iter().map(|s| f64::from(s.stage)), 0.05, AxisScale::Whole)
 }
 
 fn kind(stage: &StageRow) -> Marker {

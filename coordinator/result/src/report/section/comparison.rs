@@ -3,25 +3,27 @@
 use std::collections::BTreeSet;
 
 use maud::{Markup, html};
+use shared::channel::Channel;
+use shared::experiment::RunUse;
 
 use crate::finished_calibration::FinishedCalibration;
 use crate::report::chart::{ComparisonChart, Marker, glyph, shared_range};
-use crate::report::quantity::Quantity;
 use crate::table::comparison::Comparison;
-use crate::table::row::ComparisonRow;
+use crate::table::row::{ComparisonRow, measured_channels};
+use crate::words::data_channel::{ShownUnit, title};
 use crate::words::number;
 
 /// Pictures and table.
-pub(in crate::report) fn comparison(outcome: &FinishedCalibration, comparison: &Comparison) -> Markup {
+pub(in crate::report) fn comparison(calibration: &FinishedCalibration, comparison: &Comparison) -> Markup {
     let rows = &comparison.rows;
     let wheels: BTreeSet<&str> = rows.iter().map(|r| r.wheel.as_str()).collect();
-    let has_holdout = rows.iter().any(|r| r.usage == "holdout");
-    let draws = outcome
+    let has_holdout = rows.iter().any(|r| r.usage == RunUse::Holdout);
+    let draws = calibration
         .predictive_draws()
         .iter()
         .filter(|p| p.fit.is_ok())
         .count();
-    let sampled = outcome.estimate.is_none();
+    let sampled = calibration.estimate.is_none();
     let model = if sampled {
         "model: posterior mean and 90 % predictive interval"
     } else {
@@ -34,17 +36,17 @@ pub(in crate::report) fn comparison(outcome: &FinishedCalibration, comparison: &
             span { (glyph(None)) (model) }
         }
         @if wheels.len() == 1 {
-            div.charts { @for quantity in Quantity::measured(rows) { (panels(rows, &wheels, quantity)) } }
+            div.charts { @for channel in measured_channels(rows) { (panels(rows, &wheels, channel)) } }
         } @else {
-            @for quantity in Quantity::measured(rows) {
-                h3 { (quantity.label()) }
-                div.charts { (panels(rows, &wheels, quantity)) }
+            @for channel in measured_channels(rows) {
+                h3 { (title(channel)) }
+                div.charts { (panels(rows, &wheels, channel)) }
             }
         }
         p.note {
-            "Runs at one condition stand side by side. A dashed line joins predictions and only guides the eye. "
+            "Runs at the same condition stand side by side. A dashed line joins predictions and only guides the eye. "
             @if sampled {
-                "An interval is where 90 % of new measurements should fall: spread of the parameters over "
+                "An interval should contain 90 % of new measurements: spread of the parameters over "
                 (number::count(draws, "draw")) " of the posterior, plus the noise. "
             } @else {
                 "A fit has no distribution, so there are no intervals. "
@@ -59,22 +61,22 @@ pub(in crate::report) fn comparison(outcome: &FinishedCalibration, comparison: &
 }
 
 /// A picture for each wheel that has the channel.
-fn panels(rows: &[ComparisonRow], wheels: &BTreeSet<&str>, quantity: Quantity) -> Markup {
+fn panels(rows: &[ComparisonRow], wheels: &BTreeSet<&str>, channel: Channel) -> Markup {
     let (wheels, charts): (Vec<&str>, Vec<ComparisonChart>) = wheels
         .iter()
-        .filter_map(|w| Some((*w, ComparisonChart::new(rows, w, quantity)?)))
+        .filter_map(|w| Some((*w, ComparisonChart::new(rows, w, channel)?)))
         .unzip();
     let range = shared_range(&charts);
     html! {
         @for (wheel, chart) in wheels.iter().zip(&charts) {
-            figure { figcaption { "wheel " b { (wheel) } ", " (quantity.channel.words()) } (chart.draw(range)) }
+            figure { figcaption { "wheel " b { (wheel) } ", " (channel.words()) } (chart.draw(range)) }
         }
     }
 }
 
 fn table(rows: &[ComparisonRow], sampled: bool) -> Markup {
     let angles = rows.iter().any(|r| r.slip_angle_deg.abs() > 0.0);
-    let holdout = rows.iter().any(|r| r.usage == "holdout");
+    let holdout = rows.iter().any(|r| r.usage == RunUse::Holdout);
     html! {
         table {
             thead { tr {
@@ -95,32 +97,30 @@ fn table(rows: &[ComparisonRow], sampled: bool) -> Markup {
 }
 
 fn cells(row: &ComparisonRow, angles: bool, holdout: bool, sampled: bool) -> Markup {
-    let quantity = Quantity::measured(std::slice::from_ref(row)).into_iter().next();
-    let (scale, unit) = quantity.map_or((1.0, row.unit.as_str()), |q| (q.scale, q.unit));
-    let words = quantity.map_or(row.channel.as_str(), |q| q.channel.words());
+    let unit = ShownUnit::of(row.channel);
     let spread = row
         .noise_sd
         .or(row.q05.zip(row.q95).map(|(a, b)| 0.3 * (b - a)))
         .unwrap_or(0.0);
     // One digit more than the noise deserves: rows are compared with each other.
     let value = |v: Option<f64>| {
-        v.map_or(number::NONE.into(), |v| {
-            number::to_spread(v * scale, 0.3 * spread * scale)
+        number::or_none(v, |v| {
+            number::to_spread(v * unit.factor, 0.3 * spread * unit.factor)
         })
     };
     html! {
-        td.text { (row.run) } td.text { (row.usage) } td.text { (row.wheel) }
+        td.text { (row.run) } td.text { (row.usage.name()) } td.text { (row.wheel) }
         td { (number::fixed(row.slip, 3)) } td { (number::fixed(row.wheel_load_n, 1)) }
         td { (number::fixed(row.sled_speed_m_s * 1000.0, 2)) }
         @if angles { td { (number::fixed(row.slip_angle_deg, 1)) } }
-        td.text { (words) " [" (unit) "]" }
+        td.text { (title(row.channel)) }
         td { (value(Some(row.measured))) } td { (value(row.predicted)) }
         @if sampled {
             td { @if row.q05.is_some() { (value(row.q05)) " to " (value(row.q95)) } @else { (number::NONE) } }
         }
         td {
             @if row.covered() == Some(false) { span.alarm { "outside " } }
-            (row.residual_sigma.map_or(number::NONE.into(), |r| format!("{r:+.1}")))
+            (number::or_none(row.residual_sigma, |r| format!("{r:+.1}")))
         }
         @if holdout { td { (value(row.interpolated)) } }
     }

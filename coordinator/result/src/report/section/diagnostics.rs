@@ -1,49 +1,41 @@
-//! Whether the data can tell, where the model misses them, and what the prior has to say.
+//! Diagnostics: findings and the tables behind them.
 
 use maud::{Markup, html};
 
 use crate::diagnostics::calibration::Diagnostics;
 use crate::diagnostics::channels::ChannelDiagnostics;
-use crate::diagnostics::data_channel::shown;
 use crate::diagnostics::directions::WORST_KNOWN;
 use crate::diagnostics::residuals::{ResidualDiagnostics, largest};
 use crate::diagnostics::trends::TrendDiagnostics;
+use crate::words::data_channel::ShownUnit;
 use crate::words::number;
 use crate::words::probability::probability;
 
-/// Findings, then the tables that they come from.
+/// Findings, then the tables behind them.
 pub(in crate::report) fn diagnostics(diagnostics: &Diagnostics) -> Markup {
     html! {
         ul.findings { @for words in &diagnostics.findings { li { (words) "." } } }
         h3 { "Channels" }
         div.scroll { (channels(diagnostics)) }
         p.note {
-            "Error sd: noise, and what it shares with other rows. Prior allows: standard deviation of the prediction over draws from the prior. "
-            "Information: the latter over the former; below 1 a row says less than the prior did. Parameters spent: sum of the leverages. "
+            "Error sd: noise, discrepancy and shared errors together, so it can exceed the declared noise. Prior spread: standard deviation of the prediction over draws from the prior. "
+            "Information: the latter over the former; below 1 a row is less informative than the prior. Parameters spent: sum of the leverages. "
             "Chi-square: squares of the residuals over the errors' variances; none where the noise was inferred from them. "
-            "How many rows lie in their intervals stands under the errors by channel."
+            "The coverage of the intervals stands under the errors by channel."
         }
         (residuals(&diagnostics.residuals))
         (trends(&diagnostics.trends))
-        h3 { "What the data did to the prior" }
+        h3 { "Parameters against their priors" }
         div.scroll { (parameters(diagnostics)) }
         p.note {
-            "Contraction: 1 less the standard deviation after the fit over that before; 0: the data say nothing. "
-            "Prior against data: probability of a posterior so far out, were the prior right (Evans and Moshonov's check); a dash: the data say too little."
+            "Contraction: 1 minus the standard deviation after the fit over that before; 0: the data are uninformative. "
+            "Prior conflict: probability of a posterior so far out if the prior is right (Evans and Moshonov's check); a dash: the data are uninformative."
         }
         div.scroll { (directions(diagnostics)) }
         p.note {
-            "Directions in standard deviations of the prior. Along the first the data say least: its parameters can stand in for each other."
+            "Directions in standard deviations of the prior. The data determine the first least: its parameters can compensate for each other."
         }
     }
-}
-
-fn or_dash(value: Option<f64>, digits: i32) -> String {
-    value.map_or(number::NONE.into(), |x| number::significant(x, digits))
-}
-
-fn p_cell(value: Option<f64>) -> String {
-    value.map_or(number::NONE.into(), probability)
 }
 
 fn channels(diagnostics: &Diagnostics) -> Markup {
@@ -51,27 +43,27 @@ fn channels(diagnostics: &Diagnostics) -> Markup {
     html! {
         table {
             thead { tr {
-                th.text { "channel" } th.text { "unit" } th { "rows" } th { "error sd" } th { "prior" br; "allows" } th { "information" }
+                th.text { "channel" } th.text { "unit" } th { "rows" } th { "error sd" } th { "prior" br; "spread" } th { "information" }
                 th { "parameters" br; "spent" } th { "chi-square" } th { "expected" } th { "p" }
             } }
             tbody {
                 @for c in &diagnostics.channels {
                     @let square = c.chi_square.as_ref();
-                    @let (scale, unit) = shown(&c.channel);
+                    @let unit = c.channel.shown();
                     tr {
-                        td.text { (c.channel.replace('_', " ")) } td.text { (unit) } td { (c.data) }
-                        td { (or_dash(c.error_sd.map(|sd| scale * sd), 3)) } td { (or_dash(c.prior_predictive_sd.map(|sd| scale * sd), 3)) }
-                        td { span.alarm[silent(c)] { (or_dash(c.information, 2)) } }
-                        td { (or_dash(c.effective_parameters, 2)) }
-                        td { (or_dash(square.map(|s| s.chi_square), 3)) } td { (or_dash(square.map(|s| s.degrees_of_freedom), 3)) }
-                        td { (p_cell(square.and_then(|s| s.p))) }
+                        td.text { (c.channel.words()) } td.text { (unit.name) } td { (c.data) }
+                        td { (number::or_none(c.error_sd.map(|sd| unit.factor * sd), |x| number::significant(x, 3))) } td { (number::or_none(c.prior_predictive_sd.map(|sd| unit.factor * sd), |x| number::significant(x, 3))) }
+                        td { span.alarm[silent(c)] { (number::or_none(c.information, |x| number::significant(x, 2))) } }
+                        td { (number::or_none(c.effective_parameters, |x| number::significant(x, 2))) }
+                        td { (number::or_none(square.map(|s| s.chi_square), |x| number::significant(x, 3))) } td { (number::or_none(square.map(|s| s.degrees_of_freedom), |x| number::significant(x, 3))) }
+                        td { (number::or_none(square.and_then(|s| s.p), probability)) }
                     }
                 }
                 @if let Some(all) = &diagnostics.chi_square {
                     tr.first {
                         td.text { "all together" } td {} td { (all.data) } td {} td {} td {} td {}
                         td { (number::significant(all.chi_square, 3)) } td { (number::significant(all.degrees_of_freedom, 3)) }
-                        td { (p_cell(all.p)) }
+                        td { (number::or_none(all.p, probability)) }
                     }
                 }
             }
@@ -89,16 +81,16 @@ fn residuals(all: &[ResidualDiagnostics]) -> Markup {
                     th.text { "run" } th.text { "channel" } th { "residual" } th { "error sd" } th.text { "unit" } th { "leverage" }
                     th { "studentised" } th { "p" }
                 } }
-                tbody { @for r in &largest { @let (scale, unit) = shown(&r.channel); tr {
-                    td.text { (r.run) } td.text { (r.channel.replace('_', " ")) }
-                    td { (number::to_spread(scale * r.residual, scale * r.error_sd)) } td { (number::to_spread(scale * r.error_sd, scale * r.error_sd)) } td.text { (unit) }
+                tbody { @for r in &largest { @let unit = r.channel.shown(); tr {
+                    td.text { (r.run) } td.text { (r.channel.words()) }
+                    td { (number::to_spread(unit.factor * r.residual, unit.factor * r.error_sd)) } td { (number::to_spread(unit.factor * r.error_sd, unit.factor * r.error_sd)) } td.text { (unit.name) }
                     td { (number::fixed(r.leverage, 2)) }
-                    td { (or_dash(r.studentised, 2)) } td { (p_cell(r.p)) }
+                    td { (number::or_none(r.studentised, |x| number::significant(x, 2))) } td { (number::or_none(r.p, probability)) }
                 } } }
             } }
             p.note {
-                "Leverage: the share of the error's variance that the fit takes up. Studentised: the residual over what is left of its standard deviation. "
-                "p: probability of one so large by itself; the smallest of " (number::count(all.len(), "residual")) " is usually about " (number::significant(1.0 / all.len() as f64, 1)) "."
+                "Leverage: the share of the error's variance that the fit absorbs. Studentised: the residual over its remaining standard deviation. "
+                "p: probability of a single residual so large; the smallest of " (number::count(all.len(), "residual")) " is usually about " (number::significant(1.0 / all.len() as f64, 1)) "."
             }
         }
     }
@@ -112,16 +104,16 @@ fn trends(all: &[TrendDiagnostics]) -> Markup {
                 thead { tr {
                     th.text { "channel" } th.text { "against" } th { "change" } th.text { "unit" } th { "share left" } th { "p" }
                 } }
-                tbody { @for (i, t) in all.iter().enumerate() { @let (scale, unit) = shown(&t.channel); tr.first[i == 0 || all[i - 1].channel != t.channel] {
-                    td.text { (t.channel.replace('_', " ")) } td.text { (t.against.name().replace('_', " ")) }
-                    td { (number::with_spread(scale * t.change, scale * t.change_sd)) } td.text { (unit) }
+                tbody { @for (i, t) in all.iter().enumerate() { @let unit = ShownUnit::of(t.channel); tr.first[i == 0 || all[i - 1].channel != t.channel] {
+                    td.text { (t.channel.words()) } td.text { (t.against.name().replace('_', " ")) }
+                    td { (number::with_spread(unit.factor * t.change, unit.factor * t.change_sd)) } td.text { (unit.name) }
                     td { (number::fixed(t.share_left, 2)) } td { (probability(t.p)) }
                 } } }
             } }
             p.note {
-                "Change: by how much the measurements rise beyond the model from the least to the largest value of the condition (constant: lie above it), "
-                "had the fit not bent towards them, \u{b1} its standard deviation where there is no trend. "
-                "Share left: how much of such a pattern the parameters cannot imitate; what they imitate fully is not listed."
+                "Change: by how much the measurements rise above the model from the least to the largest value of the condition (constant: lie above it), "
+                "before the fit compensates, \u{b1} its standard deviation where there is no trend. "
+                "Share left: how much of such a pattern the parameters cannot reproduce; patterns that they reproduce fully are not listed."
             }
         }
     }
@@ -130,18 +122,18 @@ fn trends(all: &[TrendDiagnostics]) -> Markup {
 fn parameters(diagnostics: &Diagnostics) -> Markup {
     html! {
         table {
-            thead { tr { th.text { "parameter" } th { "contraction" } th { "p, prior" br; "against data" } th.text { "" } } }
+            thead { tr { th.text { "parameter" } th { "contraction" } th { "p, prior" br; "conflict" } th.text { "" } } }
             tbody {
                 @for p in &diagnostics.parameters {
                     tr {
                         td.text { (p.name) }
-                        td { (p.contraction.map_or(number::NONE.into(), |c| number::fixed(c, 2))) }
-                        td { (p_cell(p.conflict_p)) }
+                        td { (number::or_none(p.contraction, |c| number::fixed(c, 2))) }
+                        td { (number::or_none(p.conflict_p, probability)) }
                         td.text { @if p.at_bound { span.alarm { "AT BOUND" } } }
                     }
                 }
                 @if let Some(all) = &diagnostics.conflict {
-                    tr.first { td.text { "all together" } td {} td { (p_cell(all.p)) } td {} }
+                    tr.first { td.text { "all together" } td {} td { (number::or_none(all.p, probability)) } td {} }
                 }
             }
         }
@@ -152,7 +144,7 @@ fn directions(diagnostics: &Diagnostics) -> Markup {
     html! {
         @if !diagnostics.directions.is_empty() {
             table {
-                thead { tr { th { "share of the prior's" br; "spread that is left" } th.text { "worst-known directions" } } }
+                thead { tr { th { "remaining share of" br; "the prior sd" } th.text { "worst-known directions" } } }
                 tbody { @for d in diagnostics.directions.iter().take(WORST_KNOWN) { tr {
                     td { (number::significant(d.sd_ratio, 2)) } td.text { (d.words()) }
                 } } }

@@ -4,15 +4,18 @@ use std::path::Path;
 
 use maud::{Markup, html};
 use record::{Discovery, JudgedEffect, Outside};
+use shared::channel::Channel;
+use shared::experiment::RunUse;
 
 use crate::discovery::{Round, arguments};
 use crate::finished_calibration::FinishedCalibration;
 use crate::report::chart;
-use crate::report::quantity::Quantity;
 use crate::study::Study;
 use crate::table::comparison::Comparison;
 use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;
+use crate::table::row::{measured_channels, rows_of};
+use crate::words::data_channel::{ShownUnit, title};
 use crate::words::number;
 
 /// Ledger, then each search; nothing where the study has neither a search nor an extension.
@@ -31,19 +34,19 @@ fn ledger(study: &Study) -> Markup {
     let lines: Vec<(&FinishedCalibration, Comparison)> =
         study.ledger().map(|o| (o, o.comparison())).collect();
     let rows: Vec<_> = lines.iter().flat_map(|(_, c)| c.rows.iter().cloned()).collect();
-    let quantities = Quantity::measured(&rows);
+    let channels = measured_channels(&rows);
     html! {
         div.scroll { table {
             thead { tr {
                 th.text { "calibration" } th.text { "effects" } th.text { "rows" }
-                @for quantity in &quantities { th { (quantity.label()) br; "(noise sds)" } }
+                @for channel in &channels { th { (title(*channel)) br; "(noise sds)" } }
                 th { "all" br; "[noise sds]" } th { "inside" br; "90 %" } th { "log-evidence" }
             } }
             tbody {
-                @for (outcome, comparison) in &lines {
-                    @for (usage, table) in [("fit", &comparison.fit), ("holdout", &comparison.holdout)] {
+                @for (calibration, comparison) in &lines {
+                    @for (usage, table) in [(RunUse::Fit, &comparison.fit), (RunUse::Holdout, &comparison.holdout)] {
                         @if let Some(table) = table {
-                            tr.first[usage == "fit"] { (cells(outcome, comparison, usage, table, &quantities)) }
+                            tr.first[usage == RunUse::Fit] { (cells(calibration, comparison, usage, table, &channels)) }
                         }
                     }
                 }
@@ -57,35 +60,35 @@ fn ledger(study: &Study) -> Markup {
 }
 
 fn cells(
-    outcome: &FinishedCalibration,
+    calibration: &FinishedCalibration,
     comparison: &Comparison,
-    usage: &str,
+    usage: RunUse,
     table: &ErrorTable,
-    quantities: &[Quantity],
+    channels: &[Channel],
 ) -> Markup {
-    let is_first = usage == "fit";
-    let effects = outcome.effects();
-    let coverage = Coverage::count(comparison.rows.iter().filter(|r| r.usage == usage));
+    let is_first = usage == RunUse::Fit;
+    let effects = calibration.effects();
+    let coverage = Coverage::count(rows_of(&comparison.rows, usage));
     html! {
-        td.text { @if is_first { (outcome.experiment) } }
+        td.text { @if is_first { (calibration.experiment) } }
         td.text { @if is_first { (if effects.is_empty() { number::NONE.to_owned() } else { effects.join(", ") }) } }
-        td.text { (usage) }
-        @for quantity in quantities {
+        td.text { (usage.name()) }
+        @for channel in channels {
             td {
-                @match table.channel(quantity.channel) {
+                @match table.channel(*channel) {
                     Some(error) => {
-                        (number::significant(error.rmse * quantity.scale, 3))
-                        " (" (error.rmse_sigma.map_or(number::NONE.into(), |s| number::significant(s, 3))) ")"
+                        (number::significant(error.rmse * ShownUnit::of(*channel).factor, 3))
+                        " (" (number::or_none(error.rmse_sigma, |s| number::significant(s, 3))) ")"
                     },
                     None => (number::NONE),
                 }
             }
         }
-        td { (table.all.rmse_sigma.map_or(number::NONE.into(), |s| number::significant(s, 3))) }
-        td { (coverage.map_or(number::NONE.into(), |c| format!("{} of {}", c.inside, c.of))) }
+        td { (number::or_none(table.all.rmse_sigma, |s| number::significant(s, 3))) }
+        td { (number::or_none(coverage, |c| format!("{} of {}", c.inside, c.of))) }
         td {
             @if is_first {
-                @match (outcome.row.log_evidence, outcome.row.log_evidence_se) {
+                @match (calibration.row.log_evidence, calibration.row.log_evidence_se) {
                     (Some(z), Some(se)) => (number::with_spread(z, se)),
                     _ => (number::NONE),
                 }
@@ -97,9 +100,11 @@ fn cells(
 /// What a search found.
 fn search(study: &Study, round: &Round) -> Markup {
     let record = &round.record;
-    let of = study.all().find(|outcome| outcome.row.id == round.calibration);
+    let of = study
+        .calibrations()
+        .find(|calibration| calibration.row.id == round.calibration);
     html! {
-        h3 { "Search of " (of.map_or("the model", |outcome| outcome.experiment.as_str())) }
+        h3 { "Search of " (of.map_or("the model", |calibration| calibration.experiment.as_str())) }
         p.verdict { (record.text) }
         (explanations(record))
         @if let Some(outside) = &record.outside { (law(outside)) }

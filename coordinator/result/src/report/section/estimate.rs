@@ -1,4 +1,4 @@
-//! What a fit or a search found, in place of a posterior's parameters and a sampler's stages.
+//! Parameters, cost and stopping reason of a point estimate.
 
 use inference::point_estimate::StopReason;
 use maud::{Markup, html};
@@ -11,7 +11,7 @@ use crate::summary::point_estimate::fitted;
 use crate::words::number;
 
 /// The most probable parameters.
-pub(in crate::report) fn estimate(outcome: &FinishedCalibration, estimate: &EstimateRow) -> Markup {
+pub(in crate::report) fn estimate(calibration: &FinishedCalibration, estimate: &EstimateRow) -> Markup {
     html! {
         div.scroll { table {
             thead { tr {
@@ -19,14 +19,14 @@ pub(in crate::report) fn estimate(outcome: &FinishedCalibration, estimate: &Esti
                 th { "sd over" br; "prior sd" } th.text { "prior" } th.text { "" }
             } }
             tbody {
-                @for p in fitted(estimate, &outcome.spec.parameters) {
+                @for p in fitted(estimate, &calibration.spec.parameters) {
                     @let prior_sd = p.free.marginal.sd();
                     tr {
                         td.text { (p.free.name) } td.text { (p.free.unit) }
                         td { (number::to_spread(p.value, p.sd.unwrap_or(0.0))) }
-                        td { (p.sd.map_or(number::NONE.into(), |sd| number::to_spread(sd, sd))) }
+                        td { (number::or_none(p.sd, |sd| number::to_spread(sd, sd))) }
                         td { (number::to_spread(prior_sd, prior_sd)) }
-                        td { (p.sd.map_or(number::NONE.into(), |sd| number::significant(sd / prior_sd, 2))) }
+                        td { (number::or_none(p.sd, |sd| number::significant(sd / prior_sd, 2))) }
                         td.text { (prior_words(p.free)) }
                         td.text { @if p.at_bound { span.alarm { "AT BOUND" } } }
                     }
@@ -39,25 +39,25 @@ pub(in crate::report) fn estimate(outcome: &FinishedCalibration, estimate: &Esti
                 "Sd: from the curvature there (Laplace), the parameters at a bound held; right where the posterior is a normal distribution, and too small where the noise was inferred from repeats that share a misfit. "
                 "AT BOUND: exactly at a bound of the prior; there is no sd."
             } @else {
-                "A search by generations does not know the curvature there, so there are no standard deviations; what the data say nothing about lies anywhere. "
+                "A search by generations does not compute the curvature there, so there are no standard deviations; parameters that the data do not determine may lie anywhere. "
                 "AT BOUND: exactly at a bound of the prior."
             }
         }
-        (fixed(outcome))
+        (fixed(calibration))
     }
 }
 
-/// What the fit cost and why it ended.
-pub(in crate::report) fn fit(outcome: &FinishedCalibration, estimate: &EstimateRow) -> Markup {
+/// Cost of the fit and why it stopped.
+pub(in crate::report) fn fit(calibration: &FinishedCalibration, estimate: &EstimateRow) -> Markup {
     html! {
         dl {
             dt { "log-posterior" }
             dd {
                 (number::significant(estimate.log_posterior(), 5)) " (log-likelihood " (number::significant(estimate.log_likelihood, 5))
-                " plus log-density of the prior " (number::significant(estimate.log_prior, 5)) "; without the evidence, which is not known)"
+                " plus log-density of the prior " (number::significant(estimate.log_prior, 5)) "; without the evidence, which is unknown)"
             }
             dt { "stopped because" } dd { (reason(estimate.stop)) }
-            (cost(outcome))
+            (cost(calibration))
         }
     }
 }
@@ -65,12 +65,12 @@ pub(in crate::report) fn fit(outcome: &FinishedCalibration, estimate: &EstimateR
 /// Why a fit ended, in words.
 pub(super) fn reason(stop: StopReason) -> &'static str {
     match stop {
-        StopReason::Decrease => "no step gains anything any more",
+        StopReason::Decrease => "no step improves the posterior any more",
         StopReason::Step => {
-            "no step that was tried gained anything: nearer to the optimum the noise of the model does not let one see"
+            "no tried step improved the posterior: the numerical noise of the model hides smaller improvements"
         }
-        StopReason::Budget => "its budget of evaluations was spent; a better point may be near",
-        StopReason::Stagnation => "for many generations it found nothing better",
-        StopReason::Generations => "its generations had passed; a better point may be near",
+        StopReason::Budget => "its budget of evaluations was used; a better point may be near",
+        StopReason::Stagnation => "many generations brought no improvement",
+        StopReason::Generations => "its last generation was reached; a better point may be near",
     }
 }

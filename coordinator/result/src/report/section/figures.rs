@@ -2,11 +2,11 @@
 
 use maud::{Markup, html};
 
-use crate::figure::{ChannelHistory, ErrorDensity, Figures, Mark, Posterior, SearchConvergence};
+use crate::figure::{ChannelHistory, ErrorDensity, JointPosterior, Mark, SearchConvergence, StudyFigures};
 use crate::words::number;
 
-/// Every figure that there is something to show in.
-pub(in crate::report) fn figures(figures: &Figures) -> Markup {
+/// Every figure that has data.
+pub(in crate::report) fn figures(figures: &StudyFigures) -> Markup {
     html! {
         @if !(figures.searches.is_empty() && figures.stages.is_empty()) {
             h3 { "Convergence" }
@@ -14,7 +14,7 @@ pub(in crate::report) fn figures(figures: &Figures) -> Markup {
                 @for (i, search) in figures.searches.iter().enumerate() { (place("search", i, "", &search_words(search))) }
                 @if !figures.stages.is_empty() {
                     (place("stages", 0, "Highest, median and 90 % of the log-likelihoods at the end of each stage.", &html! {
-                        p { "The stages stand in the table of the sampler." }
+                        p { "The table of the sampler lists the stages." }
                     }))
                 }
                 @if figures.populations.is_some() {
@@ -40,7 +40,7 @@ pub(in crate::report) fn figures(figures: &Figures) -> Markup {
             h3 { "Prediction errors" }
             div.charts.small { @for (i, error) in figures.errors.iter().enumerate() { (place("error", i, "", &error_table(error))) } }
             p.note {
-                "How far the model is off over the posterior, on the fitted runs: Gaussian kernel of the width that is optimal for a normal density, reflected at 0. "
+                "Prediction error over the posterior on the fitted runs: Gaussian kernel with the width that is optimal for a normal density, reflected at 0. "
                 "The width depends on the noise sd that the likelihood was given."
             }
         }
@@ -58,19 +58,19 @@ fn place(name: &str, index: usize, caption: &str, instead: &Markup) -> Markup {
 }
 
 fn search_words(search: &SearchConvergence) -> Markup {
-    let best = |at: Option<f64>| at.map_or(number::NONE.into(), |v| number::significant(v, 5));
+    let best = |at: Option<f64>| number::or_none(at, |v| number::significant(v, 5));
     html! {
         @if let (Some(first), Some(last)) = (search.history.first(), search.history.last()) {
             p {
-                (search.algorithm) ": best log-posterior " (best(first.best)) " after " (first.evaluations) " evaluations, "
+                (search.algorithm.name()) ": best log-posterior " (best(first.best)) " after " (first.evaluations) " evaluations, "
                 (best(last.best)) " after " (last.evaluations) "."
             }
         }
     }
 }
 
-fn pair_table(pair: &Posterior) -> Markup {
-    let value = |v: Option<f64>| v.map_or(number::NONE.into(), |v| number::significant(v, 4));
+fn pair_table(pair: &JointPosterior) -> Markup {
+    let value = |v: Option<f64>| number::or_none(v, |v| number::significant(v, 4));
     html! {
         table {
             thead { tr { th.text { "" } @for p in &pair.parameters { th { (p.name) br; "[" (p.unit) "]" } } } }
@@ -86,7 +86,7 @@ fn pair_table(pair: &Posterior) -> Markup {
 fn history_words(history: &ChannelHistory) -> Markup {
     html! {
         p {
-            "Run " (history.run) ", " (history.channel.replace('_', " ")) ": "
+            "Run " (history.run) ", " (history.channel.words()) ": "
             @match &history.measured {
                 Some(measured) => { (number::count(measured.t_s.len(), "measured value")) }
                 None => { "no recording" }
@@ -102,7 +102,7 @@ fn error_table(error: &ErrorDensity) -> Markup {
         |mark: &Mark<f64>| html! { tr { td.text { (mark.label) } td { (number::significant(mark.at, 3)) } } };
     html! {
         table {
-            thead { tr { th.text { "error of " (error.channel.replace('_', " ")) } th { (error.unit) } } }
+            thead { tr { th.text { "error of " (error.channel.words()) } th { (error.unit) } } }
             tbody { @for mark in &error.marks { (row(mark)) } }
         }
     }

@@ -1,4 +1,4 @@
-//! Parameters after and before the data: table, densities, and the pairs that the data leave entangled.
+//! Parameters after and before the data: table, densities, and strongly correlated pairs.
 
 use job::FreeParameter;
 use maud::{Markup, html};
@@ -14,18 +14,18 @@ use crate::words::number;
 const FAR: f64 = 6.0;
 
 /// Table and pictures.
-pub(in crate::report) fn parameters(outcome: &FinishedCalibration) -> Markup {
-    let free = &outcome.spec.parameters;
-    let draws: Vec<Vec<f64>> = (0..free.len()).map(|i| outcome.draws(i)).collect();
-    let summaries = outcome.parameter_summaries();
+pub(in crate::report) fn parameters(calibration: &FinishedCalibration) -> Markup {
+    let free = &calibration.spec.parameters;
+    let draws: Vec<Vec<f64>> = (0..free.len()).map(|i| calibration.draws(i)).collect();
+    let summaries = calibration.parameter_summaries();
     html! {
         @if summaries.is_empty() { p { "There are no draws." } }
         div.scroll { (table(free, &summaries)) }
         p.note {
-            "From " (number::count(outcome.posterior.len(), "equally weighted draw")) " of the posterior. Best: the draw with the highest likelihood times prior. "
+            "From " (number::count(calibration.posterior.len(), "equally weighted draw")) " of the posterior. Best: the draw with the highest likelihood times prior. "
             "AT BOUND: the 5 % or 95 % quantile lies within 2 % of the prior's range of one of its ends."
         }
-        (fixed(outcome))
+        (fixed(calibration))
         h3 { "Posterior over prior" }
         div.legend {
             span { svg.swatch viewBox="0 0 22 12" aria-hidden="true" { rect.bar x="1" y="1" width="20" height="10" {} } "posterior" }
@@ -44,17 +44,17 @@ pub(in crate::report) fn parameters(outcome: &FinishedCalibration) -> Markup {
                 }
             }
         }
-        (entangled(free, &draws))
+        (correlated_pairs(free, &draws))
     }
 }
 
 /// The parameters that the job fixes.
-pub(super) fn fixed(outcome: &FinishedCalibration) -> Markup {
+pub(super) fn fixed(calibration: &FinishedCalibration) -> Markup {
     html! {
-        @if !outcome.spec.fit_variant.fixed.is_empty() {
+        @if !calibration.spec.fit_variant.fixed.is_empty() {
             p.note {
                 "Fixed: "
-                @for (i, (name, value)) in outcome.spec.fit_variant.fixed.iter().enumerate() {
+                @for (i, (name, value)) in calibration.spec.fit_variant.fixed.iter().enumerate() {
                     @if i > 0 { ", " }
                     (name) " = " (number::as_written(*value))
                 }
@@ -77,9 +77,9 @@ fn table(free: &[FreeParameter], summaries: &[(String, ParameterSummary)]) -> Ma
                     tr {
                         td.text { (name) } td.text { (parameter.unit) } td { (value(p.mean)) } td { (value(p.sd)) }
                         td { (value(p.q05)) } td { (value(p.q50)) } td { (value(p.q95)) } td { (value(p.map)) }
-                        td { (p.prior_mean.map_or(number::NONE.into(), |m| number::to_spread(m, p.prior_sd.unwrap_or(0.0)))) }
-                        td { (p.prior_sd.map_or(number::NONE.into(), |s| number::to_spread(s, s))) }
-                        td { (p.prior_sd.map_or(number::NONE.into(), |s| number::significant(p.sd / s, 2))) }
+                        td { (number::or_none(p.prior_mean, |m| number::to_spread(m, p.prior_sd.unwrap_or(0.0)))) }
+                        td { (number::or_none(p.prior_sd, |s| number::to_spread(s, s))) }
+                        td { (number::or_none(p.prior_sd, |s| number::significant(p.sd / s, 2))) }
                         td.text { @if p.at_bound { span.alarm { "AT BOUND" } } }
                     }
                 }
@@ -116,7 +116,7 @@ pub(super) fn prior_words(parameter: &FreeParameter) -> String {
     }
 }
 
-fn entangled(free: &[FreeParameter], draws: &[Vec<f64>]) -> Markup {
+fn correlated_pairs(free: &[FreeParameter], draws: &[Vec<f64>]) -> Markup {
     let pairs = most_correlated(draws);
     html! {
         @if !pairs.is_empty() {
@@ -131,7 +131,7 @@ fn entangled(free: &[FreeParameter], draws: &[Vec<f64>]) -> Markup {
                 }
             }
             p.note {
-                "Each dot is a draw; pairs whose coefficient is below " (LEAST_CORRELATION) " are left out. Where the cloud is a narrow band, the data fix a combination of the two parameters and neither alone. "
+                "Each dot is a draw; pairs whose coefficient is below " (LEAST_CORRELATION) " are left out. Where the cloud is a narrow band, the data determine a combination of the two parameters and neither alone. "
                 "\u{b1}: standard error of the coefficient for that many independent draws."
             }
         }

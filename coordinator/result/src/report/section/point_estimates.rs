@@ -1,4 +1,4 @@
-//! The point estimates beside a sample: each a calibration with the same comparison tables.
+//! The point estimates of a study, with the same comparison tables as a sample.
 
 use maud::{Markup, html};
 
@@ -7,21 +7,21 @@ use super::errors::errors;
 use super::estimate::{estimate, fit};
 use crate::finished_calibration::FinishedCalibration;
 
-/// Each in the order of the job: what it found, what that cost, and model against measurement there.
-pub(in crate::report) fn point_estimates(outcomes: &[FinishedCalibration]) -> Markup {
+/// Each in the order of the job: its parameters, its cost, and model against measurement.
+pub(in crate::report) fn point_estimates(calibrations: &[FinishedCalibration]) -> Markup {
     html! {
         p {
-            "The same job, fitted instead of sampled. A point estimate says nothing of what else the data allow; "
-            "where it lies far from the posterior's bulk, the data do not fix what differs."
+            "The same job, fitted instead of sampled. A point estimate does not show which other parameters the data allow; "
+            "where it lies far from the bulk of the posterior, the data do not determine the parameters that differ."
         }
-        @for outcome in outcomes {
-            @if let Some(found) = &outcome.estimate {
-                @let compared = outcome.comparison();
-                h3 { (outcome.spec.method.words()) }
-                (estimate(outcome, found))
-                (fit(outcome, found))
-                (errors(outcome, &compared))
-                details { summary { "Model against measurement at this point" } (comparison(outcome, &compared)) }
+        @for calibration in calibrations {
+            @if let Some(found) = &calibration.estimate {
+                @let compared = calibration.comparison();
+                h3 { (calibration.spec.method.words()) }
+                (estimate(calibration, found))
+                (fit(calibration, found))
+                (errors(calibration, &compared))
+                details { summary { "Model against measurement at this point" } (comparison(calibration, &compared)) }
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Where the result comes from, enough to make it again.
+//! Inputs and versions, enough to reproduce the result.
 
 use inference::evolution::EvolutionSettings;
 use job::AlgorithmSettings;
@@ -10,8 +10,8 @@ use crate::table::error_model::error_model;
 use crate::words::number;
 
 /// One line under the title: model, data, sampler.
-pub(in crate::report) fn subtitle(outcome: &FinishedCalibration) -> String {
-    let spec = &outcome.spec;
+pub(in crate::report) fn subtitle(calibration: &FinishedCalibration) -> String {
+    let spec = &calibration.spec;
     let held = spec.experiment.runs.len() - spec.fit_runs.len();
     format!(
         "Model {} \u{b7} {}, {} \u{b7} {}, seed {}",
@@ -24,8 +24,8 @@ pub(in crate::report) fn subtitle(outcome: &FinishedCalibration) -> String {
 }
 
 /// Versions, settings and the job's own text.
-pub(in crate::report) fn provenance(outcome: &FinishedCalibration) -> Markup {
-    let spec = &outcome.spec;
+pub(in crate::report) fn provenance(calibration: &FinishedCalibration) -> Markup {
+    let spec = &calibration.spec;
     let held = spec
         .experiment
         .runs
@@ -34,8 +34,8 @@ pub(in crate::report) fn provenance(outcome: &FinishedCalibration) -> Markup {
         .count();
     html! {
         dl {
-            dt { "calibration" } dd { (outcome.experiment) }
-            dt { "model" } dd { (spec.model_words()) ", version " (outcome.row.model_version.as_deref().unwrap_or("unknown")) }
+            dt { "calibration" } dd { (calibration.experiment) }
+            dt { "model" } dd { (spec.model_words()) ", version " (calibration.row.model_version.as_deref().unwrap_or("unknown")) }
             dt { "data" }
             dd {
                 (number::count(spec.fit_runs.len(), "fitted run")) " with "
@@ -45,7 +45,7 @@ pub(in crate::report) fn provenance(outcome: &FinishedCalibration) -> Markup {
             @if plates + rings > 0 {
                 dt { "bevameter" } dd { (number::count(plates, "plate reading")) ", " (number::count(rings, "ring reading")) }
             }
-            @for words in error_model(outcome) {
+            @for words in error_model(calibration) {
                 dt { "errors" } dd { (words) }
             }
             dt { "algorithm" }
@@ -68,7 +68,7 @@ pub(in crate::report) fn provenance(outcome: &FinishedCalibration) -> Markup {
             dt { "program" } dd { "Grouser " (env!("CARGO_PKG_VERSION")) }
         }
         p.note { "The result is a function of job, seed and model version alone: the same three give the same numbers, bit for bit." }
-        details { summary { "Text of the job" } pre { (outcome.row.job.toml) } }
+        details { summary { "Text of the job" } pre { (calibration.row.job.toml) } }
         @for effect in &spec.fit_variant.effects {
             details { summary { "Effect " (effect.name) } pre { (effect.text) } }
         }

@@ -1,8 +1,8 @@
-//! Where in the prior the model refuses.
+//! Rejections by region of the prior.
 
 use maud::{Markup, html};
 
-use crate::diagnostics::rejections::{Bin, RejectionDiagnostics};
+use crate::diagnostics::rejections::{PriorBin, RejectionDiagnostics};
 use crate::words::number;
 
 /// A row for each parameter, a cell for each fifth of its prior.
@@ -14,15 +14,15 @@ pub(in crate::report) fn rejections(rejections: &RejectionDiagnostics) -> Markup
     } = rejections;
     html! {
         @for (message, n) in &rejections.faults {
-            p { (number::count(*n as usize, "lease")) " failed and were given out again: " (message) "." }
+            p { (number::count(*n as usize, "lease")) " failed and " (if *n == 1 { "was" } else { "were" }) " retried: " (message) "." }
         }
         @if *prior_refused == 0 {
-            p { "The model took every one of " (number::count(*prior_draws as usize, "draw")) " from the prior." }
+            p { "The model accepted every draw from the prior (" (prior_draws) ")." }
         } @else {
             p {
                 @match rejections.words() {
                     Some(words) => { (words) "." }
-                    None => { "The model refused " (prior_refused) " of " (prior_draws) " draws from the prior, nowhere more than chance allows." }
+                    None => { "The model rejected " (prior_refused) " of " (prior_draws) " draws from the prior, nowhere more often than by chance." }
                 }
             }
             div.scroll { table {
@@ -36,14 +36,14 @@ pub(in crate::report) fn rejections(rejections: &RejectionDiagnostics) -> Markup
                 } } }
             } }
             p.note {
-                "Refused of drawn in five parts of each prior that are equally probable, with the bounds of the part. "
-                "A refusal is a fact about the parameters; a lease that failed is a fact about a machine and was tried again."
+                "Rejected of drawn in five equally probable parts of each prior, with the bounds of the part. "
+                "A rejection depends on the parameters alone; a failed lease is the fault of a machine and was retried."
             }
         }
     }
 }
 
-fn cell(bin: &Bin) -> Markup {
+fn cell(bin: &PriorBin) -> Markup {
     let refused: u64 = bin.refused.values().sum();
     let reasons: Vec<String> = bin
         .refused

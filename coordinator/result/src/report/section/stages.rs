@@ -1,4 +1,4 @@
-//! What the sampler did: evidence, counts, and the way from the prior to the posterior.
+//! The sampler: evidence, counts, and its stages from the prior to the posterior.
 
 use maud::{Markup, html};
 use record::StageRow;
@@ -8,8 +8,8 @@ use crate::report::chart::{self, Marker, glyph};
 use crate::words::number;
 
 /// Evidence, pictures and table.
-pub(in crate::report) fn stages(outcome: &FinishedCalibration) -> Markup {
-    let row = &outcome.row;
+pub(in crate::report) fn stages(calibration: &FinishedCalibration) -> Markup {
+    let row = &calibration.row;
     let evidence = match (row.log_evidence, row.log_evidence_se) {
         (Some(z), Some(se)) => number::with_spread(z, se),
         (Some(z), None) => number::significant(z, 4),
@@ -18,48 +18,48 @@ pub(in crate::report) fn stages(outcome: &FinishedCalibration) -> Markup {
     html! {
         dl {
             dt { "log-evidence" } dd { (evidence) " (natural logarithm; \u{b1} is its standard error within this run)" }
-            (cost(outcome))
+            (cost(calibration))
         }
-        @if !outcome.stages.is_empty() {
+        @if !calibration.stages.is_empty() {
             div.legend {
                 span { (glyph(Some(Marker::Sound))) "equilibrated" }
                 span { (glyph(Some(Marker::Alarming))) "not equilibrated" }
             }
             div.charts {
-                figure { (chart::exponent(&outcome.stages)) figcaption { "Power of the likelihood: near 0 is the prior, 1 the posterior." } }
+                figure { (chart::exponent(&calibration.stages)) figcaption { "Power of the likelihood: near 0 is the prior, 1 the posterior." } }
                 figure {
-                    (chart::drift(&outcome.stages))
-                    figcaption { "Mean change of the log-likelihood during a stage's moves. Shaded: a stage may end; beyond the dashed lines: not in equilibrium." }
+                    (chart::drift(&calibration.stages))
+                    figcaption { "Mean change of the log-likelihood during a stage's moves. Within the shaded band a stage may end; beyond the dashed lines it is not in equilibrium." }
                 }
             }
-            div.scroll { (table(&outcome.stages)) }
+            div.scroll { (table(&calibration.stages)) }
             p.note {
-                "Correlation: rank correlation of the log-likelihoods before and after the moves; above 0.3 the particles remember where they started. "
+                "Correlation: rank correlation of the log-likelihoods before and after the moves; above 0.3 the particles still depend on where they started. "
                 "ESS: effective number of particles after weighting. Stage 0, the draws from the prior, has no moves."
             }
         }
     }
 }
 
-/// Evaluations, refusals and time.
-pub(super) fn cost(outcome: &FinishedCalibration) -> Markup {
-    let row = &outcome.row;
+/// Evaluations, rejections and time.
+pub(super) fn cost(calibration: &FinishedCalibration) -> Markup {
+    let row = &calibration.row;
     let refused = row.rejected.unwrap_or(0);
-    let kinds: Vec<String> = outcome
+    let kinds: Vec<String> = calibration
         .rejections
         .iter()
         .map(|(kind, n)| format!("{kind} {n}"))
         .collect();
     html! {
-        dt { "evaluations" } dd { (row.evaluations.map_or(number::NONE.into(), |n| n.to_string())) }
-        @if let Some(metamodel) = &outcome.subchains {
+        dt { "evaluations" } dd { (number::or_none(row.evaluations, |n| n.to_string())) }
+        @if let Some(metamodel) = &calibration.subchains {
             dt { "metamodel" }
             dd {
-                (metamodel.moves) " moves by quasi_static in " (metamodel.subchains) " subchains, " (metamodel.moved)
+                (number::count(metamodel.moves as usize, "move")) " of quasi_static in " (number::count(metamodel.subchains as usize, "subchain")) ", " (metamodel.moved)
                 " of which moved and were evaluated"
             }
         }
-        dt { "refused by the model" }
+        dt { "rejected by the model" }
         dd {
             (refused)
             @if let Some(n) = row.evaluations.filter(|n| *n > 0) { " (" (number::significant(100.0 * refused as f64 / n as f64, 2)) " %)" }

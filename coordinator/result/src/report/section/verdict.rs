@@ -1,4 +1,4 @@
-//! What the result says, in plain words made from its numbers.
+//! The verdict on a calibration in sentences, with its flags and the model's limits.
 
 use inference::diagnostics::mean_and_sd;
 use job::repeat_scatter;
@@ -12,72 +12,73 @@ use super::estimate::reason;
 use crate::finished_calibration::FinishedCalibration;
 use crate::flag::model_limit::model_limits;
 use crate::flag::unsettled_run::unsettled;
-use crate::report::quantity::Quantity;
 use crate::study::Study;
 use crate::table::comparison::Comparison;
 use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;
+use crate::table::row::rows_of;
+use crate::words::data_channel::ShownUnit;
 use crate::words::number;
 
-/// Flags first, then the verdict, then what a reader must know of the model.
+/// Flags first, then the verdict, then the model's limits.
 pub(in crate::report) fn verdict(study: &Study, comparison: &Comparison) -> Markup {
-    let outcome = &study.lead;
+    let calibration = &study.lead;
     let flags = study.flags();
     html! {
         @if !flags.is_empty() {
             div.flags role="note" {
                 h2 { "Needs attention" }
-                ul { @for flag in &flags { li { span.kind { (flag.kind.replace('_', " ")) } ": " (flag.text) } } }
+                ul { @for flag in &flags { li { span.kind { (flag.kind.name().replace('_', " ")) } ": " (flag.text) } } }
             }
         }
         p.verdict {
-            @for sentence in sentences(outcome, comparison) { (sentence) " " }
+            @for sentence in sentences(calibration, comparison) { (sentence) " " }
             @if flags.is_empty() { "No flag was raised." }
         }
-        ul.notes { @for note in notes(outcome) { li { (note) } } }
+        ul.notes { @for note in notes(calibration) { li { (note) } } }
     }
 }
 
-fn sentences(outcome: &FinishedCalibration, comparison: &Comparison) -> Vec<String> {
-    let mut text = vec![match &outcome.estimate {
+fn sentences(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<String> {
+    let mut text = vec![match &calibration.estimate {
         Some(estimate) => format!(
-            "A {} found the most probable parameters in {}; it stopped because {}. It says nothing of what else the data allow.",
+            "A {} found the most probable parameters in {}; it stopped because {}. It does not show which other parameters the data allow.",
             if estimate.sd.is_some() { "fit" } else { "search" },
-            number::count(outcome.row.evaluations.unwrap_or(0) as usize, "evaluation"),
+            number::count(calibration.row.evaluations.unwrap_or(0) as usize, "evaluation"),
             reason(estimate.stop)
         ),
-        None => equilibrium(outcome),
+        None => equilibrium(calibration),
     }];
     text.push(match &comparison.fit {
         Some(fit) => format!(
-            "On the {} the calibrated model is off by {} (root mean square).",
-            few(runs(outcome, RunUse::Fit), "fitted run"),
+            "On the {} the calibrated model has a root mean square error of {}.",
+            few(runs(calibration, RunUse::Fit), "fitted run"),
             misses(fit)
         ),
-        None => "The model has no prediction for any fitted run: it refused every final draw.".into(),
+        None => "The model has no prediction for any fitted run: it rejected every final draw.".into(),
     });
-    text.extend(holdout(outcome, comparison));
+    text.extend(holdout(calibration, comparison));
     text.extend(coverage(comparison));
-    text.extend(inferred_noise(outcome));
+    text.extend(inferred_noise(calibration));
     text
 }
 
-fn equilibrium(outcome: &FinishedCalibration) -> String {
-    let stages = number::count(outcome.stages.len(), "stage");
-    let unsettled: Vec<String> = outcome
+fn equilibrium(calibration: &FinishedCalibration) -> String {
+    let stages = number::count(calibration.stages.len(), "stage");
+    let unsettled: Vec<String> = calibration
         .stages
         .iter()
         .filter(|s| !s.equilibrated)
         .map(|s| s.stage.to_string())
         .collect();
-    match outcome.row.equilibrated {
+    match calibration.row.equilibrated {
         Some(true) => format!(
-            "The sampler reached equilibrium in each of its {stages}, so its draws can be read as the posterior."
+            "The sampler reached equilibrium in each of its {stages}, so its draws represent the posterior."
         ),
         Some(false) if unsettled.is_empty() => {
             "The sampler did not reach equilibrium: no number below can be trusted.".into()
         }
-        Some(false) if unsettled.len() == outcome.stages.len() => {
+        Some(false) if unsettled.len() == calibration.stages.len() => {
             format!(
                 "The sampler did not reach equilibrium in any of its {stages}: no number below can be trusted."
             )
@@ -87,7 +88,7 @@ fn equilibrium(outcome: &FinishedCalibration) -> String {
             unsettled.len(),
             number::list(&unsettled)
         ),
-        None => "Whether the sampler reached equilibrium is not known.".into(),
+        None => "Whether the sampler reached equilibrium is unknown.".into(),
     }
 }
 
@@ -96,17 +97,17 @@ fn misses(table: &ErrorTable) -> String {
     let miss = |c: Channel| {
         Some(format!(
             "{} in {}",
-            Quantity::of(c).words(table.channel(c)?.rmse),
+            ShownUnit::of(c).size(table.channel(c)?.rmse),
             c.words()
         ))
     };
     number::list(&Channel::ALL.into_iter().filter_map(miss).collect::<Vec<_>>())
 }
 
-fn holdout(outcome: &FinishedCalibration, comparison: &Comparison) -> Vec<String> {
-    let held = runs(outcome, RunUse::Holdout);
+fn holdout(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<String> {
+    let held = runs(calibration, RunUse::Holdout);
     if held == 0 {
-        let text = "No run was held out, so nothing here shows how well the model predicts conditions that it was not fitted to.";
+        let text = "No run was held out, so the prediction error in new conditions is unknown.";
         return vec![text.into()];
     }
     let Some(model) = &comparison.holdout else {
@@ -116,22 +117,19 @@ fn holdout(outcome: &FinishedCalibration, comparison: &Comparison) -> Vec<String
         )];
     };
     let mut text = vec![format!(
-        "On the {}, which the fit never saw, by {}.",
+        "On the {}, not used in the fit, it is {}.",
         few(held, "holdout run"),
         misses(model)
     )];
     // Like with like: the model on the rows where interpolation has a value.
-    let rows = comparison
-        .rows
-        .iter()
-        .filter(|r| r.usage == "holdout" && r.interpolated.is_some());
+    let rows = rows_of(&comparison.rows, RunUse::Holdout).filter(|r| r.interpolated.is_some());
     text.push(match (&comparison.baseline_holdout, ErrorTable::of_model(rows)) {
         (Some(baseline), Some(model)) => format!(
-            "Interpolating the fitted measurements in slip, without any physics, is off by {} where it has a value; there the model {}.",
+            "Interpolating the fitted measurements in slip, without physics, has an error of {} where it applies; there the model {}.",
             misses(baseline),
             against(&model, baseline)
         ),
-        _ => "Interpolating the fitted measurements in slip, without any physics, would have to extrapolate there.".into(),
+        _ => "Interpolating the fitted measurements in slip, without physics, does not apply there: it would have to extrapolate.".into(),
     });
     text
 }
@@ -182,10 +180,10 @@ fn against(model: &ErrorTable, baseline: &ErrorTable) -> String {
 }
 
 fn coverage(comparison: &Comparison) -> Option<String> {
-    let parts: Vec<String> = [("fit", "fitted"), ("holdout", "holdout")]
+    let parts: Vec<String> = [(RunUse::Fit, "fitted"), (RunUse::Holdout, "holdout")]
         .into_iter()
         .filter_map(|(usage, word)| {
-            let c = Coverage::count(comparison.rows.iter().filter(|r| r.usage == usage))?;
+            let c = Coverage::count(rows_of(&comparison.rows, usage))?;
             let [low, high] = c.expected();
             Some(format!(
                 "{} of {} {word} measurements ({low} to {high} expected)",
@@ -195,42 +193,42 @@ fn coverage(comparison: &Comparison) -> Option<String> {
         .collect();
     (!parts.is_empty()).then(|| {
         format!(
-            "In their 90\u{a0}% predictive intervals lie {}.",
+            "The 90\u{a0}% predictive intervals contain {}.",
             number::list(&parts)
         )
     })
 }
 
-/// Where the noise was inferred from the misfit, a small error in units of it proves nothing.
-fn inferred_noise(outcome: &FinishedCalibration) -> Option<String> {
+/// A caution where the noise was inferred from the misfit: then a small error in noise sds is no evidence for the model.
+fn inferred_noise(calibration: &FinishedCalibration) -> Option<String> {
     let noise = |channel: Channel| {
-        let parameter = outcome
+        let parameter = calibration
             .spec
             .parameters
             .iter()
             .position(|p| p.name == noise_parameter(channel))?;
-        let (value, sd) = match &outcome.estimate {
+        let (value, sd) = match &calibration.estimate {
             Some(estimate) => {
                 let sd = estimate.sd.as_ref().and_then(|sd| sd[parameter]);
                 (estimate.theta[parameter], sd.unwrap_or(0.0))
             }
-            None => mean_and_sd(&outcome.draws(parameter))?,
+            None => mean_and_sd(&calibration.draws(parameter))?,
         };
-        let q = Quantity::of(channel);
+        let unit = ShownUnit::of(channel);
         let shown = if sd > 0.0 {
-            number::with_spread(value * q.scale, sd * q.scale)
+            number::with_spread(value * unit.factor, sd * unit.factor)
         } else {
-            number::significant(value * q.scale, 2)
+            number::significant(value * unit.factor, 2)
         };
-        let mut text = format!("{shown}\u{a0}{} for {}", q.unit, channel.words());
+        let mut text = format!("{shown}\u{a0}{} for {}", unit.name, channel.words());
         if let Some((scatter, freedom)) =
-            repeat_scatter(&outcome.spec.experiment, &outcome.spec.fit_runs, channel)
+            repeat_scatter(&calibration.spec.experiment, &calibration.spec.fit_runs, channel)
         {
             let se = scatter / (2.0 * freedom as f64).sqrt();
-            let scatter = number::with_spread(scatter * q.scale, se * q.scale);
+            let scatter = number::with_spread(scatter * unit.factor, se * unit.factor);
             text.push_str(&format!(
                 ", where repeats of one condition scatter by {scatter}\u{a0}{}",
-                q.unit
+                unit.name
             ));
         }
         Some(text)
@@ -238,12 +236,12 @@ fn inferred_noise(outcome: &FinishedCalibration) -> Option<String> {
     let inferred: Vec<String> = Channel::ALL.into_iter().filter_map(noise).collect();
     (!inferred.is_empty()).then(|| {
         format!(
-            "The noise sd was inferred from these very misfits: {}. What exceeds the scatter of repeats is the model's own misfit, so {} for the model.",
+            "The noise sd was inferred from these misfits: {}. The part above the scatter of repeats is model error, so {} for the model.",
             inferred.join("; "),
-            if outcome.estimate.is_none() {
-                "neither the width of the intervals nor an error of one noise sd speaks"
+            if calibration.estimate.is_none() {
+                "neither the width of the intervals nor an error of one noise sd is evidence"
             } else {
-                "an error of one noise sd does not speak"
+                "an error of one noise sd is no evidence"
             }
         )
     })
@@ -258,8 +256,8 @@ fn few(n: usize, noun: &str) -> String {
     }
 }
 
-fn runs(outcome: &FinishedCalibration, usage: RunUse) -> usize {
-    outcome
+fn runs(calibration: &FinishedCalibration, usage: RunUse) -> usize {
+    calibration
         .spec
         .experiment
         .runs
@@ -268,12 +266,12 @@ fn runs(outcome: &FinishedCalibration, usage: RunUse) -> usize {
         .count()
 }
 
-fn notes(outcome: &FinishedCalibration) -> Vec<String> {
+fn notes(calibration: &FinishedCalibration) -> Vec<String> {
     let mut notes = Vec::new();
     // where grousers are declared, the notes of the job name their wheels
-    let quasi_static = outcome.spec.model.kind == ModelKind::QuasiStatic;
+    let quasi_static = calibration.spec.model.kind == ModelKind::QuasiStatic;
     if quasi_static
-        && !outcome
+        && !calibration
             .spec
             .experiment
             .wheels
@@ -283,11 +281,11 @@ fn notes(outcome: &FinishedCalibration) -> Vec<String> {
         notes.push("Grousers are not modelled here: each wheel has its own wheel_radius_m.NAME.".to_owned());
     }
     notes.extend(
-        model_limits(&outcome.spec)
+        model_limits(&calibration.spec)
             .into_iter()
             .map(|note| format!("{note}.")),
     );
-    notes.extend(unsettled(outcome).map(|note| format!("{note}.")));
+    notes.extend(unsettled(calibration).map(|note| format!("{note}.")));
     notes.push("Likelihood: normalised Gaussian; the source paper's Eq. 13-15 lack 1/sigma.".into());
     notes
 }

@@ -1,0 +1,122 @@
+//! Channels of the likelihood as people read them: name, unit, factor over SI.
+
+use job::{PLATE, RING};
+use shared::channel::Channel;
+
+use super::number;
+
+/// A channel of the likelihood.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(untagged)]
+pub enum DataChannel {
+    /// Of the rolling wheel.
+    Wheel(Channel),
+    /// Of the bevameter; readings count by their natural logarithm.
+    Bevameter(BevameterTest),
+}
+
+/// A test of the bevameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BevameterTest {
+    /// Plates pressed into the soil.
+    Plates,
+    /// Rings sheared on the soil.
+    Rings,
+}
+
+/// The unit in which values are shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ShownUnit {
+    /// Shown value over SI value.
+    pub(crate) factor: f64,
+    /// Name of the unit.
+    pub(crate) name: &'static str,
+}
+
+impl BevameterTest {
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            BevameterTest::Plates => "plates",
+            BevameterTest::Rings => "rings",
+        }
+    }
+}
+
+impl DataChannel {
+    /// The channel of an index of the likelihood.
+    pub(crate) fn of(index: usize) -> Self {
+        match index {
+            PLATE => DataChannel::Bevameter(BevameterTest::Plates),
+            RING => DataChannel::Bevameter(BevameterTest::Rings),
+            wheel => DataChannel::Wheel(Channel::ALL[wheel]),
+        }
+    }
+
+    /// Name in tables: `drawbar_pull`, `plates`.
+    pub fn name(self) -> &'static str {
+        match self {
+            DataChannel::Wheel(channel) => channel.name(),
+            DataChannel::Bevameter(test) => test.name(),
+        }
+    }
+
+    /// Words in sentences: `drawbar pull`, `plates`.
+    pub fn words(self) -> &'static str {
+        match self {
+            DataChannel::Wheel(channel) => channel.words(),
+            DataChannel::Bevameter(test) => test.name(),
+        }
+    }
+
+    /// SI unit.
+    pub(crate) fn si_unit(self) -> &'static str {
+        match self {
+            DataChannel::Wheel(channel) => channel.unit(),
+            DataChannel::Bevameter(_) => "1",
+        }
+    }
+
+    /// The unit in which it is shown: percent of a stress.
+    pub(crate) fn shown(self) -> ShownUnit {
+        match self {
+            DataChannel::Wheel(channel) => ShownUnit::of(channel),
+            DataChannel::Bevameter(_) => ShownUnit {
+                factor: 100.0,
+                name: "%",
+            },
+        }
+    }
+}
+
+impl ShownUnit {
+    /// The unit in which a channel of the wheel is shown: sinkage in millimetres, everything else in SI.
+    pub(crate) fn of(channel: Channel) -> Self {
+        let (factor, name) = match channel {
+            Channel::Sinkage => (1000.0, "mm"),
+            other => (1.0, other.unit()),
+        };
+        ShownUnit { factor, name }
+    }
+
+    /// A size to two digits: `20 N m`, `0.58 mm`, `12 %`.
+    pub(crate) fn size(self, si: f64) -> String {
+        format!("{} {}", number::significant(self.factor * si, 2), self.name)
+    }
+}
+
+/// Title of an axis or a column: `sinkage [mm]`.
+pub(crate) fn title(channel: Channel) -> String {
+    format!("{} [{}]", channel.words(), ShownUnit::of(channel).name)
+}
+
+/// A word for a narrow column: `pull`.
+pub(crate) fn short_name(channel: Channel) -> &'static str {
+    match channel {
+        Channel::DrawbarPull => "pull",
+        Channel::Torque => "torque",
+        Channel::Sinkage => "sinkage",
+        Channel::LateralForce => "lateral",
+    }
+}
