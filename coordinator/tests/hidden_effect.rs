@@ -1,16 +1,18 @@
-//! A slice of the bench `hidden_effect`: what is hidden is found, and where nothing is, nothing is claimed.
+//! Some trials of the bench `hidden_effect`: a hidden effect is found, and without one nothing is claimed.
 
 #[expect(dead_code, reason = "the bench uses more of it")]
 #[path = "../benches/hidden_effect/study/mod.rs"]
 mod study;
 
-use discovery::inquiry::Verdict;
+use discovery::SearchVerdict;
 
-use study::clear::CLEAR;
-use study::each;
-use study::fate::Fate;
-use study::kind::Kind;
+use study::error::StudyError;
+use study::kind::HiddenKind;
+use study::noise_free::LEAST_SEPARATION;
+use study::parallel::each;
+use study::score::TrialScore;
 use study::tally::Tally;
+use study::trial::{draw, search};
 
 const SEED: u64 = 1;
 /// Slip-sinkage, pressure by rate, displacement of shear, hardening by passes, bulldozing, the sled's drag.
@@ -20,77 +22,80 @@ const OUTSIDE: [u64; 3] = [2, 5, 10];
 /// A reference velocity with slip-softened pressure, and the pressure's peak with the rim's friction.
 const TWO: [u64; 2] = [3, 15];
 
-fn fates(kind: Kind, numbers: &[u64]) -> Vec<Fate> {
+fn scores(kind: HiddenKind, numbers: &[u64]) -> Vec<TrialScore> {
     let one = |place: u64| {
         let number = numbers[place as usize];
-        let case = kind.draw(SEED, number)?;
-        kind.search(&case, number)
+        let case = draw(kind, SEED, number)?;
+        search(kind, &case, number)
     };
-    let fates = each(numbers.len() as u64, one).expect("no thread panics");
-    let fates: Result<Vec<Fate>, String> = fates.into_iter().collect();
-    fates.expect("every experiment is searched")
+    let scores = each(numbers.len() as u64, one).expect("no thread panics");
+    let scores: Result<Vec<TrialScore>, StudyError> = scores.into_iter().collect();
+    scores.expect("every experiment is searched")
 }
 
-fn count(fates: &[Fate], holds: impl Fn(&Fate) -> bool) -> usize {
-    fates.iter().filter(|fate| holds(fate)).count()
+fn count(scores: &[TrialScore], holds: impl Fn(&TrialScore) -> bool) -> usize {
+    scores.iter().filter(|score| holds(score)).count()
 }
 
 #[test]
 fn an_effect_is_named_and_the_error_falls() {
-    let fates = fates(Kind::One, &ONE);
-    let shown = Tally(&fates).to_string();
-    assert!(fates.iter().all(|f| f.separation >= CLEAR), "{shown}");
-    assert!(count(&fates, |f| f.is_right && f.is_covered) >= 5, "{shown}");
-    assert!(fates.iter().all(|f| f.is_in_two), "{shown}");
-    assert_eq!(count(&fates, |f| f.is_claimed && !f.claim_is_right), 0, "{shown}");
-    for fate in &fates {
-        assert!(fate.held_out.after < 0.5 * fate.held_out.before, "{fate}");
-        assert!(fate.to_name <= 900 && fate.to_confirm <= 3000, "{fate}");
+    let scores = scores(HiddenKind::One, &ONE);
+    let shown = Tally(&scores).to_string();
+    assert!(scores.iter().all(|f| f.separation >= LEAST_SEPARATION), "{shown}");
+    assert!(count(&scores, |f| f.is_right && f.is_covered) >= 5, "{shown}");
+    assert!(scores.iter().all(|f| f.is_in_two), "{shown}");
+    assert_eq!(
+        count(&scores, |f| f.is_claimed && !f.claim_is_right),
+        0,
+        "{shown}"
+    );
+    for score in &scores {
+        assert!(score.held_out.after < 0.5 * score.held_out.before, "{score}");
+        assert!(score.to_name <= 900 && score.to_confirm <= 3000, "{score}");
     }
 }
 
 #[test]
 fn where_nothing_is_missing_nothing_is_claimed() {
-    let fates = fates(Kind::None, &[0, 1, 2, 3, 4, 5]);
-    let shown = Tally(&fates).to_string();
-    assert_eq!(count(&fates, |f| f.is_claimed), 0, "{shown}");
+    let scores = scores(HiddenKind::None, &[0, 1, 2, 3, 4, 5]);
+    let shown = Tally(&scores).to_string();
+    assert_eq!(count(&scores, |f| f.is_claimed), 0, "{shown}");
     assert!(
-        count(&fates, |f| f.verdict == Verdict::NothingDetectable) >= 5,
+        count(&scores, |f| f.verdict == SearchVerdict::NothingDetectable) >= 5,
         "{shown}"
     );
 }
 
 #[test]
 fn noise_stated_too_small_is_not_taken_for_nothing_missing() {
-    let mut case = Kind::None.draw(SEED, 0).expect("the model takes a draw");
+    let mut case = draw(HiddenKind::None, SEED, 0).expect("the model takes a draw");
     case.sds = case.sds.map(|sd| sd / 3.0);
-    let fate = Kind::None.search(&case, 0).expect("it is searched");
-    assert_ne!(fate.verdict, Verdict::NothingDetectable, "{fate}");
+    let score = search(HiddenKind::None, &case, 0).expect("it is searched");
+    assert_ne!(score.verdict, SearchVerdict::NothingDetectable, "{score}");
 }
 
 #[test]
 fn a_law_of_no_library_is_said_to_be_outside() {
-    let fates = fates(Kind::Outside, &OUTSIDE);
-    let shown = Tally(&fates).to_string();
-    assert!(count(&fates, Fate::is_outside) >= 2, "{shown}");
-    assert!(count(&fates, |f| f.quantity) >= 2, "{shown}");
+    let scores = scores(HiddenKind::Outside, &OUTSIDE);
+    let shown = Tally(&scores).to_string();
+    assert!(count(&scores, TrialScore::is_outside) >= 2, "{shown}");
+    assert!(count(&scores, |f| f.quantity) >= 2, "{shown}");
 }
 
 #[test]
 fn of_two_effects_both_are_named() {
-    let fates = fates(Kind::Two, &TWO);
-    let shown = Tally(&fates).to_string();
-    assert!(count(&fates, |f| f.is_exact) >= 1, "{shown}");
-    assert_eq!(count(&fates, |f| f.is_outside()), 0, "{shown}");
+    let scores = scores(HiddenKind::Two, &TWO);
+    let shown = Tally(&scores).to_string();
+    assert!(count(&scores, |f| f.is_exact) >= 1, "{shown}");
+    assert_eq!(count(&scores, |f| f.is_outside()), 0, "{shown}");
 }
 
 #[test]
 fn a_truth_that_is_swapped_for_another_is_not_found() {
-    let mut case = Kind::One.draw(SEED, ONE[0]).expect("the model takes a draw");
-    case.hidden = Kind::One
-        .draw(SEED, ONE[1])
+    let mut case = draw(HiddenKind::One, SEED, ONE[0]).expect("the model takes a draw");
+    case.hidden = draw(HiddenKind::One, SEED, ONE[1])
         .expect("the model takes a draw")
         .hidden;
-    let fate = Kind::One.search(&case, ONE[0]).expect("it is searched");
-    assert!(!fate.is_right && !fate.claim_is_right, "{fate}");
+    let score = search(HiddenKind::One, &case, ONE[0]).expect("it is searched");
+    assert!(!score.is_right && !score.claim_is_right, "{score}");
 }

@@ -1,15 +1,17 @@
 //! Whether the runs that are proposed tell apart what the first could not.
 
-use coordinator::missing_effect::Models;
-use discovery::inquiry::{Answer, Asked, Model, Verdict};
+use coordinator::missing_effect::SearchModels;
+use discovery::{Conclusion, QueriedModel, Query, SearchVerdict};
 use statistics::rng::Stream;
 
-use crate::study::case::{Case, run as run_truth};
-use crate::study::design::{CHANNELS, Plan, Row};
-use crate::study::each;
-use crate::study::kind::draw_clear;
-use crate::study::pipeline::Asking;
+use crate::study::case::{SyntheticCase, run as run_truth};
+use crate::study::design::{CHANNELS, Plan, PlannedRun};
+use crate::study::error::StudyError;
+use crate::study::parallel::each;
+
+use crate::study::local_search::LocalSearch;
 use crate::study::rate::Rate;
+use crate::study::trial::draw_detectable;
 
 /// Most proposed runs that are made.
 const MOST: usize = 2;
@@ -30,7 +32,7 @@ struct Story {
 }
 
 /// Runs so many experiments and prints how many were resolved.
-pub(crate) fn run(count: u64, seed: u64) -> Result<(), String> {
+pub(crate) fn run(count: u64, seed: u64) -> Result<(), StudyError> {
     let stories = each(count, |number| {
         let story = one(seed, number);
         match &story {
@@ -39,7 +41,7 @@ pub(crate) fn run(count: u64, seed: u64) -> Result<(), String> {
         }
         story
     })?;
-    let stories: Vec<Story> = stories.into_iter().collect::<Result<_, String>>()?;
+    let stories: Vec<Story> = stories.into_iter().collect::<Result<_, StudyError>>()?;
     let open: Vec<&Story> = stories.iter().filter(|s| s.is_open).collect();
     println!("open after the first runs: {} of {}", open.len(), stories.len());
     for most in 1..=MOST {
@@ -59,31 +61,31 @@ pub(crate) fn run(count: u64, seed: u64) -> Result<(), String> {
 }
 
 /// The named candidate's class, where something is named.
-fn named(answer: &Answer) -> Option<usize> {
+fn named(conclusion: &Conclusion) -> Option<usize> {
     let class = |k: usize| {
-        let own = answer.judged.iter().find(|j| j.candidate == Some(k));
+        let own = conclusion.ranking.effects.iter().find(|j| j.candidate == Some(k));
         own.map(|j| j.class)
     };
-    match answer.verdict {
-        Verdict::Named(k) => class(k),
-        Verdict::Class(class) => Some(class),
+    match conclusion.verdict {
+        SearchVerdict::Named(k) => class(k),
+        SearchVerdict::Class(class) => Some(class),
         _ => None,
     }
 }
 
 /// The run that the rig is to make first.
-fn proposed(models: &mut Models, answer: &Answer) -> Result<Option<Row>, String> {
-    let Some(next) = answer.next_runs.first() else {
+fn proposed(models: &mut SearchModels, conclusion: &Conclusion) -> Result<Option<PlannedRun>, StudyError> {
+    let Some(next) = conclusion.next_runs.first() else {
         return Ok(None);
     };
-    let asked = Asked {
-        model: Model::With(Vec::new()),
+    let asked = Query {
+        model: QueriedModel::With(Vec::new()),
         is_proposed: true,
         theta: Vec::new(),
     };
-    let (_, variant) = models.variant(&asked).map_err(|e| e.to_string())?;
+    let (_, variant) = models.variant(&asked)?;
     let condition = &variant.conditions[next.run];
-    Ok(Some(Row {
+    Ok(Some(PlannedRun {
         wheel: "wide",
         slip: condition.slip,
         wheel_load_n: condition.wheel_load_n,
@@ -94,7 +96,7 @@ fn proposed(models: &mut Models, answer: &Answer) -> Result<Option<Row>, String>
 }
 
 /// Makes one more run and measures it; `false` where the truth refuses it.
-fn measure(case: &mut Case, row: Row, seed: u64, number: u64) -> Result<bool, String> {
+fn measure(case: &mut SyntheticCase, row: PlannedRun, seed: u64, number: u64) -> Result<bool, StudyError> {
     let made = run_truth(&case.truth_job, std::slice::from_ref(&row), &case.theta)?;
     let Some(&[noise_free]) = made.as_deref() else {
         return Ok(false);
@@ -110,8 +112,8 @@ fn measure(case: &mut Case, row: Row, seed: u64, number: u64) -> Result<bool, St
     Ok(true)
 }
 
-fn one(seed: u64, number: u64) -> Result<Story, String> {
-    let mut case = draw_clear(Plan::Narrow, 1, seed, FIRST + number)?;
+fn one(seed: u64, number: u64) -> Result<Story, StudyError> {
+    let mut case = draw_detectable(Plan::Narrow, 1, seed, FIRST + number)?;
     let mut line = format!("ambiguous {number} {}:", case.hidden[0]);
     let mut story = Story {
         is_open: false,
@@ -120,22 +122,23 @@ fn one(seed: u64, number: u64) -> Result<Story, String> {
         line: String::new(),
     };
     for further in 0..=MOST {
-        let mut asking = Asking::new(&case.plan.job(), &case.experiment(), 1)?;
-        let answer = asking.inquire()?;
-        let task = asking.models.task();
-        let truth = answer.judged.iter().find(|j| {
+        let mut local = LocalSearch::new(&case.plan.job(), &case.experiment(), 1)?;
+        let conclusion = local.run()?;
+        let task = local.models.task();
+        let truth = conclusion.ranking.effects.iter().find(|j| {
             j.candidate
                 .is_some_and(|k| task.library[k].name == case.hidden[0])
         });
-        let named = named(&answer);
+        let named = named(&conclusion);
         line += &format!(
             " {:?} (truth {:.1} P {:.3})",
-            answer.verdict,
+            conclusion.verdict,
             truth.map_or(f64::NAN, |j| j.log_bayes_factor),
             truth.map_or(0.0, |j| j.probability)
         );
         if further == 0 {
-            story.is_open = answer.verdict == Verdict::Undecided && !answer.next_runs.is_empty();
+            story.is_open =
+                conclusion.verdict == SearchVerdict::Undecided && !conclusion.next_runs.is_empty();
             if !story.is_open {
                 break;
             }
@@ -149,7 +152,7 @@ fn one(seed: u64, number: u64) -> Result<Story, String> {
         if further == MOST {
             break;
         }
-        let Some(row) = proposed(&mut asking.models, &answer)? else {
+        let Some(row) = proposed(&mut local.models, &conclusion)? else {
             break;
         };
         line += &format!(

@@ -2,7 +2,8 @@
 
 use shared::file::FileSet;
 
-use crate::study::pipeline::Asking;
+use crate::study::error::StudyError;
+use crate::study::local_search::LocalSearch;
 
 const NAMES: [&str; 4] = [
     "nothing-hidden",
@@ -12,7 +13,7 @@ const NAMES: [&str; 4] = [
 ];
 
 /// Searches each, and prints what was found.
-pub(crate) fn run() -> Result<(), String> {
+pub(crate) fn run() -> Result<(), StudyError> {
     for name in NAMES {
         let folder = format!("{}/../tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
         let read = |file: &str| {
@@ -27,12 +28,15 @@ pub(crate) fn run() -> Result<(), String> {
             toml: read("job.toml")?,
             files: Default::default(),
         };
-        let mut asking = Asking::new(&job, &experiment, 3)?;
-        let answer = asking.inquire()?;
-        let candidates = asking.models.task().candidates();
+        let mut local = LocalSearch::new(&job, &experiment, 3)?;
+        let conclusion = local.run()?;
+        let candidates = local.models.task().candidates();
         let name_of = |k: Option<usize>| k.map_or("none", |k| candidates[k].name.as_str());
-        println!("{name}: {:?}, {} evaluations", answer.verdict, answer.evaluations);
-        let mut judged: Vec<_> = answer.judged.iter().collect();
+        println!(
+            "{name}: {:?}, {} evaluations",
+            conclusion.verdict, conclusion.evaluations
+        );
+        let mut judged: Vec<_> = conclusion.ranking.effects.iter().collect();
         judged.sort_by(|a, b| b.probability.total_cmp(&a.probability));
         for j in judged.iter().take(6) {
             println!(
@@ -43,7 +47,7 @@ pub(crate) fn run() -> Result<(), String> {
                 j.class
             );
         }
-        if let Some(outside) = &answer.outside {
+        if let Some(outside) = &conclusion.outside {
             println!(
                 "  law {} ln BF {:.2}, left out {:?}",
                 name_of(Some(outside.candidate)),

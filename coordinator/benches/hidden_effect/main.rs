@@ -22,12 +22,14 @@ mod tmcmc;
 
 use std::process::ExitCode;
 
-use study::each;
-use study::fate::Fate;
-use study::kind::Kind;
+use study::error::StudyError;
+use study::kind::HiddenKind;
+use study::parallel::each;
+use study::score::TrialScore;
 use study::tally::Tally;
+use study::trial::{draw, search};
 
-/// Experiments of a kind where nothing is said.
+/// Default number of trials of a kind.
 const USUAL: u64 = 100;
 
 fn main() -> ExitCode {
@@ -56,12 +58,12 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs so many experiments of each kind, and prints the targets.
-fn tables(kinds: &str, count: u64, seed: u64) -> Result<(), String> {
+/// Runs trials of each kind, and prints the targets.
+fn tables(kinds: &str, count: u64, seed: u64) -> Result<(), StudyError> {
     let mut all = Vec::new();
     for name in kinds.split('+') {
-        let kind = Kind::ALL.into_iter().find(|kind| kind.name() == name);
-        all.extend(fates(
+        let kind = HiddenKind::ALL.into_iter().find(|kind| kind.name() == name);
+        all.extend(scores(
             kind.ok_or(format!("unknown kind \"{name}\""))?,
             count,
             seed,
@@ -71,18 +73,16 @@ fn tables(kinds: &str, count: u64, seed: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// How so many experiments of a kind fared, each printed as soon as it is over.
-fn fates(kind: Kind, count: u64, seed: u64) -> Result<Vec<Fate>, String> {
+/// The scores of trials of a kind, each printed when it ends.
+fn scores(kind: HiddenKind, count: u64, seed: u64) -> Result<Vec<TrialScore>, StudyError> {
     let one = |number: u64| {
-        let fate = kind
-            .draw(seed, number)
-            .and_then(|case| kind.search(&case, number))
-            .map_err(|e| format!("{} {number}: {e}", kind.name()));
-        match &fate {
-            Ok(fate) => println!("{fate}"),
+        let score = draw(kind, seed, number).and_then(|case| search(kind, &case, number));
+        let score = score.map_err(|e| StudyError::from(format!("{} {number}: {e}", kind.name())));
+        match &score {
+            Ok(score) => println!("{score}"),
             Err(message) => println!("failed: {message}"),
         }
-        fate
+        score
     };
     each(count, one)?.into_iter().collect()
 }

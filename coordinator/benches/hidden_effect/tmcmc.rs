@@ -9,12 +9,14 @@ use record::Extension;
 use shared::file::FileSet;
 use shared::outcome::Outcome;
 
-use crate::study::case::{Case, spec};
+use crate::study::case::{SyntheticCase, spec};
 use crate::study::design::Plan;
-use crate::study::each;
-use crate::study::kind::draw_clear;
-use crate::study::pipeline::Asking;
+use crate::study::error::StudyError;
+use crate::study::parallel::each;
+
+use crate::study::local_search::LocalSearch;
 use crate::study::rate::{mean, median};
+use crate::study::trial::draw_detectable;
 
 /// Fewer repeat worse than the factors are read to \[DISCOVERY 1\].
 const SAMPLER: &str = "[sampler]\nparticles = 1000\nmoves = [5, 10]\n";
@@ -30,9 +32,9 @@ struct Compared {
 }
 
 /// Compares so many and prints the differences.
-pub(crate) fn run(count: u64, seed: u64) -> Result<(), String> {
+pub(crate) fn run(count: u64, seed: u64) -> Result<(), StudyError> {
     let compared = each(count, |number| one(seed, number))?;
-    let compared: Vec<Compared> = compared.into_iter().collect::<Result<_, String>>()?;
+    let compared: Vec<Compared> = compared.into_iter().collect::<Result<_, StudyError>>()?;
     let differences: Vec<f64> = compared.iter().map(|c| c.search - c.sampler).collect();
     let [bias, error] = mean(&differences);
     let sd = error * (differences.len() as f64).sqrt();
@@ -44,11 +46,15 @@ pub(crate) fn run(count: u64, seed: u64) -> Result<(), String> {
     Ok(())
 }
 
-fn one(seed: u64, number: u64) -> Result<Compared, String> {
-    let case = draw_clear(Plan::Full, 1, seed, FIRST + number)?;
-    let mut asking = Asking::new(&case.plan.job(), &case.experiment(), 1)?;
-    let answer = asking.inquire()?;
-    let effects = answer.judged.iter().filter(|j| j.candidate.is_some());
+fn one(seed: u64, number: u64) -> Result<Compared, StudyError> {
+    let case = draw_detectable(Plan::Full, 1, seed, FIRST + number)?;
+    let mut local = LocalSearch::new(&case.plan.job(), &case.experiment(), 1)?;
+    let conclusion = local.run()?;
+    let effects = conclusion
+        .ranking
+        .effects
+        .iter()
+        .filter(|j| j.candidate.is_some());
     let best = effects.reduce(|a, b| {
         if b.log_bayes_factor > a.log_bayes_factor {
             b
@@ -59,25 +65,25 @@ fn one(seed: u64, number: u64) -> Result<Compared, String> {
     let best = best.ok_or("nothing was judged")?;
     let name = best
         .candidate
-        .map(|k| asking.models.task().library[k].name.clone());
+        .map(|k| local.models.task().library[k].name.clone());
     let name = name.ok_or("the best has no name")?;
     let base = Sampled::new(&case, &case.plan.job(), seed)?;
     let added = Extension::Effect(name.clone());
-    let job = extended("job.toml", &case.plan.job(), &[&added]).map_err(|e| e.to_string())?;
+    let job = extended("job.toml", &case.plan.job(), &[&added])?;
     let with = Sampled::new(&case, &job, seed)?;
     let compared = Compared {
         search: best.log_bayes_factor,
         sampler: with.log_evidence - base.log_evidence,
     };
-    let own = answer.best.effects.as_slice() == best.candidate.as_slice();
-    let fitted = own.then(|| answer.best.draws.first()).flatten();
+    let own = conclusion.best.effects.as_slice() == best.candidate.as_slice();
+    let fitted = own.then(|| conclusion.best.draws.first()).flatten();
     println!(
         "tmcmc {number} {} hidden, {name} best: search {:.2} ({:?}), sampler {:.2}; highest ln L of the base {:.1} and {:.1}, with it {:.1} and {:.1}",
         case.hidden[0],
         compared.search,
         best.method,
         compared.sampler,
-        log_likelihood(&case, &case.plan.job(), answer.base.draws.first())?,
+        log_likelihood(&case, &case.plan.job(), conclusion.base.draws.first())?,
         base.highest,
         log_likelihood(&case, &job, fitted)?,
         with.highest
@@ -86,7 +92,7 @@ fn one(seed: u64, number: u64) -> Result<Compared, String> {
 }
 
 /// ln p(data | theta) where the search ended; NaN where it ended elsewhere.
-fn log_likelihood(case: &Case, job: &FileSet, theta: Option<&Vec<f64>>) -> Result<f64, String> {
+fn log_likelihood(case: &SyntheticCase, job: &FileSet, theta: Option<&Vec<f64>>) -> Result<f64, StudyError> {
     let spec = spec(job, &case.experiment())?;
     let Some(theta) = theta else {
         return Ok(f64::NAN);
@@ -97,7 +103,7 @@ fn log_likelihood(case: &Case, job: &FileSet, theta: Option<&Vec<f64>>) -> Resul
     let scored = spec
         .likelihood
         .log_likelihood(&spec.predicted_values(&seen), theta);
-    scored.map(|s| s.value()).map_err(|e| e.to_string())
+    Ok(scored?.value())
 }
 
 /// What the sampler says of a job.
@@ -108,7 +114,7 @@ struct Sampled {
 }
 
 impl Sampled {
-    fn new(case: &Case, job: &FileSet, seed: u64) -> Result<Self, String> {
+    fn new(case: &SyntheticCase, job: &FileSet, seed: u64) -> Result<Self, StudyError> {
         let job = FileSet {
             toml: format!("{}{SAMPLER}seed = {seed}\n", job.toml),
             files: job.files.clone(),
@@ -121,7 +127,7 @@ impl Sampled {
             study: 0,
             experiment: 0,
         };
-        let mut calibration = Calibration::new(identity, Arc::new(spec)).map_err(|e| e.to_string())?;
+        let mut calibration = Calibration::new(identity, Arc::new(spec))?;
         loop {
             if let Some(CalibrationResult::Posterior(posterior)) = calibration.engine().finding() {
                 let particles = posterior.particles.iter().map(|p| p.log_likelihood.value());
@@ -131,16 +137,14 @@ impl Sampled {
                 });
             }
             if let Some(message) = &calibration.message {
-                return Err(message.clone());
+                return Err(message.clone().into());
             }
             for evaluation in calibration.queue.asked() {
                 let Some(question) = calibration.question(evaluation) else {
                     break;
                 };
                 let outcome = result_of(model.evaluate(question.theta))?;
-                calibration
-                    .complete(evaluation, outcome, "hidden effect")
-                    .map_err(|e| e.to_string())?;
+                calibration.complete(evaluation, outcome, "hidden effect")?;
             }
         }
     }

@@ -1,4 +1,4 @@
-//! An effect that may be missing, and what is asked of the model about it.
+//! An effect that may be missing.
 
 use statistics::prior::Marginal;
 
@@ -7,7 +7,7 @@ use statistics::prior::Marginal;
 pub struct Candidate {
     /// Its name.
     pub name: String,
-    /// The priors of its parameters, in the order in which they follow the base's in theta.
+    /// The priors of its parameters, which follow the base's in theta.
     pub parameters: Vec<Marginal>,
     /// Which of them are strengths; the others shape the effect. Several are the knots of a curve.
     pub strengths: Vec<usize>,
@@ -16,7 +16,7 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// What is wrong with it, if anything is.
+    /// Checks strengths and neutral value.
     pub(crate) fn check(&self) -> Result<(), CandidateError> {
         let name = || self.name.clone();
         let parameters = self.parameters.len();
@@ -37,10 +37,10 @@ impl Candidate {
     }
 }
 
-/// A candidate that cannot be looked for.
+/// Why a search cannot begin.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CandidateError {
-    /// It has no strength, or one that is none of its parameters.
+    /// A candidate has no strength, or a strength that is not among its parameters.
     #[error("candidate {name}: strengths are parameters {strengths:?} of {parameters}")]
     NoStrength {
         /// The candidate.
@@ -58,16 +58,7 @@ pub enum CandidateError {
         /// The strength.
         value: f64,
     },
-    /// There is no parameter to fit.
+    /// The base model has no free parameter.
     #[error("the base model has no free parameter")]
     NoBase,
-}
-
-/// A parameter vector at which the model is to be asked.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Request {
-    /// Which effect is switched on; `None`: the base model.
-    pub candidate: Option<usize>,
-    /// The base's parameters, then the candidate's.
-    pub theta: Vec<f64>,
 }

@@ -1,24 +1,28 @@
-//! How well a fit does.
+//! Goodness of fit.
 
-use crate::descent::Descent;
+use crate::laplace::fit::LaplaceFit;
 use inference::diagnostics::chi_square_tail;
 use statistics::likelihood::{CommonErrorSize, Discrepancy, ErrorLaw, ErrorSd, Likelihood};
 
-/// A fit with less chance than this is wrong.
-pub(crate) const WRONG: f64 = 0.001;
+/// p-value below which a fit contradicts the data.
+const WRONG: f64 = 0.001;
+/// p-value of the library's best fit below which one more effect is searched.
+pub(crate) const FURTHER_EFFECT: f64 = 0.5;
+/// p-value of the library's best fit below which laws outside the library are searched.
+pub(crate) const OUTSIDE_LAW: f64 = 0.05;
 
-/// Squared residuals in units of the noise, against the data less what the fit used up.
+/// Squared residuals in units of the noise, and their degrees of freedom.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ChiSquare {
+pub struct FitChiSquare {
     /// Their sum.
     pub value: f64,
-    /// Number of data less the effective number of fitted parameters.
+    /// Number of data minus the effective number of fitted parameters.
     pub degrees_of_freedom: f64,
 }
 
-impl ChiSquare {
-    /// Of a fit; `None` where the noise was inferred from the misfit, has heavy tails, or the model may miss by a discrepancy.
-    pub(crate) fn of(fit: &Descent, likelihood: &Likelihood) -> Option<Self> {
+impl FitChiSquare {
+    /// Of a fit; `None` with inferred noise, heavy tails or a model discrepancy.
+    pub(crate) fn of(fit: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
         let unknown = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { .. });
         let is_known = likelihood.law() == ErrorLaw::Gaussian
             && likelihood.discrepancy() == Discrepancy::None
@@ -30,10 +34,10 @@ impl ChiSquare {
         if !is_known {
             return None;
         }
-        let theta = fit.frame.theta(&fit.point.position);
+        let theta = fit.theta();
         let whitening = likelihood.whitening(&fit.point.values, &theta).ok()?;
-        // The prior holds back a parameter as far as its sd stays what it was: a share of 1 - variance is fitted.
-        let uncertainty = fit.parabola(likelihood).uncertainty();
+        // The effective number of a parameter is 1 - posterior variance over prior variance.
+        let uncertainty = fit.quadratic(likelihood).uncertainty();
         let fitted: f64 = uncertainty.iter().flatten().map(|sd| 1.0 - sd * sd).sum();
         Some(Self {
             value: whitening.squared_residuals(),
@@ -41,9 +45,20 @@ impl ChiSquare {
         })
     }
 
-    /// The probability of as much by chance.
+    /// p-value.
     #[must_use]
     pub fn p(&self) -> f64 {
         chi_square_tail(self.value, self.degrees_of_freedom).unwrap_or(1.0)
+    }
+
+    /// Whether the fit contradicts the data: p < 0.001.
+    #[must_use]
+    pub fn is_wrong(&self) -> bool {
+        self.p() < WRONG
+    }
+
+    /// The excess over its expectation.
+    pub(crate) fn excess(&self) -> f64 {
+        self.value - self.degrees_of_freedom
     }
 }

@@ -1,27 +1,26 @@
-//! Hold the settings of a search.
+//! Settings of a search.
 
 /// Where the fit of the base begins.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Starts {
-    /// At the best of these parameter vectors, say draws of a posterior.
+    /// At the best of these parameter vectors, for example draws of a posterior.
     Draws(Vec<Vec<f64>>),
-    /// At the best of so many that fill the prior evenly.
+    /// At the best of so many points that fill the prior evenly.
     Even(usize),
 }
 
 /// Settings of a search.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
+pub struct SearchSettings {
     /// Where the fit of the base begins.
     pub starts: Starts,
     /// Seed of the draws.
     pub seed: u64,
-    /// The shortest difference that derivatives are taken over, in standard deviations of the prior: over shorter ones a model on a
-    /// grid shows its roughness.
+    /// Shortest finite difference, in standard deviations of the prior; shorter ones show the roughness of a model on a grid.
     pub least_difference: f64,
 }
 
-impl Default for Settings {
+impl Default for SearchSettings {
     /// 32 starts that fill the prior, seed 1, differences for a smooth model.
     fn default() -> Self {
         Self {

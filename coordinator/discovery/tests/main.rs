@@ -1,6 +1,6 @@
-//! Check the search for the missing effect on models whose answer is known.
+//! Searches on models whose answer is known.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic as tests do")]
 
-mod discovery;
-mod inquiry;
+mod effect_search;
+mod search;

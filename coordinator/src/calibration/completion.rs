@@ -69,7 +69,7 @@ impl Calibration {
         let fingerprint = computed.fingerprint();
         let rejected = computed.is_refused();
         let SimulationResult { end, outcome } = computed;
-        let scored = if self.draws.is_some() || self.engine.investigation().is_some() {
+        let scored = if self.draws.is_some() || self.engine.discovery().is_some() {
             Ok(None)
         } else {
             outcome.as_ref().map(|o| self.score(o, &theta)).transpose()
@@ -297,7 +297,7 @@ impl Calibration {
     fn kept(&self, evaluation: u64, outcome: Option<Result<Observables, String>>) -> Kept {
         let searched = |observables: &Observables| {
             let particle = self.proposal(evaluation)?.particle;
-            self.engine.investigation()?.values(particle, observables)
+            self.engine.discovery()?.values(particle, observables)
         };
         match outcome {
             None => Kept::Fitted(Vec::new()),

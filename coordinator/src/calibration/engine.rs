@@ -6,7 +6,7 @@ use inference::point_estimate::ModeEstimate;
 use inference::{EvaluationResult, PosteriorSample, Proposal, Sampler, StageRecord, TellError, TellProgress};
 use statistics::{LogLikelihood, Metamodel, ModelPair, SubchainEnd};
 
-use crate::missing_effect::{Investigation, InvestigationError, Models};
+use crate::missing_effect::{DiscoveryError, RunningDiscovery, SearchModels};
 use job::{AlgorithmSettings, AlgorithmSettingsError, Spec};
 use record::Discovery;
 
@@ -20,7 +20,7 @@ pub enum CalibrationEngine {
     /// Finds the most probable parameters by generations; told log-likelihoods.
     Evolution(Box<Evolution>),
     /// Searches for what the model is missing; told predicted values.
-    Discovery(Box<Investigation>),
+    Discovery(Box<RunningDiscovery>),
 }
 
 /// Why a calibration cannot begin.
@@ -31,7 +31,7 @@ pub enum BeginError {
     AlgorithmSettings(#[from] AlgorithmSettingsError),
     /// The search has a model that cannot be made.
     #[error(transparent)]
-    Search(#[from] InvestigationError),
+    Search(#[from] DiscoveryError),
     /// A search for a missing effect needs the models that it asks.
     #[error("a search for a missing effect needs the texts of its job and experiment")]
     NoModels,
@@ -45,7 +45,7 @@ pub(super) enum EngineError {
     Tell(#[from] TellError),
     /// What follows cannot be asked.
     #[error(transparent)]
-    Investigation(#[from] InvestigationError),
+    Discovery(#[from] DiscoveryError),
 }
 
 /// The result of an evaluation, scored.
@@ -98,7 +98,7 @@ impl CalibrationEngine {
     ///
     /// # Errors
     /// [`BeginError`] where the settings do not fit the prior, or a search has no models.
-    pub(super) fn new(spec: &Spec, models: Option<Models>) -> Result<Self, BeginError> {
+    pub(super) fn new(spec: &Spec, models: Option<SearchModels>) -> Result<Self, BeginError> {
         let (prior, likelihood) = (spec.prior(), &spec.likelihood);
         Ok(match spec.method {
             AlgorithmSettings::Sample(settings) => {
@@ -115,7 +115,7 @@ impl CalibrationEngine {
             )),
             AlgorithmSettings::Discover { .. } => {
                 let models = models.ok_or(BeginError::NoModels)?;
-                CalibrationEngine::Discovery(Box::new(Investigation::new(models)?))
+                CalibrationEngine::Discovery(Box::new(RunningDiscovery::new(models)?))
             }
         })
     }
@@ -126,7 +126,7 @@ impl CalibrationEngine {
             CalibrationEngine::Sampler(sampler) => sampler.round().number(),
             CalibrationEngine::Fit(fit) => fit.round().number(),
             CalibrationEngine::Evolution(evolution) => evolution.round().number(),
-            CalibrationEngine::Discovery(investigation) => investigation.round(),
+            CalibrationEngine::Discovery(discovery) => discovery.round(),
         }
     }
 
@@ -136,7 +136,7 @@ impl CalibrationEngine {
             CalibrationEngine::Sampler(sampler) => sampler.round().pending(),
             CalibrationEngine::Fit(fit) => fit.round().pending(),
             CalibrationEngine::Evolution(evolution) => evolution.round().pending(),
-            CalibrationEngine::Discovery(investigation) => investigation.pending(),
+            CalibrationEngine::Discovery(discovery) => discovery.pending(),
         }
     }
 
@@ -150,14 +150,14 @@ impl CalibrationEngine {
             CalibrationEngine::Sampler(sampler) => sampler.tell(particle, scored.answer())?,
             CalibrationEngine::Fit(fit) => fit.tell(particle, scored.fitted)?,
             CalibrationEngine::Evolution(evolution) => evolution.tell(particle, scored.log_likelihood)?,
-            CalibrationEngine::Discovery(investigation) => investigation.tell(particle, scored.fitted)?,
+            CalibrationEngine::Discovery(discovery) => discovery.tell(particle, scored.fitted)?,
         })
     }
 
     /// The search for a missing effect, if this is one.
-    pub(super) fn investigation(&self) -> Option<&Investigation> {
+    pub(super) fn discovery(&self) -> Option<&RunningDiscovery> {
         match self {
-            CalibrationEngine::Discovery(investigation) => Some(investigation),
+            CalibrationEngine::Discovery(discovery) => Some(discovery),
             CalibrationEngine::Sampler(_) | CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) => {
                 None
             }
@@ -190,8 +190,8 @@ impl CalibrationEngine {
             CalibrationEngine::Sampler(sampler) => sampler.posterior().map(CalibrationResult::Posterior),
             CalibrationEngine::Fit(fit) => fit.estimate().map(CalibrationResult::Estimate),
             CalibrationEngine::Evolution(evolution) => evolution.estimate().map(CalibrationResult::Estimate),
-            CalibrationEngine::Discovery(investigation) => {
-                let record = investigation.record();
+            CalibrationEngine::Discovery(discovery) => {
+                let record = discovery.record();
                 record.map(|record| CalibrationResult::Discovery(Box::new(record)))
             }
         }

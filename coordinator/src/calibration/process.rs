@@ -12,7 +12,7 @@ use statistics::{Metamodel, Subchain};
 use super::engine::{BeginError, CalibrationEngine};
 use super::final_draws::FinalDraws;
 use crate::lease::LeaseQueue;
-use crate::missing_effect::{InvestigationError, Models};
+use crate::missing_effect::{DiscoveryError, SearchModels};
 use job::{AlgorithmSettings, Spec};
 use record::EvaluationKey;
 
@@ -100,8 +100,8 @@ impl Calibration {
     ) -> Result<Self, BeginError> {
         let models = match spec.method {
             AlgorithmSettings::Discover { .. } => {
-                let models = Models::new(job, experiment, EFFECTS_TOGETHER);
-                Some(models.map_err(InvestigationError::from)?)
+                let models = SearchModels::new(job, experiment, EFFECTS_TOGETHER);
+                Some(models.map_err(DiscoveryError::from)?)
             }
             AlgorithmSettings::Sample(_) | AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) => None,
         };
@@ -111,7 +111,7 @@ impl Calibration {
     fn begin(
         identity: CalibrationIdentity,
         spec: Arc<Spec>,
-        models: Option<Models>,
+        models: Option<SearchModels>,
     ) -> Result<Self, BeginError> {
         let engine = CalibrationEngine::new(&spec, models)?;
         let mut calibration = Calibration {
@@ -183,7 +183,7 @@ impl Calibration {
     /// What an evaluation of a search is leased with; `None` of anything else.
     pub(super) fn searched(&self, evaluation: u64) -> Option<(&str, &[f64])> {
         let particle = self.proposal(evaluation)?.particle;
-        self.engine.investigation()?.lease(particle)
+        self.engine.discovery()?.lease(particle)
     }
 
     /// What an evaluation is for.
@@ -199,7 +199,7 @@ impl Calibration {
             h => {
                 let of_stage = self.stage_variant.iter().map(|(_, variant)| variant);
                 let mut others = of_stage.chain(&self.histories);
-                let searched = || self.engine.investigation()?.variant(h);
+                let searched = || self.engine.discovery()?.variant(h);
                 others
                     .find(|(own, _)| own == h)
                     .map(|(_, variant)| variant)

@@ -1,4 +1,4 @@
-//! Explanations as additions to a job, and those that the library offers.
+//! Candidate effects as additions to a job, and those of the library.
 
 use std::collections::BTreeSet;
 
@@ -11,23 +11,34 @@ use shared::model::effects::parameter_name;
 use job::{Spec, extended_job};
 use record::Extension;
 
-/// An explanation as a job takes it.
+/// A candidate effect as an addition to a job.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Explanation {
-    /// The effect; `EFFECT.WHEEL` on one wheel of several, `pressure_z` for a curve, `pressure_z_power` for a form.
+pub struct CandidateEffect {
+    /// Its name: that of the effect, `EFFECT.WHEEL` on one wheel of several, `pressure_z` of a curve, `pressure_z_power` of a form.
     pub name: String,
-    /// What is added to the job.
+    /// The addition to the job.
     pub extension: Extension,
 }
 
-/// The job with further explanations.
+/// Why an effect of the library is not a candidate.
+#[derive(Debug, thiserror::Error)]
+pub enum ExclusionReason {
+    /// The model cannot express it in this experiment.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// Its strength is fixed.
+    #[error("no strength is free")]
+    NoFreeStrength,
+}
+
+/// The job with further effects.
 ///
 /// Effects of the catalogue join those under `[model]`, effect files come with the job, and an effect on one wheel is a line
 /// under `[priors]` for each of its strengths, with the prior of the effect's file.
 ///
 /// # Errors
-/// [`FileError`] of the job: an effect is unknown, a file or a line is there already, the text is no job. Whether the model can
-/// express the result is for [`Spec::new`] to say.
+/// [`FileError`] of the job: an effect is unknown, a file or a line exists already, the text is not a job. Whether the model can
+/// express the result is checked by [`Spec::new`].
 pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<FileSet, FileError> {
     let fail = |message: String| FileError::whole(name, message);
     let (mut effects, mut named, mut priors) = (Vec::new(), Vec::new(), Vec::new());
@@ -45,7 +56,7 @@ pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<
             }
             Extension::File { name: file, text } => {
                 if files.insert(file.clone(), text.clone()).is_some() {
-                    return Err(fail(format!("file \"{file}\" is there already")));
+                    return Err(fail(format!("file \"{file}\" exists already")));
                 }
                 named.push(file.clone());
             }
@@ -55,17 +66,19 @@ pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<
     Ok(FileSet { toml, files })
 }
 
-/// The explanations of the library for an experiment.
+/// The candidate effects of the library for an experiment.
 ///
-/// First every effect of the catalogue that the job does not have yet, in the order of the catalogue; then, where fitted runs have
+/// First every effect of the catalogue that the job does not have, in the order of the catalogue; then, where fitted runs have
 /// several wheels, each on each of these wheels alone. Checked by `tests::of_several_wheels_each_may_have_an_effect_alone`.
 ///
 /// # Returns
-/// The explanations, and the names of those that cannot be one here with the reason: the model cannot express the effect in this
-/// experiment, or it has no strength that is free.
-pub fn library(job: &FileSet, experiment: &FileSet) -> (Vec<Explanation>, Vec<(String, String)>) {
+/// The candidates, and the names of the effects that are excluded here with the reason.
+pub fn library(
+    job: &FileSet,
+    experiment: &FileSet,
+) -> (Vec<CandidateEffect>, Vec<(String, ExclusionReason)>) {
     let (mut had, mut wheels) = (BTreeSet::new(), BTreeSet::new());
-    // A job that is none is refused with every effect, each time with the reason.
+    // An invalid job excludes every effect, each with the reason.
     if let Ok(base) = spec(job, experiment) {
         had.extend(base.fit_variant.effects.into_iter().map(|e| e.name));
         let fitted = base
@@ -80,25 +93,25 @@ pub fn library(job: &FileSet, experiment: &FileSet) -> (Vec<Explanation>, Vec<(S
     let on_one = missing()
         .flat_map(|effect| wheels.iter().map(move |wheel| (effect, Some(wheel.as_str()))))
         .filter(|_| wheels.len() > 1);
-    let (mut explanations, mut left_out) = (Vec::new(), Vec::new());
+    let (mut candidates, mut excluded) = (Vec::new(), Vec::new());
     for (effect, wheel) in everywhere.chain(on_one) {
-        let explanation = explanation(effect, wheel);
-        match check(job, experiment, &explanation.extension, effect, wheel) {
-            Ok(()) => explanations.push(explanation),
-            Err(reason) => left_out.push((explanation.name, reason)),
+        let candidate = candidate(effect, wheel);
+        match check(job, experiment, &candidate.extension, effect, wheel) {
+            Ok(()) => candidates.push(candidate),
+            Err(reason) => excluded.push((candidate.name, reason)),
         }
     }
-    (explanations, left_out)
+    (candidates, excluded)
 }
 
-fn explanation(effect: &Effect, wheel: Option<&str>) -> Explanation {
+fn candidate(effect: &Effect, wheel: Option<&str>) -> CandidateEffect {
     let effect = effect.name.clone();
     match wheel {
-        None => Explanation {
+        None => CandidateEffect {
             name: effect.clone(),
             extension: Extension::Effect(effect),
         },
-        Some(wheel) => Explanation {
+        Some(wheel) => CandidateEffect {
             name: format!("{effect}.{wheel}"),
             extension: Extension::OnWheel {
                 effect,
@@ -108,36 +121,37 @@ fn explanation(effect: &Effect, wheel: Option<&str>) -> Explanation {
     }
 }
 
-/// Whether the job can have an effect, with a strength to be found.
+/// Whether the job can have an effect with a free strength.
 fn check(
     job: &FileSet,
     experiment: &FileSet,
     extension: &Extension,
     effect: &Effect,
     wheel: Option<&str>,
-) -> Result<(), String> {
-    let with = extended(JOB, job, &[extension]).map_err(|e| e.to_string())?;
-    let spec = spec(&with, experiment).map_err(|e| e.to_string())?;
+) -> Result<(), ExclusionReason> {
+    let spec = spec(&extended(JOB, job, &[extension])?, experiment)?;
     let strengths = effect.parameters.iter().filter(|p| p.neutral.is_some());
     let mut strengths = strengths.map(|p| parameter_name(effect, p, wheel));
     let is_free = |name: String| spec.parameters.iter().any(|p| p.name == name);
     if strengths.any(is_free) {
         Ok(())
     } else {
-        Err("no strength is free".into())
+        Err(ExclusionReason::NoFreeStrength)
     }
 }
 
-const JOB: &str = "job.toml";
+/// Name of the job in messages.
+pub(super) const JOB: &str = "job.toml";
 
-fn spec(job: &FileSet, experiment: &FileSet) -> Result<Spec, FileError> {
+/// Parses a job and its experiment.
+pub(super) fn spec(job: &FileSet, experiment: &FileSet) -> Result<Spec, FileError> {
     Spec::new(JOB, job, "experiment.toml", experiment)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::missing_effect::scan::tests::read;
+    use crate::missing_effect::fixture::read;
 
     #[test]
     fn the_library_is_the_catalogue_less_what_the_job_has_and_the_model_cannot_say() {
@@ -145,13 +159,13 @@ mod tests {
         job.toml = job
             .toml
             .replacen("[model]\n", "[model]\neffects = [\"sled_tare\"]\n", 1);
-        let (explanations, left_out) = library(&job, &files);
-        assert_eq!(explanations.len() + left_out.len(), catalogue().len() - 1);
-        let names: Vec<&str> = explanations.iter().map(|e| e.name.as_str()).collect();
+        let (candidates, excluded) = library(&job, &files);
+        assert_eq!(candidates.len() + excluded.len(), catalogue().len() - 1);
+        let names: Vec<&str> = candidates.iter().map(|e| e.name.as_str()).collect();
         assert!(names.contains(&"janosi_hanamoto") && !names.contains(&"sled_tare"));
         // one wheel: none on a wheel of several
         assert!(names.iter().all(|name| !name.contains('.')), "{names:?}");
-        let reason = |name: &str| left_out.iter().find(|(n, _)| n == name).unwrap().1.as_str();
+        let reason = |name: &str| excluded.iter().find(|(n, _)| n == name).unwrap().1.to_string();
         assert!(
             reason("end_wall").contains("bin_length_m"),
             "{}",
@@ -162,9 +176,9 @@ mod tests {
     #[test]
     fn of_several_wheels_each_may_have_an_effect_alone() {
         let (job, files, _) = read("examples/cmu-sand");
-        let (explanations, left_out) = library(&job, &files);
-        assert_eq!(explanations.len() + left_out.len(), 3 * catalogue().len());
-        let of = |name: &str| explanations.iter().find(|e| e.name == name);
+        let (candidates, excluded) = library(&job, &files);
+        assert_eq!(candidates.len() + excluded.len(), 3 * catalogue().len());
+        let of = |name: &str| candidates.iter().find(|e| e.name == name);
         let digging = of("slip_sinkage.grousered").unwrap();
         let with = extended("job.toml", &job, &[&digging.extension]).unwrap();
         assert!(
@@ -184,12 +198,12 @@ mod tests {
                 .iter()
                 .all(|p| p.name != "slip_sinkage.exponent_per_slip.smooth")
         );
-        let smooth = left_out.iter().find(|(name, _)| name == "lug_thrust.smooth");
-        assert!(smooth.is_some_and(|(_, reason)| reason.contains("needs a wheel with grousers")));
+        let smooth = excluded.iter().find(|(name, _)| name == "lug_thrust.smooth");
+        assert!(smooth.is_some_and(|(_, reason)| reason.to_string().contains("needs a wheel with grousers")));
     }
 
     #[test]
-    fn several_explanations_join_a_job_and_none_twice() {
+    fn several_effects_join_a_job_and_none_twice() {
         let (job, files, _) = read("examples/cmu-sand");
         let file = Extension::File {
             name: "mine.toml".into(),
@@ -207,7 +221,7 @@ mod tests {
         let names: Vec<&str> = effects.iter().map(|e| e.name.as_str()).collect();
         assert_eq!(names, ["slip_sinkage", "sled_tare", "mine"]);
         let twice = extended("job.toml", &with, &[&file]).unwrap_err();
-        assert_eq!(twice.to_string(), "job.toml: file \"mine.toml\" is there already");
+        assert_eq!(twice.to_string(), "job.toml: file \"mine.toml\" exists already");
         assert!(extended("job.toml", &with, &[&digging]).is_err());
         let unknown = extended("job.toml", &job, &[&on_wheel("slip_sinkage_")]).unwrap_err();
         assert!(unknown.to_string().contains("slip_sinkage"), "{unknown}");

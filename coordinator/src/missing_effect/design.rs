@@ -1,4 +1,4 @@
-//! The design of an experiment: the levels that were run, and the runs that the rig could make next.
+//! The design of an experiment: its levels, and the runs that the rig could make next.
 
 use shared::channel::Channel;
 use shared::experiment::{TestRun, rim_speed_m_s};
@@ -7,20 +7,20 @@ use statistics::Likelihood;
 
 use job::{PLATE, Spec};
 
-/// Values closer than this share of their range are one level.
+/// Values closer than this share of their range are one level `[1]`.
 const SAME_LEVEL: f64 = 0.02;
-/// A variable with fewer levels is not left out level by level: the rest would not say how it goes on.
+/// Least levels of a variable for the cross-validation: fewer do not determine an extrapolation.
 const LEAST_LEVELS: usize = 3;
 /// Slips of proposed runs.
 const SLIPS: [f64; 7] = [0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8];
-/// Braked, where the rig has braked before.
+/// Slip of a braked run, proposed where the rig has made one.
 const BRAKED: f64 = -0.2;
-/// Loads and speeds of the rim, over the least and the greatest that were run: a rig reaches further than one campaign.
+/// Factor beyond the measured loads and rim speeds, and the number of each: a rig reaches further than one experiment.
 const BEYOND: f64 = 2.0;
 const LOADS: usize = 4;
 const SPEEDS: usize = 3;
 
-/// The data of each level of slip, wheel load and rim speed, of the variables that have enough.
+/// The data of each level of slip, wheel load and rim speed, of the variables with enough levels.
 pub(super) fn levels(spec: &Spec) -> Vec<Vec<usize>> {
     let runs: Vec<&TestRun> = spec.fit_runs.iter().map(|&i| &spec.experiment.runs[i]).collect();
     let variables: [fn(&TestRun) -> f64; 3] = [
@@ -40,7 +40,7 @@ pub(super) fn levels(spec: &Spec) -> Vec<Vec<usize>> {
     levels
 }
 
-/// The data of wheels that belong to some of the runs.
+/// The wheel data of some runs.
 fn of_runs(likelihood: &Likelihood, is_in: impl Fn(usize) -> bool) -> Vec<usize> {
     let data = likelihood.data().iter().enumerate();
     data.filter(|(_, d)| d.channel < PLATE && is_in(d.run))
@@ -48,7 +48,7 @@ fn of_runs(likelihood: &Likelihood, is_in: impl Fn(usize) -> bool) -> Vec<usize>
         .collect()
 }
 
-/// The level of each value, counted from the least.
+/// The level of each value, ascending from 0.
 fn level_of(values: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
@@ -64,8 +64,7 @@ fn level_of(values: &[f64]) -> Vec<usize> {
     level
 }
 
-/// Runs that the rig could make, with the wheel and the soil of the first that was fitted: each slip at each load at each speed of
-/// the rim.
+/// Runs that the rig could make, with wheel and soil of the first fitted run: each slip at each load and rim speed.
 pub(super) fn proposed(spec: &Spec) -> Vec<RunCondition> {
     let conditions = &spec.fit_variant.conditions;
     let Some(first) = conditions.first() else {
@@ -110,7 +109,7 @@ pub(super) fn proposed(spec: &Spec) -> Vec<RunCondition> {
     proposed
 }
 
-/// The channels that the rig measures, with the mean noise sd of each.
+/// The measured channels with the mean noise sd of each.
 pub(super) fn channels(spec: &Spec, theta: &[f64]) -> Vec<(Channel, f64)> {
     let data = spec.likelihood.data();
     let of = |channel: &Channel| {
@@ -126,7 +125,7 @@ pub(super) fn channels(spec: &Spec, theta: &[f64]) -> Vec<(Channel, f64)> {
     Channel::ALL.iter().filter_map(of).collect()
 }
 
-/// As one sets a rig.
+/// Rounded to two digits, as set on a rig.
 fn two_digits(x: f64) -> f64 {
     format!("{x:.1e}").parse().unwrap_or(x)
 }

@@ -1,24 +1,23 @@
-//! The search for a missing effect, as the farm runs it: candidates as jobs take them, and what is said in the end.
+//! The search for a missing effect on the farm: its models as jobs, and its result in names and sentences.
 //!
 //! # Layout
-//! - [`candidate`]: explanations as additions to a job, and those of the library.
-//! - [`range`]: along which variables an experiment can show a dependence, and how far.
-//! - [`scan`]: laws outside the library, as curves along one variable; [`form`]: simple forms of them.
-//! - [`curve`]: what such a law does along its variable, and its file for the user.
-//! - `models`: every model that a search asks, made when it is asked; `design`: levels that were run, and runs that could be.
-//! - `investigation`: a search in progress, as leases take it. `told`: its answer in names and sentences; `other_tests`: what no
-//!   rolling wheel can decide.
+//! - [`candidate`]: candidate effects as additions to a job, and those of the library. `law`: laws outside the library as effect files.
+//! - `models`: the models of a search, made when they are queried; `entry`: their candidates. `design`: levels of the design, and
+//!   runs that the rig could make.
+//! - `search`: a search in progress, as leases take it.
+//! - `discovery_record`: its result as stored; `narrative`: in one sentence. `rig_test`: tests without a rolling wheel.
 
 pub mod candidate;
-pub mod curve;
 mod design;
-pub mod form;
-mod investigation;
+mod discovery_record;
+mod entry;
+#[cfg(test)]
+mod fixture;
+mod law;
 mod models;
-pub mod range;
+mod narrative;
 mod rig_test;
-pub mod scan;
-mod told;
+mod search;
 
-pub use investigation::{Investigation, InvestigationError};
-pub use models::Models;
+pub use models::SearchModels;
+pub use search::{DiscoveryError, RunningDiscovery};

@@ -1,26 +1,26 @@
-//! Tests without a rolling wheel, and which effects they decide about (PHYSICS 4.4).
+//! Tests without a rolling wheel, and the effects that they measure (PHYSICS 4.4).
 
 use std::collections::BTreeSet;
 
 use record::Verdict;
 
-/// A test, and the effects that it sees apart from others.
-struct Test {
+/// A test and the effects that it measures separately.
+struct RigTest {
     what: &'static str,
     decides: &'static [&'static str],
 }
 
-const TESTS: [Test; 6] = [
-    Test {
-        what: "tare run: move the sled without soil under the wheel; what the force sensor shows is the rig's",
+const TESTS: [RigTest; 6] = [
+    RigTest {
+        what: "tare run: move the sled without soil under the wheel; the force sensor then shows the rig's own force",
         decides: &["sled_tare", "sled_drag", "bulldozing", "bin_slope", "end_wall"],
     },
-    Test {
-        what: "free-spin run: turn the wheel in the air; what the torque sensor shows is the bearing's",
+    RigTest {
+        what: "free-spin run: turn the wheel in the air; the torque sensor then shows the bearing's torque",
         decides: &["bearing_torque", "bearing_friction"],
     },
-    Test {
-        what: "static calibration of the sensors with weights: gains of pull and torque, the load at the wheel itself",
+    RigTest {
+        what: "static calibration of the sensors with weights: gains of pull and torque, the load at the wheel",
         decides: &[
             "drawbar_pull_gain",
             "torque_gain",
@@ -29,7 +29,7 @@ const TESTS: [Test; 6] = [
             "sinkage_offset",
         ],
     },
-    Test {
+    RigTest {
         what: "ring-shear test in the same soil: friction angle, cohesion and the displacement that mobilises them",
         decides: &[
             "janosi_hanamoto",
@@ -39,17 +39,17 @@ const TESTS: [Test; 6] = [
             "stress_dependent_friction",
         ],
     },
-    Test {
-        what: "run of a rough wheel (glue soil to the rim): rim against soil becomes soil against soil",
+    RigTest {
+        what: "run of a rough wheel (glue soil to the rim): rim-soil friction becomes soil-soil friction",
         decides: &["interface_friction", "stick_slip", "adhesion"],
     },
-    Test {
-        what: "measure the radius that the rig's encoder uses, and the rim's flattening under load",
+    RigTest {
+        what: "measure the radius that the rig's encoder uses, and the flattening of the rim under load",
         decides: &["slip_radius_error", "wheel_flexibility"],
     },
 ];
 
-/// The line of a job that says what a test has measured of an effect's strength.
+/// The line of a job with a test's result for an effect's strength.
 fn prior_line(effect: &str) -> Option<String> {
     let effect = formula::catalogue::find(effect)?;
     let strength = effect.parameters.iter().find(|p| p.neutral.is_some())?;
@@ -59,14 +59,14 @@ fn prior_line(effect: &str) -> Option<String> {
     ))
 }
 
-/// The tests that decide between the explanations that are still open; none where one is named.
+/// The tests that distinguish open explanations; none where one is named.
 pub(super) fn deciding(open: &[&str], verdict: Verdict) -> Vec<String> {
     if matches!(verdict, Verdict::Named | Verdict::NothingDetectable) {
         return Vec::new();
     }
     let effect = |name: &&str| name.split('.').next().unwrap_or_default().to_owned();
     let open: Vec<String> = open.iter().map(effect).collect();
-    let told = |test: &Test| {
+    let proposal = |test: &RigTest| {
         let own = open.iter().filter(|name| test.decides.contains(&name.as_str()));
         let lines: BTreeSet<String> = own.filter_map(|name| prior_line(name)).collect();
         let lines: Vec<String> = lines.into_iter().collect();
@@ -78,7 +78,7 @@ pub(super) fn deciding(open: &[&str], verdict: Verdict) -> Vec<String> {
             )
         })
     };
-    TESTS.iter().filter_map(told).collect()
+    TESTS.iter().filter_map(proposal).collect()
 }
 
 #[cfg(test)]
@@ -86,14 +86,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_effects_of_the_catalogue_are_decided_about() {
+    fn every_test_measures_effects_of_the_catalogue() {
         for name in TESTS.iter().flat_map(|test| test.decides) {
             assert!(formula::catalogue::find(name).is_some(), "{name}");
         }
     }
 
     #[test]
-    fn a_test_is_proposed_for_what_is_open_and_for_nothing_else() {
+    fn a_test_is_proposed_for_open_effects_only() {
         let open = ["sled_tare", "bulldozing.smooth"];
         let tests = deciding(&open, Verdict::Undecided);
         assert_eq!(tests.len(), 1);

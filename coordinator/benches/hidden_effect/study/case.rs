@@ -1,4 +1,4 @@
-//! An experiment whose truth is known: drawn from the priors, run, measured with noise.
+//! A synthetic experiment: a truth drawn from the priors, and its measurements with noise.
 
 use coordinator::embedded::Evaluate;
 use coordinator::missing_effect::candidate::extended;
@@ -10,35 +10,36 @@ use shared::model::ModelVariant;
 use shared::outcome::{Observables, Outcome};
 use statistics::rng::Stream;
 
-use super::design::{CHANNELS, Plan, Row, experiment};
+use super::design::{CHANNELS, Plan, PlannedRun, experiment};
+use super::error::StudyError;
 
-/// Streams of this study, far from those of any sampler and of any search.
+/// Random streams of this study, separate from those of samplers and searches.
 const STAGE: u64 = 1 << 41;
-/// Vectors of the prior that the model may refuse in a row.
+/// Most draws of the prior in a row that the model rejects.
 const MOST_REFUSED: u64 = 1000;
-/// Noise of a channel, as a share of the root mean square of its noise-free values over the fitted runs.
+/// Noise sd of a channel over the root mean square of its noise-free values in the fitted runs.
 pub(crate) const NOISE: f64 = 0.03;
 
-/// What the values of a run are, in the order of the channels.
+/// The values of a run, in the order of the channels.
 type Values = [f64; CHANNELS];
 
-/// An experiment and its truth.
+/// A synthetic experiment and its truth.
 #[derive(Debug, Clone)]
-pub(crate) struct Case {
+pub(crate) struct SyntheticCase {
     pub(crate) plan: Plan,
-    /// What is hidden, and the job of the model that has it.
+    /// The hidden effects, and the job of the model with them.
     pub(crate) hidden: Vec<String>,
     pub(crate) truth_job: FileSet,
     pub(crate) theta: Vec<f64>,
-    pub(crate) rows: Vec<Row>,
+    pub(crate) rows: Vec<PlannedRun>,
     pub(crate) noise_free: Vec<Values>,
     pub(crate) measured: Vec<Values>,
     pub(crate) sds: Values,
 }
 
 /// Parses a job and its experiment.
-pub(crate) fn spec(job: &FileSet, experiment: &FileSet) -> Result<Spec, String> {
-    Spec::new("job.toml", job, "experiment.toml", experiment).map_err(|e| e.to_string())
+pub(crate) fn spec(job: &FileSet, experiment: &FileSet) -> Result<Spec, StudyError> {
+    Ok(Spec::new("job.toml", job, "experiment.toml", experiment)?)
 }
 
 /// The values of each run.
@@ -49,21 +50,25 @@ pub(crate) fn values(seen: &Observables, runs: usize) -> Vec<Values> {
         .collect()
 }
 
-fn evaluated(variant: &ModelVariant, theta: &[f64]) -> Result<Option<Vec<Values>>, String> {
+fn evaluated(variant: &ModelVariant, theta: &[f64]) -> Result<Option<Vec<Values>>, StudyError> {
     match Evaluate::new(variant)?.evaluate(theta) {
         Outcome::Evaluated(seen) => Ok(Some(values(&seen, variant.conditions.len()))),
         Outcome::Rejected(_) => Ok(None),
-        Outcome::Fault(fault) => Err(format!("{fault:?}")),
+        Outcome::Fault(fault) => Err(format!("{fault:?}").into()),
     }
 }
 
-/// Values that stand in until the rig has run; a wheel that stands above its soil is as good as any.
-pub(crate) fn blank(rows: &[Row]) -> FileSet {
+/// Placeholder values before the runs are made.
+pub(crate) fn blank(rows: &[PlannedRun]) -> FileSet {
     experiment(rows, &vec![[0.0; CHANNELS]; rows.len()], [1.0; CHANNELS])
 }
 
-/// Runs a model that is known; `None` where it refuses one of the rows.
-pub(crate) fn run(job: &FileSet, rows: &[Row], theta: &[f64]) -> Result<Option<Vec<Values>>, String> {
+/// Runs a known model; `None` where it rejects one of the runs.
+pub(crate) fn run(
+    job: &FileSet,
+    rows: &[PlannedRun],
+    theta: &[f64],
+) -> Result<Option<Vec<Values>>, StudyError> {
     let spec = spec(job, &blank(rows))?;
     let theta = spec.model_theta(theta);
     let Some(mut all) = evaluated(&spec.fit_variant, theta)? else {
@@ -78,20 +83,20 @@ pub(crate) fn run(job: &FileSet, rows: &[Row], theta: &[f64]) -> Result<Option<V
     Ok(Some(all))
 }
 
-impl Case {
-    /// Draws a truth from the priors of the base and what is hidden, and measures it.
+impl SyntheticCase {
+    /// Draws a truth from the priors of the base and the hidden effects, and measures it.
     ///
     /// # Arguments
-    /// - `hidden`: the name of each explanation with what it adds to the job. `attempt`: another truth of the same number.
+    /// - `hidden`: the name of each effect with its addition to the job. `attempt`: another truth of the same number.
     pub(crate) fn draw(
         plan: Plan,
         hidden: &[(String, Extension)],
         seed: u64,
         number: u64,
         attempt: u64,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, StudyError> {
         let extensions: Vec<&Extension> = hidden.iter().map(|(_, extension)| extension).collect();
-        let truth_job = extended("job.toml", &plan.job(), &extensions).map_err(|e| e.to_string())?;
+        let truth_job = extended("job.toml", &plan.job(), &extensions)?;
         let rows = plan.rows();
         let prior = spec(&truth_job, &blank(&rows))?.prior();
         for refused in 0..MOST_REFUSED {
@@ -127,18 +132,16 @@ impl Case {
                 sds,
             });
         }
-        Err(format!(
-            "the model refused {MOST_REFUSED} draws of the prior in a row"
-        ))
+        Err(format!("the model rejected {MOST_REFUSED} draws of the prior in a row").into())
     }
 
-    /// What the search may see.
+    /// The files that the search gets.
     pub(crate) fn experiment(&self) -> FileSet {
         experiment(&self.rows, &self.measured, self.sds)
     }
 
     /// The same without noise.
-    pub(crate) fn clear(&self) -> FileSet {
+    pub(crate) fn noise_free(&self) -> FileSet {
         experiment(&self.rows, &self.noise_free, self.sds)
     }
 }

@@ -1,17 +1,17 @@
-//! What is run: the conditions of an experiment, and its files.
+//! The runs of an experiment, and its files.
 
 use shared::file::FileSet;
 
-/// Channels that are measured: drawbar pull, torque, sinkage.
+/// Measured channels: drawbar pull, torque, sinkage.
 pub(crate) const CHANNELS: usize = 3;
 /// Truths of the quasi-static model are drawn from these priors.
 const PRIORS: &str = "log10_p_ref = { uniform = [4.0, 5.6] }\nkappa = { normal = [0.0, 0.3], bounds = [-0.8, 2.0] }\nn = { normal = [1.1, 0.2], bounds = [0.8, 2.0] }\nfriction_angle_deg = { normal = [30.0, 5.7], bounds = [11.5, 37.3] }\n";
-/// The three-dimensional model costs seconds: soils in which the wheel does not drown, and no kappa, which one wheel hardly shows.
+/// Priors of the three-dimensional model: soils that carry the wheel, and no kappa, which one wheel does not determine.
 const SPATIAL_PRIORS: &str = "log10_p_ref = { uniform = [4.6, 5.4] }\nkappa = 0.0\nn = { normal = [1.1, 0.1], bounds = [0.8, 2.0] }\nfriction_angle_deg = { normal = [30.0, 4.0], bounds = [15.0, 37.3] }\n";
-/// Rolling is short and coarse: a search is judged here, not the physics.
+/// Short and coarse rolling: the trials test the search, not the physics.
 const SPATIAL: &str = "kind = \"scm\"\ndem_spacing_m = 0.012\ntravel_step_m = 0.003\nsteady_travel_m = 0.3\nsteady_tolerance = 0.01\n";
 
-/// Which runs are made.
+/// A design of runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Plan {
     /// Six slips, two loads, two speeds of the rim.
@@ -20,15 +20,15 @@ pub(crate) enum Plan {
     Passes,
     /// The same; every second run is that of a smaller wheel.
     Wheels,
-    /// Six slips at one load and one speed: much stays ambiguous.
+    /// Six slips at one load and one speed: many effects are ambiguous.
     Narrow,
     /// Four slips, two loads, two speeds of a wheel that rolls in three dimensions.
     Spatial,
 }
 
-/// A run of the rig.
+/// A run of the design.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Row {
+pub(crate) struct PlannedRun {
     pub(crate) wheel: &'static str,
     pub(crate) slip: f64,
     pub(crate) wheel_load_n: f64,
@@ -38,7 +38,7 @@ pub(crate) struct Row {
 }
 
 impl Plan {
-    /// The plan in which an effect of the catalogue can be told from the soil's stiffness.
+    /// The design in which an effect of the catalogue can be distinguished from the soil's stiffness.
     pub(crate) fn of(effect: &str) -> Self {
         match effect {
             "multipass_hardening" => Plan::Passes,
@@ -47,8 +47,8 @@ impl Plan {
         }
     }
 
-    /// The fitted runs, then those held out: between them and a little beyond.
-    pub(crate) fn rows(self) -> Vec<Row> {
+    /// The fitted runs, then the holdout runs, between and slightly beyond them.
+    pub(crate) fn rows(self) -> Vec<PlannedRun> {
         let [slips, loads, rims]: [&[f64]; 3] = match self {
             Plan::Full | Plan::Passes | Plan::Wheels => {
                 [&[0.05, 0.1, 0.2, 0.3, 0.45, 0.6], &[60.0, 120.0], &[0.01, 0.05]]
@@ -65,13 +65,13 @@ impl Plan {
         rows
     }
 
-    fn grid(self, [slips, loads, rims]: [&[f64]; 3], is_holdout: bool) -> Vec<Row> {
+    fn grid(self, [slips, loads, rims]: [&[f64]; 3], is_holdout: bool) -> Vec<PlannedRun> {
         let mut rows = Vec::new();
         for (i, &slip) in slips.iter().enumerate() {
             for (j, &wheel_load_n) in loads.iter().enumerate() {
                 for (k, &rim) in rims.iter().enumerate() {
                     let is_second = (i + j + k) % 2 == 1;
-                    rows.push(Row {
+                    rows.push(PlannedRun {
                         wheel: if is_second && self == Plan::Wheels {
                             "small"
                         } else {
@@ -96,7 +96,7 @@ impl Plan {
             _ => ("kind = \"quasi_static\"\n", PRIORS),
         };
         let radii = match self {
-            // Grousers are modelled: the radius is that of the rim.
+            // With grousers the radius is that of the rim.
             Plan::Spatial => "wheel_radius_m = { uniform = [0.124, 0.130] }\n",
             Plan::Wheels => {
                 "\"wheel_radius_m.wide\" = { uniform = [0.125, 0.155] }\n\"wheel_radius_m.small\" = { uniform = [0.075, 0.09] }\n"
@@ -111,7 +111,7 @@ impl Plan {
 }
 
 /// The files of an experiment with its measured values and the noise's standard deviations.
-pub(crate) fn experiment(rows: &[Row], values: &[[f64; CHANNELS]], sds: [f64; CHANNELS]) -> FileSet {
+pub(crate) fn experiment(rows: &[PlannedRun], values: &[[f64; CHANNELS]], sds: [f64; CHANNELS]) -> FileSet {
     let wheel = |name: &str, radius: f64, width: f64| {
         format!(
             "[wheel.{name}]\nradius_m = {radius}\nwidth_m = {width}\ngrouser_count = 12\ngrouser_height_m = 0.009\ngrouser_thickness_m = 0.002\n"
@@ -130,7 +130,7 @@ pub(crate) fn experiment(rows: &[Row], values: &[[f64; CHANNELS]], sds: [f64; CH
         "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,pass,drawbar_pull_n,torque_n_m,sinkage_m,use\n"
             .to_owned();
     for (number, (row, [pull, torque, sinkage])) in rows.iter().zip(values).enumerate() {
-        let Row {
+        let PlannedRun {
             wheel,
             slip,
             wheel_load_n,

@@ -1,31 +1,36 @@
-//! How well what was found predicts runs that the search did not see.
+//! Prediction of holdout runs by the search's result.
 
 use std::fmt;
 
-use discovery::inquiry::{Answer, Fitted};
+use discovery::{Conclusion, PosteriorModel};
 use shared::model::RunCondition;
 
-use super::case::{Case, spec, values};
+use super::case::{SyntheticCase, spec, values};
 use super::design::CHANNELS;
-use super::pipeline::Asking;
+use super::error::StudyError;
+use super::local_search::LocalSearch;
 use super::rate::Rate;
 
 /// Two-sided 90 % of a normal distribution.
 const Z90: f64 = 1.644_853_626_951_473;
 
-/// Errors on runs held out.
+/// Errors on holdout runs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HeldOut {
-    /// Root mean square of the most probable prediction less the noise-free truth, in units of the noise: of the base, and of what
-    /// was found; infinite where the model refuses a run.
+    /// Root mean square error of the most probable prediction against the noise-free truth, in noise sds: of the base, and of the
+    /// best model; infinite where the model rejects a run.
     pub(crate) before: f64,
     pub(crate) after: f64,
-    /// Measurements within the 90 % interval of what was found.
+    /// Measurements within the 90 % interval of the best model.
     pub(crate) covered: Rate,
 }
 
 impl HeldOut {
-    pub(crate) fn new(case: &Case, asking: &mut Asking, answer: &Answer) -> Result<Self, String> {
+    pub(crate) fn new(
+        case: &SyntheticCase,
+        local: &mut LocalSearch,
+        conclusion: &Conclusion,
+    ) -> Result<Self, StudyError> {
         let Some(variant) = spec(&case.plan.job(), &case.experiment())?.holdout_variant else {
             return Ok(Self {
                 before: 0.0,
@@ -34,16 +39,16 @@ impl HeldOut {
             });
         };
         let conditions = &variant.conditions;
-        let first = Fitted {
-            effects: answer.base.effects.clone(),
-            draws: answer.base.draws[..1].to_vec(),
+        let first = PosteriorModel {
+            effects: conclusion.base.effects.clone(),
+            draws: conclusion.base.draws[..1].to_vec(),
         };
-        let before = predicted(asking, &first, conditions)?;
-        let after = predicted(asking, &answer.best, conditions)?;
+        let before = predicted(local, &first, conditions)?;
+        let after = predicted(local, &conclusion.best, conditions)?;
         let held_out = case.rows.iter().zip(case.noise_free.iter().zip(&case.measured));
         let held_out = held_out.filter(|(row, _)| row.is_holdout);
-        let (truth, measured): (Predicted, Predicted) = held_out.map(|(_, (t, m))| (*t, *m)).unzip();
-        let error = |draws: &[Option<Predicted>]| -> f64 {
+        let (truth, measured): (RunValues, RunValues) = held_out.map(|(_, (t, m))| (*t, *m)).unzip();
+        let error = |draws: &[Option<RunValues>]| -> f64 {
             let Some(Some(mode)) = draws.first() else {
                 return f64::INFINITY;
             };
@@ -56,7 +61,7 @@ impl HeldOut {
             (squares / (CHANNELS * truth.len()) as f64).sqrt()
         };
         let mut covered = Vec::new();
-        let drawn: Vec<&Predicted> = after.iter().flatten().collect();
+        let drawn: Vec<&RunValues> = after.iter().flatten().collect();
         for (run, measured) in measured.iter().enumerate() {
             for (k, sd) in case.sds.iter().enumerate() {
                 let mean = drawn.iter().map(|p| p[run][k]).sum::<f64>() / drawn.len() as f64;
@@ -74,14 +79,14 @@ impl HeldOut {
 }
 
 /// The channels of every run.
-type Predicted = Vec<[f64; CHANNELS]>;
+type RunValues = Vec<[f64; CHANNELS]>;
 
 fn predicted(
-    asking: &mut Asking,
-    fitted: &Fitted,
+    local: &mut LocalSearch,
+    fitted: &PosteriorModel,
     conditions: &[RunCondition],
-) -> Result<Vec<Option<Predicted>>, String> {
-    let seen = asking.predict(&fitted.effects, conditions, &fitted.draws)?;
+) -> Result<Vec<Option<RunValues>>, StudyError> {
+    let seen = local.predict(&fitted.effects, conditions, &fitted.draws)?;
     let seen = seen.into_iter();
     Ok(seen
         .map(|seen| seen.map(|s| values(&s, conditions.len())))

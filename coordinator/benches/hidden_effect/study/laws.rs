@@ -1,90 +1,90 @@
-//! Laws that are in nobody's library, as effect files, and what each acts on and depends on.
+//! Hidden laws outside the library, as effect files, each with its quantity and variable.
 
 use record::Extension;
 
-/// A law: its name, the pair of quantity and variable that is right, its effect file.
-pub(crate) struct Law {
+/// A hidden law: its name, its quantity and variable, its effect file.
+pub(crate) struct HiddenLaw {
     pub(crate) name: &'static str,
-    pub(crate) pair: &'static str,
+    pub(crate) dependence: &'static str,
     text: &'static str,
 }
 
-/// Only what a design of two loads and two speeds can show: none depends on those.
-pub(crate) const LAWS: [Law; 14] = [
-    Law {
+/// None depends on load or speed, of which the design has only two levels.
+pub(crate) const LAWS: [HiddenLaw; 14] = [
+    HiddenLaw {
         name: "buried_crust",
-        pair: "pressure_z",
+        dependence: "pressure_z",
         text: include_str!("../laws/buried_crust.toml"),
     },
-    Law {
+    HiddenLaw {
         name: "loose_entry",
-        pair: "pressure_position",
+        dependence: "pressure_position",
         text: include_str!("../laws/loose_entry.toml"),
     },
-    Law {
+    HiddenLaw {
         name: "pore_air",
-        pair: "pressure_v_n",
+        dependence: "pressure_v_n",
         text: include_str!("../laws/pore_air.toml"),
     },
-    Law {
+    HiddenLaw {
         name: "shaken_bed",
-        pair: "pressure_v_t",
+        dependence: "pressure_v_t",
         text: include_str!("../laws/shaken_bed.toml"),
     },
-    Law {
+    HiddenLaw {
         name: "remoulded_soil",
-        pair: "pressure_j",
+        dependence: "pressure_j",
         text: include_str!("../laws/remoulded_soil.toml"),
     },
-    Law {
+    HiddenLaw {
         name: "slip_wave",
-        pair: "pressure_slip",
+        dependence: "pressure_slip",
         text: include_str!("../laws/slip_wave.toml"),
     },
-    Law {
+    HiddenLaw {
         name: "deep_grip",
-        pair: "shear_z",
+        dependence: "shear_z",
         text: include_str!("../laws/deep_grip.toml"),
     },
-    Law {
+    HiddenLaw {
         name: "stribeck_dip",
-        pair: "shear_v_t",
+        dependence: "shear_v_t",
         text: include_str!("../laws/stribeck_dip.toml"),
     },
-    Law {
+    HiddenLaw {
         name: "dense_peak",
-        pair: "shear_j",
+        dependence: "shear_j",
         text: include_str!("../laws/dense_peak.toml"),
     },
-    Law {
+    HiddenLaw {
         name: "front_grip",
-        pair: "shear_position",
+        dependence: "shear_position",
         text: include_str!("../laws/front_grip.toml"),
     },
-    Law {
+    HiddenLaw {
         name: "slip_peak",
-        pair: "shear_slip",
+        dependence: "shear_slip",
         text: include_str!("../laws/slip_peak.toml"),
     },
-    Law {
+    HiddenLaw {
         name: "thrown_soil",
-        pair: "drawbar_pull_slip",
+        dependence: "drawbar_pull_slip",
         text: include_str!("../laws/thrown_soil.toml"),
     },
-    Law {
+    HiddenLaw {
         name: "chain_drive",
-        pair: "torque_slip",
+        dependence: "torque_slip",
         text: include_str!("../laws/chain_drive.toml"),
     },
-    Law {
+    HiddenLaw {
         name: "sunk_drag",
-        pair: "drawbar_pull_sinkage",
+        dependence: "drawbar_pull_sinkage",
         text: include_str!("../laws/sunk_drag.toml"),
     },
 ];
 
-impl Law {
-    /// What a job adds for it.
+impl HiddenLaw {
+    /// Its name and its addition to a job.
     pub(crate) fn hidden(&self) -> (String, Extension) {
         let extension = Extension::File {
             name: format!("{}.toml", self.name),

@@ -1,50 +1,25 @@
-//! Draw experiments whose truth is known, search them blind, and count.
+//! Trials of the search on synthetic experiments.
 //!
 //! # Layout
-//! - `kind`: what is hidden, and how one experiment is run. `laws`: what is in nobody's library.
-//! - `design`: what the rig runs, and its files. `case`: a truth and its measurements.
-//! - `pipeline`: the search, as the farm runs it. `clear`: what the data could say without noise. `held_out`: unseen runs.
-//! - `fate`: how one experiment fared; `line`: in one line.
+//! - `kind`: what is hidden; `laws`: laws outside the library. `trial`: one experiment, drawn and searched.
+//! - `design`: the runs of the rig and their files. `case`: a truth and its measurements.
+//! - `local_search`: the search on this thread. `noise_free`: how well the data determine the truth. `held_out`: prediction of unseen runs.
+//! - `score`: the result of a trial; `line`: in one line.
 //! - `rate`: shares with their uncertainty. `target`: a line of the table; `tally`: the table.
+//! - `parallel`: trials on all threads. `error`: why one cannot be made.
 
 pub(crate) mod case;
-pub(crate) mod clear;
 pub(crate) mod design;
-pub(crate) mod fate;
+pub(crate) mod error;
 mod held_out;
 pub(crate) mod kind;
 mod laws;
 mod line;
-pub(crate) mod pipeline;
+pub(crate) mod local_search;
+pub(crate) mod noise_free;
+pub(crate) mod parallel;
 pub(crate) mod rate;
+pub(crate) mod score;
 pub(crate) mod tally;
 mod target;
-
-use std::sync::atomic::{AtomicU64, Ordering};
-
-/// So many pieces of work on as many threads as the machine has, in their order; which thread does what changes nothing.
-pub(crate) fn each<T: Send>(count: u64, work: impl Fn(u64) -> T + Sync) -> Result<Vec<T>, String> {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let next = AtomicU64::new(0);
-    let run = || {
-        let mut done = Vec::new();
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= count {
-                return done;
-            }
-            done.push((number, work(number)));
-        }
-    };
-    let parts = std::thread::scope(|scope| {
-        let started: Vec<_> = (0..threads).map(|_| scope.spawn(run)).collect();
-        let joined = started.into_iter().map(|thread| thread.join());
-        joined.collect::<Vec<_>>()
-    });
-    let mut all = Vec::new();
-    for part in parts {
-        all.extend(part.map_err(|_| "a thread panicked".to_owned())?);
-    }
-    all.sort_by_key(|(number, _)| *number);
-    Ok(all.into_iter().map(|(_, made)| made).collect())
-}
+pub(crate) mod trial;

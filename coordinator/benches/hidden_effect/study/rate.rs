@@ -5,7 +5,7 @@ use std::fmt;
 /// Two-sided 95 % of a normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
 
-/// How many of how many.
+/// A number of cases among all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Rate {
     pub(crate) count: usize,
@@ -13,7 +13,7 @@ pub(crate) struct Rate {
 }
 
 impl Rate {
-    /// Of those that hold among all.
+    /// The cases that hold among all.
     pub(crate) fn new(all: impl IntoIterator<Item = bool>) -> Self {
         let (mut count, mut of) = (0, 0);
         for holds in all {

@@ -1,38 +1,38 @@
-//! What came out, against what was aimed at \[DISCOVERY 4\].
+//! The scores of all trials against the targets of the project \[DISCOVERY 4\].
 
 use std::fmt;
 
-use super::clear::CLEAR;
-use super::fate::Fate;
-use super::kind::Kind;
+use super::kind::HiddenKind;
+use super::noise_free::LEAST_SEPARATION;
 use super::rate::{Rate, mean};
+use super::score::TrialScore;
 use super::target::Target;
 
 /// Lower ends of the bins of stated probabilities.
 const BINS: [f64; 5] = [0.0, 0.5, 0.8, 0.95, 0.99];
-/// Candidates of an experiment with one wheel; with two each effect may act on either alone, and more is evaluated.
+/// Candidates of an experiment with one wheel; with two wheels there are more.
 const ONE_WHEEL: usize = 39;
 
-/// Everything that came out.
-pub(crate) struct Tally<'a>(pub(crate) &'a [Fate]);
+/// The scores of all trials.
+pub(crate) struct Tally<'a>(pub(crate) &'a [TrialScore]);
 
-/// Which of the experiments hold.
-fn rate(all: &[&Fate], holds: impl Fn(&Fate) -> bool) -> Rate {
+/// The share of trials with a property.
+fn rate(all: &[&TrialScore], holds: impl Fn(&TrialScore) -> bool) -> Rate {
     Rate::new(all.iter().map(|x| holds(x)))
 }
 
-fn numbers(all: &[&Fate], of: impl Fn(&Fate) -> f64) -> Vec<f64> {
+fn numbers(all: &[&TrialScore], of: impl Fn(&TrialScore) -> f64) -> Vec<f64> {
     all.iter().map(|x| of(x)).collect()
 }
 
 /// Held-out errors after and before.
-fn errors(all: &[&Fate]) -> Vec<[f64; 2]> {
+fn errors(all: &[&TrialScore]) -> Vec<[f64; 2]> {
     let pairs = all.iter().map(|x| [x.held_out.after, x.held_out.before]);
     pairs.collect()
 }
 
-/// Measurements of runs held out that are within their intervals.
-fn inside(all: &[&Fate]) -> Rate {
+/// The share of holdout measurements within their intervals.
+fn inside(all: &[&TrialScore]) -> Rate {
     let rates = all.iter().map(|x| x.held_out.covered);
     rates.fold(Rate { count: 0, of: 0 }, |sum, rate| Rate {
         count: sum.count + rate.count,
@@ -41,21 +41,21 @@ fn inside(all: &[&Fate]) -> Rate {
 }
 
 impl Tally<'_> {
-    fn of(&self, kinds: &[Kind], holds: impl Fn(&Fate) -> bool) -> Vec<&Fate> {
-        let own = self.0.iter().filter(|fate| kinds.contains(&fate.kind));
-        own.filter(|fate| holds(fate)).collect()
+    fn of(&self, kinds: &[HiddenKind], holds: impl Fn(&TrialScore) -> bool) -> Vec<&TrialScore> {
+        let own = self.0.iter().filter(|score| kinds.contains(&score.kind));
+        own.filter(|score| holds(score)).collect()
     }
 
-    /// Every target that these experiments say something of.
+    /// Every target to which these trials contribute.
     pub(crate) fn targets(&self) -> Vec<Target> {
         let all = [self.of_one(), self.of_sets(), self.of_laws(), self.of_all()];
         all.into_iter().flatten().flatten().collect()
     }
 
     fn of_one(&self) -> Vec<Option<Target>> {
-        let one = self.of(&[Kind::One], |x| x.separation >= CLEAR);
-        let alone: Vec<&Fate> = one.iter().copied().filter(|x| x.is_alone).collect();
-        let claimed: Vec<&Fate> = one.iter().copied().filter(|x| x.is_claimed).collect();
+        let one = self.of(&[HiddenKind::One], |x| x.separation >= LEAST_SEPARATION);
+        let alone: Vec<&TrialScore> = one.iter().copied().filter(|x| x.is_alone).collect();
+        let claimed: Vec<&TrialScore> = one.iter().copied().filter(|x| x.is_claimed).collect();
         let sizes = numbers(&one, |x| x.set_size as f64);
         let after = numbers(&one, |x| x.held_out.after);
         let inside = inside(&claimed);
@@ -90,9 +90,12 @@ impl Tally<'_> {
     }
 
     fn of_sets(&self) -> Vec<Option<Target>> {
-        let (two, three) = (self.of(&[Kind::Two], |_| true), self.of(&[Kind::Three], |_| true));
-        let several = self.of(&[Kind::Two, Kind::Three], |_| true);
-        let false_law = rate(&several, Fate::is_outside);
+        let (two, three) = (
+            self.of(&[HiddenKind::Two], |_| true),
+            self.of(&[HiddenKind::Three], |_| true),
+        );
+        let several = self.of(&[HiddenKind::Two, HiddenKind::Three], |_| true);
+        let false_law = rate(&several, TrialScore::is_outside);
         vec![
             Target::rate("two effects exact", rate(&two, |x| x.is_exact), [0.80, 0.94]),
             Target::rate("three effects exact", rate(&three, |x| x.is_exact), [0.50, 0.70]),
@@ -106,14 +109,16 @@ impl Tally<'_> {
     }
 
     fn of_laws(&self) -> Vec<Option<Target>> {
-        let claimed = self.of(&[Kind::Outside], |x| x.separation >= CLEAR && x.is_outside());
+        let claimed = self.of(&[HiddenKind::Outside], |x| {
+            x.separation >= LEAST_SEPARATION && x.is_outside()
+        });
         vec![
             Target::rate(
                 "outside, claimed: quantity",
                 rate(&claimed, |x| x.quantity),
                 [0.95, 1.0],
             ),
-            Target::rate("  and variable", rate(&claimed, |x| x.pair), [0.85, 0.95]),
+            Target::rate("  and variable", rate(&claimed, |x| x.dependence), [0.85, 0.95]),
             Target::ratio(
                 "  held-out error after over before",
                 &errors(&claimed),
@@ -123,10 +128,12 @@ impl Tally<'_> {
     }
 
     fn of_all(&self) -> Vec<Option<Target>> {
-        let none = self.of(&[Kind::None], |_| true);
-        let single = self.of(&[Kind::One, Kind::None], |_| true);
-        let wheel = self.of(&[Kind::One, Kind::None], |x| x.candidates <= ONE_WHEEL);
-        let spatial = self.of(&[Kind::Spatial], |x| x.separation >= CLEAR);
+        let none = self.of(&[HiddenKind::None], |_| true);
+        let single = self.of(&[HiddenKind::One, HiddenKind::None], |_| true);
+        let wheel = self.of(&[HiddenKind::One, HiddenKind::None], |x| {
+            x.candidates <= ONE_WHEEL
+        });
+        let spatial = self.of(&[HiddenKind::Spatial], |x| x.separation >= LEAST_SEPARATION);
         let to_name = numbers(&wheel, |x| x.to_name as f64);
         let to_confirm = numbers(&wheel, |x| x.to_confirm as f64);
         vec![
@@ -138,7 +145,7 @@ impl Tally<'_> {
             .map(Target::least),
             Target::rate(
                 "false \"not in the library\"",
-                rate(&single, Fate::is_outside),
+                rate(&single, TrialScore::is_outside),
                 [0.05, 0.01],
             )
             .map(Target::least),
@@ -156,23 +163,23 @@ impl Tally<'_> {
 
 impl fmt::Display for Tally<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for kind in Kind::ALL {
+        for kind in HiddenKind::ALL {
             let all = self.of(&[kind], |_| true);
             if all.is_empty() {
                 continue;
             }
-            let shown = rate(&all, |x| x.over_base >= CLEAR);
-            let clear = self.of(&[kind], |x| x.separation >= CLEAR);
+            let shown = rate(&all, |x| x.over_base >= LEAST_SEPARATION);
+            let clear = self.of(&[kind], |x| x.separation >= LEAST_SEPARATION);
             let evaluations = numbers(&all, |x| x.evaluations as f64);
             writeln!(
                 f,
-                "{}: {} experiments; {} beyond the base by {CLEAR} nats without noise, {} beyond every rival, a law claimed in {} \
+                "{}: {} experiments; {} beyond the base by {LEAST_SEPARATION} nats without noise, {} beyond every rival, a law claimed in {} \
                  of these; {:.0} evaluations and {:.1} s each in the mean",
                 kind.name(),
                 all.len(),
                 shown.count,
                 clear.len(),
-                rate(&clear, Fate::is_outside).count,
+                rate(&clear, TrialScore::is_outside).count,
                 mean(&evaluations)[0],
                 mean(&numbers(&all, |x| x.seconds))[0]
             )?;
@@ -185,14 +192,16 @@ impl fmt::Display for Tally<'_> {
         for target in self.targets() {
             writeln!(f, "{target}")?;
         }
-        let stated = self.of(&[Kind::One, Kind::None, Kind::Outside], |_| true);
+        let stated = self.of(&[HiddenKind::One, HiddenKind::None, HiddenKind::Outside], |_| {
+            true
+        });
         for (k, low) in BINS.iter().enumerate() {
             let high = BINS.get(k + 1).copied().unwrap_or(f64::INFINITY);
             let own = stated
                 .iter()
                 .copied()
                 .filter(|x| (*low..high).contains(&x.stated));
-            let own: Vec<&Fate> = own.collect();
+            let own: Vec<&TrialScore> = own.collect();
             if !own.is_empty() {
                 let [mean, _] = mean(&numbers(&own, |x| x.stated));
                 let right = rate(&own, |x| x.is_right);

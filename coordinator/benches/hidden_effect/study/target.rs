@@ -1,4 +1,4 @@
-//! One line of the table: what came out beside what was aimed at.
+//! A target of the project beside its measured value.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use super::rate::{Rate, mean, median};
 pub(crate) struct Target {
     pub(crate) what: &'static str,
     pub(crate) measured: f64,
-    /// Its 95 % interval, or what it is a mean of.
+    /// Its 95 % interval, or its spread.
     shown: String,
     floor: f64,
     aim: f64,
@@ -31,7 +31,7 @@ impl Target {
         })
     }
 
-    /// Of what is to be as small as can be.
+    /// A target that is the better the smaller.
     pub(crate) fn least(self) -> Self {
         Self {
             is_least: true,
@@ -53,7 +53,7 @@ impl Target {
         })
     }
 
-    /// Sum over sum, which few odd ratios do not decide; `None` of nothing. Less is better.
+    /// Ratio of sums, robust against a few extreme ratios; `None` of nothing. Less is better.
     pub(crate) fn ratio(what: &'static str, pairs: &[[f64; 2]], [floor, aim]: [f64; 2]) -> Option<Self> {
         let sum = |k: usize| pairs.iter().map(|pair| pair[k]).sum::<f64>();
         let ratios: Vec<f64> = pairs.iter().map(|[after, before]| after / before).collect();
@@ -87,14 +87,14 @@ impl Target {
 
 impl fmt::Display for Target {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let said = match (self.reaches(self.aim), self.holds()) {
+        let reached = match (self.reaches(self.aim), self.holds()) {
             (true, _) => "aim",
             (false, true) => "floor",
             (false, false) => "SHORT",
         };
         write!(
             f,
-            "{:<44} {:>8.3}  {:<40} {:>7} {:>7}  {said}",
+            "{:<44} {:>8.3}  {:<40} {:>7} {:>7}  {reached}",
             self.what, self.measured, self.shown, self.floor, self.aim
         )
     }

@@ -1,0 +1,80 @@
+//! How well noise-free measurements determine the truth.
+
+use coordinator::embedded::Evaluate;
+use coordinator::missing_effect::candidate::extended;
+use discovery::{EffectRanking, EffectSearch, SearchSettings, Starts};
+use record::Extension;
+use shared::outcome::Outcome;
+use statistics::{Likelihood, LogLikelihood};
+
+use super::case::{SyntheticCase, spec};
+use super::error::StudyError;
+use super::local_search::{LocalSearch, run};
+
+/// Nats by which the truth must beat a rival for a trial to count \[DISCOVERY 4\].
+pub(crate) const LEAST_SEPARATION: f64 = 10.0;
+
+/// The log-likelihood of the truth without noise, the maximum.
+fn perfect(likelihood: &Likelihood) -> Result<f64, StudyError> {
+    let values: Vec<f64> = likelihood.data().iter().map(|d| d.value).collect();
+    match likelihood.log_likelihood(&values, &[]) {
+        Ok(LogLikelihood::Finite(nats)) => Ok(nats.get()),
+        other => Err(format!("noise-free values are impossible: {other:?}").into()),
+    }
+}
+
+/// Nats by which the base with some of the effects falls short of the truth without noise, fitted from the truth.
+pub(crate) fn shortfall(case: &SyntheticCase, effects: &[&Extension]) -> Result<f64, StudyError> {
+    let job = extended("job.toml", &case.plan.job(), effects)?;
+    let truth = spec(&case.truth_job, &case.noise_free())?.parameters;
+    let spec = spec(&job, &case.noise_free())?;
+    let place = |name: &String| truth.iter().position(|p| p.name == *name);
+    let start = spec
+        .parameters
+        .iter()
+        .filter_map(|p| Some(case.theta[place(&p.name)?]));
+    let start = start.collect();
+    let settings = SearchSettings {
+        starts: Starts::Draws(vec![start]),
+        ..SearchSettings::default()
+    };
+    let prior: Vec<_> = spec.parameters.iter().map(|p| p.marginal.clone()).collect();
+    let search = EffectSearch::new(&prior, spec.likelihood.clone(), &[], &settings)?;
+    let evaluate = Evaluate::new(&spec.fit_variant)?;
+    let ranking = run(search, |_, theta| {
+        Ok(match evaluate.evaluate(theta) {
+            Outcome::Evaluated(observables) => Some(spec.predicted_values(&observables)),
+            Outcome::Rejected(_) | Outcome::Fault(_) => None,
+        })
+    })?;
+    let perfect = perfect(&spec.likelihood)?;
+    Ok(perfect - ranking.effects[0].log_likelihood)
+}
+
+/// The library searched without noise.
+pub(crate) struct NoiseFree {
+    ranking: EffectRanking,
+    perfect: f64,
+}
+
+impl NoiseFree {
+    pub(crate) fn new(case: &SyntheticCase, local: &mut LocalSearch) -> Result<Self, StudyError> {
+        let likelihood = spec(&case.plan.job(), &case.noise_free())?.likelihood;
+        Ok(Self {
+            perfect: perfect(&likelihood)?,
+            ranking: local.library(likelihood)?,
+        })
+    }
+
+    /// Nats by which the base falls short.
+    pub(crate) fn over_base(&self) -> f64 {
+        self.perfect - self.ranking.effects[0].log_likelihood
+    }
+
+    /// Nats by which the best rival outside the class of an effect falls short; of `None`, the best of all.
+    pub(crate) fn separation(&self, effect: Option<usize>) -> f64 {
+        let own = effect.and_then(|k| self.ranking.of(Some(k))).map(|j| j.class);
+        let rivals = self.ranking.effects.iter().filter(|j| Some(j.class) != own);
+        self.perfect - rivals.map(|j| j.log_likelihood).fold(f64::NEG_INFINITY, f64::max)
+    }
+}

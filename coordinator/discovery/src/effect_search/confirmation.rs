@@ -1,0 +1,38 @@
+//! Confirmation of the best extensions from several starts, to find other modes.
+
+use crate::laplace::coordinate::NormalFrame;
+use crate::laplace::fit::{FitStep, LaplaceFit};
+
+/// How many extensions are confirmed.
+pub(crate) const COUNT: usize = 4;
+
+/// Starts that fill the prior, where the best fit so far contradicts the data.
+pub(crate) const ANYWHERE: usize = 16;
+/// Most starts of a model from which a fit continues, the most probable.
+pub(crate) const MOST_STARTS: usize = 6;
+
+/// As thorough as the base's fit.
+pub(crate) const PLAN: [FitStep; 1] = [FitStep::Rounds { most: 3, trials: 12 }];
+
+/// Distances of the strength from its neutral value, in standard deviations of its prior: weak, usual and strong.
+const ONE_SIDED: [f64; 3] = [0.3, 1.0, 2.0];
+const TWO_SIDED: [f64; 4] = [0.5, -0.5, 1.5, -1.5];
+
+/// Starts at the base's fit with the effect added.
+pub(crate) fn starts(frame: &NormalFrame, base: &LaplaceFit) -> Vec<Vec<f64>> {
+    let strengths: &[f64] = if frame.is_one_sided() {
+        &ONE_SIDED
+    } else {
+        &TWO_SIDED
+    };
+    // The shapes take turns, so that each start has another.
+    let start = |(n, strength): (usize, &f64)| {
+        let mut position = base.point.position.clone();
+        position.resize(frame.dimension(), [0.0, 1.0, -1.0][n % 3]);
+        for &(k, neutral) in &frame.strengths {
+            position[k] = neutral + strength;
+        }
+        position
+    };
+    strengths.iter().enumerate().map(start).collect()
+}

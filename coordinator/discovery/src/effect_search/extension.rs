@@ -1,0 +1,40 @@
+//! The fit of the base with one effect added, from the screen's result.
+
+use crate::effect_search::depth::Depth;
+use crate::effect_search::screen::Screened;
+use crate::laplace::coordinate::NormalFrame;
+use crate::laplace::fit::LaplaceFit;
+use crate::laplace::point::FitPoint;
+use statistics::likelihood::Likelihood;
+
+/// A fit that begins at the base's fit or at the screen's point, whichever is more probable.
+pub(crate) fn fit(
+    frame: &NormalFrame,
+    base: &LaplaceFit,
+    screened: &Screened,
+    likelihood: &Likelihood,
+    depth: &Depth,
+) -> Option<LaplaceFit> {
+    let position = frame.without(&screened.point.position);
+    let absent = FitPoint::new(frame, likelihood, position, base.point.values.clone())?;
+    let is_present = screened.point.value < absent.value;
+    let mut columns = base.columns.clone();
+    columns.extend_from_slice(&screened.columns[base.columns.len()..]);
+    let shapes = || (base.columns.len()..frame.dimension()).filter(|k| !frame.is_strength(*k));
+    if !is_present {
+        // Where an effect is absent its shape changes nothing.
+        for k in shapes() {
+            columns[k].fill(0.0);
+        }
+    }
+    let point = if is_present {
+        screened.point.clone()
+    } else {
+        absent
+    };
+    let mut fit = LaplaceFit::new(frame.clone(), point, columns, depth.extension);
+    if depth.holds_shapes {
+        fit.hold(shapes());
+    }
+    Some(fit)
+}

@@ -1,0 +1,25 @@
+//! The search for one effect: every candidate is compared with the base model by its evidence.
+//!
+//! 1. Base: the most probable parameters, from starts that fill the prior.
+//! 2. Screen: each candidate at one standard deviation of its strength's prior, projected out of what the base absorbs.
+//! 3. Extensions: base and candidate fitted together, with Broyden's update of the Jacobian.
+//! 4. Polish: the best again, with new Jacobians. Now the effect has a name.
+//! 5. Confirmation: the best from several starts; where two are close or one is at a bound, by importance sampling.
+//!
+//! # Layout
+//! - `state`: the state of a search. `search`: its interface. `phases`: from one phase to the next.
+//! - `base`, `screen`, `extension`, `confirmation`: the positions or fits of one phase. `depth`: how far a search goes.
+//! - `selection`: the candidates that are kept, sampled and ranked. `ranking`: the result.
+//! - `class`: effects that the data cannot distinguish.
+
+mod base;
+mod class;
+mod confirmation;
+pub(crate) mod depth;
+mod extension;
+mod phases;
+pub(crate) mod ranking;
+mod screen;
+pub(crate) mod search;
+mod selection;
+pub(crate) mod state;

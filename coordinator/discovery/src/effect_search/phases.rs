@@ -1,0 +1,265 @@
+//! From one phase of a search to the next.
+
+use std::collections::BTreeMap;
+
+use crate::effect_search::ranking::EvidenceMethod;
+use crate::effect_search::screen::{self, Evaluated, STRENGTHS};
+use crate::effect_search::state::{EffectSearch, EvidenceEstimate, Phase};
+use crate::effect_search::{base, confirmation, extension};
+use crate::laplace::batch::FitBatch;
+use crate::laplace::fit::{FittedModel, LaplaceFit};
+use crate::laplace::importance::ImportanceSampler;
+use crate::laplace::point::FitPoint;
+use inference::InferenceFailure;
+
+impl EffectSearch {
+    /// Asks for the next evaluations of a batch; returns it once it is complete.
+    fn next_round(&mut self, mut batch: FitBatch, phase: fn(FitBatch) -> Phase) -> Option<FitBatch> {
+        let asked = batch.ask(&self.likelihood);
+        if asked.is_empty() {
+            return Some(batch);
+        }
+        self.ask(asked);
+        self.phase = phase(batch);
+        None
+    }
+
+    /// Takes the answers of a round and begins the next.
+    pub(super) fn advance(&mut self, answers: Vec<Option<Vec<f64>>>) {
+        match std::mem::replace(&mut self.phase, Phase::Starts) {
+            Phase::Starts => self.after_starts(answers),
+            Phase::Base(mut batch) => {
+                batch.tell(&self.likelihood, answers);
+                self.fit_base(batch);
+            }
+            Phase::Screen(level) => self.after_screen(level, answers),
+            Phase::Extensions(mut batch) => {
+                batch.tell(&self.likelihood, answers);
+                self.fit_extensions(batch);
+            }
+            Phase::Polish(mut batch) => {
+                batch.tell(&self.likelihood, answers);
+                self.polish(batch);
+            }
+            Phase::ConfirmationStarts => self.after_confirmation_starts(answers),
+            Phase::Confirmation(mut batch) => {
+                batch.tell(&self.likelihood, answers);
+                self.confirm(batch);
+            }
+            Phase::Sampling(models, waiting) => self.after_sample(models, &waiting, answers),
+            over @ (Phase::Done(_) | Phase::Failed(_)) => self.phase = over,
+        }
+    }
+
+    fn after_starts(&mut self, answers: Vec<Option<Vec<f64>>>) {
+        let positions = std::mem::take(&mut self.asked)
+            .into_iter()
+            .map(|(_, position)| position);
+        let draws = answers.len();
+        self.evaluations.base += draws;
+        let evaluated = positions.zip(answers).collect();
+        let fits = base::fits(&self.base_frame, &self.likelihood, evaluated);
+        if fits.is_empty() {
+            self.phase = Phase::Failed(InferenceFailure::AllImpossible { draws });
+        } else {
+            self.fit_base(FitBatch::new(fits.into_iter().map(|fit| (None, fit)).collect()));
+        }
+    }
+
+    fn fit_base(&mut self, batch: FitBatch) {
+        let Some(batch) = self.next_round(batch, Phase::Base) else {
+            return;
+        };
+        self.evaluations.base += batch.evaluations();
+        let fits = batch.fits.into_iter().map(|(_, fit)| fit);
+        let best = fits.reduce(|a, b| if b.point.value < a.point.value { b } else { a });
+        self.base = best.and_then(|fit| {
+            Some(FittedModel {
+                log_evidence: fit.log_evidence(&self.likelihood)?,
+                fit,
+            })
+        });
+        self.screen(0, (0..self.candidates.len()).collect());
+    }
+
+    /// Screens candidates by a step of the strength.
+    pub(super) fn screen(&mut self, level: usize, wanted: Vec<usize>) {
+        let Some(base) = &self.base else { return };
+        let mut asked = Vec::new();
+        for k in wanted {
+            let frame = &self.candidates[k].frame;
+            let base = &base.fit.point.position;
+            let at = screen::positions(frame, base, self.depth.shapes, STRENGTHS[level]);
+            asked.extend(at.into_iter().map(|position| (Some(k), position)));
+        }
+        if asked.is_empty() {
+            return self.extend();
+        }
+        self.ask(asked);
+        self.phase = Phase::Screen(level);
+    }
+
+    fn after_screen(&mut self, level: usize, answers: Vec<Option<Vec<f64>>>) {
+        let Some(base) = &self.base else { return };
+        self.evaluations.screen += answers.len();
+        let mut evaluated: Vec<Vec<Evaluated>> = vec![Vec::new(); self.candidates.len()];
+        for ((candidate, position), values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
+            if let Some(k) = candidate {
+                evaluated[k].push((position, values));
+            }
+        }
+        let mut refused = Vec::new();
+        for (k, (state, evaluated)) in self.candidates.iter_mut().zip(evaluated).enumerate() {
+            if evaluated.is_empty() {
+                continue;
+            }
+            state.screened = screen::screened(&state.frame, base, &self.likelihood, &evaluated);
+            match &state.screened {
+                Some(screened) => {
+                    state.estimate = Some(EvidenceEstimate {
+                        log_bayes_factor: screened.log_bayes_factor,
+                        method: EvidenceMethod::Screen,
+                        fit: None,
+                    });
+                }
+                None => refused.push(k),
+            }
+        }
+        if level + 1 < STRENGTHS.len() && !refused.is_empty() {
+            self.screen(level + 1, refused);
+        } else {
+            self.extend();
+        }
+    }
+
+    fn extend(&mut self) {
+        let Some(base) = &self.base else { return };
+        let fits = self.best(self.depth.most_extended).into_iter().filter_map(|k| {
+            let state = &self.candidates[k];
+            let screened = state.screened.as_ref()?;
+            let fit = extension::fit(&state.frame, &base.fit, screened, &self.likelihood, self.depth)?;
+            Some((Some(k), fit))
+        });
+        let batch = FitBatch::new(fits.collect());
+        self.fit_extensions(batch);
+    }
+
+    fn fit_extensions(&mut self, batch: FitBatch) {
+        let Some(batch) = self.next_round(batch, Phase::Extensions) else {
+            return;
+        };
+        self.evaluations.extension += batch.evaluations();
+        self.take(batch, EvidenceMethod::RankOne);
+        let fits = self
+            .best(self.depth.most_polished)
+            .into_iter()
+            .filter_map(|k| Some((Some(k), self.fit_of(k)?.continued(self.depth.polish))));
+        let batch = FitBatch::new(fits.collect());
+        self.polish(batch);
+    }
+
+    fn polish(&mut self, batch: FitBatch) {
+        let Some(batch) = self.next_round(batch, Phase::Polish) else {
+            return;
+        };
+        self.evaluations.polish += batch.evaluations();
+        self.take(batch, EvidenceMethod::Polished);
+        if !self.depth.confirms {
+            return self.finish();
+        }
+        let Some(base) = &self.base else { return };
+        // A base that contradicts the data may lie at an end of its prior, and is then a poor start.
+        let is_wrong = self.is_wrong();
+        let mut asked = Vec::new();
+        for k in self.best(confirmation::COUNT) {
+            let starts = confirmation::starts(&self.candidates[k].frame, &base.fit).into_iter();
+            asked.extend(starts.map(|position| (Some(k), position)));
+            if is_wrong {
+                let anywhere = base::starts(&self.candidates[k].frame, confirmation::ANYWHERE);
+                asked.extend(anywhere.into_iter().map(|position| (Some(k), position)));
+            }
+            // The base may also improve from the extension's mode: a Bayes factor compares their best fits.
+            if let Some(fit) = self.fit_of(k) {
+                let own = fit.point.position[..self.base_frame.dimension()].to_vec();
+                asked.push((None, own));
+            }
+        }
+        if asked.is_empty() {
+            return self.finish();
+        }
+        self.ask(asked);
+        self.phase = Phase::ConfirmationStarts;
+    }
+
+    fn after_confirmation_starts(&mut self, answers: Vec<Option<Vec<f64>>>) {
+        let Some(base) = &self.base else { return };
+        self.evaluations.confirmation += answers.len();
+        let mut points: BTreeMap<Option<usize>, Vec<FitPoint>> = BTreeMap::new();
+        for ((candidate, position), values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
+            let frame = self.frame(candidate);
+            let point = values.and_then(|v| FitPoint::new(frame, &self.likelihood, position, v));
+            points.entry(candidate).or_default().extend(point);
+        }
+        let mut fits = Vec::new();
+        for (candidate, mut points) in points {
+            points.sort_by(|a, b| a.value.total_cmp(&b.value));
+            points.truncate(confirmation::MOST_STARTS);
+            let frame = self.frame(candidate);
+            for point in points {
+                let columns = vec![vec![0.0; base.fit.point.values.len()]; frame.dimension()];
+                let fit = LaplaceFit::new(frame.clone(), point, columns, &confirmation::PLAN);
+                fits.push((candidate, fit));
+            }
+        }
+        for k in self.best(confirmation::COUNT) {
+            if let Some(fit) = self.fit_of(k) {
+                fits.push((Some(k), fit.continued(&confirmation::PLAN)));
+            }
+        }
+        self.confirm(FitBatch::new(fits));
+    }
+
+    fn confirm(&mut self, batch: FitBatch) {
+        let Some(batch) = self.next_round(batch, Phase::Confirmation) else {
+            return;
+        };
+        self.evaluations.confirmation += batch.evaluations();
+        self.take_base(&batch);
+        self.take(batch, EvidenceMethod::Confirmed);
+        let models = self.samplers();
+        self.sample(models);
+    }
+
+    fn sample(&mut self, mut models: Vec<(Option<usize>, ImportanceSampler)>) {
+        let mut asked = Vec::new();
+        let mut waiting = Vec::new();
+        for (candidate, model) in &mut models {
+            let number = candidate.map_or(0, |k| k as u64 + 1);
+            let positions = model.ask(self.seed, number);
+            waiting.push(positions.len());
+            asked.extend(positions.into_iter().map(|position| (*candidate, position)));
+        }
+        if asked.is_empty() {
+            self.take_sampled(&models);
+            return self.finish();
+        }
+        self.ask(asked);
+        self.phase = Phase::Sampling(models, waiting);
+    }
+
+    fn after_sample(
+        &mut self,
+        mut models: Vec<(Option<usize>, ImportanceSampler)>,
+        waiting: &[usize],
+        answers: Vec<Option<Vec<f64>>>,
+    ) {
+        self.evaluations.confirmation += answers.len();
+        let mut answers = answers.into_iter();
+        for ((_, model), count) in models.iter_mut().zip(waiting) {
+            if *count > 0 {
+                model.tell(&self.likelihood, answers.by_ref().take(*count).collect());
+            }
+        }
+        self.sample(models);
+    }
+}

@@ -1,0 +1,137 @@
+//! The result of a search for one effect.
+
+use crate::probability::{Explanation, Probabilities};
+
+/// How the evidence was computed, from the least to the most accurate method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum EvidenceMethod {
+    /// Linear in the strength, by a finite step from the fitted base.
+    Screen,
+    /// Laplace's approximation at a fit with Broyden's Jacobian.
+    RankOne,
+    /// Laplace's approximation at a fit with a finite-difference Jacobian.
+    Polished,
+    /// Laplace's approximation at the best of fits from several starts.
+    Confirmed,
+    /// Importance sampling about that fit.
+    Sampled,
+}
+
+/// The result for one model: the base, or the base with one effect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RankedEffect {
+    /// The effect; `None`: nothing is missing.
+    pub candidate: Option<usize>,
+    /// Log evidence over that of the base.
+    pub log_bayes_factor: f64,
+    /// The same by the screen alone.
+    pub screen_log_bayes_factor: f64,
+    /// ln p(data | theta) at the most probable parameters.
+    pub log_likelihood: f64,
+    /// How its evidence was computed.
+    pub method: EvidenceMethod,
+    /// Its posterior probability; in a whole search, with that of the combinations in which it has the highest Bayes factor.
+    pub probability: f64,
+    /// Effects that the data cannot distinguish share a class; that of the base is 0.
+    pub class: usize,
+    /// Whether its class belongs to the smallest set of classes with 95 % probability.
+    pub is_credible: bool,
+    /// The most probable parameters, the base's first.
+    pub theta: Vec<f64>,
+    /// Which of them lie at a bound, or at the value at which a one-sided strength is absent.
+    pub at_bound: Vec<bool>,
+    /// Evaluations spent on it alone.
+    pub evaluations: usize,
+}
+
+/// Evaluations by purpose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct EvaluationCounts {
+    /// Fit of the base.
+    pub base: usize,
+    /// Screen.
+    pub screen: usize,
+    /// Fits of all extensions.
+    pub extension: usize,
+    /// Polish.
+    pub polish: usize,
+    /// Confirmation.
+    pub confirmation: usize,
+}
+
+impl EvaluationCounts {
+    /// Until the effect has a name.
+    #[must_use]
+    pub fn to_name(&self) -> usize {
+        self.base + self.screen + self.extension + self.polish
+    }
+
+    /// Until the name is confirmed.
+    #[must_use]
+    pub fn to_confirm(&self) -> usize {
+        self.to_name() + self.confirmation
+    }
+}
+
+/// The base model and every candidate with their probabilities.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct EffectRanking {
+    /// The base first, then the candidates that the model accepted, in their order.
+    pub effects: Vec<RankedEffect>,
+    /// Candidates whose usual strength the base would absorb: the data can neither show nor exclude them.
+    pub cannot_exclude: Vec<usize>,
+    /// Candidates that the model rejected at every strength; they have no evidence.
+    pub refused: Vec<usize>,
+    /// Evaluations spent.
+    pub evaluations: EvaluationCounts,
+}
+
+impl EffectRanking {
+    /// Sets the probabilities and the credible set.
+    ///
+    /// # Arguments
+    /// - `combinations`: log Bayes factor and log prior cost of the combinations that count for a candidate. `outside`: log Bayes
+    ///   factor of a law outside the library; `None`: not searched.
+    ///
+    /// # Returns
+    /// The probability of the law outside the library.
+    pub(crate) fn weigh(
+        &mut self,
+        combinations: impl Fn(usize) -> Vec<(f64, f64)>,
+        outside: Option<f64>,
+    ) -> Option<f64> {
+        let explanation = |effect: &RankedEffect| Explanation {
+            class: effect.class,
+            log_bayes_factor: effect.log_bayes_factor,
+            combinations: effect.candidate.map_or(Vec::new(), &combinations),
+        };
+        let explanations: Vec<Explanation> = self.effects.iter().map(explanation).collect();
+        let probabilities = Probabilities::new(&explanations, outside);
+        for (effect, &probability) in self.effects.iter_mut().zip(&probabilities.of_each) {
+            effect.probability = probability;
+            effect.is_credible = probabilities.credible.contains(&Some(effect.class));
+        }
+        probabilities.outside
+    }
+
+    /// Probability of a class.
+    #[must_use]
+    pub fn of_class(&self, class: usize) -> f64 {
+        let members = self.effects.iter().filter(|e| e.class == class);
+        members.map(|e| e.probability).sum()
+    }
+
+    /// The result for a candidate.
+    #[must_use]
+    pub fn of(&self, candidate: Option<usize>) -> Option<&RankedEffect> {
+        self.effects.iter().find(|e| e.candidate == candidate)
+    }
+
+    /// The candidates by falling Bayes factor.
+    #[must_use]
+    pub fn ranked(&self) -> Vec<&RankedEffect> {
+        let mut ranked: Vec<&RankedEffect> = self.effects.iter().filter(|e| e.candidate.is_some()).collect();
+        ranked.sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
+        ranked
+    }
+}

@@ -1,0 +1,128 @@
+//! The interface of a search for one effect.
+
+use crate::candidate::{Candidate, CandidateError};
+use crate::effect_search::base;
+use crate::effect_search::depth::Depth;
+use crate::effect_search::ranking::EffectRanking;
+use crate::effect_search::state::{EffectSearch, Phase};
+use crate::laplace::coordinate::NormalFrame;
+use crate::laplace::fit::FittedModel;
+use crate::settings::{SearchSettings, Starts};
+use inference::{InferenceFailure, TellError, TellProgress};
+use statistics::likelihood::Likelihood;
+use statistics::prior::Marginal;
+
+/// A parameter vector to evaluate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EffectRequest {
+    /// The candidate that is switched on; `None`: the base model.
+    pub candidate: Option<usize>,
+    /// The base's parameters, then the candidate's.
+    pub theta: Vec<f64>,
+}
+
+impl EffectSearch {
+    /// A search whose first round holds the starts of the base's fit.
+    ///
+    /// # Arguments
+    /// - `prior`: of the base's parameters, independent; inferred noise sds are among them. `likelihood`: the data.
+    ///
+    /// # Errors
+    /// [`CandidateError`].
+    pub fn new(
+        prior: &[Marginal],
+        likelihood: Likelihood,
+        candidates: &[Candidate],
+        settings: &SearchSettings,
+    ) -> Result<Self, CandidateError> {
+        if prior.is_empty() {
+            return Err(CandidateError::NoBase);
+        }
+        candidates.iter().try_for_each(Candidate::check)?;
+        let frame = NormalFrame::base(prior, settings.least_difference);
+        let positions = match &settings.starts {
+            Starts::Draws(draws) => draws.iter().map(|theta| frame.position(theta)).collect(),
+            Starts::Even(count) => base::starts(&frame, *count),
+        };
+        let mut search = Self::unasked(frame, likelihood, candidates, settings.seed);
+        search.ask(positions.into_iter().map(|position| (None, position)).collect());
+        Ok(search)
+    }
+
+    /// A search that extends a model that is fitted already. Without candidates it is done at once.
+    pub(crate) fn beyond(
+        base: FittedModel,
+        likelihood: Likelihood,
+        candidates: &[Candidate],
+        depth: &'static Depth,
+        seed: u64,
+    ) -> Self {
+        let mut search = Self::unasked(base.fit.frame.clone(), likelihood, candidates, seed);
+        search.depth = depth;
+        search.base = Some(base);
+        search.screen(0, (0..candidates.len()).collect());
+        search
+    }
+
+    /// A fit of one model from one start, without candidates.
+    pub(crate) fn refit(frame: NormalFrame, start: Vec<f64>, likelihood: Likelihood, seed: u64) -> Self {
+        let mut search = Self::unasked(frame, likelihood, &[], seed);
+        search.ask(vec![(None, start)]);
+        search
+    }
+
+    /// The requests of this round; the position of one is its index.
+    pub fn pending(&self) -> impl Iterator<Item = EffectRequest> {
+        let pairs = self.asked.iter().zip(self.round.pending());
+        pairs.map(|((candidate, _), proposal)| EffectRequest {
+            candidate: *candidate,
+            theta: proposal.theta.clone(),
+        })
+    }
+
+    /// Takes the predicted values of a request; the last one of a round advances the search.
+    ///
+    /// # Arguments
+    /// - `values`: as [`Likelihood::log_likelihood`] takes them; `None` where the model rejected the parameters.
+    ///
+    /// # Errors
+    /// [`TellError`]: told before, never asked for, or not as many finite values as the likelihood takes. Nothing is changed then.
+    pub fn tell(&mut self, index: usize, values: Option<&[f64]>) -> Result<TellProgress, TellError> {
+        if let Some(values) = values {
+            let (expected, given) = (self.likelihood.values(), values.len());
+            if expected != given {
+                return Err(TellError::Length { expected, given });
+            }
+            self.likelihood.check_values(values)?;
+        }
+        let complete = self.round.tell(index, values.map(<[f64]>::to_vec))?;
+        if complete {
+            let (_, answers) = self.round.complete();
+            self.advance(answers);
+        }
+        Ok(match &self.phase {
+            Phase::Done(_) => TellProgress::Finished,
+            Phase::Failed(failure) => TellProgress::Failed(*failure),
+            _ if complete => TellProgress::NextRound,
+            _ => TellProgress::Waiting,
+        })
+    }
+
+    /// Why the search failed, if it did.
+    #[must_use]
+    pub fn failure(&self) -> Option<InferenceFailure> {
+        match self.phase {
+            Phase::Failed(failure) => Some(failure),
+            _ => None,
+        }
+    }
+
+    /// The result; `None` while the search is running, and where it failed.
+    #[must_use]
+    pub fn ranking(&self) -> Option<&EffectRanking> {
+        match &self.phase {
+            Phase::Done(ranking) => Some(ranking),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! The state of a search for one effect.
+
+use crate::candidate::Candidate;
+use crate::effect_search::depth::{Depth, FULL};
+use crate::effect_search::ranking::{EffectRanking, EvaluationCounts, EvidenceMethod};
+use crate::effect_search::screen::Screened;
+use crate::laplace::batch::FitBatch;
+use crate::laplace::coordinate::NormalFrame;
+use crate::laplace::fit::{FittedModel, LaplaceFit};
+use crate::laplace::importance::ImportanceSampler;
+use inference::{InferenceFailure, Proposal, ProposalRound};
+use statistics::likelihood::Likelihood;
+
+/// An ask/tell search for one missing effect.
+///
+/// Its state is a function of priors, likelihood, candidates, settings and the told values, whatever their order within a round.
+#[derive(Debug, Clone)]
+pub struct EffectSearch {
+    pub(super) likelihood: Likelihood,
+    pub(super) base_frame: NormalFrame,
+    pub(super) candidates: Vec<CandidateState>,
+    pub(super) round: ProposalRound<Option<Vec<f64>>>,
+    /// Candidate (`None`: the base) and position of each request of the round.
+    pub(super) asked: Vec<(Option<usize>, Vec<f64>)>,
+    pub(super) phase: Phase,
+    pub(super) seed: u64,
+    pub(super) depth: &'static Depth,
+    pub(super) base: Option<FittedModel>,
+    pub(super) evaluations: EvaluationCounts,
+}
+
+/// What is known of a candidate so far.
+#[derive(Debug, Clone)]
+pub(super) struct CandidateState {
+    /// The coordinates of the base with this candidate.
+    pub(super) frame: NormalFrame,
+    pub(super) screened: Option<Screened>,
+    pub(super) estimate: Option<EvidenceEstimate>,
+    /// Evaluations spent on it alone.
+    pub(super) evaluations: usize,
+}
+
+/// The latest evidence for a candidate.
+#[derive(Debug, Clone)]
+pub(super) struct EvidenceEstimate {
+    pub(super) log_bayes_factor: f64,
+    pub(super) method: EvidenceMethod,
+    pub(super) fit: Option<LaplaceFit>,
+}
+
+#[derive(Debug, Clone)]
+pub(super) enum Phase {
+    Starts,
+    Base(FitBatch),
+    /// Index of the strength that the screen tries.
+    Screen(usize),
+    Extensions(FitBatch),
+    Polish(FitBatch),
+    ConfirmationStarts,
+    Confirmation(FitBatch),
+    /// The models that are sampled, and how many draws each waits for.
+    Sampling(Vec<(Option<usize>, ImportanceSampler)>, Vec<usize>),
+    Done(Box<EffectRanking>),
+    Failed(InferenceFailure),
+}
+
+impl EffectSearch {
+    /// A search that has asked nothing.
+    pub(super) fn unasked(
+        base_frame: NormalFrame,
+        likelihood: Likelihood,
+        candidates: &[Candidate],
+        seed: u64,
+    ) -> Self {
+        let candidates = candidates.iter().map(|candidate| CandidateState {
+            frame: base_frame.with(candidate),
+            screened: None,
+            estimate: None,
+            evaluations: 0,
+        });
+        Self {
+            likelihood,
+            candidates: candidates.collect(),
+            base_frame,
+            round: ProposalRound::default(),
+            asked: Vec::new(),
+            phase: Phase::Starts,
+            seed,
+            depth: &FULL,
+            base: None,
+            evaluations: EvaluationCounts::default(),
+        }
+    }
+
+    /// The fit of the base, once there is one.
+    pub(crate) fn base_fit(&self) -> Option<&FittedModel> {
+        self.base.as_ref()
+    }
+
+    /// The best fit of a candidate so far.
+    pub(crate) fn fit_of(&self, candidate: usize) -> Option<&LaplaceFit> {
+        self.candidates[candidate].estimate.as_ref()?.fit.as_ref()
+    }
+
+    pub(super) fn frame(&self, candidate: Option<usize>) -> &NormalFrame {
+        candidate.map_or(&self.base_frame, |k| &self.candidates[k].frame)
+    }
+
+    /// Begins a round.
+    pub(super) fn ask(&mut self, asked: Vec<(Option<usize>, Vec<f64>)>) {
+        for candidate in asked.iter().filter_map(|(candidate, _)| *candidate) {
+            self.candidates[candidate].evaluations += 1;
+        }
+        let proposals = asked.iter().enumerate().map(|(index, (candidate, position))| {
+            Proposal::plain(index, self.frame(*candidate).theta(position))
+        });
+        let proposals = proposals.collect();
+        self.round.ask(proposals);
+        self.asked = asked;
+    }
+}

@@ -1,0 +1,48 @@
+//! Several fits side by side, each at its own pace.
+
+use crate::laplace::fit::LaplaceFit;
+use statistics::likelihood::Likelihood;
+
+/// Fits of the base (`None`) or of candidates.
+#[derive(Debug, Clone)]
+pub(crate) struct FitBatch {
+    pub(crate) fits: Vec<(Option<usize>, LaplaceFit)>,
+    /// How many evaluations each waits for.
+    waiting: Vec<usize>,
+}
+
+impl FitBatch {
+    pub(crate) fn new(fits: Vec<(Option<usize>, LaplaceFit)>) -> Self {
+        Self {
+            fits,
+            waiting: Vec::new(),
+        }
+    }
+
+    /// The positions to evaluate next, each with its model; none once all fits are complete.
+    pub(crate) fn ask(&mut self, likelihood: &Likelihood) -> Vec<(Option<usize>, Vec<f64>)> {
+        let mut asked = Vec::new();
+        self.waiting.clear();
+        for (candidate, fit) in &mut self.fits {
+            let positions = fit.ask(likelihood);
+            self.waiting.push(positions.len());
+            asked.extend(positions.into_iter().map(|position| (*candidate, position)));
+        }
+        asked
+    }
+
+    /// Takes the answers in the order of the positions.
+    pub(crate) fn tell(&mut self, likelihood: &Likelihood, answers: Vec<Option<Vec<f64>>>) {
+        let mut answers = answers.into_iter();
+        for ((_, fit), count) in self.fits.iter_mut().zip(&self.waiting) {
+            if *count > 0 {
+                fit.tell(likelihood, answers.by_ref().take(*count).collect());
+            }
+        }
+    }
+
+    /// Evaluations spent by all.
+    pub(crate) fn evaluations(&self) -> usize {
+        self.fits.iter().map(|(_, fit)| fit.evaluations).sum()
+    }
+}

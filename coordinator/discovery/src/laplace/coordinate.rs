@@ -1,0 +1,226 @@
+//! Parameters as coordinates in which every prior is standard normal or half-normal.
+
+use statistics::prior::{Marginal, normal};
+
+use crate::candidate::Candidate;
+
+/// Limit of the search, in standard deviations of the prior.
+const FARTHEST: f64 = 7.5;
+
+/// The map from a parameter to its coordinate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    /// Standard normal: `Phi(t) = P(X < x)`.
+    Both,
+    /// Half-normal, 0 at the lower end of the support: `2 Phi(t) - 1 = P(X < x)`.
+    Above,
+    /// Half-normal, 0 at the upper end.
+    Below,
+}
+
+/// One parameter and its coordinate.
+#[derive(Debug, Clone)]
+pub(crate) struct NormalCoordinate {
+    pub(crate) marginal: Marginal,
+    side: Side,
+}
+
+/// The parameters of the base model followed by those of the candidates added to it.
+#[derive(Debug, Clone)]
+pub(crate) struct NormalFrame {
+    pub(crate) coordinates: Vec<NormalCoordinate>,
+    /// Shortest finite difference, in standard deviations of the prior.
+    pub(crate) least_difference: f64,
+    /// Index of each strength of the last candidate, and its coordinate at which the candidate is absent.
+    pub(crate) strengths: Vec<(usize, f64)>,
+}
+
+impl NormalCoordinate {
+    fn whole(marginal: &Marginal) -> Self {
+        Self {
+            marginal: marginal.clone(),
+            side: Side::Both,
+        }
+    }
+
+    /// The coordinate of x.
+    pub(crate) fn position(&self, x: f64) -> f64 {
+        let [below, above] = self.marginal.tails(x);
+        let t = match self.side {
+            Side::Both => self.marginal.normal_score(x),
+            Side::Above => -normal::lower_quantile((0.5 * above).max(f64::MIN_POSITIVE)),
+            Side::Below => -normal::lower_quantile((0.5 * below).max(f64::MIN_POSITIVE)),
+        };
+        t.max(self.lower()).min(FARTHEST)
+    }
+
+    /// x of a coordinate.
+    pub(crate) fn value(&self, t: f64) -> f64 {
+        let p = match self.side {
+            Side::Both => normal::cdf(t),
+            Side::Above => 1.0 - 2.0 * normal::cdf(-t),
+            Side::Below => 2.0 * normal::cdf(-t),
+        };
+        self.marginal.quantile(p)
+    }
+
+    fn lower(&self) -> f64 {
+        match self.side {
+            Side::Both => -FARTHEST,
+            Side::Above | Side::Below => 0.0,
+        }
+    }
+
+    fn is_half(&self) -> bool {
+        self.side != Side::Both
+    }
+}
+
+impl NormalFrame {
+    pub(crate) fn base(prior: &[Marginal], least_difference: f64) -> Self {
+        Self {
+            coordinates: prior.iter().map(NormalCoordinate::whole).collect(),
+            least_difference,
+            strengths: Vec::new(),
+        }
+    }
+
+    /// This frame with the coordinates of a candidate appended.
+    pub(crate) fn with(&self, candidate: &Candidate) -> Self {
+        let mut coordinates = self.coordinates.clone();
+        let first = coordinates.len();
+        coordinates.extend(candidate.parameters.iter().map(NormalCoordinate::whole));
+        let mut neutral = |strength: &usize| {
+            let own = &mut coordinates[first + strength];
+            let (lower, upper) = own.marginal.support();
+            let absent = if candidate.neutral <= lower {
+                own.side = Side::Above;
+                0.0
+            } else if candidate.neutral >= upper {
+                own.side = Side::Below;
+                0.0
+            } else {
+                own.position(candidate.neutral)
+            };
+            (first + strength, absent)
+        };
+        let strengths = candidate.strengths.iter().map(&mut neutral).collect();
+        Self {
+            coordinates,
+            least_difference: self.least_difference,
+            strengths,
+        }
+    }
+
+    /// The strength of a candidate with a single one.
+    pub(crate) fn strength(&self) -> Option<(usize, f64)> {
+        match self.strengths.as_slice() {
+            [only] => Some(*only),
+            _ => None,
+        }
+    }
+
+    /// Whether a coordinate is a strength of the last candidate.
+    pub(crate) fn is_strength(&self, k: usize) -> bool {
+        self.strengths.iter().any(|(strength, _)| *strength == k)
+    }
+
+    /// The half-normal coordinates.
+    pub(crate) fn halves(&self) -> Vec<usize> {
+        let all = self.coordinates.iter().enumerate();
+        all.filter(|(_, coordinate)| coordinate.is_half())
+            .map(|(k, _)| k)
+            .collect()
+    }
+
+    /// A position with the last candidate absent.
+    pub(crate) fn without(&self, position: &[f64]) -> Vec<f64> {
+        let mut absent = position.to_vec();
+        for &(k, neutral) in &self.strengths {
+            absent[k] = neutral;
+        }
+        absent
+    }
+
+    pub(crate) fn dimension(&self) -> usize {
+        self.coordinates.len()
+    }
+
+    /// Whether the single strength is half-normal.
+    pub(crate) fn is_one_sided(&self) -> bool {
+        self.strength()
+            .is_some_and(|(k, _)| self.coordinates[k].is_half())
+    }
+
+    pub(crate) fn theta(&self, position: &[f64]) -> Vec<f64> {
+        let pairs = self.coordinates.iter().zip(position);
+        pairs.map(|(coordinate, &t)| coordinate.value(t)).collect()
+    }
+
+    pub(crate) fn position(&self, theta: &[f64]) -> Vec<f64> {
+        let pairs = self.coordinates.iter().zip(theta);
+        pairs.map(|(coordinate, &x)| coordinate.position(x)).collect()
+    }
+
+    /// The distance of each coordinate from its lower and upper limit.
+    pub(crate) fn room(&self, position: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let pairs = || self.coordinates.iter().zip(position);
+        (
+            pairs().map(|(coordinate, t)| coordinate.lower() - t).collect(),
+            pairs().map(|(_, t)| FARTHEST - t).collect(),
+        )
+    }
+
+    /// Whether a position is within the limits.
+    pub(crate) fn holds(&self, position: &[f64]) -> bool {
+        let (lower, upper) = self.room(position);
+        lower.iter().all(|l| *l <= 0.0) && upper.iter().all(|u| *u >= 0.0)
+    }
+
+    /// Which parameters lie within 2 % of a bound of their range, or at the value at which a half-normal strength is absent.
+    pub(crate) fn at_bound(&self, position: &[f64]) -> Vec<bool> {
+        let near = |(coordinate, &t): (&NormalCoordinate, &f64)| {
+            let x = coordinate.value(t);
+            coordinate.marginal.at_bound(x, x) || (coordinate.is_half() && t <= 0.0)
+        };
+        self.coordinates.iter().zip(position).map(near).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use statistics::prior::Distribution;
+
+    #[test]
+    fn a_half_normal_strength_is_its_own_coordinate_in_units_of_its_scale() {
+        let half = Marginal::new(Distribution::HalfNormal { scale: 3.0 }, None).unwrap();
+        let effect = Candidate {
+            name: "e".into(),
+            parameters: vec![half],
+            strengths: vec![0],
+            neutral: 0.0,
+        };
+        let frame = NormalFrame::base(&[], 0.03).with(&effect);
+        for t in [0.0, 0.1, 1.0, 2.5, 5.0] {
+            let x = frame.theta(&[t])[0];
+            assert!((x - 3.0 * t).abs() < 1e-6, "{x} at {t}");
+            assert!((frame.position(&[x])[0] - t).abs() < 1e-6);
+        }
+        assert!(frame.is_one_sided() && frame.halves() == [0]);
+    }
+
+    #[test]
+    fn a_strength_of_either_sign_is_absent_at_the_score_of_its_neutral_value() {
+        let normal = Marginal::new(Distribution::Normal { mean: 1.0, sd: 2.0 }, None).unwrap();
+        let effect = Candidate {
+            name: "e".into(),
+            parameters: vec![normal],
+            strengths: vec![0],
+            neutral: 0.0,
+        };
+        let frame = NormalFrame::base(&[], 0.03).with(&effect);
+        let (_, neutral) = frame.strength().unwrap();
+        assert!((neutral + 0.5).abs() < 1e-12 && !frame.is_one_sided());
+    }
+}

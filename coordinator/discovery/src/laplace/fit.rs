@@ -1,0 +1,305 @@
+//! The posterior mode of one model, by damped Gauss-Newton steps with Broyden's update of the Jacobian.
+
+use std::collections::VecDeque;
+
+use crate::laplace::coordinate::NormalFrame;
+use crate::laplace::evidence::log_evidence;
+use crate::laplace::noise;
+use crate::laplace::point::FitPoint;
+use crate::laplace::quadratic::quadratic;
+use inference::lm::QuadraticModel;
+use statistics::likelihood::Likelihood;
+
+/// Longest finite difference, in standard deviations of the prior; above the shortest it equals the coordinate's current posterior
+/// sd. Long differences average over the roughness of a model on a grid, short ones resolve a narrow posterior.
+const DIFFERENCE: f64 = 0.15;
+/// A step that gains, or is predicted to gain, less than this ends the trials `[nats]`.
+const LEAST_GAIN: f64 = 0.01;
+/// The damping after the first rejected step, and the factor between successive dampings.
+const FIRST_DAMPING: f64 = 0.05;
+const DAMPING_FACTOR: f64 = 8.0;
+/// Rejected steps in a row that end the trials.
+const MOST_FAILURES: usize = 4;
+
+/// One step of the plan of a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FitStep {
+    /// Frees the coordinates that were held.
+    Release,
+    /// Computes the Jacobian by finite differences.
+    Differences,
+    /// At most so many trial steps, one evaluation each.
+    Trials(usize),
+    /// `Differences` and `Trials(trials)`, repeated at most so many times, until a new Jacobian predicts no gain.
+    Rounds { most: usize, trials: usize },
+}
+
+/// A fit of one model.
+#[derive(Debug, Clone)]
+pub(crate) struct LaplaceFit {
+    pub(crate) frame: NormalFrame,
+    pub(crate) point: FitPoint,
+    /// The Jacobian: derivatives of the predicted values, one column for each coordinate.
+    pub(crate) columns: Vec<Vec<f64>>,
+    pub(crate) evaluations: usize,
+    plan: VecDeque<FitStep>,
+    damping: f64,
+    failures: usize,
+    /// Coordinates that are fixed until a [`FitStep::Release`].
+    held: Vec<bool>,
+    /// No step was tried since the last Jacobian of a round.
+    is_fresh: bool,
+    pending: Pending,
+}
+
+/// A completed fit with its log evidence.
+#[derive(Debug, Clone)]
+pub(crate) struct FittedModel {
+    pub(crate) fit: LaplaceFit,
+    pub(crate) log_evidence: f64,
+}
+
+/// The evaluations that a fit waits for.
+#[derive(Debug, Clone)]
+enum Pending {
+    Nothing,
+    /// Index and offset of each difference, and whether this is the second attempt, with the opposite sign.
+    Differences(Vec<(usize, f64)>, bool),
+    /// A trial position and its predicted gain.
+    Trial {
+        position: Vec<f64>,
+        predicted: f64,
+    },
+}
+
+impl LaplaceFit {
+    pub(crate) fn new(frame: NormalFrame, point: FitPoint, columns: Vec<Vec<f64>>, plan: &[FitStep]) -> Self {
+        Self {
+            held: vec![false; frame.dimension()],
+            frame,
+            point,
+            columns,
+            evaluations: 0,
+            plan: plan.iter().copied().collect(),
+            damping: 0.0,
+            failures: 0,
+            is_fresh: false,
+            pending: Pending::Nothing,
+        }
+    }
+
+    /// The same fit continued with another plan.
+    pub(crate) fn continued(&self, plan: &[FitStep]) -> Self {
+        Self::new(self.frame.clone(), self.point.clone(), self.columns.clone(), plan)
+    }
+
+    /// Fixes coordinates until [`FitStep::Release`].
+    pub(crate) fn hold(&mut self, coordinates: impl Iterator<Item = usize>) {
+        for k in coordinates {
+            self.held[k] = true;
+        }
+    }
+
+    /// The most probable parameters.
+    pub(crate) fn theta(&self) -> Vec<f64> {
+        self.frame.theta(&self.point.position)
+    }
+
+    /// The positions to evaluate next; none once the plan is complete.
+    pub(crate) fn ask(&mut self, likelihood: &Likelihood) -> Vec<Vec<f64>> {
+        if let Pending::Differences(again, _) = &self.pending {
+            return self.offset(again);
+        }
+        while let Some(step) = self.plan.pop_front() {
+            match step {
+                FitStep::Release => {
+                    self.held.fill(false);
+                    self.damping = 0.0;
+                    self.failures = 0;
+                }
+                FitStep::Differences => {
+                    let (_, upper) = self.frame.room(&self.point.position);
+                    let uncertainty = self.quadratic(likelihood).uncertainty();
+                    let offset = |k: usize| {
+                        let length = uncertainty[k].unwrap_or(DIFFERENCE);
+                        let length = length.clamp(self.frame.least_difference.min(DIFFERENCE), DIFFERENCE);
+                        if upper[k] >= length { length } else { -length }
+                    };
+                    // Predictions do not depend on the noise sds.
+                    let noise = noise::coordinates(likelihood);
+                    let is_noise = |k: usize| noise.iter().any(|(own, _)| *own == k);
+                    let wanted: Vec<(usize, f64)> = (0..self.frame.dimension())
+                        .filter(|k| !is_noise(*k) && !self.held[*k])
+                        .map(|k| (k, offset(k)))
+                        .collect();
+                    let positions = self.offset(&wanted);
+                    self.pending = Pending::Differences(wanted, false);
+                    return positions;
+                }
+                FitStep::Rounds { most: 0, .. } | FitStep::Trials(0) => {}
+                FitStep::Rounds { most, trials } => {
+                    let most = most - 1;
+                    self.plan.push_front(FitStep::Rounds { most, trials });
+                    self.plan.push_front(FitStep::Trials(trials));
+                    self.plan.push_front(FitStep::Differences);
+                    self.is_fresh = true;
+                }
+                FitStep::Trials(left) => {
+                    if let Some((position, predicted)) = self.trial(likelihood) {
+                        self.plan.push_front(FitStep::Trials(left - 1));
+                        self.is_fresh = false;
+                        self.pending = Pending::Trial {
+                            position: position.clone(),
+                            predicted,
+                        };
+                        return vec![position];
+                    }
+                    self.damping = 0.0;
+                    self.failures = 0;
+                    if self.is_fresh {
+                        self.plan.clear();
+                    }
+                }
+            }
+        }
+        Vec::new()
+    }
+
+    fn offset(&self, wanted: &[(usize, f64)]) -> Vec<Vec<f64>> {
+        let moved = |&(k, offset): &(usize, f64)| {
+            let mut position = self.point.position.clone();
+            position[k] += offset;
+            position
+        };
+        wanted.iter().map(moved).collect()
+    }
+
+    /// The next trial position and its predicted gain; `None` where no step is worth an evaluation.
+    fn trial(&self, likelihood: &Likelihood) -> Option<(Vec<f64>, f64)> {
+        if self.failures >= MOST_FAILURES {
+            return None;
+        }
+        let quadratic = self.quadratic(likelihood);
+        let step = quadratic.step(self.damping)?;
+        let predicted = quadratic.decrease(&step);
+        let pairs = self.point.position.iter().zip(&step);
+        (predicted > LEAST_GAIN).then(|| (pairs.map(|(t, by)| t + by).collect(), predicted))
+    }
+
+    /// Takes the predicted values at those positions; `None` where the model rejected one.
+    pub(crate) fn tell(&mut self, likelihood: &Likelihood, answers: Vec<Option<Vec<f64>>>) {
+        self.evaluations += answers.len();
+        match std::mem::replace(&mut self.pending, Pending::Nothing) {
+            Pending::Nothing => {}
+            Pending::Differences(wanted, again) => self.after_differences(wanted, again, answers),
+            Pending::Trial { position, predicted } => {
+                self.after_trial(
+                    likelihood,
+                    position,
+                    predicted,
+                    answers.into_iter().flatten().next(),
+                );
+            }
+        }
+    }
+
+    /// A rejected difference is tried once more with the opposite sign; if that fails too, the old column stays.
+    fn after_differences(
+        &mut self,
+        wanted: Vec<(usize, f64)>,
+        is_second: bool,
+        answers: Vec<Option<Vec<f64>>>,
+    ) {
+        let (lower, upper) = self.frame.room(&self.point.position);
+        let mut again = Vec::new();
+        for ((k, offset), answer) in wanted.into_iter().zip(answers) {
+            match answer {
+                Some(values) => {
+                    let pairs = values.iter().zip(&self.point.values);
+                    self.columns[k] = pairs.map(|(x, m)| (x - m) / offset).collect();
+                }
+                None if !is_second && (lower[k]..=upper[k]).contains(&-offset) => again.push((k, -offset)),
+                None => {}
+            }
+        }
+        if !again.is_empty() {
+            self.pending = Pending::Differences(again, true);
+        }
+    }
+
+    fn after_trial(
+        &mut self,
+        likelihood: &Likelihood,
+        position: Vec<f64>,
+        predicted: f64,
+        values: Option<Vec<f64>>,
+    ) {
+        let step: Vec<f64> = position
+            .iter()
+            .zip(&self.point.position)
+            .map(|(a, b)| a - b)
+            .collect();
+        if let Some(values) = &values {
+            self.update_jacobian(&step, values);
+        }
+        let reached = values.and_then(|v| FitPoint::new(&self.frame, likelihood, position, v));
+        match reached {
+            Some(point) if point.value < self.point.value => {
+                let gain = self.point.value - point.value;
+                self.failures = 0;
+                self.damping = if gain > 0.5 * predicted && self.damping <= FIRST_DAMPING {
+                    0.0
+                } else {
+                    self.damping / DAMPING_FACTOR
+                };
+                self.point = point;
+            }
+            _ => {
+                self.failures += 1;
+                self.damping = (DAMPING_FACTOR * self.damping).max(FIRST_DAMPING);
+            }
+        }
+    }
+
+    /// Broyden's update: the smallest change of the Jacobian that reproduces the values at the new position.
+    ///
+    /// # Source
+    /// Broyden 1965, doi:10.1090/S0025-5718-1965-0198670-6.
+    fn update_jacobian(&mut self, step: &[f64], values: &[f64]) {
+        let squares: f64 = step.iter().map(|s| s * s).sum();
+        if squares <= 0.0 {
+            return;
+        }
+        for (i, (new, old)) in values.iter().zip(&self.point.values).enumerate() {
+            let expected: f64 = self.columns.iter().zip(step).map(|(c, s)| c[i] * s).sum();
+            let missed = (new - old - expected) / squares;
+            for (column, s) in self.columns.iter_mut().zip(step) {
+                column[i] += missed * s;
+            }
+        }
+    }
+
+    /// The quadratic expansion at the point.
+    pub(crate) fn quadratic(&self, likelihood: &Likelihood) -> QuadraticModel {
+        QuadraticModel {
+            held: self.held.clone(),
+            ..quadratic(&self.frame, likelihood, &self.point, &self.columns)
+        }
+    }
+
+    /// Log evidence by Laplace's approximation at the point; `None` where the Hessian is not positive definite.
+    ///
+    /// The gradient counts only along half-normal coordinates at their bound. Elsewhere it is set to zero: a gain that was predicted
+    /// but not reached by a trial step is unbounded far from the mode or at the limits of the search.
+    pub(crate) fn log_evidence(&self, likelihood: &Likelihood) -> Option<f64> {
+        let halves = self.frame.halves();
+        let mut quadratic = self.quadratic(likelihood);
+        for (k, slope) in quadratic.gradient.iter_mut().enumerate() {
+            let is_at_bound = halves.contains(&k) && quadratic.lower[k] >= 0.0 && *slope > 0.0;
+            if !is_at_bound {
+                *slope = 0.0;
+            }
+        }
+        log_evidence(&quadratic, self.point.value, &halves)
+    }
+}

@@ -1,0 +1,17 @@
+//! Laplace's approximation: the fit of a model and the evidence read from it.
+//!
+//! # Layout
+//! - `coordinate`: parameters as standard normal coordinates.
+//! - `point`: an evaluated position. `quadratic`: the expansion of the log posterior about it. `noise`: its part along noise sds.
+//! - `fit`: the minimisation for one model. `batch`: several side by side.
+//! - `evidence`: the integral over a quadratic. `importance`: the same integral by importance sampling. `draws`: posterior draws.
+
+pub(crate) mod batch;
+pub(crate) mod coordinate;
+pub(crate) mod draws;
+pub(crate) mod evidence;
+pub(crate) mod fit;
+pub(crate) mod importance;
+mod noise;
+pub(crate) mod point;
+pub(crate) mod quadratic;

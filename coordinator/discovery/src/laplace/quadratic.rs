@@ -1,0 +1,43 @@
+//! The quadratic expansion of the negative log posterior.
+
+use nalgebra::DMatrix;
+
+use crate::laplace::coordinate::NormalFrame;
+use crate::laplace::noise;
+use crate::laplace::point::FitPoint;
+use inference::lm::QuadraticModel;
+use statistics::likelihood::Likelihood;
+
+/// The Gauss-Newton expansion of `-log-likelihood + |t|^2/2` about a point.
+///
+/// # Arguments
+/// - `columns`: the derivatives of the predicted values, one column for each coordinate.
+pub(crate) fn quadratic(
+    frame: &NormalFrame,
+    likelihood: &Likelihood,
+    point: &FitPoint,
+    columns: &[Vec<f64>],
+) -> QuadraticModel {
+    let count = point.position.len();
+    let mut gradient = point.position.clone();
+    let mut hessian = DMatrix::identity(count, count);
+    // Values that cannot be whitened have no likelihood, and so are no point.
+    if let Ok(whitening) = likelihood.whitening(&point.values, &frame.theta(&point.position)) {
+        let scaled: Vec<Vec<f64>> = columns.iter().map(|column| whitening.apply(column)).collect();
+        for k in 0..count {
+            gradient[k] -= whitening.slope(&scaled[k]);
+            for l in 0..count {
+                hessian[(k, l)] += whitening.curvature(&scaled[k], &scaled[l]);
+            }
+        }
+    }
+    noise::add(frame, likelihood, point, &mut gradient, &mut hessian);
+    let (lower, upper) = frame.room(&point.position);
+    QuadraticModel {
+        gradient,
+        hessian,
+        lower,
+        upper,
+        held: vec![false; count],
+    }
+}

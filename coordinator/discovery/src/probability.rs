@@ -1,0 +1,155 @@
+//! Probabilities of the explanations, and the thresholds of what is claimed.
+
+use crate::laplace::evidence::log_sum_exp;
+
+/// A log Bayes factor above this is a detection; an effect of the model with a smaller one is dropped \[nats\].
+pub const DETECTED: f64 = 3.0;
+/// Prior probability that nothing is missing.
+const PRIOR_OF_NONE: f64 = 0.5;
+/// Probability of the credible set.
+const CREDIBLE: f64 = 0.95;
+
+/// The evidence for one explanation: nothing is missing, or one effect is.
+#[derive(Debug)]
+pub(crate) struct Explanation {
+    /// Effects that the data cannot distinguish share a class; 0: nothing is missing.
+    pub(crate) class: usize,
+    /// Over the base.
+    pub(crate) log_bayes_factor: f64,
+    /// Log Bayes factor and log prior cost of each combination of effects that counts for this explanation.
+    pub(crate) combinations: Vec<(f64, f64)>,
+}
+
+/// Posterior probabilities.
+#[derive(Debug)]
+pub(crate) struct Probabilities {
+    /// Of each explanation.
+    pub(crate) of_each: Vec<f64>,
+    /// Of a law outside the library.
+    pub(crate) outside: Option<f64>,
+    /// The smallest set of classes with 95 % probability, the most probable first; `None`: the law outside the library.
+    pub(crate) credible: Vec<Option<usize>>,
+}
+
+impl Probabilities {
+    /// The prior is 1/2 for nothing missing; the rest is equal over the classes and the law outside the library, and within a class
+    /// over its members.
+    ///
+    /// # Arguments
+    /// - `outside`: log Bayes factor of a law outside the library; `None`: not searched.
+    ///
+    /// # Source
+    /// Kass & Raftery 1995, section 5.3, doi:10.1080/01621459.1995.10476572. Checked by
+    /// `effect_search::probabilities_sum_to_one_and_follow_the_prior_over_classes`.
+    pub(crate) fn new(explanations: &[Explanation], outside: Option<f64>) -> Self {
+        let classes = explanations.iter().map(|e| e.class).max().unwrap_or(0);
+        let alternatives = classes + usize::from(outside.is_some());
+        let each = (1.0 - PRIOR_OF_NONE) / alternatives.max(1) as f64;
+        let members = |class: usize| explanations.iter().filter(|e| e.class == class).count() as f64;
+        let prior = |class: usize| match class {
+            // Without an alternative nothing can be missing.
+            0 if alternatives == 0 => 1.0,
+            0 => PRIOR_OF_NONE,
+            class => each / members(class),
+        };
+        let weight = |explanation: &Explanation| {
+            let log_prior = libm::log(prior(explanation.class));
+            let own = std::iter::once(log_prior + explanation.log_bayes_factor);
+            let combinations = explanation.combinations.iter();
+            log_sum_exp(own.chain(combinations.map(|(factor, cost)| log_prior + factor - cost)))
+        };
+        let weights: Vec<f64> = explanations.iter().map(weight).collect();
+        let outside = outside.map(|factor| libm::log(each) + factor);
+        let sum = log_sum_exp(weights.iter().copied().chain(outside));
+        let of_each: Vec<f64> = weights.iter().map(|w| libm::exp(w - sum)).collect();
+        let outside = outside.map(|w| libm::exp(w - sum));
+        let of_class = |class: usize| -> f64 {
+            let own = explanations.iter().zip(&of_each);
+            own.filter(|(e, _)| e.class == class).map(|(_, p)| p).sum()
+        };
+        let mut by_class: Vec<(Option<usize>, f64)> = (0..=classes)
+            .map(|class| (Some(class), of_class(class)))
+            .collect();
+        by_class.extend(outside.map(|p| (None, p)));
+        by_class.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let mut held = 0.0;
+        let credible = by_class.into_iter().take_while(|(_, probability)| {
+            let is_open = held < CREDIBLE;
+            held += probability;
+            is_open
+        });
+        Self {
+            credible: credible.map(|(class, _)| class).collect(),
+            of_each,
+            outside,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn explanation(class: usize, log_bayes_factor: f64) -> Explanation {
+        Explanation {
+            class,
+            log_bayes_factor,
+            combinations: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_log_sum_of_one_term_is_the_term_to_the_last_bit() {
+        for x in [
+            -745.3,
+            -1.0 / 3.0,
+            0.0,
+            1e-300,
+            0.1,
+            std::f64::consts::LN_2,
+            1234.5678,
+        ] {
+            assert_eq!(log_sum_exp(std::iter::once(x)).to_bits(), x.to_bits());
+        }
+    }
+
+    #[test]
+    fn without_combinations_a_probability_is_prior_times_bayes_factor() {
+        let all = [
+            explanation(0, 0.0),
+            explanation(1, 1.7),
+            explanation(1, 0.3),
+            explanation(2, -2.1),
+        ];
+        let log_priors = [0.5, 0.5 / 2.0 / 2.0, 0.5 / 2.0 / 2.0, 0.5 / 2.0 / 1.0].map(libm::log);
+        let weights: Vec<f64> = all
+            .iter()
+            .zip(log_priors)
+            .map(|(e, p)| p + e.log_bayes_factor)
+            .collect();
+        let sum = log_sum_exp(weights.iter().copied());
+        let expected: Vec<u64> = weights.iter().map(|w| libm::exp(w - sum).to_bits()).collect();
+        let probabilities = Probabilities::new(&all, None);
+        let given: Vec<u64> = probabilities.of_each.iter().map(|p| p.to_bits()).collect();
+        assert_eq!(given, expected);
+    }
+
+    #[test]
+    fn the_credible_set_is_the_smallest_with_its_probability() {
+        let all = [
+            explanation(0, 0.0),
+            explanation(1, 3.0),
+            explanation(2, 2.0),
+            explanation(3, -9.0),
+        ];
+        let probabilities = Probabilities::new(&all, Some(4.0));
+        assert_eq!(probabilities.credible, [None, Some(1), Some(2)]);
+        let total = probabilities.of_each.iter().sum::<f64>() + probabilities.outside.unwrap();
+        assert!((total - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn without_an_alternative_nothing_is_missing() {
+        assert_eq!(Probabilities::new(&[explanation(0, 0.0)], None).of_each, [1.0]);
+    }
+}

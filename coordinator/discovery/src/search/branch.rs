@@ -1,0 +1,76 @@
+//! A search for one effect as a part of the whole search, with candidates named by their indices in the task.
+
+use crate::effect_search::ranking::RankedEffect;
+use crate::effect_search::state::EffectSearch;
+use crate::search::query::{QueriedModel, Query};
+
+/// A search beyond a combination of effects, or a fit of the base without one of its own.
+#[derive(Debug, Clone)]
+pub(super) struct SearchBranch {
+    /// The effects of its model beyond the base.
+    pub(super) effects: Vec<usize>,
+    /// The base's own effect that it lacks.
+    pub(super) reduction: Option<usize>,
+    /// The index in the task of each of its candidates.
+    candidates: Vec<usize>,
+    pub(super) search: EffectSearch,
+}
+
+impl SearchBranch {
+    pub(super) fn new(effects: Vec<usize>, candidates: Vec<usize>, search: EffectSearch) -> Self {
+        Self {
+            effects,
+            reduction: None,
+            candidates,
+            search,
+        }
+    }
+
+    /// The fit of the base without one of its effects.
+    pub(super) fn without(reduction: usize, search: EffectSearch) -> Self {
+        Self {
+            reduction: Some(reduction),
+            ..Self::new(Vec::new(), Vec::new(), search)
+        }
+    }
+
+    /// The queries of its round; none once it is done.
+    pub(super) fn queries(&self) -> Vec<Query> {
+        if self.search.ranking().is_some() || self.search.failure().is_some() {
+            return Vec::new();
+        }
+        let queries = self.search.pending().map(|request| {
+            let mut effects = self.effects.clone();
+            effects.extend(request.candidate.map(|k| self.candidates[k]));
+            Query {
+                model: self
+                    .reduction
+                    .map_or(QueriedModel::With(effects), QueriedModel::Without),
+                is_proposed: false,
+                theta: request.theta,
+            }
+        });
+        queries.collect()
+    }
+
+    /// Takes all answers of its round.
+    pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
+        for (index, values) in answers.into_iter().enumerate() {
+            // The values were checked when they arrived, and each index is told once.
+            let told = self.search.tell(index, values.as_deref());
+            debug_assert!(told.is_ok(), "{told:?}");
+        }
+    }
+
+    /// The candidates by falling Bayes factor, with their indices in the task.
+    pub(super) fn ranked(&self) -> Vec<(usize, &RankedEffect)> {
+        let ranked = self
+            .search
+            .ranking()
+            .into_iter()
+            .flat_map(|ranking| ranking.ranked());
+        ranked
+            .filter_map(|effect| Some((self.candidates[effect.candidate?], effect)))
+            .collect()
+    }
+}

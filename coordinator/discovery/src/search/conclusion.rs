@@ -1,0 +1,139 @@
+//! The conclusion of a search.
+
+use crate::chi_square::FitChiSquare;
+use crate::effect_search::ranking::EffectRanking;
+use crate::laplace::draws::draws;
+use crate::laplace::fit::LaplaceFit;
+use crate::probability::DETECTED;
+use crate::search::hypotheses::FittedLaw;
+use crate::search::next_run::InformativeRun;
+use crate::search::state::SearchState;
+use crate::search::verdict::SearchVerdict;
+use crate::search::weighing::Weighing;
+use crate::task::SearchTask;
+
+/// Most of the library's chi-square excess that a law outside the library may leave.
+const MOST_LEFT: f64 = 0.25;
+/// Posterior draws of a model, and their random streams, after those of the open explanations.
+const DRAWS: usize = 33;
+const OF_BASE: u64 = 1000;
+const OF_BEST: u64 = 1001;
+
+/// A model with posterior draws of its parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PosteriorModel {
+    /// Its effects beyond the base.
+    pub effects: Vec<usize>,
+    /// Draws of the base's parameters and theirs by Laplace's approximation, the mode first.
+    pub draws: Vec<Vec<f64>>,
+}
+
+/// A law outside the library.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutsideLaw {
+    /// Index of the law in the task.
+    pub law: usize,
+    /// Its form, or its curve.
+    pub candidate: usize,
+    /// Log evidence over that of the base.
+    pub log_bayes_factor: f64,
+    /// Its most probable parameters.
+    pub parameters: Vec<f64>,
+    /// Log predictive density of left-out levels over that of the base and of the library's best.
+    pub left_out_nats: [f64; 2],
+}
+
+/// The result of a search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Conclusion {
+    /// What the data support.
+    pub verdict: SearchVerdict,
+    /// The single effects, with the probabilities of all explanations.
+    pub ranking: EffectRanking,
+    /// Log Bayes factor and probability of a law outside the library; `None`: not searched.
+    pub not_in_library: Option<(f64, f64)>,
+    /// The law outside the library, if that is the verdict.
+    pub outside: Option<OutsideLaw>,
+    /// The effects of the best combination.
+    pub combination: Vec<usize>,
+    /// Log Bayes factor of the base over each of its reductions; `None` where that cannot be fitted.
+    pub gains: Vec<Option<f64>>,
+    /// Goodness of fit of the base.
+    pub chi_square: Option<FitChiSquare>,
+    /// Goodness of fit of the best explanation.
+    pub chi_square_best: Option<FitChiSquare>,
+    /// The base.
+    pub base: PosteriorModel,
+    /// The base with the law or the best combination.
+    pub best: PosteriorModel,
+    /// Runs to make next.
+    pub next_runs: Vec<InformativeRun>,
+    /// All evaluations; those of the search for one effect stand in the ranking.
+    pub evaluations: usize,
+}
+
+/// Whether a law explains the misfit of the library's best: it fits, or leaves little of the excess.
+fn explains(task: &SearchTask, of_library: Option<FitChiSquare>, law: &FittedLaw) -> bool {
+    match (of_library, FitChiSquare::of(&law.fit, &task.likelihood)) {
+        (Some(library), Some(own)) => !own.is_wrong() || own.excess() < MOST_LEFT * library.excess(),
+        _ => true,
+    }
+}
+
+impl Conclusion {
+    pub(super) fn new(state: &SearchState, next_runs: Vec<InformativeRun>) -> Self {
+        let SearchState {
+            task,
+            hypotheses,
+            evaluations,
+        } = state;
+        let weighing = Weighing::new(task, hypotheses);
+        let chi_square = |fit: &LaplaceFit| FitChiSquare::of(fit, &task.likelihood);
+        let of_library = hypotheses.chi_square(&task.likelihood);
+        let law = hypotheses.confirmed_law();
+        let law = law.filter(|law| explains(task, of_library, law));
+        let verdict = SearchVerdict::new(&weighing, hypotheses, of_library, law);
+        let law = law.filter(|_| verdict == SearchVerdict::NotInLibrary);
+        let detected = hypotheses.detected();
+        let base = hypotheses.base_fit();
+        let (effects, fit) = match (law, detected) {
+            (Some(law), _) => (vec![law.candidate], Some(&law.fit)),
+            (None, Some(best)) => (best.effects.clone(), Some(&best.fit)),
+            (None, None) => (Vec::new(), base),
+        };
+        let model = |effects: Vec<usize>, fit: Option<&LaplaceFit>, number: u64| PosteriorModel {
+            effects,
+            draws: fit.map_or(Vec::new(), |fit| {
+                draws(fit, &task.likelihood, task.settings.seed, number, DRAWS)
+            }),
+        };
+        Self {
+            verdict,
+            ranking: weighing.ranking,
+            not_in_library: weighing.not_in_library,
+            outside: law.map(|law| OutsideLaw {
+                law: law.law,
+                candidate: law.candidate,
+                log_bayes_factor: law.log_bayes_factor,
+                parameters: law.fit.theta()[task.prior.len()..].to_vec(),
+                left_out_nats: law.left_out.unwrap_or([0.0; 2]),
+            }),
+            combination: detected.map_or(Vec::new(), |best| best.effects.clone()),
+            gains: hypotheses.gains.clone(),
+            chi_square: base.and_then(chi_square),
+            chi_square_best: law.map_or(of_library, |law| chi_square(&law.fit)),
+            base: model(Vec::new(), base, OF_BASE),
+            best: model(effects, fit, OF_BEST),
+            next_runs,
+            evaluations: *evaluations,
+        }
+    }
+
+    /// The reductions without which the base loses no detectable evidence: effects that may be dropped.
+    pub fn redundant(&self) -> impl Iterator<Item = usize> {
+        let gains = self.gains.iter().enumerate();
+        gains
+            .filter(|(_, gain)| gain.is_some_and(|gain| gain < DETECTED))
+            .map(|(k, _)| k)
+    }
+}

@@ -1,0 +1,173 @@
+//! The interface of the whole search.
+
+use crate::candidate::CandidateError;
+use crate::effect_search::state::EffectSearch;
+use crate::search::branch::SearchBranch;
+use crate::search::conclusion::Conclusion;
+use crate::search::hypotheses::Hypotheses;
+use crate::search::query::Query;
+use crate::search::stage::Stage;
+use crate::search::state::SearchState;
+use crate::task::SearchTask;
+use inference::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
+use statistics::likelihood::LikelihoodError;
+
+/// An ask/tell search for what a model is missing.
+///
+/// Its state is a function of the task and the told values, whatever their order within a round.
+#[derive(Debug, Clone)]
+pub struct DiscoverySearch {
+    state: SearchState,
+    stage: Stage,
+    round: ProposalRound<Option<Vec<f64>>>,
+    queries: Vec<Query>,
+}
+
+impl DiscoverySearch {
+    /// A search whose first round holds the starts of the base's fit.
+    ///
+    /// # Errors
+    /// [`CandidateError`].
+    pub fn new(task: SearchTask) -> Result<Self, CandidateError> {
+        let candidates = task.candidates();
+        candidates.iter().try_for_each(|candidate| candidate.check())?;
+        let search = EffectSearch::new(
+            &task.prior,
+            task.likelihood.clone(),
+            &task.library,
+            &task.settings,
+        )?;
+        let library = (0..task.library.len()).collect();
+        let mut discovery = Self {
+            stage: Stage::SingleEffects(SearchBranch::new(Vec::new(), library, search)),
+            state: SearchState {
+                task,
+                hypotheses: Hypotheses::new(candidates),
+                evaluations: 0,
+            },
+            round: ProposalRound::default(),
+            queries: Vec::new(),
+        };
+        discovery.ask();
+        Ok(discovery)
+    }
+
+    /// Number of completed rounds.
+    #[must_use]
+    pub fn round(&self) -> u64 {
+        self.round.number()
+    }
+
+    /// The parameter vectors of this round, numbered from 0.
+    #[must_use]
+    pub fn pending(&self) -> &[Proposal] {
+        self.round.pending()
+    }
+
+    /// The query of a parameter vector of this round.
+    #[must_use]
+    pub fn query(&self, index: usize) -> Option<&Query> {
+        self.queries.get(index)
+    }
+
+    /// Number of values that answer a query.
+    fn expected(&self, query: &Query) -> usize {
+        if query.is_proposed {
+            self.state.task.proposed.values()
+        } else {
+            self.state.task.likelihood.values()
+        }
+    }
+
+    /// Takes the values that answer a query; the last one of a round advances the search.
+    ///
+    /// # Arguments
+    /// - `values`: as [`Likelihood::log_likelihood`](statistics::Likelihood::log_likelihood) takes them; on the proposed runs each
+    ///   channel of each run. `None` where the model rejected the parameters.
+    ///
+    /// # Errors
+    /// [`TellError`]: told before, never asked for, or not as many finite values as expected. Nothing is changed then.
+    pub fn tell(&mut self, index: usize, values: Option<&[f64]>) -> Result<TellProgress, TellError> {
+        if let (Some(values), Some(query)) = (values, self.queries.get(index)) {
+            let (expected, given) = (self.expected(query), values.len());
+            if expected != given {
+                return Err(TellError::Length { expected, given });
+            }
+            if query.is_proposed {
+                if let Some(&value) = values.iter().find(|v| !v.is_finite()) {
+                    return Err(LikelihoodError::Prediction {
+                        run: 0,
+                        channel: 0,
+                        value,
+                    }
+                    .into());
+                }
+            } else {
+                self.state.task.likelihood.check_values(values)?;
+            }
+        }
+        let complete = self.round.tell(index, values.map(<[f64]>::to_vec))?;
+        if complete {
+            let (_, answers) = self.round.complete();
+            self.state.evaluations += answers.len();
+            self.queries.clear();
+            self.stage.take(answers);
+            self.ask();
+        }
+        Ok(match self.stage {
+            Stage::Done(_) => TellProgress::Finished,
+            Stage::Failed(failure) => TellProgress::Failed(failure),
+            _ if complete => TellProgress::NextRound,
+            _ => TellProgress::Waiting,
+        })
+    }
+
+    /// The result; `None` while the search is running, and where it failed.
+    #[must_use]
+    pub fn conclusion(&self) -> Option<&Conclusion> {
+        match &self.stage {
+            Stage::Done(conclusion) => Some(conclusion),
+            _ => None,
+        }
+    }
+
+    /// Why the search failed, if it did.
+    #[must_use]
+    pub fn failure(&self) -> Option<InferenceFailure> {
+        match self.stage {
+            Stage::Failed(failure) => Some(failure),
+            _ => None,
+        }
+    }
+
+    /// Begins the next round, of this stage or of the next one with queries.
+    fn ask(&mut self) {
+        while !matches!(self.stage, Stage::Done(_) | Stage::Failed(_)) {
+            let queries = self.stage.queries();
+            if !queries.is_empty() {
+                let proposals = queries.iter().enumerate();
+                let proposals = proposals.map(|(i, query)| Proposal::plain(i, query.theta.clone()));
+                let proposals = proposals.collect();
+                self.round.ask(proposals);
+                self.queries = queries;
+                return;
+            }
+            self.next_stage();
+        }
+    }
+
+    fn next_stage(&mut self) {
+        let state = &mut self.state;
+        self.stage = match &self.stage {
+            Stage::SingleEffects(branch) => state.after_single_effects(branch),
+            Stage::BaseReduction(branches) => state.after_base_reduction(branches),
+            Stage::BeamSearch(size, branches) => state.after_beam_search(*size, branches),
+            Stage::BackwardElimination(branches) => state.after_backward_elimination(branches),
+            Stage::Curves(branch) => state.after_curves(branch),
+            Stage::Forms(branch) => state.after_forms(branch),
+            Stage::CrossValidation(rank, validation) => state.after_cross_validation(*rank, validation),
+            Stage::NextRuns(runs) => state.done(runs.best()),
+            Stage::Done(_) | Stage::Failed(_) => return,
+        };
+    }
+}

@@ -1,0 +1,169 @@
+//! The stages that search effects of the library.
+
+use crate::chi_square::FURTHER_EFFECT;
+use crate::effect_search::depth::QUICK;
+use crate::effect_search::state::EffectSearch;
+use crate::laplace::coordinate::NormalFrame;
+use crate::laplace::fit::FittedModel;
+use crate::probability::DETECTED;
+use crate::search::branch::SearchBranch;
+use crate::search::hypotheses::EffectCombination;
+use crate::search::stage::Stage;
+use crate::search::state::SearchState;
+use crate::settings::{SearchSettings, Starts};
+use inference::InferenceFailure;
+
+/// Beam width: combinations from which one more effect is searched.
+const BEAM: usize = 3;
+
+impl SearchState {
+    pub(super) fn after_single_effects(&mut self, branch: &SearchBranch) -> Stage {
+        if let Some(failure) = branch.search.failure() {
+            return Stage::Failed(failure);
+        }
+        self.hypotheses.base = branch.search.base_fit().cloned();
+        self.hypotheses.ranking = branch.search.ranking().cloned().unwrap_or_default();
+        self.add_combinations(branch, 0.0);
+        let Some(base) = self.hypotheses.base_fit() else {
+            return Stage::Failed(InferenceFailure::AllImpossible {
+                draws: self.evaluations,
+            });
+        };
+        let theta = base.theta();
+        let reductions = self.task.reductions.iter().enumerate();
+        let branches = reductions.filter_map(|(k, reduction)| {
+            let kept = reduction.parameters.iter();
+            let prior: Vec<_> = kept.clone().map(|&i| self.task.prior[i].clone()).collect();
+            let settings = SearchSettings {
+                starts: Starts::Draws(vec![kept.map(|&i| theta[i]).collect()]),
+                ..self.task.settings.clone()
+            };
+            let search = EffectSearch::new(&prior, self.task.likelihood.clone(), &[], &settings).ok()?;
+            Some(SearchBranch::without(k, search))
+        });
+        Stage::BaseReduction(branches.collect())
+    }
+
+    pub(super) fn after_base_reduction(&mut self, branches: &[SearchBranch]) -> Stage {
+        let base = self.hypotheses.base_evidence();
+        let mut gains = vec![None; self.task.reductions.len()];
+        for branch in branches {
+            if let (Some(k), Some(fitted)) = (branch.reduction, branch.search.base_fit()) {
+                gains[k] = Some(base - fitted.log_evidence);
+            }
+        }
+        self.hypotheses.gains = gains;
+        self.beam_search(1)
+    }
+
+    /// Searches one more effect beyond the best combinations of a size, unless the library fits.
+    fn beam_search(&mut self, size: usize) -> Stage {
+        let hypotheses = &self.hypotheses;
+        let best: Vec<&EffectCombination> = hypotheses
+            .combinations
+            .iter()
+            .filter(|c| c.effects.len() == size && c.log_bayes_factor > DETECTED)
+            .take(BEAM)
+            .collect();
+        let leaves_misfit = hypotheses
+            .chi_square(&self.task.likelihood)
+            .is_none_or(|chi| chi.p() < FURTHER_EFFECT);
+        if size >= self.task.max_effects || best.is_empty() || !leaves_misfit {
+            return self.backward_elimination();
+        }
+        let branches = best.into_iter().map(|combination| {
+            let others: Vec<usize> = (0..self.task.library.len())
+                .filter(|k| !combination.effects.contains(k))
+                .collect();
+            let candidates: Vec<_> = others.iter().map(|&k| self.task.library[k].clone()).collect();
+            let base = FittedModel {
+                fit: combination.fit.clone(),
+                log_evidence: hypotheses.base_evidence() + combination.log_bayes_factor,
+            };
+            let likelihood = self.task.likelihood.clone();
+            let seed = self.task.settings.seed;
+            let search = EffectSearch::beyond(base, likelihood, &candidates, &QUICK, seed);
+            SearchBranch::new(combination.effects.clone(), others, search)
+        });
+        Stage::BeamSearch(size, branches.collect())
+    }
+
+    pub(super) fn after_beam_search(&mut self, size: usize, branches: &[SearchBranch]) -> Stage {
+        let base = self.hypotheses.base_evidence();
+        for branch in branches {
+            let begun = branch
+                .search
+                .base_fit()
+                .map_or(0.0, |own| own.log_evidence - base);
+            self.add_combinations(branch, begun);
+        }
+        let has_grown = self
+            .hypotheses
+            .best()
+            .is_some_and(|best| best.effects.len() > size);
+        if has_grown {
+            self.beam_search(size + 1)
+        } else {
+            self.backward_elimination()
+        }
+    }
+
+    /// Fits the best combination without each of its effects, from its own mode: later effects may have made an earlier one
+    /// redundant.
+    fn backward_elimination(&mut self) -> Stage {
+        let Some(best) = self.hypotheses.best().filter(|best| best.effects.len() > 1) else {
+            return self.curves();
+        };
+        let branches = best.effects.iter().map(|&dropped| {
+            let mut frame = NormalFrame::base(&self.task.prior, self.task.settings.least_difference);
+            let (own, mut rest) = best.fit.point.position.split_at(self.task.prior.len());
+            let mut start = own.to_vec();
+            let mut effects = Vec::new();
+            for &k in &best.effects {
+                let candidate = &self.hypotheses.candidates[k];
+                let (its, others) = rest.split_at(candidate.parameters.len());
+                rest = others;
+                if k != dropped {
+                    frame = frame.with(candidate);
+                    start.extend_from_slice(its);
+                    effects.push(k);
+                }
+            }
+            let seed = self.task.settings.seed;
+            let search = EffectSearch::refit(frame, start, self.task.likelihood.clone(), seed);
+            SearchBranch::new(effects, Vec::new(), search)
+        });
+        Stage::BackwardElimination(branches.collect())
+    }
+
+    pub(super) fn after_backward_elimination(&mut self, branches: &[SearchBranch]) -> Stage {
+        let base = self.hypotheses.base_evidence();
+        for branch in branches {
+            if let Some(fitted) = branch.search.base_fit() {
+                self.hypotheses.add(EffectCombination {
+                    effects: branch.effects.clone(),
+                    log_bayes_factor: fitted.log_evidence - base,
+                    fit: fitted.fit.clone(),
+                });
+            }
+        }
+        self.curves()
+    }
+
+    /// Keeps the results of a branch: all single effects, and the combinations that improve detectably.
+    fn add_combinations(&mut self, branch: &SearchBranch, begun: f64) {
+        for (candidate, ranked) in branch.ranked() {
+            let improves = branch.effects.is_empty() || ranked.log_bayes_factor > DETECTED;
+            let own = ranked.candidate.and_then(|k| branch.search.fit_of(k));
+            if let (true, Some(fit)) = (improves, own) {
+                let mut effects = branch.effects.clone();
+                effects.push(candidate);
+                self.hypotheses.add(EffectCombination {
+                    effects,
+                    log_bayes_factor: begun + ranked.log_bayes_factor,
+                    fit: fit.clone(),
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Combinations of effects and laws outside the library, found so far.
+
+use crate::candidate::Candidate;
+use crate::chi_square::FitChiSquare;
+use crate::effect_search::ranking::EffectRanking;
+use crate::laplace::fit::{FittedModel, LaplaceFit};
+use crate::probability::DETECTED;
+use statistics::likelihood::Likelihood;
+
+/// Cost of each effect after the first \[nats\]: a bound of the gain by choosing from the library.
+const COST_OF_CHOICE: f64 = 5.0;
+
+/// The results of the stages so far.
+#[derive(Debug, Clone)]
+pub(super) struct Hypotheses {
+    /// All candidates of the task.
+    pub(super) candidates: Vec<Candidate>,
+    /// The base's fit.
+    pub(super) base: Option<FittedModel>,
+    /// The search for one effect.
+    pub(super) ranking: EffectRanking,
+    /// Combinations by falling Bayes factor, single effects among them.
+    pub(super) combinations: Vec<EffectCombination>,
+    /// Log Bayes factor of the base over itself without each effect that may be dropped; `None` where that cannot be fitted.
+    pub(super) gains: Vec<Option<f64>>,
+    /// Laws outside the library by falling Bayes factor, one for each quantity and variable; `None`: not searched.
+    pub(super) laws: Option<Vec<FittedLaw>>,
+    /// The law that passed the cross-validation.
+    pub(super) confirmed: Option<usize>,
+}
+
+/// Effects that act together.
+#[derive(Debug, Clone)]
+pub(super) struct EffectCombination {
+    /// In the order in which their parameters follow the base's.
+    pub(super) effects: Vec<usize>,
+    /// Over the base.
+    pub(super) log_bayes_factor: f64,
+    pub(super) fit: LaplaceFit,
+}
+
+/// A fitted law outside the library.
+#[derive(Debug, Clone)]
+pub(super) struct FittedLaw {
+    /// Index of the law in the task.
+    pub(super) law: usize,
+    /// Its best description: a form, or the curve.
+    pub(super) candidate: usize,
+    pub(super) log_bayes_factor: f64,
+    /// Of the mean evidence of curve and forms.
+    pub(super) mean_log_bayes_factor: f64,
+    pub(super) fit: LaplaceFit,
+    /// Log predictive density of the left-out data over that of the base and of the library's best combination.
+    pub(super) left_out: Option<[f64; 2]>,
+}
+
+impl Hypotheses {
+    pub(super) fn new(candidates: Vec<Candidate>) -> Self {
+        Self {
+            candidates,
+            base: None,
+            ranking: EffectRanking::default(),
+            combinations: Vec::new(),
+            gains: Vec::new(),
+            laws: None,
+            confirmed: None,
+        }
+    }
+
+    /// The base's fit.
+    pub(super) fn base_fit(&self) -> Option<&LaplaceFit> {
+        self.base.as_ref().map(|base| &base.fit)
+    }
+
+    /// Log evidence of the base; 0 before it is fitted.
+    pub(super) fn base_evidence(&self) -> f64 {
+        self.base.as_ref().map_or(0.0, |base| base.log_evidence)
+    }
+
+    /// Adds a combination unless the same one has more evidence already.
+    pub(super) fn add(&mut self, combination: EffectCombination) {
+        let key = |combination: &EffectCombination| {
+            let mut effects = combination.effects.clone();
+            effects.sort_unstable();
+            effects
+        };
+        let same = self
+            .combinations
+            .iter_mut()
+            .find(|other| key(other) == key(&combination));
+        match same {
+            Some(other) if other.log_bayes_factor < combination.log_bayes_factor => *other = combination,
+            Some(_) => {}
+            None => self.combinations.push(combination),
+        }
+        self.combinations
+            .sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
+    }
+
+    /// The best combination, each effect after the first at its cost.
+    pub(super) fn best(&self) -> Option<&EffectCombination> {
+        let score =
+            |c: &EffectCombination| c.log_bayes_factor - COST_OF_CHOICE * (c.effects.len() as f64 - 1.0);
+        self.combinations
+            .iter()
+            .reduce(|best, c| if score(c) > score(best) { c } else { best })
+    }
+
+    /// The best combination, if it is a detection.
+    pub(super) fn detected(&self) -> Option<&EffectCombination> {
+        self.best().filter(|best| best.log_bayes_factor > DETECTED)
+    }
+
+    /// A single effect.
+    pub(super) fn single(&self, candidate: usize) -> Option<&EffectCombination> {
+        self.combinations.iter().find(|c| c.effects == [candidate])
+    }
+
+    /// The law that passed the cross-validation.
+    pub(super) fn confirmed_law(&self) -> Option<&FittedLaw> {
+        Some(&self.laws.as_ref()?[self.confirmed?])
+    }
+
+    /// Goodness of fit of the detected combination, otherwise of the base.
+    pub(super) fn chi_square(&self, likelihood: &Likelihood) -> Option<FitChiSquare> {
+        let best = self.detected().map(|best| &best.fit);
+        FitChiSquare::of(best.or(self.base_fit())?, likelihood)
+    }
+}

@@ -1,0 +1,29 @@
+//! The whole search: one effect, combinations, laws outside the library, and the runs to make next.
+//!
+//! 1. Single effects: [`EffectSearch`](crate::EffectSearch) over the library.
+//! 2. Base reduction: the model without each of its own effects.
+//! 3. Beam search: quick searches for one more effect beyond the best combinations, where these leave misfit.
+//! 4. Backward elimination: the best combination without each of its effects.
+//! 5. Laws outside the library, where it leaves misfit: curves, each of one quantity along one variable, then simple forms of the best.
+//! 6. Cross-validation of a law: levels of the design are left out and predicted.
+//! 7. Next runs: the information of runs that the rig could make on the explanations that remain.
+//!
+//! # Layout
+//! - `discovery`: the interface. `query`: what the model is asked. `branch`: a search for one effect that is part of this one.
+//! - `stage`: the stages. `state`: task and hypotheses. `effects`, `laws`: from one stage to the next.
+//! - `hypotheses`: combinations and laws found so far. `weighing`: their probabilities. `verdict`, `conclusion`: the result.
+//! - `cross_validation`: fits without some of the data. `next_run`: the information of runs not yet made.
+
+mod branch;
+pub(crate) mod conclusion;
+mod cross_validation;
+pub(crate) mod discovery;
+mod effects;
+mod hypotheses;
+mod laws;
+pub(crate) mod next_run;
+pub(crate) mod query;
+mod stage;
+mod state;
+pub(crate) mod verdict;
+mod weighing;

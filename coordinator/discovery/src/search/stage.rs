@@ -1,0 +1,61 @@
+//! The stages of a search.
+
+use crate::search::branch::SearchBranch;
+use crate::search::conclusion::Conclusion;
+use crate::search::cross_validation::CrossValidation;
+use crate::search::next_run::RunSelection;
+use crate::search::query::Query;
+use inference::InferenceFailure;
+
+/// A stage of a search.
+#[derive(Debug, Clone)]
+pub(super) enum Stage {
+    SingleEffects(SearchBranch),
+    BaseReduction(Vec<SearchBranch>),
+    /// Beyond combinations of so many effects.
+    BeamSearch(usize, Vec<SearchBranch>),
+    BackwardElimination(Vec<SearchBranch>),
+    Curves(SearchBranch),
+    Forms(SearchBranch),
+    /// Of the law of this rank.
+    CrossValidation(usize, CrossValidation),
+    NextRuns(RunSelection),
+    Done(Box<Conclusion>),
+    Failed(InferenceFailure),
+}
+
+impl Stage {
+    /// The queries of its next round; none once it is complete.
+    pub(super) fn queries(&mut self) -> Vec<Query> {
+        match self {
+            Self::SingleEffects(branch) | Self::Curves(branch) | Self::Forms(branch) => branch.queries(),
+            Self::BaseReduction(branches)
+            | Self::BeamSearch(_, branches)
+            | Self::BackwardElimination(branches) => {
+                branches.iter().flat_map(SearchBranch::queries).collect()
+            }
+            Self::CrossValidation(_, validation) => validation.queries(),
+            Self::NextRuns(runs) => runs.queries(),
+            Self::Done(_) | Self::Failed(_) => Vec::new(),
+        }
+    }
+
+    /// Takes the answers of a round.
+    pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
+        match self {
+            Self::SingleEffects(branch) | Self::Curves(branch) | Self::Forms(branch) => branch.take(answers),
+            Self::BaseReduction(branches)
+            | Self::BeamSearch(_, branches)
+            | Self::BackwardElimination(branches) => {
+                let mut answers = answers.into_iter();
+                for branch in branches {
+                    let count = branch.queries().len();
+                    branch.take(answers.by_ref().take(count).collect());
+                }
+            }
+            Self::CrossValidation(_, validation) => validation.take(answers),
+            Self::NextRuns(runs) => runs.take(answers),
+            Self::Done(_) | Self::Failed(_) => {}
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! The verdict of a search.
+
+use crate::chi_square::FitChiSquare;
+use crate::probability::DETECTED;
+use crate::search::hypotheses::{FittedLaw, Hypotheses};
+use crate::search::weighing::Weighing;
+
+/// A class or an effect with more probability is named.
+const NAMED: f64 = 0.9;
+
+/// What the data support.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SearchVerdict {
+    /// No explanation beats the base.
+    NothingDetectable,
+    /// This candidate is missing.
+    Named(usize),
+    /// One of the candidates of this class, which the data cannot distinguish, is missing.
+    Class(usize),
+    /// A law outside the library is missing.
+    NotInLibrary,
+    /// Something is missing, and the data do not decide what.
+    Undecided,
+}
+
+impl SearchVerdict {
+    /// # Arguments
+    /// - `chi_square`: of the library's best fit. `law`: one that passed the cross-validation and explains the misfit.
+    pub(super) fn new(
+        weighing: &Weighing,
+        hypotheses: &Hypotheses,
+        chi_square: Option<FitChiSquare>,
+        law: Option<&FittedLaw>,
+    ) -> Self {
+        let effects = &weighing.ranking.effects;
+        let library = hypotheses.best().map_or(0.0, |best| best.log_bayes_factor);
+        let detected = library > DETECTED;
+        let is_wrong = chi_square.is_some_and(|chi| chi.is_wrong());
+        let probability = weighing
+            .not_in_library
+            .map_or(0.0, |(_, probability)| probability);
+        if let Some(law) = law
+            && (is_wrong || law.log_bayes_factor - library.max(0.0) > DETECTED)
+            // Without a detection in the library one of many laws may fit by chance; the probability accounts for their number.
+            && probability > if detected { 0.5 } else { NAMED }
+        {
+            return Self::NotInLibrary;
+        }
+        if is_wrong {
+            return Self::Undecided;
+        }
+        if !detected {
+            return Self::NothingDetectable;
+        }
+        let best = effects
+            .iter()
+            .reduce(|a, b| if b.probability > a.probability { b } else { a });
+        match best {
+            // Where nothing missing is the most probable, no effect is claimed.
+            Some(best) if best.probability > NAMED || best.candidate.is_none() => {
+                best.candidate.map_or(Self::NothingDetectable, Self::Named)
+            }
+            Some(_) => {
+                let classes = effects.iter().map(|e| e.class).max().unwrap_or(0);
+                let class = (1..=classes).find(|&class| weighing.ranking.of_class(class) > NAMED);
+                class.map_or(Self::Undecided, Self::Class)
+            }
+            None => Self::NothingDetectable,
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! The task of a search: a model, its data and the candidates.
+
+use crate::candidate::Candidate;
+use crate::settings::SearchSettings;
+use statistics::likelihood::Likelihood;
+use statistics::prior::Marginal;
+
+/// A search for what a model is missing.
+#[derive(Debug, Clone)]
+pub struct SearchTask {
+    /// Priors of the model's parameters, independent; inferred noise sds are among them.
+    pub prior: Vec<Marginal>,
+    /// The data.
+    pub likelihood: Likelihood,
+    /// The effects that may be missing.
+    pub library: Vec<Candidate>,
+    /// Laws outside the library.
+    pub laws: Vec<LawCandidate>,
+    /// The model without one of its effects, for each effect that may be dropped.
+    pub reductions: Vec<Reduction>,
+    /// The data of each level of the design, left out together in the cross-validation.
+    pub levels: Vec<Vec<usize>>,
+    /// Runs that the rig could make.
+    pub proposed: ProposedRuns,
+    /// Most effects in a combination.
+    pub max_effects: usize,
+    /// Starts, seed and differences.
+    pub settings: SearchSettings,
+}
+
+/// A quantity that may depend on a variable in a way that no effect of the library has.
+#[derive(Debug, Clone)]
+pub struct LawCandidate {
+    /// The dependence as a curve: every parameter is the strength of a knot.
+    pub curve: Candidate,
+    /// The dependence in simple forms.
+    pub forms: Vec<Candidate>,
+    /// Whether it changes a measured channel and not a stress: a description, which yields to an explanation.
+    pub is_description: bool,
+}
+
+/// The model without one of its effects.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Reduction {
+    /// The parameters of the model that remain, by index.
+    pub parameters: Vec<usize>,
+}
+
+/// Runs that could be made next.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ProposedRuns {
+    /// Their number.
+    pub runs: usize,
+    /// The group of each run; of similar runs, which form a group, at most one is proposed.
+    pub groups: Vec<usize>,
+    /// Noise sd of each measured channel, in its unit.
+    pub noise_sds: Vec<f64>,
+}
+
+impl ProposedRuns {
+    /// Number of predicted values: each channel of the first run, then of the next.
+    pub(crate) fn values(&self) -> usize {
+        self.runs * self.noise_sds.len()
+    }
+}
+
+impl SearchTask {
+    /// Every candidate: the library, then the curve and the forms of each law. A candidate is named by its index here.
+    #[must_use]
+    pub fn candidates(&self) -> Vec<Candidate> {
+        let outside = self
+            .laws
+            .iter()
+            .flat_map(|law| std::iter::once(&law.curve).chain(&law.forms));
+        self.library.iter().chain(outside).cloned().collect()
+    }
+
+    /// The index of a law's curve among the candidates.
+    pub(crate) fn curve(&self, law: usize) -> usize {
+        let before = self.laws[..law].iter().map(|law| 1 + law.forms.len());
+        self.library.len() + before.sum::<usize>()
+    }
+
+    /// The indices of a law's forms among the candidates.
+    pub(crate) fn forms(&self, law: usize) -> std::ops::Range<usize> {
+        let first = self.curve(law) + 1;
+        first..first + self.laws[law].forms.len()
+    }
+}

@@ -1,0 +1,348 @@
+//! The whole search, on models that are linear in all but a threshold, with known truth.
+
+use discovery::{
+    Candidate, Conclusion, DETECTED, DiscoverySearch, LawCandidate, ProposedRuns, QueriedModel, Query,
+    Reduction, SearchSettings, SearchTask, SearchVerdict,
+};
+use inference::TellProgress;
+use statistics::rng::Stream;
+use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal};
+
+const SD: f64 = 0.1;
+/// Eight levels of x, each with three values of w.
+const LEVELS: usize = 8;
+const OF_LEVEL: usize = 3;
+const DATA: usize = LEVELS * OF_LEVEL;
+
+fn x(i: usize) -> f64 {
+    (i / OF_LEVEL) as f64 / (LEVELS - 1) as f64 * 2.0 - 1.0
+}
+
+fn w(i: usize) -> f64 {
+    (i % OF_LEVEL) as f64 - 1.0
+}
+
+fn normal(sd: f64) -> Marginal {
+    Marginal::new(Distribution::Normal { mean: 0.0, sd }, None).unwrap()
+}
+
+fn candidate(name: &str, parameters: Vec<Marginal>, strengths: Vec<usize>) -> Candidate {
+    Candidate {
+        name: name.into(),
+        parameters,
+        strengths,
+        neutral: 0.0,
+    }
+}
+
+fn curve(name: &str) -> Candidate {
+    candidate(name, vec![normal(1.0); 5], (0..5).collect())
+}
+
+/// Effects of the library: three powers of x, and one that the base absorbs.
+const SQUARE: usize = 0;
+const CUBE: usize = 1;
+const WIDTH: usize = 2;
+const CONSTANT: usize = 3;
+const LIBRARY: usize = 4;
+/// Laws outside it: a curve over x with a step, a curve over w with a line.
+const OVER_X: usize = LIBRARY;
+const STEP: usize = LIBRARY + 1;
+const OVER_W: usize = LIBRARY + 2;
+
+fn library() -> Vec<Candidate> {
+    let names = ["square", "cube", "width", "constant"];
+    names
+        .map(|name| candidate(name, vec![normal(1.0)], vec![0]))
+        .to_vec()
+}
+
+fn laws() -> Vec<LawCandidate> {
+    let threshold = Distribution::Uniform {
+        lower: -1.0,
+        upper: 1.0,
+    };
+    let threshold = Marginal::new(threshold, None).unwrap();
+    vec![
+        LawCandidate {
+            curve: curve("x"),
+            forms: vec![candidate("x step", vec![normal(1.0), threshold], vec![0])],
+            is_description: false,
+        },
+        LawCandidate {
+            curve: curve("w"),
+            forms: vec![candidate("w line", vec![normal(1.0)], vec![0])],
+            is_description: false,
+        },
+    ]
+}
+
+/// Hat functions of five knots from -1 to 1.
+fn hat(k: usize, x: f64) -> f64 {
+    let knot = k as f64 / 2.0 - 1.0;
+    (1.0 - 2.0 * (x - knot).abs()).max(0.0)
+}
+
+/// What a candidate adds at x and w.
+fn added(k: usize, own: &[f64], x: f64, w: f64) -> f64 {
+    match k {
+        SQUARE => own[0] * x * x,
+        CUBE => own[0] * x * x * x,
+        WIDTH => own[0] * w * x,
+        CONSTANT => own[0],
+        OVER_X => (0..5).map(|j| own[j] * hat(j, x)).sum(),
+        STEP => own[0] * f64::from(u8::from(x > own[1])),
+        OVER_W => (0..5).map(|j| own[j] * hat(j, w)).sum(),
+        _ => own[0] * w,
+    }
+}
+
+fn length(k: usize) -> usize {
+    match k {
+        OVER_X | OVER_W => 5,
+        STEP => 2,
+        _ => 1,
+    }
+}
+
+/// The prediction of a model with these effects.
+fn predict(effects: &[usize], theta: &[f64], x: f64, w: f64) -> f64 {
+    let mut value = theta[0] + theta[1] * x;
+    let mut own = &theta[2..];
+    for &k in effects {
+        value += added(k, own, x, w);
+        own = &own[length(k)..];
+    }
+    value
+}
+
+/// Proposed runs, at x = 0 and x = 2, w = 0.
+const PROPOSED: [f64; 2] = [0.0, 2.0];
+
+fn answer(query: &Query) -> Vec<f64> {
+    let (effects, theta) = match &query.model {
+        QueriedModel::With(effects) => (effects.clone(), query.theta.clone()),
+        // The base's last parameter is a cube of its own in one test.
+        QueriedModel::Without(_) => (Vec::new(), query.theta.clone()),
+    };
+    if query.is_proposed {
+        return PROPOSED
+            .iter()
+            .map(|&x| predict(&effects, &theta, x, 0.0))
+            .collect();
+    }
+    (0..DATA).map(|i| predict(&effects, &theta, x(i), w(i))).collect()
+}
+
+/// Data of a truth, with noise that is the same in every test.
+fn measured(truth: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    let noise = Stream::new(7, 0, 0, 0).normals(DATA);
+    (0..DATA).map(|i| truth(x(i), w(i)) + SD * noise[i]).collect()
+}
+
+fn task(values: &[f64]) -> SearchTask {
+    let datum = |(run, &value): (usize, &f64)| Datum {
+        run,
+        channel: 0,
+        value,
+        sd: ErrorSd::Known(SD),
+    };
+    SearchTask {
+        prior: vec![normal(1.0), normal(1.0)],
+        likelihood: Likelihood::new(values.iter().enumerate().map(datum).collect()).unwrap(),
+        library: library(),
+        laws: laws(),
+        reductions: Vec::new(),
+        levels: (0..LEVELS)
+            .map(|level| (level * OF_LEVEL..(level + 1) * OF_LEVEL).collect())
+            .collect(),
+        proposed: ProposedRuns {
+            runs: PROPOSED.len(),
+            groups: (0..PROPOSED.len()).collect(),
+            noise_sds: vec![SD],
+        },
+        max_effects: 3,
+        settings: SearchSettings::default(),
+    }
+}
+
+/// Runs a search to its end, the last query of each round told first if `backwards`.
+fn search(task: SearchTask, backwards: bool, answer: impl Fn(&Query) -> Vec<f64>) -> Conclusion {
+    let mut search = DiscoverySearch::new(task).unwrap();
+    loop {
+        if let Some(found) = search.conclusion() {
+            return found.clone();
+        }
+        let queries: Vec<Query> = (0..search.pending().len())
+            .map(|i| search.query(i).unwrap().clone())
+            .collect();
+        let mut order: Vec<usize> = (0..queries.len()).collect();
+        if backwards {
+            order.reverse();
+        }
+        for index in order {
+            let progress = search.tell(index, Some(&answer(&queries[index]))).unwrap();
+            assert!(!matches!(progress, TellProgress::Failed(_)));
+        }
+    }
+}
+
+fn found(truth: impl Fn(f64, f64) -> f64) -> Conclusion {
+    search(task(&measured(truth)), false, answer)
+}
+
+#[test]
+fn where_nothing_is_hidden_nothing_is_claimed_and_no_law_is_searched() {
+    let found = found(|x, _| 0.3 + 0.5 * x);
+    assert_eq!(found.verdict, SearchVerdict::NothingDetectable);
+    assert!(found.not_in_library.is_none() && found.outside.is_none());
+    assert!(found.next_runs.is_empty());
+    assert_eq!(found.ranking.cannot_exclude, [CONSTANT]);
+}
+
+#[test]
+fn one_effect_is_named() {
+    let found = found(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
+    assert_eq!(found.verdict, SearchVerdict::Named(SQUARE));
+    assert_eq!(found.combination, [SQUARE]);
+    assert!(found.chi_square.unwrap().p() < 0.001 && found.chi_square_best.unwrap().p() > 0.05);
+}
+
+#[test]
+fn two_effects_are_found_together() {
+    let found = found(|x, w| 0.3 + 0.8 * x * x + 0.7 * w * x);
+    let mut best = found.combination.clone();
+    best.sort_unstable();
+    assert_eq!(best, [SQUARE, WIDTH]);
+    assert!(
+        matches!(found.verdict, SearchVerdict::Named(SQUARE | WIDTH)),
+        "{:?}",
+        found.verdict
+    );
+    let sum: f64 = found.ranking.effects.iter().map(|j| j.probability).sum();
+    let outside = found.not_in_library.map_or(0.0, |(_, p)| p);
+    assert!((sum + outside - 1.0).abs() < 1e-9, "{sum} {outside}");
+}
+
+#[test]
+fn a_step_outside_the_library_is_found_with_its_form() {
+    let found = found(|x, _| 0.3 + 0.5 * x + if x > 0.3 { 0.9 } else { 0.0 });
+    assert_eq!(found.verdict, SearchVerdict::NotInLibrary);
+    let law = found.outside.unwrap();
+    assert_eq!((law.law, law.candidate), (0, STEP));
+    assert!((law.parameters[0] - 0.9).abs() < 0.15, "{:?}", law.parameters);
+    assert!(
+        law.left_out_nats.iter().all(|nats| *nats > 0.0),
+        "{:?}",
+        law.left_out_nats
+    );
+}
+
+#[test]
+fn a_law_that_fails_the_cross_validation_is_not_claimed() {
+    // One level is off by itself: a curve follows it, and predicts nothing.
+    let found = found(|x, _| 0.3 + 0.5 * x + if (x - 1.0 / 7.0).abs() < 0.01 { 1.2 } else { 0.0 });
+    assert_eq!(found.verdict, SearchVerdict::Undecided);
+    assert!(found.outside.is_none() && found.not_in_library.is_some());
+}
+
+#[test]
+fn open_effects_are_distinguished_by_the_run_where_their_predictions_differ() {
+    // Square and cube are hard to tell apart on x >= 0 alone.
+    let mut task = task(&measured(|x, _| 0.3 + 0.5 * x + 2.0 * x * x));
+    let half: Vec<usize> = (DATA / 2..DATA).collect();
+    let (part, _) = task.likelihood.subset(&half).unwrap();
+    task.likelihood = part;
+    task.levels.clear();
+    let found = search(task, false, |query| {
+        let all = answer(query);
+        if query.is_proposed {
+            all
+        } else {
+            all[DATA / 2..].to_vec()
+        }
+    });
+    assert!(!matches!(
+        found.verdict,
+        SearchVerdict::NothingDetectable | SearchVerdict::NotInLibrary
+    ));
+    let first = found.next_runs.first().expect("something is open");
+    assert_eq!(first.run, 1, "{:?}", found.next_runs);
+    assert!(first.information_nats > 0.1 && first.separates.len() > 1);
+}
+
+#[test]
+fn an_effect_of_the_model_without_evidence_is_redundant() {
+    // The base has a square of its own, which the truth has or has not.
+    let gain = |square: f64| {
+        let mut task = task(&measured(|x, _| 0.3 + 0.5 * x + square * x * x));
+        task.prior.push(normal(1.0));
+        task.library.remove(SQUARE);
+        task.laws.clear();
+        task.reductions = vec![Reduction {
+            parameters: vec![0, 1],
+        }];
+        let found = search(task, false, |query| {
+            let value = |i: usize| {
+                let t = &query.theta;
+                let own = match &query.model {
+                    QueriedModel::Without(_) => 0.0,
+                    QueriedModel::With(effects) => {
+                        let shifted: Vec<usize> = effects.iter().map(|k| k + 1).collect();
+                        let extra = shifted.first().map_or(0.0, |&k| added(k, &t[3..], x(i), w(i)));
+                        t[2] * x(i) * x(i) + extra
+                    }
+                };
+                t[0] + t[1] * x(i) + own
+            };
+            if query.is_proposed {
+                vec![0.0; 2]
+            } else {
+                (0..DATA).map(value).collect()
+            }
+        });
+        let gain = found.gains[0].unwrap();
+        let redundant: Vec<usize> = found.redundant().collect();
+        assert_eq!(redundant, if gain < DETECTED { vec![0] } else { Vec::new() });
+        gain
+    };
+    assert!(gain(0.8) > 20.0 && gain(0.0) < 0.0, "{} {}", gain(0.8), gain(0.0));
+}
+
+#[test]
+fn the_order_within_a_round_does_not_matter() {
+    let values = measured(|x, _| 0.3 + 0.5 * x + if x > 0.3 { 0.9 } else { 0.0 });
+    let forwards = search(task(&values), false, answer);
+    assert_eq!(forwards, search(task(&values), true, answer));
+}
+
+#[test]
+fn inferred_noise_is_fitted_too() {
+    let values = measured(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
+    let mut task = task(&values);
+    task.prior.push(
+        Marginal::new(
+            Distribution::Lognormal {
+                median: 0.2,
+                factor: 3.0,
+            },
+            None,
+        )
+        .unwrap(),
+    );
+    let data = task.likelihood.data().iter().map(|d| Datum {
+        sd: ErrorSd::Inferred { parameter: 2 },
+        ..*d
+    });
+    task.likelihood = Likelihood::new(data.collect()).unwrap();
+    let found = search(task, false, |query| {
+        let mut query = query.clone();
+        query.theta.remove(2);
+        answer(&query)
+    });
+    assert_eq!(found.verdict, SearchVerdict::Named(SQUARE));
+    assert!(
+        found.chi_square.is_none(),
+        "the noise was inferred from the misfit"
+    );
+}

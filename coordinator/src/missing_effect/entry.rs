@@ -1,0 +1,60 @@
+//! The candidates of a search with their additions to the job.
+
+use discovery::Candidate;
+use formula::Effect;
+use job::FreeParameter;
+
+use super::candidate::CandidateEffect;
+use super::law::dependence::Dependence;
+use super::law::form::LawForm;
+
+/// A candidate with its addition to the job.
+#[derive(Debug, Clone)]
+pub(super) struct CandidateEntry {
+    pub(super) effect: CandidateEffect,
+    pub(super) candidate: Candidate,
+    /// Full names of its free parameters, in the candidate's order.
+    pub(super) names: Vec<String>,
+}
+
+/// A dependence with its candidates.
+#[derive(Debug, Clone)]
+pub(super) struct LawEntry {
+    pub(super) dependence: Dependence,
+    pub(super) curve: CandidateEntry,
+    pub(super) forms: Vec<(LawForm, CandidateEntry)>,
+}
+
+impl CandidateEntry {
+    /// The candidate with the free parameters that an effect brings; `None` without a free strength.
+    ///
+    /// # Arguments
+    /// - `is_curve`: every strength counts. Otherwise the first one does, and the others shape the effect.
+    pub(super) fn new(
+        candidate: CandidateEffect,
+        effect: &Effect,
+        free: Vec<FreeParameter>,
+        is_curve: bool,
+    ) -> Option<Self> {
+        let strengths = free.iter().enumerate().filter_map(|(k, parameter)| {
+            let own = parameter.name.split('.').nth(1)?;
+            let neutral = effect.parameters.iter().find(|p| p.name == own)?.neutral?;
+            Some((k, neutral))
+        });
+        let mut strengths: Vec<(usize, f64)> = strengths.collect();
+        if !is_curve {
+            strengths.truncate(1);
+        }
+        let &(_, neutral) = strengths.first()?;
+        Some(Self {
+            candidate: Candidate {
+                name: candidate.name.clone(),
+                parameters: free.iter().map(|p| p.marginal.clone()).collect(),
+                strengths: strengths.into_iter().map(|(k, _)| k).collect(),
+                neutral,
+            },
+            names: free.into_iter().map(|p| p.name).collect(),
+            effect: candidate,
+        })
+    }
+}

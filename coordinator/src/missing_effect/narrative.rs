@@ -1,0 +1,101 @@
+//! The result of a search in one sentence.
+
+use discovery::{Conclusion, DETECTED, SearchVerdict};
+use record::{JudgedEffect, NONE, NOT_IN_LIBRARY, Outside};
+
+use super::models::SearchModels;
+
+/// Members of a class with less probability are not listed.
+const LEAST_LISTED: f64 = 0.005;
+/// An effect with a smaller log Bayes factor is not worth mentioning \[nats\].
+const LEAST_MENTIONED: f64 = 0.05;
+/// Most names in a sentence.
+const NAMES: usize = 6;
+
+/// The verdict in a sentence for a test engineer.
+pub(super) fn sentence(
+    models: &SearchModels,
+    conclusion: &Conclusion,
+    effects: &[JudgedEffect],
+    outside: Option<&Outside>,
+) -> String {
+    let kind = models.base.model_words();
+    let library = || {
+        effects
+            .iter()
+            .filter(|e| e.name != NONE && e.name != NOT_IN_LIBRARY)
+    };
+    match (conclusion.verdict, outside) {
+        (SearchVerdict::NothingDetectable, _) => {
+            let best = library().reduce(|a, b| {
+                if b.log_bayes_factor > a.log_bayes_factor {
+                    b
+                } else {
+                    a
+                }
+            });
+            let near = best.filter(|best| best.log_bayes_factor > LEAST_MENTIONED);
+            let nearest = near.map_or(String::new(), |best| {
+                format!("; {} comes closest with {:.1}", best.name, best.log_bayes_factor)
+            });
+            let is_beaten = best.is_some_and(|best| best.log_bayes_factor > DETECTED);
+            let reason = match effects.iter().find(|e| e.name == NONE).filter(|_| is_beaten) {
+                Some(none) => format!(
+                    "the most probable explanation is that {kind} misses nothing ({:.2})",
+                    none.probability
+                ),
+                None => format!("no effect of the library beats {kind} by more than {DETECTED:.0} nats"),
+            };
+            format!("nothing detectable with these data: {reason}{nearest}")
+        }
+        (SearchVerdict::Named(k), _) => {
+            let name = models.name(k);
+            let own = effects.iter().find(|e| e.name == name);
+            let summary = formula::catalogue::find(name.split('.').next().unwrap_or_default());
+            format!(
+                "{name} is missing: {} (probability {:.3}, {:.1} nats over {kind})",
+                summary.map_or("", |effect| effect.summary.as_str()),
+                own.map_or(0.0, |e| e.probability),
+                own.map_or(0.0, |e| e.log_bayes_factor),
+            )
+        }
+        (SearchVerdict::Class(class), _) => {
+            let own = || library().filter(|e| e.class as usize == class && e.probability > LEAST_LISTED);
+            format!(
+                "one of {} is missing (joint probability {:.3}); these data cannot distinguish them",
+                list(own().map(|e| e.name.as_str())),
+                own().map(|e| e.probability).sum::<f64>()
+            )
+        }
+        (SearchVerdict::NotInLibrary, Some(law)) => format!(
+            "not in the library: the missing law acts on {} and depends on {}, in the form of a {} ({:.1} nats over {kind}; left-out levels are predicted better by {:.1} nats)",
+            law.acts_on.replace('_', " "),
+            law.depends_on.replace('_', " "),
+            law.form,
+            law.log_bayes_factor,
+            law.left_out_nats[0]
+        ),
+        _ => match conclusion.chi_square_best {
+            Some(chi) if chi.is_wrong() => format!(
+                "the best explanation of the library contradicts the data (chi-square {:.0} with {:.0} degrees of freedom), and these data do not decide what is missing",
+                chi.value, chi.degrees_of_freedom
+            ),
+            _ => {
+                let credible = effects.iter().filter(|e| e.in_credible_set);
+                format!(
+                    "something is missing, and these data do not decide what: the 95 % set is {}",
+                    list(credible.map(|e| e.name.as_str()))
+                )
+            }
+        },
+    }
+}
+
+fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.collect();
+    let shown = names[..names.len().min(NAMES)].join(", ");
+    match names.len().checked_sub(NAMES) {
+        Some(more) if more > 0 => format!("{shown} and {more} more"),
+        _ => shown,
+    }
+}

@@ -1,0 +1,108 @@
+//! A search in progress: its queries as leases take them, and their answers.
+
+use discovery::DiscoverySearch;
+use inference::{Proposal, TellProgress};
+use shared::file::FileError;
+use shared::model::ModelVariant;
+use shared::outcome::Observables;
+
+use super::discovery_record::discovery_record;
+use super::models::SearchModels;
+use record::Discovery;
+
+/// A search in progress.
+#[derive(Debug)]
+pub struct RunningDiscovery {
+    models: SearchModels,
+    search: DiscoverySearch,
+    /// Of each query of the round: the hash of its variant, and the parameters in the variant's order.
+    leases: Vec<(String, Vec<f64>)>,
+}
+
+/// Why a search cannot begin or continue.
+#[derive(Debug, thiserror::Error)]
+pub enum DiscoveryError {
+    /// A model cannot be made.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A candidate is malformed.
+    #[error(transparent)]
+    Candidate(#[from] discovery::CandidateError),
+    /// A result does not fit its query.
+    #[error(transparent)]
+    Tell(#[from] inference::TellError),
+}
+
+impl RunningDiscovery {
+    /// A search whose first round is pending.
+    ///
+    /// # Errors
+    /// [`DiscoveryError`].
+    pub fn new(models: SearchModels) -> Result<Self, DiscoveryError> {
+        let mut running = Self {
+            search: DiscoverySearch::new(models.task())?,
+            models,
+            leases: Vec::new(),
+        };
+        running.prepare()?;
+        Ok(running)
+    }
+
+    fn prepare(&mut self) -> Result<(), FileError> {
+        self.leases.clear();
+        for index in 0..self.search.pending().len() {
+            let Some(query) = self.search.query(index) else {
+                continue;
+            };
+            let (hash, variant) = self.models.variant(query)?.clone();
+            let theta = self.models.model_theta(query, &variant);
+            self.leases.push((hash, theta));
+        }
+        Ok(())
+    }
+
+    /// Number of completed rounds.
+    pub fn round(&self) -> u64 {
+        self.search.round()
+    }
+
+    /// The queries of this round.
+    pub fn pending(&self) -> &[Proposal] {
+        self.search.pending()
+    }
+
+    /// The hash of a query's variant, and its parameters.
+    pub fn lease(&self, particle: usize) -> Option<(&str, &[f64])> {
+        let (hash, theta) = self.leases.get(particle)?;
+        Some((hash, theta))
+    }
+
+    /// The variant of a hash.
+    pub fn variant(&self, hash: &str) -> Option<&ModelVariant> {
+        self.models.of_hash(hash)
+    }
+
+    /// The values that answer a query of this round.
+    pub fn values(&self, particle: usize, observables: &Observables) -> Option<Vec<f64>> {
+        let query = self.search.query(particle)?;
+        Some(self.models.values(query, observables))
+    }
+
+    /// Takes the values that answer a query; `None` where the model rejected the parameters.
+    ///
+    /// # Errors
+    /// [`DiscoveryError`].
+    pub fn tell(&mut self, particle: usize, values: Option<&[f64]>) -> Result<TellProgress, DiscoveryError> {
+        let progress = self.search.tell(particle, values)?;
+        if progress == TellProgress::NextRound {
+            self.prepare()?;
+        }
+        Ok(progress)
+    }
+
+    /// The result; `None` while the search is running.
+    pub fn record(&self) -> Option<Discovery> {
+        let conclusion = self.search.conclusion()?;
+        Some(discovery_record(&self.models, conclusion))
+    }
+}
