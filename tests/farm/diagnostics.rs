@@ -32,7 +32,7 @@ fn a_job_with_nothing_wrong_has_no_flag_and_says_what_it_knows() {
     let (flags, text) = flags(Job::small());
     assert_eq!(flags, [], "{text}");
     for words in [
-        "equilibrium was reached in every stage",
+        "every stage reached equilibrium",
         "the declared errors explain the misfit",
         "the data know n least",
         "torque         slip_x_sled_speed",
@@ -62,7 +62,7 @@ fn shear_that_is_mobilised_late_leaves_a_trend_in_pull_or_torque() {
 #[test]
 fn a_channel_without_information_is_named_with_its_numbers() {
     let (flags, _) = flags(Job::small().in_experiment("torque_n_m = 0.15", "torque_n_m = 20.0"));
-    let words = "torque cannot inform: its error of 20 N m is 14 times what the prior allows it to vary";
+    let words = "torque is uninformative: its total error of 20 N m (noise, discrepancy and shared errors) is 14 times the spread that the prior allows";
     assert_eq!(flags, [("no_information".into(), "torque".into(), words.into())]);
 }
 

@@ -25,7 +25,7 @@ pub struct CalibrationRow {
     pub name: String,
     /// Its job, with the effect files that it names.
     pub job: FileSet,
-    /// Where it stands.
+    /// Its state.
     pub state: CalibrationState,
     /// Why it is paused or failed.
     pub message: Option<String>,
@@ -41,6 +41,6 @@ pub struct CalibrationRow {
     pub equilibrated: Option<bool>,
     /// Evaluations of the sampler.
     pub evaluations: Option<u64>,
-    /// Of these, refused by the model.
+    /// Of these, rejected by the model.
     pub rejected: Option<u64>,
 }

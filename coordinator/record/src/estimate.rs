@@ -1,4 +1,4 @@
-//! What a fit or a search by generations leaves.
+//! Stored result of a fit or a search by generations.
 
 use inference::point_estimate::{Generation, StopReason};
 
@@ -16,9 +16,9 @@ pub struct EstimateRow {
     pub sd: Option<Vec<Option<f64>>>,
     /// Whether each parameter lies at a bound of its prior.
     pub at_bound: Vec<bool>,
-    /// Why the fit or the search ended.
+    /// Why the fit or the search stopped.
     pub stop: StopReason,
-    /// How a search by generations came there.
+    /// Convergence of a search by generations.
     pub history: Vec<Generation>,
 }
 

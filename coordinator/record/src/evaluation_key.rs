@@ -1,4 +1,4 @@
-//! The number that names an evaluation for ever.
+//! The permanent number of an evaluation.
 
 /// Numbers from here on are final draws: the fitted runs of draw k are number 2k, its holdout runs 2k + 1.
 /// Below, they are the sampler's or the fit's.
@@ -7,7 +7,7 @@ pub const PREDICTIONS_FROM: u64 = 1 << 40;
 /// Number of the evaluation that keeps its histories.
 pub const HISTORIES: u64 = 2 * PREDICTIONS_FROM;
 
-/// What an evaluation is for. Its number depends on the job alone, so it is the same after a restart.
+/// Purpose of an evaluation. Its number depends on the job alone, so it is the same after a restart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EvaluationKey {
     /// A proposal of the sampler or the fit: number = round x width + particle, the width of [`AlgorithmSettings::width`].
@@ -19,14 +19,14 @@ pub enum EvaluationKey {
         /// The particle.
         particle: usize,
     },
-    /// What each fitted run felt over time at the likeliest parameters.
+    /// Histories of the fitted runs at the likeliest parameters.
     Histories,
     /// A final draw.
     Prediction {
         /// Position among the draws.
         draw: usize,
-        /// Its holdout runs, or its fitted ones. Apart, so that a holdout run that the model refuses takes no
-        /// fitted one along.
+        /// Its holdout runs, or its fitted ones. Separate, so that a rejected holdout run does
+        /// not reject the fitted ones.
         holdout: bool,
     },
 }

@@ -1,4 +1,4 @@
-//! What the store is told: facts, in the order in which they came about.
+//! Facts that the store receives, in order of occurrence.
 
 use inference::point_estimate::ModeEstimate;
 use inference::{PosteriorSample, StageRecord};
@@ -24,7 +24,7 @@ pub enum Fact {
         calibration: i64,
         /// The evaluation.
         evaluation: u64,
-        /// What must agree.
+        /// Fingerprint that must agree.
         fingerprint: Fingerprint,
         /// Who computed it.
         worker: String,
@@ -56,7 +56,7 @@ pub enum Fact {
     Discovery {
         /// The calibration.
         calibration: i64,
-        /// What it found.
+        /// Its result.
         record: Box<Discovery>,
     },
     /// A calibration changed its state.
@@ -65,7 +65,7 @@ pub enum Fact {
         calibration: i64,
         /// The new state.
         state: CalibrationState,
-        /// Why, where there is something to say.
+        /// The reason, where there is one.
         message: Option<String>,
         /// Wall time spent on the calibration so far `[ms]`.
         busy_ms: u64,
@@ -83,11 +83,11 @@ pub enum Fact {
         calibration: i64,
         /// The evaluation.
         evaluation: u64,
-        /// How many leases of it have failed by now.
+        /// Number of failed leases of it so far.
         attempt: u32,
         /// The machine's worker.
         worker: String,
-        /// What happened.
+        /// The error message.
         message: String,
     },
 }
@@ -99,21 +99,21 @@ pub struct EvaluationRow {
     pub evaluation: u64,
     /// The whole parameter vector, noise parameters included.
     pub theta: Vec<f64>,
-    /// Log-likelihood; `None` where the model refused or nothing was scored.
+    /// Log-likelihood; `None` where the model rejected or nothing was scored.
     pub log_likelihood: Option<f64>,
-    /// What is kept of the result.
+    /// The kept part of the result.
     pub kept: Kept,
-    /// The quasi-static model's values of the fitted measurements, where it was asked.
+    /// The quasi-static model's values of the fitted measurements, where it was evaluated.
     pub coarse: Option<Vec<f64>>,
-    /// Where the subchain ended that was asked for; `theta` is that end.
+    /// End of the requested subchain; `theta` is that end.
     pub end: Option<SubchainEnd>,
-    /// What a second computation must agree with.
+    /// Fingerprint that a second computation must reproduce.
     pub fingerprint: Fingerprint,
     /// Who computed it.
     pub worker: String,
 }
 
-/// What is kept of a result.
+/// The kept part of a result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Kept {
     /// While sampling: the predicted values that the likelihood takes. Enough to
@@ -121,8 +121,8 @@ pub enum Kept {
     Fitted(Vec<f64>),
     /// Of the final draws: everything.
     Whole(Box<Observables>),
-    /// The model refused.
-    Refused(String),
+    /// The model rejected, with its reason.
+    Rejected(String),
 }
 
 /// Two computations of an evaluation must have the same one.

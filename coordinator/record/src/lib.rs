@@ -1,10 +1,10 @@
-//! What a calibration leaves behind, as the store keeps it: the types between calibration, store and results.
+//! Stored rows of a calibration: the types between calibration, store and results.
 //!
 //! # Layout
-//! - [`fact`]: what must survive a restart, in the order in which it came about.
-//! - `evaluation_key`: the number that names an evaluation for ever.
+//! - [`fact`]: what must survive a restart, in order of occurrence.
+//! - `evaluation_key`: the permanent number of an evaluation.
 //! - `calibration`, `sample`, `estimate`: stored rows.
-//! - `replay`: what a restart reads back.
+//! - `replay`: rows that a restart reads back.
 //! - `discovery`: the record of a search for a missing effect.
 
 mod calibration;
@@ -24,4 +24,4 @@ pub use estimate::EstimateRow;
 pub use evaluation_key::{EvaluationKey, HISTORIES, PREDICTIONS_FROM};
 pub use fact::{EvaluationRow, Fact, Fingerprint, Kept};
 pub use replay::{Stored, StoredEvaluation};
-pub use sample::{Prediction, PriorDraw, Sample, StageRow, Subchains};
+pub use sample::{Prediction, PriorDraw, RejectionReason, Sample, StageRow, Subchains};

@@ -1,11 +1,11 @@
-//! What a restart needs of a calibration that is not over.
+//! Stored state that a restart of an unfinished calibration needs.
 
 use std::collections::BTreeMap;
 
 use shared::api::CalibrationState;
 use statistics::SubchainEnd;
 
-/// What the store kept of a calibration that is not over.
+/// Stored state of an unfinished calibration.
 #[derive(Debug, Default)]
 pub struct Stored {
     /// The state that it was left in.
@@ -16,7 +16,7 @@ pub struct Stored {
     pub model_version: Option<String>,
     /// Wall time spent before `[ms]`.
     pub busy_ms: u64,
-    /// Its evaluations by number: parameter vector, log-likelihood, whether the model refused.
+    /// Its evaluations by number: parameter vector, log-likelihood, whether the model rejected.
     pub evaluations: BTreeMap<u64, StoredEvaluation>,
     /// Failed leases by evaluation.
     pub failed: BTreeMap<u64, u32>,
@@ -27,15 +27,15 @@ pub struct Stored {
 pub struct StoredEvaluation {
     /// Parameter vector.
     pub theta: Vec<f64>,
-    /// Log-likelihood; `None` where the model refused or nothing was scored.
+    /// Log-likelihood; `None` where the model rejected or nothing was scored.
     pub log_likelihood: Option<f64>,
-    /// Whether the model refused.
+    /// Whether the model rejected.
     pub rejected: bool,
-    /// The model's values of the fitted measurements; read back for a fit and with a metamodel, which are told
+    /// The model's values of the fitted measurements; read back for a fit and with a metamodel, which need
     /// them.
     pub fitted: Option<Vec<f64>>,
     /// Those of the quasi-static model; read back with a metamodel alone.
     pub coarse: Option<Vec<f64>>,
-    /// Where the subchain ended.
+    /// End of the subchain.
     pub end: Option<SubchainEnd>,
 }

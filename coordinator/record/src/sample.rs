@@ -1,4 +1,4 @@
-//! What a sampler leaves: its stages, its draws, and what the model predicts at them.
+//! Results of a sampler: stages, draws, predictions.
 
 use shared::outcome::Observables;
 
@@ -36,10 +36,22 @@ pub struct StageRow {
 pub struct Sample {
     /// Parameter vector.
     pub theta: Vec<f64>,
-    /// Log-likelihood; `None` where the model refused.
+    /// Log-likelihood; `None` where the model rejected.
     pub log_likelihood: Option<f64>,
     /// Log-density of the prior.
     pub log_prior: f64,
+}
+
+/// Why the model rejected a parameter vector: its kind, a colon, the details.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct RejectionReason(pub String);
+
+impl RejectionReason {
+    /// The part before the colon.
+    pub fn kind(&self) -> &str {
+        self.0.split_once(':').map_or(&self.0, |(kind, _)| kind)
+    }
 }
 
 /// A draw from the prior that a sampler began with.
@@ -47,8 +59,8 @@ pub struct Sample {
 pub struct PriorDraw {
     /// Parameter vector, noise parameters included.
     pub theta: Vec<f64>,
-    /// The predicted values that the likelihood takes, or why the model refused.
-    pub result: Result<Vec<f64>, String>,
+    /// The predicted values that the likelihood takes, or why the model rejected.
+    pub result: Result<Vec<f64>, RejectionReason>,
     /// Leases of it that failed before one succeeded.
     pub faults: u64,
 }
@@ -58,19 +70,19 @@ pub struct PriorDraw {
 pub struct Prediction {
     /// Parameter vector, noise parameters included.
     pub theta: Vec<f64>,
-    /// What the model gave for the fitted runs, or why it refused.
-    pub fit: Result<Observables, String>,
+    /// Observables of the fitted runs, or why the model rejected.
+    pub fit: Result<Observables, RejectionReason>,
     /// The same for the holdout runs, where there are any.
-    pub holdout: Option<Result<Observables, String>>,
+    pub holdout: Option<Result<Observables, RejectionReason>>,
 }
 
-/// What a metamodel did between evaluations.
+/// Counts of a metamodel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Subchains {
-    /// Subchains that were asked for.
+    /// Requested subchains.
     pub subchains: u64,
     /// Moves that they proposed.
     pub moves: u64,
-    /// Subchains that ended elsewhere, where the model was asked.
+    /// Subchains that moved, so that the model was evaluated at their end.
     pub moved: u64,
 }

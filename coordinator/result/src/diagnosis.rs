@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn all_of_it_comes_back_from_json() {
-        for calibration in [fixture::calibration(), fixture::all_refused(), fixture::fit()] {
+        for calibration in [fixture::calibration(), fixture::all_rejected(), fixture::fit()] {
             let diagnostics = calibration.diagnostics(&calibration.comparison());
             let json = serde_json::to_string(&diagnostics).unwrap();
             assert_eq!(serde_json::from_str::<Diagnostics>(&json).unwrap(), diagnostics);

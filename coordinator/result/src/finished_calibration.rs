@@ -18,7 +18,7 @@ pub struct FinishedCalibration {
     pub experiment: String,
     /// Its stages.
     pub stages: Vec<StageRow>,
-    /// What a fit found; `None` where the posterior was sampled.
+    /// The point estimate; `None` where the posterior was sampled.
     pub estimate: Option<EstimateRow>,
     /// The equally weighted draws of the posterior; none of a fit.
     pub posterior: Vec<Sample>,
@@ -28,15 +28,15 @@ pub struct FinishedCalibration {
     pub likeliest_values: Option<Vec<f64>>,
     /// The final draws, simulated on every run; the first is the most probable particle, of a fit the only one.
     pub predictions: Vec<Prediction>,
-    /// What each fitted run felt over time at the likeliest parameters; `None` of a model that knows no time.
+    /// Simulated history of each fitted run at the likeliest parameters; `None` of a model without time.
     pub simulated_histories: Option<Vec<SimulatedHistory>>,
-    /// How often the model refused, by kind.
+    /// Number of rejections by kind.
     pub rejections: BTreeMap<String, u64>,
-    /// What a metamodel did; `None` where there was none.
+    /// Counts of a metamodel; `None` without one.
     pub subchains: Option<Subchains>,
     /// The draws from the prior that a sampler began with; none of a fit.
     pub prior_draws: Vec<PriorDraw>,
-    /// How often a lease failed, by what was said of it.
+    /// Number of failed leases by message.
     pub faults: BTreeMap<String, u64>,
 }
 

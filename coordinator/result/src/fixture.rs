@@ -1,11 +1,13 @@
-//! A small outcome with hostile names, for tests.
+//! A small finished calibration with hostile names, for tests.
 
 use std::collections::BTreeMap;
 
 use inference::evolution::{EvolutionSettings, GaSettings};
 use inference::point_estimate::{Generation, StopReason};
 use job::{AlgorithmSettings, Spec};
-use record::{CalibrationRow, EstimateRow, Outside, Prediction, PriorDraw, Sample, StageRow};
+use record::{
+    CalibrationRow, EstimateRow, Outside, Prediction, PriorDraw, RejectionReason, Sample, StageRow,
+};
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
@@ -49,7 +51,7 @@ d,a,sand,0.5,25,0.01,1.5,,fit
 e,a,sand,0.4,25,0.01,1.2,0.022,LAST
 ";
 
-/// An outcome with a holdout run.
+/// A calibration with a holdout run.
 pub(crate) fn calibration() -> FinishedCalibration {
     build("holdout")
 }
@@ -59,12 +61,15 @@ pub(crate) fn without_holdout() -> FinishedCalibration {
     build("fit")
 }
 
-/// The same where the model refused all final draws, drifted, and has no evidence.
-pub(crate) fn all_refused() -> FinishedCalibration {
+/// The same where the model rejected all final draws, drifted, and has no evidence.
+pub(crate) fn all_rejected() -> FinishedCalibration {
     let mut calibration = calibration();
     for prediction in &mut calibration.predictions {
-        prediction.fit = Err("no_support".into());
-        prediction.holdout = prediction.holdout.take().map(|_| Err("no_support".into()));
+        prediction.fit = Err(RejectionReason("no_support".into()));
+        prediction.holdout = prediction
+            .holdout
+            .take()
+            .map(|_| Err(RejectionReason("no_support".into())));
     }
     for stage in &mut calibration.stages {
         (stage.equilibrated, stage.drift_z, stage.tempering_exponent) = (false, 1e6, 0.0);
@@ -193,12 +198,12 @@ fn build(last: &str) -> FinishedCalibration {
             ..Observables::default()
         }
     };
-    // The model refuses two draws, those with the least n.
+    // The model rejects two draws, those with the least n.
     let prior_draws = (0..40)
         .map(|k| PriorDraw {
             theta: theta(k),
             result: match share(k, 1) < 0.075 {
-                true => Err("no_support: condition 0: k* = -2 Pa".into()),
+                true => Err(RejectionReason("no_support: condition 0: k* = -2 Pa".into())),
                 false => Ok(spec.predicted_values(&predicted(k, &spec.fit_runs))),
             },
             faults: u64::from(k == 7),

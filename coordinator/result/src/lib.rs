@@ -6,7 +6,7 @@
 //! # Layout
 //! - `finished_calibration`, `study`: what the results are made from.
 //! - `table`: model against measurement, errors, intervals, the posterior's draws.
-//! - [`diagnostics`]: how far the posterior can be trusted. `flag`: what deserves attention, in words.
+//! - [`diagnostics`]: how far the posterior can be trusted. `flag`: warnings in words.
 //!   `diagnosis`: both, computed once.
 //! - `summary`: `summary.json`. `discovery`: its block on missing effects.
 //! - [`figure`]: the numbers of the source paper's figures.

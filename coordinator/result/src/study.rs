@@ -1,4 +1,4 @@
-//! A study with everything that is finished of it: what summary, report and figures are made from.
+//! The finished part of a study, from which summary, report and figures are made.
 
 use shared::api::CalibrationState;
 
@@ -8,11 +8,11 @@ use crate::finished_calibration::FinishedCalibration;
 /// The finished calibrations of a study, oldest first. There is at least one.
 #[derive(Debug)]
 pub struct Study {
-    /// Where the study stands: finished where it takes no further step, or the state of its first calibration that is not.
+    /// State of the study: finished where no further step follows, else the state of its first unfinished calibration.
     pub state: CalibrationState,
     /// The first: the job as it was submitted.
     pub lead: FinishedCalibration,
-    /// Those of the same model and measurements beside it: the point estimates that the job asks for.
+    /// The point estimates that the job asks for, of the same model and measurements.
     pub point_estimates: Vec<FinishedCalibration>,
     /// Those of other models or measurements: extended by effects, or by runs.
     pub extensions: Vec<FinishedCalibration>,
@@ -26,7 +26,7 @@ impl Study {
         std::iter::once(&self.lead).chain(&self.point_estimates)
     }
 
-    /// Every finished calibration: the submitted one, those beside it, then the extensions.
+    /// Every finished calibration: the submitted one, its point estimates, then the extensions.
     pub fn calibrations(&self) -> impl Iterator<Item = &FinishedCalibration> {
         self.submitted().chain(&self.extensions)
     }

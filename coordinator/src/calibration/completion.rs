@@ -89,7 +89,7 @@ impl Calibration {
         let kept = self.kept(evaluation, outcome);
         let fitted = match &kept {
             Kept::Fitted(values) => Some(values.as_slice()),
-            Kept::Whole(_) | Kept::Refused(_) => None,
+            Kept::Whole(_) | Kept::Rejected(_) => None,
         };
         let scored = self.draws.is_none().then(|| EvaluationScore {
             // Where a subchain stayed there is nothing to score, and nothing is asked of the score.
@@ -301,7 +301,7 @@ impl Calibration {
         };
         match outcome {
             None => Kept::Fitted(Vec::new()),
-            Some(Err(reason)) => Kept::Refused(reason),
+            Some(Err(reason)) => Kept::Rejected(reason),
             Some(Ok(observables)) if self.draws.is_some() => Kept::Whole(Box::new(observables)),
             Some(Ok(observables)) => Kept::Fitted(
                 searched(&observables).unwrap_or_else(|| self.spec.predicted_values(&observables)),

@@ -262,7 +262,7 @@ mod tests {
                 let evaluation = StoredEvaluation {
                     theta: row.theta.clone(),
                     log_likelihood: row.log_likelihood,
-                    rejected: matches!(row.kept, Kept::Refused(_)),
+                    rejected: matches!(row.kept, Kept::Rejected(_)),
                     fitted: match &row.kept {
                         Kept::Fitted(values) => Some(values.clone()),
                         _ => None,
@@ -399,7 +399,7 @@ mod tests {
         for row in rows(&facts) {
             let whole = matches!(&row.kept, Kept::Whole(o) if o.sinkage_m.len() == 1);
             let fitted = matches!(&row.kept, Kept::Fitted(v) if v.len() == 1);
-            let refused = matches!(row.kept, Kept::Refused(_));
+            let refused = matches!(row.kept, Kept::Rejected(_));
             assert!(
                 refused
                     || if row.evaluation >= PREDICTIONS_FROM {
@@ -434,7 +434,7 @@ mod tests {
         let refused = rows
             .iter()
             .filter(drawn)
-            .filter(|r| matches!(r.kept, Kept::Refused(_)))
+            .filter(|r| matches!(r.kept, Kept::Rejected(_)))
             .count();
         let whole = rows
             .iter()

@@ -8,7 +8,7 @@ use super::blob;
 use super::error::StoreError;
 use super::json::numbers;
 use super::reader::Reader;
-use record::PriorDraw;
+use record::{PriorDraw, RejectionReason};
 
 impl Reader {
     /// The draws of a sampler's first round.
@@ -34,7 +34,7 @@ impl Reader {
                 Ok(PriorDraw {
                     theta: numbers(row.get("theta"))?,
                     result: match row.get::<Option<String>, _>("rejection") {
-                        Some(reason) => Err(reason),
+                        Some(reason) => Err(RejectionReason(reason)),
                         None => Ok(blob::decode_values(row.get("fitted"))?),
                     },
                     faults: row.get::<i64, _>("faults").unsigned_abs(),

@@ -15,7 +15,7 @@ use super::json::{json, numbers};
 use super::reader::Reader;
 use record::{
     CalibrationRow, Discovery, EstimateRow, EvaluationKey, ExperimentRow, HISTORIES, PREDICTIONS_FROM,
-    Prediction, Sample, StageRow, Subchains,
+    Prediction, RejectionReason, Sample, StageRow, Subchains,
 };
 
 const CALIBRATION: &str = "SELECT c.*, coalesce(c.experiment, s.experiment) AS on_experiment
@@ -265,7 +265,7 @@ impl Reader {
         let mut predictions: Vec<Prediction> = Vec::new();
         for row in &rows {
             let result = match row.get::<Option<String>, _>("rejection") {
-                Some(rejection) => Err(rejection),
+                Some(rejection) => Err(RejectionReason(rejection)),
                 None => Ok(blob::decode(row.get("observables"))?),
             };
             let number = row.get::<i64, _>("evaluation").unsigned_abs();

@@ -410,7 +410,7 @@ async fn insert_evaluations(
         );
         query.push_values(part, |mut values, (calibration, row)| {
             let (rejection, fitted, observables) = match row.kept {
-                Kept::Refused(rejection) => (Some(rejection), None, None),
+                Kept::Rejected(rejection) => (Some(rejection), None, None),
                 Kept::Fitted(values) => (None, Some(blob::encode(&values)), None),
                 Kept::Whole(observables) => (None, None, Some(blob::encode_whole(&observables))),
             };

@@ -9,12 +9,12 @@ use super::sampler::SamplerDiagnostics;
 use super::trends::TrendDiagnostics;
 use crate::flag::kind::Flag;
 
-/// How far a calibration can be trusted, and where its model fails. What a fit or a search cannot know is null or empty.
+/// How far a calibration can be trusted, and where its model fails. What a fit or a search cannot determine is null or empty.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Diagnostics {
-    /// What the sampler did; null of a fit.
+    /// The sampler; null of a fit.
     pub sampler: Option<SamplerDiagnostics>,
-    /// What each channel can say and how well it is met, in the order of all tables.
+    /// Information and misfit of each channel, in the order of all tables.
     pub channels: Vec<ChannelDiagnostics>,
     /// The misfit of all fitted data together; null where the noise of all is inferred.
     pub chi_square: Option<ChiSquareTest>,
@@ -22,7 +22,7 @@ pub struct Diagnostics {
     pub residuals: Vec<ResidualDiagnostics>,
     /// The residuals of each channel against each condition that its runs vary.
     pub trends: Vec<TrendDiagnostics>,
-    /// What the data did to each parameter, in the order of the job.
+    /// Contraction, bounds and prior conflict of each parameter, in the order of the job.
     pub parameters: Vec<ParameterDiagnostics>,
     /// The prior of all parameters together against the data.
     pub conflict: Option<PriorConflict>,
@@ -32,6 +32,6 @@ pub struct Diagnostics {
     pub rejections: RejectionDiagnostics,
     /// The findings in plain words.
     pub findings: Vec<String>,
-    /// What deserves attention.
+    /// The flags.
     pub flags: Vec<Flag>,
 }

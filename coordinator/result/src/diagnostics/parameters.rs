@@ -96,6 +96,7 @@ fn spread(free: &FreeParameter, values: impl Iterator<Item = f64>) -> Option<f64
 
 #[cfg(test)]
 mod tests {
+    use record::RejectionReason;
     use statistics::{Distribution, Marginal};
 
     use super::*;
@@ -142,7 +143,7 @@ mod tests {
         let middle = first[first.len() / 2];
         for draw in &mut calibration.prior_draws {
             if draw.theta[0] > middle {
-                draw.result = Err("no_support: condition 0: toy".into());
+                draw.result = Err(RejectionReason("no_support: condition 0: toy".into()));
             }
         }
         let (cut, conflict) = parameters(&calibration);

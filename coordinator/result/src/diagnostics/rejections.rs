@@ -146,8 +146,7 @@ fn bin<'a>(free: &FreeParameter, number: usize, draws: impl Iterator<Item = &'a 
 fn reasons<'a>(draws: impl Iterator<Item = &'a PriorDraw>) -> BTreeMap<String, u64> {
     let mut reasons = BTreeMap::new();
     for reason in draws.filter_map(|d| d.result.as_ref().err()) {
-        let kind = reason.split_once(':').map_or(reason.as_str(), |(kind, _)| kind);
-        *reasons.entry(kind.to_owned()).or_default() += 1;
+        *reasons.entry(reason.kind().to_owned()).or_default() += 1;
     }
     reasons
 }
@@ -224,6 +223,8 @@ impl RejectionDiagnostics {
 
 #[cfg(test)]
 mod tests {
+    use record::RejectionReason;
+
     use super::*;
     use crate::fixture;
 
@@ -251,7 +252,7 @@ mod tests {
                         .map(|(i, p)| p.quantile(share(i)))
                         .collect(),
                     result: if share(1) < 0.2 {
-                        Err("no_support: k* < 0".into())
+                        Err(RejectionReason("no_support: k* < 0".into()))
                     } else {
                         Ok(kept.clone())
                     },

@@ -13,7 +13,7 @@ pub struct SamplerDiagnostics {
     pub equilibrated: Option<bool>,
     /// Draws of the posterior.
     pub draws: usize,
-    /// Of these, different ones.
+    /// Of these, distinct ones.
     pub distinct_draws: usize,
     /// Effective sample size of the weights at the last stage, before its moves.
     pub effective_sample_size: Option<f64>,

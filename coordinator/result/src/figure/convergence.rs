@@ -32,7 +32,7 @@ pub struct StageConvergence {
     pub tempering_exponent: f64,
     /// Evaluations spent up to its end.
     pub evaluations: u64,
-    /// Log-likelihoods of its population; null where the model refused all of it.
+    /// Log-likelihoods of its population; null where the model rejected all of it.
     pub log_likelihood: Option<LogLikelihoodRange>,
 }
 

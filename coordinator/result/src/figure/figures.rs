@@ -6,12 +6,12 @@ use super::history::{self, ChannelHistory};
 use super::posterior::{self, JointPosterior};
 use crate::study::Study;
 
-/// What the figures of a study show.
+/// The numbers of a study's figures.
 #[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
 pub struct StudyFigures {
     /// Name of the experiment.
     pub experiment: String,
-    /// How searches by generations came to their points.
+    /// Convergence of the searches by generations.
     pub searches: Vec<SearchConvergence>,
     /// The stages of the sampler, from the prior on; empty without a sample.
     pub stages: Vec<StageConvergence>,
@@ -19,14 +19,14 @@ pub struct StudyFigures {
     pub populations: Option<Populations>,
     /// Joint posterior densities.
     pub posteriors: Vec<JointPosterior>,
-    /// Measurement and model over time; null of a model that knows no time.
+    /// Measurement and model over time; null of a model without time.
     pub histories: Option<Vec<ChannelHistory>>,
     /// Prediction errors over the posterior, by channel.
     pub errors: Vec<ErrorDensity>,
 }
 
 impl StudyFigures {
-    /// Whether there is nothing to show.
+    /// Whether there is no figure.
     pub fn is_empty(&self) -> bool {
         // populations stand beside stages
         self.searches.is_empty()
@@ -38,7 +38,7 @@ impl StudyFigures {
 }
 
 impl Study {
-    /// What the figures show: of the first sample, and of what stands beside it.
+    /// The figures of the first sample and of its point estimates.
     pub fn figures(&self) -> StudyFigures {
         let sample = self
             .submitted()
@@ -89,7 +89,7 @@ mod tests {
     fn no_figure_has_a_number_that_is_none() {
         for study in [
             fixture::study(),
-            Study::from(fixture::all_refused()),
+            Study::from(fixture::all_rejected()),
             Study::from(fixture::fit()),
         ] {
             let json = serde_json::to_value(study.figures()).unwrap();

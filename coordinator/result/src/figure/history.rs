@@ -21,9 +21,9 @@ pub struct ChannelHistory {
     pub unit: &'static str,
     /// Name of the run.
     pub run: String,
-    /// What the rig recorded; null where the run has averages alone.
+    /// Recording of the rig; null where the run has averages alone.
     pub measured: Option<MeasuredSeries>,
-    /// What the model gives, its averages' transients included.
+    /// Simulated histories, including the transients.
     pub model: Vec<ModelSeries>,
 }
 
@@ -38,7 +38,7 @@ pub struct MeasuredSeries {
     pub raw: Vec<f64>,
 }
 
-/// What the model gives at one parameter vector.
+/// The simulated history at one parameter vector.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct ModelSeries {
     /// Which parameter vector: `maximum likelihood`, that particle; `GA optimum`, what the algorithm found.
@@ -53,7 +53,7 @@ pub struct ModelSeries {
 
 impl FinishedCalibration {
     /// Measured and simulated histories of every channel that a fitted run measured, by channel, then by run; `None` of a
-    /// model that knows no time. Both have gone through the same filter.
+    /// model without time. Both have gone through the same filter.
     pub fn histories(&self) -> Option<Vec<ChannelHistory>> {
         let simulated = self.simulated_histories.as_ref()?;
         let label = match self.spec.method {
@@ -62,7 +62,7 @@ impl FinishedCalibration {
                 format!("{} optimum", self.spec.method.name().to_uppercase())
             }
         };
-        // A cut-off that 10 Hz cannot have passes everything; the protocol that filters averages refuses it.
+        // A cut-off beyond what 10 Hz can represent filters nothing; the averaging protocol rejects it.
         let lowpass_hz = self.spec.experiment.protocol.lowpass_hz;
         let filter = LowPass::unless_zero(lowpass_hz, 1.0 / INTERVAL_S).ok().flatten();
         let mut histories = Vec::new();

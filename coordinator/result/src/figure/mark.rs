@@ -1,6 +1,6 @@
 //! Single points in pictures of distributions.
 
-/// What a point is.
+/// Kind of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MarkKind {
@@ -8,20 +8,20 @@ pub enum MarkKind {
     Mean,
     /// The draw of the highest likelihood.
     MaximumLikelihood,
-    /// What a fit or a search found.
+    /// Result of a fit or a search.
     PointEstimate,
-    /// What an independent test says.
+    /// Reference value of an independent test.
     Reference,
 }
 
 /// A point with its name.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct Mark<T> {
-    /// What it is.
+    /// Its kind.
     pub kind: MarkKind,
     /// Its name for people.
     pub label: String,
-    /// Where it lies.
+    /// Its coordinates.
     pub at: T,
 }
 

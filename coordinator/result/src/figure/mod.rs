@@ -1,11 +1,11 @@
-//! What the figures show, as numbers: the source paper's Fig. 5 to 8 of a study.
+//! The numbers of the figures: the source paper's Fig. 5 to 8 of a study.
 //!
 //! Everything is in SI and carries its unit; the page draws it, and so can any other program.
 //!
 //! # Layout
 //! - `figures`: all of them.
-//! - `convergence`: how the searches and the sampler came to their results (Fig. 5).
-//! - `posterior`: joint densities of two parameters, with what else is known of them (Fig. 6).
+//! - `convergence`: convergence of the searches and the sampler (Fig. 5).
+//! - `posterior`: joint densities of two parameters, with point estimates and reference values (Fig. 6).
 //! - `history`: measurement and model over time (Fig. 7).
 //! - `error`: prediction errors over the posterior (Fig. 8).
 //! - `axis_parameter`: a parameter on an axis. `mark`: single points; `optimum`: point estimates as such points,

@@ -1,4 +1,4 @@
-//! Joint densities of two parameters, with what else is known of them: the source paper's Fig. 6.
+//! Joint densities of two parameters, with point estimates and reference values: the source paper's Fig. 6.
 
 use std::collections::BTreeMap;
 
@@ -62,7 +62,7 @@ pub struct Contour {
 /// A straight line with a meaning.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct LabelledLine {
-    /// What it says.
+    /// Its meaning.
     pub label: String,
     /// Two points of it.
     pub points: [[f64; 2]; 2],
@@ -142,7 +142,7 @@ fn round(share: f64) -> f64 {
     libm::round(share * 1e4) / 1e4
 }
 
-/// Where the density is worth computing: around the draws, within the support.
+/// Ends of the grid: around the draws, within the support.
 fn ends(values: &[f64], (lower, upper): (f64, f64)) -> [f64; 2] {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -1,5 +1,6 @@
 //! Flags of a calibration.
 
+use record::RejectionReason;
 use shared::parameters::behind;
 
 use super::finding::findings_that_alarm;
@@ -88,11 +89,11 @@ impl FinishedCalibration {
             flag(FlagKind::Rejections, text);
         }
         let holdout = self.predictions.iter().filter_map(|p| p.holdout.as_ref());
-        let refused: Vec<&String> = holdout.filter_map(|h| h.as_ref().err()).collect();
-        if let Some(reason) = refused.first() {
+        let rejected: Vec<&RejectionReason> = holdout.filter_map(|h| h.as_ref().err()).collect();
+        if let Some(reason) = rejected.first() {
             let text = format!(
                 "the model rejects {} of {} final draws on the holdout runs ({reason}): a holdout condition lies outside its validity",
-                refused.len(),
+                rejected.len(),
                 self.predictions.len()
             );
             flag(FlagKind::Rejections, text);

@@ -1,12 +1,12 @@
-//! A flag: something that deserves attention.
+//! A flag and its kind.
 
 use crate::diagnostics::trends::TrendVariable;
 use crate::words::data_channel::DataChannel;
 
-/// Something that deserves attention.
+/// A warning about a result.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Flag {
-    /// What it is about.
+    /// Its kind.
     #[schema(value_type = String)]
     pub kind: FlagKind,
     /// The channel it is about.
@@ -17,11 +17,11 @@ pub struct Flag {
     pub against: Option<TrendVariable>,
     /// Probability of the observation if nothing were wrong.
     pub p: Option<f64>,
-    /// What it means.
+    /// Its meaning.
     pub text: String,
 }
 
-/// What a flag is about.
+/// Kind of a flag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FlagKind {

@@ -1,4 +1,4 @@
-//! What deserves attention, each with a sentence that a test engineer understands.
+//! Flags: warnings with a sentence for a test engineer.
 //!
 //! # Layout
 //! - `kind`: a flag.

@@ -136,7 +136,7 @@ mod tests {
         for calibration in [
             fixture::calibration(),
             fixture::without_holdout(),
-            fixture::all_refused(),
+            fixture::all_rejected(),
             fixture::fit(),
             fixture::search(),
         ] {
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_outcomes_give_equal_pages() {
+    fn equal_calibrations_give_equal_pages() {
         assert_eq!(page(fixture::calibration()), page(fixture::calibration()));
     }
 

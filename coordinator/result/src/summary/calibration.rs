@@ -1,4 +1,4 @@
-//! `summary.json`: the contract's summary of a study.
+//! A line of the error ledger in `summary.json`.
 
 use std::collections::BTreeMap;
 
@@ -29,11 +29,11 @@ pub struct CalibrationSummary {
     pub equilibrated: Option<bool>,
     /// Evaluations of the sampler.
     pub evaluations: Option<u64>,
-    /// Of these, refused by the model.
+    /// Of these, rejected by the model.
     pub rejected: Option<u64>,
     /// Wall time `[s]`.
     pub wall_s: f64,
-    /// What a metamodel did between evaluations; null without one.
+    /// Counts of a metamodel; null without one.
     pub metamodel: Option<MetamodelSummary>,
     /// Stages.
     pub stages: Vec<StageSummary>,
@@ -49,14 +49,14 @@ pub struct CalibrationSummary {
     pub coverage90: CoverageSummary,
 }
 
-/// What a metamodel did between evaluations.
+/// Counts of a metamodel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct MetamodelSummary {
     /// Moves that it proposed, each an evaluation of `quasi_static` in place of one of `scm`.
     pub moves: u64,
     /// Subchains of such moves.
     pub subchains: u64,
-    /// Of these, the ones that ended elsewhere than they began, where `scm` was asked.
+    /// Of these, the ones that moved, so that `scm` was evaluated at their end.
     pub moved: u64,
 }
 

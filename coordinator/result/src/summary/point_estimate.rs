@@ -30,26 +30,26 @@ pub struct PointEstimate {
     pub baseline: BaselineSummary,
     /// Evaluations spent.
     pub evaluations: u64,
-    /// Of these, refused by the model.
+    /// Of these, rejected by the model.
     pub rejected: u64,
     /// Wall time `[s]`.
     pub wall_s: f64,
-    /// Why it ended: `decrease` (no step gains anything), `step` (none that is tried does), `budget`; of a search by
-    /// generations `stagnation` (nobody better for many), `generations`, `budget`.
+    /// Why it stopped: `decrease` (no step improves the posterior), `step` (no tried step does), `budget`; of a search by
+    /// generations `stagnation` (many without improvement), `generations`, `budget`.
     #[schema(value_type = String)]
     pub stop: StopReason,
-    /// How a search by generations came there; empty for a fit.
+    /// Convergence of a search by generations; empty for a fit.
     pub history: Vec<GenerationSummary>,
 }
 
-/// Where a search stood after a generation.
+/// State of a search after a generation.
 #[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct GenerationSummary {
     /// Evaluations so far.
     pub evaluations: u64,
-    /// Highest log-posterior so far; null while the model refused everything.
+    /// Highest log-posterior so far; null while the model rejected everything.
     pub best: Option<f64>,
-    /// Mean log-posterior of the generation; null if the model refused all of it.
+    /// Mean log-posterior of the generation; null if the model rejected all of it.
     pub mean: Option<f64>,
 }
 
@@ -62,7 +62,7 @@ pub(crate) struct FittedParameter<'a> {
     pub(crate) at_bound: bool,
 }
 
-/// How a search by generations came to its result.
+/// Convergence of a search by generations.
 pub(crate) fn generations(history: &[Generation]) -> Vec<GenerationSummary> {
     let generation = |g: &Generation| GenerationSummary {
         evaluations: g.evaluations,
@@ -86,7 +86,7 @@ pub(crate) fn fitted<'a>(
 }
 
 impl FinishedCalibration {
-    /// What a fit or a search found; `None` of a sample.
+    /// The result of a fit or a search; `None` of a sample.
     pub fn point_estimate(&self) -> Option<PointEstimate> {
         let estimate = self.estimate.as_ref()?;
         let comparison = self.comparison();

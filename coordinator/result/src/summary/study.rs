@@ -24,9 +24,9 @@ pub struct StudySummary {
     pub calibrations: Vec<CalibrationSummary>,
     /// Deterministic fits.
     pub point_estimates: Vec<PointEstimate>,
-    /// What deserves attention.
+    /// The flags.
     pub flags: Vec<Flag>,
-    /// What is known of effects that the model misses; null where no search is finished.
+    /// Missing effects; null where no search is finished.
     pub discovery: Option<DiscoverySummary>,
 }
 
@@ -73,7 +73,7 @@ mod tests {
     use crate::fixture;
 
     #[test]
-    fn a_sample_stands_in_the_ledger_and_a_search_beside_it() {
+    fn a_sample_is_in_the_ledger_and_a_search_among_the_point_estimates() {
         let summary = fixture::study().summary();
         let algorithms: Vec<&str> = summary.calibrations.iter().map(|c| c.algorithm.name()).collect();
         assert_eq!(algorithms, ["tmcmc"]);

@@ -1,4 +1,4 @@
-//! How many measurements lie in their 90 % interval, and how many should.
+//! Coverage of the 90 % intervals, and the expected one.
 
 use super::row::ComparisonRow;
 

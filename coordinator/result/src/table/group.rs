@@ -18,7 +18,7 @@ pub struct ErrorGroup {
     #[serde(rename = "use")]
     #[schema(value_type = String)]
     pub usage: RunUse,
-    /// What the rows have in common.
+    /// Criterion of the group.
     #[schema(value_type = String)]
     pub by: GroupBy,
     /// The wheel, of a group by wheel.
@@ -31,7 +31,7 @@ pub struct ErrorGroup {
     pub channels: BTreeMap<String, GroupError>,
 }
 
-/// What the rows of a group have in common.
+/// Criterion of a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GroupBy {

@@ -10,7 +10,7 @@ use statistics::{CommonErrorSize, Discrepancy, ErrorLaw, ErrorSd};
 
 use crate::finished_calibration::FinishedCalibration;
 
-/// What the calibrated model predicts for one run and channel.
+/// Posterior predictive distribution of one run and channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Predictive {
     /// Mean of the model over the posterior, or its value at the point that a fit found [channel's unit].
@@ -22,7 +22,7 @@ pub struct Predictive {
     pub noise_sd: Option<f64>,
 }
 
-/// Where the noise sd of a channel of a run stands.
+/// Source of the noise sd of a channel of a run.
 fn noise_source(calibration: &FinishedCalibration, run: usize, channel: Channel) -> Option<ErrorSd> {
     let spec = &calibration.spec;
     let c = channel.index();
@@ -118,7 +118,7 @@ impl Scatter {
     }
 }
 
-/// Of each final draw, the values of the discrepancy with their probabilities after the fitted data; m = 0 without one.
+/// Of each final draw, the values of the discrepancy with their posterior probabilities; m = 0 without one.
 pub(crate) struct Levels(Vec<Vec<(f64, f64)>>);
 
 impl Levels {
@@ -150,7 +150,7 @@ fn widened(sd: f64, others: [f64; 2]) -> f64 {
     if more > 0.0 { (sd * sd + more).sqrt() } else { sd }
 }
 
-/// The probabilities of the discrepancy's values after the data, averaged over the final draws; empty where m is known.
+/// The posterior probabilities of the discrepancy's values, averaged over the final draws; empty where m is known.
 pub(crate) fn discrepancy_posterior(calibration: &FinishedCalibration) -> Vec<(f64, f64)> {
     if calibration.spec.likelihood.discrepancy() != Discrepancy::Unknown {
         return Vec::new();
@@ -177,14 +177,14 @@ fn weighted_mean(values: &[(f64, f64)]) -> Option<f64> {
     Some(values.iter().map(|(value, weight)| value * weight).sum::<f64>() / total)
 }
 
-/// Where a run stands in the observables of a final draw.
+/// Position of a run in the observables of a final draw.
 #[derive(Clone, Copy)]
 enum RunPosition {
     Fit(usize),
     Holdout(usize),
 }
 
-/// The final draws that the model took: number, parameters, observables, position of the run in them.
+/// The final draws that the model accepted: number, parameters, observables, position of the run in them.
 fn accepted(
     calibration: &FinishedCalibration,
     place: RunPosition,

@@ -1,7 +1,7 @@
 //! Text for a terminal.
 //!
 //! # Layout
-//! - `specification`: a job before it runs. `status`: where calibrations stand.
+//! - `specification`: a job before it runs. `status`: states of calibrations.
 //! - `study`: the results of a study; `calibration`: of one calibration; `comparison`: its errors.
 //! - `diagnostics`: how far a result can be trusted. [`discovery`]: a search for a missing effect.
 //! - `column`: widths and cells of columns.

@@ -1,4 +1,4 @@
-//! Where calibrations stand, as text.
+//! States of calibrations as text.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use shared::api::CalibrationStatus;
 
 use super::column::cell;
 
-/// Where calibrations stand, a line each.
+/// The states of calibrations, a line each.
 pub fn status_table(statuses: &[CalibrationStatus]) -> String {
     let mut text = format!(
         "{:>4} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}\n",

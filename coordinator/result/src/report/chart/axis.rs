@@ -2,7 +2,7 @@
 
 use crate::words::number::{self, magnitude};
 
-/// How values are laid out.
+/// Scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum AxisScale {
     /// Equal steps.

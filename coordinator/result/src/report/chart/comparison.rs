@@ -23,7 +23,7 @@ const LEAST_SLIP: f64 = 0.05;
 const LEAST_LOAD_FACTOR: f64 = 1.1;
 const LEAST_ANGLE_DEG: f64 = 2.0;
 
-/// What a wheel's runs are laid out against: the first condition that varies.
+/// The abscissa of a wheel's runs: the first condition that varies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Abscissa {
     Slip,
@@ -218,7 +218,7 @@ fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
     })
 }
 
-/// Where a run is drawn.
+/// Position of a run in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct RunPlace {
     /// Pixel.

@@ -1,4 +1,4 @@
-//! Whether a parameter is drawn against equal steps or equal ratios.
+//! Choice of a linear or logarithmic scale for a parameter.
 
 use job::FreeParameter;
 

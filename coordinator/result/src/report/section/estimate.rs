@@ -62,7 +62,7 @@ pub(in crate::report) fn fit(calibration: &FinishedCalibration, estimate: &Estim
     }
 }
 
-/// Why a fit ended, in words.
+/// Why a fit stopped, in words.
 pub(super) fn reason(stop: StopReason) -> &'static str {
     match stop {
         StopReason::Decrease => "no step improves the posterior any more",

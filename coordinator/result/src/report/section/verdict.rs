@@ -134,7 +134,7 @@ fn holdout(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<St
     text
 }
 
-/// How the model does against interpolation, channel by channel.
+/// Comparison of the model with interpolation, channel by channel.
 fn against(model: &ErrorTable, baseline: &ErrorTable) -> String {
     let mut groups: [(&str, Vec<String>); 3] = [
         ("does better in", vec![]),
