@@ -61,7 +61,7 @@ pub struct NewExtension {
     /// Acts on this wheel alone, of several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wheel: Option<String>,
-    /// An effect of one's own.
+    /// A user's own effect file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effect_file: Option<NamedText>,
 }
@@ -240,7 +240,7 @@ pub enum ErrorKind {
     TooLarge,
     /// The worker speaks another version of the protocol.
     ProtocolMismatch,
-    /// The service has more work in hand than it can store; try again later.
+    /// The service has more work than it can store; try again later.
     Busy,
     /// Not available in this version.
     NotAvailable,

@@ -58,7 +58,7 @@ pub struct ExchangeResponse {
     pub leases: Vec<Lease>,
     /// How long a lease lasts without renewal `[ms]`.
     pub lease_ms: u64,
-    /// Evaluations not yet leased in the calibrations at hand; bounds the next `want`.
+    /// Evaluations not yet leased in the active calibrations; bounds the next `want`.
     pub remaining: u64,
     /// Workers active recently; bounds the next `want`.
     pub workers: u32,

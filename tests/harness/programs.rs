@@ -74,7 +74,7 @@ pub fn run(mut command: Command) -> Ended {
 fn command<S: AsRef<std::ffi::OsStr>>(name: &str, arguments: impl IntoIterator<Item = S>) -> Command {
     let mut command = Command::new(built().join(name));
     command.args(arguments).stdin(Stdio::null()).env("NO_COLOR", "1");
-    // Settings of whoever runs the tests are none of the tests'.
+    // settings of the user's environment must not affect the tests
     for variable in [
         "GROUSER_LISTEN",
         "GROUSER_STORE",

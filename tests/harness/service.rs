@@ -206,7 +206,7 @@ impl Service {
     }
 }
 
-/// An address that nobody listens at, outside the range that the system gives to outgoing connections: it stays
+/// An address on which nothing listens, outside the range that the system gives to outgoing connections: it stays
 /// free while its service is down.
 ///
 /// # Panics

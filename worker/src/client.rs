@@ -58,7 +58,7 @@ impl HttpCoordinator {
         let response = self.send(self.client.post(url).json(request)).await?;
         if response.status() == StatusCode::NOT_FOUND {
             return Err(ExchangeError::Refused(format!(
-                "{} is no Grouser coordinator",
+                "{} is not a Grouser coordinator",
                 self.url
             )));
         }

@@ -47,7 +47,7 @@ pub trait Coordinator: Send + Sync + 'static {
         request: ExchangeRequest,
     ) -> impl Future<Output = Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)>> + Send;
 
-    /// The variant of a hash; `None` where no calibration at hand uses it.
+    /// The variant of a hash; `None` where no active calibration uses it.
     fn variant(&self, hash: &str)
     -> impl Future<Output = Result<Option<ModelVariant>, ExchangeError>> + Send;
 }

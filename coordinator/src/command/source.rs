@@ -153,7 +153,7 @@ impl ServiceClient {
     pub(super) async fn get<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
         let text = self.text(path).await?;
         serde_json::from_str(&text)
-            .with_context(|| format!("{} is no Grouser coordinator of this version", self.url))
+            .with_context(|| format!("{} is not a Grouser coordinator of this version", self.url))
     }
 
     pub(super) async fn post<T: DeserializeOwned>(
@@ -165,6 +165,6 @@ impl ServiceClient {
             .answer(self.client.post(format!("{}{path}", self.url)).json(body))
             .await?;
         serde_json::from_str(&text)
-            .with_context(|| format!("{} is no Grouser coordinator of this version", self.url))
+            .with_context(|| format!("{} is not a Grouser coordinator of this version", self.url))
     }
 }

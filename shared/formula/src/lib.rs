@@ -82,7 +82,7 @@
 //! # Units
 //! Parameters have a unit of `1 kg m s deg rad N Pa J W Hz`, with `^`, `/` and spaces, without prefixes. Only certain
 //! contradictions of units are errors. A number takes the unit that its neighbour needs, as in `v_t / 0.02`, and so does
-//! what has a unit that depends on a parameter: `k_star`, or a power whose exponent is no number. A degree is no radian:
+//! what has a unit that depends on a parameter: `k_star`, or a power whose exponent is not a number. A degree is not a radian:
 //! `sin(tilt_deg * pi / 180)`.
 //!
 //! # Numbers

@@ -48,7 +48,7 @@ impl LowPass {
         })
     }
 
-    /// The same, where a cut-off of 0 Hz stands for no filter, as in the protocol of an experiment.
+    /// The same, where a cut-off of 0 Hz means no filter, as in the protocol of an experiment.
     ///
     /// # Errors
     /// As those of [`LowPass::new`].

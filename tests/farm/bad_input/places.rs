@@ -148,7 +148,7 @@ fn an_address_of_something_else_is_told_from_a_coordinator() {
     let elsewhere = format!("{}/elsewhere", service.url());
     let message = run(worker(["--coordinator", &elsewhere])).refusal();
     assert!(
-        message.contains("is no Grouser coordinator") && message.contains(&elsewhere),
+        message.contains("is not a Grouser coordinator") && message.contains(&elsewhere),
         "{message}"
     );
 }

@@ -1,4 +1,4 @@
-//! The variants that a worker has at hand.
+//! Cache of compiled variants.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use shared::model::ModelVariant;
 use super::error::CompileError;
 use super::variant::CompiledVariant;
 
-/// Variants at hand; a metamodel brings a new one with every stage.
+/// Most variants in the cache; a metamodel brings a new one with every stage.
 const MOST_VARIANTS: usize = 64;
 
 /// Variants by hash, each compiled once; the oldest make room.

@@ -1,7 +1,7 @@
 //! A model variant, compiled for evaluation.
 //!
 //! # Layout
-//! - `variant`: [`CompiledVariant`], a forward model with its companion; `cache`: the variants at hand.
+//! - `variant`: [`CompiledVariant`], a forward model with its companion; `cache`: the compiled variants in memory.
 //! - `forward`: the forward model; `spatial`: what the three-dimensional one needs; `bevameter`: plates and rings.
 //! - `companion`: the quasi-static model that a metamodel evaluates beside the three-dimensional one.
 //! - `error`: why a variant cannot be evaluated here.

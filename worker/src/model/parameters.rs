@@ -117,7 +117,7 @@ impl GroundMap {
         })
     }
 
-    /// The ground under the condition's angle of repose; the model's default where none is stated.
+    /// The ground with the condition's angle of repose, or the model's default where there is none.
     pub(super) fn ground(&self, theta: &[f64], repose_angle_deg: Option<f64>) -> Ground {
         let default = Ground::default();
         Ground {

@@ -104,7 +104,7 @@ fn read(text: &str) -> Result<Effect, EffectError> {
         return Err(at(
             text,
             byte,
-            format!("{found:?} must not stand in a text file in UTF-8"),
+            format!("{found:?} is not allowed in a UTF-8 text file"),
         ));
     }
     let raw = tables(text)?;
@@ -159,7 +159,7 @@ fn read(text: &str) -> Result<Effect, EffectError> {
     check_definitions_used(text, &raw)?;
     for (number, (name, _)) in parameters.iter().enumerate() {
         if mechanism.is_none() && !used(Node::Parameter(number as u8)) {
-            let message = format!("parameter {name} is used by no formula");
+            let message = format!("parameter {name} is not used by any formula");
             return Err(at(text, raw.parameters[name].span().start, message));
         }
     }
@@ -304,7 +304,7 @@ fn define(
                 rests_on(&raw.definitions[name]).unwrap_or(name)
             });
             let message = format!(
-                "definition {} rests on itself: {}",
+                "definition {} depends on itself: {}",
                 circle[0],
                 circle.join(" uses ")
             );
@@ -365,7 +365,7 @@ fn check_definitions_used(text: &str, raw: &RawEffect) -> Result<(), EffectError
     let unused = raw.definitions.iter().filter(|(name, _)| !used.contains(name));
     match unused.min_by_key(|(_, formula)| formula.span().start) {
         Some((name, formula)) => {
-            let message = format!("definition {name} is used by no formula");
+            let message = format!("definition {name} is not used by any formula");
             Err(at(text, formula.span().start, message))
         }
         None => Ok(()),
@@ -398,7 +398,7 @@ fn in_formula(text: &str, formula: &Spanned<String>, mistake: Mistake) -> Effect
     at(text, byte, mistake.message)
 }
 
-/// What the TOML reader says, with the nearest known key.
+/// The message of the TOML parser, with the nearest known key.
 fn toml_error(text: &str, error: &toml::de::Error) -> EffectError {
     let message = error.message();
     let mut quoted = message.split('`').skip(1).step_by(2);
@@ -412,7 +412,7 @@ fn toml_error(text: &str, error: &toml::de::Error) -> EffectError {
     }
 }
 
-/// What the TOML reader says, in the words of these messages.
+/// The message of the TOML parser, in the wording of these messages.
 fn in_our_words(message: &str) -> String {
     let wrong_type = message.trim_end().strip_prefix("invalid type: ");
     let message = match wrong_type.and_then(|rest| rest.rsplit_once(", expected ")) {

@@ -161,12 +161,12 @@ impl Effect {
 
     /// Whether all strengths are neutral at these values of the parameters, so that the effect changes nothing. An effect
     /// without strengths always acts. `values` are those of its parameters, in their order and units; −0 is 0, and NaN is
-    /// no neutral value. Checked by `evaluation::zero_of_either_sign_is_neutral`.
+    /// not neutral. Checked by `evaluation::zero_of_either_sign_is_neutral`.
     pub fn is_neutral(&self, values: &[f64]) -> bool {
         let mut strengths = self.parameters.iter().zip(values);
         let any = self.parameters.iter().any(|p| p.neutral.is_some());
         any && strengths.all(|(p, value)| {
-            // 0 and -0 are the same strength; what is no number is none
+            // 0 and -0 are the same strength; NaN is not neutral
             p.neutral.is_none_or(|neutral| value - neutral == 0.0)
         })
     }

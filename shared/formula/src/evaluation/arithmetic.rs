@@ -30,7 +30,7 @@ pub(crate) fn unary(operation: Unary, a: f64) -> f64 {
     }
 }
 
-/// The same for two arguments. A minimum or maximum of what is no number is no number; comparisons give 1 or 0.
+/// The same for two arguments. A minimum or maximum of NaN is NaN; comparisons give 1 or 0.
 #[inline(always)]
 pub(crate) fn binary(operation: Binary, a: f64, b: f64) -> f64 {
     let truth = |holds: bool| if holds { 1.0 } else { 0.0 };
@@ -132,7 +132,7 @@ fn vector_or_each(a: &Lanes, vector: impl Fn(f64) -> (f64, bool), each: impl Fn(
     if defined { out } else { map(a, each) }
 }
 
-/// e^a, and whether that is right: not for large arguments and for what is no number.
+/// e^a, and whether that is valid: not for large arguments and NaN.
 #[inline(always)]
 fn exp_in_reach(a: f64) -> (f64, bool) {
     let value = elementary::exp(a);

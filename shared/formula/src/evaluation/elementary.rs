@@ -12,7 +12,7 @@ const ONE: u64 = 0x3ff0_0000_0000_0000; // bits of 1.0
 const ROOT_HALF: u64 = 0x3fe6_a09e_667f_3bcd; // bits of sqrt(1/2)
 const TWO_52: f64 = 4_503_599_627_370_496.0;
 
-/// The least argument of [`exp`] that is told apart from smaller ones.
+/// The least argument of [`exp`] that is distinguished from smaller ones.
 pub const EXP_LEAST: f64 = -700.0;
 
 /// e^x for x ≤ 700; below [`EXP_LEAST`] it gives e^−700 (1e-304), which no sum in this crate can tell from 0.

@@ -22,11 +22,11 @@ pub(crate) enum Operation<T> {
     Unary(Unary, T),
     Binary(Binary, T, T),
     If(T, T, T),
-    /// One of the four operations of arithmetic, and what is made of its result at once.
+    /// One of the four operations of arithmetic, followed at once by another on its result.
     Pair(Arithmetic, T, T, Then<T>),
 }
 
-/// The operations that are cheap enough to be done on the way.
+/// The operations that are cheap enough to be combined with the next one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Arithmetic {
     Add,
@@ -47,7 +47,7 @@ impl Arithmetic {
     }
 }
 
-/// What is made of a result.
+/// The operation that follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Then<T> {
     Exp,
@@ -60,7 +60,7 @@ pub(crate) enum Then<T> {
 }
 
 impl<T> Operation<T> {
-    /// The same operation on what stands for its arguments.
+    /// The same operation with its arguments mapped.
     fn map<U>(self, mut f: impl FnMut(T) -> U) -> Operation<U> {
         match self {
             Operation::Unary(operation, a) => Operation::Unary(operation, f(a)),
@@ -83,9 +83,9 @@ impl<T> Operation<T> {
 /// A compiled formula, for one choice of the variables that differ from point to point.
 #[derive(Debug, Clone)]
 pub struct Program {
-    /// What is the same at all points; arguments are positions among themselves.
+    /// The values that all points share; arguments are positions in this list.
     scalars: Vec<Node>,
-    /// What is computed at every point, with the register that takes it, but for the last.
+    /// The operations at every point with their registers, except the last.
     pub(crate) operations: Vec<(Operation<Address>, Address)>,
     /// The operation that gives the result, if one at every point does.
     pub(crate) last: Option<Operation<Address>>,

@@ -42,7 +42,7 @@ pub(crate) fn reserved() -> impl Iterator<Item = &'static str> {
     functions.chain(["if", "pi"])
 }
 
-/// What names mean in a formula.
+/// The meaning of names in a formula.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scope<'a> {
     pub(crate) variables: Variables,
@@ -53,7 +53,7 @@ pub(crate) struct Scope<'a> {
     pub(crate) place: &'a str,
 }
 
-/// What stands behind the name of a definition.
+/// A definition.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Definition {
     pub(crate) result: Id,
@@ -81,13 +81,13 @@ pub(crate) fn parse(text: &str, scope: &Scope, graph: &mut Graph) -> Result<Id, 
     match parser.token {
         Token::End => Ok(result),
         Token::Sign("<" | "<=" | ">" | ">=" | "==" | "!=") => {
-            Err(parser.wrong("a comparison stands only in if(condition, then, else)"))
+            Err(parser.wrong("a comparison is allowed only in if(condition, then, else)"))
         }
         found => {
             let hint = match found {
                 Token::Number(_) | Token::Name(_) | Token::Sign("(") => "; write * to multiply",
-                Token::Sign(",") => "; a decimal has a point, and a comma stands only between arguments",
-                Token::Sign(")") => "; nothing is open that it could close",
+                Token::Sign(",") => "; use a point for decimals; a comma only separates arguments",
+                Token::Sign(")") => "; there is no open parenthesis",
                 _ => "",
             };
             Err(parser.wrong(format!("expected an operator or the end, found {found}{hint}")))
@@ -247,7 +247,7 @@ impl Parser<'_, '_> {
             let known = UNARY.iter().map(|f| f.0).chain(BINARY.iter().map(|f| f.0));
             let known: Vec<&str> = known.chain(["if"]).collect();
             return mistake(match self.known(name) {
-                true => format!("{name} is no function; write * to multiply"),
+                true => format!("{name} is not a function; write * to multiply"),
                 false => format!("unknown function \"{name}\"; there are {}", known.join(", ")),
             });
         }
@@ -262,7 +262,7 @@ impl Parser<'_, '_> {
             return match hidden {
                 None => Ok(definition.result),
                 Some(variable) => mistake(format!(
-                    "definition {name} cannot stand here: {}",
+                    "definition {name} cannot be used here: {}",
                     self.hidden(variable)
                 )),
             };
@@ -279,7 +279,7 @@ impl Parser<'_, '_> {
         }
     }
 
-    /// That a variable is not seen here, but where.
+    /// A message that a variable is not visible here, with the hooks that see it.
     fn hidden(&self, variable: Variable) -> String {
         let hooks = Hook::ALL.iter().filter(|hook| hook.sees().contains(variable));
         let hooks: Vec<&str> = hooks.map(|hook| hook.name()).collect();
@@ -298,7 +298,7 @@ impl Parser<'_, '_> {
             || Variable::ALL.iter().any(|v| v.name() == name)
     }
 
-    /// What a name may be.
+    /// The names that are visible.
     fn names(&self) -> Vec<&str> {
         let scope = self.scope;
         let own = scope

@@ -74,7 +74,7 @@ impl<'a> Tokens<'a> {
             let length = number_length(rest);
             let value: f64 = rest[..length].parse().map_err(|_| {
                 self.wrong(format!(
-                    "\"{}\" is no number: expected digits before or after the point",
+                    "\"{}\" is not a number: expected digits before or after the point",
                     &rest[..length]
                 ))
             })?;
@@ -94,7 +94,7 @@ impl<'a> Tokens<'a> {
             let length = if rest[1..].starts_with('=') { 2 } else { 1 };
             if matches!(&rest[..length], "=" | "!") {
                 return Err(self.wrong(format!(
-                    "\"{first}\" is no comparison: use <, <=, >, >=, == or !="
+                    "\"{first}\" is not a comparison: use <, <=, >, >=, == or !="
                 )));
             }
             (Token::Sign(&rest[..length]), length)
@@ -102,7 +102,7 @@ impl<'a> Tokens<'a> {
             (Token::Sign(&rest[..1]), 1)
         } else {
             return Err(self.wrong(format!(
-                "{first:?} means nothing in a formula: expected a number, a name, + - * / ^ ( ) , or a comparison"
+                "{first:?} is not allowed in a formula: expected a number, a name, + - * / ^ ( ) , or a comparison"
             )));
         };
         self.read = self.begin + length;

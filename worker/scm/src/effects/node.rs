@@ -18,7 +18,7 @@ pub(crate) struct NodeLaws<'a> {
     kinks: Variables,
     /// What a formula last replaced, for messages.
     before: Vec<f64>,
-    /// The nodes at hand: write columns, apply, read columns.
+    /// The current nodes: write columns, apply, read columns.
     pub(crate) block: Block,
 }
 

@@ -2,7 +2,7 @@
 
 use super::kinematics::RimMotion;
 
-/// Largest displacement of a rim that hardly turns `[m]`: a locked wheel would slide for ever.
+/// Largest displacement of a rim that hardly turns `[m]`: that of a locked wheel grows without limit.
 const FARTHEST: f64 = 1e3;
 
 /// The distance that elements of the rim slide along the soil, in steady motion.

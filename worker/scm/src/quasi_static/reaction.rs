@@ -50,7 +50,7 @@ impl Reaction {
     }
 
     /// The reaction in balance between two that carry less and more than the load at the same contact: a law jumps at a
-    /// place that lies within what one node of the quadrature stands for.
+    /// place that lies within the weight of one node of the quadrature.
     pub(super) fn shared_with(&self, more: &Self, load: f64) -> Self {
         let share = (load - self.load()) / (more.load() - self.load());
         let between = |a: f64, b: f64| a + share * (b - a);

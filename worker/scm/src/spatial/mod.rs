@@ -159,7 +159,7 @@ fn simulate_with_effects(
             ("radius_m", wheel.radius_m, before.radius_m),
             ("width_m", wheel.width_m, before.width_m),
         ] {
-            let bound = "left alone by effects: a wheel given as a mesh has its own size";
+            let bound = "unchanged by effects: a wheel given as a mesh has its own size";
             require(value.to_bits() == own.to_bits(), name, value, "m", bound)?;
         }
     }

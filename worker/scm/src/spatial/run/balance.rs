@@ -54,7 +54,7 @@ pub(crate) fn balance(
             }
         }
         last = Some((height, residual));
-        // a residual that is no number is the caller's to report
+        // the caller reports a residual that is NaN
         if done || narrow || trial + 1 == MOST_TRIALS || !residual.is_finite() {
             return Some(Balance {
                 height,

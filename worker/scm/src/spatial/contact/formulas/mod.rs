@@ -59,7 +59,7 @@ pub(crate) struct NodeFormulas<'a> {
     strengths: Vec<Pack>,
     /// Rear end and length of the footprint, ahead of the hub `[m]`.
     footprint: [f64; 2],
-    /// The quads at hand.
+    /// The current quads.
     points: Vec<Point>,
     /// The first formula value that could not be used, at whichever height it was.
     pub(crate) refused: Option<Rejection>,
@@ -176,7 +176,7 @@ impl<'a> NodeFormulas<'a> {
         }
     }
 
-    /// Vertical force of the soil on the wheel with its hub at a height `[N]`; no number where a formula is refused.
+    /// Vertical force of the soil on the wheel with its hub at a height `[N]`; NaN where a formula gives an inadmissible value.
     pub(crate) fn press(&mut self, contact: &mut Contact, terrain: &Terrain, laws: &Laws, hub: f64) -> f64 {
         self.settle();
         if self.scales {

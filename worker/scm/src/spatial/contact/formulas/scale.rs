@@ -36,7 +36,7 @@ impl NodeFormulas<'_> {
         fine & self.scale(contact, alike)
     }
 
-    /// Scale the tractions of the quads at hand, each of which stands for so many that are alike.
+    /// Scale the tractions of the current quads, each of which represents a number of identical ones.
     fn scale(&mut self, contact: &mut Contact, alike: usize) -> bool {
         let points = core::mem::take(&mut self.points);
         let mut fine = self.apply(Hook::Shear, &points).is_ok(); // as no node is known to bear
