@@ -6,15 +6,16 @@ use serde::Deserialize;
 use shared::file::{FileError, parse_toml, unknown_word};
 use shared::model::ModelSettings;
 
-use super::discovery_settings::{DiscoverySettings, RawDiscovery};
-use super::errors::{LikelihoodSettings, RawLikelihood};
-use super::method::{AlgorithmSettings, RawSampler};
-use super::posterior::PosteriorPrior;
-use super::priors::PriorEntry;
+use crate::table::algorithm_settings::AlgorithmSettings;
+use crate::table::discovery_settings::{DiscoverySettings, RawDiscovery};
+use crate::table::likelihood_settings::{LikelihoodSettings, RawLikelihood};
+use crate::table::posterior_prior::PosteriorPrior;
+use crate::table::prior_entry::PriorEntry;
+use crate::table::sampler_table::RawSampler;
 
 /// A job as written, before it meets its experiment.
 #[derive(Debug)]
-pub struct Job {
+pub struct JobFile {
     /// Name of the experiment's file, relative to the job's; absent where a service holds the experiment.
     pub experiment: Option<String>,
     /// Which forward model, with its fixed parameters.
@@ -24,7 +25,7 @@ pub struct Job {
     /// The posterior that is the prior of what the entries leave unsaid.
     pub posterior: Option<PosteriorPrior>,
     /// The algorithm with its settings.
-    pub method: AlgorithmSettings,
+    pub algorithm: AlgorithmSettings,
     /// The fits and searches that stand beside the sample in its study.
     pub point_estimates: Vec<AlgorithmSettings>,
     /// What an independent test says of parameters, for the figures alone: name and value.
@@ -58,12 +59,12 @@ struct RawFigures {
     reference: BTreeMap<String, f64>,
 }
 
-impl Job {
+impl JobFile {
     /// Parses a job file; `name` is how messages call it.
     ///
     /// # Errors
     /// [`FileError`] with the line, or with the table and key.
-    pub fn parse(name: &str, toml: &str) -> Result<Job, FileError> {
+    pub fn parse(name: &str, toml: &str) -> Result<JobFile, FileError> {
         let mut raw: RawJob = parse_toml(name, toml)?;
         let fail = |message: String| FileError::whole(name, message);
         let likelihood = raw
@@ -71,12 +72,15 @@ impl Job {
             .settings()
             .map_err(|e| fail(format!("[likelihood] {e}")))?;
         let model = ModelSettings::from_table(&raw.model).map_err(|e| fail(format!("[model] {e}")))?;
-        let in_sampler = |e: String| fail(format!("[sampler] {e}"));
-        let method = raw.sampler.method().map_err(in_sampler)?;
-        let point_estimates = raw.sampler.point_estimates(method.seed()).map_err(in_sampler)?;
+        let algorithm = raw
+            .sampler
+            .algorithm()
+            .map_err(|e| fail(format!("[sampler] {e}")))?;
+        let point_estimates = raw.sampler.point_estimates(algorithm.seed());
+        let point_estimates = point_estimates.map_err(|e| fail(format!("[sampler] {e}")))?;
         let discovery = raw
             .discovery
-            .settings(&method)
+            .settings(&algorithm)
             .map_err(|e| fail(format!("[discovery] {e}")))?;
         let posterior = PosteriorPrior::take(|key| raw.priors.remove(key).map(toml::Spanned::into_inner))
             .map_err(|e| fail(format!("[priors] {e}")))?;
@@ -93,12 +97,12 @@ impl Job {
                 }
             })
             .collect();
-        Ok(Job {
+        Ok(JobFile {
             experiment: raw.experiment,
             model,
             priors,
             posterior,
-            method,
+            algorithm,
             point_estimates,
             reference: raw.figures.reference,
             likelihood,

@@ -1,31 +1,29 @@
 //! Turns the text of a job and its experiment into everything a calibration needs.
+//!
+//! # Layout
+//! - `job_file`: [`JobFile`], a job as written.
+//! - `table`: the tables of a job, as written and what they mean.
+//! - `data`: the fitted measurements: noise, likelihood, predicted values.
+//! - `spec`: [`Spec`], a calibration as its files determine it; `spec_words` says it in words.
+//! - `derived`: the jobs that follow from a job.
 
-mod bevameter;
-mod discovery_job;
-mod discovery_settings;
-mod errors;
-mod extended_job;
+mod data;
+mod derived;
 mod job_file;
-mod method;
-mod noise;
-mod point_job;
-mod posterior;
-mod predicted;
-mod priors;
-mod sampler_keys;
 mod spec;
+mod spec_words;
+mod table;
 
-pub use bevameter::{BevameterReadings, PLATE, RING, Reading};
-pub use discovery_job::{
-    DISCOVERY, continued_job, discovery_job, effect_name, is_discovery, without_effects,
-};
-pub use discovery_settings::{Apply, DiscoverySettings};
-pub use errors::LikelihoodSettings;
-pub use extended_job::extended_job;
-pub use job_file::Job;
-pub use method::{AlgorithmName, AlgorithmSettings, AlgorithmSettingsError};
-pub use noise::repeat_scatter;
-pub use point_job::point_job;
-pub use posterior::{ImpliedModuli, JointPrior, PosteriorPrior};
-pub use priors::{FreeParameter, check_own, free_parameters};
+pub use data::bevameter_readings::{BevameterReadings, PLATE, RING, Reading};
+pub use data::noise::repeat_scatter;
+pub use derived::discovery_job::{continued_job, discovery_job, effect_name, is_discovery, without_effects};
+pub use derived::extended_job::extended_job;
+pub use derived::point_job::point_job;
+pub use job_file::JobFile;
 pub use spec::{EffectsChanged, PREDICTION_DRAWS, Spec};
+pub use table::algorithm_settings::{AlgorithmName, AlgorithmSettings, AlgorithmSettingsError};
+pub use table::discovery_settings::{Apply, DiscoverySettings};
+pub use table::likelihood_settings::LikelihoodSettings;
+pub use table::posterior_prior::{ImpliedModuli, JointPrior, PosteriorPrior};
+pub use table::prior_entry::{FreeParameter, PriorEntry, check_own, free_parameters};
+pub use table::prior_entry_error::PriorEntryError;

@@ -10,15 +10,17 @@ use shared::parameters;
 use shared::predicted::PredictedValue;
 use statistics::{Likelihood, Prior, PriorError};
 
-use crate::bevameter::{BevameterReadings, PLATE};
-use crate::discovery_settings::DiscoverySettings;
-use crate::errors::{self, LikelihoodSettings};
-use crate::job_file::Job;
-use crate::method::AlgorithmSettings;
-use crate::noise;
-use crate::posterior::JointPrior;
-use crate::predicted::predicted;
-use crate::priors::{self, FreeParameter};
+use crate::data::bevameter_readings::{BevameterReadings, PLATE};
+use crate::data::error::DataError;
+use crate::data::likelihood::likelihood;
+use crate::data::noise;
+use crate::data::predicted_values::predicted_values;
+use crate::job_file::JobFile;
+use crate::table::algorithm_settings::AlgorithmSettings;
+use crate::table::discovery_settings::DiscoverySettings;
+use crate::table::likelihood_settings::LikelihoodSettings;
+use crate::table::posterior_prior::JointPrior;
+use crate::table::prior_entry::{FreeParameter, ParsedPrior};
 
 /// A calibration as its files determine it; equal files give an equal specification.
 #[derive(Debug, Clone)]
@@ -32,7 +34,7 @@ pub struct Spec {
     /// The posterior of another calibration that is the prior of the first of them, if there is one.
     pub joint_prior: Option<JointPrior>,
     /// The algorithm with its settings.
-    pub method: AlgorithmSettings,
+    pub algorithm: AlgorithmSettings,
     /// The fits and searches that stand beside the sample in its study.
     pub point_estimates: Vec<AlgorithmSettings>,
     /// The fitted runs, as positions in the experiment.
@@ -83,7 +85,7 @@ impl Spec {
         experiment_name: &str,
         files: &FileSet,
     ) -> Result<Spec, FileError> {
-        let parsed = Job::parse(job_name, &job.toml)?;
+        let parsed = JobFile::parse(job_name, &job.toml)?;
         Spec::of(job_name, parsed, &job.files, experiment_name, files)
     }
 
@@ -93,15 +95,15 @@ impl Spec {
     /// As those of [`Spec::new`].
     pub fn of(
         job_name: &str,
-        job: Job,
+        job: JobFile,
         texts: &BTreeMap<String, String>,
         experiment_name: &str,
         files: &FileSet,
     ) -> Result<Spec, FileError> {
         let experiment = Experiment::parse(experiment_name, files)?;
         let in_job = |message: String| FileError::whole(job_name, message);
-        let in_experiment = |message: String| FileError::whole(experiment_name, message);
-        let bevameter = BevameterReadings::new(&experiment).map_err(in_experiment)?;
+        let in_data = |error: DataError| FileError::whole(experiment_name, error.to_string());
+        let bevameter = BevameterReadings::new(&experiment).map_err(in_data)?;
         let wheels = experiment.wheel_names();
         let mut model = job.model;
         let named = job.priors.iter().map(|entry| entry.name.as_str());
@@ -130,9 +132,9 @@ impl Spec {
         for entry in job.priors {
             match entry
                 .parse(&wheels, &effects)
-                .map_err(|e| FileError::at(job_name, entry.line, e))?
+                .map_err(|e| FileError::at(job_name, entry.line, e.to_string()))?
             {
-                priors::Parsed::Fixed(value) => {
+                ParsedPrior::Fixed(value) => {
                     if model.fixed.insert(entry.name.clone(), value).is_some() {
                         let message = format!(
                             "{} is fixed under [model] and stands again under [priors]",
@@ -141,7 +143,7 @@ impl Spec {
                         return Err(FileError::at(job_name, entry.line, message));
                     }
                 }
-                priors::Parsed::Free(parameter) => parameters.push(parameter),
+                ParsedPrior::Free(parameter) => parameters.push(parameter),
             }
         }
         for (name, &value) in &job.reference {
@@ -154,24 +156,24 @@ impl Spec {
             (0..experiment.runs.len()).partition(|&i| experiment.runs[i].usage == RunUse::Fit);
         bevameter
             .add_transfer(&model.fixed, &mut parameters)
-            .map_err(in_job)?;
+            .map_err(|e| in_job(e.to_string()))?;
         noise::add_unknown_sds(&experiment, &bevameter, &mut parameters);
-        noise::check_names(&experiment, &bevameter, &parameters).map_err(in_job)?;
+        noise::check_names(&experiment, &bevameter, &parameters).map_err(|e| in_job(e.to_string()))?;
         if joint_prior.is_some() {
             joint(&joint_prior, &parameters).map_err(|e| in_job(format!("[priors] posterior: {e}")))?;
         }
-        let likelihood = errors::likelihood(&experiment, &fit_runs, &bevameter, &parameters, job.likelihood)
-            .map_err(in_experiment)?;
+        let likelihood =
+            likelihood(&experiment, &fit_runs, &bevameter, &parameters, job.likelihood).map_err(in_data)?;
         if parameters.is_empty() {
             return Err(in_job(
                 "[priors] leaves no parameter free: there is nothing to calibrate".into(),
             ));
         }
-        for method in std::iter::once(&job.method).chain(&job.point_estimates) {
-            method
+        for algorithm in std::iter::once(&job.algorithm).chain(&job.point_estimates) {
+            algorithm
                 .check(parameters.len())
                 .map_err(|e| in_job(format!("[sampler] {e}")))?;
-            if matches!(method, AlgorithmSettings::Fit(_)) && likelihood.entangles_unknown_sds() {
+            if matches!(algorithm, AlgorithmSettings::Fit(_)) && likelihood.entangles_unknown_sds() {
                 return Err(in_job(format!(
                     "[sampler] {}",
                     inference::lm::LmSettingsError::EntangledNoise
@@ -193,8 +195,8 @@ impl Spec {
         };
         let mut fit_variant = variant(&fit_runs)?;
         bevameter.ask(&mut fit_variant);
-        let predicted = predicted(&likelihood);
-        if job.method.has_metamodel() {
+        let predicted = predicted_values(&likelihood);
+        if job.algorithm.has_metamodel() {
             if model.kind == ModelKind::QuasiStatic {
                 return Err(in_job(
                     "metamodel_moves under [sampler]: the metamodel is made of quasi_static, and needs kind = \"scm\" to save runs of"
@@ -217,7 +219,7 @@ impl Spec {
             model,
             parameters,
             joint_prior,
-            method: job.method,
+            algorithm: job.algorithm,
             point_estimates: job.point_estimates,
             fit_runs,
             holdout_runs,
@@ -266,16 +268,6 @@ impl Spec {
         Err(EffectsChanged { begun, now })
     }
 
-    /// The model with its effects: `quasi_static with janosi_hanamoto, mine`.
-    pub fn model_words(&self) -> String {
-        let kind = self.model.kind.name();
-        let effects: Vec<&str> = self.fit_variant.effects.iter().map(|e| e.name.as_str()).collect();
-        match effects.as_slice() {
-            [] => kind.to_owned(),
-            effects => format!("{kind} with {}", effects.join(", ")),
-        }
-    }
-
     /// The joint prior, in parameter order.
     pub fn prior(&self) -> Prior {
         joint(&self.joint_prior, &self.parameters).expect("checked when the specification was made")
@@ -310,18 +302,17 @@ fn add_unsaid(
     let said: Vec<String> = free.chain(model.fixed.keys().cloned()).collect();
     let said = said.iter().map(String::as_str).collect();
     for unsaid in effects.unsaid(&said, wheels) {
-        let parsed = priors::Parsed::of_effect(&unsaid.name, unsaid.parameter).map_err(|e| match &unsaid
-            .chosen
-            .file
-        {
-            Some(file) => FileError::at(file, unsaid.parameter.line, e),
-            None => FileError::whole(job_name, format!("effect {}: {e}", unsaid.chosen.effect.name)),
+        let parsed = ParsedPrior::of_effect(&unsaid.name, unsaid.parameter).map_err(|e| {
+            match &unsaid.chosen.file {
+                Some(file) => FileError::at(file, unsaid.parameter.line, e.to_string()),
+                None => FileError::whole(job_name, format!("effect {}: {e}", unsaid.chosen.effect.name)),
+            }
         })?;
         match parsed {
-            priors::Parsed::Fixed(value) => {
+            ParsedPrior::Fixed(value) => {
                 model.fixed.insert(unsaid.name.clone(), value);
             }
-            priors::Parsed::Free(parameter) => parameters.push(parameter),
+            ParsedPrior::Free(parameter) => parameters.push(parameter),
         }
     }
     Ok(())

@@ -82,7 +82,7 @@ pub(crate) fn all_rejected() -> FinishedCalibration {
 /// A fit of the same job, one parameter at a bound.
 pub(crate) fn fit() -> FinishedCalibration {
     let mut calibration = calibration();
-    calibration.spec.method = AlgorithmSettings::Fit(inference::lm::LmSettings::default());
+    calibration.spec.algorithm = AlgorithmSettings::Fit(inference::lm::LmSettings::default());
     let first = calibration.predictions.remove(0);
     let mut sd: Vec<Option<f64>> = first.theta.iter().map(|x| Some(0.1 * x)).collect();
     let mut at_bound = vec![false; sd.len()];
@@ -111,7 +111,7 @@ pub(crate) fn fit() -> FinishedCalibration {
 /// A search of the same job that its generations cut short.
 pub(crate) fn search() -> FinishedCalibration {
     let mut calibration = fit();
-    calibration.spec.method = AlgorithmSettings::Evolve(EvolutionSettings::Ga(GaSettings::default()));
+    calibration.spec.algorithm = AlgorithmSettings::Evolve(EvolutionSettings::Ga(GaSettings::default()));
     if let Some(estimate) = &mut calibration.estimate {
         estimate.sd = None;
         estimate.stop = StopReason::Generations;

@@ -124,7 +124,7 @@ impl Calibration {
             return Ok(());
         }
         let subchain = self.subchain(evaluation).is_some();
-        let moves = self.spec.method.metamodel_moves();
+        let moves = self.spec.algorithm.metamodel_moves();
         if !computed.answers(subchain, moves, || self.spec.prior()) {
             return Err(ResultError::OtherQuestion { evaluation });
         }

@@ -100,7 +100,7 @@ impl CalibrationEngine {
     /// [`BeginError`] where the settings do not fit the prior, or a search has no models.
     pub(super) fn new(spec: &Spec, models: Option<SearchModels>) -> Result<Self, BeginError> {
         let (prior, likelihood) = (spec.prior(), &spec.likelihood);
-        Ok(match spec.method {
+        Ok(match spec.algorithm {
             AlgorithmSettings::Sample(settings) => {
                 let sampler = Sampler::with_metamodel(prior, settings, likelihood.clone());
                 let sampler = sampler.map_err(AlgorithmSettingsError::from)?;

@@ -98,7 +98,7 @@ impl Calibration {
         job: &FileSet,
         experiment: &FileSet,
     ) -> Result<Self, BeginError> {
-        let models = match spec.method {
+        let models = match spec.algorithm {
             AlgorithmSettings::Discover { .. } => {
                 let models = SearchModels::new(job, experiment, EFFECTS_TOGETHER);
                 Some(models.map_err(DiscoveryError::from)?)
@@ -188,7 +188,7 @@ impl Calibration {
 
     /// What an evaluation is for.
     pub(super) fn key(&self, evaluation: u64) -> EvaluationKey {
-        EvaluationKey::of(evaluation, self.spec.method.width())
+        EvaluationKey::of(evaluation, self.spec.algorithm.width())
     }
 
     /// The variant of a hash, if it is one of this calibration's.
@@ -241,7 +241,7 @@ impl Calibration {
     /// Asks for the evaluations of the present round.
     pub(super) fn ask(&mut self) {
         self.prepare_stage();
-        let particles = self.spec.method.width();
+        let particles = self.spec.algorithm.width();
         self.done.clear();
         let failed = |evaluation| self.failed.get(&evaluation).copied().unwrap_or(0);
         match &self.draws {

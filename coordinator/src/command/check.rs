@@ -24,15 +24,15 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
         text += &format!("note: {note}\n");
     }
     say(&text)?;
-    let method = job.spec.method;
+    let algorithm = job.spec.algorithm;
     let beside = job.spec.point_estimates.clone();
     let pilot = tokio::task::spawn_blocking(move || pilot(job.spec)).await??;
-    let evaluations = pilot.expected(method);
+    let evaluations = pilot.expected(algorithm);
     let simulations = evaluations * pilot.runs as f64;
     let core_s = evaluations * pilot.seconds_per_evaluation;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let mut text = String::new();
-    text += &match pilot.method {
+    text += &match pilot.algorithm {
         AlgorithmSettings::Sample(s) => {
             format!(
                 "\nA pilot of {} particles took {} evaluations.\n",
@@ -42,7 +42,7 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
         AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => {
             format!(
                 "\nThe {} itself took {} evaluations.\n",
-                if matches!(pilot.method, AlgorithmSettings::Fit(_)) {
+                if matches!(pilot.algorithm, AlgorithmSettings::Fit(_)) {
                     "fit"
                 } else {
                     "search"
@@ -52,7 +52,7 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
         }
     };
     if !pilot.complete {
-        text += &match pilot.method.max_evaluations() {
+        text += &match pilot.algorithm.max_evaluations() {
             None => format!(
                 "It was stopped at tempering exponent {:.2e}: what follows is a lower bound.\n",
                 pilot.exponent
@@ -73,12 +73,12 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
         core_s / 3600.0 / cores as f64,
         core_s / cores as f64
     );
-    for method in beside {
+    for algorithm in beside {
         // Their budgets: where they settle is not known before.
-        let most = method.max_evaluations().unwrap_or_default() as f64;
+        let most = algorithm.max_evaluations().unwrap_or_default() as f64;
         text += &format!(
             "beside it {}: at most {:.3} core hours\n",
-            method.words(),
+            algorithm.words(),
             most * pilot.seconds_per_evaluation / 3600.0
         );
     }
@@ -93,7 +93,7 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
 
 struct Pilot {
     /// What ran: a smaller sampler, or the fit or the search itself.
-    method: AlgorithmSettings,
+    algorithm: AlgorithmSettings,
     evaluations: u64,
     runs: usize,
     seconds_per_evaluation: f64,
@@ -105,8 +105,8 @@ struct Pilot {
 impl Pilot {
     /// Evaluations that the whole job will take: stages hardly depend on the particles; a fit or a search is
     /// what it is.
-    fn expected(&self, method: AlgorithmSettings) -> f64 {
-        match (method, self.method) {
+    fn expected(&self, algorithm: AlgorithmSettings) -> f64 {
+        match (algorithm, self.algorithm) {
             (AlgorithmSettings::Sample(whole), AlgorithmSettings::Sample(small)) => {
                 self.evaluations as f64 * whole.particles as f64 / small.particles as f64
             }
@@ -121,10 +121,10 @@ impl Pilot {
 /// The same calibration in memory, a sampler in small.
 fn pilot(mut spec: job::Spec) -> anyhow::Result<Pilot> {
     let least = PILOT_PARTICLES.max(2 * spec.parameters.len() + 2);
-    if let AlgorithmSettings::Sample(settings) = &mut spec.method {
+    if let AlgorithmSettings::Sample(settings) = &mut spec.algorithm {
         settings.particles = settings.particles.min(least);
     }
-    let method = spec.method;
+    let algorithm = spec.algorithm;
     // With derivatives by the stiffness, each condition is simulated twice.
     let runs = spec.fit_runs.len()
         * if spec.fit_variant.stiffness_sensitivity {
@@ -171,7 +171,7 @@ fn pilot(mut spec: job::Spec) -> anyhow::Result<Pilot> {
     }
     let evaluations = calibration.evaluations.max(1);
     Ok(Pilot {
-        method,
+        algorithm,
         evaluations,
         runs,
         seconds_per_evaluation: simulated_s / evaluations as f64,

@@ -7,7 +7,7 @@ use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet, read_beside, read_text, sibling};
 
 use crate::config::JobArguments;
-use job::{Job, Spec, extended_job};
+use job::{JobFile, Spec, extended_job};
 
 /// A job with everything it names, read and validated.
 pub(super) struct JobOnDisk {
@@ -26,7 +26,7 @@ pub(super) fn read(file: &JobArguments) -> Result<JobOnDisk, FileError> {
     let path = &file.job;
     let job_name = path.display().to_string();
     let toml = read_text(path)?;
-    let mut job = Job::parse(&job_name, &toml)?;
+    let mut job = JobFile::parse(&job_name, &toml)?;
     let named = job.experiment.as_deref();
     let named =
         named.ok_or_else(|| FileError::whole(&job_name, "experiment = \"experiment.toml\" is missing"))?;

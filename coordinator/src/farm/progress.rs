@@ -64,7 +64,7 @@ pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> Cal
         model_kind: Some(calibration.spec.model.kind.name().to_owned()),
         model_version: calibration.model_version.clone(),
         progress: Some(Progress {
-            algorithm: calibration.spec.method.name().to_owned(),
+            algorithm: calibration.spec.algorithm.name().to_owned(),
             stage: stage as u32,
             tempering_exponent,
             step: step as u32,

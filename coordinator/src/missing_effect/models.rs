@@ -68,7 +68,7 @@ impl SearchModels {
                 return Err(fail(format!("{name} is not an effect file")));
             };
             let effect = Effect::read(text).map_err(|e| fail(format!("{name}: {e}")))?;
-            let free = free_parameters(&effect).map_err(fail)?;
+            let free = free_parameters(&effect).map_err(|e| fail(e.to_string()))?;
             let entry = CandidateEntry::new(law, &effect, free, true);
             entry.ok_or_else(|| fail(format!("{name} has no strength")))
         };
@@ -138,7 +138,7 @@ impl SearchModels {
             max_effects: self.max_effects,
             settings: SearchSettings {
                 starts: Starts::Even(STARTS),
-                seed: base.method.seed(),
+                seed: base.algorithm.seed(),
                 least_difference: match base.model.kind {
                     ModelKind::QuasiStatic => SearchSettings::default().least_difference,
                     ModelKind::Scm => ROUGH,

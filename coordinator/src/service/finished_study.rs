@@ -31,19 +31,19 @@ pub async fn finished_calibration(
     if let Some(pinned) = &row.model_version {
         spec.check_effects(pinned)?;
     }
-    let estimate = match spec.method {
+    let estimate = match spec.algorithm {
         AlgorithmSettings::Sample(_) | AlgorithmSettings::Discover { .. } => None,
         AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) => reader.estimate(row.id).await?,
     };
-    let prior_draws = match spec.method {
-        AlgorithmSettings::Sample(_) => reader.prior_draws(row.id, spec.method.width()).await?,
+    let prior_draws = match spec.algorithm {
+        AlgorithmSettings::Sample(_) => reader.prior_draws(row.id, spec.algorithm.width()).await?,
         AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => {
             Vec::new()
         }
     };
     let mut populations = reader.populations(row.id).await?;
     let posterior = populations.pop().unwrap_or_default();
-    if let AlgorithmSettings::Sample(_) = spec.method {
+    if let AlgorithmSettings::Sample(_) = spec.algorithm {
         populations.insert(0, first_population(&spec, &prior_draws));
     }
     let likeliest_values = match likeliest(&posterior) {

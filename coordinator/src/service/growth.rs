@@ -68,7 +68,7 @@ impl Service {
             .filter(|row| !is_discovery(&row.job.toml))
             .filter(meant)
         {
-            match self.spec_of(row).await?.method {
+            match self.spec_of(row).await?.algorithm {
                 AlgorithmSettings::Sample(_) => ledger = Some(row),
                 _ => beside = Some(row),
             }

@@ -29,9 +29,9 @@ pub(super) async fn recover(
             }
         };
         let fitted = matches!(
-            spec.method,
+            spec.algorithm,
             AlgorithmSettings::Fit(_) | AlgorithmSettings::Discover { .. }
-        ) || spec.method.has_metamodel();
+        ) || spec.algorithm.has_metamodel();
         let stored = reader.stored(id, fitted).await?;
         let evaluations = stored.evaluations.len();
         let identity = CalibrationIdentity {

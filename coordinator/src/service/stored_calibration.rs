@@ -5,7 +5,7 @@ use shared::file::FileSet;
 
 use super::error::ServiceError;
 use crate::store::Reader;
-use job::{Job, Spec};
+use job::{JobFile, Spec};
 use record::CalibrationRow;
 
 /// A stored calibration.
@@ -37,7 +37,7 @@ pub(super) async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spe
 /// The status of a stored calibration that the farm does not hold.
 pub fn stored_status(row: &CalibrationRow) -> CalibrationStatus {
     // A job that this version does not understand still has a line in every list.
-    let model = Job::parse("job.toml", &row.job.toml).map(|job| job.model);
+    let model = JobFile::parse("job.toml", &row.job.toml).map(|job| job.model);
     CalibrationStatus {
         id: row.id,
         name: row.name.clone(),

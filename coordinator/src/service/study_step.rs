@@ -6,7 +6,7 @@ use super::error::ServiceError;
 use super::stored_calibration::spec_of;
 use crate::store::Reader;
 use crate::study::{Member, Part, Step, next_step};
-use job::{AlgorithmSettings, Apply, Job, discovery_job, is_discovery};
+use job::{AlgorithmSettings, Apply, JobFile, discovery_job, is_discovery};
 use record::{CalibrationRow, Discovery};
 
 /// The next step of a study.
@@ -26,7 +26,7 @@ pub(super) async fn next_step_from(
     rows: &[CalibrationRow],
 ) -> Result<Option<Step>, ServiceError> {
     let Some(lead) = rows.first() else { return Ok(None) };
-    let settings = Job::parse("job.toml", &lead.job.toml)?.discovery;
+    let settings = JobFile::parse("job.toml", &lead.job.toml)?.discovery;
     // Most studies grow by their users alone, and reading every member's files is work.
     if settings.apply == Apply::Off || rows.iter().any(|row| row.state != CalibrationState::Finished) {
         return Ok(None);
@@ -47,7 +47,7 @@ async fn part(reader: &Reader, row: &CalibrationRow, study: &[CalibrationRow]) -
         return Ok(Part::Search(reader.discovery(row.id).await?.map(Box::new)));
     }
     let spec = spec_of(reader, row).await?;
-    Ok(match spec.method {
+    Ok(match spec.algorithm {
         AlgorithmSettings::Sample(_) => Part::Ledger {
             effects: spec.fit_variant.effects.iter().map(|e| e.name.clone()).collect(),
             search: find_search(row, study)?.map(|row| row.id),

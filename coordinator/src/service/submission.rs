@@ -12,7 +12,7 @@ use super::handle::Service;
 use crate::calibration::{Calibration, CalibrationIdentity};
 use crate::farm::dispatch::Stopped;
 use crate::store::{NewCalibrationRow, NewStudy, StudyIds};
-use job::{AlgorithmSettings, Job, Spec, point_job};
+use job::{AlgorithmSettings, JobFile, Spec, point_job};
 
 impl Service {
     /// Stores an experiment after validating it; its id.
@@ -81,23 +81,23 @@ fn members(
     experiment: &FileSet,
 ) -> Result<Vec<(Calibration, FileSet)>, ServiceError> {
     let file = "job.toml";
-    let parsed = Job::parse(file, &job.toml)?;
+    let parsed = JobFile::parse(file, &job.toml)?;
     parsed.check_files(file, &job.files)?;
     let spec = Spec::of(file, parsed, &job.files, "experiment.toml", experiment)?;
-    if matches!(spec.method, AlgorithmSettings::Discover { .. }) {
+    if matches!(spec.algorithm, AlgorithmSettings::Discover { .. }) {
         let message = "[sampler] algorithm = \"discovery\" is a search that a study runs by itself: say apply = \"ask\" or \"auto\" under [discovery]";
         return Err(FileError::whole(file, message).into());
     }
     let point_estimates = spec.point_estimates.clone();
     let mut members = vec![(Calibration::new(identity.clone(), Arc::new(spec))?, job.clone())];
-    for method in &point_estimates {
+    for algorithm in &point_estimates {
         let job = FileSet {
-            toml: point_job(file, &job.toml, method)?,
+            toml: point_job(file, &job.toml, algorithm)?,
             files: job.files.clone(),
         };
         let spec = Spec::new(file, &job, "experiment.toml", experiment)?;
         let identity = CalibrationIdentity {
-            name: format!("{} ({})", identity.name, method.name()),
+            name: format!("{} ({})", identity.name, algorithm.name()),
             ..identity.clone()
         };
         members.push((Calibration::new(identity, Arc::new(spec))?, job));

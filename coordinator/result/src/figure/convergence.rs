@@ -73,7 +73,7 @@ pub struct StagePopulation {
 pub(super) fn search(calibration: &FinishedCalibration) -> Option<SearchConvergence> {
     let history = generations(&calibration.estimate.as_ref()?.history);
     (!history.is_empty()).then(|| SearchConvergence {
-        algorithm: calibration.spec.method.algorithm(),
+        algorithm: calibration.spec.algorithm.algorithm_name(),
         history,
     })
 }

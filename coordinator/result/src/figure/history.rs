@@ -56,10 +56,10 @@ impl FinishedCalibration {
     /// model without time. Both have gone through the same filter.
     pub fn histories(&self) -> Option<Vec<ChannelHistory>> {
         let simulated = self.simulated_histories.as_ref()?;
-        let label = match self.spec.method {
+        let label = match self.spec.algorithm {
             AlgorithmSettings::Sample(_) => "maximum likelihood".to_owned(),
             AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => {
-                format!("{} optimum", self.spec.method.name().to_uppercase())
+                format!("{} optimum", self.spec.algorithm.name().to_uppercase())
             }
         };
         // A cut-off beyond what 10 Hz can represent filters nothing; the averaging protocol rejects it.

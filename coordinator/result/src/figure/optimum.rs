@@ -10,7 +10,7 @@ impl Study {
             .submitted()
             .filter(|calibration| calibration.estimate.is_some());
         fitted.map(|calibration| {
-            let name = calibration.spec.method.name().to_uppercase();
+            let name = calibration.spec.algorithm.name().to_uppercase();
             (format!("{name} optimum"), calibration)
         })
     }

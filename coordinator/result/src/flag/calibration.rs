@@ -43,7 +43,7 @@ impl FinishedCalibration {
                 };
                 let text = format!(
                     "the {what} used its budget before it converged: a better point may be near{rough}; allow more {}",
-                    self.spec.method.budget_key()
+                    self.spec.algorithm.budget_key()
                 );
                 flag(FlagKind::NotEquilibrated, text);
             }

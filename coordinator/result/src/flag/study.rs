@@ -14,7 +14,7 @@ impl Study {
         let of = |calibration: &FinishedCalibration| calibration.diagnostics(&calibration.comparison()).flags;
         let mut flags = self.missed_modes();
         flags.extend(of(&self.lead));
-        let beside = self.point_estimates.iter().map(|o| (o.spec.method.name(), o));
+        let beside = self.point_estimates.iter().map(|o| (o.spec.algorithm.name(), o));
         let extensions = self.extensions.iter().map(|o| (o.experiment.as_str(), o));
         for (name, calibration) in beside.chain(extensions) {
             flags.extend(of(calibration).into_iter().map(|flag| Flag {
@@ -36,7 +36,7 @@ impl Study {
         };
         let found: Vec<(&str, f64)> = self
             .submitted()
-            .filter_map(|calibration| Some((calibration.spec.method.name(), best(calibration)?)))
+            .filter_map(|calibration| Some((calibration.spec.algorithm.name(), best(calibration)?)))
             .collect();
         let Some(&(winner, highest)) = found.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else {
             return Vec::new();

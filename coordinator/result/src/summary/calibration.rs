@@ -108,7 +108,7 @@ impl FinishedCalibration {
             .collect();
         Some(CalibrationSummary {
             effects: self.effects(),
-            algorithm: self.spec.method.algorithm(),
+            algorithm: self.spec.algorithm.algorithm_name(),
             log_evidence: self.row.log_evidence,
             log_evidence_se: self.row.log_evidence_se,
             equilibrated: self.row.equilibrated,

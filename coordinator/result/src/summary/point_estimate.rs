@@ -93,7 +93,7 @@ impl FinishedCalibration {
         let fitted = || fitted(estimate, &self.spec.parameters);
         let name = |p: FittedParameter| p.free.name.clone();
         Some(PointEstimate {
-            algorithm: self.spec.method.algorithm(),
+            algorithm: self.spec.algorithm.algorithm_name(),
             parameters: fitted().map(|p| (name(p), p.value)).collect(),
             sd: estimate
                 .sd

@@ -50,7 +50,7 @@ impl Study {
         let lead = &self.lead;
         StudySummary {
             experiment: lead.experiment.clone(),
-            seed: lead.spec.method.seed(),
+            seed: lead.spec.algorithm.seed(),
             model_version: lead.row.model_version.clone().unwrap_or_default(),
             model_kind: lead.spec.model.kind.name().to_owned(),
             status: self.state.name().to_owned(),

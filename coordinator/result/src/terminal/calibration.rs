@@ -39,7 +39,7 @@ fn told(calibration: &FinishedCalibration, compared: &Comparison, table: &str) -
     let how = match &calibration.estimate {
         Some(estimate) => format!(
             "{} stopped by {}",
-            calibration.spec.method.name(),
+            calibration.spec.algorithm.name(),
             estimate.stop.name()
         ),
         None => number::count(calibration.stages.len(), "stage"),

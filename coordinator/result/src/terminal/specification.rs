@@ -20,8 +20,8 @@ pub fn specification(spec: &Spec) -> String {
         number::count(spec.wheel_data(), "measurement"),
         number::count(holdout, "holdout run"),
         spec.model_words(),
-        spec.method.words(),
-        spec.method.seed()
+        spec.algorithm.words(),
+        spec.algorithm.seed()
     );
     let bevameter = &spec.bevameter;
     for (readings, what) in [

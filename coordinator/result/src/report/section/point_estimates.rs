@@ -17,7 +17,7 @@ pub(in crate::report) fn point_estimates(calibrations: &[FinishedCalibration]) -
         @for calibration in calibrations {
             @if let Some(found) = &calibration.estimate {
                 @let compared = calibration.comparison();
-                h3 { (calibration.spec.method.words()) }
+                h3 { (calibration.spec.algorithm.words()) }
                 (estimate(calibration, found))
                 (fit(calibration, found))
                 (errors(calibration, &compared))

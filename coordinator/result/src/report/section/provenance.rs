@@ -18,8 +18,8 @@ pub(in crate::report) fn subtitle(calibration: &FinishedCalibration) -> String {
         spec.model_words(),
         number::count(spec.fit_runs.len(), "fitted run"),
         number::count(held, "holdout run"),
-        spec.method.words(),
-        spec.method.seed()
+        spec.algorithm.words(),
+        spec.algorithm.seed()
     )
 }
 
@@ -50,8 +50,8 @@ pub(in crate::report) fn provenance(calibration: &FinishedCalibration) -> Markup
             }
             dt { "algorithm" }
             dd {
-                (spec.method.words())
-                @match spec.method {
+                (spec.algorithm.words())
+                @match spec.algorithm {
                     AlgorithmSettings::Sample(s) => {
                         @if s.algorithm == inference::Algorithm::Tmcmc { ", " (s.moves[0]) " to " (s.moves[1]) " moves per stage" }
                     }
@@ -64,7 +64,7 @@ pub(in crate::report) fn provenance(calibration: &FinishedCalibration) -> Markup
                     }
                 }
             }
-            dt { "seed" } dd { (spec.method.seed()) }
+            dt { "seed" } dd { (spec.algorithm.seed()) }
             dt { "program" } dd { "Grouser " (env!("CARGO_PKG_VERSION")) }
         }
         p.note { "The result is a function of job, seed and model version alone: the same three give the same numbers, bit for bit." }

@@ -8,7 +8,8 @@ use shared::model::EffectSet;
 use shared::parameters::{NOISE_PREFIX, RING_TRANSFER, bekker_moduli};
 use statistics::{Distribution, Marginal};
 
-use super::priors::FreeParameter;
+use super::error::TableError;
+use super::prior_entry::FreeParameter;
 
 /// Draws per parameter that a covariance asks for at least.
 const DRAWS_PER_PARAMETER: usize = 10;
@@ -58,36 +59,39 @@ pub struct ImpliedModuli {
 
 impl PosteriorPrior {
     /// Takes its keys out of the table `[priors]`, where they stand.
-    pub(super) fn take(
+    pub(crate) fn take(
         mut remove: impl FnMut(&str) -> Option<toml::Value>,
-    ) -> Result<Option<PosteriorPrior>, String> {
+    ) -> Result<Option<PosteriorPrior>, TableError> {
         let (transfer, moduli) = (remove("transfer"), remove("moduli"));
         let Some(file) = remove("posterior") else {
             return match (transfer, moduli) {
                 (None, None) => Ok(None),
-                _ => Err("transfer and moduli belong to posterior = \"FILE.csv\", which is missing".into()),
+                _ => Err(TableError::NoPosterior),
             };
         };
         let file = file
             .as_str()
-            .ok_or_else(|| format!("posterior = {file}: the name of a CSV file is expected"))?;
+            .ok_or_else(|| TableError::kind("posterior", &file, "the name of a CSV file is"))?;
         let transfer = match transfer {
             None => 1.0,
             Some(value) => number(&value)
                 .filter(|t| t.is_finite() && *t >= 1.0)
-                .ok_or_else(|| format!("transfer = {value} must be a number >= 1: it widens a covariance"))?,
+                .ok_or_else(|| {
+                    let rule = "must be a number >= 1: it widens a covariance";
+                    TableError::value("transfer", &value, rule)
+                })?,
         };
         let literal = match &moduli {
             None => false,
             Some(toml::Value::String(word)) if word == "reference" => false,
             Some(toml::Value::String(word)) if word == "literal" => true,
             Some(toml::Value::String(word)) => {
-                return Err(unknown_word("value of moduli", word, ["reference", "literal"]));
+                let unknown = unknown_word("value of moduli", word, ["reference", "literal"]);
+                return Err(TableError::Unknown(unknown));
             }
             Some(value) => {
-                return Err(format!(
-                    "moduli = {value}: \"reference\" or \"literal\" is expected"
-                ));
+                let expected = "\"reference\" or \"literal\" is";
+                return Err(TableError::kind("moduli", value, expected));
             }
         };
         Ok(Some(PosteriorPrior {
@@ -105,7 +109,7 @@ impl PosteriorPrior {
     ///
     /// # Errors
     /// [`FileError`] names the file and the line or column.
-    pub(super) fn fit(
+    pub(crate) fn fit(
         self,
         text: &str,
         fixed: impl Fn(&str) -> Option<f64>,
@@ -118,7 +122,7 @@ impl PosteriorPrior {
         let mut table = Draws::read(&file, text)?;
         let moduli = table.moduli(fixed);
         if self.literal {
-            table.turn_to_moduli().map_err(whole)?;
+            table.turn_to_moduli().map_err(|e| whole(e.to_string()))?;
         }
         let (mut covered, mut unused) = (Vec::new(), Vec::new());
         for (position, name) in table.columns.iter().enumerate() {
@@ -274,14 +278,11 @@ impl Draws {
     }
 
     /// Turns the columns of `log10_p_ref` and `kappa` into those of `k_c` and `k_phi`, draw by draw.
-    fn turn_to_moduli(&mut self) -> Result<(), String> {
+    fn turn_to_moduli(&mut self) -> Result<(), TableError> {
         if self.position("k_c").is_some() && self.position("k_phi").is_some() {
             return Ok(());
         }
-        let position = |name: &str| {
-            let found = self.position(name);
-            found.ok_or_else(|| format!("moduli = \"literal\" asks for draws of {name}, which has no column"))
-        };
+        let position = |name: &'static str| self.position(name).ok_or(TableError::NoColumn(name));
         let [p_ref, kappa, n] = [position("log10_p_ref")?, position("kappa")?, position("n")?];
         for row in &mut self.rows {
             (row[p_ref], row[kappa]) = bekker_moduli(row[p_ref], row[kappa], row[n]);

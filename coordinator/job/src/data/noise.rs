@@ -5,8 +5,9 @@ use shared::experiment::{Experiment, NoiseSd, RunUse, Scatter, ScatterSd, TestRu
 use shared::parameters::{NOISE_PREFIX, noise_parameter, scatter_parameter};
 use statistics::{Datum, Distribution, ErrorSd, Marginal};
 
-use super::bevameter::BevameterReadings;
-use super::priors::FreeParameter;
+use super::bevameter_readings::BevameterReadings;
+use super::error::{DataError, LEAST_FREEDOM};
+use crate::table::prior_entry::FreeParameter;
 
 /// Prior scale of an unknown noise sd where the job states none: the run-to-run scatter that is usual
 /// on single-wheel rigs, 2 N, 0.2 N m, 1 mm, 2 N.
@@ -14,7 +15,7 @@ const USUAL_SD: [f64; 4] = [2.0, 0.2, 0.001, 2.0];
 
 /// Adds a half-normal prior for every unknown noise sd and scatter that the job does not mention, and moves all noise
 /// parameters behind the model's.
-pub(super) fn add_unknown_sds(
+pub(crate) fn add_unknown_sds(
     experiment: &Experiment,
     bevameter: &BevameterReadings,
     parameters: &mut Vec<FreeParameter>,
@@ -56,36 +57,35 @@ pub(super) fn add_unknown_sds(
 }
 
 /// Refuses a prior for a noise sd that is not inferred.
-pub(super) fn check_names(
+pub(crate) fn check_names(
     experiment: &Experiment,
     bevameter: &BevameterReadings,
     parameters: &[FreeParameter],
-) -> Result<(), String> {
+) -> Result<(), DataError> {
     for scatter in Scatter::ALL {
         let (name, key) = (scatter_parameter(scatter), scatter.key());
         if !parameters.iter().any(|p| p.name == name) {
             continue;
         }
         if experiment.noise.scatter(scatter) != ScatterSd::Unknown {
-            return Err(format!(
-                "{name} has a prior, but the experiment does not say {key} = \"unknown\" under [noise]"
-            ));
+            let key = key.to_owned();
+            return Err(DataError::NotUnknown { name, key });
         }
         if !needs_scatter(experiment, bevameter, scatter) {
-            return Err(format!("{name} has a prior, but nothing that is fitted needs it"));
+            let nothing = "nothing that is fitted";
+            return Err(DataError::NotNeeded { name, nothing });
         }
     }
     for channel in Channel::ALL {
         let name = noise_parameter(channel);
         let stated = parameters.iter().any(|p| p.name == name);
         if stated && experiment.noise.sd[channel.index()] != Some(NoiseSd::Unknown) {
-            let column = channel.column();
-            return Err(format!(
-                "{name} has a prior, but the experiment does not say {column} = \"unknown\" under [noise]"
-            ));
+            let key = channel.column().to_owned();
+            return Err(DataError::NotUnknown { name, key });
         }
         if stated && !needs_experiment_sd(experiment, channel) {
-            return Err(format!("{name} has a prior, but no fit run needs it"));
+            let nothing = "no fit run";
+            return Err(DataError::NotNeeded { name, nothing });
         }
     }
     Ok(())
@@ -107,11 +107,11 @@ fn needs_experiment_sd(experiment: &Experiment, channel: Channel) -> bool {
 }
 
 /// The fitted measurements with their standard deviations.
-pub(super) fn data(
+pub(crate) fn data(
     experiment: &Experiment,
     fit_runs: &[usize],
     parameters: &[FreeParameter],
-) -> Result<Vec<Datum>, String> {
+) -> Result<Vec<Datum>, DataError> {
     let mut data = Vec::new();
     for channel in Channel::ALL {
         let c = channel.index();
@@ -133,16 +133,15 @@ pub(super) fn data(
                     let name = noise_parameter(channel);
                     let parameter = parameters.iter().position(|p| p.name == name);
                     ErrorSd::Inferred {
-                        parameter: parameter.ok_or(format!("{name} has no prior"))?,
+                        parameter: parameter.ok_or(DataError::NoPrior(name))?,
                     }
                 }
                 (None, None) => {
-                    let column = channel.column();
-                    return Err(format!(
-                        "[noise] {column} is missing: {column} of run \"{}\" is measured, so its sd in {}, \"replicates\" or \"unknown\" must stand there",
-                        run.name,
-                        channel.unit()
-                    ));
+                    return Err(DataError::NoNoise {
+                        column: channel.column(),
+                        run: run.name.clone(),
+                        unit: channel.unit(),
+                    });
                 }
             };
             data.push(Datum {
@@ -156,25 +155,18 @@ pub(super) fn data(
     Ok(data)
 }
 
-/// The least number of repeats that says something of the scatter.
-const LEAST_FREEDOM: usize = 3;
-
 /// The scatter of fitted repeats with its degrees of freedom; `None` with fewer than three.
 pub fn repeat_scatter(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> Option<(f64, usize)> {
     let (sd, freedom) = pooled(experiment, fit_runs, channel);
     (freedom >= LEAST_FREEDOM).then_some((sd, freedom))
 }
 
-fn pooled_sd(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> Result<f64, String> {
+fn pooled_sd(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> Result<f64, DataError> {
     let column = channel.column();
     match pooled(experiment, fit_runs, channel) {
-        (_, freedom) if freedom < LEAST_FREEDOM => Err(format!(
-            "[noise] {column} = \"replicates\": the fit runs repeat conditions only {freedom} times, at least {LEAST_FREEDOM} repeats are needed"
-        )),
+        (_, freedom) if freedom < LEAST_FREEDOM => Err(DataError::FewRepeats { column, freedom }),
         (sd, _) if sd > 0.0 => Ok(sd),
-        _ => Err(format!(
-            "[noise] {column} = \"replicates\": all repeats are equal"
-        )),
+        _ => Err(DataError::EqualRepeats(column)),
     }
 }
 
@@ -204,7 +196,7 @@ fn pooled(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> (f64
 }
 
 /// The fitted runs by condition, as positions among them; a run joins the first condition that it repeats.
-pub(super) fn conditions(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Vec<usize>> {
+pub(crate) fn conditions(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Vec<usize>> {
     let mut conditions: Vec<(&TestRun, Vec<usize>)> = Vec::new();
     for (position, &i) in fit_runs.iter().enumerate() {
         let run = &experiment.runs[i];

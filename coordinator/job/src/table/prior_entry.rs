@@ -11,6 +11,8 @@ use shared::model::effects::parameter_name;
 use shared::parameters::{self, NOISE_PREFIX, ParameterBounds, behind};
 use statistics::{Distribution, Marginal};
 
+use super::prior_entry_error::{DISTRIBUTIONS, PriorEntryError};
+
 /// A parameter with a prior.
 #[derive(Debug, Clone)]
 pub struct FreeParameter {
@@ -34,29 +36,28 @@ pub struct PriorEntry {
 }
 
 /// What an entry means.
-pub(super) enum Parsed {
+pub(crate) enum ParsedPrior {
     Fixed(f64),
     Free(FreeParameter),
 }
 
-const DISTRIBUTIONS: [&str; 5] = ["uniform", "loguniform", "normal", "lognormal", "half_normal"];
-
 impl PriorEntry {
     /// Reads the entry and checks it against the parameter's physical bounds.
-    pub(super) fn parse(&self, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<Parsed, String> {
+    pub(crate) fn parse(
+        &self,
+        wheels: &BTreeSet<&str>,
+        effects: &EffectSet,
+    ) -> Result<ParsedPrior, PriorEntryError> {
         self.check_quotes(wheels, effects)?;
         let quantity = quantity(&self.name, wheels, effects)?;
         if let Some(value) = number(&self.value) {
             if self.name.starts_with(NOISE_PREFIX) {
-                return Err(format!(
-                    "{} is fixed in the experiment's [noise], not here",
-                    self.name
-                ));
+                return Err(PriorEntryError::FixedNoise(self.name.clone()));
             }
-            return Ok(Parsed::Fixed(value));
+            return Ok(ParsedPrior::Fixed(value));
         }
-        let marginal = marginal(&self.value, &quantity).map_err(|e| format!("{}: {e}", self.name))?;
-        Ok(Parsed::Free(FreeParameter {
+        let marginal = marginal(&self.value, &quantity).map_err(|e| e.of(&self.name))?;
+        Ok(ParsedPrior::Free(FreeParameter {
             name: self.name.clone(),
             unit: quantity.unit,
             marginal,
@@ -64,7 +65,7 @@ impl PriorEntry {
     }
 
     /// A dotted name without quotes is a table of tables to TOML; says so where one was probably meant.
-    fn check_quotes(&self, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<(), String> {
+    fn check_quotes(&self, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<(), PriorEntryError> {
         let Some(table) = self.value.as_table() else {
             return Ok(());
         };
@@ -81,16 +82,19 @@ impl PriorEntry {
         };
         match table.keys().find(dotted) {
             None => Ok(()),
-            Some(key) => Err(format!("write the name in quotes: \"{}.{key}\"", self.name)),
+            Some(key) => Err(PriorEntryError::Unquoted {
+                name: self.name.clone(),
+                key: key.clone(),
+            }),
         }
     }
 }
 
-impl Parsed {
+impl ParsedPrior {
     /// What the file of an effect says of a parameter that the job does not mention, but for its name there.
-    pub(super) fn of_effect(name: &str, parameter: &Parameter) -> Result<Parsed, String> {
+    pub(crate) fn of_effect(name: &str, parameter: &Parameter) -> Result<ParsedPrior, PriorEntryError> {
         if let Some(value) = number(&parameter.prior) {
-            return Ok(Parsed::Fixed(value));
+            return Ok(ParsedPrior::Fixed(value));
         }
         let quantity = ParameterBounds {
             unit: parameter.unit.clone(),
@@ -98,8 +102,8 @@ impl Parsed {
             upper: f64::INFINITY,
         };
         let marginal = marginal(&parameter.prior, &quantity)
-            .map_err(|e| format!("prior of parameter {}: {e}", parameter.name))?;
-        Ok(Parsed::Free(FreeParameter {
+            .map_err(|e| e.of(format!("prior of parameter {}", parameter.name)))?;
+        Ok(ParsedPrior::Free(FreeParameter {
             name: name.to_owned(),
             unit: quantity.unit,
             marginal,
@@ -113,7 +117,8 @@ impl Parsed {
 /// [`FileError`] with the line of the parameter.
 pub fn check_own(file: &str, effect: &Effect) -> Result<(), FileError> {
     for parameter in &effect.parameters {
-        Parsed::of_effect(&parameter.name, parameter).map_err(|e| FileError::at(file, parameter.line, e))?;
+        ParsedPrior::of_effect(&parameter.name, parameter)
+            .map_err(|e| FileError::at(file, parameter.line, e.to_string()))?;
     }
     Ok(())
 }
@@ -121,12 +126,12 @@ pub fn check_own(file: &str, effect: &Effect) -> Result<(), FileError> {
 /// The parameters of an effect that its file leaves free, by their names in a job.
 ///
 /// # Errors
-/// A sentence that names the parameter.
-pub fn free_parameters(effect: &Effect) -> Result<Vec<FreeParameter>, String> {
+/// [`PriorEntryError`] names the parameter.
+pub fn free_parameters(effect: &Effect) -> Result<Vec<FreeParameter>, PriorEntryError> {
     let mut free = Vec::new();
     for parameter in &effect.parameters {
         let name = parameter_name(effect, parameter, None);
-        if let Parsed::Free(parameter) = Parsed::of_effect(&name, parameter)? {
+        if let ParsedPrior::Free(parameter) = ParsedPrior::of_effect(&name, parameter)? {
             free.push(parameter);
         }
     }
@@ -134,29 +139,33 @@ pub fn free_parameters(effect: &Effect) -> Result<Vec<FreeParameter>, String> {
 }
 
 /// The prior density that a table describes, within the quantity's physical bounds.
-fn marginal(value: &toml::Value, quantity: &ParameterBounds) -> Result<Marginal, String> {
+fn marginal(value: &toml::Value, quantity: &ParameterBounds) -> Result<Marginal, PriorEntryError> {
     let ParameterBounds { unit, lower, upper } = quantity;
     let (lower, upper, unit) = (*lower, *upper, behind(unit));
-    let table = value.as_table().ok_or("a number or a table is expected")?;
+    let table = value.as_table().ok_or(PriorEntryError::NotATable)?;
     let distribution = distribution(table)?;
     let stated = table
         .get("bounds")
         .map(|value| pair("bounds", value))
         .transpose()?;
+    let within = |[a, b]: [f64; 2], stated: bool| match a < lower || b > upper {
+        false => Ok(()),
+        true => Err(PriorEntryError::OutOfRange {
+            stated,
+            a,
+            b,
+            unit: unit.clone(),
+            lower,
+            upper,
+        }),
+    };
     if let Distribution::Uniform { lower: a, upper: b } | Distribution::Loguniform { lower: a, upper: b } =
         distribution
-        && (a < lower || b > upper)
     {
-        return Err(format!(
-            "[{a}, {b}]{unit} leaves the admissible range [{lower}, {upper}]{unit}"
-        ));
+        within([a, b], false)?;
     }
-    if let Some([a, b]) = stated
-        && (a < lower || b > upper)
-    {
-        return Err(format!(
-            "bounds [{a}, {b}]{unit} leave the admissible range [{lower}, {upper}]{unit}"
-        ));
+    if let Some(bounds) = stated {
+        within(bounds, true)?;
     }
     // A prior without bounds of its own ends where the quantity does.
     let bounds = stated.or(match distribution {
@@ -164,11 +173,15 @@ fn marginal(value: &toml::Value, quantity: &ParameterBounds) -> Result<Marginal,
         Distribution::Normal { .. } => Some([lower, upper]),
         Distribution::Lognormal { .. } | Distribution::HalfNormal { .. } => Some([lower.max(0.0), upper]),
     });
-    Marginal::new(distribution, bounds).map_err(|e| e.to_string())
+    Ok(Marginal::new(distribution, bounds)?)
 }
 
 /// Unit and physical bounds of a parameter.
-fn quantity(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<ParameterBounds, String> {
+fn quantity(
+    name: &str,
+    wheels: &BTreeSet<&str>,
+    effects: &EffectSet,
+) -> Result<ParameterBounds, PriorEntryError> {
     let Some(column) = name.strip_prefix(NOISE_PREFIX) else {
         return Ok(shared::model::lookup(name, wheels, effects)?);
     };
@@ -177,11 +190,8 @@ fn quantity(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<
         None if Scatter::ALL.iter().any(|s| s.key() == column) => "1",
         None => {
             let known = Channel::ALL.map(Channel::column).into_iter();
-            return Err(unknown_word(
-                "noise",
-                column,
-                known.chain(Scatter::ALL.map(Scatter::key)),
-            ));
+            let known = known.chain(Scatter::ALL.map(Scatter::key));
+            return Err(PriorEntryError::Unknown(unknown_word("noise", column, known)));
         }
     };
     Ok(ParameterBounds {
@@ -191,15 +201,18 @@ fn quantity(name: &str, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<
     })
 }
 
-fn distribution(table: &toml::Table) -> Result<Distribution, String> {
+fn distribution(table: &toml::Table) -> Result<Distribution, PriorEntryError> {
     let mut found = table.iter().filter(|(key, _)| *key != "bounds");
     let Some((key, value)) = found.next() else {
-        return Err(format!("no distribution; known are {}", DISTRIBUTIONS.join(", ")));
+        return Err(PriorEntryError::NoDistribution);
     };
     if let Some((second, _)) = found.next() {
         return Err(match DISTRIBUTIONS.contains(&second.as_str()) {
-            true => format!("two distributions: {key} and {second}"),
-            false => unknown_word("key", second, DISTRIBUTIONS.into_iter().chain(["bounds"])),
+            true => PriorEntryError::TwoDistributions(key.clone(), second.clone()),
+            false => {
+                let known = DISTRIBUTIONS.into_iter().chain(["bounds"]);
+                PriorEntryError::Unknown(unknown_word("key", second, known))
+            }
         });
     }
     let two = || pair(key, value);
@@ -211,20 +224,29 @@ fn distribution(table: &toml::Table) -> Result<Distribution, String> {
         "half_normal" => match number(value) {
             Some(scale) => Distribution::HalfNormal { scale },
             None => {
-                return Err(format!(
-                    "half_normal = {value}: one number, its scale, is expected"
-                ));
+                return Err(arguments("half_normal", value, "one number, its scale, is"));
             }
         },
-        other => return Err(unknown_word("distribution", other, DISTRIBUTIONS)),
+        other => {
+            let unknown = unknown_word("distribution", other, DISTRIBUTIONS);
+            return Err(PriorEntryError::Unknown(unknown));
+        }
     })
 }
 
-fn pair(key: &str, value: &toml::Value) -> Result<[f64; 2], String> {
+fn pair(key: &str, value: &toml::Value) -> Result<[f64; 2], PriorEntryError> {
     let numbers: Option<Vec<f64>> = value.as_array().and_then(|a| a.iter().map(number).collect());
     match numbers.as_deref() {
         Some(&[a, b]) => Ok([a, b]),
-        _ => Err(format!("{key} = {value}: two numbers are expected")),
+        _ => Err(arguments(key, value, "two numbers are")),
+    }
+}
+
+fn arguments(key: &str, value: &toml::Value, expected: &'static str) -> PriorEntryError {
+    PriorEntryError::Arguments {
+        key: key.to_owned(),
+        value: value.to_string(),
+        expected,
     }
 }
 

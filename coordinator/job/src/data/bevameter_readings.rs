@@ -5,7 +5,8 @@ use shared::model::{ModelVariant, PlateCondition, RingCondition};
 use shared::parameters::RING_TRANSFER;
 use statistics::{Datum, Distribution, ErrorSd, Marginal};
 
-use super::priors::FreeParameter;
+use super::error::DataError;
+use crate::table::prior_entry::FreeParameter;
 
 /// The channel of plates among the data, behind those of the wheel.
 pub const PLATE: usize = 4;
@@ -36,13 +37,13 @@ pub struct BevameterReadings {
 }
 
 /// Readings of one kind, as data.
-pub(super) struct Table<'a> {
+pub(crate) struct ReadingTable<'a> {
     channel: usize,
     readings: Vec<(&'a str, f64)>,
     /// Scatter of its readings within a test.
-    pub(super) between_readings: Scatter,
+    pub(crate) between_readings: Scatter,
     /// Scatter of its tests.
-    pub(super) between_tests: Scatter,
+    pub(crate) between_tests: Scatter,
 }
 
 impl BevameterReadings {
@@ -50,15 +51,18 @@ impl BevameterReadings {
     ///
     /// # Errors
     /// A stress or a way of zero, which has no logarithm.
-    pub(super) fn new(experiment: &Experiment) -> Result<Self, String> {
-        let loaded = |test: &str, stress: (&str, f64), way: (&str, f64)| {
+    pub(crate) fn new(experiment: &Experiment) -> Result<Self, DataError> {
+        let loaded = |test: &str, stress: (&'static str, f64), way: (&'static str, f64)| {
             if stress.1 > 0.0 && way.1 > 0.0 {
                 return Ok(());
             }
-            Err(format!(
-                "test \"{test}\": {} {} Pa at {} {} m has no logarithm: both must be > 0, or the reading be left out or blank",
-                stress.0, stress.1, way.0, way.1
-            ))
+            Err(DataError::NoLogarithm {
+                test: test.to_owned(),
+                stress: stress.0,
+                stress_pa: stress.1,
+                displacement: way.0,
+                displacement_m: way.1,
+            })
         };
         let mut readings = BevameterReadings::default();
         for row in &experiment.plates {
@@ -98,7 +102,7 @@ impl BevameterReadings {
     }
 
     /// Asks a variant to predict the readings too.
-    pub(super) fn ask(&self, variant: &mut ModelVariant) {
+    pub(crate) fn ask(&self, variant: &mut ModelVariant) {
         variant.plates = self.plates.iter().map(|r| r.condition.clone()).collect();
         variant.rings = self.rings.iter().map(|r| r.condition.clone()).collect();
     }
@@ -107,48 +111,43 @@ impl BevameterReadings {
     ///
     /// # Errors
     /// The job says of it without a ring, or a ring has no single shear modulus.
-    pub(super) fn add_transfer(
+    pub(crate) fn add_transfer(
         &self,
         fixed: &std::collections::BTreeMap<String, f64>,
         parameters: &mut Vec<FreeParameter>,
-    ) -> Result<(), String> {
+    ) -> Result<(), DataError> {
         let said = |name: &str| fixed.contains_key(name) || parameters.iter().any(|p| p.name == name);
         if self.rings.is_empty() {
             return match said(RING_TRANSFER) {
-                true => Err(format!(
-                    "{RING_TRANSFER} is given, but the experiment has no measured reading of a ring"
-                )),
+                true => Err(DataError::NoRing(RING_TRANSFER)),
                 false => Ok(()),
             };
         }
         let of_one_wheel = "janosi_hanamoto.shear_modulus_m.";
         let free = parameters.iter().map(|p| &p.name);
         if let Some(name) = free.chain(fixed.keys()).find(|n| n.starts_with(of_one_wheel)) {
-            return Err(format!(
-                "{name} belongs to one wheel: a ring feels janosi_hanamoto.shear_modulus_m, which all share"
-            ));
+            return Err(DataError::ModulusOfOneWheel(name.clone()));
         }
         if !said(RING_TRANSFER) {
             let (mean, sd) = (0.0, TRANSFER_SD);
             parameters.push(FreeParameter {
                 name: RING_TRANSFER.to_owned(),
                 unit: "1".to_owned(),
-                marginal: Marginal::new(Distribution::Normal { mean, sd }, None)
-                    .map_err(|e| e.to_string())?,
+                marginal: Marginal::new(Distribution::Normal { mean, sd }, None)?,
             });
         }
         Ok(())
     }
 
     /// Plates and rings, where there are any.
-    pub(super) fn tables(&self) -> Vec<Table<'_>> {
-        let plates = Table {
+    pub(crate) fn tables(&self) -> Vec<ReadingTable<'_>> {
+        let plates = ReadingTable {
             channel: PLATE,
             readings: self.plates.iter().map(|r| (&*r.test, r.stress_pa)).collect(),
             between_readings: Scatter::PlateReading,
             between_tests: Scatter::PlateTest,
         };
-        let rings = Table {
+        let rings = ReadingTable {
             channel: RING,
             readings: self.rings.iter().map(|r| (&*r.test, r.stress_pa)).collect(),
             between_readings: Scatter::RingReading,
@@ -161,7 +160,7 @@ impl BevameterReadings {
     }
 
     /// Whether something of this kind was measured.
-    pub(super) fn scatters(&self, scatter: Scatter) -> bool {
+    pub(crate) fn scatters(&self, scatter: Scatter) -> bool {
         let tables = self.tables();
         tables
             .iter()
@@ -169,9 +168,9 @@ impl BevameterReadings {
     }
 }
 
-impl Table<'_> {
+impl ReadingTable<'_> {
     /// The readings as data: logarithms of stresses `[ln Pa]`, so that their sd is relative.
-    pub(super) fn data(&self, sd: ErrorSd) -> impl Iterator<Item = Datum> {
+    pub(crate) fn data(&self, sd: ErrorSd) -> impl Iterator<Item = Datum> {
         let readings = self.readings.iter().enumerate();
         readings.map(move |(run, (_, stress))| Datum {
             run,
@@ -182,7 +181,7 @@ impl Table<'_> {
     }
 
     /// The readings of each test, tests in the order of the file.
-    pub(super) fn tests(&self) -> Vec<Vec<usize>> {
+    pub(crate) fn tests(&self) -> Vec<Vec<usize>> {
         let mut tests: Vec<(&str, Vec<usize>)> = Vec::new();
         for (i, (name, _)) in self.readings.iter().enumerate() {
             match tests.iter_mut().find(|(known, _)| known == name) {

@@ -3,7 +3,7 @@
 use shared::file::FileError;
 use toml_edit::{DocumentMut, Item};
 
-use super::AlgorithmSettings;
+use crate::table::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 
 /// The text of a job with a fit or a search in place of its sampler; the seed and everything else stay as written.
 ///
@@ -11,13 +11,13 @@ use super::AlgorithmSettings;
 ///
 /// # Errors
 /// [`FileError`] where the text is no job.
-pub fn point_job(name: &str, toml: &str, method: &AlgorithmSettings) -> Result<String, FileError> {
-    with_algorithm(name, toml, method.name())
+pub fn point_job(name: &str, toml: &str, algorithm: &AlgorithmSettings) -> Result<String, FileError> {
+    with_algorithm(name, toml, algorithm.algorithm_name())
 }
 
 /// The same with another algorithm by its usual settings. The table `[discovery]` goes: what follows from a job asks for
 /// nothing itself.
-pub(super) fn with_algorithm(name: &str, toml: &str, algorithm: &str) -> Result<String, FileError> {
+pub(super) fn with_algorithm(name: &str, toml: &str, algorithm: AlgorithmName) -> Result<String, FileError> {
     edited(name, toml, |document| {
         let sampler = document
             .entry("sampler")
@@ -31,7 +31,7 @@ pub(super) fn with_algorithm(name: &str, toml: &str, algorithm: &str) -> Result<
         for key in foreign {
             sampler.remove(&key);
         }
-        sampler.insert("algorithm", toml_edit::value(algorithm));
+        sampler.insert("algorithm", toml_edit::value(algorithm.name()));
         document.remove("discovery");
         Ok(())
     })
@@ -54,19 +54,19 @@ pub(super) fn edited(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Job;
+    use crate::JobFile;
 
     const JOB: &str = "# why\n[model]\nkind = \"scm\" # here\n[sampler]\nparticles = 50\nmoves = [2, 4]\nseed = 7\npoint_estimates = [\"ga\", \"lm\"]\n";
 
     #[test]
     fn a_point_estimate_has_the_job_s_seed_and_the_usual_settings() {
-        let job = Job::parse("job.toml", JOB).unwrap();
+        let job = JobFile::parse("job.toml", JOB).unwrap();
         let names: Vec<&str> = job.point_estimates.iter().map(AlgorithmSettings::name).collect();
         assert_eq!(names, ["ga", "lm"]);
-        for method in &job.point_estimates {
-            let text = point_job("job.toml", JOB, method).unwrap();
-            let own = Job::parse("job.toml", &text).unwrap();
-            assert_eq!((own.method, own.method.seed()), (*method, 7));
+        for algorithm in &job.point_estimates {
+            let text = point_job("job.toml", JOB, algorithm).unwrap();
+            let own = JobFile::parse("job.toml", &text).unwrap();
+            assert_eq!((own.algorithm, own.algorithm.seed()), (*algorithm, 7));
             assert!(own.point_estimates.is_empty(), "it has none beside it");
             assert!(
                 text.starts_with("# why\n[model]\nkind = \"scm\" # here\n"),
@@ -78,10 +78,10 @@ mod tests {
     #[test]
     fn without_a_seed_the_usual_one_is_the_same_for_all() {
         let job = JOB.replace("seed = 7\n", "");
-        let parsed = Job::parse("job.toml", &job).unwrap();
-        for method in &parsed.point_estimates {
-            let text = point_job("job.toml", &job, method).unwrap();
-            assert_eq!(Job::parse("job.toml", &text).unwrap().method, *method);
+        let parsed = JobFile::parse("job.toml", &job).unwrap();
+        for algorithm in &parsed.point_estimates {
+            let text = point_job("job.toml", &job, algorithm).unwrap();
+            assert_eq!(JobFile::parse("job.toml", &text).unwrap().algorithm, *algorithm);
         }
     }
 
@@ -93,11 +93,11 @@ mod tests {
             ("[\"lm\", \"lm\"]", "[sampler] point_estimates names lm twice"),
         ] {
             let job = JOB.replace("[\"ga\", \"lm\"]", list);
-            let error = Job::parse("job.toml", &job).unwrap_err().to_string();
+            let error = JobFile::parse("job.toml", &job).unwrap_err().to_string();
             assert!(error.contains(reason), "{error}");
         }
         let job = JOB.replace("particles = 50\nmoves = [2, 4]", "algorithm = \"ga\"");
-        let error = Job::parse("job.toml", &job).unwrap_err().to_string();
+        let error = JobFile::parse("job.toml", &job).unwrap_err().to_string();
         assert!(
             error.contains("point_estimates belongs to algorithm tmcmc"),
             "{error}"

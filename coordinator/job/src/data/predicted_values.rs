@@ -4,10 +4,10 @@ use shared::channel::Channel;
 use shared::predicted::PredictedValue;
 use statistics::{Datum, Likelihood};
 
-use super::{PLATE, RING};
+use super::bevameter_readings::{PLATE, RING};
 
 /// The predicted values of a likelihood: one for each datum, then one for each sensitive datum.
-pub(super) fn predicted(likelihood: &Likelihood) -> Vec<PredictedValue> {
+pub(crate) fn predicted_values(likelihood: &Likelihood) -> Vec<PredictedValue> {
     let data = likelihood.data();
     let value = |d: &Datum| match d.channel {
         PLATE => PredictedValue::LnPlatePressure { reading: d.run },

@@ -6,9 +6,7 @@ use shared::file::{FileError, FileSet};
 use toml_edit::{DocumentMut, Item, TableLike};
 
 use super::point_job::{edited, with_algorithm};
-
-/// Name of the search for a missing effect among the algorithms.
-pub const DISCOVERY: &str = "discovery";
+use crate::table::algorithm_settings::AlgorithmName;
 
 /// The job that searches the model of another for missing effects; equal jobs have equal searches.
 ///
@@ -16,7 +14,7 @@ pub const DISCOVERY: &str = "discovery";
 /// [`FileError`] where the text is no job.
 pub fn discovery_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
     Ok(FileSet {
-        toml: with_algorithm(name, &job.toml, DISCOVERY)?,
+        toml: with_algorithm(name, &job.toml, AlgorithmName::Discovery)?,
         files: job.files.clone(),
     })
 }
@@ -25,7 +23,7 @@ pub fn discovery_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
 pub fn is_discovery(toml: &str) -> bool {
     let job: Option<toml::Table> = toml.parse().ok();
     let sampler = job.as_ref().and_then(|job| job.get("sampler"));
-    sampler.and_then(|sampler| sampler.get("algorithm")?.as_str()) == Some(DISCOVERY)
+    sampler.and_then(|sampler| sampler.get("algorithm")?.as_str()) == Some(AlgorithmName::Discovery.name())
 }
 
 /// A job as its study goes on with it: it asks for no point estimates and no search of its own.
@@ -104,7 +102,7 @@ fn keep(table: &mut dyn TableLike, list: &str, condition: impl Fn(&str) -> bool)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Job;
+    use crate::JobFile;
 
     const JOB: &str = r#"# why
 [model]
@@ -164,11 +162,11 @@ apply = "auto"
     #[test]
     fn what_goes_on_asks_for_nothing_beside_itself() {
         let continued = continued_job("job.toml", &job()).unwrap();
-        let parsed = Job::parse("job.toml", &continued.toml).unwrap();
+        let parsed = JobFile::parse("job.toml", &continued.toml).unwrap();
         assert!(parsed.point_estimates.is_empty());
         assert_eq!(
             parsed.discovery,
-            Job::parse("job.toml", "[model]\nkind = \"scm\"\n")
+            JobFile::parse("job.toml", "[model]\nkind = \"scm\"\n")
                 .unwrap()
                 .discovery
         );
@@ -186,7 +184,7 @@ apply = "auto"
         for name in names {
             assert!(!without.toml.contains(&name), "{}", without.toml);
         }
-        let parsed = Job::parse("job.toml", &without.toml).unwrap();
+        let parsed = JobFile::parse("job.toml", &without.toml).unwrap();
         assert_eq!(parsed.model.effects, ["hard_pan"]);
         assert_eq!(parsed.named_files(), ["yours.toml"]);
         assert_eq!(without.files.keys().collect::<Vec<_>>(), ["yours.toml"]);

@@ -1,12 +1,8 @@
-//! The table `[sampler]`: which algorithm, and its settings.
+//! The algorithm of a calibration with its settings.
 
-use inference::evolution::{CmaEsSettings, EvolutionSettings, EvolutionSettingsError, GaSettings};
+use inference::evolution::{CmaEsSettings, EvolutionSettings, EvolutionSettingsError};
 use inference::lm::{LmSettings, LmSettingsError};
 use inference::{Algorithm, TmcmcSettings, TmcmcSettingsError};
-use serde::Deserialize;
-use shared::file::unknown_word;
-
-use super::sampler_keys::Keys;
 
 /// How parameters are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,7 +80,7 @@ impl AlgorithmName {
 
 impl AlgorithmSettings {
     /// The algorithm.
-    pub fn algorithm(&self) -> AlgorithmName {
+    pub fn algorithm_name(&self) -> AlgorithmName {
         match self {
             AlgorithmSettings::Sample(settings) => match settings.algorithm {
                 Algorithm::Tmcmc => AlgorithmName::Tmcmc,
@@ -100,7 +96,7 @@ impl AlgorithmSettings {
 
     /// The algorithm's name in files.
     pub fn name(&self) -> &'static str {
-        self.algorithm().name()
+        self.algorithm_name().name()
     }
 
     /// The algorithm with its size: `tmcmc with 1000 particles`.
@@ -190,129 +186,5 @@ impl AlgorithmSettings {
             AlgorithmSettings::Discover { .. } => {}
         }
         Ok(())
-    }
-}
-
-/// Least and most steps of a stage whose steps are subchains of a metamodel.
-const METAMODEL_STEPS: [usize; 2] = [3, 30];
-/// The algorithms that find the most probable parameters.
-const POINT_ESTIMATES: [&str; 3] = ["lm", "ga", "cma-es"];
-
-/// The table as written; every algorithm reads its own keys.
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub(super) struct RawSampler {
-    algorithm: Option<String>,
-    seed: Option<u64>,
-    particles: Option<usize>,
-    moves: Option<[usize; 2]>,
-    metamodel_moves: Option<usize>,
-    starts: Option<usize>,
-    max_evaluations: Option<usize>,
-    difference_step: Option<f64>,
-    population: Option<usize>,
-    generations: Option<usize>,
-    restarts: Option<usize>,
-    point_estimates: Option<Vec<String>>,
-}
-
-impl RawSampler {
-    /// The algorithm with its settings.
-    pub(super) fn method(&self) -> Result<AlgorithmSettings, String> {
-        let keys = Keys::of(self.algorithm.as_deref().unwrap_or("tmcmc"))?;
-        keys.refuse(&[
-            ("particles", self.particles.is_some()),
-            ("moves", self.moves.is_some()),
-            ("metamodel_moves", self.metamodel_moves.is_some()),
-            ("starts", self.starts.is_some()),
-            ("max_evaluations", self.max_evaluations.is_some()),
-            ("difference_step", self.difference_step.is_some()),
-            ("population", self.population.is_some()),
-            ("generations", self.generations.is_some()),
-            ("restarts", self.restarts.is_some()),
-            ("point_estimates", self.point_estimates.is_some()),
-        ])?;
-        Ok(match keys.algorithm {
-            "ching-chen-2007" => self.sample(Algorithm::ChingChen2007),
-            "basis" => self.sample(Algorithm::Basis),
-            "lm" => self.fit(),
-            "ga" => self.ga(),
-            "cma-es" => self.cma_es(),
-            "discovery" => AlgorithmSettings::Discover {
-                seed: self.seed.unwrap_or(TmcmcSettings::default().seed),
-            },
-            _ => self.sample(Algorithm::Tmcmc),
-        })
-    }
-
-    /// The fits and searches beside the sample: each with its usual settings and the sample's seed.
-    pub(super) fn point_estimates(&self, seed: u64) -> Result<Vec<AlgorithmSettings>, String> {
-        let names = self.point_estimates.as_deref().unwrap_or_default();
-        let method = |(i, name): (usize, &String)| {
-            if !POINT_ESTIMATES.contains(&name.as_str()) {
-                return Err(unknown_word("point estimate", name, POINT_ESTIMATES));
-            }
-            if names[..i].contains(name) {
-                return Err(format!("point_estimates names {name} twice"));
-            }
-            RawSampler {
-                algorithm: Some(name.clone()),
-                seed: Some(seed),
-                ..RawSampler::default()
-            }
-            .method()
-        };
-        names.iter().enumerate().map(method).collect()
-    }
-
-    fn sample(&self, algorithm: Algorithm) -> AlgorithmSettings {
-        let usual = TmcmcSettings::default();
-        let metamodel_moves = self.metamodel_moves.unwrap_or(usual.metamodel_moves);
-        // A step of many moves forgets more than one of one.
-        let moves = if metamodel_moves > 0 {
-            METAMODEL_STEPS
-        } else {
-            usual.moves
-        };
-        AlgorithmSettings::Sample(TmcmcSettings {
-            algorithm,
-            particles: self.particles.unwrap_or(usual.particles),
-            moves: self.moves.unwrap_or(moves),
-            metamodel_moves,
-            seed: self.seed.unwrap_or(usual.seed),
-            ..usual
-        })
-    }
-
-    fn fit(&self) -> AlgorithmSettings {
-        let usual = LmSettings::default();
-        AlgorithmSettings::Fit(LmSettings {
-            starts: self.starts.unwrap_or(usual.starts),
-            max_evaluations: self.max_evaluations.unwrap_or(usual.max_evaluations),
-            difference_step: self.difference_step.unwrap_or(usual.difference_step),
-            seed: self.seed.unwrap_or(usual.seed),
-            ..usual
-        })
-    }
-
-    fn ga(&self) -> AlgorithmSettings {
-        let usual = GaSettings::default();
-        AlgorithmSettings::Evolve(EvolutionSettings::Ga(GaSettings {
-            population: self.population.unwrap_or(usual.population),
-            generations: self.generations.unwrap_or(usual.generations),
-            seed: self.seed.unwrap_or(usual.seed),
-            ..usual
-        }))
-    }
-
-    fn cma_es(&self) -> AlgorithmSettings {
-        let usual = CmaEsSettings::default();
-        AlgorithmSettings::Evolve(EvolutionSettings::CmaEs(CmaEsSettings {
-            population: self.population,
-            max_evaluations: self.max_evaluations.unwrap_or(usual.max_evaluations),
-            restarts: self.restarts.unwrap_or(usual.restarts),
-            seed: self.seed.unwrap_or(usual.seed),
-            ..usual
-        }))
     }
 }

@@ -3,7 +3,8 @@
 use serde::Deserialize;
 use shared::file::unknown_word;
 
-use super::AlgorithmSettings;
+use super::algorithm_settings::AlgorithmSettings;
+use super::error::TableError;
 
 /// Most effects that a job may allow: as many as a model takes.
 const MOST_EFFECTS: usize = 10;
@@ -31,7 +32,7 @@ pub enum Apply {
 /// The table as written.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(super) struct RawDiscovery {
+pub(crate) struct RawDiscovery {
     apply: String,
     max_effects: usize,
 }
@@ -47,25 +48,26 @@ impl Default for RawDiscovery {
 
 impl RawDiscovery {
     /// The settings of a job with this algorithm.
-    pub(super) fn settings(&self, method: &AlgorithmSettings) -> Result<DiscoverySettings, String> {
+    pub(crate) fn settings(&self, algorithm: &AlgorithmSettings) -> Result<DiscoverySettings, TableError> {
         let max_effects = self.max_effects;
         if !(1..=MOST_EFFECTS).contains(&max_effects) {
-            return Err(format!(
-                "max_effects = {max_effects} must lie in [1, {MOST_EFFECTS}]"
-            ));
+            let rule = format!("must lie in [1, {MOST_EFFECTS}]");
+            return Err(TableError::value("max_effects", max_effects, rule));
         }
         let apply = match self.apply.as_str() {
             "off" => Apply::Off,
             "ask" => Apply::Ask,
             "auto" => Apply::Auto,
-            other => return Err(unknown_word("value of apply", other, ["off", "ask", "auto"])),
+            other => {
+                let unknown = unknown_word("value of apply", other, ["off", "ask", "auto"]);
+                return Err(TableError::Unknown(unknown));
+            }
         };
-        if apply != Apply::Off && !matches!(method, AlgorithmSettings::Sample(_)) {
-            return Err(format!(
-                "apply = \"{}\" needs a sampler: {} keeps no ledger of errors",
-                self.apply,
-                method.name()
-            ));
+        if apply != Apply::Off && !matches!(algorithm, AlgorithmSettings::Sample(_)) {
+            return Err(TableError::NoLedger {
+                apply: self.apply.clone(),
+                algorithm: algorithm.name(),
+            });
         }
         Ok(DiscoverySettings { apply, max_effects })
     }
@@ -74,11 +76,11 @@ impl RawDiscovery {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Job;
+    use crate::JobFile;
 
     fn parse(sampler: &str, discovery: &str) -> Result<DiscoverySettings, String> {
         let job = format!("[model]\nkind = \"scm\"\n[sampler]\n{sampler}\n{discovery}\n");
-        Job::parse("job.toml", &job)
+        JobFile::parse("job.toml", &job)
             .map(|job| job.discovery)
             .map_err(|e| e.to_string())
     }

@@ -1,0 +1,53 @@
+//! A specification in words, for terminals and reports.
+
+use shared::experiment::{Scatter, ScatterSd};
+
+use crate::spec::Spec;
+
+impl Spec {
+    /// The model with its effects: `quasi_static with janosi_hanamoto, mine`.
+    pub fn model_words(&self) -> String {
+        let kind = self.model.kind.name();
+        let effects: Vec<&str> = self.fit_variant.effects.iter().map(|e| e.name.as_str()).collect();
+        match effects.as_slice() {
+            [] => kind.to_owned(),
+            effects => format!("{kind} with {}", effects.join(", ")),
+        }
+    }
+
+    /// What tests and runs have in common, a sentence each.
+    pub fn scatter_words(&self) -> Vec<String> {
+        let sd = |scatter: Scatter| match self.experiment.noise.scatter(scatter) {
+            ScatterSd::Known(sd) => format!("{sd}"),
+            ScatterSd::Unknown => "unknown".to_owned(),
+        };
+        let mut words = Vec::new();
+        if !self.likelihood.sensitive().is_empty() {
+            words.push(format!(
+                "the soil's stiffness scatters from run to run, relative sd {}; each condition is simulated twice for it",
+                sd(Scatter::Run)
+            ));
+        }
+        for (what, readings, tests) in [
+            (
+                "pressures under plates",
+                Scatter::PlateReading,
+                Scatter::PlateTest,
+            ),
+            (
+                "shear stresses under rings",
+                Scatter::RingReading,
+                Scatter::RingTest,
+            ),
+        ] {
+            if self.bevameter.scatters(readings) {
+                words.push(format!(
+                    "{what} scatter with the relative sd {} from test to test and {} within a test",
+                    sd(tests),
+                    sd(readings)
+                ));
+            }
+        }
+        words
+    }
+}

@@ -1,0 +1,11 @@
+//! The tables of `job.toml`: as written, and what they mean.
+
+pub(crate) mod algorithm_settings;
+pub(crate) mod discovery_settings;
+mod error;
+pub(crate) mod likelihood_settings;
+pub(crate) mod posterior_prior;
+pub(crate) mod prior_entry;
+pub(crate) mod prior_entry_error;
+mod sampler_keys;
+pub(crate) mod sampler_table;

@@ -1,0 +1,86 @@
+//! Why an entry of `[priors]` is refused.
+
+use shared::model::ModelError;
+use statistics::PriorError;
+
+/// The distributions of a prior.
+pub(crate) const DISTRIBUTIONS: [&str; 5] = ["uniform", "loguniform", "normal", "lognormal", "half_normal"];
+
+/// Why an entry of `[priors]`, or the prior in an effect file, is refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PriorEntryError {
+    /// The model has no such parameter.
+    #[error(transparent)]
+    Parameter(#[from] ModelError),
+    /// A word that is not known, with the nearest known.
+    #[error("{0}")]
+    Unknown(String),
+    /// A noise sd is no constant of the job.
+    #[error("{0} is fixed in the experiment's [noise], not here")]
+    FixedNoise(String),
+    /// A dotted name without quotes.
+    #[error("write the name in quotes: \"{name}.{key}\"")]
+    Unquoted {
+        /// What stands before the dot.
+        name: String,
+        /// What stands behind it.
+        key: String,
+    },
+    /// The prior of one parameter.
+    #[error("{name}: {error}")]
+    Of {
+        /// The parameter.
+        name: String,
+        /// What is wrong.
+        error: Box<PriorEntryError>,
+    },
+    /// Neither a number nor a table.
+    #[error("a number or a table is expected")]
+    NotATable,
+    /// A table without a distribution.
+    #[error("no distribution; known are {}", DISTRIBUTIONS.join(", "))]
+    NoDistribution,
+    /// A table with two distributions.
+    #[error("two distributions: {0} and {1}")]
+    TwoDistributions(String, String),
+    /// A distribution has other arguments.
+    #[error("{key} = {value}: {expected} expected")]
+    Arguments {
+        /// The distribution, or `bounds`.
+        key: String,
+        /// Its value as written.
+        value: String,
+        /// What it takes.
+        expected: &'static str,
+    },
+    /// The prior reaches beyond the physical bounds.
+    #[error("{}[{a}, {b}]{unit} {} the admissible range [{lower}, {upper}]{unit}",
+        if *.stated { "bounds " } else { "" }, if *.stated { "leave" } else { "leaves" })]
+    OutOfRange {
+        /// Whether the bounds of the prior do so, or its support.
+        stated: bool,
+        /// Lower end.
+        a: f64,
+        /// Upper end.
+        b: f64,
+        /// Unit with a space in front, or nothing.
+        unit: String,
+        /// The least admissible value.
+        lower: f64,
+        /// The largest admissible value.
+        upper: f64,
+    },
+    /// The distribution refuses its arguments.
+    #[error(transparent)]
+    Distribution(#[from] PriorError),
+}
+
+impl PriorEntryError {
+    /// The same, of a parameter.
+    pub(crate) fn of(self, name: impl Into<String>) -> Self {
+        PriorEntryError::Of {
+            name: name.into(),
+            error: Box::new(self),
+        }
+    }
+}
