@@ -11,13 +11,12 @@
 //! Effects follow each other at a hook in the order in which they were compiled; hooks follow each other in the order of
 //! [`Hook::ALL`]. Without an active effect a model runs its base code, bit for bit.
 
-mod case;
+pub(crate) mod case;
 mod channel;
 mod error;
 mod law;
 mod node;
 
-pub(crate) use case::Case;
 pub use error::FormError;
 pub(crate) use node::NodeLaws;
 

@@ -4,7 +4,8 @@ use formula::Variable;
 use formula::effect::Mechanism;
 
 use crate::Rejection;
-use crate::effects::{Active, Case};
+use crate::effects::Active;
+use crate::effects::case::Case;
 use crate::rejection::require;
 use crate::spatial::contact::Contact;
 use crate::spatial::contact::formulas::NodeFormulas;

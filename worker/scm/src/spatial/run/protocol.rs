@@ -5,7 +5,7 @@ use super::result::SpatialRun;
 use super::rolling::Rolling;
 use super::track::count;
 use crate::Condition;
-use crate::effects::Case;
+use crate::effects::case::Case;
 use crate::rejection::Rejection;
 use crate::spatial::scene::Scene;
 use crate::spatial::settings::{Protocol, RunSettings};

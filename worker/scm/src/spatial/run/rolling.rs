@@ -3,7 +3,7 @@
 use super::balance::{Search, balance};
 use super::effects::{RunEffects, deflection, elastic_stiffness};
 use super::track::{Steps, spacing_along, steps, terrain};
-use crate::effects::Case;
+use crate::effects::case::Case;
 use crate::rejection::Rejection;
 use crate::spatial::contact::Contact;
 use crate::spatial::contact::laws::Laws;
