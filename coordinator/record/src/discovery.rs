@@ -1,4 +1,4 @@
-//! What a search for a missing effect found: stored as it stands here, shown in summary, report and terminal.
+//! The result of a search for a missing effect, as stored and as shown in summary, report and terminal.
 
 use std::collections::BTreeMap;
 
@@ -9,55 +9,55 @@ use job::effect_name;
 
 /// Name of the explanation that nothing is missing.
 pub const NONE: &str = "none";
-/// Name of the explanation that something is missing that no effect of the library is like.
+/// Name of the explanation that a law outside the library is missing.
 pub const NOT_IN_LIBRARY: &str = "not_in_library";
-/// Most test runs that are proposed.
+/// Most proposed test runs.
 pub const NEXT_RUNS: usize = 3;
 
-/// What can be said.
+/// The verdict of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// No explanation beats the model as it is by 3 nats.
+    /// No explanation beats the searched model by 3 nats, or that nothing is missing is the most probable one.
     NothingDetectable,
-    /// One effect has more than nine tenths of the probability.
+    /// One effect has a probability above 0.9.
     Named,
-    /// Effects that these data cannot tell apart have it together.
+    /// Effects that these data cannot distinguish have a joint probability above 0.9.
     Class,
-    /// Something acts that no effect of the library is like; where and on what is known.
+    /// A law outside the library is missing; its quantity and variable are known.
     NotInLibrary,
-    /// Something is missing; which of several explanations, or what at all, the data do not say.
+    /// Something is missing, and the data do not decide what.
     Undecided,
 }
 
-/// A search of one model.
+/// The result of the search of one model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Discovery {
-    /// The effects that the model had.
+    /// The effects of the searched model.
     pub given: Vec<String>,
-    /// What can be said.
+    /// The verdict of a search.
     pub verdict: Verdict,
-    /// The same as a sentence for a test engineer.
+    /// The verdict in a sentence for a test engineer.
     pub text: String,
-    /// What would be added to the model; only where one thing can be named.
+    /// The addition to the model, where the verdict names one.
     pub extension: Option<Extension>,
-    /// Effects of the model that it no longer gains by.
+    /// Effects of the model that no longer improve its evidence.
     pub drop: Vec<String>,
-    /// Every explanation by falling probability, with `none` and, where it was looked for, `not_in_library`.
+    /// Every explanation by falling probability, with `none` and, if it was searched, `not_in_library`.
     pub effects: Vec<JudgedEffect>,
-    /// What acts, where no effect of the library does.
+    /// The law outside the library, if that is the verdict.
     pub outside: Option<Outside>,
-    /// Effects that these data could not show at their usual strength.
+    /// Effects that are not detectable with these data at their usual strength.
     pub cannot_exclude: Vec<String>,
-    /// Effects that the model refused at every strength.
+    /// Effects that the model rejected at every strength.
     pub refused: Vec<String>,
-    /// Test runs that would tell the remaining explanations apart, the best first.
+    /// Test runs that would distinguish the remaining explanations, the most informative first.
     pub next_runs: Vec<NextRun>,
-    /// Tests without a rolling wheel that would.
+    /// Tests without a rolling wheel that would distinguish them.
     pub other_tests: Vec<String>,
-    /// How well the model fits as it is, and with the best explanation.
+    /// Goodness of fit of the searched model.
     pub chi2: ChiSquare,
-    /// The same with the best explanation.
+    /// Goodness of fit with the best explanation.
     pub chi2_best: ChiSquare,
     /// Evaluations until the effect had a name.
     pub evaluations_to_name: u64,
@@ -65,7 +65,7 @@ pub struct Discovery {
     pub evaluations: u64,
 }
 
-/// What is added to a model.
+/// An addition to a model.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Extension {
@@ -92,15 +92,15 @@ pub enum Extension {
 pub struct JudgedEffect {
     /// The effect, `EFFECT.WHEEL` on one wheel of several; or `none`, or `not_in_library`.
     pub name: String,
-    /// Log-evidence over that of the model as it is \[nats\].
+    /// Log evidence over that of the searched model \[nats\].
     pub log_bayes_factor: f64,
     /// Probability among all explanations.
     pub probability: f64,
-    /// Explanations that these data cannot tell apart have the same; 0 is `none`.
+    /// Explanations that these data cannot distinguish share a class; 0 is `none`.
     pub class: u32,
-    /// Whether its class belongs to the least set that holds the truth with 95 % probability.
+    /// Whether its class belongs to the smallest set of classes with 95 % probability.
     pub in_credible_set: bool,
-    /// The prior of its strength, as its file has it.
+    /// The prior of its strength, as in its file.
     pub strength_prior: Option<String>,
     /// Its own most probable parameters, SI.
     pub parameters: BTreeMap<String, f64>,
@@ -108,7 +108,7 @@ pub struct JudgedEffect {
     pub method: String,
 }
 
-/// What acts outside the library.
+/// A law outside the library.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Outside {
     /// `pressure`, `shear`, `drawbar_pull`, `torque` or `sinkage`.
@@ -117,13 +117,13 @@ pub struct Outside {
     pub depends_on: String,
     /// The form of the dependence: `step`, `power`, ..., or `spline`.
     pub form: String,
-    /// Log-evidence over that of the model as it is \[nats\].
+    /// Log evidence over that of the searched model \[nats\].
     pub log_bayes_factor: f64,
     /// The effect file, ready to be added.
     pub effect_file: String,
-    /// The factor on what it acts on (of a channel: what is added) along what it depends on.
+    /// The factor on the quantity (of a channel: the addition to it) against the variable, in pairs of variable and value.
     pub curve: Vec<[f64; 2]>,
-    /// Log predictive density of left-out levels over that of the model as it is, and of the best of the library \[nats\].
+    /// Log predictive density of left-out levels over that of the searched model, and of the best of the library \[nats\].
     pub left_out_nats: [f64; 2],
 }
 
@@ -136,9 +136,9 @@ pub struct NextRun {
     pub wheel_load_n: f64,
     /// Sled speed.
     pub sled_speed_m_s: f64,
-    /// The explanations that it tells apart.
+    /// The explanations that it distinguishes.
     pub separates: Vec<String>,
-    /// Expected information on which of them holds.
+    /// Expected information on them \[nats\].
     pub information_nats: f64,
 }
 
@@ -147,9 +147,9 @@ pub struct NextRun {
 pub struct ChiSquare {
     /// Their sum; null where the noise was inferred from them.
     pub value: Option<f64>,
-    /// Data less what was fitted.
+    /// Number of data minus the effective number of fitted parameters.
     pub degrees_of_freedom: f64,
-    /// Probability of as much by chance.
+    /// p-value.
     pub p: Option<f64>,
 }
 

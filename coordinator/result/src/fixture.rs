@@ -12,7 +12,7 @@ use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
 
-use crate::discovery::Round;
+use crate::discovery::DiscoveryRound;
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 
@@ -149,7 +149,7 @@ pub(crate) fn grown() -> Study {
     });
     Study {
         extensions: vec![extension],
-        rounds: vec![Round {
+        rounds: vec![DiscoveryRound {
             calibration: 1,
             record,
         }],

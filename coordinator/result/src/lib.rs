@@ -29,7 +29,7 @@ pub mod terminal;
 mod words;
 
 pub use diagnostics::Diagnostics;
-pub use discovery::{DiscoverySummary, Round};
+pub use discovery::{DiscoveryRound, DiscoverySummary};
 pub use figure::{ChannelHistory, MeasuredSeries, ModelSeries, StudyFigures};
 pub use finished_calibration::{FinishedCalibration, first_population, likeliest};
 pub use flag::kind::{Flag, FlagKind};

@@ -2,7 +2,7 @@
 
 use shared::api::CalibrationState;
 
-use crate::discovery::Round;
+use crate::discovery::DiscoveryRound;
 use crate::finished_calibration::FinishedCalibration;
 
 /// The finished calibrations of a study, oldest first. There is at least one.
@@ -17,7 +17,7 @@ pub struct Study {
     /// Those of other models or measurements: extended by effects, or by runs.
     pub extensions: Vec<FinishedCalibration>,
     /// The searches for missing effects.
-    pub rounds: Vec<Round>,
+    pub rounds: Vec<DiscoveryRound>,
 }
 
 impl Study {

@@ -8,7 +8,7 @@ use super::study_step::{is_search_of, next_step_from};
 use crate::store::Reader;
 use job::{AlgorithmSettings, is_discovery};
 use record::CalibrationRow;
-use result::{FinishedCalibration, Round, Study, first_population, likeliest};
+use result::{DiscoveryRound, FinishedCalibration, Study, first_population, likeliest};
 
 /// Loads a finished calibration.
 ///
@@ -95,7 +95,7 @@ pub async fn finished_study(reader: &Reader, row: &CalibrationRow) -> Result<Stu
     for search in searches {
         if let Some(record) = reader.discovery(search.id).await? {
             let calibration = searched_by(search, &rows)?.unwrap_or(lead.row.id);
-            rounds.push(Round { calibration, record });
+            rounds.push(DiscoveryRound { calibration, record });
         }
     }
     let state = match unfinished {

@@ -16,7 +16,7 @@ use crate::calibration::{Calibration, CalibrationIdentity};
 use crate::farm::dispatch::Stopped;
 use crate::missing_effect::candidate::extended;
 use crate::store::NewCalibrationRow;
-use crate::study::Step;
+use crate::study::StudyStep;
 use job::{AlgorithmSettings, Spec, continued_job, discovery_job, is_discovery, without_effects};
 use record::CalibrationRow;
 use record::Extension;
@@ -130,9 +130,9 @@ impl Service {
             return Ok(false);
         };
         match step {
-            Step::Search(id) => self.searched(id).await?,
-            Step::Extend(id, extension) => self.extended(id, &extension).await?,
-            Step::Drop(id, effects) => {
+            StudyStep::Search(id) => self.searched(id).await?,
+            StudyStep::Extend(id, extension) => self.extended(id, &extension).await?,
+            StudyStep::Drop(id, effects) => {
                 let row = self.calibration_row(id).await?;
                 let job = without_effects(FILES[0], &row.job, &effects)?;
                 let name = format!("{}-{}", row.name, effects.join("-"));

@@ -5,7 +5,7 @@ use shared::api::CalibrationState;
 use super::error::ServiceError;
 use super::stored_calibration::spec_of;
 use crate::store::Reader;
-use crate::study::{Member, Part, Step, next_step};
+use crate::study::{StudyMember, StudyRole, StudyStep, next_step};
 use job::{AlgorithmSettings, Apply, JobFile, discovery_job, is_discovery};
 use record::{CalibrationRow, Discovery};
 
@@ -13,7 +13,7 @@ use record::{CalibrationRow, Discovery};
 ///
 /// # Errors
 /// [`ServiceError`] where a member cannot be read.
-pub async fn next_step_of(reader: &Reader, study: i64) -> Result<Option<Step>, ServiceError> {
+pub async fn next_step_of(reader: &Reader, study: i64) -> Result<Option<StudyStep>, ServiceError> {
     next_step_from(reader, &reader.study(study).await?).await
 }
 
@@ -24,7 +24,7 @@ pub async fn next_step_of(reader: &Reader, study: i64) -> Result<Option<Step>, S
 pub(super) async fn next_step_from(
     reader: &Reader,
     rows: &[CalibrationRow],
-) -> Result<Option<Step>, ServiceError> {
+) -> Result<Option<StudyStep>, ServiceError> {
     let Some(lead) = rows.first() else { return Ok(None) };
     let settings = JobFile::parse("job.toml", &lead.job.toml)?.discovery;
     // Most studies grow by their users alone, and reading every member's files is work.
@@ -33,7 +33,7 @@ pub(super) async fn next_step_from(
     }
     let mut members = Vec::new();
     for row in rows {
-        members.push(Member {
+        members.push(StudyMember {
             id: row.id,
             state: row.state,
             part: part(reader, row, rows).await?,
@@ -42,17 +42,21 @@ pub(super) async fn next_step_from(
     Ok(next_step(settings, &members))
 }
 
-async fn part(reader: &Reader, row: &CalibrationRow, study: &[CalibrationRow]) -> Result<Part, ServiceError> {
+async fn part(
+    reader: &Reader,
+    row: &CalibrationRow,
+    study: &[CalibrationRow],
+) -> Result<StudyRole, ServiceError> {
     if is_discovery(&row.job.toml) {
-        return Ok(Part::Search(reader.discovery(row.id).await?.map(Box::new)));
+        return Ok(StudyRole::Search(reader.discovery(row.id).await?.map(Box::new)));
     }
     let spec = spec_of(reader, row).await?;
     Ok(match spec.algorithm {
-        AlgorithmSettings::Sample(_) => Part::Ledger {
+        AlgorithmSettings::Sample(_) => StudyRole::Ledger {
             effects: spec.fit_variant.effects.iter().map(|e| e.name.clone()).collect(),
             search: find_search(row, study)?.map(|row| row.id),
         },
-        _ => Part::Beside,
+        _ => StudyRole::Beside,
     })
 }
 

@@ -1,8 +1,8 @@
-//! How a study grows: by extensions, by further runs, and by what its searches find.
+//! The growth of a study: by extensions, by further runs, and by its searches.
 //!
 //! # Layout
-//! - `next_step`: what follows from where a study stands. Pure.
+//! - `next_step`: the next step of a study. Pure.
 
 mod next_step;
 
-pub use next_step::{Member, Part, Step, next_step};
+pub use next_step::{StudyMember, StudyRole, StudyStep, next_step};

@@ -1,4 +1,4 @@
-//! What a study does next, decided from where it stands alone: so a restart goes on with the same step.
+//! The next step of a study, a function of its state alone: a restart takes the same step.
 
 use std::collections::BTreeSet;
 
@@ -10,18 +10,18 @@ use record::{Discovery, Extension};
 
 /// A calibration of a study.
 #[derive(Debug, Clone)]
-pub struct Member {
+pub struct StudyMember {
     /// Its id.
     pub id: i64,
-    /// Where it stands.
+    /// Its state.
     pub state: CalibrationState,
-    /// What it is in the study.
-    pub part: Part,
+    /// Its role in the study.
+    pub part: StudyRole,
 }
 
-/// What a calibration is in its study.
+/// The role of a calibration in its study.
 #[derive(Debug, Clone)]
-pub enum Part {
+pub enum StudyRole {
     /// A line of the error ledger.
     Ledger {
         /// Names of its model's effects.
@@ -35,44 +35,44 @@ pub enum Part {
     Search(Option<Box<Discovery>>),
 }
 
-/// What is added to a study next.
+/// The next addition to a study.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Step {
+pub enum StudyStep {
     /// The search of a calibration's model.
     Search(i64),
-    /// A calibration extended by what its search names.
+    /// A calibration extended by the effect that its search names.
     Extend(i64, Extension),
-    /// A calibration without effects that it no longer gains by.
+    /// A calibration without effects that no longer improve its evidence.
     Drop(i64, Vec<String>),
 }
 
-/// The next step of a study; `None` where it is over, or has members that are not.
+/// The next step of a study; `None` where it is complete or a member is unfinished.
 ///
-/// A failed or cancelled member ends its growth. With `ask` each end of the ledger is searched once, and the rest is the
-/// user's; with `auto` it is extended by what its search names, as long as there are fewer effects than allowed beyond those
-/// of the first member, and what was once dropped neither comes back by itself nor is dropped again.
-pub fn next_step(settings: DiscoverySettings, members: &[Member]) -> Option<Step> {
+/// A failed or cancelled member ends it. With `ask` the last calibration of the ledger is searched, and the user decides. With
+/// `auto` it is extended by the effect that its search names, up to the allowed number of effects beyond those of the first
+/// member; an effect that was dropped is neither added nor dropped again.
+pub fn next_step(settings: DiscoverySettings, members: &[StudyMember]) -> Option<StudyStep> {
     if settings.apply == Apply::Off || members.iter().any(|m| m.state != CalibrationState::Finished) {
         return None;
     }
     let ledger: Vec<(i64, BTreeSet<&str>, Option<i64>)> = members
         .iter()
         .filter_map(|member| match &member.part {
-            Part::Ledger { effects, search } => {
+            StudyRole::Ledger { effects, search } => {
                 Some((member.id, effects.iter().map(String::as_str).collect(), *search))
             }
-            Part::Beside | Part::Search(_) => None,
+            StudyRole::Beside | StudyRole::Search(_) => None,
         })
         .collect();
     let (last, has, search) = ledger.last()?;
     let Some(search) = search else {
-        return Some(Step::Search(*last));
+        return Some(StudyStep::Search(*last));
     };
     if settings.apply == Apply::Ask {
         return None;
     }
     let found = members.iter().find_map(|member| match &member.part {
-        Part::Search(record) if member.id == *search => record.as_deref(),
+        StudyRole::Search(record) if member.id == *search => record.as_deref(),
         _ => None,
     })?;
     let dropped: BTreeSet<&str> = ledger
@@ -84,7 +84,7 @@ pub fn next_step(settings: DiscoverySettings, members: &[Member]) -> Option<Step
     if let Some(extension) = &found.extension {
         let effect = effect_of(extension);
         if added < settings.max_effects && !dropped.contains(&*effect) && !has.contains(&*effect) {
-            return Some(Step::Extend(*last, extension.clone()));
+            return Some(StudyStep::Extend(*last, extension.clone()));
         }
     }
     let drop: Vec<String> = found
@@ -92,39 +92,39 @@ pub fn next_step(settings: DiscoverySettings, members: &[Member]) -> Option<Step
         .iter()
         .filter(|effect| {
             let effect = effect.as_str();
-            // What the job itself asks for is the user's.
+            // Effects of the first job are the user's choice.
             has.contains(effect) && !ledger[0].1.contains(effect) && !dropped.contains(effect)
         })
         .cloned()
         .collect();
-    (!drop.is_empty()).then_some(Step::Drop(*last, drop))
+    (!drop.is_empty()).then_some(StudyStep::Drop(*last, drop))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn ledger(id: i64, effects: &[&str], search: Option<i64>) -> Member {
-        Member {
+    fn ledger(id: i64, effects: &[&str], search: Option<i64>) -> StudyMember {
+        StudyMember {
             id,
             state: CalibrationState::Finished,
-            part: Part::Ledger {
+            part: StudyRole::Ledger {
                 effects: effects.iter().map(|&e| e.to_owned()).collect(),
                 search,
             },
         }
     }
 
-    fn search(id: i64, names: Option<&str>, drop: &[&str]) -> Member {
+    fn search(id: i64, names: Option<&str>, drop: &[&str]) -> StudyMember {
         let record = Discovery {
             extension: names.map(|name| Extension::Effect(name.to_owned())),
             drop: drop.iter().map(|&e| e.to_owned()).collect(),
             ..found()
         };
-        Member {
+        StudyMember {
             id,
             state: CalibrationState::Finished,
-            part: Part::Search(Some(Box::new(record))),
+            part: StudyRole::Search(Some(Box::new(record))),
         }
     }
 
@@ -132,15 +132,15 @@ mod tests {
         serde_json::from_str(include_str!("../../record/discovery.json")).unwrap()
     }
 
-    fn beside(id: i64) -> Member {
-        Member {
+    fn beside(id: i64) -> StudyMember {
+        StudyMember {
             id,
             state: CalibrationState::Finished,
-            part: Part::Beside,
+            part: StudyRole::Beside,
         }
     }
 
-    fn step(apply: Apply, members: &[Member]) -> Option<Step> {
+    fn step(apply: Apply, members: &[StudyMember]) -> Option<StudyStep> {
         let settings = DiscoverySettings {
             apply,
             max_effects: 2,
@@ -148,23 +148,23 @@ mod tests {
         next_step(settings, members)
     }
 
-    fn extend(id: i64, effect: &str) -> Option<Step> {
-        Some(Step::Extend(id, Extension::Effect(effect.to_owned())))
+    fn extend(id: i64, effect: &str) -> Option<StudyStep> {
+        Some(StudyStep::Extend(id, Extension::Effect(effect.to_owned())))
     }
 
     #[test]
     fn nothing_is_looked_for_unless_the_job_says_so() {
         let members = [ledger(1, &[], None), beside(2)];
         assert_eq!(step(Apply::Off, &members), None);
-        assert_eq!(step(Apply::Ask, &members), Some(Step::Search(1)));
-        assert_eq!(step(Apply::Auto, &members), Some(Step::Search(1)));
+        assert_eq!(step(Apply::Ask, &members), Some(StudyStep::Search(1)));
+        assert_eq!(step(Apply::Auto, &members), Some(StudyStep::Search(1)));
     }
 
     #[test]
     fn a_member_that_is_not_finished_is_waited_for_and_one_that_failed_ends_the_growth() {
         for state in CalibrationState::ALL {
-            let members = [ledger(1, &[], None), Member { state, ..beside(2) }];
-            let expected = (state == CalibrationState::Finished).then_some(Step::Search(1));
+            let members = [ledger(1, &[], None), StudyMember { state, ..beside(2) }];
+            let expected = (state == CalibrationState::Finished).then_some(StudyStep::Search(1));
             assert_eq!(step(Apply::Auto, &members), expected, "{state:?}");
         }
     }
@@ -174,7 +174,7 @@ mod tests {
         let base = [ledger(1, &[], Some(2)), search(2, Some("lug_thrust"), &[])];
         assert_eq!(step(Apply::Ask, &base), None);
         let extended = [base.to_vec(), vec![ledger(3, &["lug_thrust"], None)]].concat();
-        assert_eq!(step(Apply::Ask, &extended), Some(Step::Search(3)));
+        assert_eq!(step(Apply::Ask, &extended), Some(StudyStep::Search(3)));
     }
 
     #[test]
@@ -182,7 +182,7 @@ mod tests {
         let mut members = vec![ledger(1, &["hard_pan"], Some(2)), search(2, Some("a"), &[])];
         assert_eq!(step(Apply::Auto, &members), extend(1, "a"));
         members.push(ledger(3, &["hard_pan", "a"], None));
-        assert_eq!(step(Apply::Auto, &members), Some(Step::Search(3)));
+        assert_eq!(step(Apply::Auto, &members), Some(StudyStep::Search(3)));
         members.pop();
         members.extend([ledger(3, &["hard_pan", "a"], Some(4)), search(4, None, &[])]);
         assert_eq!(step(Apply::Auto, &members), None);
@@ -210,7 +210,10 @@ mod tests {
             ledger(5, &["a", "b"], Some(6)),
             search(6, None, &["a"]),
         ];
-        assert_eq!(step(Apply::Auto, &members), Some(Step::Drop(5, vec!["a".into()])));
+        assert_eq!(
+            step(Apply::Auto, &members),
+            Some(StudyStep::Drop(5, vec!["a".into()]))
+        );
         members.extend([ledger(7, &["b"], Some(8)), search(8, Some("a"), &[])]);
         assert_eq!(step(Apply::Auto, &members), None, "it was dropped before");
         // the user insists

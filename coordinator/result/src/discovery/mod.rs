@@ -1,4 +1,4 @@
-//! What the searches of a study found.
+//! The results of a study's searches for a missing effect.
 //!
 //! # Layout
 //! - `summary`: the block `discovery` of `summary.json`.
@@ -12,10 +12,10 @@ use record::{Discovery, Extension, Verdict};
 
 /// A finished search of a study.
 #[derive(Debug, Clone)]
-pub struct Round {
+pub struct DiscoveryRound {
     /// The calibration whose model was searched.
     pub calibration: i64,
-    /// What was found.
+    /// Its result.
     pub record: Discovery,
 }
 
@@ -30,7 +30,7 @@ pub(crate) fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// The effect file that a search has written, if it has: name and text.
+/// Name and text of a search's effect file, if it has one.
 pub fn effect_file(record: &Discovery) -> Option<(String, String)> {
     let text = match (&record.extension, &record.outside) {
         (Some(Extension::File { text, .. }), _) => text,
@@ -40,7 +40,7 @@ pub fn effect_file(record: &Discovery) -> Option<(String, String)> {
     Some((format!("{}.toml", effect_name(text)?), text.clone()))
 }
 
-/// The arguments of the command that adds what a search names; `folder` is where its effect file lies.
+/// The arguments of the command that adds the named effect; `folder` is that of its effect file.
 pub(crate) fn arguments(record: &Discovery, folder: &std::path::Path) -> Option<String> {
     Some(match record.extension.as_ref()? {
         Extension::Effect(effect) => format!("--effect {effect}"),

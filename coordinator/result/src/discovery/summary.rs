@@ -2,24 +2,24 @@
 
 use record::{Discovery, JudgedEffect, NextRun, Outside, Verdict, effect_of};
 
-use crate::discovery::Round;
+use crate::discovery::DiscoveryRound;
 
-/// What is known of the effects that a study's model misses.
+/// The effects that a study's model misses.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct DiscoverySummary {
-    /// Of the whole study: what was added, or what the first search says.
+    /// Of the search that named an added effect; without one, of the last search with a detection, else of the first.
     pub verdict: Verdict,
-    /// The effects that were added; where none was, the one that a search would add.
+    /// The added effects; without any, the one that a search would add.
     pub chosen: Vec<String>,
     /// Every explanation of the first search.
     pub effects: Vec<JudgedEffect>,
-    /// What acts, where no effect of the library does.
+    /// The law outside the library, if one was found.
     pub outside: Option<Outside>,
-    /// Effects that the last search could not have seen.
+    /// Effects that the last search could not detect.
     pub cannot_exclude: Vec<String>,
-    /// Test runs that would tell what the last search left open.
+    /// Test runs that would distinguish the open explanations of the last search.
     pub next_runs: Vec<NextRun>,
-    /// Tests without a rolling wheel that would.
+    /// Tests without a rolling wheel that would distinguish them.
     pub other_tests: Vec<String>,
     /// Evaluations of all searches.
     pub evaluations: u64,
@@ -30,10 +30,10 @@ pub struct DiscoverySummary {
 impl DiscoverySummary {
     /// The block of a study; `added` are the effects of its best calibration that the first one did not have.
     /// `None` where nothing was searched.
-    pub(crate) fn of(rounds: &[Round], added: Vec<String>) -> Option<DiscoverySummary> {
+    pub(crate) fn of(rounds: &[DiscoveryRound], added: Vec<String>) -> Option<DiscoverySummary> {
         let records: Vec<Discovery> = rounds.iter().map(|round| round.record.clone()).collect();
         let (first, last) = (records.first()?, records.last()?);
-        // The search that named what was added; else the last one that saw something: further runs may have told more.
+        // The last search with a detection rather than the first: further runs may have added information.
         let named = records.iter().find(|record| {
             record
                 .extension
@@ -77,8 +77,8 @@ mod tests {
         serde_json::from_str(include_str!("../../../record/discovery.json")).unwrap()
     }
 
-    fn rounds() -> Vec<Round> {
-        let of = |calibration, record| Round { calibration, record };
+    fn rounds() -> Vec<DiscoveryRound> {
+        let of = |calibration, record| DiscoveryRound { calibration, record };
         let last = Discovery {
             given: vec!["slip_sinkage".into()],
             verdict: Verdict::NothingDetectable,

@@ -13,10 +13,10 @@ use crate::words::probability::p_words;
 
 /// Most explanations that are shown.
 const SHOWN: usize = 8;
-/// Most effects in a list that could not be seen.
-const UNSEEN: usize = 20;
+/// Most names in a list of effects.
+const LISTED: usize = 20;
 
-/// The story of a study that was searched: what each search said, and how the error fell.
+/// The searches of a study with their results, and its error ledger.
 pub fn story(study: &Study) -> String {
     let mut text = String::new();
     for round in &study.rounds {
@@ -57,9 +57,10 @@ pub fn story(study: &Study) -> String {
     text
 }
 
-/// What a search found, and the command that adds it.
+/// The result of a search, and the command that adds it to the model.
 ///
-/// `calibration` is the one that was searched, `place` the argument that says where it is, `folder` where effect files lie.
+/// # Arguments
+/// - `calibration`: the searched one. `place`: the argument that locates it. `folder`: of effect files.
 pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) -> String {
     let mut text = format!("discovery: {}\n{}\n\n", word(record.verdict), record.text);
     let width = width(record.effects.iter().map(|e| &e.name));
@@ -100,16 +101,13 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
         let _ = writeln!(text, "its effect file: {}", folder.join(name).display());
     }
     for (words, effects) in [
-        ("no longer gained by", &record.drop),
-        (
-            "could not have been seen at its usual strength",
-            &record.cannot_exclude,
-        ),
-        ("refused by the model at every strength", &record.refused),
+        ("no longer improves the evidence", &record.drop),
+        ("not detectable at the usual strength", &record.cannot_exclude),
+        ("rejected by the model at every strength", &record.refused),
     ] {
         if !effects.is_empty() {
             let effects = folded(effects);
-            let more = effects.len().saturating_sub(UNSEEN);
+            let more = effects.len().saturating_sub(LISTED);
             let shown = effects[..effects.len() - more].join(", ");
             let rest = if more > 0 {
                 format!(" and {more} more")
@@ -122,7 +120,7 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
     for run in &record.next_runs {
         let _ = writeln!(
             text,
-            "next run: slip {:.2}, {:.1} N, {:.4} m/s tells apart {} ({:.2} nats)",
+            "next run: slip {:.2}, {:.1} N, {:.4} m/s distinguishes {} ({:.2} nats)",
             run.slip,
             run.wheel_load_n,
             run.sled_speed_m_s,
@@ -147,7 +145,7 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
     text
 }
 
-/// Names without those on one wheel of effects that are in the list themselves.
+/// Names without `EFFECT.WHEEL` where `EFFECT` is in the list.
 fn folded(names: &[String]) -> Vec<&str> {
     let is_own = |name: &&String| match name.split_once('.') {
         Some((effect, _)) => !names.iter().any(|other| other == effect),
@@ -156,11 +154,14 @@ fn folded(names: &[String]) -> Vec<&str> {
     names.iter().filter(is_own).map(String::as_str).collect()
 }
 
-/// `210.0 on 68 degrees of freedom (p 1e-9)`.
+/// `210.0 with 68 degrees of freedom (p 1e-9)`.
 fn chi_square(chi2: ChiSquare) -> String {
     let value = chi2.value.map_or("unknown".into(), |value| format!("{value:.1}"));
     let p = chi2.p.map_or(String::new(), |p| format!(" ({})", p_words(p)));
-    format!("{value} on {:.0} degrees of freedom{p}", chi2.degrees_of_freedom)
+    format!(
+        "{value} with {:.0} degrees of freedom{p}",
+        chi2.degrees_of_freedom
+    )
 }
 
 #[cfg(test)]
@@ -174,13 +175,13 @@ mod tests {
     }
 
     #[test]
-    fn a_search_says_what_it_found_and_how_to_add_it() {
+    fn the_text_of_a_search_has_its_result_and_the_command_that_adds_it() {
         let text = text(&record(), 7, "--out out/sand", Path::new("out/sand"));
         for words in [
             "discovery: named\nThe data name slip_sinkage.",
             "slip_sinkage                     40.00      0.9600      1        in  half_normal 0.2",
-            "could not have been seen at its usual strength: moisture",
-            "next run: slip 0.60, 80.0 N, 0.0200 m/s tells apart slip_sinkage, bulldozing (0.40 nats)",
+            "not detectable at the usual strength: moisture",
+            "next run: slip 0.60, 80.0 N, 0.0200 m/s distinguishes slip_sinkage, bulldozing (0.40 nats)",
             "other test: a plate test at 80 N",
             "to add it: coordinator extend 7 --effect slip_sinkage --out out/sand",
         ] {
@@ -189,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_added_from_where_it_lies_and_nothing_by_no_command() {
+    fn a_file_is_added_by_its_path_and_without_an_extension_there_is_no_command() {
         let mut record = record();
         record.extension = Some(Extension::File {
             name: "anything.toml".into(),

@@ -1,4 +1,4 @@
-//! Which effect the model misses: the ledger of errors, and what the searches found.
+//! The error ledger, and the results of the searches for a missing effect.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use record::{Discovery, JudgedEffect, Outside};
 use shared::channel::Channel;
 use shared::experiment::RunUse;
 
-use crate::discovery::{Round, arguments};
+use crate::discovery::{DiscoveryRound, arguments};
 use crate::finished_calibration::FinishedCalibration;
 use crate::report::chart;
 use crate::study::Study;
@@ -29,7 +29,7 @@ pub(in crate::report) fn discovery(study: &Study) -> Option<Markup> {
     })
 }
 
-/// The errors of each calibration: whether they fall is what an added effect is judged by.
+/// The errors of each calibration, by which an added effect is judged.
 fn ledger(study: &Study) -> Markup {
     let lines: Vec<(&FinishedCalibration, Comparison)> =
         study.ledger().map(|o| (o, o.comparison())).collect();
@@ -53,8 +53,8 @@ fn ledger(study: &Study) -> Markup {
             }
         } }
         p.note {
-            "Root mean square errors of the posterior-mean prediction. An effect that is really there lowers them on held-out rows, too. "
-            "Log-evidences compare on the same measurements alone."
+            "Root mean square errors of the posterior-mean prediction. A real effect also lowers them on held-out rows. "
+            "Log evidences are comparable only on the same measurements."
         }
     }
 }
@@ -97,8 +97,8 @@ fn cells(
     }
 }
 
-/// What a search found.
-fn search(study: &Study, round: &Round) -> Markup {
+/// The result of a search.
+fn search(study: &Study, round: &DiscoveryRound) -> Markup {
     let record = &round.record;
     let of = study
         .calibrations()
@@ -108,12 +108,12 @@ fn search(study: &Study, round: &Round) -> Markup {
         p.verdict { (record.text) }
         (explanations(record))
         @if let Some(outside) = &record.outside { (law(outside)) }
-        @if !record.drop.is_empty() { p { "The model no longer gains by " (number::list(&record.drop)) "." } }
+        @if !record.drop.is_empty() { p { "No longer improves the evidence: " (number::list(&record.drop)) "." } }
         @if !record.cannot_exclude.is_empty() {
-            p { "These data could not show, at the usual strength: " (number::list(&record.cannot_exclude)) "." }
+            p { "Not detectable with these data at the usual strength: " (number::list(&record.cannot_exclude)) "." }
         }
         @if !record.refused.is_empty() {
-            p { "Refused by the model at every strength: " (number::list(&record.refused)) "." }
+            p { "Rejected by the model at every strength: " (number::list(&record.refused)) "." }
         }
         @if !(record.next_runs.is_empty() && record.other_tests.is_empty()) { (next(record)) }
         @if let Some(arguments) = arguments(record, Path::new("")) {
@@ -123,14 +123,14 @@ fn search(study: &Study, round: &Round) -> Markup {
     }
 }
 
-/// Explanations that are shown at once.
+/// Explanations outside the fold.
 const SHOWN: usize = 10;
 
 fn explanations(record: &Discovery) -> Markup {
     let (shown, others) = record.effects.split_at(SHOWN.min(record.effects.len()));
     html! {
         (table(shown))
-        p.note { "The data cannot tell explanations of one class apart. Bayes factors are against the model that was searched." }
+        p.note { "The data cannot distinguish explanations of one class. Bayes factors are relative to the searched model." }
         @if !others.is_empty() {
             details { summary { (number::count(others.len(), "less probable explanation")) } (table(others)) }
         }
@@ -165,13 +165,13 @@ fn law(outside: &Outside) -> Markup {
     let what = outside.acts_on.replace('_', " ");
     html! {
         p {
-            "No effect of the library acts like this: " (what) " depends on " (by) " (" (outside.form) ", ln Bayes factor "
+            "Not in the library: " (what) " depends on " (by) " (" (outside.form) ", ln Bayes factor "
             (number::fixed(outside.log_bayes_factor, 2)) ")."
         }
         @if outside.curve.len() > 1 {
             figure {
                 (chart::curve(&outside.curve, &by, &format!("correction of {what}")))
-                figcaption { "Its factor (of a channel: what it adds) along what it depends on, SI." }
+                figcaption { "The factor (on a channel: the addition) against the variable, in SI units." }
             }
         }
         details { summary { "Effect file" } pre { (outside.effect_file) } }
@@ -180,12 +180,12 @@ fn law(outside: &Outside) -> Markup {
 
 fn next(record: &Discovery) -> Markup {
     html! {
-        p { "Tests that would tell more:" }
+        p { "Informative tests:" }
         ul {
             @for run in &record.next_runs {
                 li {
                     "a run at slip " (number::significant(run.slip, 2)) ", " (number::significant(run.wheel_load_n, 3)) "\u{a0}N, "
-                    (number::significant(run.sled_speed_m_s, 3)) "\u{a0}m/s tells apart " (number::list(&run.separates)) " ("
+                    (number::significant(run.sled_speed_m_s, 3)) "\u{a0}m/s distinguishes " (number::list(&run.separates)) " ("
                     (number::significant(run.information_nats, 2)) " nats)"
                 }
             }
