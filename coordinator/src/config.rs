@@ -9,51 +9,51 @@ use tracing_subscriber::filter::{LevelFilter, Targets};
 #[derive(Debug, Parser)]
 #[command(version, name = "coordinator")]
 pub struct CoordinatorConfig {
-    /// What to do.
+    /// The command to execute.
     #[command(subcommand)]
     pub command: CoordinatorCommand,
 }
 
-/// The verbs.
+/// The commands.
 #[derive(Debug, Subcommand)]
 pub enum CoordinatorCommand {
-    /// Calibrate in one process: coordinator, local workers, results in a folder. Run again to go on.
+    /// Calibrate in one process with local workers; results go to a folder. Run again to resume.
     Run(RunArguments),
-    /// Validate a job and say what it will cost.
+    /// Validate a job and estimate its cost.
     Check(JobArguments),
-    /// Run the service: REST interface and workers' endpoint.
+    /// Run the service: REST interface and endpoint for workers.
     Serve(ServeArguments),
-    /// Send a job to a service.
+    /// Submit a job to a service.
     Submit(SubmitArguments),
     /// List calibrations.
     List(SourceArguments),
-    /// Say where a calibration stands.
+    /// Show the status of a calibration.
     Status(TargetArguments),
-    /// Stop a calibration for good.
+    /// Cancel a calibration; it cannot be resumed.
     Cancel(TargetArguments),
-    /// Lease no more evaluations of a calibration.
+    /// Pause a calibration: no further evaluations are leased.
     Pause(TargetArguments),
-    /// Go on with a paused calibration.
+    /// Resume a paused calibration.
     Resume(TargetArguments),
     /// Compare model and measurement, run by run.
     Compare(TargetArguments),
-    /// Write a calibration's report.
+    /// Write the report of a calibration.
     Report(ReportArguments),
-    /// Write a calibration's draws and comparison.
+    /// Write the posterior draws and the comparison of a calibration.
     Export(ExportArguments),
-    /// Say how far a calibration can be trusted, and where its model fails.
+    /// Show how reliable a calibration is and where its model fails.
     Diagnose(TargetArguments),
-    /// Find the effect that a calibration's model misses.
+    /// Search for an effect that the model of a calibration is missing.
     Discover(DiscoverArguments),
-    /// Add to a study a calibration with an effect more.
+    /// Extend a study by a calibration with one additional effect.
     Extend(ExtendArguments),
-    /// Add measurements to a study, and a calibration of all of them.
+    /// Add measurements to a study and calibrate with all of them.
     AddRuns(AddRunsArguments),
-    /// List the effects that a model may miss, or show one: its file, and what it does.
+    /// List the effects of the catalogue, or show one: its file and its influence on the measured quantities.
     Effects(EffectsArguments),
 }
 
-/// A job file, and effects that it does not name itself.
+/// A job file and additional effects.
 #[derive(Debug, Args)]
 pub struct JobArguments {
     /// The job.
@@ -66,7 +66,7 @@ pub struct JobArguments {
     pub effect_file: Vec<PathBuf>,
 }
 
-/// List the effects, or show one.
+/// List the effects of the catalogue, or show one.
 #[derive(Debug, Args)]
 pub struct EffectsArguments {
     /// An effect of the catalogue; by default, all of them are listed.
@@ -75,7 +75,7 @@ pub struct EffectsArguments {
     /// Shows the effect of this file instead.
     #[arg(long)]
     pub file: Option<PathBuf>,
-    /// The model in which its deeds are shown.
+    /// The model in which its influence is shown.
     #[arg(long, value_enum, default_value_t = ModelChoice::QuasiStatic)]
     pub model: ModelChoice,
 }
@@ -96,13 +96,13 @@ pub struct RunArguments {
     /// The job.
     #[command(flatten)]
     pub file: JobArguments,
-    /// Where results and store go; by default out/NAME, after the job file or its folder.
+    /// Folder of the results and the store; by default out/NAME, named after the job file or its folder.
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// Threads that simulate here; by default, one for each core.
+    /// Number of simulation threads in this process; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
-    /// Lets workers elsewhere join at this address.
+    /// Address at which remote workers may join.
     #[arg(long, value_name = "ADDR")]
     pub listen: Option<std::net::SocketAddr>,
 }
@@ -113,7 +113,7 @@ pub struct ServeArguments {
     /// Address to listen on.
     #[arg(long, env = "GROUSER_LISTEN", default_value = "127.0.0.1:7070")]
     pub listen: std::net::SocketAddr,
-    /// The store.
+    /// The store, an SQLite file.
     #[arg(
         long,
         env = "GROUSER_STORE",
@@ -121,39 +121,39 @@ pub struct ServeArguments {
         value_name = "sqlite://FILE"
     )]
     pub store: String,
-    /// Threads that simulate in this process.
+    /// Number of simulation threads in this process.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS", default_value_t = 0)]
     pub local_workers: usize,
-    /// How long a lease lasts without renewal `[ms]`.
+    /// Duration of a lease without renewal `[ms]`.
     #[arg(long, env = "GROUSER_LEASE_MS", default_value_t = crate::service::LEASE_MS)]
     pub lease_ms: u64,
 }
 
-/// Send a job to a service.
+/// Submit a job to a service.
 #[derive(Debug, Args)]
 pub struct SubmitArguments {
     /// The job.
     #[command(flatten)]
     pub file: JobArguments,
-    /// The service.
+    /// URL of the service.
     #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
     pub url: String,
 }
 
-/// Where calibrations are looked up.
+/// Where calibrations are looked up: a service or a folder.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 pub struct SourceArguments {
-    /// A service; by default, the one of `GROUSER_URL` in the environment, or port 7070 of this machine.
+    /// URL of a service; by default `GROUSER_URL` from the environment, or port 7070 of this machine.
     #[arg(long)]
     pub url: Option<String>,
-    /// The folder of a run.
+    /// The output folder of a run.
     #[arg(long)]
     pub out: Option<PathBuf>,
 }
 
 impl SourceArguments {
-    /// The service: the one named, or the environment's, which a folder that is named outdoes.
+    /// The URL of the service: the argument, or else the environment's.
     pub fn url(&self) -> String {
         let environment = || std::env::var("GROUSER_URL").ok();
         self.url
@@ -166,34 +166,34 @@ impl SourceArguments {
 /// One calibration.
 #[derive(Debug, Args)]
 pub struct TargetArguments {
-    /// The calibration's id; may be left out where there is only one.
+    /// Id of the calibration; may be omitted if there is only one study.
     pub id: Option<i64>,
-    /// Where it is.
+    /// Where it is stored.
     #[command(flatten)]
     pub source: SourceArguments,
 }
 
-/// Write a calibration's report.
+/// Write the report of a calibration.
 #[derive(Debug, Args)]
 pub struct ReportArguments {
-    /// Which calibration.
+    /// The calibration.
     #[command(flatten)]
     pub target: TargetArguments,
-    /// Where to write it; by default, standard output.
+    /// Output file; by default, standard output.
     #[arg(long)]
     pub output: Option<PathBuf>,
 }
 
-/// Write a calibration's draws and comparison.
+/// Write the posterior draws and the comparison of a calibration.
 #[derive(Debug, Args)]
 pub struct ExportArguments {
-    /// Which calibration.
+    /// The calibration.
     #[command(flatten)]
     pub target: TargetArguments,
     /// csv: the posterior; json: summary, posterior and comparison.
     #[arg(long, value_enum, default_value_t = ExportFormat::Csv)]
     pub format: ExportFormat,
-    /// Where to write it; by default, standard output.
+    /// Output file; by default, standard output.
     #[arg(long)]
     pub output: Option<PathBuf>,
 }
@@ -201,27 +201,27 @@ pub struct ExportArguments {
 /// Format of an export.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum ExportFormat {
-    /// Equally weighted draws, one a row.
+    /// Equally weighted draws, one per row.
     Csv,
     /// Summary, posterior and comparison.
     Json,
 }
 
-/// Find the effect that a calibration's model misses.
+/// Search for an effect that the model of a calibration is missing.
 #[derive(Debug, Args)]
 pub struct DiscoverArguments {
-    /// Which calibration.
+    /// The calibration.
     #[command(flatten)]
     pub target: TargetArguments,
-    /// Threads that simulate here, for a folder; by default, one for each core.
+    /// Number of simulation threads in this process, with --out; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
 }
 
-/// Add to a study a calibration with an effect more.
+/// Extend a study by a calibration with one additional effect.
 #[derive(Debug, Args)]
 pub struct ExtendArguments {
-    /// Which calibration is extended.
+    /// The calibration to extend.
     #[command(flatten)]
     pub target: TargetArguments,
     /// An effect of the catalogue.
@@ -232,13 +232,13 @@ pub struct ExtendArguments {
         conflicts_with = "effect_file"
     )]
     pub effect: Option<String>,
-    /// The effect of a file.
+    /// An effect file.
     #[arg(long, value_name = "FILE")]
     pub effect_file: Option<PathBuf>,
-    /// The effect acts on this wheel alone, of several.
+    /// Apply the effect to this wheel only, of several.
     #[arg(long, value_name = "NAME", requires = "effect")]
     pub wheel: Option<String>,
-    /// Threads that simulate here, for a folder; by default, one for each core.
+    /// Number of simulation threads in this process, with --out; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
 }
@@ -248,12 +248,12 @@ pub struct ExtendArguments {
 pub struct AddRunsArguments {
     /// A calibration of the study.
     pub id: i64,
-    /// Rows with a header, as in runs.csv.
+    /// CSV file with the columns of runs.csv.
     pub runs: PathBuf,
-    /// Where it is.
+    /// Where it is stored.
     #[command(flatten)]
     pub source: SourceArguments,
-    /// Threads that simulate here, for a folder; by default, one for each core.
+    /// Number of simulation threads in this process, with --out; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
 }

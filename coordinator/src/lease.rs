@@ -9,7 +9,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-/// An evaluation whose leases failed so often is given up.
+/// An evaluation is given up after so many failed leases.
 pub const MAX_ATTEMPTS: u32 = 3;
 
 /// A time-limited claim.

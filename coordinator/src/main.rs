@@ -1,4 +1,4 @@
-//! The program `coordinator`: parse, carry out, say what went wrong.
+//! The program `coordinator`: parses the command line, executes the command, reports errors.
 
 use clap::Parser;
 use coordinator::config::CoordinatorConfig;

@@ -135,7 +135,7 @@ fn a_run_of_a_fit_prints_it_again_and_check_says_what_it_costs() {
         "log_likelihood,log_prior,log10_p_ref,n,friction_angle_deg,wheel_radius_m\n"
     );
     let check = run(coordinator(["check", &path])).success();
-    let line = format!("(one = {FIT_RUNS} runs)");
+    let line = format!("(one evaluation: {FIT_RUNS} runs)");
     assert!(
         check.contains("lm with at most 200 evaluations") && check.contains(&line),
         "{check}"

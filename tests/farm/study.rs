@@ -146,8 +146,8 @@ fn check_says_what_the_point_estimates_may_cost() {
     let path = job().write(&folder.path().join("job")).display().to_string();
     let check = run(coordinator(["check", &path])).success();
     for words in [
-        "beside it lm with at most 200 evaluations",
-        "beside it cma-es with",
+        "point estimate lm with at most 200 evaluations",
+        "point estimate cma-es with",
     ] {
         assert!(check.contains(words), "{words} in\n{check}");
     }

@@ -121,7 +121,7 @@ impl Service {
         created.json()["id"].as_i64().expect("an id")
     }
 
-    /// Where a calibration stands.
+    /// The status of a calibration.
     #[track_caller]
     pub fn status(&self, id: i64) -> Value {
         self.client.json(&format!("/v1/calibrations/{id}"))

@@ -62,7 +62,7 @@ pub struct Spec {
 /// A calibration was begun with other files of its effects than this program has.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "the effects' files have changed since: it was begun with model version {begun}, this program has {now}"
+    "the effect files have changed: the calibration was started with model version {begun}, this program has {now}"
 )]
 pub struct EffectsChanged {
     /// The version that it is pinned to.

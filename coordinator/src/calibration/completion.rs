@@ -271,7 +271,7 @@ impl Calibration {
         facts
     }
 
-    /// Goes on after a pause; evaluations that had used up their attempts get new ones.
+    /// Resumes after a pause; evaluations that had used up their attempts get new ones.
     pub fn resume(&mut self, facts: &mut Vec<Fact>) {
         // An attempt 0 in the list of faults: the new attempts outlive a restart.
         facts.extend(

@@ -1,4 +1,4 @@
-//! What is simulated once a sampler or a fit has ended.
+//! The parameter vectors simulated after a sampler or a fit has ended.
 
 use inference::PosteriorSample;
 

@@ -35,11 +35,11 @@ pub struct CalibrationIdentity {
 /// A calibration in progress.
 #[derive(Debug)]
 pub struct Calibration {
-    /// Who it is.
+    /// Its identity.
     pub identity: CalibrationIdentity,
-    /// What it is about.
+    /// Its specification.
     pub spec: Arc<Spec>,
-    /// Where it stands.
+    /// Its state.
     pub state: CalibrationState,
     /// Why it is paused or failed.
     pub message: Option<String>,

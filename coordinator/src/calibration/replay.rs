@@ -1,4 +1,4 @@
-//! Brings a calibration to where it stood, from what the store kept.
+//! Replay of a calibration from the store.
 
 use shared::api::CalibrationState;
 use statistics::LogLikelihood;
@@ -13,7 +13,7 @@ use record::{Fact, Stored, StoredEvaluation};
 pub enum ReplayError {
     /// The proposed parameter vector differs from the stored one.
     #[error(
-        "evaluation {evaluation} was stored at {stored:?}, but this version proposes {proposed:?}: the stored calibration was begun by another version of the sampler"
+        "evaluation {evaluation} was stored at {stored:?}, but this version proposes {proposed:?}: the calibration was started by another version of the sampler"
     )]
     OtherTheta {
         /// The evaluation.
@@ -182,7 +182,7 @@ mod tests {
         assert_eq!(
             error.to_string(),
             format!(
-                "the effects' files have changed since: it was begun with model version scm-4+effects.00000000, this program has {now}"
+                "the effect files have changed: the calibration was started with model version scm-4+effects.00000000, this program has {now}"
             )
         );
     }

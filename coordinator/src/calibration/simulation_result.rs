@@ -1,11 +1,11 @@
-//! What came out of an evaluation that no machine failed at.
+//! The result of an evaluation: observables or a rejection.
 
 use record::Fingerprint;
 use shared::exchange::WorkResult;
 use shared::outcome::{Observables, Outcome};
 use statistics::{Prior, SubchainEnd};
 
-/// What a model said, or that it had not to be asked.
+/// The result of an evaluation that no machine failed at.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulationResult {
     /// Where the subchain ended, if one was asked for.

@@ -1,4 +1,4 @@
-//! `coordinator check`: validate a job and say what it will cost.
+//! `coordinator check`: validates a job and estimates its cost.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -63,8 +63,9 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
         };
     }
     text += &format!(
-        "expected evaluations   {evaluations:>12.0}   (one = {} runs)\n",
-        pilot.runs
+        "expected evaluations   {evaluations:>12.0}   (one evaluation: {} run{})\n",
+        pilot.runs,
+        if pilot.runs == 1 { "" } else { "s" }
     );
     text += &format!("expected simulations   {simulations:>12.0}\n");
     text += &format!("expected core hours    {:>12.3}\n", core_s / 3600.0);
@@ -77,14 +78,14 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
         // Their budgets: where they settle is not known before.
         let most = algorithm.max_evaluations().unwrap_or_default() as f64;
         text += &format!(
-            "beside it {}: at most {:.3} core hours\n",
+            "point estimate {}: at most {:.3} core hours\n",
             algorithm.words(),
             most * pilot.seconds_per_evaluation / 3600.0
         );
     }
     if pilot.rejected_share > 0.0 {
         text += &format!(
-            "the model refused {:.0} % of the pilot's parameter vectors\n",
+            "the model rejected {:.0} % of the pilot's parameter vectors\n",
             100.0 * pilot.rejected_share
         );
     }

@@ -30,7 +30,7 @@ enum End {
 
 /// A folder with its store open.
 pub(super) struct Folder {
-    /// Where it is.
+    /// Where it is stored.
     pub(super) out: PathBuf,
     /// Its store, and a farm for it.
     pub(super) service: Service,
@@ -66,7 +66,7 @@ impl Folder {
         let (service, out) = (&self.service, &self.out);
         if let Some(reason) = service.left_alone(row.id) {
             bail!(
-                "{} holds a calibration that cannot go on: {reason}",
+                "{} holds a calibration that cannot be resumed: {reason}",
                 out.display()
             );
         }
@@ -77,7 +77,7 @@ impl Folder {
             .filter(|v| *v != model_version() && !row.state.is_final())
         {
             bail!(
-                "{} holds a calibration begun with model version {pinned}, this program computes {}: give another --out, or finish it with the older program",
+                "{} holds a calibration started with model version {pinned}, but this program computes {}: give another --out, or finish it with the older program",
                 out.display(),
                 model_version()
             );
@@ -97,7 +97,7 @@ impl Folder {
             match self.calibrate(study).await? {
                 End::Over => {}
                 End::Stopped => {
-                    note("stopped; the same command goes on from here");
+                    note("stopped; the same command resumes from here");
                     return Ok(());
                 }
             }
@@ -153,7 +153,7 @@ impl Folder {
         let cores = std::thread::available_parallelism().map_or(1, Into::into);
         let threads = self.local_workers.unwrap_or(cores);
         if threads == 0 && server.is_none() {
-            bail!("--local-workers 0 needs --listen: nobody would simulate");
+            bail!("--local-workers 0 needs --listen: there would be no worker");
         }
         let began = Instant::now();
         let workers =
@@ -218,7 +218,7 @@ async fn watch_until_over(
     loop {
         tokio::select! {
             () = &mut stop => { display.finish(); return Ok(End::Stopped); }
-            () = &mut store_fails => bail!("the store can no longer be written; its log line says why"),
+            () = &mut store_fails => bail!("the store can no longer be written; see the log"),
             reason = &mut failure => bail!("the local workers ended: {reason}"),
             () = tokio::time::sleep(LOOK) => {}
         }
@@ -228,7 +228,7 @@ async fn watch_until_over(
         if let Some(status) = paused {
             display.finish();
             bail!(
-                "paused: {}; the same command goes on from here",
+                "paused: {}; the same command resumes from here",
                 status.message.as_deref().unwrap_or_default()
             );
         }

@@ -1,4 +1,4 @@
-//! The verbs by which a study grows: discover, extend, add-runs.
+//! The commands that extend a study: discover, extend, add-runs.
 
 use std::path::Path;
 use std::time::Duration;

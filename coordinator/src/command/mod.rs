@@ -1,4 +1,4 @@
-//! The verbs of the command line.
+//! The commands of the command line.
 
 mod check;
 mod effects;
@@ -15,10 +15,10 @@ mod verbs;
 
 use crate::config::CoordinatorCommand;
 
-/// Carries out a verb.
+/// Executes a command.
 ///
 /// # Errors
-/// Whatever went wrong, as one chain of sentences.
+/// The failure with its causes.
 pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
     match command {
         CoordinatorCommand::Run(run) => run::run(run).await,

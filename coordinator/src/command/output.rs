@@ -1,4 +1,4 @@
-//! Writes to the terminal; a reader who has gone away has read enough.
+//! Output on the terminal; a closed pipe is not an error.
 
 use std::io::{ErrorKind, Write};
 

@@ -1,4 +1,4 @@
-//! What a person sees while a calibration runs.
+//! The progress display of a running calibration.
 
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -30,9 +30,9 @@ impl Display {
     pub(super) fn show(&mut self, status: &CalibrationStatus) {
         let Some(p) = &status.progress else { return };
         let time = match p.remaining_s {
-            Some(s) if s >= 90.0 => format!("about {:.0} min to go", s / 60.0),
-            Some(s) => format!("about {s:.0} s to go"),
-            None => "time to go unknown yet".into(),
+            Some(s) if s >= 90.0 => format!("about {:.0} min remaining", s / 60.0),
+            Some(s) => format!("about {s:.0} s remaining"),
+            None => "remaining time unknown".into(),
         };
         let pace = format!("{} evaluations, {:.0}/s", p.evaluations, p.evaluations_per_s);
         let message = match p.algorithm.as_str() {

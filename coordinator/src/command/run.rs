@@ -1,4 +1,4 @@
-//! `coordinator run`: everything in one process, in a folder that can be taken up again.
+//! `coordinator run`: a study in one process, resumable from its folder.
 
 use std::path::Path;
 

@@ -26,8 +26,8 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     let signal = stop_signal()?;
     tokio::select! {
         () = service.keep_growing() => {}
-        () = signal => tracing::info!("stopping; workers will find us again"),
-        () = service.store().writer().stopped() => bail!("the store can no longer be written; the log says why"),
+        () = signal => tracing::info!("stopping; workers will reconnect"),
+        () = service.store().writer().stopped() => bail!("the store can no longer be written; see the log"),
     }
     stop.now();
     if let Some(workers) = workers {

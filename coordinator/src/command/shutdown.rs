@@ -1,4 +1,4 @@
-//! How a program that serves is told to stop.
+//! The stop signal of a running program.
 
 use tokio::sync::watch;
 

@@ -1,4 +1,4 @@
-//! A service or a folder: two places where calibrations are looked up.
+//! Access to stored calibrations: through a service or in a folder.
 
 use anyhow::{Context, bail};
 use serde::de::DeserializeOwned;

@@ -1,4 +1,4 @@
-//! The short verbs: submit, list, status, cancel, pause, resume, compare, diagnose, report, export.
+//! The short commands: submit, list, status, cancel, pause, resume, compare, diagnose, report, export.
 
 use std::path::Path;
 
@@ -51,7 +51,7 @@ pub(super) async fn control(target: &TargetArguments, verb: &str) -> anyhow::Res
     let place = CalibrationSource::open(&target.source).await?;
     let CalibrationSource::Service(client) = &place else {
         bail!(
-            "{verb} needs a service (--url): the run of a folder is stopped by ^C and goes on by running it again"
+            "{verb} needs a service (--url): a run in a folder is stopped by ^C and resumed by running it again"
         );
     };
     let id = place.id(target).await?;

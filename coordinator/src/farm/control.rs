@@ -9,7 +9,7 @@ pub enum ControlError {
     #[error("calibration {0} is not in progress")]
     NotInProgress(i64),
     /// There is no result yet, or there never will be one.
-    #[error("calibration {id} is {}; results are there when it is finished", state.name())]
+    #[error("calibration {id} is {}; results are available when it is finished", state.name())]
     NotFinished {
         /// The calibration.
         id: i64,
@@ -31,10 +31,10 @@ pub enum ControlError {
 /// A user's command on a calibration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Control {
-    /// Stop for good.
+    /// Stop; it cannot be resumed.
     Cancel,
     /// Lease nothing until resumed.
     Pause,
-    /// Go on; evaluations that had used up their attempts get new ones.
+    /// Resume; evaluations that had used up their attempts get new ones.
     Resume,
 }

@@ -1,4 +1,4 @@
-//! Gives the farm a thread: messages come in one by one, answers and facts go out.
+//! The thread of the farm: receives messages one by one, sends answers and facts.
 //!
 //! The thread owns all state, so there is no lock, and a simulation of thousands of proposals never runs on
 //! the async runtime. Requests that wait for work are parked here and served in the order of their arrival.
@@ -103,7 +103,7 @@ impl Dispatcher {
         self.reply(|reply| Message::Exchange { request, reply }).await
     }
 
-    /// Takes a calibration in hand, with facts of its replay that may have been lost.
+    /// Adds a calibration, with facts of its replay that may have been lost.
     ///
     /// # Errors
     /// [`Stopped`].
@@ -125,7 +125,7 @@ impl Dispatcher {
         self.reply(|reply| Message::Control { id, control, reply }).await
     }
 
-    /// Where a calibration in hand stands; `None` where it is over or unknown.
+    /// The status of a calibration in progress; `None` if it is over or unknown.
     ///
     /// # Errors
     /// [`Stopped`].
@@ -133,7 +133,7 @@ impl Dispatcher {
         self.look(move |farm, now| farm.status(id, now)).await
     }
 
-    /// Where every calibration in hand stands, by id.
+    /// The status of every calibration in progress, by id.
     ///
     /// # Errors
     /// [`Stopped`].
@@ -147,7 +147,7 @@ impl Dispatcher {
         .await
     }
 
-    /// The workers heard of.
+    /// The known workers.
     ///
     /// # Errors
     /// [`Stopped`].
@@ -232,7 +232,7 @@ impl Thread {
                 self.farm.tick(now_ms);
             }
             if self.flush().is_none() {
-                tracing::error!("the store no longer takes facts; the coordinator stops");
+                tracing::error!("the store no longer accepts facts; the coordinator stops");
                 return;
             }
             self.serve_parked(now_ms);

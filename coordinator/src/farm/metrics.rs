@@ -20,8 +20,8 @@ pub struct FarmMetrics {
     pub counters: FarmCounters,
     /// Leases that are out.
     pub leased: usize,
-    /// Calibrations in hand.
+    /// Calibrations in progress.
     pub calibrations: usize,
-    /// Workers heard of.
+    /// Known workers.
     pub workers: usize,
 }

@@ -1,4 +1,4 @@
-//! All calibrations at hand and all workers heard of: who gets which work.
+//! The farm: all calibrations in progress and all known workers; which worker evaluates what.
 //!
 //! # Layout
 //! - `state`: [`Farm`]. Pure: the clock comes as an argument and facts go out as a list.

@@ -1,4 +1,4 @@
-//! How fast a calibration goes and how long it may take.
+//! Pace and remaining time of a calibration.
 
 use std::collections::VecDeque;
 
@@ -40,7 +40,7 @@ impl Pace {
     }
 }
 
-/// Where a calibration stands.
+/// The status of a calibration.
 pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> CalibrationStatus {
     let identity = &calibration.identity;
     let (stage, tempering_exponent, step, acceptance) = match calibration.engine() {

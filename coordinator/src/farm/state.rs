@@ -1,4 +1,4 @@
-//! All calibrations at hand and all workers heard of: who gets which work.
+//! The farm: all calibrations in progress and all known workers; which worker evaluates what.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use record::fact::Fact;
 /// A worker is counted as connected for so long after its last message `[ms]`.
 const WORKER_SILENCE_MS: u64 = 60_000;
 
-/// All calibrations at hand and all workers heard of.
+/// All calibrations in progress and all known workers.
 #[derive(Debug)]
 pub struct Farm {
     calibrations: BTreeMap<i64, Entry>,
@@ -49,7 +49,7 @@ impl Farm {
         }
     }
 
-    /// Takes a calibration in hand, with facts of its replay that may have been lost.
+    /// Adds a calibration, with facts of its replay that may have been lost.
     pub fn add(&mut self, calibration: Calibration, facts: Vec<Fact>, now_ms: u64) {
         self.facts.extend(facts);
         if !calibration.state.is_final() {
@@ -258,7 +258,7 @@ impl Farm {
         (leases, refused)
     }
 
-    /// Lets time pass: expires leases, forgets silent workers, adds up busy time.
+    /// Advances the clock: expires leases, removes silent workers, adds up busy time.
     pub fn tick(&mut self, now_ms: u64) {
         for entry in self.calibrations.values_mut() {
             for failure in entry.calibration.queue.expire(now_ms) {
@@ -276,7 +276,7 @@ impl Farm {
         self.account(now_ms);
     }
 
-    /// Adds up busy time and lets go of what is over.
+    /// Adds up busy time and removes calibrations that are over.
     fn account(&mut self, now_ms: u64) {
         for entry in self.calibrations.values_mut() {
             // What waits for others has not begun to cost anything.
@@ -289,7 +289,7 @@ impl Farm {
         self.calibrations.retain(|_, e| !e.calibration.state.is_final());
     }
 
-    /// Carries out a user's command.
+    /// Executes a user's command.
     ///
     /// # Errors
     /// [`ControlError`] where the calibration is over or the command does not fit.
@@ -334,19 +334,19 @@ impl Farm {
         Ok(state)
     }
 
-    /// Where a calibration in hand stands.
+    /// The status of a calibration in progress.
     pub fn status(&self, id: i64, now_ms: u64) -> Option<CalibrationStatus> {
         self.calibrations
             .get(&id)
             .map(|e| progress::status(&e.calibration, &e.pace, now_ms))
     }
 
-    /// The calibrations in hand.
+    /// Ids of the calibrations in progress.
     pub fn ids(&self) -> Vec<i64> {
         self.calibrations.keys().copied().collect()
     }
 
-    /// The workers heard of.
+    /// The known workers.
     pub fn workers(&self, now_ms: u64) -> BTreeMap<String, WorkerRecord> {
         let mut workers = self.workers.clone();
         for (name, record) in &mut workers {

@@ -61,7 +61,7 @@ async fn list(State(service): State<Service>) -> Result<Json<Vec<CalibrationStat
     Ok(Json(service.list().await?))
 }
 
-/// Where a calibration stands.
+/// The status of a calibration.
 #[utoipa::path(get, path = "/calibrations/{id}", params(("id" = i64, Path)), responses(
     (status = 200, body = CalibrationStatus), (status = 404, body = ErrorBody)))]
 async fn status(State(service): State<Service>, Id(id): Id) -> Result<Json<CalibrationStatus>, HttpError> {

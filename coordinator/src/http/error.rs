@@ -83,7 +83,7 @@ impl From<ServiceError> for HttpError {
         if kind == ErrorKind::Internal {
             // The cause stays in the log; a client cannot mend it.
             tracing::error!(%error, "internal error");
-            return HttpError::new(kind, "the coordinator failed inside; its log says why");
+            return HttpError::new(kind, "internal error of the coordinator; see its log");
         }
         HttpError::new(kind, error.to_string())
     }
@@ -137,7 +137,7 @@ impl From<QueryRejection> for HttpError {
 pub(super) async fn no_route(uri: axum::http::Uri) -> HttpError {
     HttpError::new(
         ErrorKind::NotFound,
-        format!("there is no {}; /openapi.json lists what there is", uri.path()),
+        format!("there is no {}; /openapi.json lists all paths", uri.path()),
     )
 }
 
@@ -146,7 +146,7 @@ pub(super) async fn no_method(method: axum::http::Method, uri: axum::http::Uri) 
     HttpError::new(
         ErrorKind::NotFound,
         format!(
-            "{} does not take {method}; /openapi.json lists what it takes",
+            "{} does not accept {method}; /openapi.json lists the methods",
             uri.path()
         ),
     )

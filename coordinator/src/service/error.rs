@@ -1,4 +1,4 @@
-//! Why the service cannot do what it is asked.
+//! Errors of the service.
 
 use shared::file::FileError;
 
@@ -9,7 +9,7 @@ use crate::store::StoreError;
 use job::EffectsChanged;
 use record::CalibrationRow;
 
-/// Why the service cannot do what it is asked.
+/// An error of the service.
 #[derive(Debug, thiserror::Error)]
 pub enum ServiceError {
     /// A file is malformed.
@@ -22,7 +22,7 @@ pub enum ServiceError {
     #[error(transparent)]
     Effects(#[from] EffectsChanged),
     /// A search has nothing to extend, and no search of its own.
-    #[error("calibration {0} is a search for a missing effect: name the calibration that it searches")]
+    #[error("calibration {0} is a search for a missing effect: name the calibration whose model it searches")]
     Search(i64),
     /// No such thing.
     #[error("there is no {what} {id}")]
@@ -39,13 +39,13 @@ pub enum ServiceError {
     #[error(transparent)]
     Store(#[from] StoreError),
     /// The operating system refuses a thread.
-    #[error("the thread of the farm: {0}")]
+    #[error("failed to start the thread of the farm: {0}")]
     Thread(std::io::Error),
     /// The coordinator is going down.
     #[error(transparent)]
     Stopped(#[from] Stopped),
     /// More facts wait than the store takes.
-    #[error("{0} facts wait to be stored; try again in a second")]
+    #[error("{0} facts are waiting to be stored; try again in a second")]
     Busy(u64),
 }
 

@@ -1,4 +1,4 @@
-//! What is added to a study that is there: extensions, further runs, searches, and the steps that follow from these.
+//! Additions to a study: extensions, further runs, searches, and the next steps of a study.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ use record::effect_of;
 
 /// How job and experiment are called in messages.
 const FILES: [&str; 2] = ["job.toml", "experiment.toml"];
-/// How often a service looks for studies that may grow.
+/// Interval between checks for studies that can be extended.
 const LOOK: Duration = Duration::from_millis(500);
 
 impl Service {
@@ -120,7 +120,7 @@ impl Service {
         }
     }
 
-    /// Takes the next step of a study, if there is one; whether there was.
+    /// Takes the next step of a study; whether there was one.
     ///
     /// # Errors
     /// [`ServiceError`].
@@ -142,7 +142,7 @@ impl Service {
         Ok(true)
     }
 
-    /// Lets every study take its next steps, for ever.
+    /// Extends studies by their next steps until the service ends.
     pub async fn keep_growing(&self) {
         // Members of each study when it was last seen to have no next step.
         let mut at_rest: BTreeMap<i64, i64> = BTreeMap::new();
@@ -151,7 +151,7 @@ impl Service {
             let settled = match self.store().reader().settled_studies().await {
                 Ok(settled) => settled,
                 Err(error) => {
-                    tracing::error!(%error, "studies cannot be looked at");
+                    tracing::error!(%error, "failed to read the studies");
                     continue;
                 }
             };
@@ -163,7 +163,7 @@ impl Service {
                     Ok(true) => {}
                     Ok(false) => drop(at_rest.insert(study, members)),
                     Err(error) => {
-                        tracing::error!(study, %error, "the study cannot grow");
+                        tracing::error!(study, %error, "failed to extend the study");
                         at_rest.insert(study, members);
                     }
                 }

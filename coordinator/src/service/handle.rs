@@ -1,4 +1,4 @@
-//! Store and farm together: what calibrations there are, where they stand, what is done with them.
+//! Store and farm together: list, status, control and results of calibrations.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -61,7 +61,7 @@ impl Service {
         self.left_alone.get(&id).map(String::as_str)
     }
 
-    /// The store.
+    /// The store, an SQLite file.
     pub fn store(&self) -> &Store {
         &self.store
     }
@@ -92,7 +92,7 @@ impl Service {
         stored_calibration::experiment_files(&self.store.reader(), id).await
     }
 
-    /// Where a calibration stands.
+    /// The status of a calibration.
     ///
     /// # Errors
     /// [`ServiceError`].
@@ -107,12 +107,12 @@ impl Service {
     fn stored_status(&self, row: &CalibrationRow) -> CalibrationStatus {
         let mut status = stored_calibration::stored_status(row);
         if let Some(reason) = self.left_alone(row.id) {
-            status.message = Some(format!("cannot go on with this version: {reason}"));
+            status.message = Some(format!("cannot be resumed by this version: {reason}"));
         }
         status
     }
 
-    /// Where every calibration stands, oldest first.
+    /// The status of every calibration, oldest first.
     ///
     /// # Errors
     /// [`ServiceError`].
@@ -124,7 +124,7 @@ impl Service {
         Ok(rows.iter().map(status).collect())
     }
 
-    /// Carries out a user's command; the answer is durable.
+    /// Executes a user's command; the answer is durable.
     ///
     /// # Errors
     /// [`ServiceError`].

@@ -1,4 +1,4 @@
-//! What a start of the coordinator takes up again from the store.
+//! Recovery of unfinished calibrations when the coordinator starts.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -62,12 +62,12 @@ pub(super) async fn recover(
             name = row.name,
             evaluations,
             state = calibration.state.name(),
-            "taken up again"
+            "resumed"
         );
         dispatcher.add(calibration, facts).await?;
     }
     for (id, reason) in &left_alone {
-        tracing::error!(id, reason, "left alone: this version cannot take it up");
+        tracing::error!(id, reason, "not resumed: this version cannot read it");
     }
     Ok(left_alone)
 }

@@ -1,4 +1,4 @@
-//! New experiments and calibrations: validated, stored, taken in hand.
+//! New experiments and calibrations: validated, stored, started.
 
 use std::sync::Arc;
 
@@ -85,7 +85,7 @@ fn members(
     parsed.check_files(file, &job.files)?;
     let spec = Spec::of(file, parsed, &job.files, "experiment.toml", experiment)?;
     if matches!(spec.algorithm, AlgorithmSettings::Discover { .. }) {
-        let message = "[sampler] algorithm = \"discovery\" is a search that a study runs by itself: say apply = \"ask\" or \"auto\" under [discovery]";
+        let message = "[sampler] algorithm = \"discovery\" is a search that a study starts by itself: set apply = \"ask\" or \"auto\" under [discovery]";
         return Err(FileError::whole(file, message).into());
     }
     let point_estimates = spec.point_estimates.clone();

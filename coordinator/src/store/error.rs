@@ -1,4 +1,4 @@
-//! Why the store cannot be used.
+//! Errors of the store.
 
 /// Why the store cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -26,7 +26,7 @@ pub enum StoreError {
     #[error("store: {0}")]
     Corrupt(String),
     /// The writer has ended.
-    #[error("the store no longer takes writes; the coordinator is going down")]
+    #[error("the store no longer accepts writes; the coordinator is shutting down")]
     Stopped,
     /// The file cannot be a store.
     #[error("store {path}: {reason}")]

@@ -223,7 +223,7 @@ async fn compare(
                 evaluation,
                 first,
                 second,
-                "two workers differ on the same evaluation: the farm is not deterministic"
+                "two workers returned different results for the same evaluation: the farm is not deterministic"
             );
         }
     }

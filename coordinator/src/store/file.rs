@@ -33,7 +33,7 @@ pub(super) async fn recognise(connection: &mut SqliteConnection, path: &str) -> 
     }
     Err(StoreError::Unfit {
         path: file_of(path).into(),
-        reason: "the database is not one of Grouser's".into(),
+        reason: "the database was not created by Grouser".into(),
     })
 }
 
@@ -66,7 +66,7 @@ pub(super) fn examine(path: &str) -> Result<(), StoreError> {
             let mut head = Vec::new();
             match open.by_ref().take(16).read_to_end(&mut head) {
                 Ok(_) if head.is_empty() || head == b"SQLite format 3\0" => Ok(()),
-                Ok(_) => unfit("the file is not a database of SQLite".into()),
+                Ok(_) => unfit("the file is not an SQLite database".into()),
                 Err(error) => unfit(error.to_string()),
             }
         }

@@ -1,4 +1,4 @@
-//! What became of the draws from the prior, and of the leases.
+//! Queries for the draws from the prior and for failed leases.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What was stored, for results and lists.
+//! Queries for results and lists.
 
 use std::collections::BTreeMap;
 

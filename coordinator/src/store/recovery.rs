@@ -1,4 +1,4 @@
-//! What a restart needs of a calibration that was not over.
+//! What a restart needs of an unfinished calibration.
 
 use std::collections::BTreeMap;
 

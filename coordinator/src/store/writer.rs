@@ -1,4 +1,4 @@
-//! The one task that writes: it takes everything that waits and commits it as one group.
+//! The only task that writes: it commits all waiting writes as one group.
 //!
 //! Facts are numbered in the order of their arrival. An answer that rests on a fact is held back until the
 //! number of the last committed fact has reached it: acknowledged means durable.

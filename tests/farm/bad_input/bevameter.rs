@@ -124,7 +124,7 @@ fn readings_that_cannot_be_data_are_refused() {
     let zero = PLATES.replace("9000", "0");
     refused(
         with("plates", &zero, "p1,0.04,0.006,", "p1,0.04,0.006,1"),
-        "experiment.toml: test \"p1\": pressure_pa 0 Pa at sinkage_m 0.002 m has no logarithm: both must be > 0, or the reading be left out or blank",
+        "experiment.toml: test \"p1\": pressure_pa 0 Pa at sinkage_m 0.002 m has no logarithm: both must be > 0, or leave the reading blank",
     );
     let ring = SHEAR.replace("0.012,", "0.012,9000");
     let job = || with("shear", &ring, "9000", "9000.0");

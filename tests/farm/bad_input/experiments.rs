@@ -151,7 +151,7 @@ fn an_experiment_without_anything_to_fit_is_refused() {
     );
     refused(
         Job::small().in_experiment("sinkage_m = 0.0004", ""),
-        "experiment.toml: [noise] sinkage_m is missing: sinkage_m of run \"r00\" is measured, so its sd in m, \"replicates\" or \"unknown\" must stand there",
+        "experiment.toml: [noise] sinkage_m is missing: sinkage_m of run \"r00\" is measured, so its sd in m, \"replicates\" or \"unknown\" must be given there",
     );
 }
 

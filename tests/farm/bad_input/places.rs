@@ -30,7 +30,7 @@ fn a_store_that_is_not_sqlite_is_refused_and_untouched() {
     std::fs::write(&store, &notes).unwrap();
     let message = serve(&format!("sqlite://{}", store.display())).refusal();
     assert!(
-        message == format!("store {}: the file is not a database of SQLite", store.display()),
+        message == format!("store {}: the file is not an SQLite database", store.display()),
         "{message}"
     );
     assert_eq!(std::fs::read_to_string(&store).unwrap(), notes);
@@ -169,7 +169,7 @@ fn a_calibration_that_is_not_there_or_not_ready_is_named() {
     ] {
         assert_eq!(
             verb(&words),
-            "calibration 1 is queued; results are there when it is finished"
+            "calibration 1 is queued; results are available when it is finished"
         );
     }
     assert_eq!(

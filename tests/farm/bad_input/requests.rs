@@ -133,7 +133,7 @@ fn what_is_not_there_is_404_and_what_does_not_fit_is_409() {
         &client.get("/v2/calibrations"),
         404,
         "not_found",
-        "there is no /v2/calibrations; /openapi.json lists what there is",
+        "there is no /v2/calibrations; /openapi.json lists all paths",
     );
     let hash = "0".repeat(32);
     let variant = client.get(&format!("/v1/work/variants/{hash}"));
@@ -182,7 +182,7 @@ fn what_is_not_there_is_404_and_what_does_not_fit_is_409() {
         "summary",
         "report",
     ] {
-        let message = "calibration 1 is queued; results are there when it is finished";
+        let message = "calibration 1 is queued; results are available when it is finished";
         is(
             &client.get(&format!("/v1/calibrations/{id}/{path}")),
             409,

@@ -29,7 +29,7 @@ pub(crate) enum DataError {
     },
     /// A measurement without a standard deviation.
     #[error(
-        "[noise] {column} is missing: {column} of run \"{run}\" is measured, so its sd in {unit}, \"replicates\" or \"unknown\" must stand there"
+        "[noise] {column} is missing: {column} of run \"{run}\" is measured, so its sd in {unit}, \"replicates\" or \"unknown\" must be given there"
     )]
     NoNoise {
         /// The channel.
@@ -60,7 +60,7 @@ pub(crate) enum DataError {
     NoScatter,
     /// A reading of zero.
     #[error(
-        "test \"{test}\": {stress} {stress_pa} Pa at {displacement} {displacement_m} m has no logarithm: both must be > 0, or the reading be left out or blank"
+        "test \"{test}\": {stress} {stress_pa} Pa at {displacement} {displacement_m} m has no logarithm: both must be > 0, or leave the reading blank"
     )]
     NoLogarithm {
         /// The test.

@@ -53,7 +53,7 @@ pub fn extended_job(
                 .parse()
                 .map_err(|e: toml_edit::TomlError| fail(format!("{parameter}: {e}")))?;
             if table.insert(parameter, toml_edit::value(prior)).is_some() {
-                return Err(fail(format!("{parameter} stands under [priors] already")));
+                return Err(fail(format!("{parameter} is already under [priors]")));
             }
         }
     }
@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn what_cannot_be_added_is_said() {
         let twice = extended(JOB, &[("n", "1.2")]).unwrap_err();
-        assert_eq!(twice, "job.toml: n stands under [priors] already");
+        assert_eq!(twice, "job.toml: n is already under [priors]");
         let none = extended("[priors]\nn = 1.1\n", &[]).unwrap_err();
         assert_eq!(none, "job.toml: [model] is missing");
         let no_list = extended("[model]\neffects = 1\n", &[]).unwrap_err();

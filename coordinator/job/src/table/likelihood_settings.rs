@@ -25,7 +25,7 @@ impl LikelihoodSettings {
         let mut words = Vec::new();
         if let ErrorLaw::StudentT { degrees_of_freedom } = self.law {
             words.push(format!(
-                "errors are Student's t with {degrees_of_freedom} degrees of freedom, the noise sd its scale"
+                "errors follow Student's t with {degrees_of_freedom} degrees of freedom, scaled by the noise sd"
             ));
         }
         match self.discrepancy {

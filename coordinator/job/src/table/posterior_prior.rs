@@ -219,7 +219,7 @@ impl JointPrior {
         }
         if !self.unused.is_empty() {
             lines.push(format!(
-                "    not taken from {file}, because the job speaks for itself or has no such parameter: {}",
+                "    not taken from {file}, because the job specifies them or its model has no such parameter: {}",
                 self.unused.join(", ")
             ));
         }
@@ -247,7 +247,7 @@ impl Draws {
         let columns = cells(header);
         let names: BTreeSet<&String> = columns.iter().collect();
         if names.len() < columns.len() {
-            return Err(FileError::at(file, first, "a column stands twice"));
+            return Err(FileError::at(file, first, "a column is named twice"));
         }
         let mut rows = Vec::new();
         for (line, text) in lines {
@@ -499,7 +499,7 @@ mod tests {
             (
                 "posterior = \"p.csv\"",
                 csv().replacen(",kappa,", ",n,", 1),
-                "p.csv line 1: a column stands twice",
+                "p.csv line 1: a column is named twice",
             ),
         ] {
             assert_eq!(spec(priors, &text).unwrap_err(), message);
