@@ -115,7 +115,7 @@ pub(crate) fn deviation_with(case: &Case, law: Law, got: &Averages) -> Option<[f
 
 /// The largest deviation of a run without effects, each of which must lie below a bound.
 fn deviation_below(case: &Case, bound: f64) -> f64 {
-    let deviations = deviation_with(case, NONE, &case.simulate()).unwrap();
+    let deviations = deviation_with(case, NONE, &case.simulate()).expect("the base has support");
     for (i, difference) in deviations.into_iter().enumerate() {
         assert!(
             difference < bound,
