@@ -34,7 +34,7 @@ fn a_job_with_nothing_wrong_has_no_flag_and_says_what_it_knows() {
     for words in [
         "every stage reached equilibrium",
         "the declared errors explain the misfit",
-        "the data know n least",
+        "the data determine n least",
         "torque         slip_x_sled_speed",
     ] {
         assert!(text.contains(words), "{words} in\n{text}");

@@ -45,7 +45,7 @@ fn a_store_that_is_not_sqlite_is_refused_and_untouched() {
         std::fs::copy(&store, out.join("grouser.db")).unwrap();
         let message = run(coordinator([verb, "--out", &text(&out)])).refusal();
         assert!(
-            message.contains("grouser.db") && message.contains("not a database"),
+            message.contains("grouser.db") && message.contains("not an SQLite database"),
             "{message}"
         );
     }

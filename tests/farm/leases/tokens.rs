@@ -60,7 +60,11 @@ fn a_result_sent_twice_counts_once() {
     until("a differing duplicate noticed", || {
         (service.metric("grouser_determinism_faults_total") == 1).then_some(())
     });
-    assert!(service.log().contains("two workers differ"), "{}", service.log());
+    assert!(
+        service.log().contains("two workers returned different results"),
+        "{}",
+        service.log()
+    );
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use record::{Discovery, JudgedEffect, NextRun, Outside, Verdict, effect_of};
 
-use crate::discovery::DiscoveryRound;
+use super::round::DiscoveryRound;
 
 /// The effects that a study's model misses.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
