@@ -75,7 +75,7 @@ impl Sampler {
     /// A sampler whose chains move by a metamodel between evaluations.
     ///
     /// # Arguments
-    /// - `settings`: of [`Algorithm::Tmcmc`]; with `metamodel_moves` = 0 there is no metamodel.
+    /// - `settings`: of [`Algorithm::Tmcmc`](super::Algorithm::Tmcmc); with `metamodel_moves` = 0 there is no metamodel.
     /// - `likelihood`: scores the metamodel's predictions; the told results must be scored by the same one.
     ///
     /// # Errors
