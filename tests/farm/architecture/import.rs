@@ -1,7 +1,7 @@
 //! The imports between the files of a crate, each followed to the file that defines what it names.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use proc_macro2::{TokenStream, TokenTree};
 use quote::ToTokens;
@@ -15,6 +15,8 @@ const DEPTH: usize = 16;
 /// A file of a crate as a module.
 #[derive(Default)]
 struct Module {
+    /// Where it lies in the workspace.
+    file: String,
     /// What it defines.
     defined: BTreeSet<String>,
     /// What it brings into scope under a name, as a path from the crate's root.
@@ -26,46 +28,47 @@ struct Module {
 }
 
 /// The modules of a crate by their paths from its root.
-pub(super) struct Crate {
-    files: BTreeMap<Vec<String>, String>,
-    modules: BTreeMap<Vec<String>, Module>,
-}
+pub(super) struct Crate(BTreeMap<Vec<String>, Module>);
 
 impl Crate {
     /// Reads the sources below a folder.
     pub(super) fn read(folder: &str) -> Self {
         let below = root().join(folder);
-        let (mut paths, mut modules) = (BTreeMap::new(), BTreeMap::new());
-        for file in files(folder, ".rs") {
+        // A program beside a library is a crate of its own.
+        let roots: &[&str] = if below.join("lib.rs").is_file() {
+            &["mod", "lib"]
+        } else {
+            &["mod", "main"]
+        };
+        let module = |file: PathBuf| {
             let relative = file.strip_prefix(&below).expect("a file of the folder");
-            let path = module_path(relative);
+            let path = module_path(relative, roots);
             let source = syn::parse_file(&text(&file)).expect("the compiler reads it, too");
-            let mut module = Module::default();
+            let mut module = Module {
+                file: format!("{folder}/{}", relative.display()),
+                ..Module::default()
+            };
             for item in source.items.iter().filter(|item| !is_test(item)) {
                 module.take(item, &path);
             }
-            paths.insert(path.clone(), format!("{folder}/{}", relative.display()));
-            modules.insert(path, module);
-        }
-        Self {
-            files: paths,
-            modules,
-        }
+            (path, module)
+        };
+        Self(files(folder, ".rs").into_iter().map(module).collect())
     }
 
     /// Whom each file imports.
     pub(super) fn imports(&self) -> BTreeMap<&str, BTreeSet<&str>> {
-        let edges = self.modules.iter().map(|(path, module)| {
+        let edges = self.0.iter().map(|(path, module)| {
             let imported = module.imported.values();
             let imported = imported.filter_map(|absolute| self.definition(&[], absolute, DEPTH));
             let named = module.named.iter();
             let named = named.filter_map(|relative| self.definition(path, relative, DEPTH));
-            let globs = module.globs.iter().filter(|glob| self.files.contains_key(*glob));
-            let own = &self.files[path];
+            let globs = module.globs.iter().filter(|glob| self.0.contains_key(*glob));
+            let own = &module.file;
             let targets = imported
                 .chain(named)
                 .chain(globs.cloned())
-                .map(|target| &self.files[&target]);
+                .map(|target| &self.0[&target].file);
             let targets = targets.filter(|target| *target != own).map(String::as_str);
             (own.as_str(), targets.collect())
         });
@@ -83,10 +86,10 @@ impl Crate {
             _ => {}
         }
         let child: Vec<String> = at.iter().chain([first]).cloned().collect();
-        if self.modules.contains_key(&child) {
+        if self.0.contains_key(&child) {
             return self.definition(&child, rest, depth);
         }
-        let module = self.modules.get(at)?;
+        let module = self.0.get(at)?;
         if module.defined.contains(first) {
             return Some(at.to_vec());
         }
@@ -206,11 +209,12 @@ fn absolute(path: &[String], own: &[String]) -> Option<Vec<String>> {
     Some(at)
 }
 
-fn module_path(relative: &Path) -> Vec<String> {
+/// The path of a module; a file of one of the names `roots` is its folder's module.
+fn module_path(relative: &Path, roots: &[&str]) -> Vec<String> {
     let words = relative.with_extension("");
     let words = words.iter().map(|word| word.to_string_lossy().into_owned());
     let mut words: Vec<String> = words.collect();
-    words.pop_if(|last| ["mod", "lib", "main"].contains(&last.as_str()));
+    words.pop_if(|last| roots.contains(&last.as_str()));
     words
 }
 
