@@ -37,19 +37,24 @@ pub(super) fn first_balance(footing: &mut Footing, load: f64) -> Result<Reaction
     } else {
         EVALUATIONS_BEFORE_SCAN
     };
-    match search(footing, load, &coordinate, Bracket::default(), start, patience) {
+    let found = match search(footing, load, &coordinate, Bracket::default(), start, patience) {
         Ok(Some(reaction)) if rises || rises_up_to(&footing.rim, reaction.contact_length) => {
             return Ok(reaction);
         }
         Ok(None) if rises => return Err(no_support(footing.react(radius)?.load())),
         // A deeper balance may have been found, or the secant has wandered about a peak too low for the load.
-        Ok(_) => {}
-        Err(Rejection::NoConvergence { .. }) if !rises => {}
+        Ok(found) => found,
+        Err(Rejection::NoConvergence { .. }) if !rises => None,
         Err(rejection) => return Err(rejection),
-    }
+    };
     match scan(footing, load)? {
         Scan::Never(most) => Err(no_support(most)),
         Scan::Between(shorter, longer) => {
+            if let Some(reaction) = found
+                && (shorter..=longer).contains(&reaction.contact_length)
+            {
+                return Ok(reaction);
+            }
             let bracket = Bracket {
                 low: coordinate.at(shorter),
                 high: coordinate.at(longer),

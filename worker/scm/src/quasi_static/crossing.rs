@@ -13,13 +13,17 @@ const SAMPLES: u32 = 64;
 /// Steps of the search for a peak between samples: the bracket shrinks by 0.618 each.
 const PEAK_STEPS: u32 = 40;
 
-/// Whether the carried load certainly rises with depth up to this contact length, from bounds on its terms.
+/// Whether the carried load certainly rises with depth up to this contact length wherever it is positive, from bounds on
+/// its terms.
 ///
-/// At a fixed fraction of the contact each term is bounded by its slope in ln l: the pressure by at least
-/// `2n` from the sinkage, 1 from `k* l` unless `k_c` > 0, less `m/2` from the changing shape of gamma; the
-/// friction that pulls down, relative to the pressure, by at most `sec²(theta_1)`; so does the cohesion,
-/// which must grow more slowly than the rest. False means "not known". Effects on pressure and shear are ignored:
-/// with a law whose pressure falls with depth, the balance found may not be the first.
+/// At a fraction u of the contact the pressure's share of the load has a slope in ln l of at least
+/// `s = 2n − m/2`, and 1 more from `k* l` unless `k_c` > 0: 2n from the sinkage, less `m/2` from the changing shape of
+/// gamma. Friction pulls down by at most `q = tan φ tan θ` of the pressure, whose slope is at most `q sec² θ_1`: where
+/// skid mobilises less of it the deeper the rim stands, or pushes up, the load rises the more. Over the contact q is on
+/// average at most half of what it is at the front, since gamma is symmetric, the pressure otherwise falls towards the
+/// front, and tan θ is convex. So the load rises if `q_1 ≤ 1` and `s > ½ q_1 sec² θ_1 / (1 − ½ q_1)`. Cohesion pulls down
+/// with a slope of at most `1 + sec² θ_1`, and must grow more slowly than the rest. False means "not known". Effects on
+/// pressure and shear are ignored: with a law whose pressure falls with depth, the balance found may not be the first.
 pub(super) fn rises_up_to(rim: &Rim, contact_length: f64) -> bool {
     let soil = &rim.soil;
     let pressure_slope = 2.0 * soil.n - 0.5 * soil.gamma_exponent + if soil.k_c > 0.0 { 0.0 } else { 1.0 };
@@ -28,14 +32,15 @@ pub(super) fn rises_up_to(rim: &Rim, contact_length: f64) -> bool {
     }
     let cos_squared = (1.0 - contact_length / rim.radius) * (1.0 + contact_length / rim.radius);
     let secant_squared = 1.0 / cos_squared;
-    let pull_down = rim.tan_friction_angle * contact_length / (rim.radius * cos_squared.sqrt());
-    let slope = pressure_slope - pull_down * secant_squared / (1.0 - pull_down);
+    let at_front = rim.tan_friction_angle * contact_length / (rim.radius * cos_squared.sqrt());
+    let on_average = 0.5 * at_front;
+    let slope = pressure_slope - on_average * secant_squared / (1.0 - on_average);
     let cohesion_slope = if soil.cohesion_pa > 0.0 {
         1.0 + secant_squared
     } else {
         0.0
     };
-    pull_down < 1.0 && slope > cohesion_slope
+    at_front <= 1.0 && slope > cohesion_slope
 }
 
 /// Result of a scan from the surface down.
@@ -46,13 +51,19 @@ pub(super) enum Scan {
     Never(f64),
 }
 
-/// Look for the first crossing by sampling from the surface down to z = R.
+/// Look for the first crossing by sampling down to z = R, from the last sample up to which the load certainly rises.
 pub(super) fn scan(footing: &mut Footing, load: f64) -> Result<Scan, Rejection> {
+    let radius = footing.rim.radius;
+    let length = |sample: u32| {
+        let root = f64::from(sample) / f64::from(SAMPLES);
+        radius * root * (2.0 - root * root).sqrt()
+    };
+    let rising = (1..=SAMPLES)
+        .take_while(|sample| rises_up_to(&footing.rim, length(*sample)))
+        .count() as u32;
     let (mut before, mut last) = ((0.0, 0.0), (0.0, 0.0)); // contact length, load carried
     let mut most: f64 = 0.0;
-    for sample in 1..=SAMPLES {
-        let root = f64::from(sample) / f64::from(SAMPLES);
-        let length = footing.rim.radius * root * (2.0 - root * root).sqrt();
+    for length in (rising.max(1)..=SAMPLES).map(length) {
         let here = (length, footing.react(length)?.load());
         if here.1 >= load {
             return Ok(Scan::Between(last.0, length));
@@ -101,4 +112,87 @@ fn peak_between(
     } else {
         high
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::balance::first_balance;
+    use super::*;
+    use crate::{Condition, Soil, Wheel};
+
+    /// Skid from locked to slight, soft to hard soil with and without `k_c`, small wheels and large.
+    fn skidding(uniform: &mut impl FnMut(f64, f64) -> f64) -> (Footing<'static, 'static>, f64) {
+        let n = uniform(0.3, 1.8);
+        let (k_c, k_phi) = crate::bekker_moduli(uniform(3.0, 5.0), uniform(-0.9, 0.9), n);
+        let soil = Soil {
+            k_c,
+            k_phi,
+            n,
+            cohesion_pa: (uniform(-1_000.0, 500.0)).max(0.0),
+            friction_angle_rad: uniform(15.0, 50.0).to_radians(),
+            shear_velocity_m_s: 1e-3,
+            gamma_exponent: 0.5,
+        };
+        let radius_m = uniform(0.05, 0.15);
+        let wheel = Wheel {
+            radius_m,
+            width_m: 0.9 * radius_m,
+            rig_radius_m: radius_m,
+        };
+        let wheel_load_n = uniform(10.0, 300.0) * (radius_m / 0.125).powi(2);
+        let condition = Condition {
+            slip: uniform(-1.0, 0.0),
+            wheel_load_n,
+            sled_speed_m_s: 0.01,
+            slip_angle_rad: 0.0,
+            pass: 1,
+        };
+        let rim = Rim::new(&soil, &wheel, &condition);
+        (Footing { rim, reshaping: None }, wheel_load_n)
+    }
+
+    #[test]
+    fn the_balance_is_the_first_that_a_fine_scan_meets() {
+        const FINE: u32 = 2_000;
+        let mut state = 1_u64;
+        let mut uniform = |low: f64, high: f64| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let (mut met, mut bounded) = (0, 0);
+        for _ in 0..1_000 {
+            let (mut footing, load) = skidding(&mut uniform);
+            let radius = footing.rim.radius;
+            let length = |place: u32| radius * f64::from(place) / f64::from(FINE);
+            let mut carried = |place: u32| footing.react(length(place)).unwrap().load();
+            let loads: Vec<f64> = (1..=FINE).map(&mut carried).collect();
+            let first = (1..=FINE).find(|place| loads[*place as usize - 1] >= load);
+            let rises = (1..=FINE).take_while(|place| rises_up_to(&footing.rim, length(*place)));
+            let rises = rises.count();
+            let positive: Vec<f64> = loads[..rises].iter().map(|load| load.max(0.0)).collect();
+            assert!(
+                positive.is_sorted(),
+                "the load falls: {:?} up to {rises}",
+                footing.rim
+            );
+            match (first_balance(&mut footing, load), first) {
+                (Ok(balance), Some(place)) => {
+                    let allowed = length(place - 1) - 1e-6 * radius..=length(place) + 1e-6 * radius;
+                    assert!(
+                        allowed.contains(&balance.contact_length),
+                        "{} for {allowed:?}: {load} N on {:?}",
+                        balance.contact_length,
+                        footing.rim
+                    );
+                    met += 1;
+                    bounded += usize::from((place as usize) < rises);
+                }
+                (Err(_), None) => {}
+                (found, first) => panic!("{found:?} for {first:?}: {load} N on {:?}", footing.rim),
+            }
+        }
+        assert!(met > 700 && bounded > 500, "{met} {bounded}");
+    }
 }
