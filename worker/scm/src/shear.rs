@@ -46,18 +46,30 @@ impl ShearVelocity {
     /// Krenn & Hirzinger 2009, see [Literature](crate#literature). Depends on speed, unlike a displacement law.
     #[inline]
     pub fn mobilised_per_velocity(&self, speed: f64) -> f64 {
-        // with v0 = 0 there is no exponential to compute; the test is the same for every point of a loop
-        let share = if self.per_velocity < f64::MAX {
-            1.0 - crate::elementary::exp(-speed * self.per_velocity)
-        } else {
-            1.0
-        };
+        let share = self.mobilised_in_motion(speed);
         share
             / if speed > f64::MIN_POSITIVE {
                 speed
             } else {
                 f64::MIN_POSITIVE
             }
+    }
+
+    /// Mobilised share of the strength at a speed `[m/s]`: `1 − exp(−|v| / v0)`, and 0 at rest.
+    #[inline]
+    pub fn mobilised(&self, speed: f64) -> f64 {
+        let share = self.mobilised_in_motion(speed);
+        if speed > f64::MIN_POSITIVE { share } else { 0.0 }
+    }
+
+    #[inline]
+    fn mobilised_in_motion(&self, speed: f64) -> f64 {
+        // with v0 = 0 there is no exponential to compute; the test is the same for every point of a loop
+        if self.per_velocity < f64::MAX {
+            1.0 - crate::elementary::exp(-speed * self.per_velocity)
+        } else {
+            1.0
+        }
     }
 }
 
@@ -115,6 +127,8 @@ mod tests {
         let law = ShearVelocity::new(0.0);
         assert!((law.mobilised_per_velocity(1e-9) * 1e-9 - 1.0).abs() < 1e-15);
         assert!((law.mobilised_per_velocity(0.0) * 0.0).abs() < f64::MIN_POSITIVE);
+        assert!((law.mobilised(1e-9) - 1.0).abs() < f64::MIN_POSITIVE);
+        assert!(law.mobilised(0.0).abs() < f64::MIN_POSITIVE);
     }
 
     #[test]

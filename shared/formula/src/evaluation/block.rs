@@ -22,10 +22,18 @@ use crate::variable::Variable;
 /// block.replace(Variable::P, &program, &scalars, 2);
 /// assert_eq!(block.column(Variable::P)[..2], [7.5e3, 1.5e4]);
 /// ```
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Block {
     /// The columns of variables, one after the other; then what programs keep.
     memory: Vec<f64>,
+}
+
+impl Default for Block {
+    fn default() -> Self {
+        Self {
+            memory: vec![0.0; COLUMNS],
+        }
+    }
 }
 
 impl Block {
@@ -33,13 +41,15 @@ impl Block {
     ///
     /// # Panics
     /// For a variable that is none of the first [`Variable::LOCAL`].
-    pub fn column(&mut self, variable: Variable) -> &[f64] {
-        self.column_mut(variable)
+    #[inline]
+    pub fn column(&self, variable: Variable) -> &[f64] {
+        let first = variable as usize * BLOCK;
+        &self.memory[..COLUMNS][first..first + BLOCK]
     }
 
     /// The same, to be written.
+    #[inline]
     pub fn column_mut(&mut self, variable: Variable) -> &mut [f64] {
-        self.reserve(COLUMNS);
         let first = variable as usize * BLOCK;
         &mut self.memory[..COLUMNS][first..first + BLOCK]
     }

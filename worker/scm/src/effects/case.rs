@@ -45,7 +45,9 @@ impl Active<'_> {
         ] {
             variables[variable as usize] = value;
         }
-        replace(Hook::Slip, self.at(Hook::Slip), &mut variables)?;
+        if self.enter(Hook::Slip) {
+            replace(Hook::Slip, self.at(Hook::Slip), &mut variables)?;
+        }
         let slip = variables[Variable::Slip as usize];
         if slip.to_bits() != condition.slip.to_bits() {
             // the motor keeps its speed: another slip is another speed of the sled
@@ -57,12 +59,16 @@ impl Active<'_> {
             };
         }
         for hook in [Hook::Radius, Hook::Width, Hook::SinkageExponent] {
-            replace(hook, self.at(hook), &mut variables)?;
+            if self.enter(hook) {
+                replace(hook, self.at(hook), &mut variables)?;
+            }
         }
-        let own = self
-            .at(Hook::WheelLoad)
-            .take_while(|law| !follows_reaction(law.0));
-        replace(Hook::WheelLoad, own, &mut variables)?;
+        if self.enter(Hook::WheelLoad) {
+            let own = self
+                .at(Hook::WheelLoad)
+                .take_while(|law| !follows_reaction(law.0));
+            replace(Hook::WheelLoad, own, &mut variables)?;
+        }
         let of = |variable: Variable| variables[variable as usize];
         Ok(Case {
             soil: Soil {

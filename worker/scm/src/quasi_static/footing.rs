@@ -6,7 +6,7 @@ use super::rim::Rim;
 use crate::Rejection;
 
 /// A rim, and the effects on its run.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Footing<'r, 'e> {
     pub(super) rim: Rim,
     /// None: the base.

@@ -24,7 +24,7 @@ mod start;
 
 use footing::Footing;
 use formula::Variable;
-use reshaped::{Mechanics, Reshaping};
+use reshaped::{Mechanics, Panels, Reshaping};
 use rim::Rim;
 
 use crate::effects::{Active, Site};
@@ -137,11 +137,12 @@ pub fn simulate_with(
     let (soil, wheel, condition) = (case.soil, case.wheel.checked()?, case.condition.checked()?);
     let mut variables = case.variables;
     let mechanics = Mechanics::new(effects, &case)?;
+    let mut rim = Rim::new(&soil, &wheel, &condition);
+    rim.flat = mechanics.flat(rim.radius);
     // lent to the rim, for the next run to use again: nothing may fail between here and their return
     let laws = effects.nodes.take();
-    let reshaping = Reshaping::new(effects, case, mechanics, laws);
-    let mut rim = Rim::new(&soil, &wheel, &condition);
-    rim.flat = reshaping.flat();
+    let mut panels = Panels::default();
+    let reshaping = Reshaping::new(effects, &rim, case, mechanics, laws, &mut panels);
     let mut footing = Footing {
         rim,
         reshaping: Some(reshaping),

@@ -1,6 +1,5 @@
 //! The soil's stresses, integrated over a rim with effects: formulas at its nodes, a flat, soil that springs back.
 
-use formula::block::BLOCK;
 use formula::effect::Mechanism;
 use formula::{Hook, Variable};
 
@@ -20,15 +19,17 @@ use crate::shear::strength;
 
 /// Parts of a panel where formulas have kinks or jumps between nodes.
 const PARTS: usize = 4;
-/// Most panels at a time.
-const PANELS: usize = BLOCK / NODES;
+/// Most panels at a time: those of most contacts, and little enough to clear for every run.
+const PANELS: usize = 3;
+/// Room for a contact.
+pub(super) type Panels = [Panel; PANELS];
 /// Most ends of panels.
 const ENDS: usize = 10;
 /// Passes in which rebound and footprint find each other, where the modulus depends on the footprint's width.
 const PASSES: usize = 3;
 
 /// The effects on a run.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Reshaping<'r, 'e> {
     active: &'r Active<'e>,
     pub(super) case: Case,
@@ -39,8 +40,10 @@ pub(super) struct Reshaping<'r, 'e> {
     deflection: f64,
     /// Way by which the soil springs back under a unit of pressure `[m/Pa]`.
     compliance: f64,
+    /// None where no formula asks for it.
+    slide: Option<Slide>,
     /// Panels of the contact, and how many of them are in use.
-    panels: Vec<Panel>,
+    panels: &'r mut Panels,
     used: usize,
 }
 
@@ -100,16 +103,26 @@ impl Mechanics {
             compliance,
         })
     }
+
+    /// Half length of the flat `[m]`: a contact that reaches less far ahead of the axle carries nothing.
+    pub(super) fn flat(&self, radius: f64) -> f64 {
+        (self.deflection * (2.0 * radius - self.deflection))
+            .max(0.0)
+            .sqrt()
+    }
 }
 
 impl<'r, 'e> Reshaping<'r, 'e> {
     /// # Arguments
     /// - `laws`: the formulas at nodes, with room to compute in.
+    /// - `panels`: room for a contact.
     pub(super) fn new(
         active: &'r Active<'e>,
+        rim: &Rim,
         case: Case,
         mechanics: Mechanics,
         mut laws: Option<NodeLaws<'e>>,
+        panels: &'r mut Panels,
     ) -> Self {
         let Mechanics {
             deflection,
@@ -118,13 +131,15 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         if let Some(laws) = &mut laws {
             laws.settle(&case.variables);
         }
+        let slides = laws.as_ref().is_some_and(|laws| laws.use_variable(Variable::J));
         Self {
+            slide: slides.then(|| Slide::new(rim.radius, &rim.motion, rim.flat, rim.radius - deflection)),
             laws,
             load_follows: active.load_follows_reaction(),
             load_jumps: active.load_jumps(),
             deflection,
             compliance,
-            panels: Vec::new(),
+            panels,
             used: 0,
             active,
             case,
@@ -134,14 +149,6 @@ impl<'r, 'e> Reshaping<'r, 'e> {
     /// Whether stresses along the rim are other than the base's.
     pub(super) fn changes_stresses(&self) -> bool {
         self.laws.is_some() || self.deflection.abs() > 0.0 || self.compliance.abs() > 0.0
-    }
-
-    /// Half length of the flat `[m]`: a contact that reaches less far ahead of the axle carries nothing.
-    pub(super) fn flat(&self) -> f64 {
-        let radius = self.case.wheel.radius_m;
-        (self.deflection * (2.0 * radius - self.deflection))
-            .max(0.0)
-            .sqrt()
     }
 
     /// Whether the load may jump: as places of a law's jumps pass nodes, with the contact, or with the reaction that it follows.
@@ -215,9 +222,6 @@ impl<'r, 'e> Reshaping<'r, 'e> {
                 if self.used == PANELS {
                     self.sum(rim, &shape, &mut reaction)?;
                 }
-                if self.used == self.panels.len() {
-                    self.panels.push(Panel::default());
-                }
                 shape.lay(
                     &mut self.panels[self.used],
                     rim,
@@ -270,7 +274,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
     fn sum(&mut self, rim: &Rim, shape: &Shape, sum: &mut Reaction) -> Result<(), Rejection> {
         let (panels, variables) = (&mut self.panels[..self.used], &self.case.variables);
         if let Some(laws) = &mut self.laws {
-            shape.write(rim, panels, laws);
+            shape.write(rim, self.slide.as_ref(), panels, laws);
             if laws.enter(Hook::Pressure) {
                 laws.apply(Hook::Pressure, panels.len() * NODES, |_| true, variables)?;
                 read(laws, Variable::P, panels, |panel| &mut panel.pressure);
@@ -279,8 +283,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         let strength = |panel: &Panel, i: usize| {
             strength(rim.soil.cohesion_pa, rim.tan_friction_angle, panel.pressure[i])
         };
-        let share =
-            |panel: &Panel, i: usize| rim.shear.mobilised_per_velocity(panel.speed[i]) * panel.speed[i];
+        let share = |panel: &Panel, i: usize| rim.shear.mobilised(panel.speed[i]);
         if let Some(laws) = &mut self.laws
             && (laws.enter(Hook::ShearLimit) || laws.use_variable(Variable::TauMax))
         {
@@ -390,7 +393,7 @@ impl Shape {
     }
 
     /// Write the variables that formulas use into their block.
-    fn write(&self, rim: &Rim, panels: &[Panel], laws: &mut NodeLaws) {
+    fn write(&self, rim: &Rim, slide: Option<&Slide>, panels: &[Panel], laws: &mut NodeLaws) {
         if laws.enter(Hook::Pressure) || laws.use_variable(Variable::P) {
             write(laws, Variable::P, panels, |panel| panel.pressure);
         }
@@ -416,9 +419,9 @@ impl Shape {
                 panel.x.map(|x| (x + self.rear) * per_length)
             });
         }
-        if laws.use_variable(Variable::J) {
-            let slide = Slide::new(rim.radius, &rim.motion, self.flat, self.bottom_radius);
-            write(laws, Variable::J, panels, |panel| slide.slid(self.front, panel.x));
+        if let Some(slide) = slide {
+            let entry = slide.enter(self.front);
+            write(laws, Variable::J, panels, |panel| slide.slid(&entry, panel.x));
         }
     }
 }
