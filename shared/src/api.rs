@@ -228,8 +228,10 @@ pub struct ErrorDetail {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorKind {
-    /// The body is not the JSON that the route takes.
+    /// The body is not what the route takes.
     InvalidBody,
+    /// The body is in a form that the route does not take.
+    UnsupportedMediaType,
     /// A file in the body is malformed.
     InvalidFile,
     /// No such thing.

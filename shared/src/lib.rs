@@ -9,6 +9,7 @@
 //! - [`outcome`]: the outcome of an evaluation: observables, a rejection of the parameters, or a fault.
 //! - [`predicted`]: which of the observables a likelihood takes.
 //! - [`exchange`]: the messages between worker and coordinator.
+//! - [`wire`]: their two forms in bytes.
 //! - [`api`]: the messages between a user and the service.
 //! - [`sentence`]: an error and its causes in one sentence.
 //! - [`mod@file`]: text files by name, and errors that name file, line and the nearest known word.
@@ -25,3 +26,4 @@ pub mod outcome;
 pub mod parameters;
 pub mod predicted;
 pub mod sentence;
+pub mod wire;

@@ -21,29 +21,39 @@ pub enum Outcome {
     Fault(Fault),
 }
 
-/// Averages of every run, one vector per channel and per diagnostic, in the order of the conditions.
+/// Averages of every run, one vector per channel and per diagnostic, in the order of the conditions; channels and diagnostics
+/// that the variant does not ask for are empty.
 ///
-/// JSON cannot represent NaN: a simulation that yields one is a rejection.
+/// Numbers are finite: a simulation that yields another one is a rejection.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Observables {
     /// Drawbar pull `[N]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub drawbar_pull_n: Vec<f64>,
     /// Torque \[N m\].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub torque_n_m: Vec<f64>,
     /// Sinkage `[m]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sinkage_m: Vec<f64>,
     /// Lateral force `[N]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lateral_force_n: Vec<f64>,
     /// Mean effective width `b_eff = 2A/L` of the footprint `[m]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub b_eff_m: Vec<f64>,
     /// Mean contact length `[m]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contact_length_m: Vec<f64>,
     /// Residual of the vertical balance `[N]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub residual_load_n: Vec<f64>,
     /// Nodes, or quadrature points, in contact.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub nodes_in_contact: Vec<u32>,
     /// Travel that was simulated `[m]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub simulated_travel_m: Vec<f64>,
     /// Change of the averages, relative to their scales, at which each run of a `steady` protocol ended; empty for
     /// models and protocols that do not wait for averages to settle.
@@ -140,8 +150,47 @@ impl Observables {
         }
     }
 
+    /// Leaves these channels and their changes with ln k*, and no diagnostics of the contact.
+    pub fn keep_only(&mut self, channels: &[Channel]) {
+        for (channel, values) in [
+            (Channel::DrawbarPull, &mut self.drawbar_pull_n),
+            (Channel::Torque, &mut self.torque_n_m),
+            (Channel::Sinkage, &mut self.sinkage_m),
+            (Channel::LateralForce, &mut self.lateral_force_n),
+            (Channel::DrawbarPull, &mut self.d_drawbar_pull_n),
+            (Channel::Torque, &mut self.d_torque_n_m),
+            (Channel::Sinkage, &mut self.d_sinkage_m),
+            (Channel::LateralForce, &mut self.d_lateral_force_n),
+        ] {
+            if !channels.contains(&channel) {
+                *values = Vec::new();
+            }
+        }
+        self.b_eff_m = Vec::new();
+        self.contact_length_m = Vec::new();
+        self.residual_load_n = Vec::new();
+        self.nodes_in_contact = Vec::new();
+        self.simulated_travel_m = Vec::new();
+        self.settled_to = Vec::new();
+    }
+
     /// A 64-bit hash: results with different bits almost certainly differ in it.
     pub fn fingerprint(&self) -> u64 {
+        let bits = self.numbers().map(f64::to_bits);
+        let counts = self.nodes_in_contact.iter().map(|&n| u64::from(n));
+        let coarse = self.coarse.iter().flatten().map(|v| v.to_bits());
+        fnv(bits.chain(counts).chain(coarse))
+    }
+
+    /// Whether every number is finite.
+    pub fn is_finite(&self) -> bool {
+        self.numbers()
+            .chain(self.coarse.iter().flatten().copied())
+            .all(f64::is_finite)
+    }
+
+    /// Every number but the counts and the companion's values.
+    fn numbers(&self) -> impl Iterator<Item = f64> {
         let vectors = [
             &self.drawbar_pull_n,
             &self.torque_n_m,
@@ -163,11 +212,12 @@ impl Observables {
             .histories
             .iter()
             .flat_map(|history| Channel::ALL.map(|c| history.channel(c)));
-        let values = vectors.into_iter().map(Vec::as_slice).chain(samples);
-        let bits = values.flatten().map(|v| v.to_bits());
-        let counts = self.nodes_in_contact.iter().map(|&n| u64::from(n));
-        let coarse = self.coarse.iter().flatten().map(|v| v.to_bits());
-        fnv(bits.chain(counts).chain(coarse))
+        vectors
+            .into_iter()
+            .map(Vec::as_slice)
+            .chain(samples)
+            .flatten()
+            .copied()
     }
 }
 

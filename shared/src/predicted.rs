@@ -39,6 +39,16 @@ pub enum PredictedValue {
 }
 
 impl PredictedValue {
+    /// The channel of a wheel that it is made from; `None` of a plate or a ring.
+    pub fn channel(self) -> Option<Channel> {
+        match self {
+            PredictedValue::Average { channel, .. } | PredictedValue::Sensitivity { channel, .. } => {
+                Some(channel)
+            }
+            PredictedValue::LnPlatePressure { .. } | PredictedValue::LnShearStress { .. } => None,
+        }
+    }
+
     /// The value in `observables`, which must cover the variant that this was made for.
     pub fn of(self, observables: &Observables) -> f64 {
         match self {

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use shared::api::{
     CalibrationState, CalibrationStatus, ErrorBody, ErrorDetail, ErrorKind, NewCalibration, Progress,
 };
+use shared::channel::Channel;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
 use shared::experiment::WheelGeometry;
 use shared::model::{
@@ -209,6 +210,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         bin_length_m: None,
         conditions: vec![condition],
         protocol: Default::default(),
+        channels: Vec::new(),
         stiffness_sensitivity: false,
         histories: false,
         plates: Vec::new(),
@@ -229,6 +231,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         }),
     );
     let asked = ModelVariant {
+        channels: vec![Channel::DrawbarPull, Channel::Sinkage],
         stiffness_sensitivity: true,
         histories: true,
         plates: vec![PlateCondition {
@@ -242,6 +245,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         ..variant.clone()
     };
     let json = serde_json::to_value(&asked).unwrap();
+    assert_eq!(json["channels"], json!(["drawbar_pull", "sinkage"]));
     assert_eq!(json["stiffness_sensitivity"], true);
     assert_eq!(json["histories"], true);
     assert_eq!(
@@ -345,6 +349,7 @@ fn a_status_has_one_form() {
 fn errors_are_a_closed_list() {
     for (kind, word) in [
         (ErrorKind::InvalidBody, "invalid_body"),
+        (ErrorKind::UnsupportedMediaType, "unsupported_media_type"),
         (ErrorKind::InvalidFile, "invalid_file"),
         (ErrorKind::NotFound, "not_found"),
         (ErrorKind::Conflict, "conflict"),

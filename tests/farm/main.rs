@@ -21,3 +21,4 @@ mod search;
 mod spatial;
 mod study;
 mod summary_contract;
+mod wire;

@@ -13,8 +13,10 @@ pub struct Response {
     pub status: u16,
     /// Head lines, names in lower case.
     pub head: Vec<(String, String)>,
-    /// Body.
+    /// Body, as text.
     pub body: String,
+    /// The same as it came.
+    pub bytes: Vec<u8>,
 }
 
 impl Response {
@@ -88,12 +90,36 @@ impl Client {
             .unwrap_or_else(|e| panic!("POST {path}: {e}"))
     }
 
-    /// Any request.
+    /// `POST path` with a body and head lines that say what it is and what is accepted, whatever the status.
+    ///
+    /// # Panics
+    /// No answer.
+    #[track_caller]
+    pub fn post_bytes(&self, path: &str, head: &[(&str, &str)], body: &[u8]) -> Response {
+        self.exchange("POST", path, head, Some(body))
+            .unwrap_or_else(|e| panic!("POST {path}: {e}"))
+    }
+
+    /// Any request; a body is said to be JSON.
     ///
     /// # Errors
     /// No connection, or one that broke.
     pub fn send(&self, method: &str, path: &str, body: Option<&str>) -> std::io::Result<Response> {
-        let (status, head, mut reader) = self.open(method, path, body)?;
+        let head: &[(&str, &str)] = match body {
+            Some(_) => &[("Content-Type", "application/json")],
+            None => &[],
+        };
+        self.exchange(method, path, head, body.map(str::as_bytes))
+    }
+
+    fn exchange(
+        &self,
+        method: &str,
+        path: &str,
+        head: &[(&str, &str)],
+        body: Option<&[u8]>,
+    ) -> std::io::Result<Response> {
+        let (status, head, mut reader) = self.open(method, path, head, body)?;
         let mut text = Vec::new();
         reader.read_to_end(&mut text)?;
         let length = head
@@ -107,6 +133,7 @@ impl Client {
             status,
             head,
             body: String::from_utf8_lossy(&text).into_owned(),
+            bytes: text,
         })
     }
 
@@ -116,7 +143,7 @@ impl Client {
     /// # Panics
     /// No stream.
     pub fn events(&self, path: &str, mut take: impl FnMut(&str, &str) -> bool) -> bool {
-        let (status, _, mut reader) = self.open("GET", path, None).expect("a stream of events");
+        let (status, _, mut reader) = self.open("GET", path, &[], None).expect("a stream of events");
         assert_eq!(status, 200, "GET {path}");
         let (mut line, mut event) = (String::new(), String::new());
         loop {
@@ -142,22 +169,23 @@ impl Client {
         &self,
         method: &str,
         path: &str,
-        body: Option<&str>,
+        head: &[(&str, &str)],
+        body: Option<&[u8]>,
     ) -> std::io::Result<(u16, Vec<(String, String)>, BufReader<TcpStream>)> {
         let mut stream = TcpStream::connect(&self.0)?;
         stream.set_read_timeout(Some(Duration::from_secs(60)))?;
         let mut request = format!("{method} {path} HTTP/1.0\r\nHost: {}\r\n", self.0);
+        for (name, value) in head {
+            request += &format!("{name}: {value}\r\n");
+        }
         if let Some(body) = body {
-            request += &format!(
-                "Content-Type: application/json\r\nContent-Length: {}\r\n",
-                body.len()
-            );
+            request += &format!("Content-Length: {}\r\n", body.len());
         }
         request += "\r\n";
         stream.write_all(request.as_bytes())?;
         if let Some(body) = body {
             // A server that has heard enough answers and hangs up; its answer can still be read.
-            let _ = stream.write_all(body.as_bytes());
+            let _ = stream.write_all(body);
         }
         let mut reader = BufReader::new(stream);
         let mut line = String::new();

@@ -83,6 +83,7 @@ fn command<S: AsRef<std::ffi::OsStr>>(name: &str, arguments: impl IntoIterator<I
         "GROUSER_URL",
         "GROUSER_COORDINATOR",
         "GROUSER_THREADS",
+        "GROUSER_WIRE",
         "RUST_LOG",
     ] {
         command.env_remove(variable);

@@ -106,6 +106,13 @@ impl Service {
         )
     }
 
+    /// Starts a worker of one thread that says JSON.
+    pub fn json_worker(&self, name: &str) -> Process {
+        let mut command = crate::programs::worker(["--coordinator", &self.url(), "--threads", "1"]);
+        command.env("GROUSER_WIRE", "json");
+        Process::start(command, &self.folder.path().join(format!("{name}.log")))
+    }
+
     /// Submits a job by plain HTTP; its id.
     ///
     /// # Panics

@@ -2,10 +2,12 @@
 
 use std::time::Duration;
 
+use reqwest::header::CONTENT_TYPE;
 use reqwest::{Client, RequestBuilder, StatusCode};
 use shared::api::ErrorBody;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
 use shared::model::ModelVariant;
+use shared::wire::WireForm;
 
 use crate::pull::{Coordinator, ExchangeError};
 
@@ -14,6 +16,7 @@ use crate::pull::{Coordinator, ExchangeError};
 pub struct HttpCoordinator {
     client: Client,
     url: String,
+    form: WireForm,
 }
 
 /// Why a coordinator cannot be reached at all.
@@ -31,11 +34,11 @@ pub enum ClientError {
 const TIMEOUT: Duration = Duration::from_secs(60);
 
 impl HttpCoordinator {
-    /// A client of the coordinator at `url`, as in `http://host:7070`.
+    /// A client of the coordinator at `url`, as in `http://host:7070`, that exchanges messages in this form.
     ///
     /// # Errors
     /// [`ClientError`] names the URL and what is wrong with it.
-    pub fn new(url: &str) -> Result<Self, ClientError> {
+    pub fn new(url: &str, form: WireForm) -> Result<Self, ClientError> {
         let owned = || url.to_owned();
         let parsed = reqwest::Url::parse(url).map_err(|e| ClientError::Url(owned(), e.to_string()))?;
         if parsed.scheme() != "http" {
@@ -50,22 +53,28 @@ impl HttpCoordinator {
         Ok(HttpCoordinator {
             client,
             url: url.trim_end_matches('/').to_owned(),
+            form,
         })
     }
 
     async fn post(&self, request: &ExchangeRequest) -> Result<ExchangeResponse, ExchangeError> {
         let url = format!("{}/v1/work/exchange", self.url);
-        let response = self.send(self.client.post(url).json(request)).await?;
+        let body = request
+            .to_bytes(self.form)
+            .map_err(|e| ExchangeError::Refused(e.to_string()))?;
+        let post = self.client.post(url).header(CONTENT_TYPE, self.form.media_type());
+        let response = self.send(post.body(body)).await?;
         if response.status() == StatusCode::NOT_FOUND {
             return Err(ExchangeError::Refused(format!(
                 "{} is not a Grouser coordinator",
                 self.url
             )));
         }
-        response
-            .json()
+        let body = response
+            .bytes()
             .await
-            .map_err(|e| ExchangeError::Away(root_cause(&e)))
+            .map_err(|e| ExchangeError::Away(root_cause(&e)))?;
+        ExchangeResponse::from_bytes(&body, self.form).map_err(|e| ExchangeError::Away(e.to_string()))
     }
 
     async fn send(&self, request: RequestBuilder) -> Result<reqwest::Response, ExchangeError> {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use shared::wire::WireForm;
 use tracing_subscriber::filter::{LevelFilter, Targets};
 
 /// Simulates wheel-soil contact for a Grouser coordinator.
@@ -25,6 +26,9 @@ pub struct PullArguments {
     /// Threads that simulate; by default, one for each core.
     #[arg(long, env = "GROUSER_THREADS")]
     pub threads: Option<std::num::NonZeroUsize>,
+    /// Form of the messages: msgpack, or json to read along.
+    #[arg(long, env = "GROUSER_WIRE", default_value_t = WireForm::MessagePack)]
+    pub wire: WireForm,
 }
 
 /// What a worker does besides serving a coordinator.

@@ -17,6 +17,8 @@ use crate::model::VariantCache;
 
 /// A worker holds about so much work `[s]`.
 const WORK_S: f64 = 1.5;
+/// Less than so much work is not worth an exchange of its own `[s]`: about what one takes, with its results on disk.
+const LEAST_WORK_S: f64 = 5e-3;
 /// Longest wait of a long poll `[ms]`.
 const WAIT_MS: u64 = 20_000;
 /// A worker holds at most so many runs, over all its leases: their results fit into one message.
@@ -204,12 +206,13 @@ impl<C: Coordinator> Worker<C> {
         self.outbox.push(result);
     }
 
-    /// An exchange is due when half of the last batch is done, when no lease is held, or when results or
-    /// renewals have waited long enough.
+    /// An exchange is due when half of the last batch is done and there is more to get or enough to send, when no lease is
+    /// held, or when results or renewals have waited long enough.
     fn is_time_to_exchange(&self) -> bool {
-        let more_to_get = self.known.remaining > 0 && self.held.len() * 2 <= self.known.asked;
+        let half_done = self.held.len() * 2 <= self.known.asked;
+        let much_done = self.outbox.len() as f64 >= self.evaluations_in(LEAST_WORK_S);
         self.held.is_empty()
-            || more_to_get
+            || (half_done && (self.known.remaining > 0 || much_done))
             || (!self.outbox.is_empty() && self.flushed.elapsed() >= FLUSH)
             || self.renewal_due()
     }
@@ -222,15 +225,27 @@ impl<C: Coordinator> Worker<C> {
         !self.held.is_empty() && self.renewed.elapsed() >= self.renewal_period()
     }
 
-    /// `want = min(1.5 s of work, remaining / (2 x workers))`, at least one for every thread.
-    fn want(&self) -> u32 {
+    /// How many evaluations all threads do in a time `[s]`, as far as known; at least one each.
+    fn evaluations_in(&self, seconds: f64) -> f64 {
         let threads = self.settings.threads as f64;
-        let work = self
-            .clock
-            .mean_s()
-            .map_or(threads, |mean| WORK_S * threads / mean.max(1e-9));
-        let share = self.known.remaining as f64 / (2.0 * f64::from(self.known.workers.max(1)));
-        let want = work.min(share.max(threads)) - self.held.len() as f64;
+        let mean = self.clock.mean_s();
+        mean.map_or(threads, |mean| (seconds * threads / mean.max(1e-9)).max(threads))
+    }
+
+    /// At most 1.5 s of work. Of what remains all if this worker is alone, else half of its share, so that a slower worker
+    /// leaves something to a faster one; but its share rather than less than is worth an exchange, which is also what it asks of
+    /// a round that it does not know yet.
+    fn want(&self) -> u32 {
+        let least = self.evaluations_in(LEAST_WORK_S);
+        let share = self.known.remaining as f64 / f64::from(self.known.workers.max(1));
+        let share = match (self.known.remaining, self.known.workers) {
+            (0, _) => least,
+            (_, 0 | 1) => share,
+            _ => (0.5 * share)
+                .max(least.min(share))
+                .max(self.settings.threads as f64),
+        };
+        let want = self.evaluations_in(WORK_S).min(share) - self.held.len() as f64;
         let most = (MOST_RUNS / self.known.runs).max(self.settings.threads);
         want.clamp(0.0, most.saturating_sub(self.held.len()) as f64) as u32
     }

@@ -41,7 +41,7 @@ pub struct Spec {
     pub fit_runs: Vec<usize>,
     /// The runs that are not fitted, as positions in the experiment.
     pub holdout_runs: Vec<usize>,
-    /// What workers evaluate while sampling: the fitted runs alone.
+    /// The fitted runs, with everything that the model says of them.
     pub fit_variant: ModelVariant,
     /// What workers evaluate for the final draws besides: the holdout runs, if there are any.
     pub holdout_variant: Option<ModelVariant>,
@@ -232,6 +232,19 @@ impl Spec {
             bevameter,
             discovery: job.discovery,
         })
+    }
+
+    /// What workers evaluate while sampling: the fitted runs, and of them the channels that the likelihood takes.
+    pub fn sampled_variant(&self) -> ModelVariant {
+        let fitted: BTreeSet<_> = self
+            .predicted
+            .iter()
+            .filter_map(|value| value.channel())
+            .collect();
+        ModelVariant {
+            channels: fitted.into_iter().collect(),
+            ..self.fit_variant.clone()
+        }
     }
 
     /// The predicted values that the likelihood takes, of an evaluation of the fitted runs.

@@ -133,6 +133,7 @@ impl Calibration {
             _ if searched.is_some() => searched.unwrap_or(&self.spec.fit_variant),
             (EvaluationKey::Prediction { holdout: true, .. }, Some(variant), _) => variant,
             (EvaluationKey::Histories, _, Some((_, variant))) => variant,
+            (EvaluationKey::Sampling { .. }, ..) => &self.sampled.1,
             _ => &self.spec.fit_variant,
         };
         let values = self.spec.likelihood.values();

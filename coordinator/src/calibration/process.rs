@@ -54,6 +54,8 @@ pub struct Calibration {
     /// Of these, refused by the model.
     pub rejected: u64,
     pub(super) engine: CalibrationEngine,
+    /// What is evaluated while sampling, with its hash.
+    pub(super) sampled: (String, ModelVariant),
     fit_hash: String,
     pub(super) holdout_hash: Option<String>,
     /// The fitted runs with the metamodel of the present stage: its number, the hash and the variant.
@@ -116,12 +118,10 @@ impl Calibration {
         let engine = CalibrationEngine::new(&spec, models)?;
         let mut calibration = Calibration {
             identity,
+            sampled: hashed(spec.sampled_variant()),
             fit_hash: spec.fit_variant.hash(),
             holdout_hash: spec.holdout_variant.as_ref().map(ModelVariant::hash),
-            histories: spec
-                .fit_variant
-                .with_histories()
-                .map(|variant| (variant.hash(), variant)),
+            histories: spec.fit_variant.with_histories().map(hashed),
             spec,
             state: CalibrationState::Queued,
             message: None,
@@ -171,7 +171,8 @@ impl Calibration {
         let variant = match self.key(evaluation) {
             EvaluationKey::Prediction { holdout: true, .. } => self.holdout_hash.as_deref()?,
             EvaluationKey::Histories => &self.histories.as_ref()?.0,
-            _ => &self.fit_hash,
+            EvaluationKey::Prediction { .. } => &self.fit_hash,
+            EvaluationKey::Sampling { .. } => &self.sampled.0,
         };
         Some(Question {
             variant,
@@ -194,6 +195,7 @@ impl Calibration {
     /// The variant of a hash, if it is one of this calibration's.
     pub fn variant(&self, hash: &str) -> Option<&ModelVariant> {
         match hash {
+            h if h == self.sampled.0 => Some(&self.sampled.1),
             h if h == self.fit_hash => Some(&self.spec.fit_variant),
             h if Some(h) == self.holdout_hash.as_deref() => self.spec.holdout_variant.as_ref(),
             h => {
@@ -275,9 +277,14 @@ impl Calibration {
         let stage = metamodel.map(Metamodel::stage);
         if self.stage_variant.as_ref().map(|(stage, ..)| *stage) != stage {
             self.stage_variant = metamodel.map(|metamodel| {
-                let variant = self.spec.fit_variant.with_metamodel(metamodel);
-                (metamodel.stage(), (variant.hash(), variant))
+                let variant = self.sampled.1.with_metamodel(metamodel);
+                (metamodel.stage(), hashed(variant))
             });
         }
     }
+}
+
+/// A variant with its hash.
+fn hashed(variant: ModelVariant) -> (String, ModelVariant) {
+    (variant.hash(), variant)
 }

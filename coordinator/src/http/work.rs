@@ -3,14 +3,18 @@
 use std::collections::BTreeMap;
 
 use axum::Json;
-use axum::extract::{Path, State};
+use axum::body::Bytes;
+use axum::extract::{FromRequest, Path, Request, State};
+use axum::http::header::{ACCEPT, CONTENT_TYPE, HeaderMap, HeaderValue};
+use axum::response::IntoResponse;
 use shared::api::{ErrorBody, ErrorKind};
 use shared::exchange::{ExchangeRequest, ExchangeResponse, PROTOCOL_VERSION};
 use shared::model::ModelVariant;
+use shared::wire::WireForm;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::error::{Body, HttpError};
+use super::error::HttpError;
 use crate::farm::WorkerRecord;
 use crate::service::Service;
 
@@ -24,16 +28,22 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(workers))
 }
 
-/// Takes results and gives leases; waits for work up to `wait_ms`. The answer means: results are durable.
-#[utoipa::path(post, path = "/work/exchange", request_body = ExchangeRequest, responses(
-    (status = 200, body = ExchangeResponse),
+/// Takes results and gives leases; waits for work up to `wait_ms`. The answer means: results are durable. It has the form that
+/// `Accept` names, else that of the request.
+#[utoipa::path(post, path = "/work/exchange", request_body(content(
+    (ExchangeRequest = "application/json"), (ExchangeRequest = "application/vnd.msgpack"))), responses(
+    (status = 200, description = "results are durable; new leases", content(
+        (ExchangeResponse = "application/json"), (ExchangeResponse = "application/vnd.msgpack"))),
+    (status = 400, body = ErrorBody, description = "the body is no such message"),
+    (status = 413, body = ErrorBody, description = "the body is too large"),
+    (status = 415, body = ErrorBody, description = "the body is neither JSON nor MessagePack"),
     (status = 426, body = ErrorBody, description = "another version of the protocol"),
     (status = 429, body = ErrorBody, description = "more results wait than the store takes; try again"),
 ))]
 async fn exchange(
     State(service): State<Service>,
-    Body(mut request): Body<ExchangeRequest>,
-) -> Result<Json<ExchangeResponse>, HttpError> {
+    Exchange { mut request, answer }: Exchange,
+) -> Result<impl IntoResponse, HttpError> {
     if request.protocol != PROTOCOL_VERSION {
         let message = format!(
             "worker {} speaks protocol {}, this coordinator {PROTOCOL_VERSION}",
@@ -42,7 +52,49 @@ async fn exchange(
         return Err(HttpError::new(ErrorKind::ProtocolMismatch, message));
     }
     request.wait_ms = request.wait_ms.min(LONGEST_WAIT_MS);
-    Ok(Json(service.exchange(request).await?))
+    let response = service.exchange(request).await?.to_bytes(answer);
+    let body = response.map_err(|e| HttpError::new(ErrorKind::Internal, e.to_string()))?;
+    Ok(([(CONTENT_TYPE, answer.media_type())], body))
+}
+
+/// A request in either form, and the form of its answer.
+struct Exchange {
+    request: ExchangeRequest,
+    answer: WireForm,
+}
+
+impl<S: Send + Sync> FromRequest<S> for Exchange {
+    type Rejection = HttpError;
+
+    async fn from_request(request: Request, state: &S) -> Result<Self, HttpError> {
+        let (form, answer) = forms(request.headers())?;
+        let body = Bytes::from_request(request, state).await?;
+        let request = ExchangeRequest::from_bytes(&body, form).map_err(|error| {
+            // of JSON, axum names the key
+            let named = Json::<ExchangeRequest>::from_bytes(&body).err();
+            let named = named.filter(|_| form == WireForm::Json).map(HttpError::from);
+            named.unwrap_or_else(|| HttpError::new(ErrorKind::InvalidBody, error.to_string()))
+        })?;
+        Ok(Exchange { request, answer })
+    }
+}
+
+/// The form of a request, and that of its answer.
+fn forms(headers: &HeaderMap) -> Result<(WireForm, WireForm), HttpError> {
+    let header = |name| {
+        headers
+            .get(name)
+            .and_then(|value: &HeaderValue| value.to_str().ok())
+    };
+    let stated = header(CONTENT_TYPE).unwrap_or_default();
+    let Some(form) = WireForm::of_media_type(stated) else {
+        let forms = WireForm::ALL.map(WireForm::media_type).join(" or ");
+        let message = format!("Content-Type \"{stated}\" must be {forms}");
+        return Err(HttpError::new(ErrorKind::UnsupportedMediaType, message));
+    };
+    let mut accepted = header(ACCEPT).unwrap_or_default().split(',');
+    let answer = accepted.find_map(WireForm::of_media_type).unwrap_or(form);
+    Ok((form, answer))
 }
 
 /// The variant of a hash, for a worker to keep.

@@ -48,6 +48,10 @@ pub struct ModelVariant {
     /// How histories become averages.
     #[schema(value_type = Object)]
     pub protocol: AveragingProtocol,
+    /// The channels that are returned; empty: all, with the diagnostics of the contact.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<String>)]
+    pub channels: Vec<Channel>,
     /// Whether each condition is simulated once more on slightly stiffer soil, for the derivatives by ln k*.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub stiffness_sensitivity: bool,
@@ -139,6 +143,7 @@ impl ModelVariant {
             bin_length_m,
             conditions,
             protocol: experiment.protocol.clone(),
+            channels: Vec::new(),
             stiffness_sensitivity: false,
             histories: false,
             plates: Vec::new(),
@@ -222,10 +227,14 @@ fn check_grousers(
 }
 
 impl Observables {
-    /// Whether every vector has an entry for each condition of a variant, each plate and each ring.
+    /// Whether every vector that a variant asks for has an entry for each condition, each plate and each ring; what it does not
+    /// ask for may be there too.
     pub fn covers(&self, variant: &ModelVariant) -> bool {
         let runs = variant.conditions.len();
         let derivatives = if variant.stiffness_sensitivity { runs } else { 0 };
+        let all = variant.channels.is_empty();
+        let asked = |channel: &Channel| all || variant.channels.contains(channel);
+        let fits = |len: usize, full: usize, asked: bool| len == full || (len == 0 && !asked);
         let histories = if variant.histories { runs } else { 0 };
         let whole = |history: &SimulatedHistory| {
             let samples = history.sinkage_m.len();
@@ -235,10 +244,10 @@ impl Observables {
             && self.shear_stress_pa.len() == variant.rings.len()
             && self.histories.len() == histories
             && self.histories.iter().all(whole)
-            && Channel::ALL
-                .iter()
-                .all(|&c| self.sensitivity(c).len() == derivatives)
-            && Channel::ALL.iter().all(|&c| self.channel(c).len() == runs)
+            && Channel::ALL.iter().all(|c| {
+                fits(self.sensitivity(*c).len(), derivatives, asked(c))
+                    && fits(self.channel(*c).len(), runs, asked(c))
+            })
             && [
                 &self.b_eff_m,
                 &self.contact_length_m,
@@ -246,8 +255,8 @@ impl Observables {
                 &self.simulated_travel_m,
             ]
             .iter()
-            .all(|v| v.len() == runs)
-            && self.nodes_in_contact.len() == runs
+            .all(|v| fits(v.len(), runs, all))
+            && fits(self.nodes_in_contact.len(), runs, all)
             && (self.settled_to.is_empty() || self.settled_to.len() == runs)
     }
 }

@@ -1,5 +1,7 @@
 //! Workers that halt or leave with leases in hand.
 
+use std::time::Duration;
+
 use farm_tests::fake_worker::FakeWorker;
 use farm_tests::job::Job;
 use farm_tests::process::{Process, Signal};
@@ -10,12 +12,13 @@ use serde_json::json;
 
 /// Halts a worker at a moment at which it holds leases; how many.
 fn halt_with_leases(service: &Service, worker: &Process) -> u64 {
+    let holds = || service.only_worker().and_then(|w| w["holds"].as_u64());
     until("a worker halted with leases in hand", || {
         worker.signal(Signal::Stop);
-        let holds = service
-            .only_worker()
-            .and_then(|w| w["holds"].as_u64())
-            .filter(|&holds| holds > 0);
+        // what it sent before it halted may still arrive
+        let before = holds();
+        std::thread::sleep(Duration::from_millis(50));
+        let holds = holds().filter(|&holds| holds > 0 && before == Some(holds));
         if holds.is_none() {
             worker.signal(Signal::Continue);
         }

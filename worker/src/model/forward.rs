@@ -2,6 +2,7 @@
 
 use scm::spatial::SpatialRun;
 use scm::{Averages, Condition, Soil, Wheel, quasi_static};
+use shared::channel::Channel;
 use shared::model::{EffectSet, ModelKind, ModelVariant, PlateCondition, RingCondition};
 use shared::outcome::{Observables, Outcome, ParameterRejection};
 
@@ -22,6 +23,8 @@ pub(super) struct ForwardModel {
     effects: EffectMap,
     /// The three-dimensional model; `None`: the quasi-static one.
     spatial: Option<SpatialModel>,
+    /// The channels that are returned; empty: everything.
+    channels: Vec<Channel>,
     stiffness_sensitivity: bool,
     histories: bool,
     /// What plates and rings read, where there are any to predict.
@@ -93,6 +96,7 @@ impl ForwardModel {
             wheels,
             conditions,
             effects,
+            channels: variant.channels.clone(),
             stiffness_sensitivity: variant.stiffness_sensitivity,
             histories: variant.histories,
             bevameter: match variant.plates.is_empty() && variant.rings.is_empty() {
@@ -146,6 +150,9 @@ impl ForwardModel {
         }
         if let Err(rejection) = self.read_bevameter(theta, &mut observables) {
             return Outcome::Rejected(rejection);
+        }
+        if !self.channels.is_empty() {
+            observables.keep_only(&self.channels);
         }
         Outcome::Evaluated(observables)
     }
