@@ -15,6 +15,7 @@ mod leases;
 mod likelihood;
 mod mesh;
 mod metamodel;
+mod older_store;
 mod point_fit;
 mod posterior_prior;
 mod search;

@@ -4,8 +4,8 @@
 /// Below, they are the sampler's or the fit's.
 pub const PREDICTIONS_FROM: u64 = 1 << 40;
 
-/// Number of the evaluation that keeps its histories.
-pub const HISTORIES: u64 = 2 * PREDICTIONS_FROM;
+/// Number of the evaluation at the likeliest parameters.
+pub const LIKELIEST: u64 = 2 * PREDICTIONS_FROM;
 
 /// Purpose of an evaluation. Its number depends on the job alone, so it is the same after a restart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,8 +19,8 @@ pub enum EvaluationKey {
         /// The particle.
         particle: usize,
     },
-    /// Histories of the fitted runs at the likeliest parameters.
-    Histories,
+    /// The fitted runs at the likeliest parameters, with their histories where the model knows time.
+    Likeliest,
     /// A final draw.
     Prediction {
         /// Position among the draws.
@@ -36,7 +36,7 @@ impl EvaluationKey {
     pub fn number(self, width: usize) -> u64 {
         match self {
             EvaluationKey::Sampling { round, particle } => round * width as u64 + particle as u64,
-            EvaluationKey::Histories => HISTORIES,
+            EvaluationKey::Likeliest => LIKELIEST,
             EvaluationKey::Prediction { draw, holdout } => {
                 PREDICTIONS_FROM + 2 * draw as u64 + u64::from(holdout)
             }
@@ -46,7 +46,7 @@ impl EvaluationKey {
     /// The evaluation of a number.
     pub fn of(number: u64, width: usize) -> Self {
         match number.checked_sub(PREDICTIONS_FROM) {
-            Some(_) if number >= HISTORIES => EvaluationKey::Histories,
+            Some(_) if number >= LIKELIEST => EvaluationKey::Likeliest,
             Some(k) => EvaluationKey::Prediction {
                 draw: (k / 2) as usize,
                 holdout: k % 2 == 1,
@@ -72,7 +72,7 @@ mod tests {
             123_456,
             PREDICTIONS_FROM,
             PREDICTIONS_FROM + 199,
-            HISTORIES,
+            LIKELIEST,
         ] {
             assert_eq!(EvaluationKey::of(number, 1000).number(1000), number);
         }

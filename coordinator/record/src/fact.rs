@@ -116,8 +116,9 @@ pub struct EvaluationRow {
 /// The kept part of a result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Kept {
-    /// While sampling: the predicted values that the likelihood takes. Enough to
-    /// score them again under another noise model, and a quarter of the whole. Empty where a subchain stayed.
+    /// While sampling: nothing beside the log-likelihood. Also where a subchain stayed.
+    Scored,
+    /// The predicted values that the likelihood takes: of draws from the prior, and of what an engine is told again.
     Fitted(Vec<f64>),
     /// Of the final draws: everything.
     Whole(Box<Observables>),

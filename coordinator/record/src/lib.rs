@@ -21,7 +21,7 @@ pub use discovery::{
     Verdict, effect_of,
 };
 pub use estimate::EstimateRow;
-pub use evaluation_key::{EvaluationKey, HISTORIES, PREDICTIONS_FROM};
+pub use evaluation_key::{EvaluationKey, LIKELIEST, PREDICTIONS_FROM};
 pub use fact::{EvaluationRow, Fact, Fingerprint, Kept};
 pub use replay::{Stored, StoredEvaluation};
 pub use sample::{Prediction, PriorDraw, RejectionReason, Sample, StageRow, Subchains};

@@ -10,6 +10,7 @@ use super::final_draws::{FinalDraws, final_draws};
 use super::process::Calibration;
 use super::simulation_result::SimulationResult;
 use crate::lease::{Completion, LeaseFailure, LeaseQueue};
+use job::AlgorithmSettings;
 use record::{EvaluationKey, EvaluationRow, Fact, Kept};
 
 /// A message that is no result: the calibration and the reason.
@@ -89,7 +90,7 @@ impl Calibration {
         let kept = self.kept(evaluation, outcome);
         let fitted = match &kept {
             Kept::Fitted(values) => Some(values.as_slice()),
-            Kept::Whole(_) | Kept::Rejected(_) => None,
+            Kept::Scored | Kept::Whole(_) | Kept::Rejected(_) => None,
         };
         let scored = self.draws.is_none().then(|| EvaluationScore {
             // Where a subchain stayed there is nothing to score, and nothing is asked of the score.
@@ -132,7 +133,7 @@ impl Calibration {
         let variant = match (self.key(evaluation), &self.spec.holdout_variant, &self.histories) {
             _ if searched.is_some() => searched.unwrap_or(&self.spec.fit_variant),
             (EvaluationKey::Prediction { holdout: true, .. }, Some(variant), _) => variant,
-            (EvaluationKey::Histories, _, Some((_, variant))) => variant,
+            (EvaluationKey::Likeliest, _, Some((_, variant))) => variant,
             (EvaluationKey::Sampling { .. }, ..) => &self.sampled.1,
             _ => &self.spec.fit_variant,
         };
@@ -209,7 +210,7 @@ impl Calibration {
                     Some(CalibrationResult::Estimate(estimate)) => {
                         self.draws = Some(FinalDraws {
                             thetas: vec![estimate.theta.clone()],
-                            likeliest: estimate.theta.clone(),
+                            likeliest: self.histories.is_some().then(|| estimate.theta.clone()),
                         });
                         facts.push(Fact::Estimate {
                             calibration,
@@ -301,12 +302,20 @@ impl Calibration {
             self.engine.discovery()?.values(particle, observables)
         };
         match outcome {
-            None => Kept::Fitted(Vec::new()),
+            None => Kept::Scored,
             Some(Err(reason)) => Kept::Rejected(reason),
             Some(Ok(observables)) if self.draws.is_some() => Kept::Whole(Box::new(observables)),
-            Some(Ok(observables)) => Kept::Fitted(
+            Some(Ok(observables)) if self.keeps_values() => Kept::Fitted(
                 searched(&observables).unwrap_or_else(|| self.spec.predicted_values(&observables)),
             ),
+            Some(Ok(_)) => Kept::Scored,
         }
+    }
+
+    /// Whether predicted values are kept in this round: an engine is told them again, or the draws are from the prior, which
+    /// diagnostics compare with the posterior.
+    fn keeps_values(&self) -> bool {
+        let samples = matches!(self.spec.algorithm, AlgorithmSettings::Sample(_));
+        self.spec.algorithm.is_told_values() || (samples && self.engine.round() == 0)
     }
 }

@@ -7,8 +7,8 @@ use inference::PosteriorSample;
 pub(super) struct FinalDraws {
     /// To simulate on fitted and holdout runs.
     pub(super) thetas: Vec<Vec<f64>>,
-    /// The one of the highest likelihood, to simulate with its histories.
-    pub(super) likeliest: Vec<f64>,
+    /// The one of the highest likelihood, if it is simulated once more.
+    pub(super) likeliest: Option<Vec<f64>>,
 }
 
 /// The draws that are simulated on every run: the most probable particle, then evenly spaced ones; beside, the likeliest.
@@ -26,6 +26,6 @@ pub(super) fn final_draws(posterior: &PosteriorSample) -> FinalDraws {
     let theta = |i: usize| particles[i].theta.clone();
     FinalDraws {
         thetas: best.into_iter().chain(even).map(theta).collect(),
-        likeliest: likeliest.map(theta).unwrap_or_default(),
+        likeliest: likeliest.map(theta),
     }
 }

@@ -60,7 +60,7 @@ pub struct Calibration {
     pub(super) holdout_hash: Option<String>,
     /// The fitted runs with the metamodel of the present stage: its number, the hash and the variant.
     stage_variant: Option<(usize, (String, ModelVariant))>,
-    /// What is simulated once more for its histories, with its hash; `None` of a model that knows no time.
+    /// The fitted runs with their histories, and their hash; `None` of a model that knows no time.
     pub(super) histories: Option<(String, ModelVariant)>,
     /// What the calibration ends with; `None` while sampling.
     pub(super) draws: Option<FinalDraws>,
@@ -170,7 +170,7 @@ impl Calibration {
         }
         let variant = match self.key(evaluation) {
             EvaluationKey::Prediction { holdout: true, .. } => self.holdout_hash.as_deref()?,
-            EvaluationKey::Histories => &self.histories.as_ref()?.0,
+            EvaluationKey::Likeliest => self.histories.as_ref().map_or(&self.fit_hash, |(hash, _)| hash),
             EvaluationKey::Prediction { .. } => &self.fit_hash,
             EvaluationKey::Sampling { .. } => &self.sampled.0,
         };
@@ -216,7 +216,7 @@ impl Calibration {
             (EvaluationKey::Prediction { draw, .. }, Some(draws)) => {
                 draws.thetas.get(draw).map(Vec::as_slice)
             }
-            (EvaluationKey::Histories, Some(draws)) => Some(&draws.likeliest),
+            (EvaluationKey::Likeliest, Some(draws)) => draws.likeliest.as_deref(),
             _ => self.proposal(evaluation).map(|p| p.theta.as_slice()),
         }
     }
@@ -253,8 +253,8 @@ impl Calibration {
                     let part = move |holdout| EvaluationKey::Prediction { draw, holdout }.number(particles);
                     [false, true].into_iter().take(parts).map(part)
                 });
-                let histories = self.histories.iter().map(|_| EvaluationKey::Histories);
-                let keys = keys.chain(histories.map(|key| key.number(particles)));
+                let likeliest = draws.likeliest.iter().map(|_| EvaluationKey::Likeliest);
+                let keys = keys.chain(likeliest.map(|key| key.number(particles)));
                 self.queue.ask(keys, failed);
             }
             None => {

@@ -127,7 +127,7 @@ mod tests {
     use super::*;
     use job::Spec;
     use record::fact::{EvaluationRow, Kept};
-    use record::{HISTORIES, PREDICTIONS_FROM};
+    use record::{LIKELIEST, PREDICTIONS_FROM};
 
     const JOB: &str = "[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = { uniform = [4.0, 5.6] }\nkappa = 0.0\nn = { uniform = [0.8, 1.4] }\nfriction_angle_deg = 30.0\n[sampler]\nparticles = 20\nmoves = [2, 4]\n";
     const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 0.05\n";
@@ -221,8 +221,9 @@ mod tests {
                     break;
                 };
                 let runs = 1;
+                let timed = calibration.histories.is_some();
                 let mut outcome = toy(question.theta, runs);
-                if let (Ok(observables), true) = (&mut outcome, evaluation == HISTORIES) {
+                if let (Ok(observables), true) = (&mut outcome, evaluation == LIKELIEST && timed) {
                     let samples = vec![0.25; 3];
                     observables.histories = vec![SimulatedHistory {
                         drawbar_pull_n: samples.clone(),
@@ -345,7 +346,7 @@ mod tests {
         let facts = work(&mut rolling(), usize::MAX, false);
         let whole = sorted(&facts);
         let last = whole.last().unwrap();
-        assert_eq!(last.evaluation, HISTORIES);
+        assert_eq!(last.evaluation, LIKELIEST);
         let kept = match &last.kept {
             Kept::Whole(observables) => observables,
             other => panic!("{other:?}"),
@@ -375,11 +376,11 @@ mod tests {
             all.extend(work(&mut again, usize::MAX, false));
             assert_eq!(sorted(&all), whole, "cut after {cut}");
         }
-        assert!(
-            sorted(&work(&mut fresh(), usize::MAX, false))
-                .iter()
-                .all(|r| r.evaluation < HISTORIES)
-        );
+        // Of a model that knows no time the same draw is simulated without.
+        let timeless = sorted(&work(&mut fresh(), usize::MAX, false));
+        let last = timeless.last().unwrap();
+        assert_eq!(last.evaluation, LIKELIEST);
+        assert!(matches!(&last.kept, Kept::Whole(o) if o.histories.is_empty()));
     }
 
     #[test]
@@ -398,7 +399,11 @@ mod tests {
         let facts = work(&mut fresh(), usize::MAX, false);
         for row in rows(&facts) {
             let whole = matches!(&row.kept, Kept::Whole(o) if o.sinkage_m.len() == 1);
-            let fitted = matches!(&row.kept, Kept::Fitted(v) if v.len() == 1);
+            // The draws from the prior keep their values, later ones their score.
+            let fitted = match &row.kept {
+                Kept::Fitted(values) => values.len() == 1 && row.evaluation < 20,
+                kept => *kept == Kept::Scored && row.evaluation >= 20,
+            };
             let refused = matches!(row.kept, Kept::Rejected(_));
             assert!(
                 refused
@@ -443,8 +448,8 @@ mod tests {
             .count();
         assert_eq!(
             (refused, whole),
-            (21, 21),
-            "20 particles and the most probable one"
+            (21, 22),
+            "20 particles and the most probable one; and the fitted runs of the likeliest"
         );
     }
 }

@@ -46,9 +46,18 @@ pub async fn finished_calibration(
     if let AlgorithmSettings::Sample(_) = spec.algorithm {
         populations.insert(0, first_population(&spec, &prior_draws));
     }
-    let likeliest_values = match likeliest(&posterior) {
-        Some(sample) => reader.fitted_values(row.id, &sample.theta).await?,
-        None => None,
+    let at_likeliest = reader.likeliest(row.id).await?;
+    let likeliest_values = match (&at_likeliest, likeliest(&posterior)) {
+        (_, None) => None,
+        (Some(observables), Some(_)) => Some(spec.predicted_values(observables)),
+        (None, Some(sample)) => reader.fitted_values(row.id, &sample.theta).await?,
+    };
+    let simulated_histories = at_likeliest
+        .map(|observables| observables.histories)
+        .filter(|histories| !histories.is_empty());
+    let subchains = match spec.algorithm.has_metamodel() {
+        true => reader.subchains(row.id).await?,
+        false => None,
     };
     Ok(FinishedCalibration {
         spec,
@@ -59,9 +68,9 @@ pub async fn finished_calibration(
         populations,
         likeliest_values,
         predictions: reader.predictions(row.id).await?,
-        simulated_histories: reader.histories(row.id).await?,
+        simulated_histories,
         rejections: reader.rejections(row.id).await?,
-        subchains: reader.subchains(row.id).await?,
+        subchains,
         faults: reader.faults(row.id).await?,
         stages,
         row: row.clone(),

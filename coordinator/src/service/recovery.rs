@@ -8,7 +8,6 @@ use super::stored_calibration::{calibration_row, experiment_files, spec_of};
 use crate::calibration::{Calibration, CalibrationIdentity};
 use crate::farm::dispatch::{Dispatcher, Stopped};
 use crate::store::Store;
-use job::AlgorithmSettings;
 
 /// Takes up what is not over; returns what this version cannot take up, with the reason. Nothing is written
 /// of those: another version may be able to.
@@ -28,11 +27,7 @@ pub(super) async fn recover(
                 continue;
             }
         };
-        let fitted = matches!(
-            spec.algorithm,
-            AlgorithmSettings::Fit(_) | AlgorithmSettings::Discover { .. }
-        ) || spec.algorithm.has_metamodel();
-        let stored = reader.stored(id, fitted).await?;
+        let stored = reader.stored(id, spec.algorithm.is_told_values()).await?;
         let evaluations = stored.evaluations.len();
         let identity = CalibrationIdentity {
             id,

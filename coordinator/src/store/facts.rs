@@ -6,6 +6,7 @@ use inference::StageRecord;
 use inference::point_estimate::ModeEstimate;
 use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 
+use super::blob;
 use super::health::StoreHealth;
 use super::json::json;
 use record::fact::{Fact, Fingerprint};
@@ -150,7 +151,7 @@ async fn stage(
                 .push_bind(calibration)
                 .push_bind(s.stage as i64)
                 .push_bind((part * ROWS + k) as i64)
-                .push_bind(json(&particle.theta))
+                .push_bind(blob::encode(&particle.theta))
                 .push_bind(log_likelihood)
                 .push_bind(particle.log_prior);
         });

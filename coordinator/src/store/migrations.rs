@@ -6,7 +6,7 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 /// Number, name and text of each file of `migrations/`.
 ///
 /// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
-const FILES: [(i64, &str, &str); 8] = [
+const FILES: [(i64, &str, &str); 9] = [
     (
         1,
         "experiments",
@@ -46,6 +46,11 @@ const FILES: [(i64, &str, &str); 8] = [
         8,
         "members experiment",
         include_str!("../../../migrations/0008_members_experiment.sql"),
+    ),
+    (
+        9,
+        "short evaluations",
+        include_str!("../../../migrations/0009_short_evaluations.sql"),
     ),
 ];
 

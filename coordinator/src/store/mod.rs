@@ -7,6 +7,8 @@ mod blob;
 mod error;
 mod facts;
 mod file;
+#[cfg(test)]
+mod fixture;
 mod health;
 mod json;
 mod migrations;
@@ -14,6 +16,7 @@ mod prior;
 mod read;
 mod reader;
 mod recovery;
+mod theta;
 mod writer;
 
 use sqlx::sqlite::{SqliteJournalMode, SqliteSynchronous};

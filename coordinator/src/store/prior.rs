@@ -6,8 +6,8 @@ use sqlx::Row;
 
 use super::blob;
 use super::error::StoreError;
-use super::json::numbers;
 use super::reader::Reader;
+use super::theta::theta;
 use record::{PriorDraw, RejectionReason};
 
 impl Reader {
@@ -32,7 +32,7 @@ impl Reader {
         rows.iter()
             .map(|row| {
                 Ok(PriorDraw {
-                    theta: numbers(row.get("theta"))?,
+                    theta: theta(row)?,
                     result: match row.get::<Option<String>, _>("rejection") {
                         Some(reason) => Err(RejectionReason(reason)),
                         None => Ok(blob::decode_values(row.get("fitted"))?),

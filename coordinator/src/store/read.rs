@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use inference::point_estimate::{Generation, StopReason};
 use shared::api::CalibrationState;
 use shared::file::FileSet;
-use shared::outcome::SimulatedHistory;
+use shared::outcome::Observables;
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 
@@ -13,8 +13,9 @@ use super::blob;
 use super::error::StoreError;
 use super::json::{json, numbers};
 use super::reader::Reader;
+use super::theta::theta;
 use record::{
-    CalibrationRow, Discovery, EstimateRow, EvaluationKey, ExperimentRow, HISTORIES, PREDICTIONS_FROM,
+    CalibrationRow, Discovery, EstimateRow, EvaluationKey, ExperimentRow, LIKELIEST, PREDICTIONS_FROM,
     Prediction, RejectionReason, Sample, StageRow, Subchains,
 };
 
@@ -168,19 +169,15 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn populations(&self, calibration: i64) -> Result<Vec<Vec<Sample>>, StoreError> {
-        let rows = sqlx::query(
-            "SELECT stage, theta, log_likelihood, log_prior FROM samples WHERE calibration = ? ORDER BY stage, particle",
-        )
-        .bind(calibration)
-        .fetch_all(&self.pool)
-        .await?;
-        rows.chunk_by(|a, b| a.get::<u32, _>("stage") == b.get::<u32, _>("stage"))
-            .map(|stage| stage.iter().map(sample).collect())
-            .collect()
+        let mut populations = Vec::new();
+        for stage in self.stages(calibration).await? {
+            populations.push(self.samples(calibration, Some(stage.stage)).await?);
+        }
+        Ok(populations)
     }
 
     /// The predicted values that the likelihood took of a parameter vector while sampling; `None` where it was not
-    /// simulated then, or refused.
+    /// simulated then, or refused. For what was stored before migration 9, which kept the values of every evaluation.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -259,7 +256,7 @@ impl Reader {
         )
         .bind(calibration)
         .bind(PREDICTIONS_FROM as i64)
-        .bind(HISTORIES as i64)
+        .bind(LIKELIEST as i64)
         .fetch_all(&self.pool)
         .await?;
         let mut predictions: Vec<Prediction> = Vec::new();
@@ -272,7 +269,7 @@ impl Reader {
             match (EvaluationKey::of(number, 1), predictions.last_mut()) {
                 (EvaluationKey::Prediction { holdout: true, .. }, Some(last)) => last.holdout = Some(result),
                 _ => predictions.push(Prediction {
-                    theta: numbers(row.get("theta"))?,
+                    theta: theta(row)?,
                     fit: result,
                     holdout: None,
                 }),
@@ -303,20 +300,20 @@ impl Reader {
         Ok((subchains.subchains > 0).then_some(subchains))
     }
 
-    /// What each fitted run felt over time at the likeliest parameters; `None` of a model that knows no time.
+    /// The fitted runs at the likeliest parameters, with their histories where the model knows time; `None` where they were
+    /// not simulated once more, or refused.
     ///
     /// # Errors
     /// [`StoreError`].
-    pub async fn histories(&self, calibration: i64) -> Result<Option<Vec<SimulatedHistory>>, StoreError> {
+    pub async fn likeliest(&self, calibration: i64) -> Result<Option<Observables>, StoreError> {
         let row = sqlx::query(
             "SELECT observables FROM evaluations WHERE calibration = ? AND evaluation = ? AND observables IS NOT NULL",
         )
         .bind(calibration)
-        .bind(HISTORIES as i64)
+        .bind(LIKELIEST as i64)
         .fetch_optional(&self.pool)
         .await?;
-        row.map(|row| Ok(blob::decode(row.get("observables"))?.histories))
-            .transpose()
+        row.map(|row| blob::decode(row.get("observables"))).transpose()
     }
 
     /// How often the model refused, by the kind of refusal.
@@ -340,7 +337,7 @@ impl Reader {
 
 fn sample(row: &SqliteRow) -> Result<Sample, StoreError> {
     Ok(Sample {
-        theta: numbers(row.get("theta"))?,
+        theta: theta(row)?,
         log_likelihood: row.get("log_likelihood"),
         log_prior: row.get("log_prior"),
     })

@@ -4,13 +4,17 @@ use std::collections::BTreeMap;
 
 use shared::api::CalibrationState;
 use sqlx::Row;
+use sqlx::sqlite::SqliteRow;
 use statistics::SubchainEnd;
 
 use super::blob;
 use super::error::StoreError;
-use super::json::numbers;
 use super::reader::Reader;
+use super::theta::theta;
 use record::{Stored, StoredEvaluation};
+
+/// Most evaluations that one statement reads: a long calibration has hundreds of thousands.
+const PAGE: usize = 2_000;
 
 impl Reader {
     /// Ids of the calibrations that are not over, oldest first.
@@ -36,35 +40,32 @@ impl Reader {
             .bind(calibration)
             .fetch_one(&self.pool)
             .await?;
-        let evaluations = sqlx::query(
-            "SELECT evaluation, theta, log_likelihood, rejection IS NOT NULL AS rejected,
-             CASE WHEN ?2 THEN fitted END AS fitted, CASE WHEN ?2 THEN coarse END AS coarse, subchain
-             FROM evaluations WHERE calibration = ?1",
-        )
-        .bind(calibration)
-        .bind(fitted)
-        .fetch_all(&self.pool)
-        .await?;
-        let evaluations: Result<BTreeMap<_, _>, StoreError> = evaluations
-            .iter()
-            .map(|row| {
-                let number = row.get::<i64, _>("evaluation").unsigned_abs();
-                let values = |column: &str| {
-                    let bytes: Option<&[u8]> = row.get(column);
-                    bytes.map(blob::decode_values).transpose()
-                };
-                let end: Option<&str> = row.get("subchain");
-                let stored = StoredEvaluation {
-                    theta: numbers(row.get("theta"))?,
-                    log_likelihood: row.get("log_likelihood"),
-                    rejected: row.get("rejected"),
-                    fitted: values("fitted")?,
-                    coarse: values("coarse")?,
-                    end: end.map(subchain_end).transpose()?,
-                };
-                Ok((number, stored))
-            })
-            .collect();
+        let mut evaluations = BTreeMap::new();
+        loop {
+            let after = evaluations
+                .last_key_value()
+                .map_or(-1, |(&number, _)| number as i64);
+            let rows = sqlx::query(
+                "SELECT evaluation, theta, log_likelihood, rejection IS NOT NULL AS rejected,
+                 CASE WHEN ?2 THEN fitted END AS fitted, CASE WHEN ?2 THEN coarse END AS coarse, subchain
+                 FROM evaluations WHERE calibration = ?1 AND evaluation > ?3 ORDER BY evaluation LIMIT ?4",
+            )
+            .bind(calibration)
+            .bind(fitted)
+            .bind(after)
+            .bind(PAGE as i64)
+            .fetch_all(&self.pool)
+            .await?;
+            for row in &rows {
+                evaluations.insert(
+                    row.get::<i64, _>("evaluation").unsigned_abs(),
+                    stored_evaluation(row)?,
+                );
+            }
+            if rows.len() < PAGE {
+                break;
+            }
+        }
         let faults = sqlx::query(
             "SELECT evaluation, attempt AS n, max(id) FROM faults WHERE calibration = ? GROUP BY evaluation",
         )
@@ -86,12 +87,93 @@ impl Reader {
             message: row.get("message"),
             model_version: row.get("model_version"),
             busy_ms: row.get::<i64, _>("busy_ms").unsigned_abs(),
-            evaluations: evaluations?,
+            evaluations,
             failed,
         })
     }
 }
 
+fn stored_evaluation(row: &SqliteRow) -> Result<StoredEvaluation, StoreError> {
+    let values = |column: &str| {
+        let bytes: Option<&[u8]> = row.get(column);
+        bytes.map(blob::decode_values).transpose()
+    };
+    let end: Option<&str> = row.get("subchain");
+    Ok(StoredEvaluation {
+        theta: theta(row)?,
+        log_likelihood: row.get("log_likelihood"),
+        rejected: row.get("rejected"),
+        fitted: values("fitted")?,
+        coarse: values("coarse")?,
+        end: end.map(subchain_end).transpose()?,
+    })
+}
+
 fn subchain_end(json: &str) -> Result<SubchainEnd, StoreError> {
     serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("subchain {json}: {e}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use record::{EvaluationRow, Fact, Fingerprint, Kept};
+
+    use super::*;
+    use crate::store::fixture;
+
+    fn row(evaluation: u64, theta: Vec<f64>, kept: Kept) -> EvaluationRow {
+        EvaluationRow {
+            evaluation,
+            theta,
+            log_likelihood: (!matches!(kept, Kept::Rejected(_))).then_some(-0.1 * evaluation as f64),
+            kept,
+            coarse: None,
+            end: None,
+            fingerprint: Fingerprint(-1),
+            worker: "worker".into(),
+        }
+    }
+
+    #[tokio::test]
+    async fn every_evaluation_comes_back_to_the_bit_from_several_pages_and_in_both_forms_of_theta() {
+        let (_folder, store, calibration) = fixture::store().await;
+        let theta = |number: u64| vec![f64::from_bits(0x3fb9_9999_9999_999a + number), -0.0, 1e-300];
+        let kept = |number: u64| match number % 3 {
+            0 => Kept::Scored,
+            1 => Kept::Fitted(vec![number as f64, 0.1]),
+            _ => Kept::Rejected("no_support: condition 0: toy".into()),
+        };
+        let last = PAGE as u64 + 7;
+        // They arrive in any order.
+        let facts = (0..=last).rev().map(|number| Fact::Evaluated {
+            calibration,
+            row: row(number, theta(number), kept(number)),
+        });
+        let fact = store.writer().sink().send(facts.collect()).unwrap();
+        store.writer().durable(fact).await.unwrap();
+        sqlx::query(
+            "INSERT INTO evaluations (calibration, evaluation, theta, log_likelihood, fitted, fingerprint, worker)
+             VALUES (?, ?, '[0.1,1e-300]', -1.5, x'', 0, 'older')",
+        )
+        .bind(calibration)
+        .bind(last as i64 + 1)
+        .execute(&store.readers)
+        .await
+        .unwrap();
+        let stored = store
+            .reader()
+            .stored(calibration, true)
+            .await
+            .unwrap()
+            .evaluations;
+        assert_eq!(stored.len() as u64, last + 2);
+        let bits = |theta: &[f64]| theta.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        for (&number, evaluation) in stored.iter().take(last as usize + 1) {
+            assert_eq!(bits(&evaluation.theta), bits(&theta(number)));
+            assert_eq!(evaluation.rejected, number % 3 == 2);
+            let values = evaluation.fitted.as_deref();
+            assert_eq!(values == Some(&[number as f64, 0.1]), number % 3 == 1);
+        }
+        assert_eq!(bits(&stored[&(last + 1)].theta), bits(&[0.1, 1e-300]));
+        store.close().await;
+    }
 }

@@ -19,10 +19,10 @@ use record::fact::{EvaluationRow, Fact, Kept};
 
 /// Most facts in one commit.
 const GROUP: usize = 4096;
-/// Facts that nobody waits for gather for so long before they are committed.
-const LINGER: Duration = Duration::from_millis(20);
+/// Evaluations that nobody waits for gather for so long before they are committed: a commit writes whole pages.
+const LINGER: Duration = Duration::from_millis(250);
 /// Most rows in one statement; SQLite takes 32,766 parameters.
-const ROWS: usize = 2000;
+const ROWS: usize = 1000;
 
 enum Write {
     Fact(Fact),
@@ -122,16 +122,21 @@ pub struct FactSink {
     sender: mpsc::UnboundedSender<Write>,
     sent: u64,
     health: Arc<StoreHealth>,
+    waiting: Arc<Waiting>,
 }
 
 impl FactSink {
     /// Sends facts in order; the number of the last fact so far, or `None` when the writer has ended.
     pub fn send(&mut self, facts: Vec<Fact>) -> Option<u64> {
+        let urgent = facts.iter().any(|fact| !matches!(fact, Fact::Evaluated { .. }));
         for fact in facts {
             self.sender.send(Write::Fact(fact)).ok()?;
             self.sent += 1;
         }
         self.health.sent.store(self.sent, Ordering::Relaxed);
+        if urgent {
+            self.waiting.arrived.notify_one();
+        }
         Some(self.sent)
     }
 }
@@ -165,6 +170,7 @@ impl Writer {
             sender: self.sender.clone(),
             sent: 0,
             health: self.health.clone(),
+            waiting: self.waiting.clone(),
         }
     }
 
@@ -191,7 +197,7 @@ impl Writer {
     /// Stores what was sent before, then ends the task.
     pub async fn close(&self) {
         if self.sender.send(Write::Close).is_ok() {
-            self.stopped().await;
+            self.waiting.while_urgent(self.stopped()).await;
         }
     }
 
@@ -402,6 +408,8 @@ async fn insert_evaluations(
     connection: &mut SqliteConnection,
     rows: &mut Vec<(i64, EvaluationRow)>,
 ) -> Result<(), sqlx::Error> {
+    // By their numbers: pages are filled one after the other.
+    rows.sort_by_key(|(calibration, row)| (*calibration, row.evaluation));
     while !rows.is_empty() {
         let part = rows.drain(..rows.len().min(ROWS));
         let mut query: QueryBuilder<Sqlite> = QueryBuilder::new(
@@ -411,13 +419,14 @@ async fn insert_evaluations(
         query.push_values(part, |mut values, (calibration, row)| {
             let (rejection, fitted, observables) = match row.kept {
                 Kept::Rejected(rejection) => (Some(rejection), None, None),
+                Kept::Scored => (None, Some(Vec::new()), None),
                 Kept::Fitted(values) => (None, Some(blob::encode(&values)), None),
                 Kept::Whole(observables) => (None, None, Some(blob::encode_whole(&observables))),
             };
             values
                 .push_bind(calibration)
                 .push_bind(row.evaluation as i64)
-                .push_bind(json(&row.theta))
+                .push_bind(blob::encode(&row.theta))
                 .push_bind(row.log_likelihood)
                 .push_bind(rejection)
                 .push_bind(fitted)

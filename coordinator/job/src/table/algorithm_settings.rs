@@ -118,6 +118,15 @@ impl AlgorithmSettings {
         }
     }
 
+    /// Whether predicted values are told, not log-likelihoods alone: to a fit, a search, and where a metamodel learns.
+    pub fn is_told_values(&self) -> bool {
+        let told = matches!(
+            self,
+            AlgorithmSettings::Fit(_) | AlgorithmSettings::Discover { .. }
+        );
+        told || self.has_metamodel()
+    }
+
     /// Whether a metamodel takes moves between evaluations.
     pub fn has_metamodel(&self) -> bool {
         self.metamodel_moves() > 0
