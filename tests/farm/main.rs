@@ -20,6 +20,7 @@ mod point_fit;
 mod posterior_prior;
 mod search;
 mod spatial;
+mod stored_results;
 mod study;
 mod summary_contract;
 mod wire;

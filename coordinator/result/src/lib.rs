@@ -4,7 +4,7 @@
 //! states read no holdout row.
 //!
 //! # Layout
-//! - `finished_calibration`, `study`: what the results are made from.
+//! - `finished_calibration`, `study`: what the results are made from. `study_file`: the files that a study ends with.
 //! - `table`: model against measurement, errors, intervals, the posterior's draws.
 //! - [`diagnostics`]: how far the posterior can be trusted. `flag`: warnings in words.
 //!   `diagnosis`: both, computed once.
@@ -23,6 +23,7 @@ mod fixture;
 mod flag;
 pub mod report;
 mod study;
+mod study_file;
 mod summary;
 mod table;
 pub mod terminal;
@@ -35,6 +36,7 @@ pub use finished_calibration::{FinishedCalibration, first_population, likeliest}
 pub use flag::kind::{Flag, FlagKind};
 pub use flag::model_limit::model_limits;
 pub use study::Study;
+pub use study_file::StudyFile;
 pub use summary::calibration::CalibrationSummary;
 pub use summary::parameter::ParameterSummary;
 pub use summary::point_estimate::PointEstimate;

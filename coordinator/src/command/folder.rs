@@ -13,11 +13,11 @@ use super::progress::Display;
 use super::shutdown::{Shutdown, stop_signal};
 use crate::embedded::{LocalWorkers, model_version};
 use crate::farm::Control;
-use crate::service::{LEASE_MS, Service, finished_study, next_step_of};
+use crate::service::{LEASE_MS, Service, next_step_of, search_rounds};
 use record::CalibrationRow;
 use result::discovery::effect_file;
 use result::terminal::discovery;
-use result::{Study, report, terminal};
+use result::{DiscoveryRound, StudyFile};
 
 /// How often the display looks.
 const LOOK: Duration = Duration::from_millis(100);
@@ -104,13 +104,15 @@ impl Folder {
         }
         let rows = reader.study(study).await?;
         if let Some(row) = rows.iter().find(|row| row.state == CalibrationState::Finished) {
-            let study = finished_study(&reader, row).await?;
-            self.write_results(&study)?;
+            let rounds = search_rounds(&reader, &rows).await?;
+            self.write_results(row.id, &rounds).await?;
+            let text = self.service.study_file(row.id, StudyFile::Text).await?;
+            let found = self.found(row.id, &rounds, searched).await?;
             let files = format!(
                 "\nin {}: summary.json, posterior.csv, report.html, grouser.db\n",
                 self.out.display()
             );
-            say(&(terminal::study(&study) + &self.found(&study, searched) + &files))?;
+            say(&(text + &found + &files))?;
         }
         match rows.iter().find(|row| row.state != CalibrationState::Finished) {
             None => Ok(()),
@@ -124,17 +126,20 @@ impl Folder {
     }
 
     /// What a search found, and how it is added.
-    fn found(&self, study: &Study, searched: Option<i64>) -> String {
-        let meant = study.rounds.iter().find(|r| Some(r.calibration) == searched);
-        let Some(round) = meant.or(study.rounds.last()) else {
-            return String::new();
+    async fn found(
+        &self,
+        calibration: i64,
+        rounds: &[DiscoveryRound],
+        searched: Option<i64>,
+    ) -> anyhow::Result<String> {
+        let meant = rounds.iter().find(|r| Some(r.calibration) == searched);
+        let Some(round) = meant.or(rounds.last()) else {
+            return Ok(String::new());
         };
         let place = format!("--out {}", self.out.display());
-        format!(
-            "\n{}\n{}",
-            discovery::text(&round.record, round.calibration, &place, &self.out),
-            discovery::story(study)
-        )
+        let text = discovery::text(&round.record, round.calibration, &place, &self.out);
+        let story = self.service.study_file(calibration, StudyFile::Story).await?;
+        Ok(format!("\n{text}\n{story}"))
     }
 
     /// Simulates until the study is over, or until ^C.
@@ -179,14 +184,12 @@ impl Folder {
     }
 
     /// Writes every result beside its final name first, so that a half-written file never takes that name.
-    fn write_results(&self, study: &Study) -> anyhow::Result<()> {
-        let summary = serde_json::to_string_pretty(&study.summary())?;
-        let mut files: Vec<(String, String)> = vec![
-            ("summary.json".into(), summary + "\n"),
-            ("posterior.csv".into(), study.lead.posterior_table().to_csv()),
-            ("report.html".into(), report::page(study)),
-        ];
-        files.extend(study.rounds.iter().filter_map(|round| effect_file(&round.record)));
+    async fn write_results(&self, calibration: i64, rounds: &[DiscoveryRound]) -> anyhow::Result<()> {
+        let mut files = Vec::new();
+        for file in [StudyFile::Summary, StudyFile::Posterior, StudyFile::Report] {
+            files.push((file.name(), self.service.study_file(calibration, file).await?));
+        }
+        files.extend(rounds.iter().filter_map(|round| effect_file(&round.record)));
         for (name, text) in files {
             let path: PathBuf = self.out.join(&name);
             let partial = self.out.join(format!("{name}.part"));

@@ -5,11 +5,9 @@ use serde::de::DeserializeOwned;
 use shared::api::{CalibrationStatus, ErrorBody};
 
 use crate::config::{SourceArguments, TargetArguments};
-use crate::service::{calibration_row, finished_calibration, finished_study, stored_status};
+use crate::service::{calibration_row, diagnostics, finished_calibration, stored_status, study_file};
 use crate::store::Reader;
-use result::{
-    self, Comparison, Diagnostics, FinishedCalibration, PosteriorTable, Study, StudySummary, report,
-};
+use result::{self, Comparison, Diagnostics, FinishedCalibration, PosteriorTable, StudyFile, StudySummary};
 
 /// A service or a folder.
 pub(super) enum CalibrationSource {
@@ -74,8 +72,7 @@ impl CalibrationSource {
                 client.get(&format!("/v1/calibrations/{id}/diagnostics")).await
             }
             CalibrationSource::Folder(reader) => {
-                let outcome = outcome(reader, id).await?;
-                Ok(outcome.diagnostics(&outcome.comparison()))
+                Ok(diagnostics(reader, None, &calibration_row(reader, id).await?).await?)
             }
         }
     }
@@ -92,14 +89,16 @@ impl CalibrationSource {
     pub(super) async fn summary(&self, id: i64) -> anyhow::Result<StudySummary> {
         match self {
             CalibrationSource::Service(client) => client.get(&format!("/v1/calibrations/{id}/summary")).await,
-            CalibrationSource::Folder(reader) => Ok(study(reader, id).await?.summary()),
+            CalibrationSource::Folder(reader) => Ok(serde_json::from_str(
+                &file(reader, id, StudyFile::Summary).await?,
+            )?),
         }
     }
 
     pub(super) async fn report(&self, id: i64) -> anyhow::Result<String> {
         match self {
             CalibrationSource::Service(client) => client.text(&format!("/v1/calibrations/{id}/report")).await,
-            CalibrationSource::Folder(reader) => Ok(report::page(&study(reader, id).await?)),
+            CalibrationSource::Folder(reader) => file(reader, id, StudyFile::Report).await,
         }
     }
 }
@@ -108,8 +107,8 @@ async fn outcome(reader: &Reader, id: i64) -> anyhow::Result<FinishedCalibration
     Ok(finished_calibration(reader, &calibration_row(reader, id).await?).await?)
 }
 
-async fn study(reader: &Reader, id: i64) -> anyhow::Result<Study> {
-    Ok(finished_study(reader, &calibration_row(reader, id).await?).await?)
+async fn file(reader: &Reader, id: i64, file: StudyFile) -> anyhow::Result<String> {
+    Ok(study_file(reader, None, &calibration_row(reader, id).await?, file).await?)
 }
 
 /// A service over HTTP.

@@ -3,7 +3,7 @@
 use axum::Json;
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
-use axum::response::Html;
+use axum::response::{Html, IntoResponse};
 use serde::Deserialize;
 use shared::api::{CalibrationCreated, CalibrationState, CalibrationStatus, ErrorBody, NewCalibration};
 use utoipa_axum::router::OpenApiRouter;
@@ -14,8 +14,8 @@ use crate::farm::Control;
 use crate::service::{Service, finished_calibration, finished_study};
 use record::{Sample, StageRow};
 use result::{
-    ChannelHistory, Comparison, Diagnostics, FinishedCalibration, Flag, PosteriorTable, Study, StudyFigures,
-    StudySummary, report,
+    ChannelHistory, Comparison, Diagnostics, FinishedCalibration, Flag, PosteriorTable, StudyFigures,
+    StudyFile, StudySummary,
 };
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -149,11 +149,6 @@ async fn outcome(service: &Service, id: i64) -> Result<FinishedCalibration, Http
     Ok(finished_calibration(&service.store().reader(), &row).await?)
 }
 
-async fn study(service: &Service, id: i64) -> Result<Study, HttpError> {
-    let row = service.calibration_row(id).await?;
-    Ok(finished_study(&service.store().reader(), &row).await?)
-}
-
 /// The equally weighted draws of the posterior.
 #[utoipa::path(get, path = "/calibrations/{id}/posterior", params(("id" = i64, Path)), responses(
     (status = 200, body = PosteriorTable), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
@@ -168,16 +163,11 @@ async fn comparison(State(service): State<Service>, Id(id): Id) -> Result<Json<C
     Ok(Json(outcome(&service, id).await?.comparison()))
 }
 
-async fn diagnosed(service: &Service, id: i64) -> Result<Diagnostics, HttpError> {
-    let outcome = outcome(service, id).await?;
-    Ok(outcome.diagnostics(&outcome.comparison()))
-}
-
 /// How far the result can be trusted, and where the model fails.
 #[utoipa::path(get, path = "/calibrations/{id}/diagnostics", params(("id" = i64, Path)), responses(
     (status = 200, body = Diagnostics), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
 async fn diagnostics(State(service): State<Service>, Id(id): Id) -> Result<Json<Diagnostics>, HttpError> {
-    Ok(Json(diagnosed(&service, id).await?))
+    Ok(Json(service.diagnostics(id).await?))
 }
 
 /// Measured and simulated histories of each fitted run, filtered, at the likeliest parameters; null of a model that knows no
@@ -195,26 +185,29 @@ async fn histories(
 #[utoipa::path(get, path = "/calibrations/{id}/flags", params(("id" = i64, Path)), responses(
     (status = 200, body = Vec<Flag>), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
 async fn flags(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<Flag>>, HttpError> {
-    Ok(Json(diagnosed(&service, id).await?.flags))
+    Ok(Json(service.diagnostics(id).await?.flags))
 }
 
 /// The summary of its study, as `summary.json` has it.
 #[utoipa::path(get, path = "/calibrations/{id}/summary", params(("id" = i64, Path)), responses(
     (status = 200, body = StudySummary), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
-async fn summary(State(service): State<Service>, Id(id): Id) -> Result<Json<StudySummary>, HttpError> {
-    Ok(Json(study(&service, id).await?.summary()))
+async fn summary(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
+    let json = service.study_file(id, StudyFile::Summary).await?;
+    Ok(([(header::CONTENT_TYPE, "application/json")], json))
 }
 
 /// What the figures of its study show, as numbers.
 #[utoipa::path(get, path = "/calibrations/{id}/figures", params(("id" = i64, Path)), responses(
     (status = 200, body = StudyFigures), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
 async fn figures(State(service): State<Service>, Id(id): Id) -> Result<Json<StudyFigures>, HttpError> {
-    Ok(Json(study(&service, id).await?.figures()))
+    let row = service.calibration_row(id).await?;
+    let study = finished_study(&service.store().reader(), &row).await?;
+    Ok(Json(study.figures()))
 }
 
 /// The report of its study, as `report.html` has it.
 #[utoipa::path(get, path = "/calibrations/{id}/report", params(("id" = i64, Path)), responses(
     (status = 200, content_type = "text/html", body = String), (status = 404, body = ErrorBody)))]
 async fn report_page(State(service): State<Service>, Id(id): Id) -> Result<Html<String>, HttpError> {
-    Ok(Html(report::page(&study(&service, id).await?)))
+    Ok(Html(service.study_file(id, StudyFile::Report).await?))
 }

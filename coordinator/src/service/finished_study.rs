@@ -82,11 +82,18 @@ pub async fn finished_calibration(
 /// # Errors
 /// As those of [`finished_calibration`].
 pub async fn finished_study(reader: &Reader, row: &CalibrationRow) -> Result<Study, ServiceError> {
-    let rows = reader.study(row.study).await?;
+    finished_study_of(reader, row, &reader.study(row.study).await?).await
+}
+
+/// The same from members that were read: a member that joins meanwhile is no part of it.
+pub(super) async fn finished_study_of(
+    reader: &Reader,
+    row: &CalibrationRow,
+    rows: &[CalibrationRow],
+) -> Result<Study, ServiceError> {
     let unfinished = rows.iter().find(|r| r.state != CalibrationState::Finished);
     let finished = rows.iter().filter(|r| r.state == CalibrationState::Finished);
-    let (searches, calibrations): (Vec<_>, Vec<_>) = finished.partition(|r| is_discovery(&r.job.toml));
-    let mut calibrations = calibrations.into_iter();
+    let mut calibrations = finished.filter(|r| !is_discovery(&r.job.toml));
     // Without any, the calibration that was asked for says why there is nothing to show.
     let lead = finished_calibration(reader, calibrations.next().unwrap_or(row)).await?;
     let (mut point_estimates, mut extensions) = (Vec::new(), Vec::new());
@@ -100,17 +107,10 @@ pub async fn finished_study(reader: &Reader, row: &CalibrationRow) -> Result<Stu
         }
         .push(outcome);
     }
-    let mut rounds = Vec::new();
-    for search in searches {
-        if let Some(record) = reader.discovery(search.id).await? {
-            let calibration = searched_by(search, &rows)?.unwrap_or(lead.row.id);
-            rounds.push(DiscoveryRound { calibration, record });
-        }
-    }
     let state = match unfinished {
         Some(row) => row.state,
         // What is decided but not yet begun is work to come.
-        None if next_step_from(reader, &rows).await?.is_some() => CalibrationState::Running,
+        None if next_step_from(reader, rows).await?.is_some() => CalibrationState::Running,
         None => CalibrationState::Finished,
     };
     Ok(Study {
@@ -118,8 +118,28 @@ pub async fn finished_study(reader: &Reader, row: &CalibrationRow) -> Result<Stu
         lead,
         point_estimates,
         extensions,
-        rounds,
+        rounds: search_rounds(reader, rows).await?,
     })
+}
+
+/// The finished searches of a study.
+///
+/// # Errors
+/// As those of [`finished_calibration`].
+pub async fn search_rounds(
+    reader: &Reader,
+    rows: &[CalibrationRow],
+) -> Result<Vec<DiscoveryRound>, ServiceError> {
+    let finished = rows.iter().filter(|r| r.state == CalibrationState::Finished);
+    let (searches, calibrations): (Vec<_>, Vec<_>) = finished.partition(|r| is_discovery(&r.job.toml));
+    let mut rounds = Vec::new();
+    for search in searches {
+        let searched = searched_by(search, rows)?.or(calibrations.first().map(|lead| lead.id));
+        if let (Some(calibration), Some(record)) = (searched, reader.discovery(search.id).await?) {
+            rounds.push(DiscoveryRound { calibration, record });
+        }
+    }
+    Ok(rounds)
 }
 
 /// The calibration whose model a search is about: the first of those that have the same.

@@ -11,11 +11,13 @@ use super::clock::now_ms;
 use super::error::ServiceError;
 use super::recovery::recover;
 use super::stored_calibration;
+use super::study_results;
 use crate::farm::dispatch::Dispatcher;
 use crate::farm::{Control, ControlError, Farm};
 use crate::store::Store;
 use job::Spec;
 use record::CalibrationRow;
+use result::{Diagnostics, StudyFile};
 
 /// A lease lasts so long without renewal `[ms]`.
 pub const LEASE_MS: u64 = 15_000;
@@ -90,6 +92,24 @@ impl Service {
     /// The files of a stored experiment.
     pub(super) async fn experiment(&self, id: i64) -> Result<FileSet, ServiceError> {
         stored_calibration::experiment_files(&self.store.reader(), id).await
+    }
+
+    /// A file of the study of a calibration; what has to be computed for it is stored.
+    ///
+    /// # Errors
+    /// As those of [`super::study_file`].
+    pub async fn study_file(&self, id: i64, file: StudyFile) -> Result<String, ServiceError> {
+        let row = self.calibration_row(id).await?;
+        study_results::study_file(&self.store.reader(), Some(self.store.writer()), &row, file).await
+    }
+
+    /// The diagnostics of a finished calibration.
+    ///
+    /// # Errors
+    /// As those of [`super::diagnostics`].
+    pub async fn diagnostics(&self, id: i64) -> Result<Diagnostics, ServiceError> {
+        let row = self.calibration_row(id).await?;
+        study_results::diagnostics(&self.store.reader(), Some(self.store.writer()), &row).await
     }
 
     /// The status of a calibration.

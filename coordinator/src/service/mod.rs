@@ -6,6 +6,7 @@
 //! - `submission`: new experiments and calibrations.
 //! - `growth`: what is added to a study that is there.
 //! - `stored_calibration`, `study_step`, `finished_study`: what is read from the store.
+//! - `study_results`: the files of a study, computed once.
 
 mod clock;
 mod error;
@@ -14,11 +15,13 @@ mod growth;
 mod handle;
 mod recovery;
 mod stored_calibration;
+mod study_results;
 mod study_step;
 mod submission;
 
 pub use error::ServiceError;
-pub use finished_study::{finished_calibration, finished_study};
+pub use finished_study::{finished_calibration, finished_study, search_rounds};
 pub use handle::{LEASE_MS, Service};
 pub use stored_calibration::{calibration_row, stored_status};
+pub use study_results::{diagnostics, study_file};
 pub use study_step::{finished_search, next_step_of};

@@ -6,7 +6,7 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 /// Number, name and text of each file of `migrations/`.
 ///
 /// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
-const FILES: [(i64, &str, &str); 9] = [
+const FILES: [(i64, &str, &str); 10] = [
     (
         1,
         "experiments",
@@ -51,6 +51,11 @@ const FILES: [(i64, &str, &str); 9] = [
         9,
         "short evaluations",
         include_str!("../../../migrations/0009_short_evaluations.sql"),
+    ),
+    (
+        10,
+        "results",
+        include_str!("../../../migrations/0010_results.sql"),
     ),
 ];
 

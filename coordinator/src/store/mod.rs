@@ -16,6 +16,7 @@ mod prior;
 mod read;
 mod reader;
 mod recovery;
+mod results;
 mod theta;
 mod writer;
 
@@ -26,6 +27,7 @@ pub use error::StoreError;
 use file::{examine, lock, options, pool, recognise};
 pub use health::StoreHealth;
 pub use reader::Reader;
+pub use results::StudyResults;
 pub use writer::{FactSink, NewCalibrationRow, NewStudy, StudyIds, Writer};
 
 /// The store: a pool of readers and the way to the one writer.

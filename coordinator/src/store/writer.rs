@@ -15,6 +15,7 @@ use super::blob;
 use super::error::StoreError;
 use super::health::StoreHealth;
 use super::json::json;
+use super::results::StudyResults;
 use record::fact::{EvaluationRow, Fact, Kept};
 
 /// Most facts in one commit.
@@ -41,6 +42,10 @@ enum Write {
         row: NewCalibrationRow,
         now_ms: i64,
         reply: oneshot::Sender<i64>,
+    },
+    Results {
+        results: StudyResults,
+        reply: oneshot::Sender<()>,
     },
     Close,
 }
@@ -252,6 +257,14 @@ impl Writer {
         self.committed(write).await
     }
 
+    /// Stores the files of a study in place of those that were there.
+    ///
+    /// # Errors
+    /// [`StoreError::Stopped`].
+    pub async fn keep_results(&self, results: StudyResults) -> Result<(), StoreError> {
+        self.committed(|reply| Write::Results { results, reply }).await
+    }
+
     /// Sends a write and waits for what it replies once it is committed.
     async fn committed<T>(&self, write: impl FnOnce(oneshot::Sender<T>) -> Write) -> Result<T, StoreError> {
         let (reply, answer) = oneshot::channel();
@@ -302,6 +315,7 @@ async fn run(
 struct Replies {
     ids: Vec<(oneshot::Sender<i64>, i64)>,
     studies: Vec<(oneshot::Sender<StudyIds>, StudyIds)>,
+    results: Vec<oneshot::Sender<()>>,
 }
 
 impl Replies {
@@ -312,6 +326,9 @@ impl Replies {
         }
         for (reply, ids) in self.studies {
             let _ = reply.send(ids);
+        }
+        for reply in self.results {
+            let _ = reply.send(());
         }
     }
 }
@@ -337,6 +354,10 @@ async fn write_group(
                 }
             }
             Write::Close => {}
+            Write::Results { results, reply } => {
+                super::results::write(connection, results).await?;
+                replies.results.push(reply);
+            }
             Write::Experiment { files, now_ms, reply } => {
                 let id = sqlx::query_scalar(
                     "INSERT INTO experiments (toml, files, created_at_ms) VALUES (?, ?, ?) RETURNING id",

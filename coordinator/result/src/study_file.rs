@@ -1,0 +1,72 @@
+//! The files that a study ends with: written into its folder, shown by a service, stored.
+
+use crate::report;
+use crate::study::Study;
+use crate::terminal;
+
+/// A file of a study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StudyFile {
+    /// Summary, as JSON.
+    Summary,
+    /// Draws of the posterior.
+    Posterior,
+    /// Report.
+    Report,
+    /// Results as text for a terminal.
+    Text,
+    /// Searches and error ledger as text for a terminal.
+    Story,
+    /// Diagnostics of a finished calibration, as JSON.
+    Diagnostics(i64),
+}
+
+impl StudyFile {
+    /// The files that every study has.
+    const OF_ALL: [StudyFile; 5] = [
+        StudyFile::Summary,
+        StudyFile::Posterior,
+        StudyFile::Report,
+        StudyFile::Text,
+        StudyFile::Story,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> String {
+        match self {
+            StudyFile::Summary => "summary.json".into(),
+            StudyFile::Posterior => "posterior.csv".into(),
+            StudyFile::Report => "report.html".into(),
+            StudyFile::Text => "study.txt".into(),
+            StudyFile::Story => "story.txt".into(),
+            StudyFile::Diagnostics(calibration) => format!("diagnostics-{calibration}.json"),
+        }
+    }
+}
+
+impl Study {
+    /// Every file of the study.
+    pub fn files(&self) -> impl Iterator<Item = StudyFile> {
+        let diagnosed = self.calibrations().map(|c| StudyFile::Diagnostics(c.row.id));
+        StudyFile::OF_ALL.into_iter().chain(diagnosed)
+    }
+
+    /// The text of a file; `None` of diagnostics where the study has no such finished calibration.
+    pub fn file(&self, file: StudyFile) -> Option<String> {
+        Some(match file {
+            StudyFile::Summary => json(&self.summary()) + "\n",
+            StudyFile::Posterior => self.lead.posterior_table().to_csv(),
+            StudyFile::Report => report::page(self),
+            StudyFile::Text => terminal::study(self),
+            StudyFile::Story => terminal::discovery::story(self),
+            StudyFile::Diagnostics(id) => {
+                let calibration = self.calibrations().find(|c| c.row.id == id)?;
+                json(&calibration.diagnostics(&calibration.comparison()))
+            }
+        })
+    }
+}
+
+fn json(value: &impl serde::Serialize) -> String {
+    serde_json::to_string_pretty(value).expect("results have a JSON form")
+}

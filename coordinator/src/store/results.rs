@@ -1,0 +1,100 @@
+//! The files that a finished study ends with.
+
+use std::collections::BTreeMap;
+
+use sqlx::SqliteConnection;
+
+use super::error::StoreError;
+use super::reader::Reader;
+
+/// The files of a study, computed by one build of the program from one state of the study.
+#[derive(Debug, Clone)]
+pub struct StudyResults {
+    /// The study.
+    pub study: i64,
+    /// What they were computed by and from.
+    pub stamp: String,
+    /// Text of each file by its name.
+    pub files: BTreeMap<String, String>,
+}
+
+/// Writes the files of a study in place of all that were there.
+pub(super) async fn write(
+    connection: &mut SqliteConnection,
+    results: StudyResults,
+) -> Result<(), sqlx::Error> {
+    sqlx::query("DELETE FROM results WHERE study = ?")
+        .bind(results.study)
+        .execute(&mut *connection)
+        .await?;
+    for (name, body) in results.files {
+        sqlx::query("INSERT INTO results (study, name, stamp, body) VALUES (?, ?, ?, ?)")
+            .bind(results.study)
+            .bind(name)
+            .bind(&results.stamp)
+            .bind(body)
+            .execute(&mut *connection)
+            .await?;
+    }
+    Ok(())
+}
+
+impl Reader {
+    /// A file of a study, if it was stored under this stamp. Of a store before migration 10, which has none, `None`.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn result(&self, study: i64, name: &str, stamp: &str) -> Result<Option<String>, StoreError> {
+        let there: i64 = sqlx::query_scalar("SELECT count(*) FROM sqlite_schema WHERE name = 'results'")
+            .fetch_one(&self.pool)
+            .await?;
+        if there == 0 {
+            return Ok(None);
+        }
+        let body = sqlx::query_scalar("SELECT body FROM results WHERE study = ? AND name = ? AND stamp = ?")
+            .bind(study)
+            .bind(name)
+            .bind(stamp)
+            .fetch_optional(&self.pool)
+            .await?;
+        Ok(body)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::fixture;
+
+    #[tokio::test]
+    async fn results_are_read_under_their_own_stamp_alone_and_replaced_as_a_whole() {
+        let (_folder, store, calibration) = fixture::store().await;
+        let study = store
+            .reader()
+            .calibration(calibration)
+            .await
+            .unwrap()
+            .unwrap()
+            .study;
+        let keep = async |stamp: &str, names: &[&str]| {
+            let file = |name: &&str| ((*name).to_owned(), format!("{name} by {stamp}"));
+            let files = names.iter().map(file).collect();
+            let stamp = stamp.to_owned();
+            store
+                .writer()
+                .keep_results(StudyResults { study, stamp, files })
+                .await
+                .unwrap();
+        };
+        let read = async |name: &str, stamp: &str| store.reader().result(study, name, stamp).await.unwrap();
+        assert_eq!(read("report.html", "one").await, None);
+        keep("one", &["report.html", "diagnostics-1.json"]).await;
+        assert_eq!(read("report.html", "one").await.unwrap(), "report.html by one");
+        assert_eq!(read("report.html", "two").await, None);
+        keep("two", &["report.html"]).await;
+        assert_eq!(read("report.html", "one").await, None);
+        assert_eq!(read("diagnostics-1.json", "one").await, None);
+        assert_eq!(read("report.html", "two").await.unwrap(), "report.html by two");
+        store.close().await;
+    }
+}

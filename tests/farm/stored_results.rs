@@ -1,0 +1,92 @@
+//! What a finished study shows is computed once, and again when the study has changed.
+
+use farm_tests::job::Job;
+use farm_tests::programs::{coordinator, run};
+use farm_tests::service::Service;
+use farm_tests::text::same;
+use farm_tests::workspace::text;
+use serde_json::Value;
+
+fn ledger(summary: &str) -> usize {
+    let summary: Value = serde_json::from_str(summary).expect("JSON");
+    summary["calibrations"].as_array().expect("a ledger").len()
+}
+
+#[test]
+fn a_rerun_shows_the_same_and_a_study_that_has_grown_shows_what_was_added() {
+    let temporary = tempfile::tempdir().expect("a folder");
+    let job = Job::small()
+        .write(&temporary.path().join("sand"))
+        .display()
+        .to_string();
+    let out = temporary.path().join("out").display().to_string();
+    let command = |words: &[&str]| run(coordinator(words.iter().chain(&["--out", &out]))).success();
+    let file = |name: &str| text(&temporary.path().join("out").join(name));
+    let first = command(&["run", &job]);
+    let (summary, report) = (file("summary.json"), file("report.html"));
+    let diagnosed = command(&["diagnose", "1"]);
+    // Results that a user has lost are written again.
+    std::fs::remove_file(temporary.path().join("out").join("summary.json")).expect("a file");
+    same(&command(&["run", &job]), &first);
+    same(&file("summary.json"), &summary);
+    same(&command(&["report"]), &report);
+    assert_eq!(ledger(&summary), 1);
+
+    command(&["extend", "1", "--effect", "slip_sinkage"]);
+    assert_eq!(ledger(&file("summary.json")), 2);
+    let grown = file("report.html");
+    assert!(grown != report && grown.contains("slip_sinkage"));
+    same(&command(&["report"]), &grown);
+    // The calibration itself has not changed, nor what is said of it alone.
+    same(&command(&["diagnose", "1"]), &diagnosed);
+    assert!(command(&["diagnose", "2"]) != diagnosed);
+}
+
+#[test]
+fn a_service_shows_a_study_while_it_runs_and_what_it_has_become() {
+    let mut service = Service::start(&[]);
+    let id = service.submit(&Job::small());
+    let summary = format!("/v1/calibrations/{id}/summary");
+    assert_eq!(
+        service.client.get(&summary).status,
+        409,
+        "nothing is finished yet"
+    );
+    let _worker = service.worker("worker", 2);
+    service.wait_for(id, "finished");
+    let first = service.client.json(&summary);
+    assert_eq!(first["status"], "finished");
+    assert_eq!(service.client.json(&summary), first);
+    let extension = serde_json::json!({"effect": "slip_sinkage"});
+    let created = service
+        .client
+        .post(&format!("/v1/calibrations/{id}/extend"), &extension)
+        .json();
+    let added = created["id"].as_i64().expect("an id");
+    // While the addition is on its way the study is not over, and nothing stored is shown as its end.
+    let between = service.client.json(&summary);
+    assert!(between["status"] != "finished" || between["calibrations"].as_array().map(Vec::len) == Some(2));
+    service.wait_for(added, "finished");
+    let grown = service.client.json(&summary);
+    assert_eq!(grown["calibrations"].as_array().map(Vec::len), Some(2));
+    service.kill();
+    service.restart();
+    assert_eq!(service.client.json(&summary), grown);
+    let flags = service.client.json(&format!("/v1/calibrations/{id}/flags"));
+    let diagnostics = service.client.json(&format!("/v1/calibrations/{id}/diagnostics"));
+    assert_eq!(diagnostics["flags"], flags);
+}
+
+#[test]
+fn what_was_cancelled_has_no_results_and_says_so() {
+    let service = Service::start(&[]);
+    let id = service.submit(&Job::small());
+    let cancel = service
+        .client
+        .post(&format!("/v1/calibrations/{id}/cancel"), &serde_json::json!({}));
+    assert_eq!(cancel.status, 200);
+    for result in ["summary", "report", "diagnostics", "flags"] {
+        let answer = service.client.get(&format!("/v1/calibrations/{id}/{result}"));
+        assert_eq!(answer.status, 409, "{result}: {}", answer.body);
+    }
+}
