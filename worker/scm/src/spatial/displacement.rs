@@ -116,7 +116,7 @@ impl ShearPath {
             let strip = &contact.strips[row];
             for pack in 0..packs {
                 let place = row * packs + pack;
-                let touching = contact.quads[place].penetration.simd_gt(splat(0.0));
+                let touching = contact.quads[place].touching(contact.hub);
                 let path = touching.select(contact.slip_speed(place, row) * splat(time), splat(0.0));
                 if self.on_rim() {
                     for bin in self.bins_of(row) {

@@ -78,7 +78,7 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 /// # Errors
 /// - [`Rejection::InvalidParameter`]: a field is outside its bounds. Nothing is clamped.
 /// - [`Rejection::NoSupport`]: no balance before the hub reaches the undisturbed surface; also where k* ≤ 0 everywhere.
-/// - [`Rejection::NoConvergence`]: the mean residual of the balance exceeds 2 % of the load, over the averaged steps or the run:
+/// - [`Rejection::NoConvergence`]: the mean residual of the balance exceeds 2.5 % of the load, over the averaged steps or the run:
 ///   the load jumps as patches join.
 /// - [`Rejection::EnergyGained`]: motor and sled gained work from the soil, on average: `T omega − F v < 0`.
 /// - [`Rejection::Formula`]: a formula gives an inadmissible value, at a loaded node or for the run.
@@ -93,8 +93,9 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 ///
 /// # Numerics
 /// dx is refined until eight nodes lie in the contact of a smooth wheel, on soil or on its elastic layer, and the contact ends between nodes, so that
-/// areas and distances do not jump. A grouser bears by the width of it that covers a column. Balance to 2e-3 of the
-/// load, or to 1 µm where patches join. Where left and right are alike, half the wheel is modelled.
+/// areas and distances do not jump. A grouser bears by the width of it that covers a column. Balance to 1.5e-2 of the
+/// load, or to 1 µm where patches join; what a step carries too much, the next carries less, so that averages have the load.
+/// Slopes slide four times while the wheel goes on by a column. Where left and right are alike, half the wheel is modelled.
 ///
 /// # Source
 /// Krenn & Hirzinger's soil contact model (2008, 2009; see [Literature](crate#literature)) as the source paper describes it

@@ -144,7 +144,7 @@ fn formulas_see_the_nodes_they_stand_for() {
         "v_n >= 0 and v_n < 0.02",
         "v_t > 0 and v_t < 0.02",
         "j >= 0 and j < 0.1",
-        "b_eff > 0.00001 and b_eff < 0.06",
+        "b_eff > 0.000001 and b_eff < 0.06",
         "abs(k_star / 1e7 - 1) < 1e-9",
         "contact_length > 0.001 and contact_length < 0.2",
         "p > 0 and abs(tau_max / p / tan(friction_angle_rad) - 1) < 1e-9",
@@ -199,15 +199,13 @@ fn a_load_that_follows_the_pull_is_the_one_that_is_carried() {
     track.enter(catalogue("load_transfer"), &[0.15]);
     let run = track.roll();
     let (loads, pulls) = (&run.history.wheel_load_n, &run.history.drawbar_pull_n);
-    assert!(
-        (loads[0] - 100.0).abs() < 0.3,
-        "the nominal one at first: {}",
-        loads[0]
-    );
+    let mut surplus = loads[0] - 100.0;
+    assert!(surplus.abs() < 1.5, "the nominal one at first: {}", loads[0]);
     for step in 1..loads.len() {
         let expected = 100.0 - 0.15 * pulls[step - 1];
-        // the balance's 2e-3, but where a patch joins
-        assert!((loads[step] - expected).abs() < 1.0, "{step}: {}", loads[step]);
+        // what steps miss, 1.5 % at most, does not add up
+        surplus += loads[step] - expected;
+        assert!(surplus.abs() < 1.5, "{step}: {}, {surplus} so far", loads[step]);
     }
 }
 

@@ -64,7 +64,7 @@ fn random_cases_put_power_into_the_soil_carry_the_load_and_are_finite() {
             "{} W: {track:?}",
             run.dissipated_power_w
         );
-        assert!(got.residual_load_n <= 0.02 * load, "{got:?}: {track:?}");
+        assert!(got.residual_load_n <= 0.025 * load, "{got:?}: {track:?}");
         for history in run.history.channels() {
             assert_eq!(history.len(), run.history.len());
             assert!(history.iter().all(|x| x.is_finite()), "{track:?}");

@@ -138,8 +138,12 @@ fn histories_hold_every_step_and_their_means_are_the_averages() {
         "{mean} {:?}",
         run.averages
     );
-    // every step carries the load: to the search's 0.2 %, or to 1 % where it jumps as nodes join the contact
+    // every step carries the load to the search's 1.5 %, and what it missed is made up for by the next: it never adds up
     let load = &run.history.wheel_load_n;
-    assert!(load.iter().all(|w| (w - 100.0).abs() < 1.0));
-    assert!(load.iter().filter(|w| (*w - 100.0).abs() > 0.2).count() < load.len() / 50);
+    assert!(load.iter().all(|w| (w - 100.0).abs() < 3.0));
+    let mut surplus = 0.0;
+    for w in load {
+        surplus += w - 100.0;
+        assert!(surplus.abs() < 1.5, "{surplus}");
+    }
 }

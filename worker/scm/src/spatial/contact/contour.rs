@@ -67,12 +67,12 @@ impl Contact {
     /// Distance from a strip's middle to the end of a lane's contact towards a neighbouring strip `[m]`.
     fn end_of(&self, row: usize, lane: usize, neighbour: usize) -> f64 {
         let quad = self.quad(row, lane);
-        let ends = if neighbour > row {
-            quad.to_front
+        let end = if neighbour > row {
+            quad.front_end
         } else {
-            quad.to_rear
+            quad.rear_end
         };
-        ends.to_array()[lane % PACK]
+        (end.to_array()[lane % PACK] - self.strips[row].middle).abs()
     }
 
     fn covered_length(&self, row: usize, lane: usize) -> f64 {

@@ -1,6 +1,6 @@
 //! The geometry of a footprint: ends of the contact between nodes, areas, distances from the border.
 
-use super::super::pack::{LANES, PACK, Pack, greater, least_of, lesser, most_of, splat, sum};
+use super::super::pack::{LANES, PACK, Pack, greater, lanes_of, least_of, lesser, most_of, splat, sum};
 use super::super::terrain::Terrain;
 use super::Contact;
 use super::laws::Laws;
@@ -24,81 +24,89 @@ impl Contact {
         }
     }
 
-    /// Touch a strip: which nodes are in contact, and the distance to the rear end of their contact.
+    /// Touch a strip: which nodes are in contact, and where their contact begins.
     pub(crate) fn find_rear_ends(&mut self, row: usize, hub: f64) {
         let packs = self.across.packs();
-        let (zero, hub) = (splat(0.0), splat(hub));
         let (strip, previous) = (&self.strips[row], &self.strips[row - 1]);
-        let half = splat(strip.middle - strip.rear);
-        let gap = splat(strip.middle - previous.middle);
-        let smooth = strip.smooth && previous.smooth;
         let (behind, here) = self.quads[(row - 1) * packs..(row + 1) * packs].split_at_mut(packs);
-        let mut before = self.masks[row - 1];
         let mut mask = 0;
-        for (pack, (quad, behind)) in here.iter_mut().zip(behind).enumerate() {
-            let penetration = quad.surface - hub;
-            let touching = penetration.simd_gt(zero);
-            let lanes = u64::from(touching.to_bitmask());
-            mask |= lanes << (pack * PACK);
-            let carried = behind.to_rear + gap;
-            (quad.penetration, quad.to_rear, quad.left, quad.tilt) = (penetration, carried, half, zero);
-            if lanes & !before != 0 {
-                let their_penetration = behind.surface - hub;
-                let ends = touching & their_penetration.simd_le(zero);
-                if smooth {
-                    let tilt = (penetration - their_penetration) / gap;
-                    quad.left = ends.select(penetration / tilt, half);
-                    quad.tilt = ends.select(tilt, zero);
-                }
-                quad.to_rear = ends.select(quad.left, carried);
-            }
-            before >>= PACK;
+        for (pack, (quad, behind)) in here.iter_mut().zip(&*behind).enumerate() {
+            mask |= u64::from(quad.touching(hub).to_bitmask()) << (pack * PACK);
+            quad.rear_end = behind.rear_end;
         }
         self.masks[row] = mask;
+        let mut begins = mask & !self.masks[row - 1];
+        if begins == 0 {
+            return;
+        }
+        let (middle, gap) = (splat(strip.middle), splat(strip.middle - previous.middle));
+        let half = splat(strip.middle - strip.rear);
+        for (quad, behind) in here.iter_mut().zip(&*behind) {
+            if begins & LANES != 0 {
+                let ends = lanes_of(begins);
+                (quad.left, quad.tilt) = (half, splat(0.0));
+                if strip.smooth && previous.smooth {
+                    let tilt = (quad.surface - behind.surface) / gap;
+                    quad.left = ends.select((quad.surface - splat(hub)) / tilt, half);
+                    quad.tilt = ends.select(tilt, quad.tilt);
+                }
+                quad.rear_end = ends.select(middle - quad.left, quad.rear_end);
+            }
+            begins >>= PACK;
+        }
     }
 
-    /// Distance to the front end of each node's contact, once those of the strip ahead are known, and what follows
-    /// from both ends. Gives the difference of the squares of the strip's greatest and least distance along the travel.
+    /// Where the contact of a strip's nodes ends, once that of the strip ahead is known, and what follows from both ends.
+    /// Gives the difference of the squares of the strip's greatest and least distance along the travel.
     fn find_front_ends(&mut self, row: usize, hub: f64) -> f64 {
         let packs = self.across.packs();
-        let (zero, hub) = (splat(0.0), splat(hub));
-        let mut begins = self.masks[row] & !self.masks[row + 1];
+        let (zero, far) = (splat(0.0), splat(FAR));
         let (strip, next) = (&self.strips[row], &self.strips[row + 1]);
-        let half = splat(strip.front - strip.middle);
-        let gap = splat(next.middle - strip.middle);
-        let smooth = strip.smooth && next.smooth;
-        let (mut nearest, mut farthest) = (splat(FAR), zero);
+        let mask = self.masks[row];
+        let (mut begins, mut ceases) = (mask & !self.masks[row - 1], mask & !self.masks[row + 1]);
+        let (middle, half) = (splat(strip.middle), splat(strip.middle - strip.rear));
+        let (whole, gap) = (half + half, splat(next.middle - strip.middle));
+        let (mut nearest, mut farthest) = (far, zero);
         let (here, ahead) = self.quads[row * packs..(row + 2) * packs].split_at_mut(packs);
         let across = self.across.width.iter().zip(&self.across.from_side);
         let distances = self.along.iter_mut().zip(&mut self.distance);
         for (((quad, ahead), (along, distance)), (&width, &from_side)) in
-            here.iter_mut().zip(ahead).zip(distances).zip(across)
+            here.iter_mut().zip(&*ahead).zip(distances).zip(across)
         {
-            let touching = quad.penetration.simd_gt(zero);
-            let (mut to_front, mut right, mut tilt) = (ahead.to_front + gap, half, -quad.tilt);
-            if begins & LANES != 0 {
-                let their_penetration = ahead.surface - hub;
-                let ends = touching & their_penetration.simd_le(zero);
-                if smooth {
-                    let falls = (quad.penetration - their_penetration) / gap;
-                    right = ends.select(quad.penetration / falls, half);
+            let touching = quad.touching(hub);
+            quad.front_end = ahead.front_end;
+            quad.offset = zero;
+            quad.pressed = quad.surface - splat(hub);
+            quad.depth = quad.reference - splat(hub);
+            let mut covered = whole;
+            if (begins | ceases) & LANES != 0 {
+                let (left, mut right, mut tilt) = if begins & LANES != 0 {
+                    (quad.left, half, -quad.tilt)
+                } else {
+                    (half, half, zero)
+                };
+                let ends = lanes_of(ceases);
+                if strip.smooth && next.smooth {
+                    let falls = (quad.surface - ahead.surface) / gap;
+                    right = ends.select(quad.pressed / falls, half);
                     tilt = ends.select(falls, tilt);
                 }
-                to_front = ends.select(right, to_front);
+                quad.front_end = ends.select(middle + right, quad.front_end);
+                // The pressure is taken in the middle of what the node covers.
+                quad.offset = (right - left) * splat(0.5);
+                quad.pressed -= tilt * quad.offset;
+                quad.depth -= quad.slope * quad.offset;
+                covered = left + right;
             }
-            begins >>= PACK;
-            // The pressure is taken in the middle of what the node covers.
-            let offset = (right - quad.left) * splat(0.5);
-            let nearer = lesser(quad.to_rear + offset, to_front - offset);
-            let near = touching.select(nearer, splat(FAR));
+            (begins, ceases) = (begins >> PACK, ceases >> PACK);
+            quad.area = touching.select(covered * width, zero);
+            let place = middle + quad.offset;
+            let nearer = lesser(place - quad.rear_end, quad.front_end - place);
+            let near = touching.select(nearer, far);
             nearest = lesser(nearest, near);
             farthest = greater(farthest, touching.select(nearer, zero));
             *along = near.to_array();
             *distance = greater(lesser(near, from_side), zero).to_array();
-            quad.to_front = to_front;
-            quad.area = touching.select((quad.left + right) * width, zero);
-            quad.pressed = quad.penetration - tilt * offset;
-            quad.depth = quad.reference - hub - quad.slope * offset;
         }
         let (least, most) = (least_of(nearest), most_of(farthest));
         most * most - least * least
@@ -169,9 +177,8 @@ impl Contact {
         let packs = self.across.packs();
         let (mut areas, mut shapes) = (splat(0.0), splat(0.0));
         let quads = &mut self.quads[row * packs..(row + 1) * packs];
-        laws.shapes(&mut self.distance);
-        for (quad, shape) in quads.iter_mut().zip(&self.distance) {
-            quad.shape = Pack::new(*shape);
+        for (quad, distance) in quads.iter_mut().zip(&self.distance) {
+            quad.shape = laws.shape(Pack::new(*distance));
             areas += quad.area;
             shapes += quad.area * quad.shape;
         }

@@ -1,6 +1,6 @@
 //! The constitutive laws, ready for many nodes.
 
-use super::super::pack::{PACK, Pack, greater, lesser, splat};
+use super::super::pack::{Pack, greater, lesser, splat};
 use super::power::Power;
 use crate::Soil;
 use crate::pressure_distribution::PressureDistribution;
@@ -39,20 +39,15 @@ impl Laws {
         }
     }
 
-    /// Turn distances from the border into shapes g of the pressure distribution, up to a constant factor.
+    /// Shape g of the pressure distribution at a distance from the border, up to a constant factor.
     #[inline]
-    pub(crate) fn shapes(&self, distances: &mut [[f64; PACK]]) {
-        let each = |distances: &mut [[f64; PACK]], of: &dyn Fn(Pack) -> Pack| {
-            for distance in distances {
-                *distance = of(Pack::new(*distance)).to_array();
-            }
-        };
+    pub(crate) fn shape(&self, distance: Pack) -> Pack {
         match (self.distribution, &self.distance_power) {
-            (PressureDistribution::Root, _) => each(distances, &Pack::sqrt),
-            (PressureDistribution::Linear, _) => {}
+            (PressureDistribution::Root, _) => distance.sqrt(),
+            (PressureDistribution::Linear, _) => distance,
             // in millimetres, so that high powers do not vanish
-            (_, Some(power)) => each(distances, &|distance| power.of(distance * splat(1e3))),
-            (_, None) => distances.fill([1.0; PACK]),
+            (_, Some(power)) => power.of(distance * splat(1e3)),
+            (_, None) => splat(1.0),
         }
     }
 

@@ -53,6 +53,8 @@ pub(crate) struct Contact {
     pub(crate) end: usize,
     pub(crate) masks: Vec<u64>,
     pub(crate) patches: Patches,
+    /// The height tried last `[m]`.
+    pub(crate) hub: f64,
     /// Distances of one strip's lanes from the ends along the travel, and from the border `[m]`.
     pub(crate) along: Vec<[f64; PACK]>,
     pub(crate) distance: Vec<[f64; PACK]>,
@@ -171,9 +173,10 @@ impl Contact {
         self.trials += 1;
     }
 
-    /// Which nodes are in contact, in which patches, and how far from the rear end of their contact.
+    /// Which nodes are in contact, in which patches, and where their contact begins.
     fn touch(&mut self, hub: f64) {
         let rows = self.strips.len();
+        self.hub = hub;
         (self.first, self.end) = (rows, 0);
         self.masks.fill(0);
         for row in 1..rows.saturating_sub(1) {

@@ -14,15 +14,16 @@ pub(crate) struct Quad {
     pub(crate) slope: Pack,
     /// Vertical shear force per projected area and unit strength `[–]`.
     pub(crate) shear_z: Pack,
-    /// How far the wheel reaches below the surface at the node `[m]`; > 0: in contact.
-    pub(crate) penetration: Pack,
-    /// From the middle of the strip to the rear and the front end of the contact `[m]`.
-    pub(crate) to_rear: Pack,
-    pub(crate) to_front: Pack,
-    /// What the node covers behind the middle of the strip `[m]`, and how its penetration rises there `[–]`.
+    /// Rear and front end of the contact, ahead of the hub `[m]`.
+    pub(crate) rear_end: Pack,
+    pub(crate) front_end: Pack,
+    /// Where the contact begins in this strip: what the node covers behind the strip's middle `[m]`, and how its penetration
+    /// rises there `[–]`.
     pub(crate) left: Pack,
     pub(crate) tilt: Pack,
-    /// Where the pressure is taken: penetration and depth `[m]`, and the shape g of the distribution.
+    /// Where the pressure is taken, ahead of the strip's middle `[m]`.
+    pub(crate) offset: Pack,
+    /// Penetration and depth there `[m]`, and the shape g of the distribution.
     pub(crate) pressed: Pack,
     pub(crate) depth: Pack,
     pub(crate) shape: Pack,
@@ -39,17 +40,25 @@ impl Quad {
             reference: zero,
             slope: zero,
             shear_z: zero,
-            penetration: zero,
-            to_rear: zero,
-            to_front: zero,
+            rear_end: zero,
+            front_end: zero,
             left: zero,
             tilt: zero,
+            offset: zero,
             pressed: zero,
             depth: zero,
             shape: zero,
             area: zero,
             pressure: zero,
         }
+    }
+}
+
+impl Quad {
+    /// Selects the lanes in contact with the hub at a height.
+    #[inline]
+    pub(crate) fn touching(&self, hub: f64) -> Pack {
+        self.surface.simd_gt(splat(hub))
     }
 }
 

@@ -1,7 +1,7 @@
 //! The height of the hub at which the soil carries the wheel load.
 
 /// Residual load, relative to the wheel load, at which a step is in balance.
-const TOLERANCE: f64 = 2e-3;
+const TOLERANCE: f64 = 1.5e-2;
 /// Width of a bracket at which the search ends: the load may jump as patches join `[m]`.
 const NARROWEST: f64 = 1e-6;
 const MOST_TRIALS: u32 = 60;

@@ -28,6 +28,8 @@ const MARGIN: usize = 3;
 const WIDEST_MARGIN: usize = 48;
 /// Longest grouser period, relative to the travel asked for.
 const SLOWEST_TURN: f64 = 2.0;
+/// Largest surplus that the next step takes back, relative to the load; a jump of the load may leave more.
+const MOST_SURPLUS: f64 = 0.02;
 /// Slopes of the load between which the search for a balance starts, relative to load / radius.
 const SLOPES: [f64; 2] = [-5e3, -2.0];
 
@@ -41,7 +43,7 @@ pub(crate) struct Step {
     pub(crate) rising: f64,
     /// The load that was to be carried `[N]`.
     pub(crate) load: f64,
-    /// Carried load less wheel load, inertia and damping `[N]`.
+    /// Carried load less wheel load, inertia and damping, with what the step took over from those before it `[N]`.
     pub(crate) residual: f64,
 }
 
@@ -71,12 +73,16 @@ pub(crate) struct Rolling<'a> {
     drifted: f64,
     /// The load to be carried now, and the distance of hub and rim's bottom under it.
     load: f64,
+    /// What the steps so far carried more than their loads, which the next carries less: the mean load is exact, so that its
+    /// tolerance is not seen in averages `[N]`.
+    surplus: f64,
     loaded_radius: f64,
     hub: f64,
     rising: f64,
     slope: f64,
     touched: Option<Range>,
-    /// Heights of the hub after each step of this pass `[m]`.
+    /// Heights of the hub at which, by its slope, each step of this pass would meet the load exactly `[m]`. The next step starts
+    /// from there: from the height itself, whose residual is tolerated, every step would be off the load to the same side.
     heights: Vec<f64>,
     repeats_after: usize,
     /// Travel that the terrain has room for `[m]`.
@@ -166,6 +172,7 @@ impl<'a> Rolling<'a> {
             },
             drifted: 0.0,
             load: condition.wheel_load_n,
+            surplus: 0.0,
             loaded_radius: wheel.radius_m - deflection,
             hub: wheel.radius_m,
             rising: 0.0,
@@ -187,7 +194,7 @@ impl<'a> Rolling<'a> {
             path.clear();
         }
         self.pass += 1;
-        self.load = self.condition.wheel_load_n;
+        (self.load, self.surplus) = (self.condition.wheel_load_n, 0.0);
         self.pose = Pose {
             x: self.start,
             y: 0.0,
@@ -242,9 +249,17 @@ impl<'a> Rolling<'a> {
             0.0
         };
         self.hub = found.height;
-        self.heights.push(found.height);
+        let most = MOST_SURPLUS * self.load;
+        let missed = found.residual - self.surplus;
+        self.surplus = found.residual.clamp(-most, most);
         let stiffness = self.condition.wheel_load_n / self.wheel.radius_m;
-        self.slope = found.slope.max(SLOPES[0] * stiffness).min(SLOPES[1] * stiffness);
+        let slope = found.slope.max(SLOPES[0] * stiffness).min(SLOPES[1] * stiffness);
+        self.slope = if time > 0.0 {
+            0.5 * (self.slope + slope)
+        } else {
+            slope
+        };
+        self.heights.push(found.height - missed / self.slope);
         let nodes = self.effects.as_mut().and_then(|effects| effects.nodes.as_mut());
         let strengths = nodes.map(|nodes| nodes.strengths(&self.contact, &self.laws));
         let reaction = self.contact.react(&self.terrain, &self.laws, strengths);
@@ -264,7 +279,9 @@ impl<'a> Rolling<'a> {
                 &self.motion,
                 fraction,
             );
-            self.relaxation.settle(&mut self.terrain, &self.contact, self.hub);
+            if self.heights.len().is_multiple_of(self.steps.to_slide) {
+                self.relaxation.settle(&mut self.terrain, &self.contact, self.hub);
+            }
             let strips = &self.contact.strips;
             self.touched = Some(Range {
                 start: strips[self.contact.first].column,
@@ -328,7 +345,7 @@ impl<'a> Rolling<'a> {
 
     /// The height of the hub in balance with load, inertia and damping.
     fn find_height(&mut self, time: f64) -> Result<super::balance::Balance, Rejection> {
-        let load = self.load;
+        let (load, surplus) = (self.load, self.surplus);
         let (hub, rising) = (self.hub, self.rising);
         let (mass, damping) = match self.settings.vertical {
             Vertical::Dynamic {
@@ -343,7 +360,7 @@ impl<'a> Rolling<'a> {
             .checked_sub(self.repeats_after + 1)
             .map_or(0.0, |i| self.heights[i + 1] - self.heights[i]);
         let search = Search {
-            guess: hub + trend,
+            guess: self.heights.last().copied().unwrap_or(hub) + trend,
             slope: self.slope,
             longest: if time > 0.0 {
                 SINKS_PER_STEP
@@ -362,7 +379,7 @@ impl<'a> Rolling<'a> {
             };
             *most_carried = most_carried.max(carried);
             let velocity = (height - hub) * per_time;
-            carried - load - damping * velocity - mass * (velocity - rising) * per_time
+            carried - load + surplus - damping * velocity - mass * (velocity - rising) * per_time
         });
         if let Some(refused) = nodes.and_then(|nodes| nodes.refused.take()) {
             return Err(refused);

@@ -7,6 +7,8 @@ use super::super::wheel::motion::Motion;
 use crate::rejection::{Rejection, require};
 use crate::{Condition, Soil, Wheel, quasi_static};
 
+/// How often slopes slide while the wheel moves on by a column.
+const SLIDES_TO_COLUMN: f64 = 4.0;
 /// Least number of nodes in a contact along travel.
 const NODES_ALONG: f64 = 8.0;
 /// Columns beyond the wheel's reach, at either end of the track, and length beyond it relative to the reach.
@@ -31,6 +33,8 @@ pub(crate) struct Steps {
     pub(crate) travel: f64,
     /// Steps from column to column; forces repeat with this period where no grouser disturbs it.
     pub(crate) to_column: usize,
+    /// Steps from one sliding of the slopes to the next: soil slides from column to column, not from step to step.
+    pub(crate) to_slide: usize,
 }
 
 /// Spacing along travel: the given one, or an eighth of a smooth wheel's contact where that is finer `[m]`.
@@ -90,6 +94,7 @@ pub(crate) fn steps(
         time: travel / condition.sled_speed_m_s,
         travel,
         to_column: to_column as usize,
+        to_slide: libm::ceil(to_column / SLIDES_TO_COLUMN) as usize,
     }
 }
 

@@ -39,7 +39,7 @@ impl Contact {
             let start = self.strips[row].column * terrain.lanes + self.across.first_lane;
             for pack in 0..packs {
                 let place = row * packs + pack;
-                let touching = self.quads[place].penetration.simd_gt(splat(0.0));
+                let touching = self.quads[place].touching(self.hub);
                 let sunk = self.slip_speed(place, row) * splat(per_way * time);
                 let at = start + pack * PACK;
                 let dug = load(&terrain.dug, at) + touching.select(sunk, splat(0.0));

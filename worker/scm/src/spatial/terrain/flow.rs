@@ -61,14 +61,17 @@ impl Flow {
                 continue;
             }
             let ways = ways(motion, strip.ahead, strip.rise);
+            let (hub, middle) = (splat(contact.hub), splat(strip.middle));
             let (mut leftwards, mut rightwards) = (zero, zero);
             let backwards = &mut self.backwards[row * packs..(row + 1) * packs];
             let quads = &contact.quads[row * packs..(row + 1) * packs];
+            let under = terrain.surface[start..start + packs * PACK].as_chunks_mut().0;
             let passing = self.forwards.iter_mut().zip(backwards);
-            for (pack, ((quad, &width), (forward, backward))) in
-                quads.iter().zip(&across.width).zip(passing).enumerate()
+            let sides = across.per_left.iter().zip(&across.per_right);
+            for ((((quad, surface), &width), (forward, backward)), (&per_left, &per_right)) in
+                quads.iter().zip(under).zip(&across.width).zip(passing).zip(sides)
             {
-                let sunk = greater(quad.penetration - quad.pressure * compliance, zero);
+                let sunk = greater(quad.surface - hub - quad.pressure * compliance, zero);
                 // Soil on its elastic line keeps its height. Without this test a cell that is covered in part, whose
                 // pressure is not taken at its node, would sink at every step, however short.
                 let yields = quad.pressure.simd_lt(stiffness * quad.pressed);
@@ -78,15 +81,12 @@ impl Flow {
                 if moves.none() {
                     continue;
                 }
-                let at = start + pack * PACK;
-                let lowered = load(&terrain.surface, at) - sunk;
-                store(&mut terrain.surface, at, lowered);
+                *surface = (Pack::new(*surface) - sunk).to_array();
                 pressed += sunk;
                 // Every way out takes a share that falls with its length.
-                let to_front = ways.forward / quad.to_front;
-                let to_rear = ways.backward / quad.to_rear;
-                let to_left = ways.left / across.from_left[pack];
-                let to_right = ways.right / across.from_right[pack];
+                let to_front = ways.forward / (quad.front_end - middle);
+                let to_rear = ways.backward / (middle - quad.rear_end);
+                let (to_left, to_right) = (ways.left * per_left, ways.right * per_right);
                 let share = sunk * fraction / (to_front + to_rear + to_left + to_right);
                 *forward += moves.select(share * to_front, zero);
                 *backward = moves.select(share * to_rear, zero);

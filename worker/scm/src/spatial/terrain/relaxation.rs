@@ -5,11 +5,11 @@ use super::super::pack::{PACK, Pack, greater, lesser, splat};
 use super::{BERM_LANES, Terrain};
 
 /// Share of an edge's excess height that moves in one sweep; above 1/4 a checkerboard would grow.
-const RATE: f64 = 0.125;
+const RATE: f64 = 0.25;
 /// Columns behind and ahead of the contact within which soil slides at every step.
-const BEHIND: usize = 3;
-const AHEAD: usize = 7;
-const SWEEPS: usize = 2;
+const BEHIND: usize = 1;
+const AHEAD: usize = 5;
+const SWEEPS: usize = 1;
 /// Sweeps over the whole track before the wheel passes again.
 const SWEEPS_BETWEEN_PASSES: usize = 40;
 

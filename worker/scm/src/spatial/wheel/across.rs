@@ -1,6 +1,6 @@
 //! The lanes of the terrain that the wheel covers.
 
-use super::super::pack::{PACK, Pack};
+use super::super::pack::{PACK, Pack, greater, most_of, splat};
 use super::super::terrain::Terrain;
 use super::envelope::NOWHERE;
 
@@ -19,6 +19,9 @@ pub(crate) struct Across {
     pub(crate) from_right: Vec<Pack>,
     /// The lesser of the two.
     pub(crate) from_side: Vec<Pack>,
+    /// One over the distances from either side `[1/m]`.
+    pub(crate) per_left: Vec<Pack>,
+    pub(crate) per_right: Vec<Pack>,
     /// y at which the wheel was laid `[m]`.
     laid_at: Option<f64>,
 }
@@ -31,10 +34,11 @@ impl Across {
     /// The highest surface of a column of the terrain under the wheel `[m]`.
     pub(crate) fn highest(&self, terrain: &Terrain, column: usize) -> f64 {
         let start = column * terrain.lanes + self.first_lane;
-        let under = &terrain.surface[start..start + self.lanes];
-        under
-            .iter()
-            .fold(f64::MIN, |high, &z| if z > high { z } else { high })
+        let under = terrain.surface[start..start + self.bias.len() * PACK].as_chunks().0;
+        let lanes = under.iter().zip(&self.bias);
+        most_of(lanes.fold(splat(NOWHERE), |high, (z, &bias)| {
+            greater(high, Pack::new(*z) + bias)
+        }))
     }
 
     /// Lay a wheel of a width around y over the lanes, whose borders it meets. In a mirrored terrain the right side is the
@@ -55,6 +59,8 @@ impl Across {
             &mut self.from_left,
             &mut self.from_right,
             &mut self.from_side,
+            &mut self.per_left,
+            &mut self.per_right,
         ] {
             column.clear();
         }
@@ -84,6 +90,8 @@ impl Across {
             self.bias.push(pack(&|i| if covered(i) { 0.0 } else { NOWHERE }));
             self.from_left.push(from_left);
             self.from_right.push(from_right);
+            self.per_left.push(splat(1.0) / from_left);
+            self.per_right.push(splat(1.0) / from_right);
             self.from_side.push(from_left.fast_min(from_right));
         }
     }

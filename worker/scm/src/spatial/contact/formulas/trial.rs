@@ -66,10 +66,9 @@ impl NodeFormulas<'_> {
             store(block.column_mut(Variable::Z), at, depth);
         }
         if uses.contains(Variable::Position) {
-            let width = greater(contact.across.width[pack], splat(f64::MIN_POSITIVE));
-            let middle = splat(contact.strips[row].middle) + splat(0.5) * quad.area / width - quad.left;
+            let place = splat(contact.strips[row].middle) + quad.offset;
             let [rear, length] = self.footprint;
-            let position = (middle - splat(rear)) / splat(length);
+            let position = (place - splat(rear)) / splat(length);
             let position = lesser(greater(position, splat(0.0)), splat(1.0));
             store(block.column_mut(Variable::Position), at, position);
         }
@@ -169,16 +168,14 @@ impl Contact {
             return [0.0, 1.0];
         }
         let packs = self.across.packs();
-        let farthest = |row: usize, of: fn(&Quad) -> Pack| {
+        let farthest = |row: usize, end: fn(&Quad) -> Pack| {
             let quads = &self.quads[row * packs..(row + 1) * packs];
-            let reach = quads.iter().fold(splat(0.0), |most, quad| {
-                let touching = quad.penetration.simd_gt(splat(0.0));
-                greater(most, touching.select(of(quad), splat(0.0)))
-            });
-            most_of(reach)
+            most_of(quads.iter().fold(splat(f64::MIN), |most, quad| {
+                greater(most, quad.touching(self.hub).select(end(quad), most))
+            }))
         };
-        let rear = self.strips[self.first].middle - farthest(self.first, |quad| quad.to_rear);
-        let front = self.strips[self.end - 1].middle + farthest(self.end - 1, |quad| quad.to_front);
+        let rear = -farthest(self.first, |quad| -quad.rear_end);
+        let front = farthest(self.end - 1, |quad| quad.front_end);
         [rear, front - rear]
     }
 }
