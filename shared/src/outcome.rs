@@ -55,7 +55,7 @@ pub struct Observables {
     /// Travel that was simulated `[m]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub simulated_travel_m: Vec<f64>,
-    /// Change of the averages, relative to their scales, at which each run of a `steady` protocol ended; empty for
+    /// What the averages, relative to their scales, still had to go when each run of a `steady` protocol ended; empty for
     /// models and protocols that do not wait for averages to settle.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub settled_to: Vec<f64>,

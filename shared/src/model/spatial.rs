@@ -27,7 +27,7 @@ pub struct SpatialSettings {
     pub vertical: HubMotion,
     /// Damping of the hub where it moves freely \[N s/m\].
     pub damping_n_s_m: f64,
-    /// Change of the averages from one window to the next at which a steady run ends `[–]`.
+    /// What the averages of a steady run may still have to go to their limit when it ends `[–]`.
     pub steady_tolerance: f64,
     /// Travel at which a steady run ends in any case `[m]`.
     pub steady_travel_m: f64,

@@ -11,5 +11,6 @@ mod reference_table;
 mod rejections;
 mod scene;
 mod spatial;
+mod steady_runs;
 mod support;
 mod validation;

@@ -74,6 +74,17 @@ impl Draws {
         self.uniform(low.ln(), high.ln()).exp()
     }
 
+    /// A normal number within bounds: of twelve uniform ones, drawn again where it lies beyond them.
+    pub(crate) fn normal(&mut self, mean: f64, sd: f64, [low, high]: [f64; 2]) -> f64 {
+        loop {
+            let sum: f64 = (0..12).map(|_| self.uniform(-0.5, 0.5)).sum();
+            let value = mean + sd * sum;
+            if (low..=high).contains(&value) {
+                return value;
+            }
+        }
+    }
+
     /// A number from one of the ranges, each as likely; an empty range is a fixed value.
     fn any_of(&mut self, ranges: &[(f64, f64)]) -> f64 {
         let (low, high) = ranges[self.uniform(0.0, ranges.len() as f64) as usize];

@@ -21,7 +21,7 @@ pub(crate) fn unsettled(calibration: &FinishedCalibration) -> Option<String> {
         .copied()
         .reduce(|worst, other| if other.1 > worst.1 { other } else { worst })?;
     Some(format!(
-        "at the most probable parameters {} of {} runs {} averaged before reaching a steady state to within {tolerance}; the worst, {}, still changed by {change:.3} from one window to the next",
+        "at the most probable parameters {} of {} runs {} averaged before reaching a steady state to within {tolerance}; the worst, {}, had {change:.3} still to go",
         late.len(),
         spec.fit_runs.len() + spec.holdout_runs.len(),
         if late.len() == 1 { "was" } else { "were" },
@@ -54,7 +54,7 @@ mod tests {
         assert_eq!(
             unsettled(&calibration).expect("a note"),
             "at the most probable parameters 1 of 4 runs was averaged before reaching a steady state to within 0.005; the worst, \
-             b&c, still changed by 0.020 from one window to the next"
+             b&c, had 0.020 still to go"
         );
     }
 }

@@ -193,8 +193,8 @@ pub enum Vertical {
 pub enum Protocol {
     /// Until averages over whole grouser periods have settled.
     Steady {
-        /// Change from one window to the next, relative to the wheel load, to load times radius and to the sinkage,
-        /// at which averages have settled.
+        /// What averages may still have to go to their limit, relative to the wheel load, to load times radius and to the
+        /// sinkage, when they have settled.
         tolerance: f64,
         /// Travel at which the run ends in any case `[m]`.
         most_travel_m: f64,

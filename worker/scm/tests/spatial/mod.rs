@@ -5,7 +5,7 @@
 //! - `invariants`: what must hold whatever the parameters.
 //! - `symmetry`: left and right, the mirrored half, the start on the grid.
 //! - `grousers`, `passes`, `extremes`: what memory and shape of the soil do.
-//! - `protocol`, `vertical`: ways to run and average.
+//! - `protocol`, `vertical`: ways to run and average; `steady`: when a run has settled.
 //! - `mesh`: triangles against the analytic wheel; `surfaces`: the triangles.
 //! - `comparison`: the choices behind the figures of another implementation.
 //! - `rejections`: parameters without an answer.
@@ -22,6 +22,7 @@ mod passes;
 mod protocol;
 mod rejections;
 mod signatures;
+mod steady;
 mod surfaces;
 mod symmetry;
 mod vertical;

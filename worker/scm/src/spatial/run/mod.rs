@@ -9,6 +9,7 @@
 //! - `result`: the result of a run.
 //! - `record`: the results of the steps, their averages and their checks.
 //! - `protocol`: when a run ends, and which steps are averaged.
+//! - `series`: the limit that averages approach.
 
 mod balance;
 mod effects;
@@ -17,6 +18,7 @@ mod protocol;
 mod record;
 mod result;
 mod rolling;
+mod series;
 mod track;
 
 pub use history::History;

@@ -3,6 +3,7 @@
 use super::record::{Record, Windows};
 use super::result::SpatialRun;
 use super::rolling::Rolling;
+use super::series::Series;
 use super::track::count;
 use crate::Condition;
 use crate::effects::case::Case;
@@ -55,8 +56,13 @@ pub(crate) fn roll(
     record.finish(&rolling, condition, windows, settled_to)
 }
 
-/// Roll until the means of two windows in a row agree. A window is a whole number of grouser periods no shorter than
-/// the contact, or a whole number of columns where there are none.
+/// Roll until the means of a window hardly depend any more on where it begins.
+///
+/// A window holds an even number of grouser periods, or whole columns where there are none, no shorter than the contact. What
+/// lowering the wheel has left decays to about e^−2 within a contact length: the means of windows that begin one, two, three …
+/// contact lengths after the start form a geometric series. Three of them give its limit, which is what is averaged, and what the
+/// last is short of it, which has to be within the tolerance. Windows begin closer together where the travel does not hold two
+/// contact lengths and a window. Checked by `spatial::steady`.
 fn steady(
     rolling: &mut Rolling,
     record: &mut Record,
@@ -66,54 +72,70 @@ fn steady(
 ) -> Result<(Windows, Option<f64>), Rejection> {
     let (load, radius) = (condition.wheel_load_n, rolling.radius());
     let period = rolling.grouser_period_s().map(|p| p / rolling.steps.time); // in steps
-    let mut last: Option<([f64; 4], f64)> = None;
-    let mut window = 0.0; // in steps
-    let mut end = 0.0;
+    let mut settled = None;
+    let mut contacts = 2.0;
     for taken in 0..=most_steps {
         if taken > 0 {
             let step = rolling.step()?;
             record.push(rolling, &step)?;
         }
-        if (taken as f64) < end {
-            continue;
-        }
-        let means = (taken > 0)
-            .then(|| record.own_means(end - window, end))
-            .transpose()?;
-        if let (Some(means), Some((before, _))) = (means, last) {
-            let scales = [load, load * radius, means[2].abs().max(1e-3 * radius), load];
-            let change = (0..4).fold(0.0_f64, |most, i| {
-                most.max((means[i] - before[i]).abs() / scales[i])
-            });
-            last = Some((means, change));
-            if change <= tolerance {
-                break;
-            }
-        } else if let Some(means) = means {
-            last = Some((means, f64::INFINITY));
-        }
-        // the next window: as long as the contact has become
-        let contact = record.contact_length_m.last().copied().unwrap_or(0.0) / rolling.steps.travel;
-        // in whole periods, or whole columns, over which the grid's own ripple drops out; so many that two windows fit
-        let whole = period.unwrap_or(rolling.steps.to_column as f64);
-        let most = libm::floor(0.5 * most_steps as f64 / whole).max(1.0);
-        let wanted = whole * libm::ceil(contact / whole).max(1.0).min(most);
-        // no window is cut: part of a period does not represent the whole
-        if end + wanted > most_steps as f64 {
+        let contact = record.contact_length() / rolling.steps.travel;
+        let window = window(contact, period, rolling.steps.to_column, most_steps);
+        let shift = contact.min(0.5 * (most_steps as f64 - window));
+        let first = contacts * shift;
+        if settled.is_some() && first + window > most_steps as f64 {
             break;
         }
-        (window, end) = (wanted, end + wanted);
+        if shift < 1.0 || first + window > taken as f64 {
+            continue;
+        }
+        let three = [2.0, 1.0, 0.0].map(|before| first - before * shift);
+        let own = three.map(|from| record.own_means(from, from + window));
+        let measured = three.map(|from| record.means(from, from + window));
+        let [own, measured] = [series(own)?, series(measured)?];
+        let sinkage = own[2].last.abs().max(1e-3 * radius);
+        let scales = [load, load * radius, sinkage, load];
+        let left = own
+            .iter()
+            .zip(scales)
+            .map(|(series, scale)| series.left() / scale);
+        // by contact length, where the windows begin closer together
+        let left = left.fold(0.0, f64::max) * (contact / shift);
+        let means = measured.map(|series| series.limit());
+        let first_step = first as usize;
+        settled = Some((Windows { means, first_step }, Some(left)));
+        if left <= tolerance {
+            break;
+        }
+        contacts += 1.0;
     }
-    let settled = last.filter(|(_, change)| change.is_finite());
-    let (_, change) = settled.ok_or(Rejection::InvalidParameter {
+    settled.ok_or(Rejection::InvalidParameter {
         name: "most_travel_m",
         value: most_steps as f64 * rolling.steps.travel,
         unit: "m",
-        bound: "long enough for two windows of averages",
-    })?;
-    let means = record.means(end - window, end)?;
-    let first_step = (end - window).max(0.0) as usize;
-    Ok((Windows { means, first_step }, Some(change)))
+        bound: "long enough for a window of averages",
+    })
+}
+
+/// Length of a window in steps, of a contact and a grouser period in steps: so long that the grid's own ripple drops out.
+fn window(contact: f64, period: Option<f64>, to_column: usize, most_steps: usize) -> f64 {
+    let whole = match period {
+        Some(period) if 4.0 * period <= most_steps as f64 => 2.0 * period,
+        Some(period) => period,
+        None => to_column as f64,
+    };
+    let most = libm::floor(0.5 * most_steps as f64 / whole).max(1.0);
+    whole * libm::ceil(contact / whole).max(1.0).min(most)
+}
+
+/// The means of the four channels over three windows, channel by channel.
+fn series(means: [Result<[f64; 4], Rejection>; 3]) -> Result<[Series; 4], Rejection> {
+    let [first, second, last] = means;
+    let (first, second, last) = (first?, second?, last?);
+    Ok(core::array::from_fn(|channel| Series {
+        changes: [second[channel] - first[channel], last[channel] - second[channel]],
+        last: last[channel],
+    }))
 }
 
 /// Averages of histories at 10 Hz, filtered, with their transients cut.

@@ -29,7 +29,9 @@ pub(super) struct Record {
     pub(super) history: History,
     /// Drawbar pull, torque, sinkage and lateral force of the soil, where the measured ones differ.
     soils_own: [Vec<f64>; 4],
-    pub(super) contact_length_m: Vec<f64>,
+    contact_length_m: Vec<f64>,
+    /// Sum of the contact lengths `[m]`.
+    contact_lengths: f64,
     b_eff_m: Vec<f64>,
     nodes: Vec<f64>,
     residual_n: Vec<f64>,
@@ -52,6 +54,7 @@ impl Record {
             },
             soils_own: Default::default(),
             contact_length_m: Vec::new(),
+            contact_lengths: 0.0,
             b_eff_m: Vec::new(),
             nodes: Vec::new(),
             residual_n: Vec::new(),
@@ -89,6 +92,7 @@ impl Record {
         self.history.lateral_force_n.push(channels[3]);
         self.history.wheel_load_n.push(reaction.force_z);
         self.contact_length_m.push(contact_length);
+        self.contact_lengths += contact_length;
         self.load_change_n.push(step.load - rolling.nominal_load());
         self.nodes.push(f64::from(reaction.nodes));
         self.residual_n.push(step.residual);
@@ -112,6 +116,11 @@ impl Record {
             });
         }
         Ok(())
+    }
+
+    /// Mean length of the contact so far `[m]`.
+    pub(super) fn contact_length(&self) -> f64 {
+        self.contact_lengths / self.contact_length_m.len() as f64
     }
 
     /// Whether the measured channels differ from the soil's own.

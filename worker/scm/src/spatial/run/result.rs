@@ -8,8 +8,8 @@ use crate::Averages;
 pub struct SpatialRun {
     /// Averages by the protocol, with the diagnostics of the contact.
     pub averages: Averages,
-    /// Change from the last window but one to the last, by the measure of [`Protocol::Steady`](crate::spatial::Protocol::Steady); above its tolerance
-    /// where the travel did not suffice, infinite where there was one window only. `None` for a fixed duration.
+    /// What the averages of the last window still had to go, by the measure of [`Protocol::Steady`](crate::spatial::Protocol::Steady); above its
+    /// tolerance where the travel did not suffice. `None` for a fixed duration.
     pub settled_to: Option<f64>,
     /// Mean power that motor and rig put into the soil while averaging `[W]`, ≥ 0 but for rounding.
     pub dissipated_power_w: f64,

@@ -2,7 +2,7 @@
 
 use super::balance::{Search, balance};
 use super::effects::{RunEffects, deflection, elastic_stiffness};
-use super::track::{Steps, spacing_along, steps, terrain};
+use super::track::{Steps, fit_to_pitch, spacing_along, steps, terrain};
 use crate::effects::case::Case;
 use crate::rejection::Rejection;
 use crate::spatial::contact::Contact;
@@ -115,14 +115,18 @@ impl<'a> Rolling<'a> {
         let mirrored = !settings.both_halves && motion.lateral.abs() == 0.0 && underside.is_symmetric();
         let elastic_stiffness = elastic_stiffness(scene.effects, ground)?;
         let dx = spacing_along(soil, elastic_stiffness, wheel, condition, &settings);
-        let steps = steps(wheel, condition, &motion, &settings, dx);
-        let width = underside.width(wheel);
         let rotation = motion.rotation.abs();
         let period = underside
             .repeats_per_turn()
             .filter(|_| rotation > 0.0)
             .map(|count| core::f64::consts::TAU / (f64::from(count) * rotation))
             .filter(|period| period * condition.sled_speed_m_s <= SLOWEST_TURN * travel);
+        let dx = match (settings.protocol, period) {
+            (Protocol::Steady { .. }, Some(period)) => fit_to_pitch(dx, period * motion.forward.abs()),
+            _ => dx,
+        };
+        let steps = steps(wheel, condition, &motion, &settings, dx);
+        let width = underside.width(wheel);
         let travel = match settings.protocol {
             Protocol::Steady { .. } => {
                 let room = period.map_or(0.0, |period| {

@@ -11,6 +11,8 @@ use crate::{Condition, Soil, Wheel, quasi_static};
 const SLIDES_TO_COLUMN: f64 = 4.0;
 /// Least number of nodes in a contact along travel.
 const NODES_ALONG: f64 = 8.0;
+/// Least number of columns in a grouser's pitch to which their spacing is fitted.
+const COLUMNS_TO_PITCH: f64 = 4.0;
 /// Columns beyond the wheel's reach, at either end of the track, and length beyond it relative to the reach.
 const SPARE_COLUMNS: f64 = 12.0;
 const SPARE_REACH: f64 = 0.1;
@@ -56,6 +58,18 @@ pub(crate) fn spacing_along(
             .max(elastic_contact(elastic_stiffness, wheel, condition));
         settings.dem_spacing_m.min(contact / NODES_ALONG)
     })
+}
+
+/// The widest spacing up to a given one of which a grouser's pitch is a whole number and a half `[m]`.
+///
+/// Then two grousers in a row meet the columns half a column apart, the third as the first: the grid's ripple repeats in two
+/// periods and nearly drops out of their mean. Of any other spacing it repeats in many periods, and no mean over few of them
+/// settles. A pitch of few columns is left as it is.
+pub(crate) fn fit_to_pitch(dx: f64, pitch: f64) -> f64 {
+    if pitch < COLUMNS_TO_PITCH * dx {
+        return dx;
+    }
+    pitch / (libm::ceil(pitch / dx - 0.5) + 0.5)
 }
 
 /// Length of a smooth wheel's contact on springs of a stiffness `[Pa/m]`, side by side, on rigid ground `[m]`.

@@ -34,7 +34,9 @@ impl Across {
     /// The highest surface of a column of the terrain under the wheel `[m]`.
     pub(crate) fn highest(&self, terrain: &Terrain, column: usize) -> f64 {
         let start = column * terrain.lanes + self.first_lane;
-        let under = terrain.surface[start..start + self.bias.len() * PACK].as_chunks().0;
+        let under = terrain.surface[start..start + self.bias.len() * PACK]
+            .as_chunks()
+            .0;
         let lanes = under.iter().zip(&self.bias);
         most_of(lanes.fold(splat(NOWHERE), |high, (z, &bias)| {
             greater(high, Pack::new(*z) + bias)
