@@ -6,7 +6,7 @@
 //!
 //! Below it, unless one problem was asked for: what it costs to find the most probable parameters (`fits`).
 //!
-//! `cargo bench -p inference --bench sampler_table [-- SEEDS [PARTICLES LEAST MOST [PROBLEM]]]`, or `-- fits [SEEDS]`
+//! `cargo bench -p inference --bench sampler_table [-- SEEDS [LABEL [PROBLEM]]]` with the start of a row's label, or `-- fits [SEEDS]`
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic as tests do")]
 
@@ -15,7 +15,7 @@ mod problems;
 
 mod fits;
 
-use inference::{Algorithm, TmcmcSettings};
+use inference::{Algorithm, StageMethod, TmcmcSettings};
 use problems::Problem;
 
 /// Errors of one problem over seeds.
@@ -151,36 +151,30 @@ fn main() {
         ),
     ];
     for (problem, particles, least, reference) in &problems {
-        if arguments.get(4).is_some_and(|name| name != problem.name) {
-            continue;
-        }
-        if let (Some(particles), Some(least), Some(most)) = (number(1), number(2), number(3)) {
-            let settings = TmcmcSettings {
-                particles,
-                moves: [least, most],
-                ..base
-            };
-            row(
-                problem,
-                &format!("{particles} [{least}, {most}]"),
-                settings,
-                seeds,
-            );
+        if arguments.get(2).is_some_and(|name| name != problem.name) {
             continue;
         }
         println!("{:4} reference rmse at 20 000: {reference}", problem.name);
+        let moves = TmcmcSettings {
+            stages: StageMethod::Moves,
+            ..base
+        };
         let lean = TmcmcSettings {
             particles: *particles,
             moves: [*least, 60],
-            ..base
+            ..moves
         };
-        row(problem, &format!("{particles} [{least}, 60]"), lean, seeds);
-        row(problem, "1000 [10, 60]", base, seeds);
-        for (label, algorithm) in [
-            ("ching-chen-2007", Algorithm::ChingChen2007),
-            ("basis", Algorithm::Basis),
+        let original = |algorithm| TmcmcSettings { algorithm, ..moves };
+        for (label, settings) in [
+            ("draws, 1000".to_owned(), base),
+            (format!("moves, {particles} [{least}, 60]"), lean),
+            ("moves, 1000 [10, 60]".to_owned(), moves),
+            ("ching-chen-2007".to_owned(), original(Algorithm::ChingChen2007)),
+            ("basis".to_owned(), original(Algorithm::Basis)),
         ] {
-            row(problem, label, TmcmcSettings { algorithm, ..base }, seeds);
+            if arguments.get(1).is_none_or(|start| label.starts_with(start)) {
+                row(problem, &label, settings, seeds);
+            }
         }
     }
     if arguments.len() < 2 {

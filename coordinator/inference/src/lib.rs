@@ -40,7 +40,7 @@
 //!
 //! # Layout
 //! - `round`: a round of proposals and its results. `tell`: what telling leads to. `phase`: how far an algorithm is.
-//! - [`tmcmc`]: the sampler, its stages and its evidence.
+//! - [`tmcmc`]: the sampler, its stages and its evidence. `mixture`: what its independent draws come from.
 //! - [`point_estimate`]: what every point estimate shares: axes, the result.
 //! - [`lm`]: the Levenberg-Marquardt fit. [`evolution`]: the genetic algorithm and CMA-ES.
 //! - [`diagnostics`]: summaries and tests of draws and residuals.
@@ -48,6 +48,7 @@
 pub mod diagnostics;
 pub mod evolution;
 pub mod lm;
+mod mixture;
 mod phase;
 pub mod point_estimate;
 mod round;
@@ -58,6 +59,6 @@ pub use phase::EvaluationCount;
 pub use round::{Proposal, ProposalRound};
 pub use tell::{InferenceFailure, TellError, TellProgress};
 pub use tmcmc::{
-    Algorithm, EvaluationResult, Particle, PosteriorSample, Sampler, StageProgress, StageRecord,
+    Algorithm, EvaluationResult, Particle, PosteriorSample, Sampler, StageMethod, StageProgress, StageRecord,
     TmcmcSettings, TmcmcSettingsError,
 };

@@ -9,25 +9,25 @@ pub struct StageRow {
     pub stage: u32,
     /// Tempering exponent.
     pub tempering_exponent: f64,
-    /// Acceptance rate of the moves.
+    /// Acceptance rate of the moves; of independent draws, their effective share.
     pub acceptance: f64,
-    /// Drift of the mean log-likelihood during the moves, as a z-score.
+    /// Drift of the mean log-likelihood during the moves, or from the last stage's draws to this one's, as a z-score.
     pub drift_z: f64,
-    /// Rank correlation of the log-likelihood between start and end of the moves.
+    /// Rank correlation of the log-likelihood between start and end of the moves; 0 of draws.
     pub correlation: f64,
-    /// Moves per particle.
+    /// Moves per particle; rounds of draws.
     pub steps: u32,
     /// Share of the log-evidence.
     pub log_evidence_increment: f64,
-    /// Coefficient of variation of the incremental weights.
+    /// Coefficient of variation of the weights.
     pub weight_cov: f64,
     /// Effective sample size of the weights.
     pub ess: f64,
-    /// Scale of the proposals at the end.
+    /// Scale of the proposals at the end; 0: the stage was drawn.
     pub scale: f64,
     /// Evaluations spent.
     pub evaluations: u64,
-    /// Whether the moves reached equilibrium.
+    /// Whether the moves reached equilibrium, or the last draws agree with those before.
     pub equilibrated: bool,
 }
 

@@ -1,10 +1,13 @@
 //! Transitional Markov chain Monte Carlo (TMCMC) by ask and tell.
 //!
-//! Prior draws are weighted by a growing power of the likelihood, resampled, and moved by Metropolis-Hastings
-//! steps at each power. [`Sampler`] never calls the likelihood: it lists [`Proposal`](crate::Proposal)s and waits until
+//! Prior draws are weighted by a growing power of the likelihood. At each power the particles of a stage are drawn
+//! independently from a mixture fitted to the weighted draws of the last ([`StageMethod::Draws`]), or resampled and moved by
+//! Metropolis-Hastings steps ([`StageMethod::Moves`]). A stage whose draws miss their target falls back to moves, and the
+//! stages after it keep to them. [`Sampler`] never calls the likelihood: it lists [`Proposal`](crate::Proposal)s and waits until
 //! each has been told, in any order.
 //!
 //! # Departures from the paper
+//! - Draws instead of moves, see `draws`; what follows is about moves.
 //! - Every particle moves, by several steps; [`Algorithm::ChingChen2007`] keeps the paper's moves, and
 //!   [`Algorithm::Basis`] those of its unbiased version.
 //! - Every state that a chain visits is weighted for the next stage, not its last one alone (Dau & Chopin 2022).
@@ -18,13 +21,15 @@
 //! - `sampler`: the rounds. `stage_sequence`: from the prior draws through the stages to the posterior sample.
 //! - `settings`, `evaluation`, `record`, `particle`: what goes in and comes out.
 //! - `transition`: from the pool of a stage to the chains of the next.
-//! - `stage`, `scale`: the moves of the chains. `equilibrium`: when they end.
+//! - `draws`, `draw_sequence`: stages of independent draws. `stage`, `scale`: the moves of the chains. `equilibrium`: when they end.
 //! - `evidence`: the log-evidence and its standard error.
 //!
 //! # Source
 //! Ching & Chen 2007, J. Eng. Mech. 133:816, doi:10.1061/(ASCE)0733-9399(2007)133:7(816); Dau & Chopin 2022, J. R. Stat.
 //! Soc. B 84:114, doi:10.1111/rssb.12475.
 
+mod draw_sequence;
+mod draws;
 mod equilibrium;
 mod evaluation;
 mod evidence;
@@ -41,4 +46,4 @@ pub use evaluation::EvaluationResult;
 pub use particle::Particle;
 pub use record::{PosteriorSample, StageProgress, StageRecord};
 pub use sampler::Sampler;
-pub use settings::{Algorithm, TmcmcSettings, TmcmcSettingsError};
+pub use settings::{Algorithm, StageMethod, TmcmcSettings, TmcmcSettingsError};

@@ -9,24 +9,25 @@ pub struct StageRecord {
     pub stage: usize,
     /// The likelihood's power in this stage's target.
     pub tempering_exponent: f64,
-    /// Share of the proposals accepted, those outside the prior counted as rejected.
+    /// Share of the proposals accepted, those outside the prior counted as rejected; of draws, their effective share.
     pub acceptance: f64,
-    /// z-score of the mean change of the log-likelihood over the moves; large in size: not in equilibrium.
+    /// z-score of the mean change of the log-likelihood over the moves; large in size: not in equilibrium. Of draws, of the
+    /// difference between its means at this exponent over these draws and over those of the stage before.
     pub drift_z: f64,
     /// The same of exp(step l), step being the growth of the exponent that led here: sensitive to the best particles,
-    /// where `drift_z` is dominated by the worst.
+    /// where `drift_z` is dominated by the worst. Of draws, the same of the log-evidence.
     pub weight_drift_z: f64,
-    /// Rank correlation of the log-likelihoods before and after the moves.
+    /// Rank correlation of the log-likelihoods before and after the moves; 0 of draws.
     pub correlation: f64,
-    /// Steps per particle (Ching and Chen: of the longest chain).
+    /// Steps per particle (Ching and Chen: of the longest chain); rounds of draws.
     pub steps: usize,
     /// ln Z(this exponent) - ln Z(the last); the first also holds the surviving fraction of the prior draws.
     pub log_evidence_increment: f64,
-    /// Coefficient of variation of the incremental weights that led to this stage.
+    /// Coefficient of variation of the incremental weights that led to this stage; of draws, of their own weights.
     pub weight_cov: f64,
-    /// Particles / (1 + `weight_cov`^2).
+    /// Particles / (1 + `weight_cov`^2); effective size of the draws.
     pub ess: f64,
-    /// Scale of the proposals at the end.
+    /// Scale of the proposals at the end; 0: the stage was drawn.
     pub scale: f64,
     /// Evaluations in this stage.
     pub evaluations: u64,

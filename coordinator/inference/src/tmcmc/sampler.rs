@@ -1,5 +1,6 @@
 //! The rounds of the sampler: list proposals, take their results, advance.
 
+use super::draws::DrawStage;
 use super::evaluation::EvaluationResult;
 use super::evidence::Evidence;
 use super::record::{PosteriorSample, StageProgress, StageRecord};
@@ -37,6 +38,8 @@ pub struct Sampler {
 pub(super) enum SamplerRound {
     /// The prior draws.
     Prior,
+    /// Independent draws of a stage.
+    Draws(Box<DrawStage>),
     /// Moves of the chains of a stage.
     Moves(Box<Stage>),
 }
@@ -136,6 +139,12 @@ impl Sampler {
                 step: stage.step,
                 acceptance: stage.acceptance(),
             },
+            (RunPhase::Waiting(SamplerRound::Draws(stage)), _) => StageProgress {
+                stage: stage.index,
+                tempering_exponent: stage.exponent,
+                step: stage.rounds,
+                acceptance: None,
+            },
             (_, Some(last)) => StageProgress {
                 stage: last.stage,
                 tempering_exponent: last.tempering_exponent,
@@ -187,12 +196,20 @@ impl Sampler {
                     stage.accept(&self.prior, results);
                     self.after_step(stage)
                 }
+                RunPhase::Waiting(SamplerRound::Draws(mut stage)) => {
+                    stage.accept(results);
+                    self.after_draws(stage)
+                }
                 ended @ (RunPhase::Done(_) | RunPhase::Failed(_)) => Ok(ended),
             };
             self.phase = next.unwrap_or_else(RunPhase::Failed);
             match &mut self.phase {
                 RunPhase::Waiting(SamplerRound::Moves(stage)) => {
                     let proposals = stage.propose(&self.prior, self.settings.seed);
+                    self.round.ask(proposals);
+                }
+                RunPhase::Waiting(SamplerRound::Draws(stage)) => {
+                    let proposals = stage.propose(&self.prior);
                     self.round.ask(proposals);
                 }
                 ended => return ended.progress(true),

@@ -27,29 +27,44 @@ impl Algorithm {
     }
 }
 
+/// How a stage of [`Algorithm::Tmcmc`] gets its particles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StageMethod {
+    /// Independent draws from a mixture fitted to the weighted draws of the last stage; the default.
+    Draws,
+    /// Metropolis-Hastings moves of the resampled particles.
+    Moves,
+}
+
 /// Settings of a sampler.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TmcmcSettings {
     /// The algorithm.
     pub algorithm: Algorithm,
-    /// Size of the population.
+    /// How a stage gets its particles ([`Algorithm::Tmcmc`] only).
+    pub stages: StageMethod,
+    /// Size of the population, and the number of draws in a stage.
     pub particles: usize,
-    /// Least and most steps per particle and stage ([`Algorithm::Tmcmc`] only).
+    /// Most components of the mixture that draws come from.
+    pub components: usize,
+    /// Least and most steps per particle and stage of moves ([`Algorithm::Tmcmc`] only).
     pub moves: [usize; 2],
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Coefficient of variation of the incremental weights by which the next exponent is chosen.
+    /// Coefficient of variation of the incremental weights by which moves choose the next exponent.
     pub target_cov: f64,
     /// Moves by the metamodel between two evaluations; 0: no metamodel ([`Algorithm::Tmcmc`] only).
     pub metamodel_moves: usize,
 }
 
 impl Default for TmcmcSettings {
-    /// TMCMC, 1000 particles, 10 to 60 moves, seed 1, coefficient of variation 1.
+    /// TMCMC by draws, 1000 particles, at most 32 components, 10 to 60 moves, seed 1, coefficient of variation 1.
     fn default() -> Self {
         Self {
             algorithm: Algorithm::Tmcmc,
+            stages: StageMethod::Draws,
             particles: 1000,
+            components: 32,
             moves: [10, 60],
             seed: 1,
             target_cov: 1.0,
@@ -60,6 +75,8 @@ impl Default for TmcmcSettings {
 
 /// Largest population: gigabytes at a dozen parameters.
 const MOST_PARTICLES: usize = 1_000_000;
+/// Most components of a mixture: a fit takes time in proportion.
+const MOST_COMPONENTS: usize = 256;
 /// Most moves in a stage.
 const MOST_MOVES: usize = 10_000;
 
@@ -92,6 +109,18 @@ pub enum TmcmcSettingsError {
         least: usize,
         /// Most moves.
         most: usize,
+    },
+    /// The mixture has no components, or too many.
+    #[error("components {value} is not 1 to {MOST_COMPONENTS}")]
+    Components {
+        /// The setting.
+        value: usize,
+    },
+    /// A metamodel takes moves, and the stages take none.
+    #[error("metamodel_moves {value}: stages of independent draws take no moves, stages = \"moves\" does")]
+    MetamodelNeedsMoves {
+        /// The setting.
+        value: usize,
     },
     /// The metamodel has more moves than a worker should take at a time.
     #[error("metamodel_moves {value} is more than {MOST_MOVES}")]
@@ -139,8 +168,16 @@ impl TmcmcSettings {
             Err(TmcmcSettingsError::MetamodelMoves {
                 value: self.metamodel_moves,
             })
+        } else if self.components == 0 || self.components > MOST_COMPONENTS {
+            Err(TmcmcSettingsError::Components {
+                value: self.components,
+            })
         } else if self.metamodel_moves > 0 && self.algorithm != Algorithm::Tmcmc {
             Err(TmcmcSettingsError::NoMetamodel {
+                value: self.metamodel_moves,
+            })
+        } else if self.metamodel_moves > 0 && self.stages != StageMethod::Moves {
+            Err(TmcmcSettingsError::MetamodelNeedsMoves {
                 value: self.metamodel_moves,
             })
         } else if !(self.target_cov.is_finite() && self.target_cov > 0.0) {

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use super::draws::WeightedSample;
 use super::equilibrium::{Drift, is_alarming, pooled_z};
 use super::evaluation::EvaluationResult;
 use super::particle::Particle;
 use super::record::{PosteriorSample, StageRecord};
 use super::sampler::{Sampler, SamplerPhase, SamplerRound};
-use super::settings::Algorithm;
+use super::settings::{Algorithm, StageMethod};
 use super::stage::Stage;
 use super::transition::{Passage, Transition};
 use crate::phase::RunPhase;
@@ -27,22 +28,20 @@ impl Sampler {
         results: Vec<EvaluationResult>,
     ) -> Result<SamplerPhase, InferenceFailure> {
         let draws = results.len();
-        let mut pool = Pool::default();
+        let (mut pool, mut sample) = (Pool::default(), WeightedSample::default());
         for (proposal, result) in proposals.iter().zip(results) {
-            if let EvaluationResult::AtProposal { log_likelihood, pair } = result
-                && !log_likelihood.is_impossible()
-            {
+            if let EvaluationResult::AtProposal { log_likelihood, pair } = result {
                 let coordinates = self.prior.coordinates(&proposal.theta);
-                let log_prior = self.prior.log_density_of_coordinates(&coordinates);
-                pool.push(
-                    pool.states.len(),
-                    ChainState {
-                        coordinates,
-                        log_prior,
-                        log_likelihood,
-                        pair: pair.map(Arc::new),
-                    },
-                );
+                let state = ChainState {
+                    log_prior: self.prior.log_density_of_coordinates(&coordinates),
+                    coordinates,
+                    log_likelihood,
+                    pair: pair.map(Arc::new),
+                };
+                sample.push(state.clone(), 0.0);
+                if !log_likelihood.is_impossible() {
+                    pool.push(pool.states.len(), state);
+                }
             }
         }
         let (possible, needed) = (pool.states.len(), self.prior.dimension() + 2);
@@ -56,13 +55,16 @@ impl Sampler {
                 needed,
             });
         }
+        if self.settings.stages == StageMethod::Draws && self.settings.algorithm == Algorithm::Tmcmc {
+            return self.begin_drawing(&sample, pool);
+        }
         let survival = self.evidence.survive(possible, draws);
         self.evidence.add(&pool, Vec::new(), 0.0);
         self.begin_stage(&pool, 1, 0.0, None, survival)
     }
 
     /// Starts the stage that follows a pool; `log_evidence` is the part of its increment that is known already.
-    fn begin_stage(
+    pub(super) fn begin_stage(
         &mut self,
         pool: &Pool,
         index: usize,

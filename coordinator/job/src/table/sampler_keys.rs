@@ -16,7 +16,15 @@ pub(super) struct SamplerKeys {
 const ALL: [SamplerKeys; 7] = [
     SamplerKeys {
         algorithm: AlgorithmName::Tmcmc,
-        keys: &["particles", "moves", "metamodel_moves", "seed", "point_estimates"],
+        keys: &[
+            "particles",
+            "stages",
+            "components",
+            "moves",
+            "metamodel_moves",
+            "seed",
+            "point_estimates",
+        ],
     },
     SamplerKeys {
         algorithm: AlgorithmName::ChingChen2007,

@@ -2,7 +2,7 @@
 
 use inference::evolution::{CmaEsSettings, EvolutionSettings, GaSettings};
 use inference::lm::LmSettings;
-use inference::{Algorithm, TmcmcSettings};
+use inference::{Algorithm, StageMethod, TmcmcSettings};
 use serde::Deserialize;
 use shared::file::unknown_word;
 
@@ -12,6 +12,8 @@ use super::sampler_keys::SamplerKeys;
 
 /// Least and most steps of a stage whose steps are subchains of a metamodel.
 const METAMODEL_STEPS: [usize; 2] = [3, 30];
+/// How a stage of `tmcmc` gets its particles.
+const STAGES: [&str; 2] = ["draws", "moves"];
 /// The algorithms that find the most probable parameters.
 const POINT_ESTIMATES: [&str; 3] = ["lm", "ga", "cma-es"];
 
@@ -22,6 +24,8 @@ pub(crate) struct RawSampler {
     algorithm: Option<String>,
     seed: Option<u64>,
     particles: Option<usize>,
+    stages: Option<String>,
+    components: Option<usize>,
     moves: Option<[usize; 2]>,
     metamodel_moves: Option<usize>,
     starts: Option<usize>,
@@ -39,6 +43,8 @@ impl RawSampler {
         let keys = SamplerKeys::of(self.algorithm.as_deref().unwrap_or("tmcmc"))?;
         keys.refuse(&[
             ("particles", self.particles.is_some()),
+            ("stages", self.stages.is_some()),
+            ("components", self.components.is_some()),
             ("moves", self.moves.is_some()),
             ("metamodel_moves", self.metamodel_moves.is_some()),
             ("starts", self.starts.is_some()),
@@ -50,9 +56,9 @@ impl RawSampler {
             ("point_estimates", self.point_estimates.is_some()),
         ])?;
         Ok(match keys.algorithm {
-            AlgorithmName::Tmcmc => self.sample(Algorithm::Tmcmc),
-            AlgorithmName::ChingChen2007 => self.sample(Algorithm::ChingChen2007),
-            AlgorithmName::Basis => self.sample(Algorithm::Basis),
+            AlgorithmName::Tmcmc => self.sample(Algorithm::Tmcmc)?,
+            AlgorithmName::ChingChen2007 => self.sample(Algorithm::ChingChen2007)?,
+            AlgorithmName::Basis => self.sample(Algorithm::Basis)?,
             AlgorithmName::Lm => self.fit(),
             AlgorithmName::Ga => self.ga(),
             AlgorithmName::CmaEs => self.cma_es(),
@@ -83,23 +89,38 @@ impl RawSampler {
         names.iter().enumerate().map(algorithm).collect()
     }
 
-    fn sample(&self, algorithm: Algorithm) -> AlgorithmSettings {
+    fn sample(&self, algorithm: Algorithm) -> Result<AlgorithmSettings, TableError> {
         let usual = TmcmcSettings::default();
         let metamodel_moves = self.metamodel_moves.unwrap_or(usual.metamodel_moves);
+        let stages = match self.stages.as_deref() {
+            Some("draws") => StageMethod::Draws,
+            Some("moves") => StageMethod::Moves,
+            Some(other) => {
+                return Err(TableError::Unknown(unknown_word(
+                    "value of stages",
+                    other,
+                    STAGES,
+                )));
+            }
+            None if metamodel_moves > 0 => StageMethod::Moves,
+            None => usual.stages,
+        };
         // A step of many moves forgets more than one of one.
         let moves = if metamodel_moves > 0 {
             METAMODEL_STEPS
         } else {
             usual.moves
         };
-        AlgorithmSettings::Sample(TmcmcSettings {
+        Ok(AlgorithmSettings::Sample(TmcmcSettings {
             algorithm,
+            stages,
             particles: self.particles.unwrap_or(usual.particles),
+            components: self.components.unwrap_or(usual.components),
             moves: self.moves.unwrap_or(moves),
             metamodel_moves,
             seed: self.seed.unwrap_or(usual.seed),
             ..usual
-        })
+        }))
     }
 
     fn fit(&self) -> AlgorithmSettings {

@@ -16,7 +16,8 @@ use statistics::metamodel::Pool;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Evidence {
     pub(crate) log: f64,
-    survival_variance: f64,
+    /// Variance of what the estimate began with: the surviving fraction, or an earlier estimate.
+    first_variance: f64,
     levels: Vec<Level>,
 }
 
@@ -31,12 +32,21 @@ struct Level {
 }
 
 impl Evidence {
+    /// An evidence that is known up to an exponent, with its variance.
+    pub(crate) fn from_estimate(log: f64, variance: f64) -> Self {
+        Self {
+            log,
+            first_variance: variance,
+            levels: Vec::new(),
+        }
+    }
+
     /// Accounts for prior draws that the model rejected; returns the logarithm of the surviving fraction.
     pub(crate) fn survive(&mut self, survivors: usize, draws: usize) -> f64 {
         let fraction = survivors as f64 / draws as f64;
         let log = libm::log(fraction);
         self.log += log;
-        self.survival_variance = (1.0 - fraction) / (fraction * draws as f64);
+        self.first_variance = (1.0 - fraction) / (fraction * draws as f64);
         log
     }
 
@@ -71,7 +81,7 @@ impl Evidence {
 
     /// Standard error of the log-evidence.
     pub(crate) fn standard_error(&self) -> f64 {
-        let mut variance = self.survival_variance;
+        let mut variance = self.first_variance;
         for (index, level) in self.levels.iter().enumerate() {
             // The family of each chain: its siblings and all their descendants.
             let mut family = if level.ancestors.is_empty() {

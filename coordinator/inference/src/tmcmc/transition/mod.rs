@@ -10,7 +10,6 @@ mod resample;
 mod schedule;
 mod weights;
 
-pub(super) use next_stage::{Passage, Transition};
-#[cfg(test)]
+pub(super) use next_stage::{Passage, Transition, tooth};
 pub(super) use resample::systematic;
 pub(super) use weights::Weights;

@@ -24,6 +24,11 @@ pub(crate) struct Passage {
     pub(crate) log_evidence: f64,
 }
 
+/// The random number of a stage's systematic resampling.
+pub(crate) fn tooth(seed: u64, stage: usize) -> f64 {
+    Stream::new(seed, stage as u64, RESAMPLING, 0).uniform()
+}
+
 /// A stage about to start, with the weights that led to it.
 pub(crate) struct Transition {
     pub(crate) stage: Stage,
@@ -58,7 +63,7 @@ impl Transition {
             .map(|state| state.coordinates.as_slice())
             .collect();
         let factor = CovarianceFactor::new(&views, &normalised);
-        let tooth = Stream::new(settings.seed, index as u64, RESAMPLING, 0).uniform();
+        let tooth = tooth(settings.seed, index);
         let indices = systematic(&normalised, settings.particles, tooth);
         let chain = |(from, length): (usize, usize)| {
             let current = pool.states[from].clone();

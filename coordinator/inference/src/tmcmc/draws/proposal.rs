@@ -1,0 +1,119 @@
+//! What a stage's draws come from: a mixture, cut at the ends of the prior's support.
+
+use statistics::prior::Prior;
+use statistics::rng::Stream;
+
+use crate::mixture::Mixture;
+
+/// Trial draws, without evaluations, by which the share inside the support is measured; for each particle.
+const TRIALS: usize = 16;
+/// The same for the proposal of the posterior's own draws, whose evidence is reported.
+const LAST_TRIALS: usize = 64;
+/// Trial draws that are all inside: the support cuts nothing off.
+const ENOUGH: usize = 4000;
+/// Least share inside the support.
+const LEAST_INSIDE: f64 = 0.01;
+
+/// First number of the streams' steps: the moves of a stage count from 1.
+const FIRST_STEP: u64 = 1 << 32;
+/// Streams of a proposal's trials and of its fit; candidates never reach these numbers.
+const TRIAL_STREAM: u64 = u64::MAX - 1;
+const FIT_STREAM: u64 = u64::MAX - 2;
+
+/// Where the random numbers of a proposal come from: `attempt` counts the proposals of a stage.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DrawKey {
+    pub(crate) seed: u64,
+    pub(crate) stage: usize,
+    pub(crate) attempt: usize,
+}
+
+impl DrawKey {
+    fn stream(self, particle: u64) -> Stream {
+        Stream::new(
+            self.seed,
+            self.stage as u64,
+            particle,
+            FIRST_STEP + self.attempt as u64,
+        )
+    }
+
+    /// The stream of the fit that leads to this proposal.
+    pub(crate) fn fit(self) -> Stream {
+        self.stream(FIT_STREAM)
+    }
+}
+
+/// A draw before its evaluation.
+#[derive(Debug, Clone)]
+pub(crate) struct Draw {
+    pub(crate) coordinates: Vec<f64>,
+    /// ln of the prior density of the coordinates.
+    pub(crate) log_prior: f64,
+    /// ln (prior density / proposal density).
+    pub(crate) log_ratio: f64,
+}
+
+/// A mixture cut at the ends of the prior's support.
+#[derive(Debug, Clone)]
+pub(crate) struct DrawProposal {
+    mixture: Mixture,
+    key: DrawKey,
+    /// Candidates so far, inside the support or not.
+    candidates: u64,
+    /// ln of the mixture's share inside the support.
+    log_inside: f64,
+    /// Variance of `log_inside`.
+    pub(crate) inside_variance: f64,
+}
+
+impl DrawProposal {
+    /// Measures the share inside the support. `None` if it is below 1 %.
+    ///
+    /// # Arguments
+    /// - `last`: whether the evidence that is reported rests on this proposal.
+    pub(crate) fn new(
+        mixture: Mixture,
+        prior: &Prior,
+        key: DrawKey,
+        particles: usize,
+        last: bool,
+    ) -> Option<Self> {
+        let trials = particles * if last { LAST_TRIALS } else { TRIALS };
+        let mut stream = key.stream(TRIAL_STREAM);
+        let (mut tried, mut inside) = (0_usize, 0_usize);
+        while tried < trials && !(tried == ENOUGH && inside == tried) {
+            let candidate = mixture.draw(&mut stream);
+            inside += usize::from(prior.log_density_of_coordinates(&candidate) > f64::NEG_INFINITY);
+            tried += 1;
+        }
+        let share = inside as f64 / tried as f64;
+        (share >= LEAST_INSIDE).then(|| Self {
+            mixture,
+            key,
+            candidates: 0,
+            log_inside: libm::log(share),
+            inside_variance: (1.0 - share) / (share * tried as f64),
+        })
+    }
+
+    /// The next draws inside the support.
+    pub(crate) fn draws(&mut self, count: usize, prior: &Prior) -> Vec<Draw> {
+        let mut draws = Vec::with_capacity(count);
+        let mut scratch = Vec::new();
+        while draws.len() < count {
+            let coordinates = self.mixture.draw(&mut self.key.stream(self.candidates));
+            self.candidates += 1;
+            let log_prior = prior.log_density_of_coordinates(&coordinates);
+            if log_prior > f64::NEG_INFINITY {
+                let log_density = self.mixture.log_density(&coordinates, &mut scratch) - self.log_inside;
+                draws.push(Draw {
+                    coordinates,
+                    log_prior,
+                    log_ratio: log_prior - log_density,
+                });
+            }
+        }
+        draws
+    }
+}

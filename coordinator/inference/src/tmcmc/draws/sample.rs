@@ -1,0 +1,125 @@
+//! Draws of one proposal, with their importance weights at any tempering exponent.
+
+use statistics::metamodel::{ChainState, Pool};
+
+use crate::tmcmc::transition::systematic;
+
+/// Draws of one proposal. A draw that the model rejected has no weight at any exponent.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct WeightedSample {
+    pub(crate) states: Vec<ChainState>,
+    /// ln (prior density / proposal density) of each draw.
+    pub(crate) log_ratios: Vec<f64>,
+}
+
+/// The importance weights of a sample at one exponent.
+#[derive(Debug, Clone)]
+pub(crate) struct ImportanceWeights {
+    /// Weights that sum to one.
+    pub(crate) normalised: Vec<f64>,
+    /// ln of the mean weight: ln Z.
+    pub(crate) log_mean: f64,
+    /// Effective sample size `1 / sum w^2` (Kong).
+    pub(crate) ess: f64,
+}
+
+/// The mean of the log-likelihood under a target, with its variance.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Expectation {
+    pub(crate) mean: f64,
+    pub(crate) variance: f64,
+}
+
+impl ImportanceWeights {
+    /// Variance of `log_mean`: of the mean weight, relative to its square.
+    pub(crate) fn log_mean_variance(&self) -> f64 {
+        let count = self.normalised.len() as f64;
+        (count / self.ess - 1.0).max(0.0) / count
+    }
+
+    /// Effective share of the draws.
+    pub(crate) fn share(&self) -> f64 {
+        self.ess / self.normalised.len() as f64
+    }
+
+    /// Coefficient of variation.
+    pub(crate) fn cov(&self) -> f64 {
+        (1.0 / self.share() - 1.0).max(0.0).sqrt()
+    }
+}
+
+impl WeightedSample {
+    pub(crate) fn push(&mut self, state: ChainState, log_ratio: f64) {
+        self.states.push(state);
+        self.log_ratios.push(log_ratio);
+    }
+
+    /// ln of the weights at an exponent.
+    pub(crate) fn log_weights(&self, exponent: f64) -> Vec<f64> {
+        let pairs = self.states.iter().zip(&self.log_ratios);
+        pairs
+            .map(|(state, log_ratio)| {
+                if state.log_likelihood.is_impossible() {
+                    f64::NEG_INFINITY
+                } else {
+                    exponent * state.log_likelihood.value() + log_ratio
+                }
+            })
+            .collect()
+    }
+
+    /// The weights at an exponent; `None` if every draw was rejected.
+    pub(crate) fn weights(&self, exponent: f64) -> Option<ImportanceWeights> {
+        let log_weights = self.log_weights(exponent);
+        let largest = log_weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if !largest.is_finite() {
+            return None;
+        }
+        let mut normalised: Vec<f64> = log_weights.iter().map(|w| libm::exp(w - largest)).collect();
+        let sum: f64 = normalised.iter().sum();
+        for weight in &mut normalised {
+            *weight /= sum;
+        }
+        let ess = 1.0 / normalised.iter().map(|w| w * w).sum::<f64>();
+        let log_mean = largest + libm::log(sum / normalised.len() as f64);
+        Some(ImportanceWeights {
+            normalised,
+            log_mean,
+            ess,
+        })
+    }
+
+    /// Share of the draws that the model did not reject.
+    pub(crate) fn possible(&self) -> f64 {
+        let possible = self
+            .states
+            .iter()
+            .filter(|state| !state.log_likelihood.is_impossible());
+        possible.count() as f64 / self.states.len() as f64
+    }
+
+    /// The mean log-likelihood under the target of these weights: `sum w l`, with variance `sum w^2 (l - mean)^2`.
+    pub(crate) fn mean_log_likelihood(&self, weights: &ImportanceWeights) -> Expectation {
+        let terms = || {
+            let pairs = self.states.iter().zip(&weights.normalised);
+            pairs
+                .filter(|(state, _)| !state.log_likelihood.is_impossible())
+                .map(|(state, weight)| (state.log_likelihood.value(), weight))
+        };
+        let mean: f64 = terms().map(|(l, weight)| weight * l).sum();
+        let deviations = terms().map(|(l, weight)| weight * (l - mean));
+        Expectation {
+            mean,
+            variance: deviations.map(|d| d * d).sum(),
+        }
+    }
+
+    /// A sample of equal weights, by systematic resampling; copies of one draw are one chain.
+    pub(crate) fn resampled(&self, weights: &ImportanceWeights, count: usize, tooth: f64) -> Pool {
+        let mut pool = Pool::default();
+        for index in systematic(&weights.normalised, count, tooth) {
+            pool.push(index, self.states[index].clone());
+        }
+        pool
+    }
+}
