@@ -59,7 +59,7 @@ mod tests {
             .normals(1600)
             .chunks_exact(2)
             .enumerate()
-            .flat_map(|(i, z)| [20.0 * ((i % 8) as f64) + z[0], z[1]])
+            .flat_map(|(i, z)| [20.0 * ((i / 2 % 8) as f64) + z[0], z[1]])
             .collect();
         let points = WeightedPoints::new(2, modes, vec![1.0; 800]);
         assert!(fitted(&points, 32, &mut stream).unwrap().components.len() >= 8);

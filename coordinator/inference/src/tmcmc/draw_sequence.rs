@@ -1,7 +1,5 @@
 //! The sequence of stages of independent draws, to the posterior sample or to moves.
 
-use std::sync::Arc;
-
 use super::draws::{
     Anchor, DrawStage, DrawStart, Forecast, ImportanceWeights, Standing, WeightedSample, next_exponent,
 };
@@ -24,18 +22,23 @@ impl Sampler {
     /// Starts the first stage from the prior draws; `pool` holds those that the model accepted.
     pub(super) fn begin_drawing(
         &mut self,
-        sample: &WeightedSample,
+        sample: WeightedSample,
         pool: Pool,
     ) -> Result<SamplerPhase, InferenceFailure> {
-        let [survivors, draws] = [pool.states.len(), sample.states.len()];
+        let survivors = Some([pool.states.len(), sample.states.len()]);
         let anchor = Anchor {
             pool,
             exponent: 0.0,
             log_evidence: 0.0,
             variance: 0.0,
-            survivors: Some([survivors, draws]),
+            survivors,
         };
-        self.next_draws(sample, anchor, 1, None)
+        self.begin_draws(DrawStart {
+            index: 1,
+            anchor,
+            sample,
+            fit: None,
+        })
     }
 
     /// Continues a stage of draws, ends it, or falls back to moves.
@@ -45,55 +48,38 @@ impl Sampler {
     ) -> Result<SamplerPhase, InferenceFailure> {
         let weights = stage.sample.weights(stage.exponent);
         let particles = self.settings.particles;
-        match (stage.standing(weights.as_ref(), particles), weights) {
-            (Standing::More(count), _) => stage.ask_more(count),
-            (Standing::Refit, _) => {
-                if !stage.refit(&self.prior, &self.settings) {
-                    return self.fall_back(&stage.anchor, stage.index, stage.evaluations);
-                }
-            }
+        let continues = match (stage.standing(weights.as_ref(), particles), weights) {
             (Standing::Done, Some(weights)) => return self.end_draws(*stage, &weights),
-            (Standing::Missed, _) | (Standing::Done, None) => {
-                return self.fall_back(&stage.anchor, stage.index, stage.evaluations);
+            (Standing::More(count), _) => {
+                stage.ask_more(count);
+                true
             }
+            (Standing::Refit, _) => stage.refit(&self.prior, &self.settings),
+            (Standing::Retreat, _) => stage.retreat(&self.prior, &self.settings),
+            (Standing::Missed, _) | (Standing::Done, None) => false,
+        };
+        if continues {
+            Ok(RunPhase::Waiting(SamplerRound::Draws(stage)))
+        } else {
+            self.fall_back(&stage.start, stage.evaluations)
         }
-        Ok(RunPhase::Waiting(SamplerRound::Draws(stage)))
     }
 
-    fn next_draws(
-        &mut self,
-        sample: &WeightedSample,
-        anchor: Anchor,
-        index: usize,
-        before: Option<Mixture>,
-    ) -> Result<SamplerPhase, InferenceFailure> {
-        let anchor = Arc::new(anchor);
-        let components = before.as_ref().map_or(self.settings.components, Mixture::size);
-        let exponent = next_exponent(sample, anchor.exponent, components);
-        let stage = sample.weights(exponent).and_then(|weights| {
-            let start = DrawStart {
-                index,
-                exponent,
-                anchor: Arc::clone(&anchor),
-                sample,
-                weights: &weights,
-                before,
-            };
-            DrawStage::new(start, &self.prior, &self.settings)
-        });
-        match stage.filter(|_| exponent > anchor.exponent) {
-            Some(stage) => Ok(RunPhase::Waiting(SamplerRound::Draws(Box::new(stage)))),
-            None => self.fall_back(&anchor, index, 0),
+    fn begin_draws(&mut self, start: DrawStart) -> Result<SamplerPhase, InferenceFailure> {
+        let components = start.fit.as_ref().map_or(self.settings.components, Mixture::size);
+        let exponent = next_exponent(&start.sample, start.anchor.exponent, components);
+        if exponent <= start.anchor.exponent {
+            return self.fall_back(&start, 0);
+        }
+        match DrawStage::new(start, exponent, &self.prior, &self.settings) {
+            Ok(stage) => Ok(RunPhase::Waiting(SamplerRound::Draws(Box::new(stage)))),
+            Err(start) => self.fall_back(&start, 0),
         }
     }
 
     /// Moves the particles of the last stage instead; `evaluations` were spent on draws that missed.
-    fn fall_back(
-        &mut self,
-        anchor: &Anchor,
-        index: usize,
-        evaluations: u64,
-    ) -> Result<SamplerPhase, InferenceFailure> {
+    fn fall_back(&mut self, start: &DrawStart, evaluations: u64) -> Result<SamplerPhase, InferenceFailure> {
+        let anchor = &start.anchor;
         let log_evidence = match anchor.survivors {
             Some([survivors, draws]) => self.evidence.survive(survivors, draws),
             None => {
@@ -102,7 +88,7 @@ impl Sampler {
             }
         };
         self.evidence.add(&anchor.pool, Vec::new(), 0.0);
-        let mut phase = self.begin_stage(&anchor.pool, index, anchor.exponent, None, log_evidence)?;
+        let mut phase = self.begin_stage(&anchor.pool, start.index, anchor.exponent, None, log_evidence)?;
         if let RunPhase::Waiting(SamplerRound::Moves(stage)) = &mut phase {
             stage.evaluations = evaluations;
         }
@@ -115,7 +101,7 @@ impl Sampler {
         stage: DrawStage,
         weights: &ImportanceWeights,
     ) -> Result<SamplerPhase, InferenceFailure> {
-        let tooth = tooth(self.settings.seed, stage.index);
+        let tooth = tooth(self.settings.seed, stage.start.index);
         let pool = stage.sample.resampled(weights, self.settings.particles, tooth);
         let variance = weights.log_mean_variance() + stage.proposal.inside_variance;
         let record = self.record_draws(&stage, weights, &pool);
@@ -128,7 +114,12 @@ impl Sampler {
                 variance,
                 survivors: None,
             };
-            return self.next_draws(&stage.sample, anchor, stage.index + 1, Some(stage.fit));
+            return self.begin_draws(DrawStart {
+                index: stage.start.index + 1,
+                anchor,
+                sample: stage.sample,
+                fit: Some(stage.fit),
+            });
         }
         let last = self.stages.last();
         Ok(RunPhase::Done(Box::new(PosteriorSample {
@@ -165,14 +156,14 @@ impl Sampler {
         let worst = drift_z.abs().max(weight_drift_z.abs());
         let equilibrated = stage.exponent < 1.0 || worst < DISAGREEMENT;
         StageRecord {
-            stage: stage.index,
+            stage: stage.start.index,
             tempering_exponent: stage.exponent,
             acceptance: weights.share(),
             drift_z,
             weight_drift_z,
             correlation: 0.0,
             steps: stage.rounds,
-            log_evidence_increment: weights.log_mean - stage.anchor.log_evidence,
+            log_evidence_increment: weights.log_mean - stage.start.anchor.log_evidence,
             weight_cov: weights.cov(),
             ess: weights.ess,
             scale: 0.0,

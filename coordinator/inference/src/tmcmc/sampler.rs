@@ -140,7 +140,7 @@ impl Sampler {
                 acceptance: stage.acceptance(),
             },
             (RunPhase::Waiting(SamplerRound::Draws(stage)), _) => StageProgress {
-                stage: stage.index,
+                stage: stage.start.index,
                 tempering_exponent: stage.exponent,
                 step: stage.rounds,
                 acceptance: None,

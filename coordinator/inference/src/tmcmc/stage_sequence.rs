@@ -56,7 +56,7 @@ impl Sampler {
             });
         }
         if self.settings.stages == StageMethod::Draws && self.settings.algorithm == Algorithm::Tmcmc {
-            return self.begin_drawing(&sample, pool);
+            return self.begin_drawing(sample, pool);
         }
         let survival = self.evidence.survive(possible, draws);
         self.evidence.add(&pool, Vec::new(), 0.0);

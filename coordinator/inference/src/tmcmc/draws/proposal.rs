@@ -23,12 +23,16 @@ const FIT_STREAM: u64 = u64::MAX - 2;
 /// Where the random numbers of a proposal come from: `attempt` counts the proposals of a stage.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DrawKey {
-    pub(crate) seed: u64,
-    pub(crate) stage: usize,
-    pub(crate) attempt: usize,
+    seed: u64,
+    stage: usize,
+    attempt: usize,
 }
 
 impl DrawKey {
+    pub(crate) fn new(seed: u64, stage: usize, attempt: usize) -> Self {
+        Self { seed, stage, attempt }
+    }
+
     fn stream(self, particle: u64) -> Stream {
         Stream::new(
             self.seed,

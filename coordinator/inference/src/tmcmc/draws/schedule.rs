@@ -3,10 +3,10 @@
 use super::sample::WeightedSample;
 
 /// Least and greatest effective share of the draws at the next exponent.
-const SHARES: [f64; 2] = [0.2, 0.4];
+const SHARES: [f64; 2] = [0.2, 0.5];
 
 /// Effective draws by which each number of a mixture is determined: a component has d + 1 for each dimension, or fewer.
-const DRAWS_A_NUMBER: f64 = 10.0;
+const DRAWS_A_NUMBER: f64 = 6.0;
 
 /// Where the fit at the present exponent was poor, the next must leave this part of the effective draws, and the share that
 /// is enough.
@@ -17,9 +17,9 @@ const BISECTIONS: usize = 48;
 
 /// The exponent above `exponent` that leaves enough effective draws for the next fit; at most 1.
 ///
-/// Enough is ten draws for each component and each of d + 1 numbers of it, if the next fit takes as many `components` as the
-/// last, but at least 20 % and at most 40 % of the draws that the model accepts. Where fewer are effective at `exponent`
-/// already, 30 to 50 % of these are enough.
+/// Enough is six draws for each component and each of d + 1 numbers of it, if the next fit takes as many `components` as the
+/// last, but at least 20 % and at most 50 % of the draws that the model accepts. Where fewer are effective at `exponent`
+/// already, 30 to 60 % of these are enough.
 pub(crate) fn next_exponent(sample: &WeightedSample, exponent: f64, components: usize) -> f64 {
     let share = |exponent: f64| sample.weights(exponent).map_or(0.0, |weights| weights.share());
     let dimension = sample.states.first().map_or(0, |state| state.coordinates.len());

@@ -1,7 +1,5 @@
 //! A stage of independent draws in progress.
 
-use std::sync::Arc;
-
 use statistics::log_likelihood::LogLikelihood;
 use statistics::metamodel::{ChainState, Pool};
 use statistics::prior::Prior;
@@ -19,8 +17,11 @@ const LEAST_SHARE: f64 = 0.05;
 /// The same at exponent 1, where every further draw is one of the posterior.
 const LEAST_SHARE_OF_POSTERIOR: f64 = 0.25;
 
-/// Proposals that miss one target before the stage falls back to moves.
-const ATTEMPTS: usize = 3;
+/// Proposals in a row that may miss their targets before the stage falls back to moves.
+const MISSES: usize = 6;
+
+/// Part of the step of the exponent that remains after a miss.
+const RETREAT: f64 = 0.3;
 
 /// Refits at exponent 1 for a better share, once a proposal has not missed.
 const REFINEMENTS: usize = 4;
@@ -32,7 +33,7 @@ const EFFECTIVE_DRAWS: f64 = 2.0;
 const MOST_DRAWS: usize = 20;
 
 /// Weight moved from heavy to light components of a fit.
-const LEVELLED: f64 = 0.3;
+const LEVELLED: f64 = 0.4;
 
 /// Share of the draws that come from the fit of the exponent before, which is wider.
 const DEFENSIVE: f64 = 0.1;
@@ -73,83 +74,76 @@ pub(crate) enum Standing {
     Done,
     /// The same proposal gives this many draws more.
     More(usize),
-    /// A better fit is worth its draws, or these have missed their target.
+    /// A better fit is worth its draws.
     Refit,
-    /// No proposal reached the target.
+    /// The draws have missed their target: a shorter step may reach it.
+    Retreat,
+    /// No proposal reached its target.
     Missed,
+}
+
+/// What a stage begins with.
+#[derive(Debug, Clone)]
+pub(crate) struct DrawStart {
+    pub(crate) index: usize,
+    pub(crate) anchor: Anchor,
+    /// The draws of the stage before.
+    pub(crate) sample: WeightedSample,
+    /// The fit that these were drawn from; `None`: they are prior draws.
+    pub(crate) fit: Option<Mixture>,
 }
 
 /// A stage of independent draws.
 #[derive(Debug, Clone)]
 pub(crate) struct DrawStage {
-    pub(crate) index: usize,
+    pub(crate) start: DrawStart,
     pub(crate) exponent: f64,
-    pub(crate) anchor: Arc<Anchor>,
     pub(crate) forecast: Forecast,
     /// The draws so far of the proposal in use.
     pub(crate) sample: WeightedSample,
     pub(crate) proposal: DrawProposal,
-    /// The fit of this stage's target; the next stage's defence.
+    /// The fit of this stage's target.
     pub(crate) fit: Mixture,
-    /// The fit of the exponent before.
-    before: Option<Mixture>,
     /// Draws that wait for their evaluation.
     pending: Vec<Draw>,
     /// How many to ask for next.
     wanted: usize,
+    /// Proposals before the one in use, and how many of them missed their target.
     attempts: usize,
-    missed: usize,
+    misses: usize,
     pub(crate) rounds: usize,
     pub(crate) evaluations: u64,
 }
 
-/// What a stage begins with.
-pub(crate) struct DrawStart<'a> {
-    pub(crate) index: usize,
-    pub(crate) exponent: f64,
-    pub(crate) anchor: Arc<Anchor>,
-    /// Draws whose weights at `exponent` stand for its target.
-    pub(crate) sample: &'a WeightedSample,
-    pub(crate) weights: &'a ImportanceWeights,
-    pub(crate) before: Option<Mixture>,
-}
-
 impl DrawStage {
-    /// Fits a proposal to weighted draws. `None` if there is none: the draws do not span the space.
-    pub(crate) fn new(start: DrawStart, prior: &Prior, settings: &TmcmcSettings) -> Option<Self> {
-        let DrawStart {
-            index,
-            exponent,
-            anchor,
-            sample,
-            weights,
-            before,
-        } = start;
-        let key = DrawKey {
-            seed: settings.seed,
-            stage: index,
-            attempt: 0,
+    /// Fits a proposal to the draws of the stage before, weighted for `exponent`. The draws are given back if there is none:
+    /// they do not span the space.
+    pub(crate) fn new(
+        start: DrawStart,
+        exponent: f64,
+        prior: &Prior,
+        settings: &TmcmcSettings,
+    ) -> Result<Self, DrawStart> {
+        let fitted = start.sample.weights(exponent).and_then(|weights| {
+            let forecast = Forecast::new(&start.sample, &weights);
+            let key = DrawKey::new(settings.seed, start.index, 0);
+            let source = (&start.sample, &weights, start.fit.as_ref());
+            Some((forecast, propose(source, (exponent, key), prior, settings)?))
+        });
+        let Some((forecast, (fit, proposal))) = fitted else {
+            return Err(start);
         };
-        let (fit, proposal) = propose(
-            (sample, weights),
-            before.as_ref(),
-            (exponent, key),
-            prior,
-            settings,
-        )?;
-        Some(Self {
-            index,
+        Ok(Self {
+            start,
             exponent,
-            anchor,
-            forecast: Forecast::new(sample, weights),
+            forecast,
             sample: WeightedSample::default(),
             proposal,
             fit,
-            before,
             pending: Vec::new(),
             wanted: settings.particles,
             attempts: 0,
-            missed: 0,
+            misses: 0,
             rounds: 0,
             evaluations: 0,
         })
@@ -188,8 +182,8 @@ impl DrawStage {
     pub(crate) fn standing(&self, weights: Option<&ImportanceWeights>, particles: usize) -> Standing {
         let drawn = self.sample.states.len();
         let Some(weights) = weights.filter(|weights| !is_poor(weights, &self.sample)) else {
-            return if self.missed + 1 < ATTEMPTS {
-                Standing::Refit
+            return if self.misses + 1 < MISSES {
+                Standing::Retreat
             } else {
                 Standing::Missed
             };
@@ -214,32 +208,49 @@ impl DrawStage {
         self.wanted = count;
     }
 
-    /// Replaces the proposal by a fit to the draws so far, which are then dropped. False if there is no fit.
+    /// Replaces the proposal by a fit to its own draws, which are then dropped. False if there is no fit.
     pub(crate) fn refit(&mut self, prior: &Prior, settings: &TmcmcSettings) -> bool {
-        let Some(weights) = self.sample.weights(self.exponent) else {
-            return false;
-        };
+        let sample = std::mem::take(&mut self.sample);
         self.attempts += 1;
-        self.missed += usize::from(is_poor(&weights, &self.sample));
-        let key = DrawKey {
-            seed: settings.seed,
-            stage: self.index,
-            attempt: self.attempts,
-        };
-        let target = (self.exponent, key);
-        let Some((fit, proposal)) = propose(
-            (&self.sample, &weights),
-            self.before.as_ref(),
-            target,
-            prior,
-            settings,
-        ) else {
+        let fitted = sample
+            .weights(self.exponent)
+            .and_then(|weights| self.proposed((&sample, &weights), prior, settings));
+        self.replace(fitted, settings)
+    }
+
+    /// Goes back to the draws of the stage before, for a shorter step of the exponent. False if there is no fit.
+    pub(crate) fn retreat(&mut self, prior: &Prior, settings: &TmcmcSettings) -> bool {
+        self.attempts += 1;
+        self.misses += 1;
+        let from = self.start.anchor.exponent;
+        self.exponent = from + RETREAT * (self.exponent - from);
+        let Some(weights) = self.start.sample.weights(self.exponent) else {
             return false;
         };
-        (self.fit, self.proposal) = (fit, proposal);
+        self.forecast = Forecast::new(&self.start.sample, &weights);
+        let fitted = self.proposed((&self.start.sample, &weights), prior, settings);
         self.sample = WeightedSample::default();
+        self.replace(fitted, settings)
+    }
+
+    fn proposed(
+        &self,
+        (sample, weights): (&WeightedSample, &ImportanceWeights),
+        prior: &Prior,
+        settings: &TmcmcSettings,
+    ) -> Option<(Mixture, DrawProposal)> {
+        let key = DrawKey::new(settings.seed, self.start.index, self.attempts);
+        let source = (sample, weights, self.start.fit.as_ref());
+        propose(source, (self.exponent, key), prior, settings)
+    }
+
+    fn replace(&mut self, fitted: Option<(Mixture, DrawProposal)>, settings: &TmcmcSettings) -> bool {
         self.wanted = settings.particles;
-        true
+        let found = fitted.is_some();
+        if let Some(fitted) = fitted {
+            (self.fit, self.proposal) = fitted;
+        }
+        found
     }
 }
 
@@ -251,8 +262,7 @@ fn is_poor(weights: &ImportanceWeights, sample: &WeightedSample) -> bool {
 
 /// A fit to weighted draws, and what to draw from: the fit, levelled, with a share of the one before.
 fn propose(
-    (sample, weights): (&WeightedSample, &ImportanceWeights),
-    before: Option<&Mixture>,
+    (sample, weights, before): (&WeightedSample, &ImportanceWeights, Option<&Mixture>),
     (exponent, key): (f64, DrawKey),
     prior: &Prior,
     settings: &TmcmcSettings,
