@@ -1,7 +1,7 @@
 //! Evidence and moments on problems with known answers.
 
 use crate::problems::{self, Problem};
-use inference::TmcmcSettings;
+use inference::{StageMethod, TmcmcSettings};
 use statistics::{Distribution, Marginal};
 
 const SEEDS: u64 = 4;
@@ -15,7 +15,16 @@ const K: f64 = 4.0;
 /// Means over seeds must agree with the answer within `K` Monte-Carlo errors: the evidence by its own
 /// standard error, moments by the number of independent draws.
 fn check(problem: &Problem) {
-    let settings = TmcmcSettings::default();
+    for stages in [StageMethod::Draws, StageMethod::Moves] {
+        check_method(problem, stages);
+    }
+}
+
+fn check_method(problem: &Problem, stages: StageMethod) {
+    let settings = TmcmcSettings {
+        stages,
+        ..TmcmcSettings::default()
+    };
     let columns = problem.mean.len() + usize::from(problem.derived.is_some());
     let (mut error, mut variance) = (0.0, 0.0);
     let (mut shifts, mut ratios) = (vec![0.0; columns], vec![0.0; columns]);

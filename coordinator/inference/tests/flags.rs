@@ -1,7 +1,7 @@
 //! Runs out of equilibrium are flagged.
 
 use crate::problems::{self, Problem};
-use inference::{Algorithm, TmcmcSettings};
+use inference::{Algorithm, StageMethod, TmcmcSettings};
 
 /// Every run is flagged, or its evidence is within four standard errors (and 0.3 nats for their own error).
 fn right_or_flagged(problem: &Problem, settings: TmcmcSettings) -> usize {
@@ -44,6 +44,7 @@ fn bekker_with_unknown_noise_is_right_or_flagged() {
 #[test]
 fn too_few_moves_are_flagged() {
     let settings = TmcmcSettings {
+        stages: StageMethod::Moves,
         particles: 200,
         moves: [1, 1],
         ..TmcmcSettings::default()

@@ -6,6 +6,7 @@ mod answers;
 mod ask_tell;
 mod correlated_prior;
 mod diagnostics;
+mod draws;
 mod evolution;
 mod flags;
 mod lm;

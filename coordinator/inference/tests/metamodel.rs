@@ -1,7 +1,7 @@
 //! A metamodel saves evaluations and keeps the posterior.
 
 use inference::diagnostics::mean_and_sd;
-use inference::{EvaluationResult, PosteriorSample, Sampler, TmcmcSettings};
+use inference::{EvaluationResult, PosteriorSample, Sampler, StageMethod, TmcmcSettings};
 use statistics::{
     Datum, Distribution, ErrorSd, Likelihood, LogLikelihood, Marginal, Metamodel, ModelPair, Prior,
 };
@@ -110,6 +110,7 @@ fn moments(posterior: &PosteriorSample) -> [f64; 4] {
 fn settings(seed: u64, metamodel_moves: usize) -> TmcmcSettings {
     TmcmcSettings {
         particles: 500,
+        stages: StageMethod::Moves,
         moves: if metamodel_moves > 0 { [4, 30] } else { [10, 60] },
         seed,
         metamodel_moves,
