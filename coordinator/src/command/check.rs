@@ -12,8 +12,8 @@ use crate::embedded::Evaluate;
 use job::AlgorithmSettings;
 use result::{model_limits, terminal};
 
-/// Particles of the pilot: enough to find the number of stages, which hardly depends on them.
-const PILOT_PARTICLES: usize = 100;
+/// Particles of the pilot: enough to fit what stages are drawn from, and to find their number, which hardly depends on them.
+const PILOT_PARTICLES: usize = 300;
 /// The pilot ends after so long; what it has seen by then is extrapolated `[s]`.
 const PILOT_S: f64 = 30.0;
 
