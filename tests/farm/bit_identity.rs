@@ -18,7 +18,7 @@ const KILLS: u64 = 24;
 
 /// Large enough that the kills fall into many stages, small enough to be computed again and again.
 fn job() -> Job {
-    Job::small().sampler(200, [4, 10], 3)
+    Job::small().sampler(1000, [4, 10], 3)
 }
 
 /// What one worker with one thread gives: the posterior, evaluations by the end of sampling, stages.
@@ -49,7 +49,7 @@ fn three_workers_of_two_threads_give_the_bytes_of_one_worker_of_one_thread() {
     let _workers = ["a", "b", "c"].map(|name| service.worker(name, 2));
     service.wait_for(id, "finished");
     same(&service.posterior_csv(id), expected);
-    assert_eq!(expected.lines().count(), 201);
+    assert_eq!(expected.lines().count(), 1001);
 }
 
 #[test]

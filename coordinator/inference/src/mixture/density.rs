@@ -50,20 +50,6 @@ impl Mixture {
         Self::new(components).unwrap_or_else(|| self.clone())
     }
 
-    /// The mixture of `1 - share` times this one and `share` times `other`.
-    pub(crate) fn with(&self, other: &Self, share: f64) -> Self {
-        let scaled = |mixture: &Self, share: f64| -> Vec<Component> {
-            let mut components = mixture.components.clone();
-            for component in &mut components {
-                component.weight *= share;
-            }
-            components
-        };
-        let mut components = scaled(self, 1.0 - share);
-        components.extend(scaled(other, share));
-        Self::new(components).unwrap_or_else(|| self.clone())
-    }
-
     /// ln q(x).
     pub(crate) fn log_density(&self, x: &[f64], scratch: &mut Vec<f64>) -> f64 {
         let pairs = self.components.iter().zip(&self.factors);
@@ -100,10 +86,10 @@ mod tests {
     fn density_and_draws_belong_together() {
         let mut stream = Stream::new(1, 0, 0, 0);
         let coordinates: Vec<f64> = stream.normals(2000).iter().map(|z| 3.0 + z).collect();
-        let points = WeightedPoints::new(2, coordinates, vec![1.0; 1000]);
-        let wide = fitted(&points, 1, &mut stream).unwrap();
+        let points = |coordinates| WeightedPoints::new(2, coordinates, vec![0.0; 1000], vec![1.0; 1000]);
+        let (wide, _) = fitted(&points(coordinates), 1, &mut stream).unwrap();
         let shifted: Vec<f64> = stream.normals(2000).iter().map(|z| 3.3 + 0.8 * z).collect();
-        let other = fitted(&WeightedPoints::new(2, shifted, vec![1.0; 1000]), 4, &mut stream).unwrap();
+        let (other, _) = fitted(&points(shifted), 4, &mut stream).unwrap();
         let mut scratch = Vec::new();
         let ratios: Vec<f64> = (0..40_000)
             .map(|draw| {
@@ -116,11 +102,11 @@ mod tests {
     }
 
     #[test]
-    fn mixing_and_levelling_keep_a_density() {
+    fn levelling_keeps_a_density() {
         let mut stream = Stream::new(1, 0, 0, 0);
-        let points = WeightedPoints::new(1, stream.normals(500), vec![1.0; 500]);
-        let mixture = fitted(&points, 8, &mut stream).unwrap();
-        let mixed = mixture.levelled(0.3).with(&mixture, 0.1);
+        let points = WeightedPoints::new(1, stream.normals(500), vec![0.0; 500], vec![1.0; 500]);
+        let (mixture, _) = fitted(&points, 8, &mut stream).unwrap();
+        let levelled = mixture.levelled(0.3);
         let mut scratch = Vec::new();
         let mut integral = |mixture: &Mixture| -> f64 {
             (-4000..4000)
@@ -128,7 +114,7 @@ mod tests {
                 .sum()
         };
         // The tails beyond 40 hold 1e-6.
-        for mixture in [&mixture, &mixed] {
+        for mixture in [&mixture, &levelled] {
             let sum = integral(mixture);
             assert!((sum - 1.0).abs() < 1e-3, "{sum}");
         }

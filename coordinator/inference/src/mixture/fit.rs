@@ -15,8 +15,8 @@ const COMMON_POINTS: f64 = 1.0;
 /// A mixture of `size` components after `rounds` rounds; components that lose their points are dropped.
 ///
 /// The start: means drawn by weight and square distance from the means so far (k-means++, Arthur & Vassilvitskii 2007),
-/// scatters that of all points, shrunk by `size^(-2/d)`. Each round updates weights, means and scatters as Peel &
-/// McLachlan 2000 do (Stat. Comput. 10:339, doi:10.1023/A:1008981510081), each point counted by its weight. `None` if
+/// scatters that of all points, shrunk by `size^(-2/d)`. Each round updates weights, means and scatters as Peel and
+/// `McLachlan` 2000 do (Stat. Comput. 10:339, doi:10.1023/A:1008981510081), each point counted by its weight. `None` if
 /// the points' scatter is singular.
 pub(super) fn em(
     points: &WeightedPoints,
@@ -175,7 +175,7 @@ mod tests {
         let mut coordinates: Vec<f64> = stream.normals(400).iter().map(|z| -5.0 + z).collect();
         coordinates.extend(stream.normals(400).iter().map(|z| 5.0 + 0.1 * z));
         let weights = (0..400).map(|i| if i < 200 { 1.0 } else { 3.0 }).collect();
-        let points = WeightedPoints::new(2, coordinates, weights);
+        let points = WeightedPoints::new(2, coordinates, vec![0.0; 400], weights);
         let mixture = em(&points, 2, 25, &mut stream).unwrap();
         let mut heaps: Vec<(f64, f64)> = mixture.components.iter().map(|c| (c.mean[0], c.weight)).collect();
         heaps.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn points_on_a_line_have_no_fit() {
         let coordinates = (0..20).flat_map(|i| [f64::from(i), 2.0 * f64::from(i)]).collect();
-        let points = WeightedPoints::new(2, coordinates, vec![1.0; 20]);
+        let points = WeightedPoints::new(2, coordinates, vec![0.0; 20], vec![1.0; 20]);
         assert_eq!(em(&points, 2, 5, &mut Stream::new(1, 0, 0, 0)), None);
     }
 }

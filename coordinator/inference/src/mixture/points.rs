@@ -9,12 +9,19 @@ pub(crate) struct WeightedPoints {
     pub(super) dimension: usize,
     /// One row of coordinates after the other.
     coordinates: Vec<f64>,
+    /// ln of the density at each point to which a fit's density is compared.
+    pub(super) references: Vec<f64>,
     pub(super) weights: Vec<f64>,
 }
 
 impl WeightedPoints {
     /// Leaves out points of negligible weight; the others' weights are scaled to a sum of one.
-    pub(crate) fn new(dimension: usize, coordinates: Vec<f64>, weights: Vec<f64>) -> Self {
+    pub(crate) fn new(
+        dimension: usize,
+        coordinates: Vec<f64>,
+        references: Vec<f64>,
+        weights: Vec<f64>,
+    ) -> Self {
         let largest = weights.iter().copied().fold(0.0, f64::max);
         let kept = |weight: f64| weight > NEGLIGIBLE * largest;
         let rows = coordinates.chunks_exact(dimension).zip(&weights);
@@ -22,6 +29,8 @@ impl WeightedPoints {
             .filter(|(_, weight)| kept(**weight))
             .flat_map(|(row, _)| row.iter().copied())
             .collect();
+        let pairs = references.iter().zip(&weights);
+        let references = pairs.filter(|(_, w)| kept(**w)).map(|(r, _)| *r).collect();
         let mut weights: Vec<f64> = weights.into_iter().filter(|weight| kept(*weight)).collect();
         let total: f64 = weights.iter().sum();
         for weight in &mut weights {
@@ -30,6 +39,7 @@ impl WeightedPoints {
         Self {
             dimension,
             coordinates,
+            references,
             weights,
         }
     }
@@ -53,6 +63,7 @@ impl WeightedPoints {
         Self::new(
             self.dimension,
             chosen().flat_map(|i| self.row(i).iter().copied()).collect(),
+            chosen().map(|i| self.references[i]).collect(),
             chosen().map(|i| self.weights[i]).collect(),
         )
     }

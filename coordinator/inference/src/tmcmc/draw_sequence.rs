@@ -1,14 +1,13 @@
 //! The sequence of stages of independent draws, to the posterior sample or to moves.
 
 use super::draws::{
-    Anchor, DrawStage, DrawStart, Forecast, ImportanceWeights, Standing, WeightedSample, next_exponent,
+    Anchor, DrawStage, DrawStart, Fit, Forecast, ImportanceWeights, Standing, WeightedSample, next_exponent,
 };
 use super::evidence::Evidence;
 use super::particle::Particle;
 use super::record::{PosteriorSample, StageRecord};
 use super::sampler::{Sampler, SamplerPhase, SamplerRound};
 use super::transition::tooth;
-use crate::mixture::Mixture;
 use crate::phase::RunPhase;
 use crate::tell::InferenceFailure;
 use statistics::metamodel::Pool;
@@ -66,7 +65,7 @@ impl Sampler {
     }
 
     fn begin_draws(&mut self, start: DrawStart) -> Result<SamplerPhase, InferenceFailure> {
-        let components = start.fit.as_ref().map_or(self.settings.components, Mixture::size);
+        let components = start.fit.as_ref().map_or(self.settings.components, Fit::size);
         let exponent = next_exponent(&start.sample, start.anchor.exponent, components);
         if exponent <= start.anchor.exponent {
             return self.fall_back(&start, 0);

@@ -6,18 +6,21 @@
 //! fit that proposed them, so they have no bias from fitting, and the standard error is that of a mean.
 //!
 //! # Layout
-//! - `sample`: draws with their weights. `schedule`: the next exponent. `proposal`: what draws come from.
+//! - `sample`: draws with their weights. `schedule`: the next exponent. `frame`: fits, in the coordinates that suit them.
+//!   `proposal`: what draws come from.
 //! - `stage`: one stage in progress.
 //!
 //! # Source
 //! Cappé, Guillin, Marin & Robert 2004, J. Comput. Graph. Stat. 13:907, doi:10.1198/106186004X12803 (adaptive importance
 //! sampling); Hesterberg 1995, Technometrics 37:185, doi:10.1080/00401706.1995.10484303 (defensive mixtures).
 
+mod frame;
 mod proposal;
 mod sample;
 mod schedule;
 mod stage;
 
+pub(super) use frame::Fit;
 pub(super) use sample::{ImportanceWeights, WeightedSample};
 pub(super) use schedule::next_exponent;
 pub(super) use stage::{Anchor, DrawStage, DrawStart, Forecast, Standing};

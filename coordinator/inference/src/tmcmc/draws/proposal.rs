@@ -1,9 +1,9 @@
-//! What a stage's draws come from: a mixture, cut at the ends of the prior's support.
+//! What a stage's draws come from: a fit, cut at the ends of the prior's support.
 
 use statistics::prior::Prior;
 use statistics::rng::Stream;
 
-use crate::mixture::Mixture;
+use super::frame::Fit;
 
 /// Trial draws, without evaluations, by which the share inside the support is measured; for each particle.
 const TRIALS: usize = 16;
@@ -13,6 +13,9 @@ const LAST_TRIALS: usize = 64;
 const ENOUGH: usize = 4000;
 /// Least share inside the support.
 const LEAST_INSIDE: f64 = 0.01;
+
+/// Share of the draws that come from the fit of the exponent before.
+const DEFENSIVE: f64 = 0.1;
 
 /// First number of the streams' steps: the moves of a stage count from 1.
 const FIRST_STEP: u64 = 1 << 32;
@@ -58,14 +61,16 @@ pub(crate) struct Draw {
     pub(crate) log_ratio: f64,
 }
 
-/// A mixture cut at the ends of the prior's support.
+/// A fit, with a share of the fit before it, cut at the ends of the prior's support.
 #[derive(Debug, Clone)]
 pub(crate) struct DrawProposal {
-    mixture: Mixture,
+    fit: Fit,
+    /// The fit of the exponent before, which is wider.
+    defence: Option<Fit>,
     key: DrawKey,
     /// Candidates so far, inside the support or not.
     candidates: u64,
-    /// ln of the mixture's share inside the support.
+    /// ln of the share inside the support.
     log_inside: f64,
     /// Variance of `log_inside`.
     pub(crate) inside_variance: f64,
@@ -77,28 +82,52 @@ impl DrawProposal {
     /// # Arguments
     /// - `last`: whether the evidence that is reported rests on this proposal.
     pub(crate) fn new(
-        mixture: Mixture,
+        (fit, defence): (Fit, Option<Fit>),
         prior: &Prior,
         key: DrawKey,
         particles: usize,
         last: bool,
     ) -> Option<Self> {
+        let mut proposal = Self {
+            fit,
+            defence,
+            key,
+            candidates: 0,
+            log_inside: 0.0,
+            inside_variance: 0.0,
+        };
         let trials = particles * if last { LAST_TRIALS } else { TRIALS };
         let mut stream = key.stream(TRIAL_STREAM);
         let (mut tried, mut inside) = (0_usize, 0_usize);
         while tried < trials && !(tried == ENOUGH && inside == tried) {
-            let candidate = mixture.draw(&mut stream);
+            let candidate = proposal.candidate(prior, &mut stream);
             inside += usize::from(prior.log_density_of_coordinates(&candidate) > f64::NEG_INFINITY);
             tried += 1;
         }
         let share = inside as f64 / tried as f64;
-        (share >= LEAST_INSIDE).then(|| Self {
-            mixture,
-            key,
-            candidates: 0,
-            log_inside: libm::log(share),
-            inside_variance: (1.0 - share) / (share * tried as f64),
-        })
+        proposal.log_inside = libm::log(share);
+        proposal.inside_variance = (1.0 - share) / (share * tried as f64);
+        (share >= LEAST_INSIDE).then_some(proposal)
+    }
+
+    fn candidate(&self, prior: &Prior, stream: &mut Stream) -> Vec<f64> {
+        let from = match &self.defence {
+            Some(defence) if stream.uniform() < DEFENSIVE => defence,
+            _ => &self.fit,
+        };
+        from.draw(prior, stream)
+    }
+
+    /// ln (density / prior density), before the cut.
+    fn log_relative_density(&self, prior: &Prior, coordinates: &[f64], scratch: &mut Vec<f64>) -> f64 {
+        let own = self.fit.log_relative_density(prior, coordinates, scratch);
+        let Some(defence) = &self.defence else {
+            return own;
+        };
+        let other = defence.log_relative_density(prior, coordinates, scratch);
+        let largest = own.max(other);
+        let sum = (1.0 - DEFENSIVE) * libm::exp(own - largest) + DEFENSIVE * libm::exp(other - largest);
+        largest + libm::log(sum)
     }
 
     /// The next draws inside the support.
@@ -106,15 +135,15 @@ impl DrawProposal {
         let mut draws = Vec::with_capacity(count);
         let mut scratch = Vec::new();
         while draws.len() < count {
-            let coordinates = self.mixture.draw(&mut self.key.stream(self.candidates));
+            let coordinates = self.candidate(prior, &mut self.key.stream(self.candidates));
             self.candidates += 1;
             let log_prior = prior.log_density_of_coordinates(&coordinates);
             if log_prior > f64::NEG_INFINITY {
-                let log_density = self.mixture.log_density(&coordinates, &mut scratch) - self.log_inside;
+                let relative = self.log_relative_density(prior, &coordinates, &mut scratch);
                 draws.push(Draw {
                     coordinates,
                     log_prior,
-                    log_ratio: log_prior - log_density,
+                    log_ratio: self.log_inside - relative,
                 });
             }
         }

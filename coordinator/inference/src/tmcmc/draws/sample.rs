@@ -54,6 +54,18 @@ impl WeightedSample {
         self.log_ratios.push(log_ratio);
     }
 
+    #[cfg(test)]
+    pub(crate) fn push_evaluated(&mut self, coordinates: Vec<f64>, log_likelihood: f64) {
+        let state = ChainState {
+            coordinates,
+            log_prior: 0.0,
+            log_likelihood: statistics::LogLikelihood::new(log_likelihood)
+                .unwrap_or(statistics::LogLikelihood::Impossible),
+            pair: None,
+        };
+        self.push(state, 0.0);
+    }
+
     /// ln of the weights at an exponent.
     pub(crate) fn log_weights(&self, exponent: f64) -> Vec<f64> {
         let pairs = self.states.iter().zip(&self.log_ratios);

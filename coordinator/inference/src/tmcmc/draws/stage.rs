@@ -4,9 +4,9 @@ use statistics::log_likelihood::LogLikelihood;
 use statistics::metamodel::{ChainState, Pool};
 use statistics::prior::Prior;
 
+use super::frame::Fit;
 use super::proposal::{Draw, DrawKey, DrawProposal};
 use super::sample::{Expectation, ImportanceWeights, WeightedSample};
-use crate::mixture::{Mixture, WeightedPoints, fitted};
 use crate::round::Proposal;
 use crate::tmcmc::evaluation::EvaluationResult;
 use crate::tmcmc::settings::TmcmcSettings;
@@ -34,9 +34,6 @@ const MOST_DRAWS: usize = 20;
 
 /// Weight moved from heavy to light components of a fit.
 const LEVELLED: f64 = 0.4;
-
-/// Share of the draws that come from the fit of the exponent before, which is wider.
-const DEFENSIVE: f64 = 0.1;
 
 /// Where the stage began: an equally weighted sample of the stage before, and its evidence.
 #[derive(Debug, Clone)]
@@ -90,7 +87,7 @@ pub(crate) struct DrawStart {
     /// The draws of the stage before.
     pub(crate) sample: WeightedSample,
     /// The fit that these were drawn from; `None`: they are prior draws.
-    pub(crate) fit: Option<Mixture>,
+    pub(crate) fit: Option<Fit>,
 }
 
 /// A stage of independent draws.
@@ -103,7 +100,7 @@ pub(crate) struct DrawStage {
     pub(crate) sample: WeightedSample,
     pub(crate) proposal: DrawProposal,
     /// The fit of this stage's target.
-    pub(crate) fit: Mixture,
+    pub(crate) fit: Fit,
     /// Draws that wait for their evaluation.
     pending: Vec<Draw>,
     /// How many to ask for next.
@@ -123,7 +120,7 @@ impl DrawStage {
         exponent: f64,
         prior: &Prior,
         settings: &TmcmcSettings,
-    ) -> Result<Self, DrawStart> {
+    ) -> Result<Self, Box<DrawStart>> {
         let fitted = start.sample.weights(exponent).and_then(|weights| {
             let forecast = Forecast::new(&start.sample, &weights);
             let key = DrawKey::new(settings.seed, start.index, 0);
@@ -131,7 +128,7 @@ impl DrawStage {
             Some((forecast, propose(source, (exponent, key), prior, settings)?))
         });
         let Some((forecast, (fit, proposal))) = fitted else {
-            return Err(start);
+            return Err(Box::new(start));
         };
         Ok(Self {
             start,
@@ -238,13 +235,13 @@ impl DrawStage {
         (sample, weights): (&WeightedSample, &ImportanceWeights),
         prior: &Prior,
         settings: &TmcmcSettings,
-    ) -> Option<(Mixture, DrawProposal)> {
+    ) -> Option<(Fit, DrawProposal)> {
         let key = DrawKey::new(settings.seed, self.start.index, self.attempts);
         let source = (sample, weights, self.start.fit.as_ref());
         propose(source, (self.exponent, key), prior, settings)
     }
 
-    fn replace(&mut self, fitted: Option<(Mixture, DrawProposal)>, settings: &TmcmcSettings) -> bool {
+    fn replace(&mut self, fitted: Option<(Fit, DrawProposal)>, settings: &TmcmcSettings) -> bool {
         self.wanted = settings.particles;
         let found = fitted.is_some();
         if let Some(fitted) = fitted {
@@ -262,22 +259,13 @@ fn is_poor(weights: &ImportanceWeights, sample: &WeightedSample) -> bool {
 
 /// A fit to weighted draws, and what to draw from: the fit, levelled, with a share of the one before.
 fn propose(
-    (sample, weights, before): (&WeightedSample, &ImportanceWeights, Option<&Mixture>),
+    (sample, weights, before): (&WeightedSample, &ImportanceWeights, Option<&Fit>),
     (exponent, key): (f64, DrawKey),
     prior: &Prior,
     settings: &TmcmcSettings,
-) -> Option<(Mixture, DrawProposal)> {
-    let coordinates = sample
-        .states
-        .iter()
-        .flat_map(|state| state.coordinates.iter().copied());
-    let points = WeightedPoints::new(
-        prior.dimension(),
-        coordinates.collect(),
-        weights.normalised.clone(),
-    );
-    let fit = fitted(&points, settings.components, &mut key.fit())?.levelled(LEVELLED);
-    let mixture = before.map_or_else(|| fit.clone(), |before| fit.with(before, DEFENSIVE));
-    let proposal = DrawProposal::new(mixture, prior, key, settings.particles, exponent >= 1.0)?;
+) -> Option<(Fit, DrawProposal)> {
+    let fit = Fit::of(sample, weights, prior, settings.components, &mut key.fit())?.levelled(LEVELLED);
+    let parts = (fit.clone(), before.cloned());
+    let proposal = DrawProposal::new(parts, prior, key, settings.particles, exponent >= 1.0)?;
     Some((fit, proposal))
 }

@@ -1,0 +1,193 @@
+//! The coordinates in which a mixture is fitted, and a fit in them.
+
+use statistics::prior::{LN_SQRT_TAU, Prior, normal};
+use statistics::rng::Stream;
+
+use super::sample::{ImportanceWeights, WeightedSample};
+use crate::mixture::{Mixture, WeightedPoints, fitted};
+
+/// The coordinates of a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Frame {
+    /// Those of the sampler. A straight ridge of uniform parameters is straight here, however thin.
+    Sampling,
+    /// The normal score of each parameter under its prior. A posterior that leans on a bound of the prior is a normal's
+    /// flank here; no draw falls outside.
+    NormalScores,
+}
+
+impl Frame {
+    /// The coordinates of a state, from those of the sampler.
+    fn of(self, prior: &Prior, sampling: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Sampling => sampling.to_vec(),
+            Self::NormalScores => {
+                let pairs = prior.marginals().iter().zip(sampling);
+                pairs
+                    .map(|(marginal, &u)| marginal.normal_score(marginal.value(u)))
+                    .collect()
+            }
+        }
+    }
+
+    /// The inverse of [`Frame::of`].
+    fn sampling(self, prior: &Prior, own: Vec<f64>) -> Vec<f64> {
+        match self {
+            Self::Sampling => own,
+            Self::NormalScores => {
+                let pairs = prior.marginals().iter().zip(&own);
+                pairs
+                    .map(|(marginal, &z)| marginal.coordinate(marginal.quantile(normal::cdf(z))))
+                    .collect()
+            }
+        }
+    }
+
+    /// ln of the prior density in these coordinates.
+    fn log_prior(self, prior: &Prior, own: &[f64]) -> f64 {
+        match self {
+            Self::Sampling => prior.log_density_of_coordinates(own),
+            Self::NormalScores => own.iter().map(|z| -0.5 * z * z - LN_SQRT_TAU).sum(),
+        }
+    }
+}
+
+/// A mixture in the coordinates that suit it.
+#[derive(Debug, Clone)]
+pub(crate) struct Fit {
+    frame: Frame,
+    mixture: Mixture,
+}
+
+impl Fit {
+    /// The fit to weighted draws, in the coordinates in which it predicts better. `None` if the draws do not span the space.
+    ///
+    /// Scores of correlated priors are not independent: these are fitted in the sampling coordinates.
+    pub(crate) fn of(
+        sample: &WeightedSample,
+        weights: &ImportanceWeights,
+        prior: &Prior,
+        components: usize,
+        stream: &mut Stream,
+    ) -> Option<Self> {
+        let frames = if prior.is_correlated() {
+            &[Frame::Sampling][..]
+        } else {
+            &[Frame::Sampling, Frame::NormalScores]
+        };
+        let mut best: Option<(f64, Self)> = None;
+        for &frame in frames {
+            let rows = sample
+                .states
+                .iter()
+                .map(|state| frame.of(prior, &state.coordinates));
+            let rows: Vec<Vec<f64>> = rows.collect();
+            let references = rows.iter().map(|row| frame.log_prior(prior, row)).collect();
+            let coordinates = rows.concat();
+            let points = WeightedPoints::new(
+                prior.dimension(),
+                coordinates,
+                references,
+                weights.normalised.clone(),
+            );
+            if let Some((mixture, score)) = fitted(&points, components, stream)
+                && best.as_ref().is_none_or(|(highest, _)| score > *highest)
+            {
+                best = Some((score, Self { frame, mixture }));
+            }
+        }
+        best.map(|(_, fit)| fit)
+    }
+
+    /// Number of components.
+    pub(crate) fn size(&self) -> usize {
+        self.mixture.size()
+    }
+
+    /// This fit with its components' weights levelled.
+    pub(crate) fn levelled(&self, share: f64) -> Self {
+        Self {
+            frame: self.frame,
+            mixture: self.mixture.levelled(share),
+        }
+    }
+
+    /// A draw, in sampling coordinates.
+    pub(crate) fn draw(&self, prior: &Prior, stream: &mut Stream) -> Vec<f64> {
+        self.frame.sampling(prior, self.mixture.draw(stream))
+    }
+
+    /// ln (density / prior density) at sampling coordinates inside the support.
+    pub(crate) fn log_relative_density(
+        &self,
+        prior: &Prior,
+        sampling: &[f64],
+        scratch: &mut Vec<f64>,
+    ) -> f64 {
+        let own = self.frame.of(prior, sampling);
+        self.mixture.log_density(&own, scratch) - self.frame.log_prior(prior, &own)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use statistics::{Distribution, Marginal};
+
+    fn prior() -> Prior {
+        let uniform = Distribution::Uniform {
+            lower: 2.0,
+            upper: 5.0,
+        };
+        let lognormal = Distribution::Lognormal {
+            median: 2.0,
+            factor: 1.5,
+        };
+        let marginals = [uniform, lognormal].map(|of| Marginal::new(of, None).unwrap());
+        Prior::new(marginals.to_vec())
+    }
+
+    #[test]
+    fn scores_lead_back_to_where_they_came_from() {
+        let prior = prior();
+        for x in [[2.001, 0.1], [3.3, 0.7], [4.999, 2.0]] {
+            let back = Frame::NormalScores.sampling(&prior, Frame::NormalScores.of(&prior, &x));
+            assert!(back.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-9), "{back:?}");
+        }
+    }
+
+    /// In either frame the mean of prior / q over draws from q is one.
+    #[test]
+    fn draws_of_both_frames_weigh_the_prior() {
+        let prior = prior();
+        let mut stream = Stream::new(1, 0, 0, 0);
+        let mut sample = WeightedSample::default();
+        for particle in 0..1000 {
+            let theta = prior.sample(&mut Stream::new(2, 0, particle, 0));
+            sample.push_evaluated(prior.coordinates(&theta), 0.0);
+        }
+        let weights = sample.weights(0.0).unwrap();
+        for frame in [Frame::Sampling, Frame::NormalScores] {
+            let mixture = Fit::of(&sample, &weights, &prior, 4, &mut stream)
+                .unwrap()
+                .mixture;
+            let fit = Fit { frame, mixture };
+            let mut scratch = Vec::new();
+            let ratios: Vec<f64> = (0..20_000)
+                .map(|draw| {
+                    let x = fit.draw(&prior, &mut Stream::new(3, 0, draw, 0));
+                    if prior.log_density_of_coordinates(&x) > f64::NEG_INFINITY {
+                        libm::exp(-fit.log_relative_density(&prior, &x, &mut scratch))
+                    } else {
+                        0.0
+                    }
+                })
+                .collect();
+            let (mean, sd) = crate::diagnostics::mean_and_sd(&ratios).unwrap();
+            assert!(
+                (mean - 1.0).abs() < 5.0 * sd / 141.0,
+                "{frame:?}: {mean}, sd {sd}"
+            );
+        }
+    }
+}
