@@ -31,7 +31,7 @@ pub struct StageRecord {
     pub scale: f64,
     /// Evaluations in this stage.
     pub evaluations: u64,
-    /// Whether drift and correlation say that the stage reached its target.
+    /// Whether drift and correlation say that the stage reached its target; of a drawn stage, only the last is judged.
     pub equilibrated: bool,
     /// The population after the moves, equally weighted.
     pub population: Vec<Particle>,
@@ -46,7 +46,7 @@ pub struct StageProgress {
     pub tempering_exponent: f64,
     /// Steps completed in this stage.
     pub step: usize,
-    /// Acceptance so far; `None` before the first step and during the prior draws.
+    /// Acceptance so far; `None` before the first step and while draws are taken.
     pub acceptance: Option<f64>,
 }
 
@@ -59,12 +59,12 @@ pub struct PosteriorSample {
     pub log_evidence: f64,
     /// Its standard error within the run.
     pub log_evidence_se: f64,
-    /// The stages' `drift_z` taken together: their sum / sqrt(number of stages).
+    /// The `drift_z` of the stages of moves taken together: their sum / sqrt(number of stages); of drawn ones, the last's.
     pub drift_z: f64,
-    /// The stages' `weight_drift_z` taken together.
+    /// The same of `weight_drift_z`.
     pub weight_drift_z: f64,
-    /// Whether every stage reached its target and the drifts taken together stay below 3 in size; if not,
-    /// neither draws nor evidence can be trusted.
+    /// Whether every stage reached its target and the drifts taken together stay below 3 in size (of a last stage that was
+    /// drawn, 6); if not, neither draws nor evidence can be trusted.
     pub equilibrated: bool,
     /// Evaluations.
     pub evaluations: u64,

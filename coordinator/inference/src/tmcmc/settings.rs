@@ -117,7 +117,7 @@ pub enum TmcmcSettingsError {
         value: usize,
     },
     /// A metamodel takes moves, and the stages take none.
-    #[error("metamodel_moves {value}: stages of independent draws take no moves, stages = \"moves\" does")]
+    #[error("metamodel_moves {value} needs stages = \"moves\": independent draws take no moves")]
     MetamodelNeedsMoves {
         /// The setting.
         value: usize,

@@ -132,8 +132,10 @@ impl Sampler {
                 0.0,
             );
         }
-        let drift_z = pooled_z(self.stages.iter().map(|stage| stage.drift_z));
-        let weight_drift_z = pooled_z(self.stages.iter().map(|stage| stage.weight_drift_z));
+        // Draws of earlier stages only led here.
+        let moved: Vec<&StageRecord> = self.stages.iter().filter(|stage| stage.scale > 0.0).collect();
+        let drift_z = pooled_z(moved.iter().map(|stage| stage.drift_z));
+        let weight_drift_z = pooled_z(moved.iter().map(|stage| stage.weight_drift_z));
         Ok(RunPhase::Done(Box::new(PosteriorSample {
             particles: self
                 .stages

@@ -12,7 +12,7 @@ use super::sampler_keys::SamplerKeys;
 
 /// Least and most steps of a stage whose steps are subchains of a metamodel.
 const METAMODEL_STEPS: [usize; 2] = [3, 30];
-/// How a stage of `tmcmc` gets its particles.
+/// The values of `stages`.
 const STAGES: [&str; 2] = ["draws", "moves"];
 /// The algorithms that find the most probable parameters.
 const POINT_ESTIMATES: [&str; 3] = ["lm", "ga", "cma-es"];

@@ -75,6 +75,17 @@ impl Density {
 
     /// For 0 < p < 1.
     pub(super) fn quantile(&self, p: f64) -> f64 {
+        self.quantile_of([p, 1.0 - p])
+    }
+
+    /// The point with the probability 0 < `tail` <= 1/2 above it, or below it.
+    pub(super) fn tail_quantile(&self, tail: f64, above: bool) -> f64 {
+        let rest = 1.0 - tail;
+        self.quantile_of(if above { [rest, tail] } else { [tail, rest] })
+    }
+
+    /// The point with these probabilities below and above it.
+    fn quantile_of(&self, [p, q]: [f64; 2]) -> f64 {
         match *self {
             Self::Uniform { lower, width } => lower + width * p,
             Self::Normal {
@@ -86,7 +97,7 @@ impl Density {
             } => {
                 // Work from the nearer tail, where the probability keeps its digits.
                 let below = normal::cdf(low) + p * mass;
-                let above = normal::cdf(-high) + (1.0 - p) * mass;
+                let above = normal::cdf(-high) + q * mass;
                 let z = if below < above {
                     normal::lower_quantile(below)
                 } else {

@@ -200,6 +200,21 @@ impl Marginal {
         }
     }
 
+    /// The value of a normal score, the inverse of [`Marginal::normal_score`], from the nearer tail.
+    ///
+    /// Checked by `frame::tests::scores_lead_back_to_where_they_came_from`.
+    #[must_use]
+    pub fn of_normal_score(&self, z: f64) -> f64 {
+        let tail = normal::cdf(-z.abs());
+        if tail > 0.0 {
+            self.inside(self.density.tail_quantile(tail, z > 0.0))
+        } else if z > 0.0 {
+            self.upper
+        } else {
+            self.lower
+        }
+    }
+
     /// Mean and standard deviation of the sampling coordinate.
     #[must_use]
     pub fn coordinate_moments(&self) -> (f64, f64) {

@@ -1,6 +1,6 @@
 //! The coordinates in which a mixture is fitted, and a fit in them.
 
-use statistics::prior::{LN_SQRT_TAU, Prior, normal};
+use statistics::prior::{LN_SQRT_TAU, Prior};
 use statistics::rng::Stream;
 
 use super::sample::{ImportanceWeights, WeightedSample};
@@ -12,7 +12,7 @@ enum Frame {
     /// Those of the sampler. A straight ridge of uniform parameters is straight here, however thin.
     Sampling,
     /// The normal score of each parameter under its prior. A posterior that leans on a bound of the prior is a normal's
-    /// flank here; no draw falls outside.
+    /// flank here.
     NormalScores,
 }
 
@@ -37,7 +37,7 @@ impl Frame {
             Self::NormalScores => {
                 let pairs = prior.marginals().iter().zip(&own);
                 pairs
-                    .map(|(marginal, &z)| marginal.coordinate(marginal.quantile(normal::cdf(z))))
+                    .map(|(marginal, &z)| marginal.coordinate(marginal.of_normal_score(z)))
                     .collect()
             }
         }
@@ -77,26 +77,34 @@ impl Fit {
         };
         let mut best: Option<(f64, Self)> = None;
         for &frame in frames {
-            let rows = sample
-                .states
-                .iter()
-                .map(|state| frame.of(prior, &state.coordinates));
-            let rows: Vec<Vec<f64>> = rows.collect();
-            let references = rows.iter().map(|row| frame.log_prior(prior, row)).collect();
-            let coordinates = rows.concat();
-            let points = WeightedPoints::new(
-                prior.dimension(),
-                coordinates,
-                references,
-                weights.normalised.clone(),
-            );
-            if let Some((mixture, score)) = fitted(&points, components, stream)
+            if let Some((score, fit)) = Self::in_frame(frame, (sample, weights), prior, components, stream)
                 && best.as_ref().is_none_or(|(highest, _)| score > *highest)
             {
-                best = Some((score, Self { frame, mixture }));
+                best = Some((score, fit));
             }
         }
         best.map(|(_, fit)| fit)
+    }
+
+    /// The fit in given coordinates, and how well it predicts: the mean of ln (density / prior density).
+    fn in_frame(
+        frame: Frame,
+        (sample, weights): (&WeightedSample, &ImportanceWeights),
+        prior: &Prior,
+        components: usize,
+        stream: &mut Stream,
+    ) -> Option<(f64, Self)> {
+        let rows = sample.states.iter();
+        let rows: Vec<Vec<f64>> = rows.map(|state| frame.of(prior, &state.coordinates)).collect();
+        let references = rows.iter().map(|row| frame.log_prior(prior, row)).collect();
+        let points = WeightedPoints::new(
+            prior.dimension(),
+            rows.concat(),
+            references,
+            weights.normalised.clone(),
+        );
+        let (mixture, score) = fitted(&points, components, stream)?;
+        Some((score, Self { frame, mixture }))
     }
 
     /// Number of components.
@@ -150,7 +158,7 @@ mod tests {
     #[test]
     fn scores_lead_back_to_where_they_came_from() {
         let prior = prior();
-        for x in [[2.001, 0.1], [3.3, 0.7], [4.999, 2.0]] {
+        for x in [[2.001, 0.1], [3.3, 0.7], [4.999, 2.0], [4.0, 5.6], [4.0, -4.2]] {
             let back = Frame::NormalScores.sampling(&prior, Frame::NormalScores.of(&prior, &x));
             assert!(back.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-9), "{back:?}");
         }
@@ -168,10 +176,7 @@ mod tests {
         }
         let weights = sample.weights(0.0).unwrap();
         for frame in [Frame::Sampling, Frame::NormalScores] {
-            let mixture = Fit::of(&sample, &weights, &prior, 4, &mut stream)
-                .unwrap()
-                .mixture;
-            let fit = Fit { frame, mixture };
+            let (_, fit) = Fit::in_frame(frame, (&sample, &weights), &prior, 4, &mut stream).unwrap();
             let mut scratch = Vec::new();
             let ratios: Vec<f64> = (0..20_000)
                 .map(|draw| {

@@ -17,7 +17,7 @@ const LEAST_INSIDE: f64 = 0.01;
 /// Share of the draws that come from the fit of the exponent before.
 const DEFENSIVE: f64 = 0.1;
 
-/// First number of the streams' steps: the moves of a stage count from 1.
+/// Step number of the first of these streams; moves count theirs from 1.
 const FIRST_STEP: u64 = 1 << 32;
 /// Streams of a proposal's trials and of its fit; candidates never reach these numbers.
 const TRIAL_STREAM: u64 = u64::MAX - 1;

@@ -80,7 +80,7 @@ impl WeightedSample {
             .collect()
     }
 
-    /// The weights at an exponent; `None` if every draw was rejected.
+    /// The weights at an exponent; `None` if every draw was rejected, or a weight is no number.
     pub(crate) fn weights(&self, exponent: f64) -> Option<ImportanceWeights> {
         let log_weights = self.log_weights(exponent);
         let largest = log_weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -89,6 +89,9 @@ impl WeightedSample {
         }
         let mut normalised: Vec<f64> = log_weights.iter().map(|w| libm::exp(w - largest)).collect();
         let sum: f64 = normalised.iter().sum();
+        if !sum.is_finite() {
+            return None;
+        }
         for weight in &mut normalised {
             *weight /= sum;
         }

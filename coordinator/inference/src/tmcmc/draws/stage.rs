@@ -177,8 +177,10 @@ impl DrawStage {
 
     /// What the draws so far mean; `weights` are theirs at this stage's exponent.
     pub(crate) fn standing(&self, weights: Option<&ImportanceWeights>, particles: usize) -> Standing {
+        // A proposal is judged by its first round.
         let drawn = self.sample.states.len();
-        let Some(weights) = weights.filter(|weights| !is_poor(weights, &self.sample)) else {
+        let Some(weights) = weights.filter(|weights| drawn > particles || !is_poor(weights, &self.sample))
+        else {
             return if self.misses + 1 < MISSES {
                 Standing::Retreat
             } else {
