@@ -199,3 +199,29 @@ fn the_likeliest_parameters_of_a_rolling_wheel_leave_their_histories() {
     assert!(none.is_null(), "{none}");
     same(&service.posterior_csv(id), &csv);
 }
+
+/// The last simulation covers what the likelihood takes beside the averages: rings, and derivatives by the soil's stiffness.
+#[test]
+fn histories_do_not_replace_readings_of_rings_or_derivatives() {
+    let job = Job::rolling()
+        .sampler(30, [1, 2], 5)
+        .in_experiment(
+            "runs = \"runs.csv\"",
+            "runs = \"runs.csv\"\nshear = \"rings.csv\"",
+        )
+        .in_experiment(
+            "[noise]",
+            "[noise]\nring_scatter = 0.12\nring_noise = 0.03\nrun_scatter = 0.05",
+        )
+        .beside(
+            "rings.csv",
+            "test,normal_stress_pa,shear_displacement_m,shear_stress_pa\nr,5000,0.08,2884.7\n",
+        );
+    let service = Service::start(&[]);
+    let id = service.submit(&job);
+    let _worker = service.worker("a", 2);
+    service.wait_for(id, "finished");
+    let diagnostics = service.client.json(&format!("/v1/calibrations/{id}/diagnostics"));
+    let data = diagnostics["residuals"].as_array().map_or(0, Vec::len);
+    assert_eq!(data, 7, "{diagnostics}");
+}

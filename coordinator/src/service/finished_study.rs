@@ -47,7 +47,12 @@ pub async fn finished_calibration(
         populations.insert(0, first_population(&spec, &prior_draws));
     }
     let at_likeliest = reader.likeliest(row.id).await?;
-    let likeliest_values = match (&at_likeliest, likeliest(&posterior)) {
+    // Programs of scm-5 and before left out readings and derivatives where they simulated histories.
+    let whole = at_likeliest.as_ref().filter(|observables| {
+        let histories = spec.fit_variant.with_histories();
+        observables.covers(histories.as_ref().unwrap_or(&spec.fit_variant))
+    });
+    let likeliest_values = match (whole, likeliest(&posterior)) {
         (_, None) => None,
         (Some(observables), Some(_)) => Some(spec.predicted_values(observables)),
         (None, Some(sample)) => reader.fitted_values(row.id, &sample.theta).await?,

@@ -154,15 +154,12 @@ impl ModelVariant {
         Ok(variant)
     }
 
-    /// The same runs with their time histories and nothing else; `None` for a steady-state model and without runs.
+    /// The same with the time histories of its runs; `None` for a steady-state model and without runs.
     pub fn with_histories(&self) -> Option<Self> {
         let rolls = self.kind == ModelKind::Scm && !self.conditions.is_empty();
         rolls.then(|| ModelVariant {
             histories: true,
             companion: None,
-            stiffness_sensitivity: false,
-            plates: Vec::new(),
-            rings: Vec::new(),
             ..self.clone()
         })
     }
