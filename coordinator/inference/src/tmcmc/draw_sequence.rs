@@ -56,7 +56,10 @@ impl Sampler {
                 stage.ask_more(count);
                 true
             }
-            (Standing::Refit, _) => stage.refit(&self.prior, &self.settings),
+            (Standing::Refit, _) => {
+                stage.refit(&self.prior, &self.settings);
+                true
+            }
             (Standing::Retreat, _) => stage.retreat(&self.prior, &self.settings),
             (Standing::Missed, _) | (Standing::Done, None) => false,
         };
@@ -155,7 +158,7 @@ impl Sampler {
         let drift_z = z(found.mean - expected.mean, found.variance + expected.variance);
         let weight_drift_z = z(
             weights.log_mean - log_evidence,
-            weights.log_mean_variance() + log_evidence_variance,
+            weights.log_mean_variance() + stage.proposal.inside_variance + log_evidence_variance,
         );
         let worst = drift_z.abs().max(weight_drift_z.abs());
         let equilibrated = stage.exponent < 1.0 || worst < DISAGREEMENT;

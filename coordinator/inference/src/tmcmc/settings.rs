@@ -75,6 +75,10 @@ impl Default for TmcmcSettings {
 
 /// Largest population: gigabytes at a dozen parameters.
 const MOST_PARTICLES: usize = 1_000_000;
+/// Fewest particles of a stage of draws, for each of d + 1 numbers: a fifth of them is the least effective sample that a fit
+/// rests on.
+const DRAWN_PARTICLES: usize = 8;
+
 /// Most components of a mixture: a fit takes time in proportion.
 const MOST_COMPONENTS: usize = 256;
 /// Most moves in a stage.
@@ -143,6 +147,13 @@ pub enum TmcmcSettingsError {
 }
 
 impl TmcmcSettings {
+    /// Whether stages of a problem of `dimension` parameters are drawn: small populations move from the start.
+    pub(crate) fn draws(&self, dimension: usize) -> bool {
+        self.stages == StageMethod::Draws
+            && self.algorithm == Algorithm::Tmcmc
+            && self.particles >= DRAWN_PARTICLES * (dimension + 1)
+    }
+
     /// Checks the settings for a prior of `dimension` parameters; at least `2 dimension + 2` particles.
     ///
     /// # Errors

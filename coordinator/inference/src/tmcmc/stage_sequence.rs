@@ -8,7 +8,7 @@ use super::evaluation::EvaluationResult;
 use super::particle::Particle;
 use super::record::{PosteriorSample, StageRecord};
 use super::sampler::{Sampler, SamplerPhase, SamplerRound};
-use super::settings::{Algorithm, StageMethod};
+use super::settings::Algorithm;
 use super::stage::Stage;
 use super::transition::{Passage, Transition};
 use crate::phase::RunPhase;
@@ -55,7 +55,7 @@ impl Sampler {
                 needed,
             });
         }
-        if self.settings.stages == StageMethod::Draws && self.settings.algorithm == Algorithm::Tmcmc {
+        if self.settings.draws(self.prior.dimension()) {
             return self.begin_drawing(sample, pool);
         }
         let survival = self.evidence.survive(possible, draws);

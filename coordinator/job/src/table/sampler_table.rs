@@ -105,6 +105,10 @@ impl RawSampler {
             None if metamodel_moves > 0 => StageMethod::Moves,
             None => usual.stages,
         };
+        if let (StageMethod::Moves, Some(components)) = (stages, self.components) {
+            let rule = "belongs to stages = \"draws\"";
+            return Err(TableError::value("components", components, rule));
+        }
         // A step of many moves forgets more than one of one.
         let moves = if metamodel_moves > 0 {
             METAMODEL_STEPS

@@ -15,7 +15,7 @@ pub struct SamplerDiagnostics {
     pub draws: usize,
     /// Of these, distinct ones.
     pub distinct_draws: usize,
-    /// Effective sample size of the weights at the last stage, before its moves.
+    /// Effective sample size of the weights at the last stage, before its moves; at most `draws`, which were taken by them.
     pub effective_sample_size: Option<f64>,
     /// The stages, the draws from the prior first.
     pub stages: Vec<StageRow>,
@@ -29,7 +29,10 @@ pub(crate) fn sampler(calibration: &FinishedCalibration) -> Option<SamplerDiagno
         equilibrated: calibration.row.equilibrated,
         draws: calibration.posterior.len(),
         distinct_draws: distinct.len(),
-        effective_sample_size: calibration.stages.last().map(|stage| stage.ess),
+        effective_sample_size: calibration
+            .stages
+            .last()
+            .map(|stage| stage.ess.min(calibration.posterior.len() as f64)),
         stages: calibration.stages.clone(),
     })
 }

@@ -113,37 +113,39 @@ pub(crate) struct DrawStage {
 }
 
 impl DrawStage {
-    /// Fits a proposal to the draws of the stage before, weighted for `exponent`. The draws are given back if there is none:
-    /// they do not span the space.
+    /// Fits a proposal to the draws of the stage before, weighted for `exponent` or for shorter steps where there is none. The
+    /// draws are given back if there is none for any of them: they do not span the space, or the fit lies outside the support.
     pub(crate) fn new(
         start: DrawStart,
         exponent: f64,
         prior: &Prior,
         settings: &TmcmcSettings,
     ) -> Result<Self, Box<DrawStart>> {
-        let fitted = start.sample.weights(exponent).and_then(|weights| {
-            let forecast = Forecast::new(&start.sample, &weights);
-            let key = DrawKey::new(settings.seed, start.index, 0);
-            let source = (&start.sample, &weights, start.fit.as_ref());
-            Some((forecast, propose(source, (exponent, key), prior, settings)?))
-        });
-        let Some((forecast, (fit, proposal))) = fitted else {
-            return Err(Box::new(start));
-        };
-        Ok(Self {
-            start,
-            exponent,
-            forecast,
-            sample: WeightedSample::default(),
-            proposal,
-            fit,
-            pending: Vec::new(),
-            wanted: settings.particles,
-            attempts: 0,
-            misses: 0,
-            rounds: 0,
-            evaluations: 0,
-        })
+        let from = start.anchor.exponent;
+        let mut exponent = exponent;
+        for attempt in 0..MISSES {
+            let key = DrawKey::new(settings.seed, start.index, attempt);
+            let Some((forecast, (fit, proposal))) = first_proposal(&start, (exponent, key), prior, settings)
+            else {
+                exponent = shorter(from, exponent);
+                continue;
+            };
+            return Ok(Self {
+                start,
+                exponent,
+                forecast,
+                sample: WeightedSample::default(),
+                proposal,
+                fit,
+                pending: Vec::new(),
+                wanted: settings.particles,
+                attempts: attempt,
+                misses: attempt,
+                rounds: 0,
+                evaluations: 0,
+            });
+        }
+        Err(Box::new(start))
     }
 
     /// Draws the next round.
@@ -207,50 +209,62 @@ impl DrawStage {
         self.wanted = count;
     }
 
-    /// Replaces the proposal by a fit to its own draws, which are then dropped. False if there is no fit.
-    pub(crate) fn refit(&mut self, prior: &Prior, settings: &TmcmcSettings) -> bool {
-        let sample = std::mem::take(&mut self.sample);
-        self.attempts += 1;
-        let fitted = sample
-            .weights(self.exponent)
-            .and_then(|weights| self.proposed((&sample, &weights), prior, settings));
-        self.replace(fitted, settings)
-    }
-
-    /// Goes back to the draws of the stage before, for a shorter step of the exponent. False if there is no fit.
-    pub(crate) fn retreat(&mut self, prior: &Prior, settings: &TmcmcSettings) -> bool {
-        self.attempts += 1;
-        self.misses += 1;
-        let from = self.start.anchor.exponent;
-        self.exponent = from + RETREAT * (self.exponent - from);
-        let Some(weights) = self.start.sample.weights(self.exponent) else {
-            return false;
-        };
-        self.forecast = Forecast::new(&self.start.sample, &weights);
-        let fitted = self.proposed((&self.start.sample, &weights), prior, settings);
-        self.sample = WeightedSample::default();
-        self.replace(fitted, settings)
-    }
-
-    fn proposed(
-        &self,
-        (sample, weights): (&WeightedSample, &ImportanceWeights),
-        prior: &Prior,
-        settings: &TmcmcSettings,
-    ) -> Option<(Fit, DrawProposal)> {
-        let key = DrawKey::new(settings.seed, self.start.index, self.attempts);
-        let source = (sample, weights, self.start.fit.as_ref());
-        propose(source, (self.exponent, key), prior, settings)
-    }
-
-    fn replace(&mut self, fitted: Option<(Fit, DrawProposal)>, settings: &TmcmcSettings) -> bool {
+    /// Replaces the proposal by a fit to its own draws, which are then dropped. Where there is no such fit the proposal and its
+    /// draws stay, and more of them are asked for.
+    pub(crate) fn refit(&mut self, prior: &Prior, settings: &TmcmcSettings) {
         self.wanted = settings.particles;
-        let found = fitted.is_some();
-        if let Some(fitted) = fitted {
-            (self.fit, self.proposal) = fitted;
+        self.attempts += 1;
+        let key = DrawKey::new(settings.seed, self.start.index, self.attempts);
+        let fitted = self.sample.weights(self.exponent).and_then(|weights| {
+            let source = (&self.sample, &weights, self.start.fit.as_ref());
+            propose(source, (self.exponent, key), prior, settings)
+        });
+        match fitted {
+            Some(fitted) => {
+                (self.fit, self.proposal) = fitted;
+                self.sample = WeightedSample::default();
+            }
+            None => self.attempts = self.attempts.max(REFINEMENTS),
         }
-        found
     }
+
+    /// Goes back to the draws of the stage before, for a shorter step of the exponent. False if no fit is left to try.
+    pub(crate) fn retreat(&mut self, prior: &Prior, settings: &TmcmcSettings) -> bool {
+        self.wanted = settings.particles;
+        self.sample = WeightedSample::default();
+        while self.misses + 1 < MISSES {
+            self.attempts += 1;
+            self.misses += 1;
+            self.exponent = shorter(self.start.anchor.exponent, self.exponent);
+            let key = DrawKey::new(settings.seed, self.start.index, self.attempts);
+            if let Some((forecast, fitted)) =
+                first_proposal(&self.start, (self.exponent, key), prior, settings)
+            {
+                self.forecast = forecast;
+                (self.fit, self.proposal) = fitted;
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// The exponent after a miss.
+fn shorter(from: f64, exponent: f64) -> f64 {
+    from + RETREAT * (exponent - from)
+}
+
+/// What the draws of the stage before say about `exponent`, and a proposal fitted to them.
+fn first_proposal(
+    start: &DrawStart,
+    (exponent, key): (f64, DrawKey),
+    prior: &Prior,
+    settings: &TmcmcSettings,
+) -> Option<(Forecast, (Fit, DrawProposal))> {
+    let weights = start.sample.weights(exponent)?;
+    let source = (&start.sample, &weights, start.fit.as_ref());
+    let fitted = propose(source, (exponent, key), prior, settings)?;
+    Some((Forecast::new(&start.sample, &weights), fitted))
 }
 
 /// Whether draws have missed their target.
