@@ -7,7 +7,8 @@
 //! - `one+none`, or another list: COUNT of each. `all`: of each of these.
 //! - `scm`: one effect, of the three-dimensional model on a coarse grid.
 //! - `ambiguous`: one effect, at one load and one speed: whether the proposed runs, made and measured, tell what it is.
-//! - `tmcmc`: one effect; the search's log Bayes factor beside that of full evidences by the sampler.
+//! - `tmcmc`: one effect of the catalogue, each in turn; the search's log Bayes factor of it beside that of full evidences by the
+//!   sampler.
 //! - `data`: the experiments of `tests/data`.
 //!
 //! A truth is drawn from the priors of the job and of the effect's file, and run at the conditions of a plan; noise of 3 % of each

@@ -10,28 +10,31 @@ use shared::file::FileSet;
 use shared::outcome::Outcome;
 
 use crate::study::case::{SyntheticCase, spec};
-use crate::study::design::Plan;
 use crate::study::error::StudyError;
+use crate::study::kind::HiddenKind;
 use crate::study::parallel::each;
 
 use crate::study::local_search::LocalSearch;
 use crate::study::rate::{mean, median};
-use crate::study::trial::draw_detectable;
+use crate::study::trial::draw;
 
 /// Fewer repeat worse than the factors are read to \[DISCOVERY 1\].
 const SAMPLER: &str = "[sampler]\nparticles = 1000\nmoves = [5, 10]\n";
-/// Differences that no verdict turns on \[nats\].
+/// Largest difference that counts as none \[nats\], and the least share of such.
 const CLOSE: f64 = 1.0;
+const LEAST_SHARE: f64 = 0.97;
+/// No truth may fall short by more \[nats\].
+const MOST_SHORT: f64 = 3.0;
 /// The truths are others than those of the other kinds.
 const FIRST: u64 = 2_000_000;
 
-/// One effect, and what both say of the best: nats.
+/// The truth of one experiment, and what both say of it: nats.
 struct Compared {
     search: f64,
     sampler: f64,
 }
 
-/// Compares so many and prints the differences.
+/// Compares so many, every effect in turn, and prints the differences.
 pub(crate) fn run(count: u64, seed: u64) -> Result<(), StudyError> {
     let compared = each(count, |number| one(seed, number))?;
     let compared: Vec<Compared> = compared.into_iter().collect::<Result<_, StudyError>>()?;
@@ -39,53 +42,47 @@ pub(crate) fn run(count: u64, seed: u64) -> Result<(), StudyError> {
     let [bias, error] = mean(&differences);
     let sd = error * (differences.len() as f64).sqrt();
     let close = differences.iter().filter(|d| d.abs() <= CLOSE).count();
+    let lowest = differences.iter().copied().fold(f64::INFINITY, f64::min);
     println!(
-        "search less sampler: mean {bias:.2} ± {error:.2} nats, sd {sd:.2}, median {:.2}; {close} of {count} within {CLOSE}",
+        "search less sampler: mean {bias:.2} ± {error:.2} nats, sd {sd:.2}, median {:.2}, least {lowest:.2}; {close} of {count} within \
+         {CLOSE}",
         median(&differences)
     );
+    if (close as f64) < LEAST_SHARE * count as f64 || lowest < -MOST_SHORT {
+        return Err(format!("less than {LEAST_SHARE} within {CLOSE}, or one below -{MOST_SHORT}").into());
+    }
     Ok(())
 }
 
 fn one(seed: u64, number: u64) -> Result<Compared, StudyError> {
-    let case = draw_detectable(Plan::Full, 1, seed, FIRST + number)?;
+    let case = draw(HiddenKind::One, seed, FIRST + number)?;
+    let name = &case.hidden[0];
     let mut local = LocalSearch::new(&case.plan.job(), &case.experiment(), 1)?;
     let conclusion = local.run()?;
-    let effects = conclusion
+    let task = local.models.task();
+    let truth = task.library.iter().position(|c| c.name == *name);
+    let truth = conclusion
         .ranking
-        .effects
-        .iter()
-        .filter(|j| j.candidate.is_some());
-    let best = effects.reduce(|a, b| {
-        if b.log_bayes_factor > a.log_bayes_factor {
-            b
-        } else {
-            a
-        }
-    });
-    let best = best.ok_or("nothing was judged")?;
-    let name = best
-        .candidate
-        .map(|k| local.models.task().library[k].name.clone());
-    let name = name.ok_or("the best has no name")?;
+        .of(Some(truth.ok_or("the truth is no candidate")?));
+    let truth = truth.ok_or("the model rejected the truth")?;
     let base = Sampled::new(&case, &case.plan.job(), seed)?;
     let added = Extension::Effect(name.clone());
     let job = extended("job.toml", &case.plan.job(), &[&added])?;
     let with = Sampled::new(&case, &job, seed)?;
     let compared = Compared {
-        search: best.log_bayes_factor,
+        search: truth.log_bayes_factor,
         sampler: with.log_evidence - base.log_evidence,
     };
-    let own = conclusion.best.effects.as_slice() == best.candidate.as_slice();
-    let fitted = own.then(|| conclusion.best.draws.first()).flatten();
     println!(
-        "tmcmc {number} {} hidden, {name} best: search {:.2} ({:?}), sampler {:.2}; highest ln L of the base {:.1} and {:.1}, with it {:.1} and {:.1}",
-        case.hidden[0],
+        "tmcmc {number} {name}: search {:.2} ({:?}, {:.1} prior sds), sampler {:.2}; highest ln L of the base {:.1} and {:.1}, with it {:.1} \
+         and {:.1}",
         compared.search,
-        best.method,
+        truth.method,
+        truth.prior_sds,
         compared.sampler,
         log_likelihood(&case, &case.plan.job(), conclusion.base.draws.first())?,
         base.highest,
-        log_likelihood(&case, &job, fitted)?,
+        log_likelihood(&case, &job, Some(&truth.theta))?,
         with.highest
     );
     Ok(compared)

@@ -3,8 +3,12 @@
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::{FitStep, LaplaceFit};
 
-/// How many extensions are confirmed.
+/// How many extensions are confirmed at once, the best; so many are confirmed in any case.
 pub(crate) const COUNT: usize = 4;
+/// Whatever lies, or promises to lie, within so many nats of the best is confirmed: a fit that stuck may lead.
+pub(crate) const WITHIN: f64 = 10.0;
+/// Beyond the first, an extension is worth its confirmation where it promises more \[nats\].
+pub(crate) const LEAST_PROMISE: f64 = 0.0;
 
 /// Starts that fill the prior, where the best fit so far contradicts the data.
 pub(crate) const ANYWHERE: usize = 16;
@@ -14,8 +18,8 @@ pub(crate) const MOST_STARTS: usize = 6;
 /// As thorough as the base's fit.
 pub(crate) const PLAN: [FitStep; 1] = [FitStep::Rounds { most: 3, trials: 12 }];
 
-/// Distances of the strength from its neutral value, in standard deviations of its prior: weak, usual and strong.
-const ONE_SIDED: [f64; 3] = [0.3, 1.0, 2.0];
+/// Distances of the strength from its neutral value, in standard deviations of its prior: very weak, weak, usual and strong.
+const ONE_SIDED: [f64; 4] = [0.05, 0.3, 1.0, 2.0];
 const TWO_SIDED: [f64; 4] = [0.5, -0.5, 1.5, -1.5];
 
 /// Starts at the base's fit with the effect added.

@@ -22,6 +22,11 @@ pub(crate) fn fit(
     columns.extend_from_slice(&screened.columns[base.columns.len()..]);
     let shapes = || (base.columns.len()..frame.dimension()).filter(|k| !frame.is_strength(*k));
     if !is_present {
+        if let Some((k, neutral)) = frame.strength() {
+            let step = screened.point.position[k] - neutral;
+            let pairs = screened.point.values.iter().zip(&base.point.values);
+            columns[k] = pairs.map(|(x, m)| (x - m) / step).collect();
+        }
         // Where an effect is absent its shape changes nothing.
         for k in shapes() {
             columns[k].fill(0.0);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::effect_search::ranking::EvidenceMethod;
-use crate::effect_search::screen::{self, Evaluated, STRENGTHS};
+use crate::effect_search::screen::{self, Evaluated, LEVELS};
 use crate::effect_search::state::{EffectSearch, EvidenceEstimate, Phase};
 use crate::effect_search::{base, confirmation, extension};
 use crate::laplace::batch::FitBatch;
@@ -41,7 +41,7 @@ impl EffectSearch {
                 batch.tell(&self.likelihood, answers);
                 self.polish(batch);
             }
-            Phase::ConfirmationStarts => self.after_confirmation_starts(answers),
+            Phase::ConfirmationStarts(candidates) => self.after_confirmation_starts(candidates, answers),
             Phase::Confirmation(mut batch) => {
                 batch.tell(&self.likelihood, answers);
                 self.confirm(batch);
@@ -86,11 +86,14 @@ impl EffectSearch {
     pub(super) fn screen(&mut self, level: usize, wanted: Vec<usize>) {
         let Some(base) = &self.base else { return };
         let mut asked = Vec::new();
-        for k in wanted {
+        for &k in &wanted {
             let frame = &self.candidates[k].frame;
             let base = &base.fit.point.position;
-            let at = screen::positions(frame, base, self.depth.shapes, STRENGTHS[level]);
+            let at = screen::positions(frame, base, self.depth.shapes, level);
             asked.extend(at.into_iter().map(|position| (Some(k), position)));
+        }
+        if asked.is_empty() && level + 1 < LEVELS.len() {
+            return self.screen(level + 1, wanted);
         }
         if asked.is_empty() {
             return self.extend();
@@ -125,7 +128,7 @@ impl EffectSearch {
                 None => refused.push(k),
             }
         }
-        if level + 1 < STRENGTHS.len() && !refused.is_empty() {
+        if level + 1 < LEVELS.len() && !refused.is_empty() {
             self.screen(level + 1, refused);
         } else {
             self.extend();
@@ -167,11 +170,17 @@ impl EffectSearch {
         if !self.depth.confirms {
             return self.finish();
         }
+        let first = self.best(confirmation::COUNT);
+        self.confirm_these(first);
+    }
+
+    /// Fits candidates from several starts.
+    fn confirm_these(&mut self, candidates: Vec<usize>) {
         let Some(base) = &self.base else { return };
         // A base that contradicts the data may lie at an end of its prior, and is then a poor start.
         let is_wrong = self.is_wrong();
         let mut asked = Vec::new();
-        for k in self.best(confirmation::COUNT) {
+        for &k in &candidates {
             let starts = confirmation::starts(&self.candidates[k].frame, &base.fit).into_iter();
             asked.extend(starts.map(|position| (Some(k), position)));
             if is_wrong {
@@ -188,10 +197,10 @@ impl EffectSearch {
             return self.finish();
         }
         self.ask(asked);
-        self.phase = Phase::ConfirmationStarts;
+        self.phase = Phase::ConfirmationStarts(candidates);
     }
 
-    fn after_confirmation_starts(&mut self, answers: Vec<Option<Vec<f64>>>) {
+    fn after_confirmation_starts(&mut self, candidates: Vec<usize>, answers: Vec<Option<Vec<f64>>>) {
         let Some(base) = &self.base else { return };
         self.evaluations.confirmation += answers.len();
         let mut points: BTreeMap<Option<usize>, Vec<FitPoint>> = BTreeMap::new();
@@ -211,7 +220,7 @@ impl EffectSearch {
                 fits.push((candidate, fit));
             }
         }
-        for k in self.best(confirmation::COUNT) {
+        for k in candidates {
             if let Some(fit) = self.fit_of(k) {
                 fits.push((Some(k), fit.continued(&confirmation::PLAN)));
             }
@@ -226,6 +235,10 @@ impl EffectSearch {
         self.evaluations.confirmation += batch.evaluations();
         self.take_base(&batch);
         self.take(batch, EvidenceMethod::Confirmed);
+        let more = self.unconfirmed();
+        if !more.is_empty() {
+            return self.confirm_these(more);
+        }
         let models = self.samplers();
         self.sample(models);
     }

@@ -28,6 +28,8 @@ pub struct RankedEffect {
     pub screen_log_bayes_factor: f64,
     /// ln p(data | theta) at the most probable parameters.
     pub log_likelihood: f64,
+    /// The largest distance of a strength from the middle of its prior, in standard deviations of that prior.
+    pub prior_sds: f64,
     /// How its evidence was computed.
     pub method: EvidenceMethod,
     /// Its posterior probability; in a whole search, with that of the combinations in which it has the highest Bayes factor.

@@ -1,14 +1,18 @@
 //! The screen: the evidence of every candidate by finite steps from the fitted base.
 
 use crate::laplace::coordinate::NormalFrame;
-use crate::laplace::evidence::{log_evidence, log_sum_exp};
+use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
+use crate::laplace::strength_prior::mixed_evidence;
 use statistics::likelihood::Likelihood;
 
-/// Steps of the strength, in standard deviations of its prior; each is tried where the model rejects the one before.
-pub(super) const STRENGTHS: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
+/// Steps of a single strength, in standard deviations of its prior. An effect that acts like a square root near zero shows its size
+/// at short steps only.
+const STRENGTHS: [f64; 3] = [1.0, 0.3, 0.1];
+/// Steps of each of several strengths, and the last resort of a single one; each is tried where the model rejects the one before.
+pub(super) const LEVELS: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
 
 /// A position with its predicted values; `None` where the model rejected it.
 pub(super) type Evaluated = (Vec<f64>, Option<Vec<f64>>);
@@ -16,25 +20,27 @@ pub(super) type Evaluated = (Vec<f64>, Option<Vec<f64>>);
 /// The screen's result for one candidate.
 #[derive(Debug, Clone)]
 pub(super) struct Screened {
-    /// At the best shape. Of several strengths: where they are absent.
+    /// At the best shape and strength. Of several strengths: where they are absent.
     pub(super) point: FitPoint,
-    /// Change of the predictions per unit of the strength's coordinate. Of several strengths: that of the linear solution.
+    /// Change of the predictions per unit of the strength's coordinate, at its usual size. Of several strengths: that of the linear
+    /// solution.
     pub(super) change: Vec<f64>,
     /// Derivatives along the candidate's own coordinates, in the order of the frame; zeros for all others.
     pub(super) columns: Vec<Vec<f64>>,
-    /// Mean over the shapes.
+    /// Mean over the shapes of the best among the strengths.
     pub(super) log_bayes_factor: f64,
 }
 
-/// The positions to evaluate: every shape that is tried, or a step along each of several strengths.
-pub(super) fn positions(frame: &NormalFrame, base: &[f64], shapes: &[f64], strength: f64) -> Vec<Vec<f64>> {
+/// The positions to evaluate: every strength at the first shape and the usual strength at the others, or a step along each of several
+/// strengths.
+pub(super) fn positions(frame: &NormalFrame, base: &[f64], shapes: &[f64], level: usize) -> Vec<Vec<f64>> {
     let Some((k, neutral)) = frame.strength() else {
         let mut absent = base.to_vec();
         absent.resize(frame.dimension(), 0.0);
         let absent = frame.without(&absent);
         let along = |&(k, neutral): &(usize, f64)| {
             let mut position = absent.clone();
-            position[k] = neutral + strength;
+            position[k] = neutral + LEVELS[level];
             position
         };
         return frame.strengths.iter().map(along).collect();
@@ -44,13 +50,22 @@ pub(super) fn positions(frame: &NormalFrame, base: &[f64], shapes: &[f64], stren
     } else {
         &shapes[..1]
     };
-    let at = |&shape: &f64| {
+    let at = |shape: f64, strength: f64| {
         let mut position = base.to_vec();
         position.resize(frame.dimension(), shape);
         position[k] = neutral + strength;
         position
     };
-    shapes.iter().map(at).collect()
+    let last = LEVELS.len() - 1;
+    match level {
+        0 => {
+            let strengths = STRENGTHS.iter().map(|&strength| at(shapes[0], strength));
+            let others = shapes[1..].iter().map(|&shape| at(shape, STRENGTHS[0]));
+            strengths.chain(others).collect()
+        }
+        level if level == last => vec![at(shapes[0], LEVELS[last])],
+        _ => Vec::new(),
+    }
 }
 
 /// The screen's result from the evaluated positions.
@@ -78,6 +93,15 @@ fn difference(values: &[f64], base: &LaplaceFit, step: f64) -> Vec<f64> {
     pairs.map(|(with, without)| (with - without) / step).collect()
 }
 
+/// A step of the screen.
+struct Node {
+    log_bayes_factor: f64,
+    /// Of the strength.
+    step: f64,
+    point: FitPoint,
+    change: Vec<f64>,
+}
+
 fn of_one(
     frame: &NormalFrame,
     (strength, neutral): (usize, f64),
@@ -89,11 +113,11 @@ fn of_one(
         fit: base,
         log_evidence: base_evidence,
     } = base;
-    let halves = frame.halves();
     let shapes = || (base.point.position.len()..frame.dimension()).filter(|k| *k != strength);
     let nodes = evaluated.iter().filter_map(|(position, values)| {
         let values = values.clone()?;
-        let change = difference(&values, base, position[strength] - neutral);
+        let step = position[strength] - neutral;
+        let change = difference(&values, base, step);
         let mut columns = base.columns.clone();
         columns.resize(frame.dimension(), vec![0.0; values.len()]);
         columns[strength].clone_from(&change);
@@ -106,37 +130,83 @@ fn of_one(
             value -= 0.5 * position[k] * position[k];
             quadratic.gradient[k] = 0.0;
         }
-        let factor = log_evidence(&quadratic, value, &halves)? - base_evidence;
+        let evidence = mixed_evidence(frame, &absent.position, &quadratic, value)?;
         let point = FitPoint::new(frame, likelihood, position.clone(), values)?;
-        Some((factor, point, change))
+        Some(Node {
+            log_bayes_factor: evidence - base_evidence,
+            step,
+            point,
+            change,
+        })
     });
-    let nodes: Vec<(f64, FitPoint, Vec<f64>)> = nodes.collect();
-    let factors = nodes.iter().map(|node| node.0);
-    let mean = log_sum_exp(factors) - libm::log(nodes.len() as f64);
-    let best = nodes
+    let nodes: Vec<Node> = nodes.collect();
+    let highest = |nodes: &mut dyn Iterator<Item = &Node>| {
+        nodes
+            .map(|node| node.log_bayes_factor)
+            .fold(f64::NEG_INFINITY, f64::max)
+    };
+    let is_shape_of =
+        |a: &Node, b: &Node| shapes().all(|k| a.point.position[k].to_bits() == b.point.position[k].to_bits());
+    // Of each shape, its best strength; the first node of a shape stands for it.
+    let first_of_shape = |i: &usize| !nodes[..*i].iter().any(|other| is_shape_of(other, &nodes[*i]));
+    let by_shape: Vec<f64> = (0..nodes.len())
+        .filter(first_of_shape)
+        .map(|i| highest(&mut nodes.iter().filter(|node| is_shape_of(node, &nodes[i]))))
+        .collect();
+    let mean = log_sum_exp(by_shape.iter().copied()) - libm::log(by_shape.len() as f64);
+    let best = nodes.iter().reduce(|best, node| {
+        if node.log_bayes_factor > best.log_bayes_factor {
+            node
+        } else {
+            best
+        }
+    })?;
+    let mut columns = vec![vec![0.0; best.point.values.len()]; frame.dimension()];
+    let usual = nodes
         .iter()
-        .reduce(|best, node| if node.0 > best.0 { node } else { best })?;
-    let mut columns = vec![vec![0.0; best.1.values.len()]; frame.dimension()];
+        .filter(|node| is_shape_of(node, best))
+        .reduce(|a, b| if b.step > a.step { b } else { a })?;
     for k in shapes() {
-        let t = |node: &(f64, FitPoint, Vec<f64>)| node.1.position[k];
-        let distance = |node: &(f64, FitPoint, Vec<f64>)| (t(node) - t(best)).abs();
-        // The nearest other shape of the screen.
+        let t = |node: &Node| node.point.position[k];
+        let distance = |node: &Node| (t(node) - t(usual)).abs();
+        // The nearest other shape at the same strength.
         let other = nodes
             .iter()
-            .filter(|node| distance(node) > 0.0)
+            .filter(|node| distance(node) > 0.0 && node.step.to_bits() == usual.step.to_bits())
             .reduce(|a, b| if distance(b) < distance(a) { b } else { a });
         if let Some(other) = other {
-            let pairs = other.1.values.iter().zip(&best.1.values);
-            columns[k] = pairs.map(|(x, m)| (x - m) / (t(other) - t(best))).collect();
+            let share = best.step / usual.step / (t(other) - t(usual));
+            let pairs = other.point.values.iter().zip(&usual.point.values);
+            columns[k] = pairs.map(|(x, m)| (x - m) * share).collect();
         }
     }
-    columns[strength].clone_from(&best.2);
+    columns[strength] = slope(best, &nodes, base, is_shape_of);
     Some(Screened {
-        point: best.1.clone(),
-        change: best.2.clone(),
+        point: best.point.clone(),
+        change: usual.change.clone(),
         columns,
         log_bayes_factor: mean,
     })
+}
+
+/// The derivative along the strength at a node: between the steps below and above it, of which the lowest is that of the base.
+fn slope(
+    node: &Node,
+    nodes: &[Node],
+    base: &LaplaceFit,
+    is_shape_of: impl Fn(&Node, &Node) -> bool,
+) -> Vec<f64> {
+    let same = || nodes.iter().filter(|other| is_shape_of(other, node));
+    let below = same()
+        .filter(|other| other.step < node.step)
+        .reduce(|a, b| if b.step > a.step { b } else { a });
+    let above = same()
+        .filter(|other| other.step > node.step)
+        .reduce(|a, b| if b.step < a.step { b } else { a });
+    let (low, from) = below.map_or((0.0, &base.point.values), |node| (node.step, &node.point.values));
+    let to = above.unwrap_or(node);
+    let pairs = to.point.values.iter().zip(from);
+    pairs.map(|(x, m)| (x - m) / (to.step - low)).collect()
 }
 
 /// The log Bayes factor is `g' H^-1 g / 2 - ln det(H) / 2` less that of the base.
@@ -155,7 +225,7 @@ fn of_several(
     let absent = frame.without(&evaluated.first()?.0);
     let absent = FitPoint::new(frame, likelihood, absent, fit.point.values.clone())?;
     let quadratic = quadratic(frame, likelihood, &absent, &columns);
-    let evidence = log_evidence(&quadratic, absent.value, &frame.halves())?;
+    let evidence = mixed_evidence(frame, &absent.position, &quadratic, absent.value)?;
     let solution = quadratic.step(0.0)?;
     let own = || frame.strengths.iter().map(|(k, _)| *k);
     let change = (0..absent.values.len())

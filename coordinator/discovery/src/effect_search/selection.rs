@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::chi_square::FitChiSquare;
 use crate::effect_search::class::{Projection, classes};
+use crate::effect_search::confirmation;
 use crate::effect_search::ranking::{EffectRanking, EvidenceMethod, RankedEffect};
 use crate::effect_search::state::{EffectSearch, EvidenceEstimate, Phase};
 use crate::laplace::batch::FitBatch;
@@ -84,22 +85,48 @@ impl EffectSearch {
                 fit: fit.clone(),
                 log_evidence,
             };
-            let estimates = self.candidates.iter_mut().filter_map(|c| c.estimate.as_mut());
-            for estimate in estimates {
-                estimate.log_bayes_factor -= gain;
+            for candidate in &mut self.candidates {
+                let estimate = candidate.estimate.as_mut().map(|e| &mut e.log_bayes_factor);
+                let screened = candidate.screened.as_mut().map(|s| &mut s.log_bayes_factor);
+                for factor in estimate.into_iter().chain(screened) {
+                    *factor -= gain;
+                }
             }
         }
     }
 
-    /// The candidates with the highest Bayes factors. With Broyden's Jacobian alone the screen's Bayes factor counts if it is higher,
-    /// because such a fit may not have converged.
+    /// The candidates with the highest Bayes factors. Until a candidate is confirmed the screen's Bayes factor counts if it is higher,
+    /// because its fit may not have converged.
     pub(super) fn best(&self, count: usize) -> Vec<usize> {
+        self.promises().into_iter().take(count).map(|(k, _)| k).collect()
+    }
+
+    /// Candidates that are to be confirmed next: those near the best that are not confirmed yet.
+    pub(super) fn unconfirmed(&self) -> Vec<usize> {
+        let promises = self.promises();
+        let Some(&(_, best)) = promises.first() else {
+            return Vec::new();
+        };
+        let least = (best - confirmation::WITHIN).max(confirmation::LEAST_PROMISE);
+        let near = promises.into_iter().filter(|(_, promise)| *promise > least);
+        let is_open = |k: &usize| {
+            let estimate = self.candidates[*k].estimate.as_ref();
+            estimate.is_some_and(|estimate| estimate.method < EvidenceMethod::Confirmed)
+        };
+        near.map(|(k, _)| k)
+            .filter(is_open)
+            .take(confirmation::COUNT)
+            .collect()
+    }
+
+    /// The candidates with their Bayes factors, the highest first.
+    fn promises(&self) -> Vec<(usize, f64)> {
         let states = self.candidates.iter().enumerate();
         let mut order: Vec<(usize, f64)> = states
             .filter_map(|(k, state)| {
                 let estimate = state.estimate.as_ref()?;
                 let screened = state.screened.as_ref().map(|s| s.log_bayes_factor);
-                let screened = screened.filter(|_| estimate.method <= EvidenceMethod::RankOne);
+                let screened = screened.filter(|_| estimate.method < EvidenceMethod::Confirmed);
                 let highest = estimate
                     .log_bayes_factor
                     .max(screened.unwrap_or(f64::NEG_INFINITY));
@@ -107,7 +134,7 @@ impl EffectSearch {
             })
             .collect();
         order.sort_by(|a, b| b.1.total_cmp(&a.1));
-        order.into_iter().take(count).map(|(k, _)| k).collect()
+        order
     }
 
     /// Samplers of the base and the two best effects, where these are close and of different classes, or the best is at a bound.
@@ -187,7 +214,8 @@ impl EffectSearch {
             candidate,
             log_bayes_factor: 0.0,
             screen_log_bayes_factor: 0.0,
-            log_likelihood: point.log_likelihood(),
+            log_likelihood: point.log_likelihood(frame),
+            prior_sds: frame.strength_distance(&point.position),
             method: EvidenceMethod::Confirmed,
             probability: 0.0,
             class: 0,

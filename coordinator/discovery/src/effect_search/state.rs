@@ -56,7 +56,8 @@ pub(super) enum Phase {
     Screen(usize),
     Extensions(FitBatch),
     Polish(FitBatch),
-    ConfirmationStarts,
+    /// The candidates that are confirmed.
+    ConfirmationStarts(Vec<usize>),
     Confirmation(FitBatch),
     /// The models that are sampled, and how many draws each waits for.
     Sampling(Vec<(Option<usize>, ImportanceSampler)>, Vec<usize>),

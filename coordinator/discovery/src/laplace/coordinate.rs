@@ -33,6 +33,8 @@ pub(crate) struct NormalFrame {
     pub(crate) least_difference: f64,
     /// Index of each strength of the last candidate, and its coordinate at which the candidate is absent.
     pub(crate) strengths: Vec<(usize, f64)>,
+    /// Indices of the strengths of every candidate, which share a scale.
+    pub(crate) groups: Vec<Vec<usize>>,
 }
 
 impl NormalCoordinate {
@@ -82,6 +84,7 @@ impl NormalFrame {
             coordinates: prior.iter().map(NormalCoordinate::whole).collect(),
             least_difference,
             strengths: Vec::new(),
+            groups: Vec::new(),
         }
     }
 
@@ -104,11 +107,14 @@ impl NormalFrame {
             };
             (first + strength, absent)
         };
-        let strengths = candidate.strengths.iter().map(&mut neutral).collect();
+        let strengths: Vec<(usize, f64)> = candidate.strengths.iter().map(&mut neutral).collect();
+        let mut groups = self.groups.clone();
+        groups.push(strengths.iter().map(|(k, _)| *k).collect());
         Self {
             coordinates,
             least_difference: self.least_difference,
             strengths,
+            groups,
         }
     }
 
@@ -144,6 +150,12 @@ impl NormalFrame {
 
     pub(crate) fn dimension(&self) -> usize {
         self.coordinates.len()
+    }
+
+    /// The largest distance of a strength of the last candidate from the middle of its prior, in standard deviations.
+    pub(crate) fn strength_distance(&self, position: &[f64]) -> f64 {
+        let distances = self.strengths.iter().map(|&(k, _)| position[k].abs());
+        distances.fold(0.0, f64::max)
     }
 
     /// Whether the single strength is half-normal.

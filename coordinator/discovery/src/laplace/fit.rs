@@ -3,10 +3,10 @@
 use std::collections::VecDeque;
 
 use crate::laplace::coordinate::NormalFrame;
-use crate::laplace::evidence::log_evidence;
 use crate::laplace::noise;
 use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
+use crate::laplace::strength_prior::mixed_evidence;
 use inference::lm::QuadraticModel;
 use statistics::likelihood::Likelihood;
 
@@ -300,6 +300,6 @@ impl LaplaceFit {
                 *slope = 0.0;
             }
         }
-        log_evidence(&quadratic, self.point.value, &halves)
+        mixed_evidence(&self.frame, &self.point.position, &quadratic, self.point.value)
     }
 }

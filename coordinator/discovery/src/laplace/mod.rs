@@ -1,7 +1,7 @@
 //! Laplace's approximation: the fit of a model and the evidence read from it.
 //!
 //! # Layout
-//! - `coordinate`: parameters as standard normal coordinates.
+//! - `coordinate`: parameters as standard normal coordinates. `strength_prior`: the heavier tails of a candidate's strengths.
 //! - `point`: an evaluated position. `quadratic`: the expansion of the log posterior about it. `noise`: its part along noise sds.
 //! - `fit`: the minimisation for one model. `batch`: several side by side.
 //! - `evidence`: the integral over a quadratic. `importance`: the same integral by importance sampling. `draws`: posterior draws.
@@ -15,3 +15,4 @@ pub(crate) mod importance;
 mod noise;
 pub(crate) mod point;
 pub(crate) mod quadratic;
+pub(crate) mod strength_prior;

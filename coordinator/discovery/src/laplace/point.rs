@@ -1,6 +1,7 @@
 //! An evaluated position.
 
 use crate::laplace::coordinate::NormalFrame;
+use crate::laplace::strength_prior;
 use statistics::likelihood::Likelihood;
 use statistics::log_likelihood::LogLikelihood;
 
@@ -9,7 +10,7 @@ use statistics::log_likelihood::LogLikelihood;
 pub(crate) struct FitPoint {
     pub(crate) position: Vec<f64>,
     pub(crate) values: Vec<f64>,
-    /// `-log-likelihood + |t|^2/2`, in nats.
+    /// `-log-likelihood - ln prior`, in nats: see [`strength_prior::penalty`].
     pub(crate) value: f64,
 }
 
@@ -25,17 +26,15 @@ impl FitPoint {
         let Ok(LogLikelihood::Finite(nats)) = likelihood.log_likelihood(&values, &theta) else {
             return None;
         };
-        let squares: f64 = position.iter().map(|t| t * t).sum();
         Some(Self {
-            value: 0.5 * squares - nats.get(),
+            value: strength_prior::penalty(frame, &position) - nats.get(),
             position,
             values,
         })
     }
 
     /// ln p(data | t).
-    pub(crate) fn log_likelihood(&self) -> f64 {
-        let squares: f64 = self.position.iter().map(|t| t * t).sum();
-        0.5 * squares - self.value
+    pub(crate) fn log_likelihood(&self, frame: &NormalFrame) -> f64 {
+        strength_prior::penalty(frame, &self.position) - self.value
     }
 }

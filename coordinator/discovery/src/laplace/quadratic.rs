@@ -5,10 +5,11 @@ use nalgebra::DMatrix;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::noise;
 use crate::laplace::point::FitPoint;
+use crate::laplace::strength_prior;
 use inference::lm::QuadraticModel;
 use statistics::likelihood::Likelihood;
 
-/// The Gauss-Newton expansion of `-log-likelihood + |t|^2/2` about a point.
+/// The Gauss-Newton expansion of the negative log posterior about a point.
 ///
 /// # Arguments
 /// - `columns`: the derivatives of the predicted values, one column for each coordinate.
@@ -32,6 +33,7 @@ pub(crate) fn quadratic(
         }
     }
     noise::add(frame, likelihood, point, &mut gradient, &mut hessian);
+    strength_prior::add(frame, &point.position, &mut gradient, &mut hessian);
     let (lower, upper) = frame.room(&point.position);
     QuadraticModel {
         gradient,

@@ -29,7 +29,8 @@ impl Weighing {
             let single = effect.candidate.and_then(|k| hypotheses.single(k));
             if let Some(single) = single.filter(|s| s.log_bayes_factor > effect.log_bayes_factor) {
                 effect.log_bayes_factor = single.log_bayes_factor;
-                effect.log_likelihood = single.fit.point.log_likelihood();
+                effect.log_likelihood = single.fit.point.log_likelihood(&single.fit.frame);
+                effect.prior_sds = single.fit.frame.strength_distance(&single.fit.point.position);
                 effect.theta = single.fit.theta();
                 effect.at_bound = single.fit.frame.at_bound(&single.fit.point.position);
             }
