@@ -6,9 +6,11 @@ use statistics::likelihood::{CommonErrorSize, Discrepancy, ErrorLaw, ErrorSd, Li
 
 /// p-value below which a fit contradicts the data.
 const WRONG: f64 = 0.001;
+/// p-value below which a fit leaves something unexplained.
+const INCOMPLETE: f64 = 0.01;
 /// p-value of the library's best fit below which one more effect is searched.
 pub(crate) const FURTHER_EFFECT: f64 = 0.5;
-/// p-value of the library's best fit below which laws outside the library are searched.
+/// p-value of the base's fit below which laws outside the library are searched although no effect is detected.
 pub(crate) const OUTSIDE_LAW: f64 = 0.05;
 
 /// Squared residuals in units of the noise, and their degrees of freedom.
@@ -55,6 +57,17 @@ impl FitChiSquare {
     #[must_use]
     pub fn is_wrong(&self) -> bool {
         self.p() < WRONG
+    }
+
+    /// Whether the fit leaves nothing to explain: p >= 0.01.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.p() >= INCOMPLETE
+    }
+
+    /// Over the degrees of freedom, at least 1.
+    pub(crate) fn ratio(&self) -> f64 {
+        (self.value / self.degrees_of_freedom.max(1.0)).max(1.0)
     }
 
     /// The excess over its expectation.

@@ -32,5 +32,6 @@ pub use search::discovery::DiscoverySearch;
 pub use search::next_run::InformativeRun;
 pub use search::query::{QueriedModel, Query};
 pub use search::verdict::SearchVerdict;
+pub use search::weighing::WeighedSet;
 pub use settings::{SearchSettings, Starts};
 pub use task::{LawCandidate, ProposedRuns, Reduction, SearchTask};

@@ -20,11 +20,26 @@ pub(crate) struct Explanation {
     pub(crate) combinations: Vec<(f64, f64)>,
 }
 
+/// One model: an explanation alone, or one of the combinations that count for it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ModelProbability {
+    /// The explanation, by its place.
+    pub(crate) explanation: usize,
+    /// The combination, by its place among those of the explanation; `None`: the explanation alone.
+    pub(crate) combination: Option<usize>,
+    pub(crate) prior: f64,
+    pub(crate) posterior: f64,
+}
+
 /// Posterior probabilities.
 #[derive(Debug)]
 pub(crate) struct Probabilities {
-    /// Of each explanation.
+    /// Of each explanation: the sum over its models.
     pub(crate) of_each: Vec<f64>,
+    /// Of each model.
+    pub(crate) of_models: Vec<ModelProbability>,
+    /// Prior probability of a law outside the library; `None`: not searched.
+    pub(crate) outside_prior: Option<f64>,
     /// Of a law outside the library.
     pub(crate) outside: Option<f64>,
     /// The smallest set of classes with 95 % probability, the most probable first; `None`: the law outside the library.
@@ -37,11 +52,13 @@ impl Probabilities {
     ///
     /// # Arguments
     /// - `outside`: log Bayes factor of a law outside the library; `None`: not searched.
+    /// - `misfit`: chi-square of the best explanation over its degrees of freedom, 1 where it fits. Log Bayes factors are divided by it,
+    ///   as if the noise were larger by its root: where every explanation is wrong, differences between them mean less.
     ///
     /// # Source
     /// Kass & Raftery 1995, section 5.3, doi:10.1080/01621459.1995.10476572. Checked by
     /// `effect_search::probabilities_sum_to_one_and_follow_the_prior_over_classes`.
-    pub(crate) fn new(explanations: &[Explanation], outside: Option<f64>) -> Self {
+    pub(crate) fn new(explanations: &[Explanation], outside: Option<f64>, misfit: f64) -> Self {
         let classes = explanations.iter().map(|e| e.class).max().unwrap_or(0);
         let alternatives = classes + usize::from(outside.is_some());
         let each = (1.0 - PRIOR_OF_NONE) / alternatives.max(1) as f64;
@@ -52,16 +69,34 @@ impl Probabilities {
             0 => PRIOR_OF_NONE,
             class => each / members(class),
         };
-        let weight = |explanation: &Explanation| {
+        // Log prior and log weight of the explanation alone, then of its combinations.
+        let models = |explanation: &Explanation| -> Vec<(f64, f64)> {
             let log_prior = libm::log(prior(explanation.class));
-            let own = std::iter::once(log_prior + explanation.log_bayes_factor);
+            let own = std::iter::once((log_prior, log_prior + explanation.log_bayes_factor / misfit));
             let combinations = explanation.combinations.iter();
-            log_sum_exp(own.chain(combinations.map(|(factor, cost)| log_prior + factor - cost)))
+            let others =
+                combinations.map(|(factor, cost)| (log_prior - cost, log_prior + factor / misfit - cost));
+            own.chain(others).collect()
         };
-        let weights: Vec<f64> = explanations.iter().map(weight).collect();
-        let outside = outside.map(|factor| libm::log(each) + factor);
+        let models: Vec<Vec<(f64, f64)>> = explanations.iter().map(models).collect();
+        let weight = |models: &Vec<(f64, f64)>| log_sum_exp(models.iter().map(|(_, weight)| *weight));
+        let weights: Vec<f64> = models.iter().map(weight).collect();
+        let outside_prior = outside.map(|_| each);
+        let outside = outside.map(|factor| libm::log(each) + factor / misfit);
         let sum = log_sum_exp(weights.iter().copied().chain(outside));
         let of_each: Vec<f64> = weights.iter().map(|w| libm::exp(w - sum)).collect();
+        let of_models = models.iter().enumerate().flat_map(|(explanation, models)| {
+            models
+                .iter()
+                .enumerate()
+                .map(move |(place, (log_prior, weight))| ModelProbability {
+                    explanation,
+                    combination: place.checked_sub(1),
+                    prior: libm::exp(*log_prior),
+                    posterior: libm::exp(weight - sum),
+                })
+        });
+        let of_models = of_models.collect();
         let outside = outside.map(|w| libm::exp(w - sum));
         let of_class = |class: usize| -> f64 {
             let own = explanations.iter().zip(&of_each);
@@ -81,6 +116,8 @@ impl Probabilities {
         Self {
             credible: credible.map(|(class, _)| class).collect(),
             of_each,
+            of_models,
+            outside_prior,
             outside,
         }
     }
@@ -129,7 +166,7 @@ mod tests {
             .collect();
         let sum = log_sum_exp(weights.iter().copied());
         let expected: Vec<u64> = weights.iter().map(|w| libm::exp(w - sum).to_bits()).collect();
-        let probabilities = Probabilities::new(&all, None);
+        let probabilities = Probabilities::new(&all, None, 1.0);
         let given: Vec<u64> = probabilities.of_each.iter().map(|p| p.to_bits()).collect();
         assert_eq!(given, expected);
     }
@@ -142,7 +179,7 @@ mod tests {
             explanation(2, 2.0),
             explanation(3, -9.0),
         ];
-        let probabilities = Probabilities::new(&all, Some(4.0));
+        let probabilities = Probabilities::new(&all, Some(4.0), 1.0);
         assert_eq!(probabilities.credible, [None, Some(1), Some(2)]);
         let total = probabilities.of_each.iter().sum::<f64>() + probabilities.outside.unwrap();
         assert!((total - 1.0).abs() < 1e-12);
@@ -150,6 +187,36 @@ mod tests {
 
     #[test]
     fn without_an_alternative_nothing_is_missing() {
-        assert_eq!(Probabilities::new(&[explanation(0, 0.0)], None).of_each, [1.0]);
+        assert_eq!(
+            Probabilities::new(&[explanation(0, 0.0)], None, 1.0).of_each,
+            [1.0]
+        );
+    }
+
+    #[test]
+    fn a_misfit_brings_explanations_closer() {
+        let all = [explanation(0, 0.0), explanation(1, 12.0), explanation(2, 4.0)];
+        let odds = |misfit: f64| {
+            let p = Probabilities::new(&all, None, misfit).of_each;
+            libm::log(p[1] / p[2])
+        };
+        assert!((odds(1.0) - 8.0).abs() < 1e-9 && (odds(4.0) - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_models_of_an_explanation_share_its_probability() {
+        let mut all = [explanation(0, 0.0), explanation(1, 3.0)];
+        all[1].combinations = vec![(9.0, 3.5), (2.0, 3.5)];
+        let probabilities = Probabilities::new(&all, Some(1.0), 1.0);
+        let own = probabilities.of_models.iter().filter(|m| m.explanation == 1);
+        let sum: f64 = own.clone().map(|m| m.posterior).sum();
+        assert!((sum - probabilities.of_each[1]).abs() < 1e-12);
+        let places: Vec<Option<usize>> = own.map(|m| m.combination).collect();
+        assert_eq!(places, [None, Some(0), Some(1)]);
+        // The printed priors and Bayes factors give the printed odds.
+        let models = &probabilities.of_models;
+        let odds = models[2].posterior / models[0].posterior;
+        let expected = models[2].prior / models[0].prior * libm::exp(9.0);
+        assert!((odds / expected - 1.0).abs() < 1e-12);
     }
 }

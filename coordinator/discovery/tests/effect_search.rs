@@ -110,17 +110,17 @@ fn near(given: f64, expected: f64) {
     );
 }
 
-/// A fit ends where a step gains less than 0.01 nats.
+/// A fit ends where a step gains less than 0.01 nats, on either side of the difference.
 #[track_caller]
 fn fitted(given: f64, expected: f64) {
-    assert!((given - expected).abs() < 0.01, "{given}, not {expected}");
+    assert!((given - expected).abs() < 0.02, "{given}, not {expected}");
 }
 
 const BASE: [(usize, f64); 2] = [(0, 1.0), (1, 1.0)];
 
-/// The evidence where a strength's prior has another scale with a fifth of the probability each: four times, and a quarter.
+/// The evidence where a strength's prior has another width with a fifth of the probability each.
 fn mixed(evidence: impl Fn(f64) -> f64) -> f64 {
-    let parts = [(0.6, 1.0), (0.2, 4.0), (0.2, 0.25)];
+    let parts = [(0.4, 1.0), (0.2, 4.0), (0.2, 0.25), (0.2, 0.0625)];
     libm::log(
         parts
             .iter()

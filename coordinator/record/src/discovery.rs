@@ -39,12 +39,26 @@ pub struct Discovery {
     pub verdict: Verdict,
     /// The verdict in a sentence for a test engineer.
     pub text: String,
-    /// The addition to the model, where the verdict names one.
+    /// The addition to the model, where the verdict names one, or where it is open but evidence and prediction of left-out levels
+    /// have the same best set: its leading effect.
     pub extension: Option<Extension>,
     /// Effects of the model that no longer improve its evidence.
     pub drop: Vec<String>,
     /// Every explanation by falling probability, with `none` and, if it was searched, `not_in_library`.
     pub effects: Vec<JudgedEffect>,
+    /// Every model that was compared, by falling probability; those of the effects are the sums over the sets that they lead.
+    #[serde(default)]
+    pub sets: Vec<JudgedSet>,
+    /// Chi-square of the best explanation over its degrees of freedom, 1 where it fits: a set's probability is proportional to
+    /// `prior exp(log_bayes_factor / misfit)`.
+    #[serde(default = "fits")]
+    pub misfit: f64,
+    /// Whether the best explanation leaves nothing to explain; null where the noise is not known.
+    #[serde(default)]
+    pub complete: Option<bool>,
+    /// The share of the searched model's excess chi-square that the best explanation takes away; null without an excess.
+    #[serde(default)]
+    pub explained: Option<f64>,
     /// The law outside the library, if that is the verdict.
     pub outside: Option<Outside>,
     /// Effects that are not detectable with these data at their usual strength.
@@ -92,8 +106,12 @@ pub enum Extension {
 pub struct JudgedEffect {
     /// The effect, `EFFECT.WHEEL` on one wheel of several; or `none`, or `not_in_library`.
     pub name: String,
-    /// Log evidence over that of the searched model \[nats\].
+    /// Log evidence over that of the searched model, with the stated prior of its strength \[nats\].
     pub log_bayes_factor: f64,
+    /// Distance of its fitted strength from the middle of that prior, in standard deviations; null of `none` and
+    /// `not_in_library`.
+    #[serde(default)]
+    pub prior_sds: Option<f64>,
     /// Probability among all explanations.
     pub probability: f64,
     /// Explanations that these data cannot distinguish share a class; 0 is `none`.
@@ -106,6 +124,26 @@ pub struct JudgedEffect {
     pub parameters: BTreeMap<String, f64>,
     /// How the evidence was computed: `screen`, `rank_one`, `polished`, `confirmed` or `sampled`.
     pub method: String,
+}
+
+/// A model that explains the data.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct JudgedSet {
+    /// Its effects; `none`, or `not_in_library`, stands alone.
+    pub members: Vec<String>,
+    /// Log evidence over that of the searched model, with widened priors of the strengths \[nats\].
+    pub log_bayes_factor: f64,
+    /// Prior probability.
+    pub prior: f64,
+    /// Posterior probability.
+    pub probability: f64,
+    /// Log predictive density of left-out levels over that of the searched model \[nats\]; null where it was not computed.
+    pub predictive: Option<f64>,
+}
+
+/// The misfit of what fits.
+fn fits() -> f64 {
+    1.0
 }
 
 /// A law outside the library.

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use discovery::{Conclusion, EvidenceMethod, FitChiSquare, OutsideLaw, RankedEffect, SearchVerdict};
+use discovery::{
+    Conclusion, EvidenceMethod, FitChiSquare, OutsideLaw, RankedEffect, SearchVerdict, WeighedSet,
+};
 use record::{
-    ChiSquare, Discovery, Extension, JudgedEffect, NONE, NOT_IN_LIBRARY, NextRun, Outside, Verdict,
+    ChiSquare, Discovery, Extension, JudgedEffect, JudgedSet, NONE, NOT_IN_LIBRARY, NextRun, Outside, Verdict,
 };
 
 use super::candidate::CandidateEffect;
@@ -33,7 +35,13 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         }
         SearchVerdict::Class(_) => (Verdict::Class, None),
         SearchVerdict::NotInLibrary => (Verdict::NotInLibrary, law),
-        SearchVerdict::Undecided => (Verdict::Undecided, None),
+        SearchVerdict::Undecided => {
+            let entry = conclusion.agreed.and_then(|k| models.entry(k));
+            (
+                Verdict::Undecided,
+                entry.map(|entry| entry.effect.extension.clone()),
+            )
+        }
     };
     let open: Vec<&str> = effects
         .iter()
@@ -67,6 +75,10 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
             .collect(),
         other_tests: rig_test::deciding(&open, verdict),
         effects,
+        sets: sets(models, conclusion),
+        misfit: conclusion.misfit,
+        complete: conclusion.is_complete(),
+        explained: conclusion.explained(),
         outside,
         cannot_exclude: names(&conclusion.ranking.cannot_exclude),
         refused: names(&conclusion.ranking.refused),
@@ -99,7 +111,8 @@ fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> 
         let entry = effect.candidate.and_then(|k| models.entry(k));
         JudgedEffect {
             name: entry.map_or(NONE.to_owned(), |entry| entry.effect.name.clone()),
-            log_bayes_factor: effect.log_bayes_factor,
+            log_bayes_factor: effect.stated_log_bayes_factor,
+            prior_sds: entry.map(|_| effect.prior_sds),
             probability: effect.probability,
             class: effect.class as u32,
             in_credible_set: effect.is_credible,
@@ -115,6 +128,7 @@ fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> 
         effects.push(JudgedEffect {
             name: NOT_IN_LIBRARY.to_owned(),
             log_bayes_factor,
+            prior_sds: None,
             probability,
             class: classes + 1,
             in_credible_set: probability > LEAST_CREDIBLE,
@@ -126,6 +140,22 @@ fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> 
     let by_factor = |a: &JudgedEffect, b: &JudgedEffect| b.log_bayes_factor.total_cmp(&a.log_bayes_factor);
     effects.sort_by(|a, b| b.probability.total_cmp(&a.probability).then(by_factor(a, b)));
     effects
+}
+
+/// Every model that was compared.
+fn sets(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedSet> {
+    let set = |set: &WeighedSet| JudgedSet {
+        members: match set.effects.as_deref() {
+            None => vec![NOT_IN_LIBRARY.to_owned()],
+            Some([]) => vec![NONE.to_owned()],
+            Some(effects) => effects.iter().map(|&k| models.name(k)).collect(),
+        },
+        log_bayes_factor: set.log_bayes_factor,
+        prior: set.prior,
+        probability: set.probability,
+        predictive: set.predictive,
+    };
+    conclusion.sets.iter().map(set).collect()
 }
 
 fn method(method: EvidenceMethod) -> &'static str {

@@ -22,9 +22,11 @@ pub enum EvidenceMethod {
 pub struct RankedEffect {
     /// The effect; `None`: nothing is missing.
     pub candidate: Option<usize>,
-    /// Log evidence over that of the base.
+    /// Log evidence over that of the base, with the widened priors of the strengths.
     pub log_bayes_factor: f64,
-    /// The same by the screen alone.
+    /// The same with their stated priors.
+    pub stated_log_bayes_factor: f64,
+    /// With widened priors, by the screen alone.
     pub screen_log_bayes_factor: f64,
     /// ln p(data | theta) at the most probable parameters.
     pub log_likelihood: f64,
@@ -93,27 +95,25 @@ impl EffectRanking {
     ///
     /// # Arguments
     /// - `combinations`: log Bayes factor and log prior cost of the combinations that count for a candidate. `outside`: log Bayes
-    ///   factor of a law outside the library; `None`: not searched.
-    ///
-    /// # Returns
-    /// The probability of the law outside the library.
+    ///   factor of a law outside the library; `None`: not searched. `misfit`: see [`Probabilities::new`].
     pub(crate) fn weigh(
         &mut self,
         combinations: impl Fn(usize) -> Vec<(f64, f64)>,
         outside: Option<f64>,
-    ) -> Option<f64> {
+        misfit: f64,
+    ) -> Probabilities {
         let explanation = |effect: &RankedEffect| Explanation {
             class: effect.class,
             log_bayes_factor: effect.log_bayes_factor,
             combinations: effect.candidate.map_or(Vec::new(), &combinations),
         };
         let explanations: Vec<Explanation> = self.effects.iter().map(explanation).collect();
-        let probabilities = Probabilities::new(&explanations, outside);
+        let probabilities = Probabilities::new(&explanations, outside, misfit);
         for (effect, &probability) in self.effects.iter_mut().zip(&probabilities.of_each) {
             effect.probability = probability;
             effect.is_credible = probabilities.credible.contains(&Some(effect.class));
         }
-        probabilities.outside
+        probabilities
     }
 
     /// Probability of a class.

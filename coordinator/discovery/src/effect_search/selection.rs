@@ -213,6 +213,7 @@ impl EffectSearch {
         let ranked = |candidate, frame: &NormalFrame, point: &FitPoint| RankedEffect {
             candidate,
             log_bayes_factor: 0.0,
+            stated_log_bayes_factor: 0.0,
             screen_log_bayes_factor: 0.0,
             log_likelihood: point.log_likelihood(frame),
             prior_sds: frame.strength_distance(&point.position),
@@ -231,8 +232,13 @@ impl EffectSearch {
                 continue;
             };
             let point = estimate.fit.as_ref().map_or(&screened.point, |fit| &fit.point);
+            let gain = estimate
+                .fit
+                .as_ref()
+                .and_then(|fit| fit.stated_gain(&self.likelihood));
             effects.push(RankedEffect {
                 log_bayes_factor: estimate.log_bayes_factor,
+                stated_log_bayes_factor: estimate.log_bayes_factor + gain.unwrap_or(0.0),
                 screen_log_bayes_factor: screened.log_bayes_factor,
                 method: estimate.method,
                 class: class + 1,
@@ -251,7 +257,7 @@ impl EffectSearch {
             refused: refused.collect(),
             evaluations: self.evaluations,
         };
-        ranking.weigh(|_| Vec::new(), None);
+        ranking.weigh(|_| Vec::new(), None, 1.0);
         self.phase = Phase::Done(Box::new(ranking));
     }
 }

@@ -6,7 +6,7 @@ use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::noise;
 use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
-use crate::laplace::strength_prior::mixed_evidence;
+use crate::laplace::strength_prior::{mixed_evidence, stated_less_mixed};
 use inference::lm::QuadraticModel;
 use statistics::likelihood::Likelihood;
 
@@ -292,6 +292,18 @@ impl LaplaceFit {
     /// The gradient counts only along half-normal coordinates at their bound. Elsewhere it is set to zero: a gain that was predicted
     /// but not reached by a trial step is unbounded far from the mode or at the limits of the search.
     pub(crate) fn log_evidence(&self, likelihood: &Likelihood) -> Option<f64> {
+        let quadratic = self.at_mode(likelihood);
+        mixed_evidence(&self.frame, &self.point.position, &quadratic, self.point.value)
+    }
+
+    /// The log evidence with the stated priors of the strengths less that with the widened ones; `None` as
+    /// [`log_evidence`](Self::log_evidence).
+    pub(crate) fn stated_gain(&self, likelihood: &Likelihood) -> Option<f64> {
+        let quadratic = self.at_mode(likelihood);
+        stated_less_mixed(&self.frame, &self.point.position, &quadratic, self.point.value)
+    }
+
+    fn at_mode(&self, likelihood: &Likelihood) -> QuadraticModel {
         let halves = self.frame.halves();
         let mut quadratic = self.quadratic(likelihood);
         for (k, slope) in quadratic.gradient.iter_mut().enumerate() {
@@ -300,6 +312,6 @@ impl LaplaceFit {
                 *slope = 0.0;
             }
         }
-        mixed_evidence(&self.frame, &self.point.position, &quadratic, self.point.value)
+        quadratic
     }
 }

@@ -9,7 +9,7 @@ use crate::search::hypotheses::FittedLaw;
 use crate::search::next_run::InformativeRun;
 use crate::search::state::SearchState;
 use crate::search::verdict::SearchVerdict;
-use crate::search::weighing::Weighing;
+use crate::search::weighing::{WeighedSet, Weighing};
 use crate::task::SearchTask;
 
 /// Most of the library's chi-square excess that a law outside the library may leave.
@@ -52,6 +52,13 @@ pub struct Conclusion {
     pub ranking: EffectRanking,
     /// Log Bayes factor and probability of a law outside the library; `None`: not searched.
     pub not_in_library: Option<(f64, f64)>,
+    /// Every model that was compared, by falling probability.
+    pub sets: Vec<WeighedSet>,
+    /// The effect with which to begin, where the verdict is open but evidence and prediction agree on the best set.
+    pub agreed: Option<usize>,
+    /// Chi-square of the best explanation over its degrees of freedom, by which log Bayes factors are divided before they become
+    /// probabilities; 1 where it fits.
+    pub misfit: f64,
     /// The law outside the library, if that is the verdict.
     pub outside: Option<OutsideLaw>,
     /// The effects of the best combination.
@@ -92,7 +99,7 @@ impl Conclusion {
         let of_library = hypotheses.chi_square(&task.likelihood);
         let law = hypotheses.confirmed_law();
         let law = law.filter(|law| explains(task, of_library, law));
-        let verdict = SearchVerdict::new(&weighing, hypotheses, of_library, law);
+        let verdict = SearchVerdict::new(&weighing, hypotheses, law);
         let law = law.filter(|_| verdict == SearchVerdict::NotInLibrary);
         let detected = hypotheses.detected();
         let base = hypotheses.base_fit();
@@ -109,8 +116,11 @@ impl Conclusion {
         };
         Self {
             verdict,
+            agreed: weighing.agreed().filter(|_| verdict == SearchVerdict::Undecided),
             ranking: weighing.ranking,
             not_in_library: weighing.not_in_library,
+            sets: weighing.sets,
+            misfit: weighing.misfit,
             outside: law.map(|law| OutsideLaw {
                 law: law.law,
                 candidate: law.candidate,
@@ -127,6 +137,20 @@ impl Conclusion {
             next_runs,
             evaluations: *evaluations,
         }
+    }
+
+    /// Whether the best explanation leaves nothing to explain; `None` where the noise is not known.
+    #[must_use]
+    pub fn is_complete(&self) -> Option<bool> {
+        self.chi_square_best.map(|chi| chi.is_complete())
+    }
+
+    /// The share of the base's excess chi-square that the best explanation takes away, 0 to 1; `None` without an excess, and where the
+    /// noise is not known.
+    #[must_use]
+    pub fn explained(&self) -> Option<f64> {
+        let (base, best) = (self.chi_square?.excess(), self.chi_square_best?.excess());
+        (base > 0.0).then(|| (1.0 - best.max(0.0) / base).max(0.0))
     }
 
     /// The reductions without which the base loses no detectable evidence: effects that may be dropped.

@@ -8,8 +8,8 @@ use statistics::likelihood::Likelihood;
 /// Refits begin at the fit to all data, so a few steps suffice.
 const PLAN: [FitStep; 2] = [FitStep::Differences, FitStep::Trials(6)];
 
-/// The models that are compared: the base, the best of the library, a law outside it.
-const MODELS: usize = 3;
+/// A model to compare: its effects, the number of parameters of its last one, and its fit to all data.
+pub(super) type ComparedModel<'a> = (Vec<usize>, usize, &'a LaplaceFit);
 
 /// One model fitted without one level.
 #[derive(Debug, Clone)]
@@ -37,18 +37,14 @@ struct LeftOutLevel {
 
 /// The cross-validation over all levels.
 #[derive(Debug, Clone)]
-pub(super) struct CrossValidation(Vec<LeftOutLevel>);
+pub(super) struct CrossValidation {
+    levels: Vec<LeftOutLevel>,
+    models: usize,
+}
 
 impl CrossValidation {
     /// Empty levels and those with all data are left out.
-    ///
-    /// # Arguments
-    /// - `fits`: of each model its effects, the number of parameters of its last one, and the fit to all data.
-    pub(super) fn new(
-        likelihood: &Likelihood,
-        levels: &[Vec<usize>],
-        fits: &[(Vec<usize>, usize, &LaplaceFit); MODELS],
-    ) -> Self {
+    pub(super) fn new(likelihood: &Likelihood, levels: &[Vec<usize>], models: &[ComparedModel]) -> Self {
         let count = likelihood.data().len();
         let level = |left: &Vec<usize>| {
             let kept: Vec<usize> = (0..count).filter(|i| !left.contains(i)).collect();
@@ -56,7 +52,7 @@ impl CrossValidation {
                 return None;
             }
             let (part, places) = likelihood.subset(&kept).ok()?;
-            let refit = |(model, (effects, own, fit)): (usize, &(Vec<usize>, usize, &LaplaceFit))| {
+            let refit = |(model, (effects, own, fit)): (usize, &ComparedModel)| {
                 let taken = |values: &[f64]| places.iter().map(|&i| values[i]).collect::<Vec<f64>>();
                 let point = FitPoint::new(
                     &fit.frame,
@@ -79,15 +75,18 @@ impl CrossValidation {
                     waiting: Vec::new(),
                 })
             };
-            let refits = fits.iter().enumerate().map(refit).collect();
+            let refits = models.iter().enumerate().map(refit).collect();
             let (left, places) = likelihood.subset(left).ok()?;
             Some(LeftOutLevel { left, places, refits })
         };
-        Self(levels.iter().filter_map(level).collect())
+        Self {
+            levels: levels.iter().filter_map(level).collect(),
+            models: models.len(),
+        }
     }
 
     fn refits(&mut self) -> impl Iterator<Item = &mut Refit> {
-        self.0
+        self.levels
             .iter_mut()
             .flat_map(|level| level.refits.iter_mut().flatten())
     }
@@ -125,12 +124,12 @@ impl CrossValidation {
         }
     }
 
-    /// Log predictive density of the law over that of the base and of the library's best, summed over the levels that all three
-    /// predict; `None` without such a level.
-    pub(super) fn gains(&self) -> Option<[f64; 2]> {
-        let mut sums = [0.0; MODELS];
+    /// Log predictive density of each model over that of the first, summed over the levels that all of them predict; `None` without
+    /// such a level.
+    pub(super) fn gains(&self) -> Option<Vec<f64>> {
+        let mut sums = vec![0.0; self.models];
         let mut levels = 0;
-        for level in &self.0 {
+        for level in &self.levels {
             let density = |refit: &Option<Refit>| {
                 let refit = refit.as_ref()?;
                 let theta = refit.fit.theta();
@@ -146,7 +145,7 @@ impl CrossValidation {
                 }
             }
         }
-        let [base, library, law] = sums;
-        (levels > 0).then_some([law - base, law - library])
+        let first = *sums.first()?;
+        (levels > 0).then(|| sums.iter().map(|sum| sum - first).collect())
     }
 }

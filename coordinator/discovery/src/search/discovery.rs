@@ -166,6 +166,7 @@ impl DiscoverySearch {
             Stage::Curves(branch) => state.after_curves(branch),
             Stage::Forms(branch) => state.after_forms(branch),
             Stage::CrossValidation(rank, validation) => state.after_cross_validation(*rank, validation),
+            Stage::Predictions(sets, validation) => state.after_predictions(sets, validation),
             Stage::NextRuns(runs) => state.done(runs.best()),
             Stage::Done(_) | Stage::Failed(_) => return,
         };

@@ -27,6 +27,8 @@ pub(super) struct Hypotheses {
     pub(super) laws: Option<Vec<FittedLaw>>,
     /// The law that passed the cross-validation.
     pub(super) confirmed: Option<usize>,
+    /// The leading sets with their log predictive density of left-out levels over that of the base.
+    pub(super) predictive: Vec<(Vec<usize>, f64)>,
 }
 
 /// Effects that act together.
@@ -64,6 +66,7 @@ impl Hypotheses {
             gains: Vec::new(),
             laws: None,
             confirmed: None,
+            predictive: Vec::new(),
         }
     }
 
@@ -125,5 +128,20 @@ impl Hypotheses {
     pub(super) fn chi_square(&self, likelihood: &Likelihood) -> Option<FitChiSquare> {
         let best = self.detected().map(|best| &best.fit);
         FitChiSquare::of(best.or(self.base_fit())?, likelihood)
+    }
+
+    /// Chi-square of the best explanation over its degrees of freedom: of the library's, or of a law that passed the
+    /// cross-validation and fits better. 1 where it fits or the noise is not known.
+    pub(super) fn misfit(&self, likelihood: &Likelihood) -> f64 {
+        let library = self.chi_square(likelihood);
+        let law = self
+            .confirmed_law()
+            .and_then(|law| FitChiSquare::of(&law.fit, likelihood));
+        let best = [library, law]
+            .into_iter()
+            .flatten()
+            .reduce(|a, b| if b.excess() < a.excess() { b } else { a });
+        best.filter(|chi| !chi.is_complete())
+            .map_or(1.0, |chi| chi.ratio())
     }
 }

@@ -1,13 +1,13 @@
 //! The stages that search laws outside the library, and the last stages.
 
-use crate::chi_square::OUTSIDE_LAW;
+use crate::chi_square::{FURTHER_EFFECT, OUTSIDE_LAW};
 use crate::effect_search::depth::{ALL_CURVES, CURVES, Depth, FORMS};
 use crate::effect_search::state::EffectSearch;
 use crate::laplace::evidence::log_sum_exp;
 use crate::probability::DETECTED;
 use crate::search::branch::SearchBranch;
 use crate::search::conclusion::Conclusion;
-use crate::search::cross_validation::CrossValidation;
+use crate::search::cross_validation::{ComparedModel, CrossValidation};
 use crate::search::hypotheses::FittedLaw;
 use crate::search::next_run::{InformativeRun, RunSelection};
 use crate::search::stage::Stage;
@@ -20,12 +20,14 @@ const LAWS: usize = 3;
 const CURVE_BEATS_FORM: f64 = 5.0;
 
 impl SearchState {
-    /// Searches curves outside the library, if the library leaves misfit.
+    /// Searches curves outside the library, if the library leaves misfit or needs several effects: one law may stand behind them.
     pub(super) fn curves(&mut self) -> Stage {
         let chi_square = self.hypotheses.chi_square(&self.task.likelihood);
-        let leaves_misfit = match chi_square {
-            Some(chi) => chi.p() < OUTSIDE_LAW,
-            None => self.hypotheses.detected().is_some(),
+        let detected = self.hypotheses.detected();
+        let leaves_misfit = match (chi_square, detected) {
+            (Some(chi), None) => chi.p() < OUTSIDE_LAW,
+            (Some(chi), Some(best)) => best.effects.len() > 1 || chi.p() < FURTHER_EFFECT,
+            (None, detected) => detected.is_some(),
         };
         let depth = if chi_square.is_some_and(|chi| chi.is_wrong()) {
             &ALL_CURVES
@@ -33,12 +35,12 @@ impl SearchState {
             &CURVES
         };
         if !leaves_misfit || self.task.laws.is_empty() {
-            return self.next_runs();
+            return self.predictions();
         }
         let curves = (0..self.task.laws.len()).map(|law| self.task.curve(law));
         match self.branch(curves.collect(), depth) {
             Some(branch) => Stage::Curves(branch),
-            None => self.next_runs(),
+            None => self.predictions(),
         }
     }
 
@@ -72,7 +74,7 @@ impl SearchState {
         self.hypotheses.laws = Some(laws);
         match self.branch(forms, &FORMS) {
             Some(branch) => Stage::Forms(branch),
-            None => self.next_runs(),
+            None => self.predictions(),
         }
     }
 
@@ -110,7 +112,7 @@ impl SearchState {
         let law = laws.get(rank).filter(|_| rank < LAWS);
         let law = law.filter(|law| law.log_bayes_factor > DETECTED);
         let (Some(law), Some(base)) = (law, self.hypotheses.base_fit()) else {
-            return self.next_runs();
+            return self.predictions();
         };
         let parameters = |k: usize| self.hypotheses.candidates[k].parameters.len();
         let library = self.hypotheses.best().map_or((Vec::new(), 0, base), |best| {
@@ -124,7 +126,11 @@ impl SearchState {
     }
 
     pub(super) fn after_cross_validation(&mut self, rank: usize, validation: &CrossValidation) -> Stage {
-        let gains = validation.gains();
+        // Over the base, and over the library's best.
+        let gains = validation.gains().and_then(|gains| match gains.as_slice() {
+            &[base, library, law] => Some([law - base, law - library]),
+            _ => None,
+        });
         if let Some(law) = self.hypotheses.laws.as_mut().and_then(|laws| laws.get_mut(rank)) {
             law.left_out = gains;
         }
@@ -132,9 +138,38 @@ impl SearchState {
             gains.is_some_and(|[over_base, over_library]| over_base > DETECTED && over_library > 0.0);
         if passes {
             self.hypotheses.confirmed = Some(rank);
-            return self.next_runs();
+            return self.predictions();
         }
         self.cross_validation(rank + 1)
+    }
+
+    /// Predicts left-out levels by the leading sets, where the evidence leaves several.
+    fn predictions(&self) -> Stage {
+        let weighing = Weighing::new(&self.task, &self.hypotheses);
+        let Some(base) = self.hypotheses.base_fit() else {
+            return self.next_runs();
+        };
+        let leading = weighing.leading(&self.hypotheses);
+        if leading.len() < 2 {
+            return self.next_runs();
+        }
+        let mut models: Vec<ComparedModel> = vec![(Vec::new(), 0, base)];
+        for set in &leading {
+            let last = set.effects.last();
+            let own = last.map_or(0, |&k| self.hypotheses.candidates[k].parameters.len());
+            models.push((set.effects.clone(), own, &set.fit));
+        }
+        let validation = CrossValidation::new(&self.task.likelihood, &self.task.levels, &models);
+        let sets = leading.iter().map(|set| set.effects.clone()).collect();
+        Stage::Predictions(sets, validation)
+    }
+
+    pub(super) fn after_predictions(&mut self, sets: &[Vec<usize>], validation: &CrossValidation) -> Stage {
+        let gains = validation.gains().unwrap_or_default();
+        // The base comes first.
+        let of_sets = sets.iter().cloned().zip(gains.into_iter().skip(1));
+        self.hypotheses.predictive = of_sets.collect();
+        self.next_runs()
     }
 
     fn next_runs(&self) -> Stage {

@@ -26,4 +26,4 @@ pub(crate) mod query;
 mod stage;
 mod state;
 pub(crate) mod verdict;
-mod weighing;
+pub(crate) mod weighing;

@@ -19,6 +19,8 @@ pub(super) enum Stage {
     Forms(SearchBranch),
     /// Of the law of this rank.
     CrossValidation(usize, CrossValidation),
+    /// Of the leading sets, by their effects.
+    Predictions(Vec<Vec<usize>>, CrossValidation),
     NextRuns(RunSelection),
     Done(Box<Conclusion>),
     Failed(InferenceFailure),
@@ -34,7 +36,7 @@ impl Stage {
             | Self::BackwardElimination(branches) => {
                 branches.iter().flat_map(SearchBranch::queries).collect()
             }
-            Self::CrossValidation(_, validation) => validation.queries(),
+            Self::CrossValidation(_, validation) | Self::Predictions(_, validation) => validation.queries(),
             Self::NextRuns(runs) => runs.queries(),
             Self::Done(_) | Self::Failed(_) => Vec::new(),
         }
@@ -53,7 +55,9 @@ impl Stage {
                     branch.take(answers.by_ref().take(count).collect());
                 }
             }
-            Self::CrossValidation(_, validation) => validation.take(answers),
+            Self::CrossValidation(_, validation) | Self::Predictions(_, validation) => {
+                validation.take(answers);
+            }
             Self::NextRuns(runs) => runs.take(answers),
             Self::Done(_) | Self::Failed(_) => {}
         }

@@ -1,6 +1,5 @@
 //! The verdict of a search.
 
-use crate::chi_square::FitChiSquare;
 use crate::probability::DETECTED;
 use crate::search::hypotheses::{FittedLaw, Hypotheses};
 use crate::search::weighing::Weighing;
@@ -24,38 +23,37 @@ pub enum SearchVerdict {
 }
 
 impl SearchVerdict {
+    /// A misfit that remains with the best explanation does not prevent a name: the probabilities account for it.
+    ///
     /// # Arguments
-    /// - `chi_square`: of the library's best fit. `law`: one that passed the cross-validation and explains the misfit.
-    pub(super) fn new(
-        weighing: &Weighing,
-        hypotheses: &Hypotheses,
-        chi_square: Option<FitChiSquare>,
-        law: Option<&FittedLaw>,
-    ) -> Self {
+    /// - `law`: one that passed the cross-validation and explains the misfit.
+    pub(super) fn new(weighing: &Weighing, hypotheses: &Hypotheses, law: Option<&FittedLaw>) -> Self {
         let effects = &weighing.ranking.effects;
         let library = hypotheses.best().map_or(0.0, |best| best.log_bayes_factor);
-        let detected = library > DETECTED;
-        let is_wrong = chi_square.is_some_and(|chi| chi.is_wrong());
+        let detected = library / weighing.misfit > DETECTED;
         let probability = weighing
             .not_in_library
             .map_or(0.0, |(_, probability)| probability);
         if let Some(law) = law
-            && (is_wrong || law.log_bayes_factor - library.max(0.0) > DETECTED)
+            && (law.log_bayes_factor - library.max(0.0)) / weighing.misfit > DETECTED
             // Without a detection in the library one of many laws may fit by chance; the probability accounts for their number.
             && probability > if detected { 0.5 } else { NAMED }
         {
             return Self::NotInLibrary;
         }
-        if is_wrong {
-            return Self::Undecided;
-        }
         if !detected {
-            return Self::NothingDetectable;
+            return if weighing.misfit > 1.0 {
+                Self::Undecided
+            } else {
+                Self::NothingDetectable
+            };
         }
         let best = effects
             .iter()
             .reduce(|a, b| if b.probability > a.probability { b } else { a });
         match best {
+            // Evidence and prediction contradict each other.
+            Some(best) if best.candidate.is_some() && weighing.is_disputed() => Self::Undecided,
             // Where nothing missing is the most probable, no effect is claimed.
             Some(best) if best.probability > NAMED || best.candidate.is_none() => {
                 best.candidate.map_or(Self::NothingDetectable, Self::Named)

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::effect_search::ranking::EffectRanking;
 use crate::laplace::evidence::log_sum_exp;
-use crate::search::hypotheses::Hypotheses;
+use crate::probability::{DETECTED, ModelProbability};
+use crate::search::hypotheses::{EffectCombination, Hypotheses};
 use crate::search::next_run::OpenHypothesis;
 use crate::task::SearchTask;
 
@@ -12,12 +13,35 @@ use crate::task::SearchTask;
 const OPEN: f64 = 0.02;
 /// Most explanations that further runs compare.
 const MOST_OPEN: usize = 5;
+/// Sets with less probability are no rivals.
+const LEADING: f64 = 0.01;
+/// Most sets that predict left-out levels.
+const MOST_LEADING: usize = 4;
+
+/// A model that explains the data: nothing is missing, effects that act together, or a law outside the library.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeighedSet {
+    /// The effects; none: nothing is missing. `None`: a law outside the library.
+    pub effects: Option<Vec<usize>>,
+    /// Log evidence over that of the base.
+    pub log_bayes_factor: f64,
+    /// Prior probability.
+    pub prior: f64,
+    /// Posterior probability; over all sets they sum to 1.
+    pub probability: f64,
+    /// Log predictive density of left-out levels over that of the base; `None` where it was not computed.
+    pub predictive: Option<f64>,
+}
 
 /// The single effects with their probabilities, and those of everything else.
 pub(super) struct Weighing {
     pub(super) ranking: EffectRanking,
     /// Log Bayes factor and probability of a law outside the library; `None`: not searched.
     pub(super) not_in_library: Option<(f64, f64)>,
+    /// Every model, by falling probability.
+    pub(super) sets: Vec<WeighedSet>,
+    /// Chi-square of the best explanation over its degrees of freedom; 1 where it fits.
+    pub(super) misfit: f64,
 }
 
 impl Weighing {
@@ -29,6 +53,8 @@ impl Weighing {
             let single = effect.candidate.and_then(|k| hypotheses.single(k));
             if let Some(single) = single.filter(|s| s.log_bayes_factor > effect.log_bayes_factor) {
                 effect.log_bayes_factor = single.log_bayes_factor;
+                let gain = single.fit.stated_gain(&task.likelihood).unwrap_or(0.0);
+                effect.stated_log_bayes_factor = single.log_bayes_factor + gain;
                 effect.log_likelihood = single.fit.point.log_likelihood(&single.fit.frame);
                 effect.prior_sds = single.fit.frame.strength_distance(&single.fit.point.position);
                 effect.theta = single.fit.theta();
@@ -42,6 +68,7 @@ impl Weighing {
         };
         let further = libm::log(task.library.len().max(1) as f64);
         let mut led: BTreeMap<usize, Vec<(f64, f64)>> = BTreeMap::new();
+        let mut members_led: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
         for combination in hypotheses.combinations.iter().filter(|c| c.effects.len() > 1) {
             let members = combination.effects.iter().copied();
             let leader = members.reduce(|a, b| if factor(b) > factor(a) { b } else { a });
@@ -49,6 +76,8 @@ impl Weighing {
             if let Some(leader) = leader {
                 let own = led.entry(leader).or_default();
                 own.push((combination.log_bayes_factor, cost));
+                let members = members_led.entry(leader).or_default();
+                members.push(combination.effects.clone());
             }
         }
         // The law is one of all that could be fitted; those that were not count without evidence.
@@ -56,11 +85,97 @@ impl Weighing {
             let means = laws.iter().map(|law| law.mean_log_bayes_factor);
             log_sum_exp(means) - libm::log(task.laws.len().max(1) as f64)
         });
-        let probability = ranking.weigh(|k| led.get(&k).cloned().unwrap_or_default(), outside);
+        let misfit = hypotheses.misfit(&task.likelihood);
+        let probabilities = ranking.weigh(|k| led.get(&k).cloned().unwrap_or_default(), outside, misfit);
+        let of_model = |model: &ModelProbability| {
+            let effect = ranking.effects.get(model.explanation)?;
+            let (effects, log_bayes_factor) = match (model.combination, effect.candidate) {
+                (None, candidate) => (candidate.into_iter().collect(), effect.log_bayes_factor),
+                (Some(place), Some(k)) => (
+                    members_led.get(&k)?.get(place)?.clone(),
+                    led.get(&k)?.get(place)?.0,
+                ),
+                (Some(_), None) => return None,
+            };
+            Some(WeighedSet {
+                effects: Some(effects),
+                log_bayes_factor,
+                prior: model.prior,
+                probability: model.posterior,
+                predictive: None,
+            })
+        };
+        let mut sets: Vec<WeighedSet> = probabilities.of_models.iter().filter_map(of_model).collect();
+        let law = outside
+            .zip(probabilities.outside)
+            .zip(probabilities.outside_prior);
+        sets.extend(law.map(|((log_bayes_factor, probability), prior)| WeighedSet {
+            effects: None,
+            log_bayes_factor,
+            prior,
+            probability,
+            predictive: None,
+        }));
+        for set in &mut sets {
+            let mut known = hypotheses.predictive.iter();
+            set.predictive = known
+                .find(|(effects, _)| set.effects.as_ref() == Some(effects))
+                .map(|(_, gain)| *gain);
+        }
+        sets.sort_by(|a, b| b.probability.total_cmp(&a.probability));
         Self {
             ranking,
-            not_in_library: outside.zip(probability),
+            not_in_library: outside.zip(probabilities.outside),
+            sets,
+            misfit,
         }
+    }
+
+    /// The sets of effects that may explain the data, by falling probability; none without a detection.
+    pub(super) fn leading<'a>(&self, hypotheses: &'a Hypotheses) -> Vec<&'a EffectCombination> {
+        if hypotheses.detected().is_none() {
+            return Vec::new();
+        }
+        let effects = self.sets.iter().filter(|set| set.probability > LEADING);
+        let effects = effects
+            .filter_map(|set| set.effects.as_ref())
+            .filter(|e| !e.is_empty());
+        let found = effects.filter_map(|own| hypotheses.combinations.iter().find(|c| c.effects == *own));
+        found.take(MOST_LEADING).collect()
+    }
+
+    /// The effect with which to begin, where the data leave several sets but evidence and prediction have the same best: each rival
+    /// predicts left-out levels worse by a detectable amount.
+    pub(super) fn agreed(&self) -> Option<usize> {
+        let best = self.sets.first()?;
+        let (effects, own) = (best.effects.as_ref()?, best.predictive?);
+        let rivals = self.sets.iter().skip(1);
+        let mut predicted = rivals.filter_map(|rival| rival.predictive).peekable();
+        predicted.peek()?;
+        let is_beaten = |gain: f64| (own - gain) / self.misfit > DETECTED;
+        let others_are_improbable = self
+            .sets
+            .iter()
+            .filter(|set| set.predictive.is_none())
+            .all(|set| set.probability < LEADING);
+        let factor = |k: usize| {
+            self.ranking
+                .of(Some(k))
+                .map_or(f64::NEG_INFINITY, |e| e.log_bayes_factor)
+        };
+        let leader = effects
+            .iter()
+            .copied()
+            .reduce(|a, b| if factor(b) > factor(a) { b } else { a });
+        leader.filter(|_| predicted.all(is_beaten) && others_are_improbable)
+    }
+
+    /// Whether a rival of the best set predicts left-out levels better by a detectable amount.
+    pub(super) fn is_disputed(&self) -> bool {
+        let best = self.sets.first().and_then(|best| best.predictive);
+        let Some(own) = best else { return false };
+        let mut gains = self.sets.iter().filter_map(|set| set.predictive);
+        gains.any(|gain| (gain - own) / self.misfit > DETECTED)
     }
 
     /// The explanations that further runs should distinguish; none without a detection.

@@ -1,6 +1,6 @@
 //! The block `discovery` of `summary.json`.
 
-use record::{Discovery, JudgedEffect, NextRun, Outside, Verdict, effect_of};
+use record::{ChiSquare, Discovery, JudgedEffect, JudgedSet, NextRun, Outside, Verdict, effect_of};
 
 use super::round::DiscoveryRound;
 
@@ -13,6 +13,12 @@ pub struct DiscoverySummary {
     pub chosen: Vec<String>,
     /// Every explanation of the first search.
     pub effects: Vec<JudgedEffect>,
+    /// Every model that the first search compared.
+    pub sets: Vec<JudgedSet>,
+    /// Whether the last search's best explanation leaves nothing to explain; null where the noise is not known.
+    pub complete: Option<bool>,
+    /// The share of the first searched model's excess chi-square that the last search's best explanation takes away, 0 to 1.
+    pub explained: Option<f64>,
     /// The law outside the library, if one was found.
     pub outside: Option<Outside>,
     /// Effects that the last search could not detect.
@@ -59,6 +65,9 @@ impl DiscoverySummary {
             verdict,
             chosen,
             effects: first.effects.clone(),
+            sets: first.sets.clone(),
+            complete: last.complete,
+            explained: explained(first, last),
             outside: records.iter().find_map(|record| record.outside.clone()),
             cannot_exclude: last.cannot_exclude.clone(),
             next_runs: last.next_runs.clone(),
@@ -67,6 +76,12 @@ impl DiscoverySummary {
             rounds: records,
         })
     }
+}
+
+fn explained(first: &Discovery, last: &Discovery) -> Option<f64> {
+    let excess = |chi: &ChiSquare| Some(chi.value? - chi.degrees_of_freedom);
+    let (before, after) = (excess(&first.chi2)?, excess(&last.chi2_best)?);
+    (before > 0.0).then(|| (1.0 - after.max(0.0) / before).max(0.0))
 }
 
 #[cfg(test)]
