@@ -70,7 +70,7 @@ fn one(seed: u64, number: u64) -> Result<Compared, StudyError> {
     let job = extended("job.toml", &case.plan.job(), &[&added])?;
     let with = Sampled::new(&case, &job, seed)?;
     let compared = Compared {
-        search: truth.log_bayes_factor,
+        search: truth.stated_log_bayes_factor,
         sampler: with.log_evidence - base.log_evidence,
     };
     println!(

@@ -12,8 +12,37 @@ const LEAST_MENTIONED: f64 = 0.05;
 /// Most names in a sentence.
 const NAMES: usize = 6;
 
-/// The verdict in a sentence for a test engineer.
+/// The verdict in a sentence for a test engineer, and what it leaves open.
 pub(super) fn sentence(
+    models: &SearchModels,
+    conclusion: &Conclusion,
+    effects: &[JudgedEffect],
+    outside: Option<&Outside>,
+) -> String {
+    let mut text = verdict(models, conclusion, effects, outside);
+    let is_claim = matches!(
+        conclusion.verdict,
+        SearchVerdict::Named(_) | SearchVerdict::Class(_) | SearchVerdict::NotInLibrary
+    );
+    if let (true, Some(false), Some(chi)) = (is_claim, conclusion.is_complete(), conclusion.chi_square_best) {
+        let explained = conclusion.explained().map_or(String::new(), |share| {
+            format!("{:.0} % of the excess chi-square is explained, ", 100.0 * share)
+        });
+        text += &format!(
+            "; incomplete: {explained}chi-square {:.0} with {:.0} degrees of freedom remains",
+            chi.value, chi.degrees_of_freedom
+        );
+    }
+    if let Some(k) = conclusion.agreed {
+        text += &format!(
+            "; the most probable set also predicts left-out levels best, and {} is its leading effect",
+            models.name(k)
+        );
+    }
+    text
+}
+
+fn verdict(
     models: &SearchModels,
     conclusion: &Conclusion,
     effects: &[JudgedEffect],

@@ -33,8 +33,8 @@ pub(crate) struct NormalFrame {
     pub(crate) least_difference: f64,
     /// Index of each strength of the last candidate, and its coordinate at which the candidate is absent.
     pub(crate) strengths: Vec<(usize, f64)>,
-    /// Indices of the strengths of every candidate, which share a scale.
-    pub(crate) groups: Vec<Vec<usize>>,
+    /// Indices of the single strengths of all candidates, whose priors are widened.
+    pub(crate) widened: Vec<usize>,
 }
 
 impl NormalCoordinate {
@@ -84,7 +84,7 @@ impl NormalFrame {
             coordinates: prior.iter().map(NormalCoordinate::whole).collect(),
             least_difference,
             strengths: Vec::new(),
-            groups: Vec::new(),
+            widened: Vec::new(),
         }
     }
 
@@ -108,13 +108,16 @@ impl NormalFrame {
             (first + strength, absent)
         };
         let strengths: Vec<(usize, f64)> = candidate.strengths.iter().map(&mut neutral).collect();
-        let mut groups = self.groups.clone();
-        groups.push(strengths.iter().map(|(k, _)| *k).collect());
+        let mut widened = self.widened.clone();
+        // The knots of a curve have a prior that was made for it.
+        if let [(only, _)] = strengths.as_slice() {
+            widened.push(*only);
+        }
         Self {
             coordinates,
             least_difference: self.least_difference,
             strengths,
-            groups,
+            widened,
         }
     }
 

@@ -41,6 +41,8 @@ pub enum FlagKind {
     NoInformation,
     /// The model rejected parameter vectors.
     Rejections,
+    /// The best explanation of the misfit leaves some of it.
+    Incomplete,
 }
 
 impl FlagKind {
@@ -55,6 +57,7 @@ impl FlagKind {
             FlagKind::NotEquilibrated => "not_equilibrated",
             FlagKind::NoInformation => "no_information",
             FlagKind::Rejections => "rejections",
+            FlagKind::Incomplete => "incomplete",
         }
     }
 }

@@ -3,6 +3,8 @@
 use super::kind::{Flag, FlagKind};
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
+use crate::words::number;
+use crate::words::probability::p_words;
 
 /// Difference of log-posteriors beyond which a calibration missed a mode `[nats]`: the best of a thousand draws lies a few nats
 /// below the mode, more in many dimensions.
@@ -22,7 +24,25 @@ impl Study {
                 ..flag
             }));
         }
+        flags.extend(self.incomplete());
         flags
+    }
+
+    /// The flag of a last search whose best explanation contradicts the data.
+    fn incomplete(&self) -> Option<Flag> {
+        let record = &self.rounds.last()?.record;
+        let chi2 = record.chi2_best;
+        let value = chi2.value.filter(|_| record.complete == Some(false))?;
+        let text = format!(
+            "the search is incomplete: with the best explanation the squares of the residuals still sum to {} noise variances where {} are expected ({}): more is missing, or the declared errors are too small",
+            number::significant(value, 3),
+            number::significant(chi2.degrees_of_freedom, 3),
+            number::or_none(chi2.p, p_words)
+        );
+        Some(Flag {
+            p: chi2.p,
+            ..Flag::plain(FlagKind::Incomplete, text)
+        })
     }
 
     /// Flags of the calibrations whose best parameters are far less probable than those that another one of the study found.
@@ -58,6 +78,31 @@ impl Study {
 #[cfg(test)]
 mod tests {
     use crate::fixture;
+
+    #[test]
+    fn a_search_that_leaves_misfit_is_flagged() {
+        let record = |complete: bool| {
+            let mut record: record::Discovery =
+                serde_json::from_str(include_str!("../../../record/discovery.json")).unwrap();
+            record.complete = Some(complete);
+            record
+        };
+        let flagged = |complete: bool| {
+            let study = crate::study::Study {
+                rounds: vec![crate::discovery::DiscoveryRound {
+                    calibration: 1,
+                    record: record(complete),
+                }],
+                ..fixture::study()
+            };
+            let flags = study.flags();
+            flags
+                .iter()
+                .filter(|f| f.kind == super::FlagKind::Incomplete)
+                .count()
+        };
+        assert_eq!((flagged(true), flagged(false)), (0, 1));
+    }
 
     #[test]
     fn a_calibration_that_missed_a_mode_found_by_another_is_flagged() {

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use record::{ChiSquare, Discovery};
+use record::{ChiSquare, Discovery, JudgedSet};
 
 use super::column::{cell, width};
 use crate::discovery::{arguments, effect_file, word};
@@ -66,24 +66,26 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
     let width = width(record.effects.iter().map(|e| &e.name));
     let _ = writeln!(
         text,
-        "{:<width$} {:>9} {:>11} {:>6} {:>9}  strength prior",
-        "explanation", "ln BF", "probability", "class", "95 % set"
+        "{:<width$} {:>9} {:>11} {:>6} {:>9} {:>9}  strength prior",
+        "explanation", "ln BF", "probability", "class", "95 % set", "prior sds"
     );
     for effect in record.effects.iter().take(SHOWN) {
         let _ = writeln!(
             text,
-            "{:<width$} {:>9.2} {:>11.4} {:>6} {:>9}  {}",
+            "{:<width$} {:>9.2} {:>11.4} {:>6} {:>9} {:>9}  {}",
             effect.name,
             effect.log_bayes_factor,
             effect.probability,
             effect.class,
             if effect.in_credible_set { "in" } else { "-" },
+            cell(effect.prior_sds, |sds| format!("{sds:.1}")),
             effect.strength_prior.as_deref().unwrap_or("-")
         );
     }
     if let Some(more) = record.effects.len().checked_sub(SHOWN).filter(|&more| more > 0) {
         let _ = writeln!(text, "and {more} less probable ones");
     }
+    text += &sets(record);
     let _ = writeln!(
         text,
         "\nchi-square {} as the model is, {} with the best explanation",
@@ -145,6 +147,32 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
     text
 }
 
+/// The sets behind the probabilities, where several effects act together or left-out levels were predicted.
+fn sets(record: &Discovery) -> String {
+    let is_shown = |set: &JudgedSet| set.members.len() > 1 || set.predictive.is_some();
+    if !record.sets.iter().any(is_shown) {
+        return String::new();
+    }
+    let shown = || record.sets.iter().take(SHOWN);
+    let names: Vec<String> = shown().map(|set| set.members.join(" + ")).collect();
+    let width = width(names.iter());
+    let mut text = format!(
+        "\n{:<width$} {:>9} {:>9} {:>11} {:>20}\n",
+        "set", "ln BF", "prior", "probability", "prediction, nats"
+    );
+    for (name, set) in names.iter().zip(shown()) {
+        let _ = writeln!(
+            text,
+            "{name:<width$} {:>9.2} {:>9.4} {:>11.4} {:>20}",
+            set.log_bayes_factor,
+            set.prior,
+            set.probability,
+            cell(set.predictive, |nats| format!("{nats:+.1}"))
+        );
+    }
+    text
+}
+
 /// Names without `EFFECT.WHEEL` where `EFFECT` is in the list.
 fn folded(names: &[String]) -> Vec<&str> {
     let is_own = |name: &&String| match name.split_once('.') {
@@ -179,7 +207,8 @@ mod tests {
         let text = text(&record(), 7, "--out out/sand", Path::new("out/sand"));
         for words in [
             "discovery: named\nThe data name slip_sinkage.",
-            "slip_sinkage                     40.00      0.9600      1        in  half_normal 0.2",
+            "slip_sinkage                     40.00      0.9600      1        in       1.2  half_normal 0.2",
+            "slip_sinkage + bulldozing        40.00    0.0030      0.0600                +28.0",
             "not detectable at the usual strength: moisture",
             "next run: slip 0.60, 80.0 N, 0.0200 m/s distinguishes slip_sinkage, bulldozing (0.40 nats)",
             "other test: a plate test at 80 N",

@@ -131,6 +131,7 @@ fn explanations(record: &Discovery) -> Markup {
     html! {
         (table(shown))
         p.note { "The data cannot distinguish explanations of one class. Bayes factors are relative to the searched model." }
+        (sets(record))
         @if !others.is_empty() {
             details { summary { (number::count(others.len(), "less probable explanation")) } (table(others)) }
         }
@@ -142,7 +143,7 @@ fn table(effects: &[JudgedEffect]) -> Markup {
         div.scroll { table {
             thead { tr {
                 th.text { "explanation" } th { "ln Bayes" br; "factor" } th { "probability" } th { "class" }
-                th.text { "95 % set" } th.text { "prior of its strength" }
+                th.text { "95 % set" } th { "strength" br; "[prior sds]" } th.text { "prior of its strength" }
             } }
             tbody {
                 @for effect in effects {
@@ -152,11 +153,46 @@ fn table(effects: &[JudgedEffect]) -> Markup {
                         td { (number::fixed(effect.probability, 4)) }
                         td { (effect.class) }
                         td.text { @if effect.in_credible_set { "in" } }
+                        td { (number::or_none(effect.prior_sds, |sds| number::fixed(sds, 1))) }
                         td.text { (effect.strength_prior.as_deref().unwrap_or_default()) }
                     }
                 }
             }
         } }
+    }
+}
+
+/// The models that were compared, from which the probabilities follow.
+fn sets(record: &Discovery) -> Markup {
+    html! {
+        @if !record.sets.is_empty() {
+            details {
+                summary { "The sets behind these probabilities" }
+                div.scroll { table {
+                    thead { tr {
+                        th.text { "set" } th { "ln Bayes" br; "factor" } th { "prior" } th { "probability" }
+                        th { "prediction of" br; "left-out levels [nats]" }
+                    } }
+                    tbody {
+                        @for set in record.sets.iter().take(SHOWN) {
+                            tr {
+                                td.text { (set.members.join(" + ")) }
+                                td { (number::fixed(set.log_bayes_factor, 2)) }
+                                td { (number::fixed(set.prior, 4)) }
+                                td { (number::fixed(set.probability, 4)) }
+                                td { (number::or_none(set.predictive, |nats| number::fixed(nats, 1))) }
+                            }
+                        }
+                    }
+                } }
+                p.note {
+                    "A set's probability is proportional to its prior times the exponential of ln Bayes factor / "
+                    (number::significant(record.misfit, 3))
+                    ", the chi-square of the best explanation over its degrees of freedom (1 where it fits). These Bayes factors "
+                    "have widened priors of the strengths; an effect's probability is the sum over the sets that it leads."
+                }
+            }
+        }
     }
 }
 
