@@ -65,4 +65,4 @@ pub use soil::{Soil, bekker_moduli};
 pub use wheel::Wheel;
 
 /// Identifies the equations and numerics; bumped when any number changes.
-pub const MODEL_VERSION: &str = "scm-5";
+pub const MODEL_VERSION: &str = "scm-6";

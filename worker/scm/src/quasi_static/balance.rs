@@ -154,8 +154,11 @@ fn search(
         }
         if jumps {
             sides[usize::from(!below)] = Some(reaction);
+            if coordinate.is_origin(reaction.contact_length) {
+                sides[0].get_or_insert(reaction.unloaded());
+            }
             if let [Some(less), Some(more)] = sides
-                && bracket.high - bracket.low < NARROWEST
+                && (bracket.high - bracket.low < NARROWEST || are_neighbours(&less, &more))
             {
                 return Ok(Some(less.shared_with(&more, load)));
             }
@@ -173,6 +176,11 @@ fn search(
         last = Some(trial);
         y = next(bracket, trial, slope, evaluations).min(coordinate.greatest);
     }
+}
+
+/// Whether no contact lies between two: close to the coordinate's origin, the contact's length runs out of digits before y does.
+fn are_neighbours(less: &Reaction, more: &Reaction) -> bool {
+    more.contact_length - less.contact_length <= f64::EPSILON * more.contact_length
 }
 
 /// The next y to try.

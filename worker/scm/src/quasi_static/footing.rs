@@ -34,8 +34,13 @@ impl Footing<'_, '_> {
         })
     }
 
-    /// Whether the load may jump as places of a law's jumps pass nodes.
+    /// Whether the load may jump: as places of a law's jumps pass nodes, or at the footprint at which a negative `k_c` lets k*
+    /// pass through zero, from where rebound or a law that hardly depends on k* may carry all of a load within the last bit of
+    /// the contact's length.
     pub(super) fn may_jump(&self) -> bool {
-        self.reshaping.as_ref().is_some_and(Reshaping::may_jump)
+        let negative = self.rim.soil.k_c < 0.0;
+        self.reshaping
+            .as_ref()
+            .is_some_and(|reshaping| reshaping.may_jump() || negative && reshaping.changes_stresses())
     }
 }

@@ -17,6 +17,8 @@ mod displacement;
 mod footing;
 mod kinematics;
 mod panel;
+#[cfg(test)]
+mod prior_draws;
 mod reaction;
 mod reshaped;
 mod rim;

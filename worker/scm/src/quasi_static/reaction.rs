@@ -49,6 +49,19 @@ impl Reaction {
         self.nodes += NODES as u32;
     }
 
+    /// The same contact before the soil carries anything.
+    pub(super) fn unloaded(&self) -> Self {
+        Self {
+            load_from_pressure: 0.0,
+            load_from_shear: 0.0,
+            drawbar_pull: 0.0,
+            torque: 0.0,
+            lateral_force: 0.0,
+            extra_load: 0.0,
+            ..*self
+        }
+    }
+
     /// The reaction in balance between two that carry less and more than the load at the same contact: a law jumps at a
     /// place that lies within the weight of one node of the quadrature.
     pub(super) fn shared_with(&self, more: &Self, load: f64) -> Self {

@@ -4,8 +4,9 @@ use super::rim::Rim;
 
 /// Coordinate of the balance: y = ln(l − `l_0`), in which the load is nearly a power law of slope 2n to 2n + 1.
 ///
-/// `l_0` is the contact length at which a negative `k_c` lets k* pass through zero, or half of the flat of a rim that its load
-/// flattens, if that is longer; 0 otherwise.
+/// `l_0` is how far the contact reaches ahead of the axle where the soil begins to carry: where a negative `k_c` lets k* of the
+/// footprint pass through zero, or at the front of the flat of a rim that its load flattens, if that is farther; 0 otherwise.
+/// The footprint of a flattened rim reaches back by half the flat, too.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Coordinate {
     unsupported: f64,
@@ -19,7 +20,7 @@ impl Coordinate {
     pub(super) fn new(rim: &Rim) -> Option<Self> {
         let long = long_contact_modulus(rim);
         let unsupported = if rim.soil.k_c < 0.0 {
-            -rim.soil.k_c / long
+            -rim.soil.k_c / long - rim.flat
         } else {
             0.0
         };
@@ -45,6 +46,11 @@ impl Coordinate {
         }
     }
 
+    /// Whether a contact length is `l_0` to the last bit.
+    pub(super) fn is_origin(&self, contact_length: f64) -> bool {
+        contact_length <= self.unsupported
+    }
+
     /// y of a contact length; −∞ for one without support.
     pub(super) fn at(&self, contact_length: f64) -> f64 {
         libm::log((contact_length - self.unsupported).max(0.0))
@@ -59,11 +65,15 @@ impl Coordinate {
     ///
     /// Small angles (z = l² / 2R), gamma = 1 and no shear give `W = b (K l + k_c) l^(2n) I_n / (2R)^n` with
     /// `K = k_phi + k_c / b` and `I_n = ∫ (1 − u²)^n du` over (0, 1), for which `(1 + 4n/π)^(−1/2)` is
-    /// within 1 %. A start needs no more.
+    /// within 1 %. A start needs no more. A flattened rim has a closed form for `k_c` = 0 alone; else see
+    /// [`Self::start_on_flat`].
     pub(super) fn start(&self, rim: &Rim, load: f64) -> f64 {
         let n = rim.soil.n;
         let long = long_contact_modulus(rim);
         let shape = (1.0 + n * (4.0 * core::f64::consts::FRAC_1_PI)).sqrt();
+        if rim.flat > 0.0 && rim.soil.k_c != 0.0 {
+            return self.start_on_flat(rim, load);
+        }
         if self.unsupported > 0.0 && rim.soil.k_c.abs() <= 0.0 {
             // the flat alone carries: W = 2 b l_0 k* z^n at l² = l_0² + 2 R z
             let sinkage = libm::pow(load / (2.0 * rim.width * self.unsupported * long), 1.0 / n);
@@ -87,7 +97,39 @@ impl Coordinate {
         let deepest = self.greatest - 0.1;
         if y < deepest { y } else { deepest }
     }
+
+    /// y at which a flattened rim on soil with `k_c` carries the load, by halving.
+    ///
+    /// With a the flat's half length and L = l + a: `W = b k*(L) (2 a + (l − a) I_n) z^n`, `z = (l² − a²) / 2R`,
+    /// `k*(L) = K + k_c / L`, which rises with l wherever it is positive.
+    fn start_on_flat(&self, rim: &Rim, load: f64) -> f64 {
+        let (n, flat) = (rim.soil.n, rim.flat);
+        let long = long_contact_modulus(rim);
+        let shape = 1.0 / (1.0 + n * (4.0 * core::f64::consts::FRAC_1_PI)).sqrt();
+        let carries = |y: f64| {
+            let length = self.unsupported + libm::exp(y);
+            let modulus = long + rim.soil.k_c / (length + flat);
+            let sinkage = (length - flat) * (length + flat) / (2.0 * rim.radius);
+            let on_flat_and_arc = 2.0 * flat + (length - flat) * shape;
+            rim.width * modulus * on_flat_and_arc * libm::pow(sinkage.max(0.0), n)
+        };
+        let deepest = self.greatest - 0.1;
+        let (mut low, mut high) = (deepest - START_RANGE, deepest);
+        for _ in 0..START_HALVINGS {
+            let middle = 0.5 * (low + high);
+            if carries(middle) < load {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        high
+    }
 }
+
+/// Range of y below the deepest contact in which a start is looked for, and into how fine a part of it: 0.01.
+const START_RANGE: f64 = 32.0;
+const START_HALVINGS: u32 = 12;
 
 /// k* of a contact much longer than wide: K = `k_phi` + `k_c` / b.
 fn long_contact_modulus(rim: &Rim) -> f64 {

@@ -101,6 +101,28 @@ fn a_deflection_beyond_the_radius_is_refused() {
 }
 
 #[test]
+fn a_flattened_rim_has_a_balance_at_any_kappa() {
+    let effects = CompiledEffects::compile(ModelForm::QuasiStatic, find("wheel_flexibility")).unwrap();
+    let sinkage_mm = |kappa: f64| {
+        let mut case = base(0.2, 60.0, 30.0);
+        (case.soil.k_c, case.soil.k_phi) = scm::bekker_moduli(5.0, kappa, case.soil.n);
+        let mut active = effects.activate([vec![7.5e-5]]);
+        let run = quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, &mut active, &SITE)
+            .unwrap_or_else(|rejection| panic!("kappa {kappa}: {rejection}"));
+        assert!(run.residual_load_n.abs() < 1e-6, "kappa {kappa}: {run:?}");
+        1e3 * run.sinkage_m
+    };
+    let plain = sinkage_mm(0.0);
+    assert!((plain - 0.974).abs() < 1e-3, "{plain}");
+    for kappa in [1e-9, -1e-9] {
+        assert!((sinkage_mm(kappa) - plain).abs() < 1e-6, "kappa {kappa}");
+    }
+    // the footprint of 36 mm is wider than the reference width, so k* falls with kappa
+    let sinkages = [-0.4, -0.1, 0.01, 0.5].map(sinkage_mm);
+    assert!(sinkages.is_sorted(), "{sinkages:?}");
+}
+
+#[test]
 fn jumps_of_a_law_leave_forces_continuous() {
     // a step in depth, moved in small steps across the nodes of the quadrature
     let pull = |depth: f64| {
