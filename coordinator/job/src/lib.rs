@@ -5,7 +5,7 @@
 //! - `table`: the tables of a job, as written and what they mean.
 //! - `data`: the fitted measurements: noise, likelihood, predicted values.
 //! - `spec`: [`Spec`], a calibration as its files determine it; `spec_words` says it in words.
-//! - `derived`: the jobs that follow from a job.
+//! - `derived`: the jobs, and the experiment, that follow from a job and its experiment.
 
 mod data;
 mod derived;
@@ -16,6 +16,7 @@ mod table;
 
 pub use data::bevameter_readings::{BevameterReadings, PLATE, RING, Reading};
 pub use data::noise::repeat_scatter;
+pub use derived::assumed_experiment::{AssumedExperiment, SiteProperty, UnsaidProperty};
 pub use derived::discovery_job::{continued_job, discovery_job, effect_name, is_discovery, without_effects};
 pub use derived::extended_job::extended_job;
 pub use derived::point_job::point_job;

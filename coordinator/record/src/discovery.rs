@@ -65,6 +65,9 @@ pub struct Discovery {
     pub cannot_exclude: Vec<String>,
     /// Effects that the model rejected at every strength.
     pub refused: Vec<String>,
+    /// Effects that need what the experiment does not state: they are weighed with typical values, and never named.
+    #[serde(default)]
+    pub not_tried: Vec<NotTried>,
     /// Test runs that would distinguish the remaining explanations, the most informative first.
     pub next_runs: Vec<NextRun>,
     /// Tests without a rolling wheel that would distinguish them.
@@ -144,6 +147,17 @@ pub struct JudgedSet {
 /// The misfit of what fits.
 fn fits() -> f64 {
     1.0
+}
+
+/// An effect that needs what the experiment does not state.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct NotTried {
+    /// The effect, `EFFECT.WHEEL` on one wheel of several.
+    pub name: String,
+    /// What is not stated, and the value that is assumed to weigh the effect.
+    pub why: String,
+    /// The line of the experiment that would state it.
+    pub needs: String,
 }
 
 /// A law outside the library.

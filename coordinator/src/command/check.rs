@@ -9,6 +9,7 @@ use super::output::say;
 use crate::calibration::{Calibration, CalibrationEngine, CalibrationIdentity, SimulationResult, result_of};
 use crate::config::JobArguments;
 use crate::embedded::Evaluate;
+use crate::missing_effect::untried::additions;
 use job::AlgorithmSettings;
 use result::{model_limits, terminal};
 
@@ -22,6 +23,11 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
     let mut text = terminal::specification(&job.spec);
     for note in model_limits(&job.spec) {
         text += &format!("note: {note}\n");
+    }
+    if !job.spec.fit_variant.conditions.is_empty() {
+        for line in additions(&job.job, &job.experiment, job.spec.model.kind)? {
+            text += &format!("note: {line}\n");
+        }
     }
     say(&text)?;
     let algorithm = job.spec.algorithm;

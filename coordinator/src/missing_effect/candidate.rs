@@ -104,6 +104,16 @@ pub fn library(
     (candidates, excluded)
 }
 
+/// The candidate of a name, with its effect; `None` for a name that is not in the catalogue.
+pub(super) fn candidate_of(name: &str) -> Option<(&'static Effect, CandidateEffect)> {
+    let (effect, wheel) = match name.split_once('.') {
+        Some((effect, wheel)) => (effect, Some(wheel)),
+        None => (name, None),
+    };
+    let effect = find(effect)?;
+    Some((effect, candidate(effect, wheel)))
+}
+
 fn candidate(effect: &Effect, wheel: Option<&str>) -> CandidateEffect {
     let effect = effect.name.clone();
     match wheel {
@@ -122,7 +132,7 @@ fn candidate(effect: &Effect, wheel: Option<&str>) -> CandidateEffect {
 }
 
 /// Whether the job can have an effect with a free strength.
-fn check(
+pub(super) fn check(
     job: &FileSet,
     experiment: &FileSet,
     extension: &Extension,
@@ -140,12 +150,13 @@ fn check(
     }
 }
 
-/// Name of the job in messages.
+/// Names of job and experiment in messages.
 pub(super) const JOB: &str = "job.toml";
+pub(super) const EXPERIMENT: &str = "experiment.toml";
 
 /// Parses a job and its experiment.
 pub(super) fn spec(job: &FileSet, experiment: &FileSet) -> Result<Spec, FileError> {
-    Spec::new(JOB, job, "experiment.toml", experiment)
+    Spec::new(JOB, job, EXPERIMENT, experiment)
 }
 
 #[cfg(test)]

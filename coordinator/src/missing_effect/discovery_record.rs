@@ -29,10 +29,11 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
     };
     let (verdict, extension) = match conclusion.verdict {
         SearchVerdict::NothingDetectable => (Verdict::NothingDetectable, None),
-        SearchVerdict::Named(k) => {
-            let entry = models.entry(k);
-            (Verdict::Named, entry.map(|entry| entry.effect.extension.clone()))
-        }
+        SearchVerdict::Named(k) => match models.entry(k) {
+            // it cannot be added before the experiment states what it needs
+            Some(entry) if entry.not_tried.is_some() => (Verdict::Undecided, None),
+            entry => (Verdict::Named, entry.map(|entry| entry.effect.extension.clone())),
+        },
         SearchVerdict::Class(_) => (Verdict::Class, None),
         SearchVerdict::NotInLibrary => (Verdict::NotInLibrary, law),
         SearchVerdict::Undecided => {
@@ -82,6 +83,11 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         outside,
         cannot_exclude: names(&conclusion.ranking.cannot_exclude),
         refused: names(&conclusion.ranking.refused),
+        not_tried: models
+            .library
+            .iter()
+            .filter_map(|e| e.not_tried.clone())
+            .collect(),
         next_runs: next_runs.collect(),
         chi2: chi_square(conclusion.chi_square, models),
         chi2_best: chi_square(conclusion.chi_square_best, models),

@@ -3,6 +3,7 @@
 use discovery::Candidate;
 use formula::Effect;
 use job::FreeParameter;
+use record::NotTried;
 
 use super::candidate::CandidateEffect;
 use super::law::dependence::Dependence;
@@ -15,6 +16,8 @@ pub(super) struct CandidateEntry {
     pub(super) candidate: Candidate,
     /// Full names of its free parameters, in the candidate's order.
     pub(super) names: Vec<String>,
+    /// Where the experiment does not state what the effect needs: it is weighed with typical values, and never named.
+    pub(super) not_tried: Option<NotTried>,
 }
 
 /// A dependence with its candidates.
@@ -54,6 +57,7 @@ impl CandidateEntry {
                 neutral,
             },
             names: free.into_iter().map(|p| p.name).collect(),
+            not_tried: None,
             effect: candidate,
         })
     }

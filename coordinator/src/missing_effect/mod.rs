@@ -2,6 +2,7 @@
 //!
 //! # Layout
 //! - [`candidate`]: candidate effects as additions to a job, and those of the library. `law`: laws outside the library as effect files.
+//! - [`untried`]: effects that need what the experiment does not state.
 //! - `models`: the models of a search, made when they are queried; `entry`: their candidates. `design`: levels of the design, and
 //!   runs that the rig could make.
 //! - `search`: a search in progress, as leases take it.
@@ -18,6 +19,7 @@ mod models;
 mod narrative;
 mod rig_test;
 mod search;
+pub mod untried;
 
 pub use models::SearchModels;
 pub use search::{DiscoveryError, RunningDiscovery};

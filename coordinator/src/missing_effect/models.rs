@@ -11,11 +11,12 @@ use shared::file::{FileError, FileSet};
 use shared::model::{ModelKind, ModelVariant, RunCondition};
 use shared::outcome::Observables;
 
-use super::candidate::{CandidateEffect, JOB, extended, library, spec};
+use super::candidate::{CandidateEffect, JOB, candidate_of, extended, library, spec};
 use super::design;
 use super::entry::{CandidateEntry, LawEntry};
 use super::law::dependence::dependences;
 use super::law::form::LawForm;
+use super::untried::untried;
 use job::{FreeParameter, Spec, free_parameters, without_effects};
 use record::Extension;
 
@@ -29,6 +30,8 @@ const STARTS: usize = 32;
 pub struct SearchModels {
     job: FileSet,
     experiment: FileSet,
+    /// The same with typical values for what it leaves unsaid.
+    assumed: FileSet,
     pub(super) base: Spec,
     pub(super) library: Vec<CandidateEntry>,
     pub(super) laws: Vec<LawEntry>,
@@ -52,15 +55,24 @@ impl SearchModels {
     pub fn new(job: &FileSet, experiment: &FileSet, max_effects: usize) -> Result<Self, FileError> {
         let base = spec(job, experiment)?;
         let fail = |message: String| FileError::whole(JOB, message);
-        let (effects, _) = library(job, experiment);
+        let (effects, excluded) = library(job, experiment);
+        let excluded = excluded.iter().map(|(name, _)| name.as_str());
+        let (untried, assumed) = untried(job, experiment, base.model.kind, excluded)?;
         let known = |name: &str| base.parameters.iter().any(|p| p.name == name);
-        let mut entries = Vec::new();
-        for own in effects {
+        let entry = |own: CandidateEffect, experiment: &FileSet| {
             let with = spec(&extended(JOB, job, &[&own.extension])?, experiment)?;
             let free: Vec<FreeParameter> = with.parameters.into_iter().filter(|p| !known(&p.name)).collect();
-            let effect = own.name.split('.').next().unwrap_or_default();
-            let effect = formula::catalogue::find(effect);
-            entries.extend(effect.and_then(|effect| CandidateEntry::new(own, effect, free, false)));
+            let effect = candidate_of(&own.name).map(|(effect, _)| effect);
+            Ok::<_, FileError>(effect.and_then(|effect| CandidateEntry::new(own, effect, free, false)))
+        };
+        let mut entries = Vec::new();
+        for own in effects {
+            entries.extend(entry(own, experiment)?);
+        }
+        for own in untried {
+            let not_tried = Some(own.record());
+            let own = entry(own.effect, &assumed)?;
+            entries.extend(own.map(|own| CandidateEntry { not_tried, ..own }));
         }
         let of_file = |law: CandidateEffect| -> Result<CandidateEntry, FileError> {
             let name = law.name.clone();
@@ -102,6 +114,7 @@ impl SearchModels {
             channels: design::channels(&base, &prior_means),
             job: job.clone(),
             experiment: experiment.clone(),
+            assumed,
             library: entries,
             laws,
             reductions,
@@ -199,17 +212,24 @@ impl SearchModels {
     }
 
     fn make(&self, model: &QueriedModel) -> Result<ModelVariant, FileError> {
-        let job = match model {
+        let (job, experiment) = match model {
             QueriedModel::With(effects) => {
-                let entries = effects.iter().filter_map(|&k| self.entry(k));
-                let extensions: Vec<&Extension> = entries.map(|e| &e.effect.extension).collect();
-                extended(JOB, &self.job, &extensions)?
+                let entries: Vec<&CandidateEntry> = effects.iter().filter_map(|&k| self.entry(k)).collect();
+                let extensions: Vec<&Extension> = entries.iter().map(|e| &e.effect.extension).collect();
+                let is_assumed = entries.iter().any(|e| e.not_tried.is_some());
+                let experiment = if is_assumed {
+                    &self.assumed
+                } else {
+                    &self.experiment
+                };
+                (extended(JOB, &self.job, &extensions)?, experiment)
             }
             QueriedModel::Without(k) => {
-                without_effects(JOB, &self.job, std::slice::from_ref(&self.reductions[*k].0))?
+                let job = without_effects(JOB, &self.job, std::slice::from_ref(&self.reductions[*k].0))?;
+                (job, &self.experiment)
             }
         };
-        Ok(spec(&job, &self.experiment)?.fit_variant)
+        Ok(spec(&job, experiment)?.fit_variant)
     }
 
     /// The parameters of a query in the order of its variant.

@@ -80,6 +80,15 @@ fn verdict(
         (SearchVerdict::Named(k), _) => {
             let name = models.name(k);
             let own = effects.iter().find(|e| e.name == name);
+            if let Some(untried) = models.entry(k).and_then(|entry| entry.not_tried.as_ref()) {
+                return format!(
+                    "{name} would explain the data best (probability {:.3}, {:.1} nats over {kind}), but {}; state {} and search again",
+                    own.map_or(0.0, |e| e.probability),
+                    own.map_or(0.0, |e| e.log_bayes_factor),
+                    untried.why,
+                    untried.needs
+                );
+            }
             let summary = formula::catalogue::find(name.split('.').next().unwrap_or_default());
             format!(
                 "{name} is missing: {} (probability {:.3}, {:.1} nats over {kind})",
@@ -90,10 +99,14 @@ fn verdict(
         }
         (SearchVerdict::Class(class), _) => {
             let own = || library().filter(|e| e.class as usize == class && e.probability > LEAST_LISTED);
+            let untried = models.library.iter().filter_map(|entry| entry.not_tried.as_ref());
+            let untried = untried.filter(|untried| own().any(|e| e.name == untried.name));
+            let needs = untried.map(|untried| format!("; {} needs {}", untried.name, untried.needs));
             format!(
-                "one of {} is missing (joint probability {:.3}); these data cannot distinguish them",
+                "one of {} is missing (joint probability {:.3}); these data cannot distinguish them{}",
                 list(own().map(|e| e.name.as_str())),
-                own().map(|e| e.probability).sum::<f64>()
+                own().map(|e| e.probability).sum::<f64>(),
+                needs.collect::<String>()
             )
         }
         (SearchVerdict::NotInLibrary, Some(law)) => format!(

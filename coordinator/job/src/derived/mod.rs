@@ -1,5 +1,7 @@
-//! The jobs that follow from a job: point estimates beside it, the search of its model, extensions of it.
+//! The jobs that follow from a job: point estimates beside it, the search of its model, extensions of it; and the experiment in
+//! which typical values stand for what it leaves unsaid.
 
+pub(crate) mod assumed_experiment;
 pub(crate) mod discovery_job;
 pub(crate) mod extended_job;
 pub(crate) mod point_job;

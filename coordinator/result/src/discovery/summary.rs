@@ -1,6 +1,6 @@
 //! The block `discovery` of `summary.json`.
 
-use record::{ChiSquare, Discovery, JudgedEffect, JudgedSet, NextRun, Outside, Verdict, effect_of};
+use record::{ChiSquare, Discovery, JudgedEffect, JudgedSet, NextRun, NotTried, Outside, Verdict, effect_of};
 
 use super::round::DiscoveryRound;
 
@@ -23,6 +23,8 @@ pub struct DiscoverySummary {
     pub outside: Option<Outside>,
     /// Effects that the last search could not detect.
     pub cannot_exclude: Vec<String>,
+    /// Effects that the last search could not try as the experiment is, with what it would have to state.
+    pub not_tried: Vec<NotTried>,
     /// Test runs that would distinguish the open explanations of the last search.
     pub next_runs: Vec<NextRun>,
     /// Tests without a rolling wheel that would distinguish them.
@@ -70,6 +72,7 @@ impl DiscoverySummary {
             explained: explained(first, last),
             outside: records.iter().find_map(|record| record.outside.clone()),
             cannot_exclude: last.cannot_exclude.clone(),
+            not_tried: last.not_tried.clone(),
             next_runs: last.next_runs.clone(),
             other_tests: last.other_tests.clone(),
             evaluations: records.iter().map(|record| record.evaluations).sum(),

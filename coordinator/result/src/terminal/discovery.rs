@@ -1,5 +1,6 @@
 //! A search for a missing effect as text.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -118,6 +119,18 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
             };
             let _ = writeln!(text, "{words}: {shown}{rest}");
         }
+    }
+    let mut untried: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
+    for effect in &record.not_tried {
+        let same = untried.entry((&effect.needs, &effect.why)).or_default();
+        same.push(effect.name.clone());
+    }
+    for ((needs, why), effects) in untried {
+        let effects = folded(&effects).join(", ");
+        let _ = writeln!(
+            text,
+            "not tried as the experiment is: {effects}: {why} (needs {needs})"
+        );
     }
     for run in &record.next_runs {
         let _ = writeln!(

@@ -115,11 +115,23 @@ fn search(study: &Study, round: &DiscoveryRound) -> Markup {
         @if !record.refused.is_empty() {
             p { "Rejected by the model at every strength: " (number::list(&record.refused)) "." }
         }
+        @if !record.not_tried.is_empty() { (not_tried(record)) }
         @if !(record.next_runs.is_empty() && record.other_tests.is_empty()) { (next(record)) }
         @if let Some(arguments) = arguments(record, Path::new("")) {
             p { "To add it: " code { "coordinator extend " (round.calibration) " " (arguments) } }
         }
         p.note { (number::count(record.evaluations as usize, "evaluation")) "." }
+    }
+}
+
+fn not_tried(record: &Discovery) -> Markup {
+    html! {
+        p { "Weighed with assumed values, because the experiment does not state what they need. An effect of this list is never named: " }
+        ul {
+            @for effect in &record.not_tried {
+                li { code { (effect.name) } ": " (effect.why) ". Needs " (effect.needs) "." }
+            }
+        }
     }
 }
 

@@ -1,0 +1,178 @@
+//! An experiment in which typical values stand for what it leaves unsaid.
+
+use shared::experiment::Experiment;
+use shared::file::{FileError, FileSet};
+use shared::model::ModelKind;
+use toml_edit::{DocumentMut, Item, Table, TableLike, value};
+
+/// Bulk density of dry sand between loose and dense `[kg/m^3]`.
+const DENSITY_KG_M3: f64 = 1500.0;
+/// Length of the source paper's bin `[m]`.
+const BIN_LENGTH_M: f64 = 1.5;
+/// Grousers of rover wheels: 12 of 0.07 R (ExoMars) to 24 of 0.09 R.
+const GROUSERS: i64 = 16;
+const GROUSER_HEIGHT: f64 = 0.08;
+/// Their thickness; no effect of `quasi_static` depends on it.
+const GROUSER_THICKNESS: f64 = 0.016;
+
+/// A property of the test site that an experiment may leave unsaid and effects may need.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SiteProperty {
+    /// Density of a soil.
+    Density,
+    /// Grousers of a wheel.
+    Grousers,
+    /// Length of the bin.
+    BinLength,
+}
+
+/// A property that the experiment leaves unsaid.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnsaidProperty {
+    /// The property.
+    pub property: SiteProperty,
+    /// What is not stated, and the value that stands for it.
+    pub why: String,
+    /// The line that states it.
+    pub needs: String,
+}
+
+/// An experiment in which typical values stand for what it leaves unsaid.
+#[derive(Debug, Clone)]
+pub struct AssumedExperiment {
+    /// The experiment with those values.
+    pub files: FileSet,
+    /// What they stand for.
+    pub unsaid: Vec<UnsaidProperty>,
+}
+
+impl AssumedExperiment {
+    /// States the density of the runs' soil, the grousers of every wheel and the length of the bin where the experiment does not.
+    ///
+    /// A wheel with `grouser_count = 0` is smooth and stays so, as does a surface mesh. `scm` rolls the wheel as it is declared:
+    /// there, grousers are never assumed.
+    ///
+    /// # Errors
+    /// [`FileError`] where the files are no experiment.
+    pub fn new(name: &str, experiment: &FileSet, kind: ModelKind) -> Result<Self, FileError> {
+        let parsed = Experiment::parse(name, experiment)?;
+        let mut document: DocumentMut = experiment
+            .toml
+            .parse()
+            .map_err(|e: toml_edit::TomlError| FileError::whole(name, e.to_string()))?;
+        let mut unsaid = Vec::new();
+        for (soil, properties) in &parsed.soils {
+            if properties.density_kg_m3.is_none()
+                && parsed.runs.iter().any(|run| run.soil == *soil)
+                && let Some(table) = table(document.get_mut("soil"), soil)
+            {
+                table.insert("density_kg_m3", value(DENSITY_KG_M3));
+                unsaid.push(UnsaidProperty {
+                    property: SiteProperty::Density,
+                    why: format!(
+                        "the density of soil {soil} is not stated; {DENSITY_KG_M3} kg/m^3 is assumed"
+                    ),
+                    needs: format!("density_kg_m3 under [soil.{soil}]"),
+                });
+            }
+        }
+        for (wheel, geometry) in &parsed.wheels {
+            if kind != ModelKind::QuasiStatic || geometry.mesh.is_some() {
+                continue;
+            }
+            if let Some(table) = table(document.get_mut("wheel"), wheel)
+                && !table.contains_key("grouser_count")
+                && !table.contains_key("grouser_height_m")
+            {
+                let height_m = GROUSER_HEIGHT * geometry.radius_m;
+                table.insert("grouser_count", value(GROUSERS));
+                table.insert("grouser_height_m", value(height_m));
+                table.insert(
+                    "grouser_thickness_m",
+                    value(GROUSER_THICKNESS * geometry.radius_m),
+                );
+                unsaid.push(UnsaidProperty {
+                    property: SiteProperty::Grousers,
+                    why: format!(
+                        "the grousers of wheel {wheel} are not stated; {GROUSERS} of {:.1} mm are assumed",
+                        1e3 * height_m
+                    ),
+                    needs: format!(
+                        "grouser_count and grouser_height_m under [wheel.{wheel}] (grouser_count = 0: a smooth rim)"
+                    ),
+                });
+            }
+        }
+        if parsed.rig.bin_length_m.is_none()
+            && let Some(rig) = document
+                .entry("rig")
+                .or_insert(Item::Table(Table::new()))
+                .as_table_like_mut()
+        {
+            rig.insert("bin_length_m", value(BIN_LENGTH_M));
+            unsaid.push(UnsaidProperty {
+                property: SiteProperty::BinLength,
+                why: format!("the length of the bin is not stated; {BIN_LENGTH_M} m is assumed"),
+                needs: "bin_length_m under [rig]".into(),
+            });
+        }
+        Ok(Self {
+            files: FileSet {
+                toml: document.to_string(),
+                files: experiment.files.clone(),
+            },
+            unsaid,
+        })
+    }
+}
+
+fn table<'d>(tables: Option<&'d mut Item>, name: &str) -> Option<&'d mut dyn TableLike> {
+    tables?.as_table_like_mut()?.get_mut(name)?.as_table_like_mut()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.a]\nradius_m = 0.1\nwidth_m = 0.1\n\
+        [wheel.b]\nradius_m = 0.1\nwidth_m = 0.1\ngrouser_count = 0\n\
+        [soil.s]\n[soil.t]\n[noise]\ndrawbar_pull_n = 1.0\n";
+    const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\n\
+        1,a,s,0.2,100,0.01,20,fit\n2,b,s,0.2,100,0.01,20,fit\n";
+
+    fn assumed(kind: ModelKind) -> (Experiment, Vec<UnsaidProperty>) {
+        let files = FileSet {
+            toml: EXPERIMENT.into(),
+            files: [("runs.csv".to_owned(), RUNS.to_owned())].into(),
+        };
+        let assumed = AssumedExperiment::new("experiment.toml", &files, kind).unwrap();
+        let parsed = Experiment::parse("experiment.toml", &assumed.files).unwrap();
+        (parsed, assumed.unsaid)
+    }
+
+    #[test]
+    fn what_is_stated_stays_and_the_rest_is_assumed() {
+        let (with, unsaid) = assumed(ModelKind::QuasiStatic);
+        assert_eq!(with.soils["s"].density_kg_m3, Some(DENSITY_KG_M3));
+        // no run is in it
+        assert_eq!(with.soils["t"].density_kg_m3, None);
+        assert_eq!(
+            (with.wheels["a"].grouser_count, with.wheels["b"].grouser_count),
+            (16, 0)
+        );
+        let needs: Vec<&str> = unsaid.iter().map(|u| u.needs.as_str()).collect();
+        assert_eq!(needs[0], "density_kg_m3 under [soil.s]");
+        assert!(
+            needs[1].contains("[wheel.a] (grouser_count = 0: a smooth rim)"),
+            "{needs:?}"
+        );
+        assert_eq!(needs[2..], ["bin_length_m under [rig]"]);
+    }
+
+    #[test]
+    fn a_rolling_wheel_is_as_it_is_declared() {
+        let (with, unsaid) = assumed(ModelKind::Scm);
+        assert_eq!(with.wheels["a"].grouser_count, 0);
+        assert!(unsaid.iter().all(|u| u.property != SiteProperty::Grousers));
+    }
+}
