@@ -86,6 +86,32 @@ fn a_study_grows_by_effects_and_by_runs() {
 }
 
 #[test]
+fn a_parameter_that_the_job_holds_is_freed_as_an_effect_is_added() {
+    let service = Service::start(&["--local-workers", "2"]);
+    let base = service.submit(&Job::small());
+    let path = format!("/v1/calibrations/{base}/extend");
+    // the job holds the velocity under [model], the cohesion in silence
+    let freed = created(&service, &path, &json!({"effect": "shear_velocity_m_s"}));
+    let path = format!("/v1/calibrations/{freed}/extend");
+    let both = created(&service, &path, &json!({"effect": "cohesion_pa"}));
+    for id in [base, freed, both] {
+        service.wait_for(id, "finished");
+    }
+    let summary = summary(&service, both);
+    let two = "[\"cohesion_pa\",\"shear_velocity_m_s\"]";
+    assert_eq!(ledger(&summary), ["[]", "[\"shear_velocity_m_s\"]", two]);
+    let cohesion = &summary["calibrations"][2]["parameters"]["cohesion_pa"];
+    assert!(cohesion["sd"].as_f64() > Some(0.0), "{cohesion}");
+    let path = format!("/v1/calibrations/{both}/extend");
+    let again = service.client.post(&path, &json!({"effect": "cohesion_pa"}));
+    assert!(
+        again.status == 422 && again.body.contains("already under [priors]"),
+        "{}",
+        again.body
+    );
+}
+
+#[test]
 fn an_extension_is_the_calibration_of_the_same_job_submitted_alone() {
     let service = Service::start(&["--local-workers", "2"]);
     let base = service.submit(&Job::small());

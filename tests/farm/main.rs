@@ -15,6 +15,7 @@ mod leases;
 mod likelihood;
 mod mesh;
 mod metamodel;
+mod not_tried;
 mod older_store;
 mod point_fit;
 mod posterior_prior;

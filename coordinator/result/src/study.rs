@@ -31,6 +31,18 @@ impl Study {
         self.submitted().chain(&self.extensions)
     }
 
+    /// The plain parameters of the model that the study freed since the submitted job.
+    pub fn freed(&self, calibration: &FinishedCalibration) -> Vec<String> {
+        let had = self.lead.spec.freed();
+        let freed = calibration.spec.freed().into_iter();
+        freed.filter(|own| !had.contains(own)).collect()
+    }
+
+    /// What a calibration has: its effects, and what the study freed.
+    pub fn parts(&self, calibration: &FinishedCalibration) -> Vec<String> {
+        [calibration.effects(), self.freed(calibration)].concat()
+    }
+
     /// The lines of the error ledger: the calibrations that have a posterior.
     pub fn ledger(&self) -> impl Iterator<Item = &FinishedCalibration> {
         self.calibrations()

@@ -8,7 +8,7 @@ use shared::experiment::RunUse;
 use shared::file::{FileError, FileSet, unknown_word};
 use shared::model::effects::parameter_name;
 
-use job::{Spec, extended_job};
+use job::{PlainParameter, Spec, extended_job, with_free};
 use record::Extension;
 
 /// A candidate effect as an addition to a job.
@@ -33,7 +33,7 @@ pub enum ExclusionReason {
 
 /// The job with further effects.
 ///
-/// Effects of the catalogue join those under `[model]`, effect files come with the job, and an effect on one wheel is a line
+/// Effects of the catalogue join those under `[model]`, a plain parameter of the model gets its prior under `[priors]`, effect files come with the job, and an effect on one wheel is a line
 /// under `[priors]` for each of its strengths, with the prior of the effect's file.
 ///
 /// # Errors
@@ -43,9 +43,13 @@ pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<
     let fail = |message: String| FileError::whole(name, message);
     let (mut effects, mut named, mut priors) = (Vec::new(), Vec::new(), Vec::new());
     let mut files = job.files.clone();
+    let mut toml = job.toml.clone();
     for extension in extensions {
         match extension {
-            Extension::Effect(effect) => effects.push(effect.clone()),
+            Extension::Effect(effect) => match PlainParameter::find(effect).and_then(PlainParameter::prior) {
+                Some((prior, _)) => toml = with_free(name, &toml, effect, &prior)?,
+                None => effects.push(effect.clone()),
+            },
             Extension::OnWheel { effect, wheel } => {
                 let known = find(effect).ok_or_else(|| {
                     let known = catalogue().iter().map(|e| e.name.as_str());
@@ -62,7 +66,7 @@ pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<
             }
         }
     }
-    let toml = extended_job(name, &job.toml, &effects, &named, &priors)?;
+    let toml = extended_job(name, &toml, &effects, &named, &priors)?;
     Ok(FileSet { toml, files })
 }
 
@@ -211,6 +215,20 @@ mod tests {
         );
         let smooth = excluded.iter().find(|(name, _)| name == "lug_thrust.smooth");
         assert!(smooth.is_some_and(|(_, reason)| reason.to_string().contains("needs a wheel with grousers")));
+    }
+
+    #[test]
+    fn a_plain_parameter_is_freed_with_its_prior() {
+        let (job, files, _) = read("examples/hidden-effect");
+        let free = |name: &str| {
+            let with = extended(JOB, &job, &[&Extension::Effect(name.into())]).unwrap();
+            spec(&with, &files).map(|spec| spec.freed())
+        };
+        assert_eq!(free("cohesion_pa").unwrap(), ["cohesion_pa"]);
+        // the job holds it under [model]
+        assert_eq!(free("shear_velocity_m_s").unwrap(), ["shear_velocity_m_s"]);
+        let message = free("flow_fraction").unwrap_err().to_string();
+        assert!(message.contains("quasi_static has no terrain"), "{message}");
     }
 
     #[test]

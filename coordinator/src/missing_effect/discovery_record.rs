@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use discovery::{
     Conclusion, EvidenceMethod, FitChiSquare, OutsideLaw, RankedEffect, SearchVerdict, WeighedSet,
 };
+use job::PlainParameter;
 use record::{
     ChiSquare, Discovery, Extension, JudgedEffect, JudgedSet, NONE, NOT_IN_LIBRARY, NextRun, Outside, Verdict,
 };
@@ -175,6 +176,9 @@ fn method(method: EvidenceMethod) -> &'static str {
 }
 
 fn strength_prior(candidate: &CandidateEffect) -> Option<String> {
+    if let Some(plain) = PlainParameter::find(&candidate.name) {
+        return Some(format!("{} = {}", plain.name, plain.prior));
+    }
     let effect = formula::catalogue::find(candidate.name.split('.').next()?)?;
     let strength = effect.parameters.iter().find(|p| p.neutral.is_some())?;
     Some(format!("{}.{} = {}", effect.name, strength.name, strength.prior))

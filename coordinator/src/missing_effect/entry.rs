@@ -2,8 +2,8 @@
 
 use discovery::Candidate;
 use formula::Effect;
-use job::FreeParameter;
-use record::NotTried;
+use job::{FreeParameter, PlainParameter, Spec};
+use record::{Extension, NotTried};
 
 use super::candidate::CandidateEffect;
 use super::law::dependence::Dependence;
@@ -29,6 +29,26 @@ pub(super) struct LawEntry {
 }
 
 impl CandidateEntry {
+    /// The candidate that is a parameter of the model itself; `None` where the job does not hold it fixed.
+    pub(super) fn plain(plain: &PlainParameter, base: &Spec) -> Option<Self> {
+        let (neutral, density) = plain.held_by(base)?;
+        let name = plain.name.to_owned();
+        Some(Self {
+            candidate: Candidate {
+                name: name.clone(),
+                parameters: vec![density],
+                strengths: vec![0],
+                neutral,
+            },
+            names: vec![name.clone()],
+            not_tried: None,
+            effect: CandidateEffect {
+                extension: Extension::Effect(name.clone()),
+                name,
+            },
+        })
+    }
+
     /// The candidate with the free parameters that an effect brings; `None` without a free strength.
     ///
     /// # Arguments

@@ -17,7 +17,7 @@ use super::entry::{CandidateEntry, LawEntry};
 use super::law::dependence::dependences;
 use super::law::form::LawForm;
 use super::untried::untried;
-use job::{FreeParameter, Spec, free_parameters, without_effects};
+use job::{FreeParameter, PLAIN_PARAMETERS, Spec, free_parameters, without_effects};
 use record::Extension;
 
 /// Shortest finite difference of the three-dimensional model, in standard deviations of the prior: shorter ones show its grid.
@@ -69,6 +69,11 @@ impl SearchModels {
         for own in effects {
             entries.extend(entry(own, experiment)?);
         }
+        entries.extend(
+            PLAIN_PARAMETERS
+                .iter()
+                .filter_map(|plain| CandidateEntry::plain(plain, &base)),
+        );
         for own in untried {
             let not_tried = Some(own.record());
             let own = entry(own.effect, &assumed)?;

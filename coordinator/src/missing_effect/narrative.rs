@@ -1,6 +1,7 @@
 //! The result of a search in one sentence.
 
 use discovery::{Conclusion, DETECTED, SearchVerdict};
+use job::PlainParameter;
 use record::{JudgedEffect, NONE, NOT_IN_LIBRARY, Outside};
 
 use super::models::SearchModels;
@@ -89,10 +90,13 @@ fn verdict(
                     untried.needs
                 );
             }
-            let summary = formula::catalogue::find(name.split('.').next().unwrap_or_default());
+            let effect = formula::catalogue::find(name.split('.').next().unwrap_or_default());
+            let summary = match PlainParameter::find(&name) {
+                Some(plain) => plain.summary,
+                None => effect.map_or("", |effect| effect.summary.as_str()),
+            };
             format!(
-                "{name} is missing: {} (probability {:.3}, {:.1} nats over {kind})",
-                summary.map_or("", |effect| effect.summary.as_str()),
+                "{name} is missing: {summary} (probability {:.3}, {:.1} nats over {kind})",
                 own.map_or(0.0, |e| e.probability),
                 own.map_or(0.0, |e| e.log_bayes_factor),
             )

@@ -104,7 +104,9 @@ pub(super) async fn finished_study_of(
     let (mut point_estimates, mut extensions) = (Vec::new(), Vec::new());
     for row in calibrations {
         let outcome = finished_calibration(reader, row).await?;
-        let is_same = outcome.row.experiment == lead.row.experiment && outcome.effects() == lead.effects();
+        let is_same = outcome.row.experiment == lead.row.experiment
+            && outcome.effects() == lead.effects()
+            && outcome.spec.freed() == lead.spec.freed();
         if is_same {
             &mut point_estimates
         } else {

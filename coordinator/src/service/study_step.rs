@@ -53,7 +53,13 @@ async fn part(
     let spec = spec_of(reader, row).await?;
     Ok(match spec.algorithm {
         AlgorithmSettings::Sample(_) => StudyRole::Ledger {
-            effects: spec.fit_variant.effects.iter().map(|e| e.name.clone()).collect(),
+            effects: spec
+                .fit_variant
+                .effects
+                .iter()
+                .map(|e| e.name.clone())
+                .chain(spec.freed())
+                .collect(),
             search: find_search(row, study)?.map(|row| row.id),
         },
         _ => StudyRole::Beside,

@@ -9,7 +9,7 @@ use toml_edit::{DocumentMut, Item, Table, TableLike, value};
 const DENSITY_KG_M3: f64 = 1500.0;
 /// Length of the source paper's bin `[m]`.
 const BIN_LENGTH_M: f64 = 1.5;
-/// Grousers of rover wheels: 12 of 0.07 R (ExoMars) to 24 of 0.09 R.
+/// Grousers of rover wheels: 12 of 0.07 R to 24 of 0.09 R.
 const GROUSERS: i64 = 16;
 const GROUSER_HEIGHT: f64 = 0.08;
 /// Their thickness; no effect of `quasi_static` depends on it.

@@ -60,6 +60,33 @@ pub fn extended_job(
     Ok(document.to_string())
 }
 
+/// The text of a job in which a parameter is free that it holds fixed: under `[model]`, under `[priors]`, or in silence.
+///
+/// # Errors
+/// [`FileError`] where the text is no job with a table `[model]`, or where the parameter has a prior already.
+pub fn with_free(name: &str, toml: &str, parameter: &str, prior: &toml::Value) -> Result<String, FileError> {
+    let fail = |message: String| FileError::whole(name, message);
+    let mut document: toml_edit::DocumentMut = toml
+        .parse()
+        .map_err(|e: toml_edit::TomlError| fail(e.to_string()))?;
+    for table in ["model", "priors"] {
+        let Some(table) = document
+            .get_mut(table)
+            .and_then(toml_edit::Item::as_table_like_mut)
+        else {
+            continue;
+        };
+        if table
+            .get(parameter)
+            .is_some_and(|held| held.is_float() || held.is_integer())
+        {
+            table.remove(parameter);
+        }
+    }
+    let toml = document.to_string();
+    extended_job(name, &toml, &[], &[], &[(parameter.to_owned(), prior.clone())])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -96,6 +123,25 @@ mod tests {
             );
         assert_eq!(added, expected);
         assert_eq!(extended_job("job.toml", JOB, &[], &[], &[]).unwrap(), JOB);
+    }
+
+    #[test]
+    fn a_parameter_is_freed_wherever_it_is_held() {
+        let table: toml::Table = "x = { half_normal = 500.0 }".parse().unwrap();
+        let free = |toml: &str| with_free("job.toml", toml, "cohesion_pa", &table["x"]);
+        let expected = "[model]\n[priors]\nn = 1.1\ncohesion_pa = { half_normal = 500.0 }\n";
+        for held in [
+            "[model]\n[priors]\nn = 1.1\n",
+            "[model]\ncohesion_pa = 0.0\n[priors]\nn = 1.1\n",
+            "[model]\n[priors]\ncohesion_pa = 0\nn = 1.1\n",
+        ] {
+            assert_eq!(free(held).unwrap(), expected);
+        }
+        let twice = free(expected).unwrap_err();
+        assert_eq!(
+            twice.to_string(),
+            "job.toml: cohesion_pa is already under [priors]"
+        );
     }
 
     #[test]

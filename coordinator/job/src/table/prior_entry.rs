@@ -139,7 +139,7 @@ pub fn free_parameters(effect: &Effect) -> Result<Vec<FreeParameter>, PriorEntry
 }
 
 /// The prior density that a table describes, within the quantity's physical bounds.
-fn marginal(value: &toml::Value, quantity: &ParameterBounds) -> Result<Marginal, PriorEntryError> {
+pub(crate) fn marginal(value: &toml::Value, quantity: &ParameterBounds) -> Result<Marginal, PriorEntryError> {
     let ParameterBounds { unit, lower, upper } = quantity;
     let (lower, upper, unit) = (*lower, *upper, behind(unit));
     let table = value.as_table().ok_or(PriorEntryError::NotATable)?;

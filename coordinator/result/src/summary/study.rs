@@ -38,7 +38,7 @@ impl Study {
         let of_newest = self.ledger().filter(|o| Some(o.row.experiment) == newest);
         let evidence = |o: &FinishedCalibration| o.row.log_evidence.unwrap_or(f64::NEG_INFINITY);
         let best = of_newest.reduce(|a, b| if evidence(b) > evidence(a) { b } else { a });
-        best.map(FinishedCalibration::effects)
+        best.map(|best| self.parts(best))
             .unwrap_or_default()
             .into_iter()
             .filter(|effect| !had.contains(effect))
@@ -56,7 +56,11 @@ impl Study {
             status: self.state.name().to_owned(),
             calibrations: self
                 .calibrations()
-                .filter_map(FinishedCalibration::calibration_summary)
+                .filter_map(|calibration| {
+                    let line = calibration.calibration_summary()?;
+                    let effects = self.parts(calibration);
+                    Some(CalibrationSummary { effects, ..line })
+                })
                 .collect(),
             point_estimates: self
                 .calibrations()

@@ -21,7 +21,10 @@ const LISTED: usize = 20;
 pub fn story(study: &Study) -> String {
     let mut text = String::new();
     for round in &study.rounds {
-        let given = match round.record.given.as_slice() {
+        let searched = study.calibrations().find(|c| c.row.id == round.calibration);
+        let freed = searched.map_or(Vec::new(), |searched| study.freed(searched));
+        let given = [round.record.given.as_slice(), &freed].concat();
+        let given = match given.as_slice() {
             [] => "the model as it is".to_owned(),
             given => format!("with {}", given.join(", ")),
         };
@@ -34,7 +37,7 @@ pub fn story(study: &Study) -> String {
     );
     let lines = study.ledger().filter_map(|o| Some((o, o.calibration_summary()?)));
     for (calibration, line) in lines {
-        let mut effects = match line.effects.as_slice() {
+        let mut effects = match study.parts(calibration).as_slice() {
             [] => "base".to_owned(),
             effects => format!("with {}", effects.join(", ")),
         };

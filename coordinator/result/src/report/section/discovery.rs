@@ -46,7 +46,7 @@ fn ledger(study: &Study) -> Markup {
                 @for (calibration, comparison) in &lines {
                     @for (usage, table) in [(RunUse::Fit, &comparison.fit), (RunUse::Holdout, &comparison.holdout)] {
                         @if let Some(table) = table {
-                            tr.first[usage == RunUse::Fit] { (cells(calibration, comparison, usage, table, &channels)) }
+                            tr.first[usage == RunUse::Fit] { (cells(study, calibration, comparison, usage, table, &channels)) }
                         }
                     }
                 }
@@ -60,6 +60,7 @@ fn ledger(study: &Study) -> Markup {
 }
 
 fn cells(
+    study: &Study,
     calibration: &FinishedCalibration,
     comparison: &Comparison,
     usage: RunUse,
@@ -67,7 +68,7 @@ fn cells(
     channels: &[Channel],
 ) -> Markup {
     let is_first = usage == RunUse::Fit;
-    let effects = calibration.effects();
+    let effects = study.parts(calibration);
     let coverage = Coverage::count(rows_of(&comparison.rows, usage));
     html! {
         td.text { @if is_first { (calibration.experiment) } }

@@ -1,0 +1,139 @@
+//! Parameters of the model itself that a job may hold fixed though they are not: candidates of a search, as effects are.
+
+use shared::model::ModelKind;
+use shared::parameters::{BASE, SPATIAL};
+use statistics::Marginal;
+
+use crate::spec::Spec;
+use crate::table::prior_entry::marginal;
+
+/// A parameter of the model that a search may free.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlainParameter {
+    /// Its name in jobs.
+    pub name: &'static str,
+    /// What it says of the soil if its value is another, in a line.
+    pub summary: &'static str,
+    /// Its prior where it is freed, as in a job.
+    pub prior: &'static str,
+    /// The effect that is this very parameter in another unit, and is the candidate in its place.
+    pub covered_by: Option<&'static str>,
+}
+
+const fn plain(name: &'static str, prior: &'static str, summary: &'static str) -> PlainParameter {
+    PlainParameter {
+        name,
+        summary,
+        prior,
+        covered_by: None,
+    }
+}
+
+/// Every such parameter.
+///
+/// Priors: cohesion of dry and slightly moist sand; exponents from an even to a triangular distribution of the pressure; a factor of e
+/// and of 3 about the model's velocity and stiffness; shares anywhere.
+pub const PLAIN_PARAMETERS: [PlainParameter; 6] = [
+    plain(
+        "cohesion_pa",
+        "{ half_normal = 500.0 }",
+        "the soil has a cohesion other than the job says",
+    ),
+    plain(
+        "gamma_exponent",
+        "{ uniform = [0.0, 1.0] }",
+        "the pressure falls off towards the border of the footprint by another power",
+    ),
+    PlainParameter {
+        covered_by: Some("shear_velocity_scale"),
+        ..plain(
+            "shear_velocity_m_s",
+            "{ lognormal = [0.001, 2.718281828459045] }",
+            "the reference velocity of the shear law is another",
+        )
+    },
+    plain(
+        "elastic_stiffness_pa_m",
+        "{ lognormal = [1e9, 3.0] }",
+        "the soil has another elastic stiffness than the job says",
+    ),
+    plain(
+        "flow_fraction",
+        "{ uniform = [0.0, 1.0] }",
+        "another share of the pressed soil flows to the border of the footprint",
+    ),
+    plain(
+        "bearing_credit",
+        "{ uniform = [0.0, 1.0] }",
+        "soil that has flowed carries another share of what settled soil does",
+    ),
+];
+
+impl PlainParameter {
+    /// The parameter of a name, if a search may free it.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        PLAIN_PARAMETERS.iter().find(|plain| plain.name == name)
+    }
+
+    /// Its prior as a value of TOML, and as a density.
+    pub fn prior(&self) -> Option<(toml::Value, Marginal)> {
+        let table: toml::Table = format!("prior = {}", self.prior).parse().ok()?;
+        let value = table.get("prior")?.clone();
+        let known = BASE.iter().chain(&SPATIAL).find(|p| p.name == self.name)?;
+        let density = marginal(&value, &known.into()).ok()?;
+        Some((value, density))
+    }
+
+    /// The value at which a job holds it, with the density of its prior; `None` where it is free, where the model does not have it,
+    /// where its value lies outside its prior, or where an effect is the candidate in its place.
+    pub fn held_by(&self, spec: &Spec) -> Option<(f64, Marginal)> {
+        let is_free = spec.parameters.iter().any(|p| p.name == self.name);
+        let is_spatial = SPATIAL.iter().any(|p| p.name == self.name);
+        let is_missing = is_spatial && spec.model.kind != ModelKind::Scm;
+        if is_free || is_missing || self.covered_by.is_some() || spec.fit_variant.conditions.is_empty() {
+            return None;
+        }
+        let default = BASE.iter().chain(&SPATIAL).find(|p| p.name == self.name)?.default;
+        let value = spec.model.fixed.get(self.name).copied().or(default)?;
+        let (_, density) = self.prior()?;
+        let (lower, upper) = density.support();
+        (lower..=upper).contains(&value).then_some((value, density))
+    }
+}
+
+impl Spec {
+    /// The names of the plain parameters that are free.
+    pub fn freed(&self) -> Vec<String> {
+        let free = |plain: &&PlainParameter| self.parameters.iter().any(|p| p.name == plain.name);
+        let freed = PLAIN_PARAMETERS.iter().filter(free);
+        freed.map(|plain| plain.name.to_owned()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_one_is_a_parameter_whose_default_its_prior_holds() {
+        for plain in &PLAIN_PARAMETERS {
+            let (_, density) = plain.prior().unwrap_or_else(|| panic!("{}", plain.name));
+            let known = BASE
+                .iter()
+                .chain(&SPATIAL)
+                .find(|p| p.name == plain.name)
+                .unwrap();
+            let (lower, upper) = density.support();
+            assert!(
+                (lower..=upper).contains(&known.default.unwrap()),
+                "{}",
+                plain.name
+            );
+            assert!(
+                plain
+                    .covered_by
+                    .is_none_or(|effect| formula::catalogue::find(effect).is_some())
+            );
+        }
+    }
+}
