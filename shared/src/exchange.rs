@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 use crate::outcome::Outcome;
 
 /// Version of these messages; a coordinator answers any other version with 426.
-pub const PROTOCOL_VERSION: u32 = 6;
+pub const PROTOCOL_VERSION: u32 = 7;
 
 /// `POST /v1/work/exchange`: results of finished leases, and how many more are wanted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -198,6 +198,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         pass: 1,
         repose_angle_deg: None,
         density_kg_m3: None,
+        order: None,
     };
     let variant = ModelVariant {
         kind: ModelKind::QuasiStatic,

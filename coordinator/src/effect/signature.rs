@@ -32,6 +32,9 @@ const COLUMNS: [(&str, f64, f64, f64); 6] = [
     ("50 mm/s", 0.2, 100.0, 0.05),
 ];
 
+/// Numbers of the first and the last run of a series; what is shown are last runs.
+const FIRST: i32 = 0;
+const LAST: i32 = 1;
 /// Points of the curves over slip: from −0.4 in steps of 0.05 to 0.8.
 const POINTS: usize = 25;
 
@@ -94,7 +97,11 @@ pub fn signature(effect: &Effect, kind: ModelKind) -> Result<Signature, String> 
     };
     let slips: Vec<f64> = (0..POINTS).map(|i| (i as f64 - 8.0) / 20.0).collect();
     let curve = slips.iter().map(|&slip| ("", slip, 100.0, RIM_M_S));
-    let runs: Vec<TestRun> = COLUMNS.into_iter().chain(curve).map(|c| run(c, pass)).collect();
+    let mut runs: Vec<TestRun> = COLUMNS.into_iter().chain(curve).map(|c| run(c, pass)).collect();
+    runs.push(TestRun {
+        order: Some(FIRST),
+        ..run(COLUMNS[0], pass)
+    });
     let reference = Reference::new(effect, kind, runs)?;
     let base = reference.simulate(None)?;
     let strengths = || effect.parameters.iter().filter(|p| p.neutral.is_some());
@@ -238,7 +245,8 @@ impl<'a> Reference<'a> {
                 settings.fixed.insert(name, value);
             }
         }
-        let runs = &self.experiment.runs;
+        let shown = |run: &&TestRun| run.order == Some(LAST);
+        let runs = self.experiment.runs.iter().filter(shown);
         let variant = ModelVariant::new(&self.experiment, &settings, &self.set, Vec::new(), runs)?;
         Ok(Evaluate::new(&variant)?.each(&[]))
     }
@@ -260,6 +268,8 @@ fn run((_, slip, wheel_load_n, rim_m_s): (&str, f64, f64, f64), pass: u32) -> Te
         sled_speed_m_s,
         slip_angle_deg: 0.0,
         pass,
+        order: Some(LAST),
+        prepared: None,
         measured: [None; 4],
         history: None,
         sd: [None; 4],

@@ -22,6 +22,8 @@ use record::Extension;
 
 /// Shortest finite difference of the three-dimensional model, in standard deviations of the prior: shorter ones show its grid.
 const ROUGH: f64 = 0.15;
+/// Position in the series of the campaign from which a rig goes on.
+const LAST_IN_SERIES: f64 = 0.5;
 /// Starts of the base's fit.
 const STARTS: usize = 32;
 
@@ -195,11 +197,14 @@ impl SearchModels {
         if !self.variants.contains_key(&key) {
             let mut variant = self.make(&key.0)?;
             if query.is_proposed {
-                // The soil's density is there only if an effect of this variant needs it.
+                // The soil's density is there only if an effect of this variant needs it, and so is the place in the series:
+                // proposed runs follow its end.
                 let density_kg_m3 = variant.conditions.first().and_then(|c| c.density_kg_m3);
+                let drifts = variant.conditions.iter().any(|c| c.order.is_some());
                 variant.conditions.clone_from(&self.design);
                 for condition in &mut variant.conditions {
                     condition.density_kg_m3 = density_kg_m3;
+                    condition.order = drifts.then_some(LAST_IN_SERIES);
                 }
                 variant.stiffness_sensitivity = false;
                 variant.plates.clear();

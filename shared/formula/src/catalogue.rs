@@ -6,7 +6,7 @@ use crate::effect::Effect;
 
 /// The files, in the order in which effects follow each other at a hook: pressure first, by how it is distributed; then strength
 /// and its mobilisation; wheel and rig; last what the rig does to what it measures, offsets after gains.
-const FILES: [&str; 39] = [
+const FILES: [&str; 44] = [
     include_str!("../catalogue/pressure_distribution_shape.toml"),
     include_str!("../catalogue/peak_pressure_angle.toml"),
     include_str!("../catalogue/slip_sinkage.toml"),
@@ -22,6 +22,7 @@ const FILES: [&str; 39] = [
     include_str!("../catalogue/slip_softened_pressure.toml"),
     include_str!("../catalogue/end_wall.toml"),
     include_str!("../catalogue/moisture.toml"),
+    include_str!("../catalogue/drift_stiffness.toml"),
     include_str!("../catalogue/adhesion.toml"),
     include_str!("../catalogue/interface_friction.toml"),
     include_str!("../catalogue/stress_dependent_friction.toml"),
@@ -46,6 +47,10 @@ const FILES: [&str; 39] = [
     include_str!("../catalogue/drawbar_pull_gain.toml"),
     include_str!("../catalogue/torque_gain.toml"),
     include_str!("../catalogue/sinkage_offset.toml"),
+    include_str!("../catalogue/drift_drawbar_pull_zero.toml"),
+    include_str!("../catalogue/drift_torque_zero.toml"),
+    include_str!("../catalogue/drift_sinkage_zero.toml"),
+    include_str!("../catalogue/drift_lateral_force_zero.toml"),
 ];
 
 static CATALOGUE: LazyLock<Vec<Effect>> = LazyLock::new(|| {

@@ -76,7 +76,7 @@
 //!
 //! Every formula sees `slip` (1), `sled_speed` (m/s), `wheel_load` (N), `radius` (m), `width` (m), `friction_angle_rad` (rad),
 //! `cohesion_pa` (Pa), `n` (1), `shear_velocity` (m/s), `density_kg_m3` (kg/m^3), `gravity` (m/s^2), `grouser_count` (1),
-//! `grouser_height` (m), `pass` (1) and `bin_length` (m). Those of the contact are `contact_length` (m), `b_eff` (m) and
+//! `grouser_height` (m), `pass` (1), `bin_length` (m) and `order` (1). Those of the contact are `contact_length` (m), `b_eff` (m) and
 //! `k_star` (N/m^(n+2)). [`Variable`] says what each is.
 //!
 //! # Units

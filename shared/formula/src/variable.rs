@@ -58,6 +58,8 @@ pub enum Variable {
     Pass,
     /// Length of the soil bin.
     BinLength,
+    /// Position of the run in the series of the campaign: −0.5 for the first run, 0.5 for the last.
+    Order,
     /// Drawbar pull; negative when the wheel is towed.
     DrawbarPull,
     /// Torque; negative when the wheel is braked.
@@ -96,6 +98,7 @@ const TABLE: [(Variable, &str, &str); Variable::COUNT] = [
     (Variable::GrouserHeight, "grouser_height", "m"),
     (Variable::Pass, "pass", "1"),
     (Variable::BinLength, "bin_length", "m"),
+    (Variable::Order, "order", "1"),
     (Variable::DrawbarPull, "drawbar_pull", "N"),
     (Variable::Torque, "torque", "N m"),
     (Variable::Sinkage, "sinkage", "m"),
@@ -104,7 +107,7 @@ const TABLE: [(Variable, &str, &str); Variable::COUNT] = [
 
 impl Variable {
     /// How many variables there are; `variable as usize` is below it.
-    pub const COUNT: usize = 30;
+    pub const COUNT: usize = 31;
 
     /// How many may differ from node to node: they come first.
     pub const LOCAL: usize = 10;
@@ -143,7 +146,7 @@ pub struct Variables(u32);
 impl Variables {
     /// The variables that are the same at all nodes: conditions, dimensions, and parameters of soil and rig.
     pub const OF_RUN: Variables = {
-        let (first, last) = (Variable::Slip as u32, Variable::BinLength as u32);
+        let (first, last) = (Variable::Slip as u32, Variable::Order as u32);
         Variables((1 << (last + 1)) - (1 << first))
     };
 
@@ -189,7 +192,7 @@ mod tests {
         for (place, variable) in Variable::ALL.into_iter().enumerate() {
             assert_eq!(variable as usize, place);
         }
-        assert_eq!(Variables::OF_RUN.iter().count(), 15);
+        assert_eq!(Variables::OF_RUN.iter().count(), 16);
         assert!(!Variables::OF_RUN.contains(Variable::ContactLength));
         assert!(!Variables::OF_RUN.contains(Variable::DrawbarPull));
     }

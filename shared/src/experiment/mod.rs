@@ -55,6 +55,22 @@ pub struct Experiment {
     pub shear: Vec<ShearReading>,
 }
 
+/// The runs of a campaign in time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Series {
+    first: i32,
+    last: i32,
+}
+
+impl Series {
+    /// Where a run stands in it: −0.5 the first, 0.5 the last; none of a run without a number.
+    pub fn position(self, run: &TestRun) -> Option<f64> {
+        let [first, last] = [self.first, self.last].map(f64::from);
+        run.order
+            .map(|order| (f64::from(order) - first) / (last - first) - 0.5)
+    }
+}
+
 impl Experiment {
     /// Reads an experiment's file and those that it names, unparsed except for binary STL, which becomes ASCII STL.
     ///
@@ -130,6 +146,13 @@ impl Experiment {
     /// Names of the wheels that the runs use.
     pub fn wheel_names(&self) -> BTreeSet<&str> {
         self.runs.iter().map(|r| r.wheel.as_str()).collect()
+    }
+
+    /// The series of all runs, holdout runs among them; none where the column `order` is absent or has one value alone.
+    pub fn series(&self) -> Option<Series> {
+        let orders = || self.runs.iter().filter_map(|run| run.order);
+        let (first, last) = (orders().min()?, orders().max()?);
+        (first < last).then_some(Series { first, last })
     }
 
     /// Whether any run of this use has a measurement of the channel.
@@ -235,6 +258,33 @@ mod tests {
             parse(&negative, HEADER).unwrap_err(),
             "experiment.toml: [wheel.w] width_m -0.05 m must be > 0 m"
         );
+    }
+
+    #[test]
+    fn the_order_of_the_runs_is_a_position_in_the_series() {
+        let header = HEADER.replace("use", "use,order,prepared");
+        let of = |rows: &str| parse(TOML, &format!("{header}{rows}"));
+        let rows = "a,w,s,0.2,100,0.01,1,,fit,7,bed 1\nb,w,s,0.3,100,0.01,1,,holdout,3,bed 1\nc,w,s,0.4,100,0.01,1,,fit,5,\n";
+        let experiment = of(rows).unwrap();
+        let series = experiment.series().unwrap();
+        let positions: Vec<_> = experiment.runs.iter().map(|r| series.position(r)).collect();
+        assert_eq!(positions, [Some(0.5), Some(-0.5), Some(0.0)]);
+        let prepared: Vec<_> = experiment.runs.iter().map(|r| r.prepared.as_deref()).collect();
+        assert_eq!(prepared, [Some("bed 1"), Some("bed 1"), None]);
+        assert_eq!(of("a,w,s,0.2,100,0.01,1,,fit,4,\n").unwrap().series(), None);
+        assert_eq!(of("a,w,s,0.2,100,0.01,1,,fit,,\n").unwrap().series(), None);
+        for (wrong, message) in [
+            (
+                rows.replace(",5,", ",,"),
+                "runs.csv line 4: run \"c\" has no order, but run \"a\" has one: a drift over the series needs the numbers of all",
+            ),
+            (
+                rows.replace(",5,", ",5.5,"),
+                "runs.csv line 4: order \"5.5\" must be a whole number: that of the run in time",
+            ),
+        ] {
+            assert_eq!(of(&wrong).unwrap_err(), message);
+        }
     }
 
     #[test]

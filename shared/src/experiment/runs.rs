@@ -29,6 +29,10 @@ pub struct TestRun {
     pub slip_angle_deg: f64,
     /// Number of passes; the last one is measured.
     pub pass: u32,
+    /// Number in the series of the campaign: runs with larger ones were made later.
+    pub order: Option<i32>,
+    /// Id of the soil's preparation; runs of one preparation share its error.
+    pub prepared: Option<String>,
     /// Measured value by channel [channel's unit], stated or averaged from the history; `None` = unmeasured.
     pub measured: [Option<f64>; 4],
     /// The history that some of the measured values are averages of.
@@ -73,13 +77,17 @@ pub const CONDITION_COLUMNS: [&str; 8] = [
 const REQUIRED: usize = 6;
 /// The column that names a run's history.
 const HISTORY: &str = "history";
+/// The column of the run numbers in time.
+const ORDER: &str = "order";
+/// The column of the preparations.
+const PREPARED: &str = "prepared";
 
 /// The known columns of `runs.csv`.
 fn columns<'a>(sd_columns: &'a [String; 4]) -> Columns<'a> {
     let mut known: Vec<&str> = CONDITION_COLUMNS.to_vec();
     known.extend(Channel::ALL.iter().map(|c| c.column()));
     known.extend(sd_columns.iter().map(String::as_str));
-    known.extend([HISTORY, "use"]);
+    known.extend([ORDER, PREPARED, HISTORY, "use"]);
     Columns {
         known,
         required: &CONDITION_COLUMNS[..REQUIRED],
@@ -121,6 +129,16 @@ pub(super) fn parse(
     })?;
     if rows.is_empty() {
         return Err(FileError::whole(file, "the file has no test run"));
+    }
+    let ordered = |(run, _, _): &&(TestRun, Option<String>, usize)| run.order.is_some();
+    if let (Some((first, _, _)), Some((run, _, line))) =
+        (rows.iter().find(ordered), rows.iter().find(|row| !ordered(row)))
+    {
+        let message = format!(
+            "run \"{}\" has no {ORDER}, but run \"{}\" has one: a drift over the series needs the numbers of all",
+            run.name, first.name
+        );
+        return Err(FileError::at(file, *line, message));
     }
     let average = |(mut run, history, line): (TestRun, Option<String>, usize)| {
         if let Some(named) = history {
@@ -172,6 +190,15 @@ impl Row<'_> {
                 _ => return rule(format!("pass \"{text}\" must be a whole number >= 1")),
             },
         };
+        let order = match self.text(ORDER).map(|text| (text, text.parse::<i32>())) {
+            None => None,
+            Some((_, Ok(number))) => Some(number),
+            Some((text, Err(_))) => {
+                return rule(format!(
+                    "{ORDER} \"{text}\" must be a whole number: that of the run in time"
+                ));
+            }
+        };
         let usage = match self.text("use") {
             None | Some("fit") => RunUse::Fit,
             Some("holdout") => RunUse::Holdout,
@@ -197,6 +224,8 @@ impl Row<'_> {
             sled_speed_m_s,
             slip_angle_deg,
             pass,
+            order,
+            prepared: self.text(PREPARED).map(str::to_owned),
             measured,
             history: None,
             sd,

@@ -27,13 +27,18 @@ pub struct RunCondition {
     /// Density of the run's soil `[kg/m^3]`; absent where no effect asks for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub density_kg_m3: Option<f64>,
+    /// Position of the run in the series of the campaign, −0.5 the first, 0.5 the last; absent where no effect asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub order: Option<f64>,
 }
 
 impl RunCondition {
-    pub(super) fn new(run: &TestRun, repose_angle_deg: Option<f64>, density_kg_m3: Option<f64>) -> Self {
+    /// The condition of a run, without what only some models and effects ask for.
+    pub(super) fn new(run: &TestRun) -> Self {
         RunCondition {
-            repose_angle_deg,
-            density_kg_m3,
+            repose_angle_deg: None,
+            density_kg_m3: None,
+            order: None,
             wheel: run.wheel.clone(),
             slip: run.slip,
             wheel_load_n: run.wheel_load_n,

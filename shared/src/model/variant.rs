@@ -108,10 +108,12 @@ impl ModelVariant {
         check_complete(&names, &wheels, effects)?;
         check_grousers(effects, &names, experiment)?;
         let slides = settings.kind == ModelKind::Scm;
-        let (weighing, walled) = (
+        let (weighing, walled, drifting) = (
             effects.using(Variable::Density),
             effects.using(Variable::BinLength),
+            effects.using(Variable::Order),
         );
+        let series = drifting.and(experiment.series());
         let condition = |run: &TestRun| {
             let soil = &experiment.soils[&run.soil];
             if let (Some(effect), None) = (weighing, soil.density_kg_m3) {
@@ -120,9 +122,19 @@ impl ModelVariant {
                     effect.name, run.soil
                 )));
             }
-            let repose_angle_deg = soil.repose_angle_deg.filter(|_| slides);
-            let density_kg_m3 = soil.density_kg_m3.filter(|_| weighing.is_some());
-            Ok(RunCondition::new(run, repose_angle_deg, density_kg_m3))
+            let order = series.and_then(|series| series.position(run));
+            if let (Some(effect), None) = (drifting, order) {
+                return Err(ModelError::Incomplete(format!(
+                    "effect {} needs the column order in runs.csv: the number of each run in time",
+                    effect.name
+                )));
+            }
+            Ok(RunCondition {
+                repose_angle_deg: soil.repose_angle_deg.filter(|_| slides),
+                density_kg_m3: soil.density_kg_m3.filter(|_| weighing.is_some()),
+                order,
+                ..RunCondition::new(run)
+            })
         };
         let conditions = runs.into_iter().map(condition).collect::<Result<Vec<_>, _>>()?;
         let bin_length_m = experiment.rig.bin_length_m.filter(|_| walled.is_some());

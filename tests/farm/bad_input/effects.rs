@@ -73,6 +73,10 @@ fn what_an_effect_needs_of_the_experiment_is_named() {
         "job.toml: effect end_wall needs bin_length_m under [rig]",
     );
     refused(
+        model("effects = [\"drift_torque_zero\"]"),
+        "job.toml: effect drift_torque_zero needs the column order in runs.csv: the number of each run in time",
+    );
+    refused(
         model("effects = [\"lug_thrust\"]").in_experiment("[soil.s]", "[soil.s]\ndensity_kg_m3 = 1400.0"),
         "job.toml: effect lug_thrust needs a wheel with grousers: w has none",
     );

@@ -111,6 +111,7 @@ fn sites(variant: &ModelVariant) -> Vec<Site> {
             grouser_count: wheel.map_or(0, |w| w.grouser_count),
             grouser_height_m: wheel.map_or(0.0, |w| w.grouser_height_m),
             bin_length_m: variant.bin_length_m,
+            order: condition.order,
         }
     };
     variant.conditions.iter().map(site).collect()

@@ -58,11 +58,13 @@ impl LocalSearch {
         };
         let own = self.models.variant(&query(first))?;
         let mut variant = own.1.clone();
-        // The soil's density is there only if an effect of this variant needs it.
-        let density_kg_m3 = variant.conditions.first().and_then(|c| c.density_kg_m3);
+        // The soil's density is there only if an effect of this variant needs it; the first run of its series has its order.
+        let first = variant.conditions.first();
+        let (density_kg_m3, order) = (first.and_then(|c| c.density_kg_m3), first.and_then(|c| c.order));
         variant.conditions = conditions.to_vec();
         for condition in &mut variant.conditions {
             condition.density_kg_m3 = density_kg_m3;
+            condition.order = order;
         }
         let evaluate = Evaluate::new(&variant)?;
         let predicted = thetas.iter().map(|theta| {

@@ -42,6 +42,7 @@ impl Active<'_> {
             (Variable::GrouserHeight, site.grouser_height_m),
             (Variable::Pass, f64::from(condition.pass)),
             (Variable::BinLength, site.bin_length_m.unwrap_or(f64::NAN)),
+            (Variable::Order, site.order.unwrap_or(f64::NAN)),
         ] {
             variables[variable as usize] = value;
         }

@@ -76,6 +76,8 @@ pub struct Site {
     pub grouser_height_m: f64,
     /// Length of the soil bin `[m]`, where it is known.
     pub bin_length_m: Option<f64>,
+    /// Position of the run in the series of the campaign, from −0.5 to 0.5, where it is known.
+    pub order: Option<f64>,
 }
 
 impl Default for Site {
@@ -87,6 +89,7 @@ impl Default for Site {
             grouser_count: 0,
             grouser_height_m: 0.0,
             bin_length_m: None,
+            order: None,
         }
     }
 }

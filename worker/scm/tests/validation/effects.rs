@@ -33,6 +33,7 @@ pub(crate) const SITE: Site = Site {
     grouser_count: 12,
     grouser_height_m: 0.009,
     bin_length_m: Some(1.5),
+    order: Some(0.5),
 };
 
 /// The wheel of the table is larger than the rig takes it for.
