@@ -3,7 +3,7 @@
 //! # Layout
 //! - `job_file`: [`JobFile`], a job as written.
 //! - `table`: the tables of a job, as written and what they mean.
-//! - `data`: the fitted measurements: noise, likelihood, predicted values.
+//! - `data`: the fitted measurements: noise, likelihood, predicted values; whether their order follows a condition.
 //! - `spec`: [`Spec`], a calibration as its files determine it; `spec_words` says it in words.
 //! - `plain_parameter`: [`PlainParameter`], what a search may free.
 //! - `derived`: the jobs, and the experiment, that follow from a job and its experiment.
@@ -17,6 +17,7 @@ mod spec_words;
 mod table;
 
 pub use data::bevameter_readings::{BevameterReadings, PLATE, RING, Reading};
+pub use data::confounded_order::{ConfoundedOrder, SetCondition, confounded_orders};
 pub use data::noise::repeat_scatter;
 pub use derived::assumed_experiment::{AssumedExperiment, SiteProperty, UnsaidProperty};
 pub use derived::discovery_job::{continued_job, discovery_job, effect_name, is_discovery, without_effects};

@@ -10,7 +10,7 @@ use crate::calibration::{Calibration, CalibrationEngine, CalibrationIdentity, Si
 use crate::config::JobArguments;
 use crate::embedded::Evaluate;
 use crate::missing_effect::untried::additions;
-use job::AlgorithmSettings;
+use job::{AlgorithmSettings, confounded_orders};
 use result::{model_limits, terminal};
 
 /// Particles of the pilot: enough to fit what stages are drawn from, and to find their number, which hardly depends on them.
@@ -28,6 +28,9 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
         for line in additions(&job.job, &job.experiment, job.spec.model.kind)? {
             text += &format!("note: {line}\n");
         }
+    }
+    for order in confounded_orders(&job.spec.experiment, &job.spec.fit_runs) {
+        text += &format!("warning: {}\n", order.words());
     }
     say(&text)?;
     let algorithm = job.spec.algorithm;

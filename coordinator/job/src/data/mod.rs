@@ -1,6 +1,7 @@
 //! The measurements that a calibration fits: their noise, their likelihood, what is predicted of them.
 
 pub(crate) mod bevameter_readings;
+pub(crate) mod confounded_order;
 pub(crate) mod error;
 pub(crate) mod likelihood;
 pub(crate) mod noise;

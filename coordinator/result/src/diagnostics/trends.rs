@@ -21,15 +21,18 @@ pub enum TrendVariable {
     SledSpeed,
     /// The product of slip and sled speed.
     SlipXSledSpeed,
+    /// The number of the run in time.
+    Order,
 }
 
 impl TrendVariable {
-    const ALL: [TrendVariable; 5] = [
+    const ALL: [TrendVariable; 6] = [
         TrendVariable::Constant,
         TrendVariable::Slip,
         TrendVariable::WheelLoad,
         TrendVariable::SledSpeed,
         TrendVariable::SlipXSledSpeed,
+        TrendVariable::Order,
     ];
 
     /// Name in tables: `slip_x_sled_speed`.
@@ -40,6 +43,7 @@ impl TrendVariable {
             TrendVariable::WheelLoad => "wheel_load",
             TrendVariable::SledSpeed => "sled_speed",
             TrendVariable::SlipXSledSpeed => "slip_x_sled_speed",
+            TrendVariable::Order => "order",
         }
     }
 
@@ -50,6 +54,7 @@ impl TrendVariable {
             TrendVariable::WheelLoad => run.wheel_load_n,
             TrendVariable::SledSpeed => run.sled_speed_m_s,
             TrendVariable::SlipXSledSpeed => run.slip * run.sled_speed_m_s,
+            TrendVariable::Order => run.order.map_or(0.0, f64::from),
         }
     }
 
@@ -58,7 +63,7 @@ impl TrendVariable {
         let count = |of: TrendVariable| levels(runs.iter().map(|run| of.value(run))).len();
         match self {
             TrendVariable::Constant => true,
-            TrendVariable::Slip => count(TrendVariable::Slip) >= 3,
+            TrendVariable::Slip | TrendVariable::Order => count(self) >= 3,
             TrendVariable::WheelLoad | TrendVariable::SledSpeed => count(self) >= 2,
             TrendVariable::SlipXSledSpeed => {
                 TrendVariable::Slip.is_varied(runs) && TrendVariable::SledSpeed.is_varied(runs)
@@ -174,6 +179,11 @@ mod tests {
         assert_eq!(varied(&one_speed), ["constant", "slip"]);
         let all = [[0.1, 60.0, 0.01], [0.2, 60.0, 0.02], [0.4, 70.0, 0.01]];
         assert_eq!(varied(&all).len(), 5);
+        let mut numbered = runs(&all);
+        for (run, order) in numbered.iter_mut().zip([3, 1, 2]) {
+            run.order = Some(order);
+        }
+        assert!(TrendVariable::Order.is_varied(&numbered.iter().collect::<Vec<_>>()));
     }
 
     #[test]

@@ -1,11 +1,13 @@
 //! Flags of a calibration.
 
+use job::{SetCondition, confounded_orders};
 use record::RejectionReason;
 use shared::parameters::behind;
 
 use super::finding::findings_that_alarm;
 use super::kind::{Flag, FlagKind};
 use crate::diagnostics::calibration::Diagnostics;
+use crate::diagnostics::trends::TrendVariable;
 use crate::finished_calibration::FinishedCalibration;
 use crate::summary::parameter::ParameterSummary;
 use crate::summary::point_estimate::fitted;
@@ -22,6 +24,7 @@ impl FinishedCalibration {
     pub(crate) fn flags(&self, diagnostics: &Diagnostics) -> Vec<Flag> {
         let mut flags: Vec<Flag> = self.unbalanced().into_iter().collect();
         flags.extend(findings_that_alarm(diagnostics));
+        flags.extend(self.confounded());
         let mut flag = |kind: FlagKind, text: String| flags.push(Flag::plain(kind, text));
         for ((name, parameter), found) in self.parameter_summaries().iter().zip(&diagnostics.parameters) {
             if parameter.at_bound {
@@ -99,6 +102,19 @@ impl FinishedCalibration {
             flag(FlagKind::Rejections, text);
         }
         flags
+    }
+
+    /// Conditions that were set in the order of the runs.
+    fn confounded(&self) -> impl Iterator<Item = Flag> {
+        let confounded = confounded_orders(&self.spec.experiment, &self.spec.fit_runs);
+        confounded.into_iter().map(|order| Flag {
+            against: Some(match order.condition {
+                SetCondition::Slip => TrendVariable::Slip,
+                SetCondition::WheelLoad => TrendVariable::WheelLoad,
+                SetCondition::SledSpeed => TrendVariable::SledSpeed,
+            }),
+            ..Flag::plain(FlagKind::Order, order.words())
+        })
     }
 
     /// A sampler that did not reach equilibrium.

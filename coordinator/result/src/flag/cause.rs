@@ -94,6 +94,7 @@ fn sentence(trend: &TrendDiagnostics) -> String {
         TrendVariable::WheelLoad => ["under low loads", "under high loads"],
         TrendVariable::SledSpeed => ["at low speed", "at high speed"],
         TrendVariable::SlipXSledSpeed => ["where slip times speed is low", "where it is high"],
+        TrendVariable::Order => ["early in the series", "late in the series"],
     };
     let [first, then] = if trend.change > 0.0 {
         ["over", "under"]
@@ -158,6 +159,16 @@ fn causes(alarming: &[(&TrendDiagnostics, f64)]) -> Vec<Cause> {
             "slip-sinkage may be weaker than in the model"
         };
         cause(&[SINKAGE], words);
+    }
+    let drifting: Vec<Channel> = Channel::ALL
+        .into_iter()
+        .filter(|&channel| change(channel, TrendVariable::Order).is_some())
+        .collect();
+    if !drifting.is_empty() {
+        cause(
+            &drifting,
+            "the soil or the zeros of the sensors may drift in the course of the campaign",
+        );
     }
     if change(PULL, TrendVariable::Constant).is_some() {
         cause(&[PULL], "the rig's zero of the pull (its tare) may be wrong");

@@ -43,6 +43,8 @@ pub enum FlagKind {
     Rejections,
     /// The best explanation of the misfit leaves some of it.
     Incomplete,
+    /// The runs were made in the order of a condition.
+    Order,
 }
 
 impl FlagKind {
@@ -58,6 +60,7 @@ impl FlagKind {
             FlagKind::NoInformation => "no_information",
             FlagKind::Rejections => "rejections",
             FlagKind::Incomplete => "incomplete",
+            FlagKind::Order => "order",
         }
     }
 }

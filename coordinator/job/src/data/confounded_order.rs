@@ -1,0 +1,132 @@
+//! Conditions that were set in the order of the runs, so that their effects cannot be told from a drift.
+
+use shared::experiment::{Experiment, TestRun};
+
+/// Values closer than this share of their range are one level `[1]`.
+const SAME_LEVEL: f64 = 0.02;
+/// A rank correlation beyond this, of either sign, leaves one pair of runs in ten to tell an effect from a drift.
+const CONFOUNDED: f64 = 0.8;
+
+/// A condition of the rig that may follow the order of the runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SetCondition {
+    /// Slip.
+    Slip,
+    /// Wheel load.
+    WheelLoad,
+    /// Sled speed.
+    SledSpeed,
+}
+
+/// A condition that follows the order of the fitted runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConfoundedOrder {
+    /// The condition.
+    pub condition: SetCondition,
+    /// Rank correlation of order and condition, in [−1, 1].
+    pub rank_correlation: f64,
+}
+
+impl SetCondition {
+    /// Every condition, in the order of the messages.
+    const ALL: [SetCondition; 3] = [
+        SetCondition::Slip,
+        SetCondition::WheelLoad,
+        SetCondition::SledSpeed,
+    ];
+
+    /// Name in sentences.
+    pub fn words(self) -> &'static str {
+        match self {
+            SetCondition::Slip => "slip",
+            SetCondition::WheelLoad => "wheel load",
+            SetCondition::SledSpeed => "sled speed",
+        }
+    }
+
+    fn value(self, run: &TestRun) -> f64 {
+        match self {
+            SetCondition::Slip => run.slip,
+            SetCondition::WheelLoad => run.wheel_load_n,
+            SetCondition::SledSpeed => run.sled_speed_m_s,
+        }
+    }
+}
+
+impl ConfoundedOrder {
+    /// What it means, in a sentence.
+    pub fn words(self) -> String {
+        let condition = self.condition.words();
+        format!(
+            "the runs were made in the order of their {condition} (rank correlation {:.2}): no effect that changes with {condition} can be told from a drift of soil or sensors; repeat runs of several levels late and early in the series",
+            self.rank_correlation
+        )
+    }
+}
+
+/// The conditions that follow the order of the fitted runs; none where the experiment states no order.
+///
+/// # Equation
+/// Goodman and Kruskal's gamma: of the pairs of runs that differ in order and condition, the share in which both grow less
+/// the share in which one falls. Runs of one level count for nothing, so two levels, one after the other, have gamma 1.
+///
+/// # Source
+/// Goodman & Kruskal 1954, doi:10.1080/01621459.1954.10501231. Checked by
+/// `tests::runs_in_the_order_of_a_condition_are_confounded_with_it`.
+pub fn confounded_orders(experiment: &Experiment, fit_runs: &[usize]) -> Vec<ConfoundedOrder> {
+    let runs: Vec<(i32, &TestRun)> = fit_runs
+        .iter()
+        .map(|&i| &experiment.runs[i])
+        .filter_map(|run| Some((run.order?, run)))
+        .collect();
+    let confounded = |condition: SetCondition| {
+        let values: Vec<(i32, f64)> = runs
+            .iter()
+            .map(|(order, run)| (*order, condition.value(run)))
+            .collect();
+        let rank_correlation = gamma(&values)?;
+        (rank_correlation.abs() > CONFOUNDED).then_some(ConfoundedOrder {
+            condition,
+            rank_correlation,
+        })
+    };
+    SetCondition::ALL.into_iter().filter_map(confounded).collect()
+}
+
+/// Gamma; `None` where no pair differs.
+fn gamma(values: &[(i32, f64)]) -> Option<f64> {
+    let least = values.iter().map(|v| v.1).fold(f64::INFINITY, f64::min);
+    let greatest = values.iter().map(|v| v.1).fold(f64::NEG_INFINITY, f64::max);
+    let gap = SAME_LEVEL * (greatest - least);
+    let (mut concordant, mut discordant) = (0_u64, 0_u64);
+    for (i, first) in values.iter().enumerate() {
+        for second in &values[..i] {
+            let change = second.1 - first.1;
+            if second.0 == first.0 || change.abs() <= gap {
+                continue;
+            }
+            match (second.0 > first.0) == (change > 0.0) {
+                true => concordant += 1,
+                false => discordant += 1,
+            }
+        }
+    }
+    let pairs = concordant + discordant;
+    (pairs > 0).then(|| (concordant as f64 - discordant as f64) / pairs as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_in_the_order_of_a_condition_are_confounded_with_it() {
+        let of = |values: &[f64]| gamma(&(1..).zip(values.iter().copied()).collect::<Vec<_>>());
+        assert_eq!(of(&[0.1, 0.1, 0.4, 0.4]), Some(1.0));
+        assert_eq!(of(&[150.0, 150.1, 60.0, 59.9]), Some(-1.0));
+        assert_eq!(of(&[0.1, 0.4, 0.4, 0.1]), Some(0.0));
+        assert_eq!(of(&[0.1, 0.1]), None);
+        // Nine of twelve pairs grow, three fall.
+        assert_eq!(of(&[0.1, 0.2, 0.3, 0.1, 0.2, 0.3]), Some(6.0 / 12.0));
+    }
+}
