@@ -7,7 +7,7 @@ use crate::channel::Channel;
 use crate::outcome::Observables;
 
 /// One predicted value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum PredictedValue {
     /// The average of a channel, in its unit.
@@ -25,6 +25,18 @@ pub enum PredictedValue {
         channel: Channel,
         /// Position of the run.
         run: usize,
+    },
+    /// Its change with the logarithm of the soil's shear strength, at a fixed sinkage: the torque changes by itself, and the
+    /// drawbar pull by the torque over the wheel's radius. Neglected are that the load rests a little more on shear, and that
+    /// the shear stress is inclined; the sinkage has none.
+    Strength {
+        /// Drawbar pull, torque or lateral force.
+        #[schema(value_type = String)]
+        channel: Channel,
+        /// Position of the run.
+        run: usize,
+        /// Radius of the wheel `[m]`.
+        radius_m: f64,
     },
     /// ln of the pressure under a plate `[ln Pa]`.
     LnPlatePressure {
@@ -45,6 +57,11 @@ impl PredictedValue {
             PredictedValue::Average { channel, .. } | PredictedValue::Sensitivity { channel, .. } => {
                 Some(channel)
             }
+            PredictedValue::Strength {
+                channel: Channel::DrawbarPull,
+                ..
+            } => Some(Channel::Torque),
+            PredictedValue::Strength { channel, .. } => Some(channel),
             PredictedValue::LnPlatePressure { .. } | PredictedValue::LnShearStress { .. } => None,
         }
     }
@@ -54,6 +71,12 @@ impl PredictedValue {
         match self {
             PredictedValue::Average { channel, run } => observables.channel(channel)[run],
             PredictedValue::Sensitivity { channel, run } => observables.sensitivity(channel)[run],
+            PredictedValue::Strength {
+                channel: Channel::DrawbarPull,
+                run,
+                radius_m,
+            } => observables.torque_n_m[run] / radius_m,
+            PredictedValue::Strength { channel, run, .. } => observables.channel(channel)[run],
             PredictedValue::LnPlatePressure { reading } => libm::log(observables.plate_pressure_pa[reading]),
             PredictedValue::LnShearStress { reading } => libm::log(observables.shear_stress_pa[reading]),
         }

@@ -19,6 +19,7 @@ mod not_tried;
 mod older_store;
 mod point_fit;
 mod posterior_prior;
+mod rig;
 mod search;
 mod spatial;
 mod stored_results;

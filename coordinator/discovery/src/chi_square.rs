@@ -30,7 +30,7 @@ impl FitChiSquare {
             && likelihood.discrepancy() == Discrepancy::None
             && !likelihood.data().iter().any(|d| unknown(d.sd))
             && !likelihood.common().iter().any(|error| match error.size {
-                CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity(sd) => unknown(sd),
+                CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity { sd, .. } => unknown(sd),
                 CommonErrorSize::Discrepancy => true,
             });
         if !is_known {

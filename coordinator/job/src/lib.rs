@@ -19,6 +19,7 @@ mod table;
 pub use data::bevameter_readings::{BevameterReadings, PLATE, RING, Reading};
 pub use data::confounded_order::{ConfoundedOrder, SetCondition, confounded_orders};
 pub use data::noise::repeat_scatter;
+pub use data::soil_scatter::SoilScatter;
 pub use derived::assumed_experiment::{AssumedExperiment, SiteProperty, UnsaidProperty};
 pub use derived::discovery_job::{continued_job, discovery_job, effect_name, is_discovery, without_effects};
 pub use derived::extended_job::{extended_job, with_free};

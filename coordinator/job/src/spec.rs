@@ -15,6 +15,7 @@ use crate::data::error::DataError;
 use crate::data::likelihood::likelihood;
 use crate::data::noise;
 use crate::data::predicted_values::predicted_values;
+use crate::data::soil_scatter::{BY_STIFFNESS, SoilScatter};
 use crate::job_file::JobFile;
 use crate::table::algorithm_settings::AlgorithmSettings;
 use crate::table::discovery_settings::DiscoverySettings;
@@ -47,6 +48,8 @@ pub struct Spec {
     pub holdout_variant: Option<ModelVariant>,
     /// The likelihood of the measurements that are fitted; runs count within [`Spec::fit_runs`].
     pub likelihood: Likelihood,
+    /// How the soil scatters from run to run and from preparation to preparation.
+    pub scatters: Vec<SoilScatter>,
     /// Which of the observables it takes.
     predicted: Vec<PredictedValue>,
     /// What an independent test says of parameters; the figures show it, nothing else reads it.
@@ -162,8 +165,16 @@ impl Spec {
         if joint_prior.is_some() {
             joint(&joint_prior, &parameters).map_err(|e| in_job(format!("[priors] posterior: {e}")))?;
         }
-        let likelihood =
-            likelihood(&experiment, &fit_runs, &bevameter, &parameters, job.likelihood).map_err(in_data)?;
+        let scatters = SoilScatter::all(&experiment, &fit_runs, &parameters).map_err(in_data)?;
+        let likelihood = likelihood(
+            &experiment,
+            &fit_runs,
+            &bevameter,
+            &parameters,
+            &scatters,
+            job.likelihood,
+        )
+        .map_err(in_data)?;
         if parameters.is_empty() {
             return Err(in_job(
                 "[priors] leaves no parameter free: there is nothing to calibrate".into(),
@@ -190,12 +201,15 @@ impl Spec {
             let mut variant =
                 ModelVariant::new(&experiment, &model, &effects, model_parameters.clone(), runs)
                     .map_err(|e| in_job(e.to_string()))?;
-            variant.stiffness_sensitivity = !likelihood.sensitive().is_empty();
+            let mut sensitive = likelihood.sensitive().iter();
+            variant.stiffness_sensitivity = sensitive.any(|own| own.derivative == BY_STIFFNESS);
             Ok(variant)
         };
         let mut fit_variant = variant(&fit_runs)?;
         bevameter.ask(&mut fit_variant);
-        let predicted = predicted_values(&likelihood);
+        let radius = |&i: &usize| experiment.wheels[&experiment.runs[i].wheel].radius_m;
+        let radii_m: Vec<f64> = fit_runs.iter().map(radius).collect();
+        let predicted = predicted_values(&likelihood, &radii_m);
         if job.algorithm.has_metamodel() {
             if model.kind == ModelKind::QuasiStatic {
                 return Err(in_job(
@@ -226,6 +240,7 @@ impl Spec {
             fit_variant,
             holdout_variant,
             likelihood,
+            scatters,
             predicted,
             reference: job.reference,
             likelihood_settings: job.likelihood,
@@ -250,6 +265,11 @@ impl Spec {
     /// The predicted values that the likelihood takes, of an evaluation of the fitted runs.
     pub fn predicted_values(&self, observables: &Observables) -> Vec<f64> {
         self.predicted.iter().map(|value| value.of(observables)).collect()
+    }
+
+    /// Number of preparations of the soil that the fitted runs name; those without an id count each.
+    pub fn preparations(&self) -> usize {
+        noise::preparations(&self.experiment, &self.fit_runs).len()
     }
 
     /// The measurements of wheels that are fitted.

@@ -22,10 +22,28 @@ impl Spec {
             ScatterSd::Unknown => "unknown".to_owned(),
         };
         let mut words = Vec::new();
-        if !self.likelihood.sensitive().is_empty() {
+        let scatters = |scatter: Scatter| match self.experiment.noise.scatter(scatter) {
+            ScatterSd::Known(sd) => sd > 0.0,
+            ScatterSd::Unknown => true,
+        };
+        let twice = "; each condition is simulated twice for it";
+        if self.fit_variant.stiffness_sensitivity && scatters(Scatter::Run) {
             words.push(format!(
-                "the soil's stiffness scatters from run to run, relative sd {}; each condition is simulated twice for it",
+                "the soil's stiffness scatters from run to run, relative sd {}{twice}",
                 sd(Scatter::Run)
+            ));
+        }
+        let preparations = self.preparations();
+        if preparations > 1 && scatters(Scatter::Preparation) {
+            words.push(format!(
+                "the soil's stiffness scatters between {preparations} preparations, relative sd {}{twice}",
+                sd(Scatter::Preparation)
+            ));
+        }
+        if preparations > 1 && scatters(Scatter::PreparationStrength) {
+            words.push(format!(
+                "the soil's shear strength scatters between {preparations} preparations, relative sd {}",
+                sd(Scatter::PreparationStrength)
             ));
         }
         for (what, readings, tests) in [

@@ -7,6 +7,10 @@ use super::check::{RawSd, ValueError};
 pub enum Scatter {
     /// The soil's stiffness, from run to run of a wheel.
     Run,
+    /// The soil's stiffness, from preparation to preparation.
+    Preparation,
+    /// The soil's shear strength, from preparation to preparation.
+    PreparationStrength,
     /// The pressure under a plate, from test to test.
     PlateTest,
     /// The pressure under a plate, from reading to reading.
@@ -28,8 +32,10 @@ pub enum ScatterSd {
 
 impl Scatter {
     /// Every kind, in the order of [`Scatter::index`].
-    pub const ALL: [Scatter; 5] = [
+    pub const ALL: [Scatter; 7] = [
         Scatter::Run,
+        Scatter::Preparation,
+        Scatter::PreparationStrength,
         Scatter::PlateTest,
         Scatter::PlateReading,
         Scatter::RingTest,
@@ -45,6 +51,8 @@ impl Scatter {
     pub fn key(self) -> &'static str {
         match self {
             Scatter::Run => "run_scatter",
+            Scatter::Preparation => "preparation_scatter",
+            Scatter::PreparationStrength => "preparation_strength_scatter",
             Scatter::PlateTest => "plate_scatter",
             Scatter::PlateReading => "plate_noise",
             Scatter::RingTest => "ring_scatter",
@@ -52,22 +60,26 @@ impl Scatter {
         }
     }
 
-    /// Value where the experiment gives none.
-    pub fn usual(self) -> f64 {
+    /// Value where the experiment gives none. That of preparations is inferred: who names them expects them to differ, and
+    /// without the column `prepared` nothing has it.
+    pub fn usual(self) -> ScatterSd {
         match self {
-            Scatter::Run => 0.0,
-            Scatter::PlateTest => 0.10,
-            Scatter::PlateReading | Scatter::RingReading => 0.03,
-            Scatter::RingTest => 0.05,
+            Scatter::Run => ScatterSd::Known(0.0),
+            Scatter::Preparation | Scatter::PreparationStrength => ScatterSd::Unknown,
+            Scatter::PlateTest => ScatterSd::Known(0.10),
+            Scatter::PlateReading | Scatter::RingReading => ScatterSd::Known(0.03),
+            Scatter::RingTest => ScatterSd::Known(0.05),
         }
     }
 
-    /// Scale of the half-normal prior of an unknown scatter where the job gives none: twice the usual value, and 0.2 for the
-    /// soil from run to run.
+    /// Scale of the half-normal prior of an unknown scatter where the job gives none: of tests and readings twice the usual
+    /// value, 0.2 for the soil's stiffness and 0.05 for its strength, of which a degree of friction is 0.04.
     pub fn prior_scale(self) -> f64 {
         match self {
-            Scatter::Run => 0.2,
-            other => 2.0 * other.usual(),
+            Scatter::Run | Scatter::Preparation | Scatter::PlateTest => 0.2,
+            Scatter::PreparationStrength => 0.05,
+            Scatter::PlateReading | Scatter::RingReading => 0.06,
+            Scatter::RingTest => 0.1,
         }
     }
 
@@ -76,7 +88,7 @@ impl Scatter {
         let key = self.key();
         let rule = |message: String| Err(ValueError::Rule(message));
         match raw {
-            None => Ok(ScatterSd::Known(self.usual())),
+            None => Ok(self.usual()),
             Some(RawSd::Word(word)) if word == "unknown" => Ok(ScatterSd::Unknown),
             Some(RawSd::Word(word)) => rule(format!("{key} = \"{word}\" must be a number or \"unknown\"")),
             Some(RawSd::Number(x)) => {

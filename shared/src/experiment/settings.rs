@@ -56,14 +56,14 @@ pub struct Noise {
     /// Source of the standard deviation of each channel, in the order of [`Channel::ALL`]; `None` = nothing stated.
     pub sd: [Option<NoiseSd>; 4],
     /// Relative standard deviations, in the order of [`Scatter::ALL`].
-    pub scatter: [ScatterSd; 5],
+    pub scatter: [ScatterSd; 7],
 }
 
 impl Default for Noise {
     fn default() -> Self {
         Noise {
             sd: [None; 4],
-            scatter: Scatter::ALL.map(|s| ScatterSd::Known(s.usual())),
+            scatter: Scatter::ALL.map(Scatter::usual),
         }
     }
 }
@@ -153,6 +153,8 @@ struct RawNoise {
     sinkage_m: Option<RawSd>,
     lateral_force_n: Option<RawSd>,
     run_scatter: Option<RawSd>,
+    preparation_scatter: Option<RawSd>,
+    preparation_strength_scatter: Option<RawSd>,
     plate_scatter: Option<RawSd>,
     plate_noise: Option<RawSd>,
     ring_scatter: Option<RawSd>,
@@ -247,6 +249,8 @@ fn check_numbers(
 fn noise(raw: RawNoise) -> Result<Noise, ValueError> {
     let relative = [
         raw.run_scatter,
+        raw.preparation_scatter,
+        raw.preparation_strength_scatter,
         raw.plate_scatter,
         raw.plate_noise,
         raw.ring_scatter,

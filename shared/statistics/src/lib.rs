@@ -34,6 +34,7 @@ pub mod rng;
 
 pub use likelihood::{
     CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood, LikelihoodError,
+    Sensitive,
 };
 pub use log_likelihood::{LogLikelihood, NotANumber};
 pub use metamodel::{Metamodel, ModelPair, Subchain, SubchainEnd};

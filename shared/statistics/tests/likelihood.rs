@@ -99,7 +99,13 @@ fn three_runs(scatter: ErrorSd) -> (Vec<Datum>, Vec<CommonError>) {
     };
     let mut errors = Vec::new();
     for run in 0..3 {
-        errors.push(common(&[run, run + 3], CommonErrorSize::Sensitivity(scatter)));
+        errors.push(common(
+            &[run, run + 3],
+            CommonErrorSize::Sensitivity {
+                sd: scatter,
+                derivative: 0,
+            },
+        ));
     }
     for members in [&[0, 1][..], &[2], &[3, 4], &[5]] {
         errors.push(common(members, CommonErrorSize::Discrepancy));
@@ -168,7 +174,8 @@ fn blocks_match_a_dense_density() {
             .map(|members| density(&covariance, &data, members, nu))
             .sum();
         let likelihood = Likelihood::with_common(data.clone(), law, common, Discrepancy::Known(2.0)).unwrap();
-        assert_eq!(likelihood.sensitive(), [0, 1, 2, 3, 4, 5]);
+        let sensitive: Vec<usize> = likelihood.sensitive().iter().map(|own| own.datum).collect();
+        assert_eq!(sensitive, [0, 1, 2, 3, 4, 5]);
         let value = likelihood.log_likelihood(&values(), &[9.0, 0.3]).unwrap().value();
         assert!((value - expected).abs() < 1e-10, "{value} {expected}");
         if nu.is_none() {
@@ -176,6 +183,44 @@ fn blocks_match_a_dense_density() {
             assert!((value - whole).abs() < 1e-10, "{value} {whole}");
         }
     }
+}
+
+/// Runs 0 and 1 have one preparation, run 2 another: two errors along different derivatives couple the runs of one.
+#[test]
+fn errors_of_a_preparation_couple_its_runs() {
+    let (data, _) = three_runs(ErrorSd::Known(0.0));
+    let (stiffness, strength) = (0.2, 0.05);
+    let strengths = [8.0, 9.0, 7.5, 1.2, 1.4, 0.9];
+    let mut common = Vec::new();
+    for (derivative, sd) in [(0, stiffness), (1, strength)] {
+        for members in [&[0, 1, 3, 4][..], &[2, 5]] {
+            common.push(CommonError {
+                data: members.to_vec(),
+                size: CommonErrorSize::Sensitivity {
+                    sd: ErrorSd::Known(sd),
+                    derivative,
+                },
+            });
+        }
+    }
+    let covariance = DMatrix::from_fn(6, 6, |i, j| {
+        let noise = dense(&data, 0.0, 0.0)[(i, j)];
+        let shared = data[i].run / 2 == data[j].run / 2;
+        let errors = stiffness * stiffness * SENSITIVITIES[i] * SENSITIVITIES[j]
+            + strength * strength * strengths[i] * strengths[j];
+        noise + if shared { errors } else { 0.0 }
+    });
+    let likelihood =
+        Likelihood::with_common(data.clone(), ErrorLaw::Gaussian, common, Discrepancy::None).unwrap();
+    let mut predicted = values();
+    predicted.extend(strengths);
+    assert_eq!(likelihood.values(), predicted.len());
+    let value = likelihood.log_likelihood(&predicted, &[]).unwrap().value();
+    let expected = density(&covariance, &data, &[0, 1, 2, 3, 4, 5], None);
+    assert!((value - expected).abs() < 1e-10, "{value} {expected}");
+    let (part, places) = likelihood.subset(&[1, 5]).unwrap();
+    assert_eq!(places, [1, 5, 7, 11, 13, 17]);
+    assert_eq!(part.values(), places.len());
 }
 
 #[test]
@@ -323,7 +368,13 @@ fn entangled(discrepancy: Discrepancy) -> Likelihood {
             vec![1, 2],
             CommonErrorSize::Shift(ErrorSd::Inferred { parameter: 0 }),
         ),
-        (vec![3, 4], CommonErrorSize::Sensitivity(ErrorSd::Known(0.3))),
+        (
+            vec![3, 4],
+            CommonErrorSize::Sensitivity {
+                sd: ErrorSd::Known(0.3),
+                derivative: 0,
+            },
+        ),
         (vec![1], CommonErrorSize::Discrepancy),
     ];
     let common = common.map(|(data, size)| CommonError { data, size });

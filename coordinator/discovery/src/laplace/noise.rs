@@ -1,16 +1,16 @@
-//! Gradient and curvature along inferred noise sds, on which the predicted values do not depend.
+//! Gradient and curvature along inferred sds of noise and of common errors, on which the predicted values do not depend.
 
 use nalgebra::DMatrix;
 
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::point::FitPoint;
-use statistics::likelihood::{ErrorSd, Likelihood};
+use statistics::likelihood::{CommonErrorSize, ErrorSd, Likelihood};
 
 /// Half width of the central differences; the density is smooth and accurate to rounding.
 const DIFFERENCE: f64 = 1e-3;
 
-/// The coordinates that are noise sds, each with the number of data that share it.
-pub(crate) fn coordinates(likelihood: &Likelihood) -> Vec<(usize, usize)> {
+/// The coordinates that are sds: of noise, each with the number of data that share it, and of common errors, without.
+pub(crate) fn coordinates(likelihood: &Likelihood) -> Vec<(usize, Option<usize>)> {
     let inferred = |sd: ErrorSd| match sd {
         ErrorSd::Inferred { parameter } => Some(parameter),
         ErrorSd::Known(_) => None,
@@ -18,10 +18,21 @@ pub(crate) fn coordinates(likelihood: &Likelihood) -> Vec<(usize, usize)> {
     let mut parameters: Vec<usize> = likelihood.data().iter().filter_map(|d| inferred(d.sd)).collect();
     parameters.sort_unstable();
     let groups = parameters.chunk_by(|a, b| a == b);
-    groups.map(|group| (group[0], group.len())).collect()
+    let mut coordinates: Vec<(usize, Option<usize>)> =
+        groups.map(|group| (group[0], Some(group.len()))).collect();
+    for error in likelihood.common() {
+        if let CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity { sd, .. } = error.size
+            && let Some(parameter) = inferred(sd)
+            && !coordinates.iter().any(|(own, _)| *own == parameter)
+        {
+            coordinates.push((parameter, None));
+        }
+    }
+    coordinates
 }
 
-/// Adds the gradient of `-log-likelihood` along the noise sds, and the expected curvature `2 N (d ln sd / dt)^2` of N data.
+/// Adds the gradient of `-log-likelihood` along the sds, and its curvature: the expected `2 N (d ln sd / dt)^2` of N data that
+/// share a noise; of a common error the actual one where that is positive, since the likelihood is flat towards 0.
 pub(crate) fn add(
     frame: &NormalFrame,
     likelihood: &Likelihood,
@@ -39,10 +50,19 @@ pub(crate) fn add(
         };
         let ((low, before), (high, after)) = (at(-DIFFERENCE), at(DIFFERENCE));
         let slope = (after - before) / (2.0 * DIFFERENCE);
-        let stretch = libm::log(high / low) / (2.0 * DIFFERENCE);
-        if slope.is_finite() && stretch.is_finite() {
+        let curvature = match count {
+            Some(count) => {
+                let stretch = libm::log(high / low) / (2.0 * DIFFERENCE);
+                2.0 * count as f64 * stretch * stretch
+            }
+            None => {
+                let (_, here) = at(0.0);
+                ((2.0 * here - before - after) / (DIFFERENCE * DIFFERENCE)).max(0.0)
+            }
+        };
+        if slope.is_finite() && curvature.is_finite() {
             gradient[k] -= slope;
-            hessian[(k, k)] += 2.0 * count as f64 * stretch * stretch;
+            hessian[(k, k)] += curvature;
         }
     }
 }

@@ -89,7 +89,7 @@ pub enum LmSettingsError {
     },
     /// The most probable value of an unknown noise sd or scatter has no closed form.
     #[error(
-        "lm infers noise sds of independent normal errors only: with common errors (discrepancy, run_scatter, plate and ring tests) or student_t, state the sds and scatters, or sample them with tmcmc"
+        "lm infers noise sds of independent normal errors only: with common errors (discrepancy, run_scatter, preparation_scatter, plate and ring tests) or student_t, state the sds and scatters, or sample them with tmcmc"
     )]
     EntangledNoise,
     /// A tolerance is not a finite number above 0.

@@ -1,31 +1,14 @@
 //! The likelihood of the fitted measurements: their noise, and the errors that they have in common.
 
-use shared::experiment::{Experiment, Scatter, ScatterSd};
-use shared::parameters::scatter_parameter;
-use statistics::{CommonError, CommonErrorSize, Datum, Discrepancy, ErrorSd, Likelihood};
+use shared::experiment::Experiment;
+use statistics::{CommonError, CommonErrorSize, Datum, Discrepancy, Likelihood};
 
 use super::bevameter_readings::{BevameterReadings, PLATE};
 use super::error::DataError;
-use super::noise;
+use super::noise::{self, scatter_sd};
+use super::soil_scatter::SoilScatter;
 use crate::table::likelihood_settings::LikelihoodSettings;
 use crate::table::prior_entry::FreeParameter;
-
-/// The relative sd of something that scatters; `None` where it does not.
-fn scatter_sd(
-    experiment: &Experiment,
-    parameters: &[FreeParameter],
-    scatter: Scatter,
-) -> Result<Option<ErrorSd>, DataError> {
-    match experiment.noise.scatter(scatter) {
-        ScatterSd::Known(sd) => Ok((sd > 0.0).then_some(ErrorSd::Known(sd))),
-        ScatterSd::Unknown => {
-            let name = scatter_parameter(scatter);
-            let parameter = parameters.iter().position(|p| p.name == name);
-            let parameter = parameter.ok_or(DataError::NoPrior(name))?;
-            Ok(Some(ErrorSd::Inferred { parameter }))
-        }
-    }
-}
 
 /// The likelihood of the fitted measurements: their noise, and what they have in common.
 pub(crate) fn likelihood(
@@ -33,6 +16,7 @@ pub(crate) fn likelihood(
     fit_runs: &[usize],
     bevameter: &BevameterReadings,
     parameters: &[FreeParameter],
+    scatters: &[SoilScatter],
     settings: LikelihoodSettings,
 ) -> Result<Likelihood, DataError> {
     let mut data = noise::data(experiment, fit_runs, parameters)?;
@@ -40,11 +24,9 @@ pub(crate) fn likelihood(
     let members = |data: &[Datum], is_one: &dyn Fn(&Datum) -> bool| -> Vec<usize> {
         (0..data.len()).filter(|&i| is_one(&data[i])).collect()
     };
-    if let Some(sd) = scatter_sd(experiment, parameters, Scatter::Run)? {
-        for run in 0..fit_runs.len() {
-            let own = members(&data, &|d| d.run == run);
-            common.push((own, CommonErrorSize::Sensitivity(sd)));
-        }
+    for scatter in scatters {
+        let errors = scatter.errors(&data);
+        common.extend(errors.into_iter().map(|error| (error.data, error.size)));
     }
     if settings.discrepancy != Discrepancy::None {
         for condition in noise::conditions(experiment, fit_runs) {

@@ -6,3 +6,4 @@ pub(crate) mod error;
 pub(crate) mod likelihood;
 pub(crate) mod noise;
 pub(crate) mod predicted_values;
+pub(crate) mod soil_scatter;

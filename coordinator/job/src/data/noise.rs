@@ -94,7 +94,38 @@ pub(crate) fn check_names(
 /// Whether anything that is fitted scatters so.
 fn needs_scatter(experiment: &Experiment, bevameter: &BevameterReadings, scatter: Scatter) -> bool {
     let fitted = || Channel::ALL.iter().any(|&c| experiment.measures(c, RunUse::Fit));
-    bevameter.scatters(scatter) || (scatter == Scatter::Run && fitted())
+    match scatter {
+        Scatter::Run => fitted(),
+        Scatter::Preparation | Scatter::PreparationStrength => {
+            let fit_runs: Vec<usize> = (0..experiment.runs.len())
+                .filter(|&i| experiment.runs[i].usage == RunUse::Fit)
+                .collect();
+            fitted() && preparations(experiment, &fit_runs).len() > 1
+        }
+        Scatter::PlateTest | Scatter::PlateReading | Scatter::RingTest | Scatter::RingReading => {
+            bevameter.scatters(scatter)
+        }
+    }
+}
+
+/// The fitted runs by preparation, as positions among them; none where no run names one. A run without an id has a preparation
+/// of its own.
+pub(crate) fn preparations(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Vec<usize>> {
+    let mut preparations: Vec<(Option<&str>, Vec<usize>)> = Vec::new();
+    for (position, &i) in fit_runs.iter().enumerate() {
+        let id = experiment.runs[i].prepared.as_deref();
+        match preparations
+            .iter_mut()
+            .find(|(own, _)| own.is_some() && *own == id)
+        {
+            Some((_, positions)) => positions.push(position),
+            None => preparations.push((id, vec![position])),
+        }
+    }
+    match preparations.iter().any(|(id, _)| id.is_some()) {
+        true => preparations.into_iter().map(|(_, positions)| positions).collect(),
+        false => Vec::new(),
+    }
 }
 
 /// Whether any fitted measurement of the channel lacks a standard deviation of its own.
@@ -104,6 +135,23 @@ fn needs_experiment_sd(experiment: &Experiment, channel: Channel) -> bool {
         .runs
         .iter()
         .any(|r| r.usage == RunUse::Fit && r.measured[c].is_some() && r.sd[c].is_none())
+}
+
+/// The relative sd of something that scatters; `None` where it does not.
+pub(crate) fn scatter_sd(
+    experiment: &Experiment,
+    parameters: &[FreeParameter],
+    scatter: Scatter,
+) -> Result<Option<ErrorSd>, DataError> {
+    match experiment.noise.scatter(scatter) {
+        ScatterSd::Known(sd) => Ok((sd > 0.0).then_some(ErrorSd::Known(sd))),
+        ScatterSd::Unknown => {
+            let name = scatter_parameter(scatter);
+            let parameter = parameters.iter().position(|p| p.name == name);
+            let parameter = parameter.ok_or(DataError::NoPrior(name))?;
+            Ok(Some(ErrorSd::Inferred { parameter }))
+        }
+    }
 }
 
 /// The fitted measurements with their standard deviations.

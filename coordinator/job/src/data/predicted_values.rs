@@ -5,9 +5,13 @@ use shared::predicted::PredictedValue;
 use statistics::{Datum, Likelihood};
 
 use super::bevameter_readings::{PLATE, RING};
+use super::soil_scatter::BY_STRENGTH;
 
-/// The predicted values of a likelihood: one for each datum, then one for each sensitive datum.
-pub(crate) fn predicted_values(likelihood: &Likelihood) -> Vec<PredictedValue> {
+/// The predicted values of a likelihood: one for each datum, then the derivatives.
+///
+/// # Arguments
+/// - `radii_m`: radius of the wheel of each fitted run `[m]`.
+pub(crate) fn predicted_values(likelihood: &Likelihood, radii_m: &[f64]) -> Vec<PredictedValue> {
     let data = likelihood.data();
     let value = |d: &Datum| match d.channel {
         PLATE => PredictedValue::LnPlatePressure { reading: d.run },
@@ -17,12 +21,17 @@ pub(crate) fn predicted_values(likelihood: &Likelihood) -> Vec<PredictedValue> {
             run: d.run,
         },
     };
-    let sensitive = likelihood
-        .sensitive()
-        .iter()
-        .map(|&i| PredictedValue::Sensitivity {
-            channel: Channel::ALL[data[i].channel],
-            run: data[i].run,
-        });
+    let sensitive = likelihood.sensitive().iter().map(|own| {
+        let Datum { channel, run, .. } = data[own.datum];
+        let channel = Channel::ALL[channel];
+        match own.derivative {
+            BY_STRENGTH => PredictedValue::Strength {
+                channel,
+                run,
+                radius_m: radii_m[run],
+            },
+            _ => PredictedValue::Sensitivity { channel, run },
+        }
+    });
     data.iter().map(value).chain(sensitive).collect()
 }

@@ -6,7 +6,7 @@ use shared::channel::Channel;
 use shared::experiment::NoiseSd;
 use shared::outcome::Observables;
 use shared::parameters::noise_parameter;
-use statistics::{CommonErrorSize, Discrepancy, ErrorLaw, ErrorSd};
+use statistics::{Discrepancy, ErrorLaw, ErrorSd};
 
 use crate::finished_calibration::FinishedCalibration;
 
@@ -60,7 +60,7 @@ pub(crate) fn predictive(
         Some(position) => RunPosition::Fit(position),
         None => RunPosition::Holdout(position(&spec.holdout_runs)?),
     };
-    let scatter = Scatter::of(spec);
+    let radius_m = spec.experiment.wheels[&spec.experiment.runs[run].wheel].radius_m;
     let mut draws = Vec::new();
     let mut sds = Vec::new();
     for (draw, theta, observables, position) in accepted(calibration, place) {
@@ -70,7 +70,11 @@ pub(crate) fn predictive(
         });
         sds.extend(sd);
         let mean = observables.channel(channel)[position];
-        let soil = scatter.sd(theta) * observables.sensitivity(channel).get(position).unwrap_or(&0.0);
+        let soil = spec
+            .scatters
+            .iter()
+            .map(|scatter| scatter.shift(theta, observables, (channel, position), radius_m));
+        let soil: f64 = soil.map(|shift| shift * shift).sum::<f64>().sqrt();
         for &(m, weight) in &levels.0[draw] {
             let scale = sd.map(|sd| widened(sd, [m * sd, soil]));
             draws.push(Component { mean, scale, weight });
@@ -95,27 +99,6 @@ struct Component {
     /// Noise, scatter and discrepancy together; `None` where no noise is known.
     scale: Option<f64>,
     weight: f64,
-}
-
-/// The scatter of the soil from run to run.
-struct Scatter(Option<ErrorSd>);
-
-impl Scatter {
-    fn of(spec: &Spec) -> Self {
-        let common = spec.likelihood.common().iter();
-        Scatter(common.into_iter().find_map(|error| match error.size {
-            CommonErrorSize::Sensitivity(sd) => Some(sd),
-            CommonErrorSize::Shift(_) | CommonErrorSize::Discrepancy => None,
-        }))
-    }
-
-    fn sd(&self, theta: &[f64]) -> f64 {
-        match self.0 {
-            None => 0.0,
-            Some(ErrorSd::Known(sd)) => sd,
-            Some(ErrorSd::Inferred { parameter }) => theta[parameter],
-        }
-    }
 }
 
 /// Of each final draw, the values of the discrepancy with their posterior probabilities; m = 0 without one.

@@ -21,9 +21,23 @@ pub enum CommonErrorSize {
     /// Shifts all equally by the inadequacy of the model: `v_i = m sigma`, sigma the root mean square of their noise
     /// sds and m of [`Discrepancy`].
     Discrepancy,
-    /// Shifts each along its sensitivity: `v_i` = this sd times the derivative of the prediction, which the predicted
-    /// values include. A datum has at most one such error.
-    Sensitivity(ErrorSd),
+    /// Shifts each along a sensitivity: `v_i` = this sd times a derivative of the prediction, which the predicted values
+    /// include. A datum may have several, along one derivative or along different ones.
+    Sensitivity {
+        /// The sd.
+        sd: ErrorSd,
+        /// The number of the derivative.
+        derivative: usize,
+    },
+}
+
+/// A derivative of the prediction of a datum, among the predicted values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Sensitive {
+    /// The number of the derivative.
+    pub derivative: usize,
+    /// The datum.
+    pub datum: usize,
 }
 
 /// The inadequacy of the model, in noise sds.
@@ -121,14 +135,19 @@ pub(super) fn blocks(data: &[Datum], common: &[CommonError]) -> (Vec<usize>, Vec
     (alone, blocks)
 }
 
-/// Data with a sensitivity, ascending.
-pub(super) fn sensitive(common: &[CommonError]) -> Vec<usize> {
-    let own = common
-        .iter()
-        .filter(|e| matches!(e.size, CommonErrorSize::Sensitivity(_)));
-    let mut data: Vec<usize> = own.flat_map(|error| error.data.iter().copied()).collect();
-    data.sort_unstable();
-    data
+/// The derivatives that are needed, each once, ascending.
+pub(super) fn sensitive(common: &[CommonError]) -> Vec<Sensitive> {
+    let of = |error: &CommonError| match error.size {
+        CommonErrorSize::Sensitivity { derivative, .. } => {
+            let own = error.data.iter();
+            own.map(|&datum| Sensitive { derivative, datum }).collect()
+        }
+        CommonErrorSize::Shift(_) | CommonErrorSize::Discrepancy => Vec::new(),
+    };
+    let mut sensitive: Vec<Sensitive> = common.iter().flat_map(of).collect();
+    sensitive.sort_unstable();
+    sensitive.dedup();
+    sensitive
 }
 
 /// Refuses invalid memberships and sds.
@@ -142,7 +161,10 @@ pub(super) fn check(count: usize, common: &[CommonError]) -> Result<(), Likeliho
             return Err(refuse(pair[1]));
         }
         if let CommonErrorSize::Shift(ErrorSd::Known(value))
-        | CommonErrorSize::Sensitivity(ErrorSd::Known(value)) = error.size
+        | CommonErrorSize::Sensitivity {
+            sd: ErrorSd::Known(value),
+            ..
+        } = error.size
             && !(value.is_finite() && value >= 0.0)
         {
             return Err(LikelihoodError::Setting {
@@ -152,8 +174,5 @@ pub(super) fn check(count: usize, common: &[CommonError]) -> Result<(), Likeliho
             });
         }
     }
-    match sensitive(common).windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(refuse(pair[0])),
-        None => Ok(()),
-    }
+    Ok(())
 }

@@ -139,7 +139,7 @@ impl Likelihood {
         }))
     }
 
-    /// Checks that there is one finite value for each datum and each sensitive datum.
+    /// Checks that there is one finite value for each datum and each derivative.
     ///
     /// # Errors
     /// [`LikelihoodError::Length`] and [`LikelihoodError::Prediction`].
@@ -150,7 +150,7 @@ impl Likelihood {
                 given: values.len(),
             });
         }
-        let owners = (0..self.data.len()).chain(self.sensitive.iter().copied());
+        let owners = (0..self.data.len()).chain(self.sensitive.iter().map(|own| own.datum));
         owners
             .zip(values)
             .try_for_each(|(i, &value)| self.data[i].check_prediction(value))

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::common_error::{self, CommonError, CommonErrorSize, Discrepancy, ErrorBlock};
+use super::common_error::{self, CommonError, CommonErrorSize, Discrepancy, ErrorBlock, Sensitive};
 use super::datum::{Datum, ErrorSd, LikelihoodError};
 use super::law::ErrorLaw;
 
@@ -17,7 +17,7 @@ pub struct Likelihood {
     /// Data without a common error.
     pub(super) alone: Vec<usize>,
     pub(super) blocks: Vec<ErrorBlock>,
-    pub(super) sensitive: Vec<usize>,
+    pub(super) sensitive: Vec<Sensitive>,
 }
 
 /// The serialised form of a likelihood: what it is made from.
@@ -111,16 +111,22 @@ impl Likelihood {
         &self.common
     }
 
-    /// Data whose sensitivity is needed, ascending: their derivatives follow the predictions in the predicted values.
+    /// The derivatives that are needed, ascending: they follow the predictions in the predicted values.
     #[must_use]
-    pub fn sensitive(&self) -> &[usize] {
+    pub fn sensitive(&self) -> &[Sensitive] {
         &self.sensitive
     }
 
-    /// Number of predicted values: one for each datum, then one for each sensitive datum.
+    /// Number of predicted values: one for each datum, then the derivatives.
     #[must_use]
     pub fn values(&self) -> usize {
         self.data.len() + self.sensitive.len()
+    }
+
+    /// The place of a derivative among the predicted values.
+    pub(super) fn place(&self, wanted: Sensitive) -> usize {
+        let own = self.sensitive.binary_search(&wanted);
+        self.data.len() + own.expect("every common error has its derivatives among the sensitive ones")
     }
 
     /// Whether an inferred sd has no closed form: one of correlated or heavy-tailed data, or of a common error.
@@ -130,7 +136,7 @@ impl Likelihood {
         let heavy = self.law != ErrorLaw::Gaussian && self.data.iter().any(|d| inferred(d.sd));
         let tied = self.blocks.iter().flat_map(|block| &block.data);
         let common = self.common.iter().any(|error| match error.size {
-            CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity(sd) => inferred(sd),
+            CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity { sd, .. } => inferred(sd),
             CommonErrorSize::Discrepancy => false,
         });
         heavy || common || tied.into_iter().any(|&i| inferred(self.data[i].sd))

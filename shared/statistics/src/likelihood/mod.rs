@@ -23,6 +23,7 @@ mod whitening;
 
 pub use common_error::{
     CommonError, CommonErrorSize, DISCREPANCY_LEVELS, Discrepancy, GREATEST_DISCREPANCY, LEAST_DISCREPANCY,
+    Sensitive,
 };
 pub use datum::{Datum, ErrorSd, LikelihoodError};
 pub use error_model::Likelihood;

@@ -1,6 +1,6 @@
 //! The covariance of a block: the noise of each datum, and the common errors.
 
-use super::common_error::{CommonError, CommonErrorSize, Discrepancy, ErrorBlock};
+use super::common_error::{CommonError, CommonErrorSize, Discrepancy, ErrorBlock, Sensitive};
 use super::datum::LikelihoodError;
 use super::error_model::Likelihood;
 
@@ -87,13 +87,10 @@ impl Likelihood {
                     let shift = m * (squares / data.len() as f64).sqrt();
                     data.iter().map(|i| (position(i), shift)).collect()
                 }
-                CommonErrorSize::Sensitivity(sd) => {
+                CommonErrorSize::Sensitivity { sd, derivative } => {
                     let sd = sd.value(theta)?;
-                    let derivative = |i: &usize| {
-                        let place = self.sensitive.binary_search(i).unwrap_or_default();
-                        values[self.data.len() + place]
-                    };
-                    data.iter().map(|i| (position(i), sd * derivative(i))).collect()
+                    let shift = |&datum: &usize| sd * values[self.place(Sensitive { derivative, datum })];
+                    data.iter().map(|i| (position(i), shift(i))).collect()
                 }
             };
             common.push(error);

@@ -1,6 +1,6 @@
 //! The likelihood of a subset of the data.
 
-use super::common_error::CommonError;
+use super::common_error::{CommonError, Sensitive};
 use super::datum::LikelihoodError;
 use super::error_model::Likelihood;
 
@@ -42,9 +42,11 @@ impl Likelihood {
     }
 
     fn places(&self, kept: &[usize], subset: &Likelihood) -> Vec<usize> {
-        let derivative = |&k: &usize| {
-            let place = self.sensitive.binary_search(&kept[k]).unwrap_or_default();
-            self.data.len() + place
+        let derivative = |own: &Sensitive| {
+            self.place(Sensitive {
+                datum: kept[own.datum],
+                ..*own
+            })
         };
         let derivatives = subset.sensitive.iter().map(derivative);
         kept.iter().copied().chain(derivatives).collect()

@@ -1,0 +1,107 @@
+//! How much the soil under a run may differ from that of the others.
+
+use shared::channel::Channel;
+use shared::experiment::{Experiment, Scatter};
+use shared::outcome::Observables;
+use shared::predicted::PredictedValue;
+use statistics::{CommonError, CommonErrorSize, Datum, ErrorSd};
+
+use super::error::DataError;
+use super::noise::{preparations, scatter_sd};
+use crate::table::prior_entry::FreeParameter;
+
+/// The derivative by ln k*, k* the soil's stiffness, among those of a datum.
+pub(crate) const BY_STIFFNESS: usize = 0;
+/// The derivative by the logarithm of the soil's shear strength.
+pub(crate) const BY_STRENGTH: usize = 1;
+
+/// A scatter of the soil, from run to run or from preparation to preparation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SoilScatter {
+    /// Its relative sd.
+    pub(crate) sd: ErrorSd,
+    /// The derivative along which it shifts the measurements.
+    pub(crate) derivative: usize,
+    /// Positions among the fitted runs of those that share an error.
+    pub(crate) groups: Vec<Vec<usize>>,
+}
+
+impl SoilScatter {
+    /// The scatters of an experiment.
+    ///
+    /// # Errors
+    /// [`DataError::NoPrior`].
+    pub(crate) fn all(
+        experiment: &Experiment,
+        fit_runs: &[usize],
+        parameters: &[FreeParameter],
+    ) -> Result<Vec<SoilScatter>, DataError> {
+        let of_runs = (0..fit_runs.len()).map(|run| vec![run]).collect();
+        // The error of a single preparation is that of the parameters.
+        let mut of_preparations = preparations(experiment, fit_runs);
+        if of_preparations.len() < 2 {
+            of_preparations.clear();
+        }
+        let mut scatters = Vec::new();
+        for (scatter, derivative, groups) in [
+            (Scatter::Run, BY_STIFFNESS, of_runs),
+            (Scatter::Preparation, BY_STIFFNESS, of_preparations.clone()),
+            (Scatter::PreparationStrength, BY_STRENGTH, of_preparations),
+        ] {
+            if !groups.is_empty()
+                && let Some(sd) = scatter_sd(experiment, parameters, scatter)?
+            {
+                scatters.push(SoilScatter {
+                    sd,
+                    derivative,
+                    groups,
+                });
+            }
+        }
+        Ok(scatters)
+    }
+
+    /// The errors of data that it makes, one for each group.
+    pub(crate) fn errors(&self, data: &[Datum]) -> Vec<CommonError> {
+        // The strength of the soil does not carry the wheel: its sinkage stays.
+        let feels = |d: &Datum| self.derivative == BY_STIFFNESS || d.channel != Channel::Sinkage.index();
+        let of = |runs: &Vec<usize>| CommonError {
+            data: (0..data.len())
+                .filter(|&i| runs.contains(&data[i].run) && feels(&data[i]))
+                .collect(),
+            size: CommonErrorSize::Sensitivity {
+                sd: self.sd,
+                derivative: self.derivative,
+            },
+        };
+        self.groups.iter().map(of).collect()
+    }
+
+    /// One sd of what it does to the measurement of a channel in a run [channel's unit].
+    ///
+    /// # Arguments
+    /// - `theta`: the parameters. `observables`: of the runs, with their derivatives by the stiffness where they scatter.
+    /// - `radius_m`: radius of the run's wheel `[m]`.
+    pub fn shift(
+        &self,
+        theta: &[f64],
+        observables: &Observables,
+        (channel, run): (Channel, usize),
+        radius_m: f64,
+    ) -> f64 {
+        let sd = match self.sd {
+            ErrorSd::Known(sd) => sd,
+            ErrorSd::Inferred { parameter } => theta[parameter],
+        };
+        let value = match (self.derivative, channel) {
+            (BY_STRENGTH, Channel::Sinkage) => return 0.0,
+            (BY_STRENGTH, channel) => PredictedValue::Strength {
+                channel,
+                run,
+                radius_m,
+            },
+            (_, channel) => PredictedValue::Sensitivity { channel, run },
+        };
+        sd * value.of(observables)
+    }
+}
