@@ -62,7 +62,8 @@ fn shear_that_is_mobilised_late_leaves_a_trend_in_pull_or_torque() {
 #[test]
 fn a_channel_without_information_is_named_with_its_numbers() {
     let (flags, _) = flags(Job::small().in_experiment("torque_n_m = 0.15", "torque_n_m = 20.0"));
-    let words = "torque is uninformative: its total error of 20 N m (noise, discrepancy and shared errors) is 14 times the spread that the prior allows";
+    let words =
+        "torque is uninformative: its declared error of 20 N m is 14 times the spread that the prior allows";
     assert_eq!(flags, [("no_information".into(), "torque".into(), words.into())]);
 }
 

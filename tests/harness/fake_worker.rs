@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use crate::http::{Client, Response};
 
 /// Version of the protocol.
-pub const PROTOCOL: u32 = 6;
+pub const PROTOCOL: u32 = 7;
 
 /// A worker by name; it does what a test says and nothing else.
 #[derive(Debug)]

@@ -2,7 +2,7 @@
 
 use crate::laplace::fit::LaplaceFit;
 use inference::diagnostics::chi_square_tail;
-use statistics::likelihood::{CommonErrorSize, Discrepancy, ErrorLaw, ErrorSd, Likelihood};
+use statistics::likelihood::{CommonErrorSize, ErrorLaw, ErrorSd, Likelihood};
 
 /// p-value below which a fit contradicts the data.
 const WRONG: f64 = 0.001;
@@ -27,11 +27,10 @@ impl FitChiSquare {
     pub(crate) fn of(fit: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
         let unknown = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { .. });
         let is_known = likelihood.law() == ErrorLaw::Gaussian
-            && likelihood.discrepancy() == Discrepancy::None
             && !likelihood.data().iter().any(|d| unknown(d.sd))
             && !likelihood.common().iter().any(|error| match error.size {
                 CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity { sd, .. } => unknown(sd),
-                CommonErrorSize::Discrepancy => true,
+                CommonErrorSize::Discrepancy { .. } => true,
             });
         if !is_known {
             return None;

@@ -149,7 +149,7 @@ fn chi_square_knows_errors_in_common() {
         size: CommonErrorSize::Shift(ErrorSd::Known(0.8)),
     };
     let likelihood =
-        Likelihood::with_common(data, ErrorLaw::Gaussian, vec![shift], Discrepancy::None).unwrap();
+        Likelihood::with_common(data, ErrorLaw::Gaussian, vec![shift], vec![Discrepancy::None]).unwrap();
     let draws = model.posterior(&y);
     let mut errors = DMatrix::identity(6, 6) * 0.25;
     for (i, j) in [1, 2, 4].into_iter().flat_map(|i| [1, 2, 4].map(|j| (i, j))) {

@@ -124,6 +124,16 @@ impl Experiment {
             shear = bevameter::shear(named, text(named)?)?;
         }
         let used: BTreeSet<&str> = runs.iter().map(|r| r.soil.as_str()).collect();
+        for scatter in [Scatter::Preparation, Scatter::PreparationStrength] {
+            let states = matches!(file.noise.scatter(scatter), ScatterSd::Known(sd) if sd > 0.0);
+            if states && runs.iter().all(|run| run.prepared.is_none()) {
+                let message = format!(
+                    "[noise] {} needs the column prepared in runs.csv: the preparation of each run",
+                    scatter.key()
+                );
+                return Err(FileError::whole(name, message));
+            }
+        }
         if used.len() > 1 {
             let list = used.into_iter().collect::<Vec<_>>().join(", ");
             let message = format!(
@@ -285,6 +295,20 @@ mod tests {
         ] {
             assert_eq!(of(&wrong).unwrap_err(), message);
         }
+    }
+
+    #[test]
+    fn a_scatter_of_preparations_needs_their_ids() {
+        let toml = TOML.replace("[noise]", "[noise]\npreparation_scatter = 0.1");
+        let row = "a,w,s,0.2,100,0.01,1,,fit";
+        assert_eq!(
+            parse(&toml, &format!("{HEADER}{row}\n")).unwrap_err(),
+            "experiment.toml: [noise] preparation_scatter needs the column prepared in runs.csv: the preparation of each run"
+        );
+        let header = HEADER.replace("use", "use,prepared");
+        let noise = parse(&toml, &format!("{header}{row},bed 1\n")).unwrap().noise;
+        assert_eq!(noise.scatter(Scatter::Preparation), ScatterSd::Known(0.1));
+        assert_eq!(noise.scatter(Scatter::PreparationStrength), ScatterSd::Unknown);
     }
 
     #[test]

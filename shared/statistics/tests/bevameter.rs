@@ -31,7 +31,8 @@ fn posterior(tests: &[Vec<LogStress>], theta: &[f64], steps: &[f64], s_u: f64, s
         }
     });
     let common = common.collect();
-    let likelihood = Likelihood::with_common(data, ErrorLaw::Gaussian, common, Discrepancy::None).unwrap();
+    let likelihood =
+        Likelihood::with_common(data, ErrorLaw::Gaussian, common, vec![Discrepancy::None]).unwrap();
     let values: Vec<f64> = readings.iter().map(|f| f(theta)).collect();
     let whitening = likelihood.whitening(&values, &[]).unwrap();
     let columns: Vec<Vec<f64>> = (0..theta.len())

@@ -1,7 +1,9 @@
 //! The likelihood against hand numbers.
 
 use nalgebra::{DMatrix, DVector};
-use statistics::likelihood::{DISCREPANCY_LEVELS, GREATEST_DISCREPANCY, LEAST_DISCREPANCY};
+use statistics::likelihood::{
+    DISCREPANCY_LEVELS, GREATEST_DISCREPANCY, LEAST_DISCREPANCY, discrepancy_levels,
+};
 use statistics::{
     CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood, LikelihoodError,
     LogLikelihood,
@@ -77,7 +79,7 @@ fn a_t_of_one_datum_has_its_hand_number() {
         datum(0, 0, 1.0, ErrorSd::Known(2.0)),
         datum(1, 0, 1.0, ErrorSd::Known(2.0)),
     ];
-    let likelihood = Likelihood::with_common(data, T5, Vec::new(), Discrepancy::None).unwrap();
+    let likelihood = Likelihood::with_common(data, T5, Vec::new(), vec![Discrepancy::None]).unwrap();
     let value = |m: f64| likelihood.log_likelihood(&[m, 1.0], &[]).unwrap().value();
     let centre = (8.0 / (3.0 * 5.0_f64.sqrt() * std::f64::consts::PI) / 2.0).ln();
     assert!((value(1.0) - 2.0 * centre).abs() < 1e-12);
@@ -108,7 +110,7 @@ fn three_runs(scatter: ErrorSd) -> (Vec<Datum>, Vec<CommonError>) {
         ));
     }
     for members in [&[0, 1][..], &[2], &[3, 4], &[5]] {
-        errors.push(common(members, CommonErrorSize::Discrepancy));
+        errors.push(common(members, CommonErrorSize::Discrepancy { group: 0 }));
     }
     (data, errors)
 }
@@ -173,7 +175,8 @@ fn blocks_match_a_dense_density() {
             .iter()
             .map(|members| density(&covariance, &data, members, nu))
             .sum();
-        let likelihood = Likelihood::with_common(data.clone(), law, common, Discrepancy::Known(2.0)).unwrap();
+        let likelihood =
+            Likelihood::with_common(data.clone(), law, common, vec![Discrepancy::Known(2.0)]).unwrap();
         let sensitive: Vec<usize> = likelihood.sensitive().iter().map(|own| own.datum).collect();
         assert_eq!(sensitive, [0, 1, 2, 3, 4, 5]);
         let value = likelihood.log_likelihood(&values(), &[9.0, 0.3]).unwrap().value();
@@ -211,7 +214,7 @@ fn errors_of_a_preparation_couple_its_runs() {
         noise + if shared { errors } else { 0.0 }
     });
     let likelihood =
-        Likelihood::with_common(data.clone(), ErrorLaw::Gaussian, common, Discrepancy::None).unwrap();
+        Likelihood::with_common(data.clone(), ErrorLaw::Gaussian, common, vec![Discrepancy::None]).unwrap();
     let mut predicted = values();
     predicted.extend(strengths);
     assert_eq!(likelihood.values(), predicted.len());
@@ -229,8 +232,8 @@ fn an_unknown_discrepancy_is_the_mean_over_its_values() {
     let of = |discrepancy| {
         Likelihood::with_common(data.clone(), ErrorLaw::Gaussian, common.clone(), discrepancy).unwrap()
     };
-    let unknown = of(Discrepancy::Unknown);
-    let levels = Discrepancy::Unknown.levels();
+    let unknown = of(vec![Discrepancy::Unknown]);
+    let levels = discrepancy_levels();
     assert_eq!(levels.len(), DISCREPANCY_LEVELS);
     assert!(
         (levels[0] - LEAST_DISCREPANCY).abs() < 1e-12
@@ -247,6 +250,7 @@ fn an_unknown_discrepancy_is_the_mean_over_its_values() {
     for ((m, weight), (level, density)) in unknown
         .discrepancy_weights(&values(), &[])
         .unwrap()
+        .remove(0)
         .into_iter()
         .zip(levels.iter().zip(&densities))
     {
@@ -254,12 +258,46 @@ fn an_unknown_discrepancy_is_the_mean_over_its_values() {
     }
 }
 
+/// The channels of [`three_runs`] are groups of their own. Alone, each has its own m; where the soil's scatter ties them they share
+/// one.
+#[test]
+fn every_channel_has_a_discrepancy_of_its_own() {
+    let (data, mut common) = three_runs(ErrorSd::Known(0.0));
+    for (error, group) in common[3..].iter_mut().zip([0, 0, 1, 1]) {
+        error.size = CommonErrorSize::Discrepancy { group };
+    }
+    let of = |common: &[CommonError], own: [Discrepancy; 2]| {
+        Likelihood::with_common(data.clone(), ErrorLaw::Gaussian, common.to_vec(), own.to_vec()).unwrap()
+    };
+    let unknown = [Discrepancy::Unknown; 2];
+    let levels = discrepancy_levels();
+    let density_of = |members: &[usize], m: f64| density(&dense(&data, 0.0, m), &data, members, None).exp();
+    let mean =
+        |members: &[usize]| levels.iter().map(|&m| density_of(members, m)).sum::<f64>() / levels.len() as f64;
+    let apart = of(&common[3..], unknown);
+    let value = apart.log_likelihood(&PREDICTED, &[]).unwrap().value();
+    let expected = mean(&[0, 1, 2]).ln() + mean(&[3, 4, 5]).ln();
+    assert!((value - expected).abs() < 1e-10, "{value} {expected}");
+    let weights = apart.discrepancy_weights(&PREDICTED, &[]).unwrap();
+    assert!((weights[0][3].1 - weights[1][3].1).abs() > 1e-4, "{weights:?}");
+    let fixed = of(&common[3..], [Discrepancy::Unknown, Discrepancy::Known(2.0)]);
+    let value = fixed.log_likelihood(&PREDICTED, &[]).unwrap().value();
+    let expected = mean(&[0, 1, 2]).ln() + density_of(&[3, 4, 5], 2.0).ln();
+    assert!((value - expected).abs() < 1e-10, "{value} {expected}");
+    let tied = of(&common, unknown);
+    let value = tied.log_likelihood(&values(), &[]).unwrap().value();
+    let expected = mean(&[0, 1, 2, 3, 4, 5]).ln();
+    assert!((value - expected).abs() < 1e-10, "{value} {expected}");
+    let weights = tied.discrepancy_weights(&values(), &[]).unwrap();
+    assert_eq!(weights[0], weights[1]);
+}
+
 #[test]
 fn errors_of_size_zero_are_the_independent_ones() {
     let (data, mut common) = three_runs(ErrorSd::Known(0.0));
     common.truncate(3);
     let plain = Likelihood::new(data.clone()).unwrap();
-    let zero = Likelihood::with_common(data, ErrorLaw::Gaussian, common, Discrepancy::None).unwrap();
+    let zero = Likelihood::with_common(data, ErrorLaw::Gaussian, common, vec![Discrepancy::None]).unwrap();
     let expected = plain.log_likelihood(&PREDICTED, &[]).unwrap().value();
     let value = zero.log_likelihood(&values(), &[]).unwrap().value();
     assert!((value - expected).abs() < 1e-12, "{value} {expected}");
@@ -274,7 +312,7 @@ fn a_shift_in_common_bounds_what_readings_can_say() {
         size: CommonErrorSize::Shift(ErrorSd::Inferred { parameter: 0 }),
     };
     let likelihood =
-        Likelihood::with_common(data, ErrorLaw::Gaussian, vec![shift], Discrepancy::None).unwrap();
+        Likelihood::with_common(data, ErrorLaw::Gaussian, vec![shift], vec![Discrepancy::None]).unwrap();
     let value = |level: f64| likelihood.log_likelihood(&[level; 40], &[0.1]).unwrap().value();
     let variance = 0.1 * 0.1 + 0.03 * 0.03 / 40.0;
     assert!((value(0.3) - value(0.0) - 0.5 * 0.09 / variance).abs() < 1e-9);
@@ -297,7 +335,7 @@ fn whitened_slopes_are_those_of_the_density() {
     for law in [ErrorLaw::Gaussian, T5] {
         for discrepancy in [Discrepancy::Known(2.0), Discrepancy::Unknown] {
             let likelihood =
-                Likelihood::with_common(loose.clone(), law, common.clone(), discrepancy).unwrap();
+                Likelihood::with_common(loose.clone(), law, common.clone(), vec![discrepancy]).unwrap();
             let value = |t: f64| likelihood.log_likelihood(&at(t), &[]).unwrap().value();
             let slope = (value(1e-5) - value(-1e-5)) / 2e-5;
             let whitening = likelihood.whitening(&at(0.0), &[]).unwrap();
@@ -324,23 +362,28 @@ fn error_models_that_mean_nothing_are_refused() {
         degrees_of_freedom: 0.0,
     };
     assert_eq!(
-        refused(none, Vec::new(), Discrepancy::None),
+        refused(none, Vec::new(), vec![Discrepancy::None]),
         "degrees_of_freedom = 0 is not a finite number above 0"
     );
     assert_eq!(
-        refused(ErrorLaw::Gaussian, common.clone(), Discrepancy::Known(-1.0)),
+        refused(ErrorLaw::Gaussian, common.clone(), vec![Discrepancy::Known(-1.0)]),
         "discrepancy = -1 is not a finite number above 0"
     );
     let beyond = CommonError {
         data: vec![2, 6],
-        size: CommonErrorSize::Discrepancy,
+        size: CommonErrorSize::Discrepancy { group: 0 },
     };
     assert_eq!(
-        refused(ErrorLaw::Gaussian, vec![beyond], Discrepancy::None),
+        refused(ErrorLaw::Gaussian, vec![beyond], vec![Discrepancy::None]),
         "a common error names datum 6 of 6, or names it twice"
     );
-    let likelihood =
-        Likelihood::with_common(data.clone(), ErrorLaw::Gaussian, common, Discrepancy::Known(1.0)).unwrap();
+    let likelihood = Likelihood::with_common(
+        data.clone(),
+        ErrorLaw::Gaussian,
+        common,
+        vec![Discrepancy::Known(1.0)],
+    )
+    .unwrap();
     assert_eq!(
         likelihood
             .log_likelihood(&PREDICTED, &[])
@@ -375,10 +418,10 @@ fn entangled(discrepancy: Discrepancy) -> Likelihood {
                 derivative: 0,
             },
         ),
-        (vec![1], CommonErrorSize::Discrepancy),
+        (vec![1], CommonErrorSize::Discrepancy { group: 0 }),
     ];
     let common = common.map(|(data, size)| CommonError { data, size });
-    Likelihood::with_common(data, ErrorLaw::Gaussian, common.to_vec(), discrepancy).unwrap()
+    Likelihood::with_common(data, ErrorLaw::Gaussian, common.to_vec(), vec![discrepancy]).unwrap()
 }
 
 const ENTANGLED: [f64; 7] = [0.1, 0.9, 2.3, 3.0, 3.5, 2.0, -1.5];
@@ -394,7 +437,7 @@ fn variances_are_the_diagonal_of_the_covariance() {
     }
     let unknown = entangled(Discrepancy::Unknown);
     let weights = unknown.discrepancy_weights(&ENTANGLED, &[0.7]).unwrap();
-    let squares: f64 = weights.iter().map(|(m, w)| w * m * m).sum();
+    let squares: f64 = weights[0].iter().map(|(m, w)| w * m * m).sum();
     let found = unknown.error_variances(&ENTANGLED, &[0.7]).unwrap();
     assert!((found[1] - (0.36 + 0.49 + 0.36 * squares)).abs() < 1e-12);
 }

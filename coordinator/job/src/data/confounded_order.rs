@@ -58,7 +58,7 @@ impl ConfoundedOrder {
     pub fn words(self) -> String {
         let condition = self.condition.words();
         format!(
-            "the runs were made in the order of their {condition} (rank correlation {:.2}): no effect that changes with {condition} can be told from a drift of soil or sensors; repeat runs of several levels late and early in the series",
+            "the runs were made in the order of their {condition} (rank correlation {:.2}): no effect that changes with {condition} can be told from a drift of soil or sensors but by their priors; repeat runs of several levels late and early in the series",
             self.rank_correlation
         )
     }

@@ -3,7 +3,7 @@
 use shared::experiment::Experiment;
 use statistics::{CommonError, CommonErrorSize, Datum, Discrepancy, Likelihood};
 
-use super::bevameter_readings::{BevameterReadings, PLATE};
+use super::bevameter_readings::BevameterReadings;
 use super::error::DataError;
 use super::noise::{self, scatter_sd};
 use super::soil_scatter::SoilScatter;
@@ -28,11 +28,13 @@ pub(crate) fn likelihood(
         let errors = scatter.errors(&data);
         common.extend(errors.into_iter().map(|error| (error.data, error.size)));
     }
-    if settings.discrepancy != Discrepancy::None {
+    if settings.has_discrepancy() {
         for condition in noise::conditions(experiment, fit_runs) {
-            for channel in 0..PLATE {
-                let own = members(&data, &|d| d.channel == channel && condition.contains(&d.run));
-                common.push((own, CommonErrorSize::Discrepancy));
+            for (channel, discrepancy) in settings.discrepancies.iter().enumerate() {
+                if *discrepancy != Discrepancy::None {
+                    let own = members(&data, &|d| d.channel == channel && condition.contains(&d.run));
+                    common.push((own, CommonErrorSize::Discrepancy { group: channel }));
+                }
             }
         }
     }
@@ -61,6 +63,6 @@ pub(crate) fn likelihood(
         data,
         settings.law,
         common,
-        settings.discrepancy,
+        settings.discrepancies.to_vec(),
     )?)
 }

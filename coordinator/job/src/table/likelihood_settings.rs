@@ -1,7 +1,8 @@
 //! The table `[likelihood]`: how measurements scatter around the model.
 
 use serde::Deserialize;
-use shared::file::unknown_word;
+use shared::channel::Channel;
+use shared::file::{number, unknown_word};
 use statistics::likelihood::{DISCREPANCY_LEVELS, GREATEST_DISCREPANCY, LEAST_DISCREPANCY};
 use statistics::{Discrepancy, ErrorLaw};
 
@@ -15,11 +16,16 @@ const USUAL_FREEDOM: f64 = 5.0;
 pub struct LikelihoodSettings {
     /// The law of the errors.
     pub law: ErrorLaw,
-    /// How far off the model may be in a condition, in noise sds.
-    pub discrepancy: Discrepancy,
+    /// How far off the model may be in a condition, in noise sds, in the order of [`Channel::ALL`].
+    pub discrepancies: [Discrepancy; 4],
 }
 
 impl LikelihoodSettings {
+    /// Whether the model may be off anywhere.
+    pub fn has_discrepancy(&self) -> bool {
+        self.discrepancies.iter().any(|d| *d != Discrepancy::None)
+    }
+
     /// What is unusual about it, a sentence each; none of independent normal errors.
     pub fn words(&self) -> Vec<String> {
         let mut words = Vec::new();
@@ -28,24 +34,35 @@ impl LikelihoodSettings {
                 "errors follow Student's t with {degrees_of_freedom} degrees of freedom, scaled by the noise sd"
             ));
         }
-        match self.discrepancy {
-            Discrepancy::None => {}
-            Discrepancy::Known(m) => words.push(format!(
+        let off = |m: &str| {
+            format!(
                 "the model may be off by {m} noise sds in each condition and channel, common to all repeats"
-            )),
-            Discrepancy::Unknown => words.push(format!(
-                "the model may be off by m noise sds in each condition and channel, common to all repeats; m is marginalised over {DISCREPANCY_LEVELS} values from {LEAST_DISCREPANCY} to {GREATEST_DISCREPANCY}, uniform in log m: {}",
-                levels(self.discrepancy)
-            )),
+            )
+        };
+        let inferred = format!(
+            "m of each channel is marginalised over {DISCREPANCY_LEVELS} values from {LEAST_DISCREPANCY} to {GREATEST_DISCREPANCY}, uniform in log m"
+        );
+        let first = self.discrepancies[0];
+        if self.discrepancies.iter().all(|own| *own == first) {
+            match first {
+                Discrepancy::None => {}
+                Discrepancy::Known(m) => words.push(off(&m.to_string())),
+                Discrepancy::Unknown => words.push(format!("{}; {inferred}", off("m"))),
+            }
+        } else {
+            let own = Channel::ALL.iter().zip(self.discrepancies).map(|(channel, own)| {
+                let m = match own {
+                    Discrepancy::None => "0".to_owned(),
+                    Discrepancy::Known(m) => m.to_string(),
+                    Discrepancy::Unknown => "m".to_owned(),
+                };
+                format!("{m} ({})", channel.words())
+            });
+            let own: Vec<String> = own.collect();
+            words.push(format!("{}; {inferred}", off(&own.join(", "))));
         }
         words
     }
-}
-
-fn levels(discrepancy: Discrepancy) -> String {
-    let levels = discrepancy.levels();
-    let words: Vec<String> = levels.iter().map(|m| format!("{m:.2}")).collect();
-    words.join(", ")
 }
 
 /// The table as written.
@@ -55,6 +72,14 @@ pub(crate) struct RawLikelihood {
     kind: String,
     degrees_of_freedom: Option<f64>,
     discrepancy: toml::Value,
+    #[serde(rename = "discrepancy.drawbar_pull")]
+    of_drawbar_pull: Option<toml::Value>,
+    #[serde(rename = "discrepancy.torque")]
+    of_torque: Option<toml::Value>,
+    #[serde(rename = "discrepancy.sinkage")]
+    of_sinkage: Option<toml::Value>,
+    #[serde(rename = "discrepancy.lateral_force")]
+    of_lateral_force: Option<toml::Value>,
 }
 
 impl Default for RawLikelihood {
@@ -63,6 +88,10 @@ impl Default for RawLikelihood {
             kind: "gaussian".into(),
             degrees_of_freedom: None,
             discrepancy: toml::Value::Float(0.0),
+            of_drawbar_pull: None,
+            of_torque: None,
+            of_sinkage: None,
+            of_lateral_force: None,
         }
     }
 }
@@ -85,17 +114,89 @@ impl RawLikelihood {
                 return Err(TableError::Unknown(unknown));
             }
         };
-        let value = &self.discrepancy;
-        let number = shared::file::number(value);
-        let discrepancy = match (number, value.as_str()) {
-            (_, Some("unknown")) => Discrepancy::Unknown,
-            (Some(m), _) if m.abs() == 0.0 => Discrepancy::None,
-            (Some(m), _) if m.is_finite() && m > 0.0 => Discrepancy::Known(m),
-            _ => {
-                let rule = "must be a number >= 0, in noise sds, or \"unknown\"";
-                return Err(TableError::value("discrepancy", value, rule));
-            }
+        // discrepancy.torque = 0.5 is a table: the channels that it leaves out are inferred.
+        let mut discrepancies = match &self.discrepancy {
+            toml::Value::Table(_) => [Discrepancy::Unknown; 4],
+            value => [discrepancy("discrepancy", value)?; 4],
         };
-        Ok(LikelihoodSettings { law, discrepancy })
+        if let toml::Value::Table(table) = &self.discrepancy {
+            for (name, value) in table {
+                let channel = Channel::ALL.into_iter().find(|channel| channel.name() == name);
+                let channel = channel.ok_or_else(|| {
+                    let known = Channel::ALL.map(Channel::name);
+                    TableError::Unknown(unknown_word("channel of discrepancy", name, known))
+                })?;
+                discrepancies[channel.index()] = discrepancy(KEYS[channel.index()], value)?;
+            }
+        }
+        let own = [
+            &self.of_drawbar_pull,
+            &self.of_torque,
+            &self.of_sinkage,
+            &self.of_lateral_force,
+        ];
+        for (i, value) in own.into_iter().enumerate() {
+            if let Some(value) = value {
+                discrepancies[i] = discrepancy(KEYS[i], value)?;
+            }
+        }
+        Ok(LikelihoodSettings { law, discrepancies })
+    }
+}
+
+/// The keys of the channels, in the order of [`Channel::ALL`].
+const KEYS: [&str; 4] = [
+    "discrepancy.drawbar_pull",
+    "discrepancy.torque",
+    "discrepancy.sinkage",
+    "discrepancy.lateral_force",
+];
+
+fn discrepancy(key: &'static str, value: &toml::Value) -> Result<Discrepancy, TableError> {
+    match (number(value), value.as_str()) {
+        (_, Some("unknown")) => Ok(Discrepancy::Unknown),
+        (Some(m), _) if m.abs() == 0.0 => Ok(Discrepancy::None),
+        (Some(m), _) if m.is_finite() && m > 0.0 => Ok(Discrepancy::Known(m)),
+        _ => {
+            let rule = "must be a number >= 0, in noise sds, or \"unknown\"";
+            Err(TableError::value(key, value, rule))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<[Discrepancy; 4], String> {
+        let raw: RawLikelihood = toml::from_str(text).map_err(|e| e.to_string())?;
+        let settings = raw.settings().map_err(|e| e.to_string())?;
+        Ok(settings.discrepancies)
+    }
+
+    #[test]
+    fn a_discrepancy_is_one_of_all_channels_or_one_of_each() {
+        use Discrepancy::{Known, None, Unknown};
+        assert_eq!(read(""), Ok([None; 4]));
+        assert_eq!(read("discrepancy = 2"), Ok([Known(2.0); 4]));
+        assert_eq!(read("discrepancy = \"unknown\""), Ok([Unknown; 4]));
+        let torque = Ok([Unknown, Known(0.5), Unknown, Unknown]);
+        assert_eq!(read("discrepancy.torque = 0.5"), torque);
+        assert_eq!(
+            read("discrepancy = \"unknown\"\n\"discrepancy.torque\" = 0.5"),
+            torque
+        );
+        assert_eq!(
+            read("discrepancy = 1.0\n\"discrepancy.sinkage\" = 0"),
+            Ok([Known(1.0), Known(1.0), None, Known(1.0)])
+        );
+        assert_eq!(
+            read("discrepancy.torqe = 0.5").unwrap_err(),
+            "unknown channel of discrepancy \"torqe\"; the nearest known is \"torque\""
+        );
+        assert_eq!(
+            read("discrepancy.torque = -1.0").unwrap_err(),
+            "discrepancy.torque = -1.0 must be a number >= 0, in noise sds, or \"unknown\""
+        );
     }
 }

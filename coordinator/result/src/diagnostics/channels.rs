@@ -73,6 +73,8 @@ impl ChiSquareTest {
     }
 }
 
+/// A total error within this factor of the declared one is called that.
+const SAME_ERROR: f64 = 1.01;
 /// From here on a sum is larger than expected, though not beyond chance.
 const SUSPECT: f64 = 0.05;
 
@@ -122,9 +124,16 @@ pub(crate) fn channels(
 ) -> Vec<ChannelDiagnostics> {
     let data = calibration.spec.likelihood.data();
     let signals = signals(calibration, residuals);
-    let is_inferred = |index: usize| {
-        let mut own = data.iter().filter(|d| d.channel == index);
-        own.any(|d| matches!(d.sd, ErrorSd::Inferred { .. }))
+    let declared = |index: usize| {
+        let own = data.iter().filter(|d| d.channel == index);
+        let sds: Option<Vec<f64>> = own
+            .map(|d| match d.sd {
+                ErrorSd::Known(sd) => Some(sd),
+                ErrorSd::Inferred { .. } => None,
+            })
+            .collect();
+        let squares: Vec<f64> = sds?.iter().map(|sd| sd * sd).collect();
+        diagnostics::mean(&squares).map(f64::sqrt)
     };
     let channel = |(index, channel): (usize, DataChannel)| {
         let own = || residuals.iter().filter(|r| r.channel == channel);
@@ -146,7 +155,7 @@ pub(crate) fn channels(
             chi_square: chi_square(calibration, posterior, |i| data[i].channel == index),
             coverage90_fit: count(RunUse::Fit),
             coverage90_holdout: count(RunUse::Holdout),
-            silence: signal.and_then(|signal| silence(channel, signal, is_inferred(index))),
+            silence: signal.and_then(|signal| silence(channel, signal, declared(index))),
         }
     };
     fitted_channels(&calibration.spec)
@@ -190,18 +199,26 @@ fn signals(
     )
 }
 
-fn silence(channel: DataChannel, signal: &ChannelSignal, is_inferred: bool) -> Option<String> {
+/// A sentence on a channel that says less than the prior.
+///
+/// # Arguments
+/// - `declared`: root mean square of its noise sds where all are stated.
+fn silence(channel: DataChannel, signal: &ChannelSignal, declared: Option<f64>) -> Option<String> {
     if signal.ratio >= 1.0 {
         return None;
     }
+    let shown = |sd: f64| channel.shown().size(sd);
+    let total = shown(signal.error_sd);
+    let error = match declared {
+        None => format!("error of {total} (inferred from the misfit, with discrepancy and shared errors)"),
+        Some(sd) if signal.error_sd <= SAME_ERROR * sd => format!("declared error of {total}"),
+        Some(sd) => format!(
+            "error, {} as declared and {total} with discrepancy and shared errors,",
+            shown(sd)
+        ),
+    };
     let size = format!(
-        "its total error of {} (noise, discrepancy and shared errors{}) is {} times the spread that the prior allows",
-        channel.shown().size(signal.error_sd),
-        if is_inferred {
-            "; inferred from the misfit"
-        } else {
-            ""
-        },
+        "its {error} is {} times the spread that the prior allows",
         number::significant(1.0 / signal.ratio, 2)
     );
     Some(if signal.is_heard_together() {
@@ -231,14 +248,18 @@ mod tests {
         };
         let torque = DataChannel::Wheel(Channel::Torque);
         assert_eq!(
-            silence(torque, &signal(24, 1.0 / 14.0), false).unwrap(),
-            "torque is uninformative: its total error of 20 N m (noise, discrepancy and shared errors) is 14 times the spread that the prior allows"
+            silence(torque, &signal(24, 1.0 / 14.0), Some(20.0)).unwrap(),
+            "torque is uninformative: its declared error of 20 N m is 14 times the spread that the prior allows"
         );
         assert_eq!(
-            silence(torque, &signal(24, 0.5), true).unwrap(),
-            "torque is nearly uninformative: its total error of 20 N m (noise, discrepancy and shared errors; inferred from the misfit) is 2.0 times the spread that the prior allows; only its 24 rows together are more informative than the prior"
+            silence(torque, &signal(24, 1.0 / 14.0), Some(0.1)).unwrap(),
+            "torque is uninformative: its error, 0.10 N m as declared and 20 N m with discrepancy and shared errors, is 14 times the spread that the prior allows"
         );
-        assert_eq!(silence(torque, &signal(24, 1.0), false), None);
+        assert_eq!(
+            silence(torque, &signal(24, 0.5), None).unwrap(),
+            "torque is nearly uninformative: its error of 20 N m (inferred from the misfit, with discrepancy and shared errors) is 2.0 times the spread that the prior allows; only its 24 rows together are more informative than the prior"
+        );
+        assert_eq!(silence(torque, &signal(24, 1.0), Some(20.0)), None);
     }
 
     #[test]

@@ -68,11 +68,14 @@ impl FinishedCalibration {
                 }
             }
         }
-        if let Some((m, probability)) = discrepancy_posterior(self).last().filter(|(_, p)| *p > 0.5) {
-            let text = format!(
-                "the largest allowed discrepancy, {m:.1} noise sds, has probability {probability:.2}: the model error is larger still, an effect is missing, or the noise sds are too small"
-            );
-            flag(FlagKind::Bound, text);
+        for (channel, levels) in discrepancy_posterior(self) {
+            if let Some((m, probability)) = levels.last().filter(|(_, p)| *p > 0.5) {
+                let text = format!(
+                    "the largest allowed discrepancy of {}, {m:.0} noise sds, has probability {probability:.2}: the model error is larger still, or the declared noise sd is too small",
+                    channel.words()
+                );
+                flag(FlagKind::Bound, text);
+            }
         }
         let (evaluations, rejected) = (self.row.evaluations.unwrap_or(0), self.row.rejected.unwrap_or(0));
         if rejected as f64 > MANY_REJECTED * evaluations as f64 {

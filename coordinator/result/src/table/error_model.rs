@@ -3,13 +3,20 @@
 use super::predictive::discrepancy_posterior;
 use crate::finished_calibration::FinishedCalibration;
 
+/// A value of m with less probability is not listed.
+const LEAST_SHOWN: f64 = 0.0005;
+
 /// Sentences on the error model, with the posterior of an unknown discrepancy.
 pub(crate) fn error_model(calibration: &FinishedCalibration) -> Vec<String> {
     let mut words = calibration.spec.likelihood_settings.words();
-    let after = discrepancy_posterior(calibration);
-    if !after.is_empty() {
-        let levels: Vec<String> = after.iter().map(|(m, p)| format!("{m:.2}: {p:.3}")).collect();
-        words.push(format!("posterior probability of each m: {}", levels.join(", ")));
+    for (channel, after) in discrepancy_posterior(calibration) {
+        let probable = after.iter().filter(|(_, p)| *p >= LEAST_SHOWN);
+        let levels: Vec<String> = probable.map(|(m, p)| format!("{m:.2}: {p:.3}")).collect();
+        words.push(format!(
+            "posterior probability of each m of {}: {}",
+            channel.words(),
+            levels.join(", ")
+        ));
     }
     words.extend(calibration.spec.scatter_words());
     words

@@ -6,6 +6,7 @@ use shared::channel::Channel;
 use shared::experiment::NoiseSd;
 use shared::outcome::Observables;
 use shared::parameters::noise_parameter;
+use statistics::likelihood::discrepancy_levels;
 use statistics::{Discrepancy, ErrorLaw, ErrorSd};
 
 use crate::finished_calibration::FinishedCalibration;
@@ -75,7 +76,7 @@ pub(crate) fn predictive(
             .iter()
             .map(|scatter| scatter.shift(theta, observables, (channel, position), radius_m));
         let soil: f64 = soil.map(|shift| shift * shift).sum::<f64>().sqrt();
-        for &(m, weight) in &levels.0[draw] {
+        for &(m, weight) in &levels.0[draw][channel.index()] {
             let scale = sd.map(|sd| widened(sd, [m * sd, soil]));
             draws.push(Component { mean, scale, weight });
         }
@@ -101,8 +102,8 @@ struct Component {
     weight: f64,
 }
 
-/// Of each final draw, the values of the discrepancy with their posterior probabilities; m = 0 without one.
-pub(crate) struct Levels(Vec<Vec<(f64, f64)>>);
+/// Of each final draw and channel, the values of the discrepancy with their posterior probabilities; m = 0 without one.
+pub(crate) struct Levels(Vec<[Vec<(f64, f64)>; 4]>);
 
 impl Levels {
     pub(crate) fn of(calibration: &FinishedCalibration) -> Self {
@@ -110,20 +111,24 @@ impl Levels {
         Levels(draws.map(|draw| Self::at(&calibration.spec, draw)).collect())
     }
 
-    fn at(spec: &Spec, draw: &Prediction) -> Vec<(f64, f64)> {
-        match spec.likelihood.discrepancy() {
+    fn at(spec: &Spec, draw: &Prediction) -> [Vec<(f64, f64)>; 4] {
+        let discrepancies = spec.likelihood_settings.discrepancies;
+        let mut weights = Vec::new();
+        if discrepancies.contains(&Discrepancy::Unknown) {
+            let values = draw.fit.as_ref().ok().map(|o| spec.predicted_values(o));
+            let found = values.and_then(|v| spec.likelihood.discrepancy_weights(&v, &draw.theta).ok());
+            weights = found.unwrap_or_default();
+        }
+        Channel::ALL.map(|channel| match discrepancies[channel.index()] {
             Discrepancy::None => vec![(0.0, 1.0)],
             Discrepancy::Known(m) => vec![(m, 1.0)],
-            Discrepancy::Unknown => {
-                let values = draw.fit.as_ref().ok().map(|o| spec.predicted_values(o));
-                let weights = values.and_then(|v| spec.likelihood.discrepancy_weights(&v, &draw.theta).ok());
-                weights.unwrap_or_else(|| {
-                    let levels = Discrepancy::Unknown.levels();
-                    let share = 1.0 / levels.len() as f64;
-                    levels.into_iter().map(|m| (m, share)).collect()
-                })
-            }
-        }
+            // A draw without predictions, or a channel without fitted data, knows the prior alone.
+            Discrepancy::Unknown => weights.get(channel.index()).cloned().unwrap_or_else(|| {
+                let levels = discrepancy_levels();
+                let share = 1.0 / levels.len() as f64;
+                levels.into_iter().map(|m| (m, share)).collect()
+            }),
+        })
     }
 }
 
@@ -133,20 +138,27 @@ fn widened(sd: f64, others: [f64; 2]) -> f64 {
     if more > 0.0 { (sd * sd + more).sqrt() } else { sd }
 }
 
-/// The posterior probabilities of the discrepancy's values, averaged over the final draws; empty where m is known.
-pub(crate) fn discrepancy_posterior(calibration: &FinishedCalibration) -> Vec<(f64, f64)> {
-    if calibration.spec.likelihood.discrepancy() != Discrepancy::Unknown {
-        return Vec::new();
-    }
-    let levels = Discrepancy::Unknown.levels();
-    let mut sum: Vec<(f64, f64)> = levels.into_iter().map(|m| (m, 0.0)).collect();
+/// Of each fitted channel with an unknown discrepancy the posterior probabilities of its values, averaged over the final draws.
+pub(crate) fn discrepancy_posterior(calibration: &FinishedCalibration) -> Vec<(Channel, Vec<(f64, f64)>)> {
+    let spec = &calibration.spec;
+    let is_fitted = |channel: &Channel| {
+        let mut data = spec.likelihood.data().iter();
+        data.any(|d| d.channel == channel.index())
+    };
+    let is_unknown =
+        |channel: &Channel| spec.likelihood_settings.discrepancies[channel.index()] == Discrepancy::Unknown;
+    let unknown = Channel::ALL.into_iter().filter(|c| is_unknown(c) && is_fitted(c));
     let draws = Levels::of(calibration).0;
-    for levels in &draws {
-        for (total, (_, weight)) in sum.iter_mut().zip(levels) {
-            total.1 += weight / draws.len() as f64;
+    let posterior = |channel: Channel| {
+        let mut sum: Vec<(f64, f64)> = discrepancy_levels().into_iter().map(|m| (m, 0.0)).collect();
+        for levels in &draws {
+            for (total, (_, weight)) in sum.iter_mut().zip(&levels[channel.index()]) {
+                total.1 += weight / draws.len() as f64;
+            }
         }
-    }
-    sum
+        (channel, sum)
+    };
+    unknown.map(posterior).collect()
 }
 
 /// The mean; the plain one, to the bit, where all weights are 1.

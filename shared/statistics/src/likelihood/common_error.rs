@@ -19,8 +19,11 @@ pub enum CommonErrorSize {
     /// Shifts all equally: `v_i` = this sd, in the unit of the data, >= 0.
     Shift(ErrorSd),
     /// Shifts all equally by the inadequacy of the model: `v_i = m sigma`, sigma the root mean square of their noise
-    /// sds and m of [`Discrepancy`].
-    Discrepancy,
+    /// sds and m of the [`Discrepancy`] of a group of data, such as a channel.
+    Discrepancy {
+        /// The number of the group.
+        group: usize,
+    },
     /// Shifts each along a sensitivity: `v_i` = this sd times a derivative of the prediction, which the predicted values
     /// include. A datum may have several, along one derivative or along different ones.
     Sensitivity {
@@ -40,7 +43,7 @@ pub struct Sensitive {
     pub datum: usize,
 }
 
-/// The inadequacy of the model, in noise sds.
+/// The inadequacy of the model for a group of data, in noise sds.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum Discrepancy {
     /// None.
@@ -49,34 +52,26 @@ pub enum Discrepancy {
     /// m itself, > 0.
     Known(f64),
     /// m is marginalised over [`DISCREPANCY_LEVELS`] values from [`LEAST_DISCREPANCY`] to [`GREATEST_DISCREPANCY`], equally probable and equally spaced in
-    /// ln m.
+    /// ln m. Groups whose errors are correlated share one m.
     Unknown,
 }
 
 /// Number of values of an unknown m.
-pub const DISCREPANCY_LEVELS: usize = 9;
+pub const DISCREPANCY_LEVELS: usize = 17;
 /// The least value of an unknown m.
-pub const LEAST_DISCREPANCY: f64 = 0.5;
-/// The largest value of an unknown m.
-pub const GREATEST_DISCREPANCY: f64 = 8.0;
+pub const LEAST_DISCREPANCY: f64 = 0.25;
+/// The largest value of an unknown m: a model that is off by more is of no use.
+pub const GREATEST_DISCREPANCY: f64 = 64.0;
+
+/// The values of an unknown m, each with the same prior probability.
+pub fn discrepancy_levels() -> Vec<f64> {
+    let step = libm::log(GREATEST_DISCREPANCY / LEAST_DISCREPANCY) / (DISCREPANCY_LEVELS - 1) as f64;
+    (0..DISCREPANCY_LEVELS)
+        .map(|k| LEAST_DISCREPANCY * libm::exp(step * k as f64))
+        .collect()
+}
 
 impl Discrepancy {
-    /// The values of m, each with the same prior probability; none without discrepancy.
-    #[must_use]
-    pub fn levels(self) -> Vec<f64> {
-        match self {
-            Self::None => Vec::new(),
-            Self::Known(m) => vec![m],
-            Self::Unknown => {
-                let step =
-                    libm::log(GREATEST_DISCREPANCY / LEAST_DISCREPANCY) / (DISCREPANCY_LEVELS - 1) as f64;
-                (0..DISCREPANCY_LEVELS)
-                    .map(|k| LEAST_DISCREPANCY * libm::exp(step * k as f64))
-                    .collect()
-            }
-        }
-    }
-
     pub(super) fn check(self) -> Result<(), LikelihoodError> {
         match self {
             Self::Known(value) if !(value.is_finite() && value > 0.0) => Err(LikelihoodError::Setting {
@@ -96,12 +91,18 @@ pub(super) struct ErrorBlock {
     pub(super) data: Vec<usize>,
     /// Indices of the common errors, ascending.
     pub(super) common: Vec<usize>,
-    /// Whether a discrepancy is among them.
-    pub(super) has_discrepancy: bool,
+    /// The groups with an unknown discrepancy among them, ascending.
+    unknown: Vec<usize>,
+    /// Which m of those that are marginalised it has.
+    pub(super) family: Option<usize>,
 }
 
 /// Splits the data into independent ones and blocks, in the order of their first datum.
-pub(super) fn blocks(data: &[Datum], common: &[CommonError]) -> (Vec<usize>, Vec<ErrorBlock>) {
+pub(super) fn blocks(
+    data: &[Datum],
+    common: &[CommonError],
+    discrepancies: &[Discrepancy],
+) -> (Vec<usize>, Vec<ErrorBlock>) {
     // A block is named by its least member; joining two renames the larger.
     let mut least: Vec<usize> = (0..data.len()).collect();
     for error in common {
@@ -123,16 +124,45 @@ pub(super) fn blocks(data: &[Datum], common: &[CommonError]) -> (Vec<usize>, Vec
             let own: Vec<usize> = (0..common.len())
                 .filter(|&c| common[c].data.first().is_some_and(|&i| least[i] == first))
                 .collect();
+            let unknown = own.iter().filter_map(|&c| match common[c].size {
+                CommonErrorSize::Discrepancy { group } => Some(group),
+                CommonErrorSize::Shift(_) | CommonErrorSize::Sensitivity { .. } => None,
+            });
+            let mut unknown: Vec<usize> = unknown
+                .filter(|&group| discrepancies[group] == Discrepancy::Unknown)
+                .collect();
+            unknown.sort_unstable();
+            unknown.dedup();
             ErrorBlock {
                 data: (0..data.len()).filter(|&i| least[i] == first).collect(),
-                has_discrepancy: own
-                    .iter()
-                    .any(|&c| common[c].size == CommonErrorSize::Discrepancy),
                 common: own,
+                unknown,
+                family: None,
             }
         })
         .collect();
     (alone, blocks)
+}
+
+/// Sets which blocks share an unknown m: those that have a group in common. The groups of each m, ascending.
+pub(super) fn families(blocks: &mut [ErrorBlock]) -> Vec<Vec<usize>> {
+    let mut families: Vec<Vec<usize>> = Vec::new();
+    for block in blocks.iter().filter(|block| !block.unknown.is_empty()) {
+        let (tied, apart): (Vec<_>, Vec<_>) = families
+            .into_iter()
+            .partition(|family| family.iter().any(|group| block.unknown.contains(group)));
+        let mut joined: Vec<usize> = tied.into_iter().flatten().chain(block.unknown.clone()).collect();
+        joined.sort_unstable();
+        joined.dedup();
+        families = apart;
+        families.push(joined);
+    }
+    families.sort_unstable();
+    for block in blocks {
+        let first = block.unknown.first();
+        block.family = first.and_then(|group| families.iter().position(|family| family.contains(group)));
+    }
+    families
 }
 
 /// The derivatives that are needed, each once, ascending.
@@ -142,7 +172,7 @@ pub(super) fn sensitive(common: &[CommonError]) -> Vec<Sensitive> {
             let own = error.data.iter();
             own.map(|&datum| Sensitive { derivative, datum }).collect()
         }
-        CommonErrorSize::Shift(_) | CommonErrorSize::Discrepancy => Vec::new(),
+        CommonErrorSize::Shift(_) | CommonErrorSize::Discrepancy { .. } => Vec::new(),
     };
     let mut sensitive: Vec<Sensitive> = common.iter().flat_map(of).collect();
     sensitive.sort_unstable();
@@ -151,7 +181,10 @@ pub(super) fn sensitive(common: &[CommonError]) -> Vec<Sensitive> {
 }
 
 /// Refuses invalid memberships and sds.
-pub(super) fn check(count: usize, common: &[CommonError]) -> Result<(), LikelihoodError> {
+///
+/// # Arguments
+/// - `count`: of the data. `groups`: number of groups with a discrepancy.
+pub(super) fn check(count: usize, groups: usize, common: &[CommonError]) -> Result<(), LikelihoodError> {
     let refuse = |datum| LikelihoodError::Membership { datum, data: count };
     for error in common {
         if let Some(&beyond) = error.data.iter().find(|&&i| i >= count) {
@@ -159,6 +192,11 @@ pub(super) fn check(count: usize, common: &[CommonError]) -> Result<(), Likeliho
         }
         if let Some(pair) = error.data.windows(2).find(|pair| pair[1] <= pair[0]) {
             return Err(refuse(pair[1]));
+        }
+        if let CommonErrorSize::Discrepancy { group } = error.size
+            && group >= groups
+        {
+            return Err(LikelihoodError::Group { group, groups });
         }
         if let CommonErrorSize::Shift(ErrorSd::Known(value))
         | CommonErrorSize::Sensitivity {

@@ -96,6 +96,14 @@ pub enum LikelihoodError {
         /// The number of data.
         data: usize,
     },
+    /// A common error is the discrepancy of a group that does not exist.
+    #[error("a common error names the discrepancy of group {group} of {groups}")]
+    Group {
+        /// The index.
+        group: usize,
+        /// The number of groups.
+        groups: usize,
+    },
     /// The sum is NaN or plus infinity.
     #[error(transparent)]
     NotANumber(#[from] NotANumber),

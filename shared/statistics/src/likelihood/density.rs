@@ -1,6 +1,6 @@
 //! The log-density of the data, and the probabilities of an unknown discrepancy.
 
-use super::common_error::{Discrepancy, ErrorBlock};
+use super::common_error::{Discrepancy, ErrorBlock, discrepancy_levels};
 use super::datum::LikelihoodError;
 use super::error_model::Likelihood;
 use super::factor::CholeskyFactor;
@@ -20,7 +20,7 @@ impl Likelihood {
     /// ln p(data | theta), normalised: comparable between noise levels and between models.
     ///
     /// For independent data, `sum_i [ -ln(sqrt(2 pi) sd_i) - (y_i - m_i)^2 / (2 sd_i^2) ]`; then the density of
-    /// each block; where the discrepancy is unknown, the logarithm of the mean over its values.
+    /// each block; of blocks that share an unknown discrepancy, the logarithm of the mean over its values.
     ///
     /// # Arguments
     /// - `values`: the model's value of each datum, in its unit and in their order, then the derivatives of the
@@ -51,16 +51,16 @@ impl Likelihood {
                 law => law.log_density(1, residual * residual, 2.0 * libm::log(sd)),
             };
         }
-        for block in self.blocks.iter().filter(|block| !block.has_discrepancy) {
+        for block in self.blocks.iter().filter(|block| block.family.is_none()) {
             sum += self.block_density(block, 0.0, values, theta)?;
         }
-        if self.discrepancy != Discrepancy::None {
-            sum += log_mean_exp(&self.by_level(values, theta)?);
+        for family in 0..self.families.len() {
+            sum += log_mean_exp(&self.by_level(family, values, theta)?);
         }
         Ok(LogLikelihood::new(sum)?)
     }
 
-    /// The values of m with their posterior probabilities at these parameters; empty without discrepancy.
+    /// The values of m of each group with their posterior probabilities at these parameters: 0 without discrepancy.
     ///
     /// # Errors
     /// Those of [`Likelihood::log_likelihood`].
@@ -68,33 +68,54 @@ impl Likelihood {
         &self,
         values: &[f64],
         theta: &[f64],
-    ) -> Result<Vec<(f64, f64)>, LikelihoodError> {
+    ) -> Result<Vec<Vec<(f64, f64)>>, LikelihoodError> {
         self.check_values(values)?;
-        let levels = self.discrepancy.levels();
-        let densities = self.by_level(values, theta)?;
-        let highest = densities.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let weights: Vec<f64> = match highest.is_finite() {
-            true => densities.iter().map(|d| libm::exp(d - highest)).collect(),
-            // The data exclude every value: the prior probabilities remain.
-            false => vec![1.0; levels.len()],
+        let families = self.family_weights(values, theta)?;
+        let levels = |(group, discrepancy): (usize, &Discrepancy)| match *discrepancy {
+            Discrepancy::None => vec![(0.0, 1.0)],
+            Discrepancy::Known(m) => vec![(m, 1.0)],
+            Discrepancy::Unknown => {
+                let family = self.families.iter().position(|family| family.contains(&group));
+                family.map_or_else(|| equal_weights(discrepancy_levels()), |f| families[f].clone())
+            }
         };
-        let sum: f64 = weights.iter().sum();
-        Ok(levels
-            .into_iter()
-            .zip(weights)
-            .map(|(m, w)| (m, w / sum))
-            .collect())
+        Ok(self.discrepancies.iter().enumerate().map(levels).collect())
     }
 
-    /// Log-density of the blocks that have a discrepancy, for each value of m.
-    fn by_level(&self, values: &[f64], theta: &[f64]) -> Result<Vec<f64>, LikelihoodError> {
-        let blocks = || self.blocks.iter().filter(|block| block.has_discrepancy);
+    /// The values of each unknown m with their posterior probabilities.
+    pub(super) fn family_weights(
+        &self,
+        values: &[f64],
+        theta: &[f64],
+    ) -> Result<Vec<Vec<(f64, f64)>>, LikelihoodError> {
+        let weights = |family| {
+            let levels = discrepancy_levels();
+            let densities = self.by_level(family, values, theta)?;
+            let highest = densities.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            if !highest.is_finite() {
+                // The data exclude every value: the prior probabilities remain.
+                return Ok(equal_weights(levels));
+            }
+            let weights: Vec<f64> = densities.iter().map(|d| libm::exp(d - highest)).collect();
+            let sum: f64 = weights.iter().sum();
+            Ok(levels
+                .into_iter()
+                .zip(weights)
+                .map(|(m, w)| (m, w / sum))
+                .collect())
+        };
+        (0..self.families.len()).map(weights).collect()
+    }
+
+    /// Log-density of the blocks that share an unknown discrepancy, for each value of m.
+    fn by_level(&self, family: usize, values: &[f64], theta: &[f64]) -> Result<Vec<f64>, LikelihoodError> {
+        let blocks = || self.blocks.iter().filter(|block| block.family == Some(family));
         let density = |m: f64| {
             blocks().try_fold(0.0, |sum, block| {
                 Ok(sum + self.block_density(block, m, values, theta)?)
             })
         };
-        self.discrepancy.levels().into_iter().map(density).collect()
+        discrepancy_levels().into_iter().map(density).collect()
     }
 
     fn block_density(
@@ -155,6 +176,12 @@ impl Likelihood {
             .zip(values)
             .try_for_each(|(i, &value)| self.data[i].check_prediction(value))
     }
+}
+
+/// Levels that are equally probable.
+fn equal_weights(levels: Vec<f64>) -> Vec<(f64, f64)> {
+    let share = 1.0 / levels.len() as f64;
+    levels.into_iter().map(|m| (m, share)).collect()
 }
 
 /// `ln mean exp`; minus infinity where all values are.

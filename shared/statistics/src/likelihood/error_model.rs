@@ -13,7 +13,10 @@ pub struct Likelihood {
     pub(super) data: Vec<Datum>,
     pub(super) law: ErrorLaw,
     pub(super) common: Vec<CommonError>,
-    pub(super) discrepancy: Discrepancy,
+    /// By group of data.
+    pub(super) discrepancies: Vec<Discrepancy>,
+    /// The groups that share an unknown m.
+    pub(super) families: Vec<Vec<usize>>,
     /// Data without a common error.
     pub(super) alone: Vec<usize>,
     pub(super) blocks: Vec<ErrorBlock>,
@@ -26,7 +29,7 @@ struct SerialisedLikelihood {
     data: Vec<Datum>,
     law: ErrorLaw,
     common: Vec<CommonError>,
-    discrepancy: Discrepancy,
+    discrepancies: Vec<Discrepancy>,
 }
 
 impl From<Likelihood> for SerialisedLikelihood {
@@ -35,7 +38,7 @@ impl From<Likelihood> for SerialisedLikelihood {
             data: likelihood.data,
             law: likelihood.law,
             common: likelihood.common,
-            discrepancy: likelihood.discrepancy,
+            discrepancies: likelihood.discrepancies,
         }
     }
 }
@@ -44,7 +47,7 @@ impl TryFrom<SerialisedLikelihood> for Likelihood {
     type Error = LikelihoodError;
 
     fn try_from(written: SerialisedLikelihood) -> Result<Self, LikelihoodError> {
-        Self::with_common(written.data, written.law, written.common, written.discrepancy)
+        Self::with_common(written.data, written.law, written.common, written.discrepancies)
     }
 }
 
@@ -54,34 +57,37 @@ impl Likelihood {
     /// # Errors
     /// [`LikelihoodError::Value`] and [`LikelihoodError::Noise`].
     pub fn new(data: Vec<Datum>) -> Result<Self, LikelihoodError> {
-        Self::with_common(data, ErrorLaw::Gaussian, Vec::new(), Discrepancy::None)
+        Self::with_common(data, ErrorLaw::Gaussian, Vec::new(), Vec::new())
     }
 
     /// Errors of a law, some of them common.
     ///
     /// # Arguments
-    /// - `discrepancy`: m of the common errors that are [`CommonErrorSize::Discrepancy`].
+    /// - `discrepancies`: m of each group of data, for the common errors that are [`CommonErrorSize::Discrepancy`].
     ///
     /// # Errors
     /// [`LikelihoodError::Value`], [`LikelihoodError::Noise`], [`LikelihoodError::Setting`],
-    /// [`LikelihoodError::Membership`].
+    /// [`LikelihoodError::Membership`], [`LikelihoodError::Group`].
     pub fn with_common(
         data: Vec<Datum>,
         law: ErrorLaw,
         common: Vec<CommonError>,
-        discrepancy: Discrepancy,
+        discrepancies: Vec<Discrepancy>,
     ) -> Result<Self, LikelihoodError> {
         data.iter().try_for_each(Datum::check)?;
         law.check()?;
-        discrepancy.check()?;
-        common_error::check(data.len(), &common)?;
-        let (alone, blocks) = common_error::blocks(&data, &common);
+        discrepancies
+            .iter()
+            .try_for_each(|discrepancy| discrepancy.check())?;
+        common_error::check(data.len(), discrepancies.len(), &common)?;
+        let (alone, mut blocks) = common_error::blocks(&data, &common, &discrepancies);
         Ok(Self {
             sensitive: common_error::sensitive(&common),
+            families: common_error::families(&mut blocks),
             data,
             law,
             common,
-            discrepancy,
+            discrepancies,
             alone,
             blocks,
         })
@@ -99,10 +105,17 @@ impl Likelihood {
         self.law
     }
 
-    /// The inadequacy m of the model.
+    /// The inadequacy m of the model for each group of data.
     #[must_use]
-    pub fn discrepancy(&self) -> Discrepancy {
-        self.discrepancy
+    pub fn discrepancies(&self) -> &[Discrepancy] {
+        &self.discrepancies
+    }
+
+    /// Whether the model may be off anywhere.
+    #[must_use]
+    pub fn has_discrepancy(&self) -> bool {
+        let some = |error: &CommonError| matches!(error.size, CommonErrorSize::Discrepancy { .. });
+        self.common.iter().any(some)
     }
 
     /// The common errors.
@@ -137,7 +150,7 @@ impl Likelihood {
         let tied = self.blocks.iter().flat_map(|block| &block.data);
         let common = self.common.iter().any(|error| match error.size {
             CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity { sd, .. } => inferred(sd),
-            CommonErrorSize::Discrepancy => false,
+            CommonErrorSize::Discrepancy { .. } => false,
         });
         heavy || common || tied.into_iter().any(|&i| inferred(self.data[i].sd))
     }

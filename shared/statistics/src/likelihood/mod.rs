@@ -23,7 +23,7 @@ mod whitening;
 
 pub use common_error::{
     CommonError, CommonErrorSize, DISCREPANCY_LEVELS, Discrepancy, GREATEST_DISCREPANCY, LEAST_DISCREPANCY,
-    Sensitive,
+    Sensitive, discrepancy_levels,
 };
 pub use datum::{Datum, ErrorSd, LikelihoodError};
 pub use error_model::Likelihood;

@@ -4,6 +4,9 @@ use super::common_error::{CommonError, CommonErrorSize, Discrepancy, ErrorBlock,
 use super::datum::LikelihoodError;
 use super::error_model::Likelihood;
 
+/// The values of m where none is unknown.
+pub(super) const CERTAIN: [(f64, f64); 1] = [(0.0, 1.0)];
+
 /// The errors of a block: the covariance is `diag(sds^2) + sum v v'`.
 pub(super) struct Spread {
     /// Noise sds, in the order of the block's data.
@@ -38,16 +41,9 @@ impl Likelihood {
             let sd = self.data[i].noise_sd(theta)?;
             variances[i] = sd * sd;
         }
-        let levels = match self.discrepancy {
-            Discrepancy::None => Vec::new(),
-            _ => self.discrepancy_weights(values, theta)?,
-        };
+        let families = self.family_weights(values, theta)?;
         for block in &self.blocks {
-            let levels: &[(f64, f64)] = if block.has_discrepancy {
-                &levels
-            } else {
-                &[(0.0, 1.0)]
-            };
+            let levels = block.family.map_or(&CERTAIN[..], |family| &families[family]);
             for &(m, probability) in levels {
                 let Spread { sds, common } = self.spread(block, m, values, theta)?;
                 for (i, sd) in block.data.iter().zip(sds) {
@@ -61,7 +57,7 @@ impl Likelihood {
         Ok(variances)
     }
 
-    /// The errors of a block.
+    /// The errors of a block, with a value of the m that is unknown.
     pub(super) fn spread(
         &self,
         block: &ErrorBlock,
@@ -82,7 +78,12 @@ impl Likelihood {
                     let sd = sd.value(theta)?;
                     data.iter().map(|i| (position(i), sd)).collect()
                 }
-                CommonErrorSize::Discrepancy => {
+                CommonErrorSize::Discrepancy { group } => {
+                    let m = match self.discrepancies[group] {
+                        Discrepancy::None => 0.0,
+                        Discrepancy::Known(known) => known,
+                        Discrepancy::Unknown => m,
+                    };
                     let squares: f64 = data.iter().map(|i| sds[position(i)] * sds[position(i)]).sum();
                     let shift = m * (squares / data.len() as f64).sqrt();
                     data.iter().map(|i| (position(i), shift)).collect()

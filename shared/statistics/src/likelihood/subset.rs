@@ -36,7 +36,7 @@ impl Likelihood {
             })
             .filter(|error| !error.data.is_empty())
             .collect();
-        let subset = Self::with_common(data, self.law, common, self.discrepancy)?;
+        let subset = Self::with_common(data, self.law, common, self.discrepancies.clone())?;
         let places = self.places(kept, &subset);
         Ok((subset, places))
     }

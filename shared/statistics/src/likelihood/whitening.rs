@@ -1,10 +1,11 @@
 //! Whitening of residuals and derivatives, for a fit by least squares.
 
-use super::common_error::{Discrepancy, ErrorBlock};
+use super::common_error::ErrorBlock;
 use super::datum::LikelihoodError;
 use super::error_model::Likelihood;
 use super::factor::CholeskyFactor;
 use super::law::ErrorLaw;
+use super::spread::CERTAIN;
 
 /// The linear transform to independent errors of sd 1, at one point.
 ///
@@ -41,13 +42,9 @@ impl Likelihood {
             whitening.alone.push((i, sd));
             whitening.push(&[residual], residual * residual, self.law, 1.0);
         }
-        let levels = match self.discrepancy {
-            Discrepancy::None => Vec::new(),
-            _ => self.discrepancy_weights(values, theta)?,
-        };
-        let certain = [(0.0, 1.0)];
+        let families = self.family_weights(values, theta)?;
         for block in &self.blocks {
-            let levels: &[(f64, f64)] = if block.has_discrepancy { &levels } else { &certain };
+            let levels = block.family.map_or(&CERTAIN[..], |family| &families[family]);
             for &(m, probability) in levels {
                 if probability > 0.0 {
                     self.whiten_block(block, m, probability, values, theta, &mut whitening)?;

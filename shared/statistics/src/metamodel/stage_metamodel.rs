@@ -67,8 +67,12 @@ impl Metamodel {
                 ..*datum
             })
             .collect();
-        let likelihood =
-            Likelihood::with_common(data, exact.law(), exact.common().to_vec(), exact.discrepancy())?;
+        let likelihood = Likelihood::with_common(
+            data,
+            exact.law(),
+            exact.common().to_vec(),
+            exact.discrepancies().to_vec(),
+        )?;
         Ok(Some(Self {
             seed: purpose.seed,
             stage: purpose.stage,
