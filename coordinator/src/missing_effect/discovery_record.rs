@@ -38,7 +38,10 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         SearchVerdict::Class(_) => (Verdict::Class, None),
         SearchVerdict::NotInLibrary => (Verdict::NotInLibrary, law),
         SearchVerdict::Undecided => {
-            let entry = conclusion.agreed.and_then(|k| models.entry(k)).filter(|entry| entry.not_tried.is_none());
+            let entry = conclusion
+                .agreed
+                .and_then(|k| models.entry(k))
+                .filter(|entry| entry.not_tried.is_none());
             (
                 Verdict::Undecided,
                 entry.map(|entry| entry.effect.extension.clone()),
