@@ -46,6 +46,16 @@ impl FitChiSquare {
         })
     }
 
+    /// As [`of`](Self::of); with a model discrepancy, of the declared noise alone.
+    pub(crate) fn of_known_noise(fit: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
+        Self::of(fit, likelihood).or_else(|| {
+            let declared = Likelihood::new(likelihood.data().to_vec()).ok()?;
+            let is_declared =
+                declared.values() == likelihood.values() && likelihood.law() == ErrorLaw::Gaussian;
+            is_declared.then(|| Self::of(fit, &declared))?
+        })
+    }
+
     /// p-value.
     #[must_use]
     pub fn p(&self) -> f64 {

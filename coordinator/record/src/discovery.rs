@@ -140,7 +140,8 @@ pub struct JudgedSet {
     pub prior: f64,
     /// Posterior probability.
     pub probability: f64,
-    /// Log predictive density of left-out levels over that of the searched model \[nats\]; null where it was not computed.
+    /// Log predictive density of left-out levels over that of the searched model, each measurement counted once \[nats\]; null where
+    /// it was not computed.
     pub predictive: Option<f64>,
 }
 

@@ -25,8 +25,8 @@ pub(super) fn sentence(
         conclusion.verdict,
         SearchVerdict::Named(_) | SearchVerdict::Class(_) | SearchVerdict::NotInLibrary
     );
-    if let (true, Some(false), Some(chi)) = (is_claim, conclusion.is_complete(), conclusion.chi_square_best) {
-        let explained = conclusion.explained().map_or(String::new(), |share| {
+    if let (true, Some(false), Some(chi)) = (is_claim, conclusion.complete, conclusion.chi_square_best) {
+        let explained = conclusion.explained.map_or(String::new(), |share| {
             format!("{:.0} % of the excess chi-square is explained, ", 100.0 * share)
         });
         text += &format!(

@@ -56,6 +56,11 @@ pub struct Conclusion {
     pub sets: Vec<WeighedSet>,
     /// The effect with which to begin, where the verdict is open but evidence and prediction agree on the best set.
     pub agreed: Option<usize>,
+    /// Whether the best explanation leaves nothing to explain by the declared noise; `None` where the noise is not known.
+    pub complete: Option<bool>,
+    /// The share of the base's excess chi-square that the best explanation takes away, 0 to 1; `None` without an excess, and where the
+    /// noise is not known.
+    pub explained: Option<f64>,
     /// Chi-square of the best explanation over its degrees of freedom, by which log Bayes factors are divided before they become
     /// probabilities; 1 where it fits.
     pub misfit: f64,
@@ -99,7 +104,12 @@ impl Conclusion {
         let of_library = hypotheses.chi_square(&task.likelihood);
         let law = hypotheses.confirmed_law();
         let law = law.filter(|law| explains(task, of_library, law));
-        let verdict = SearchVerdict::new(&weighing, hypotheses, law);
+        let verdict = SearchVerdict::new(
+            &weighing,
+            hypotheses,
+            law,
+            hypotheses.is_incomplete(&task.likelihood),
+        );
         let law = law.filter(|_| verdict == SearchVerdict::NotInLibrary);
         let detected = hypotheses.detected();
         let base = hypotheses.base_fit();
@@ -114,8 +124,16 @@ impl Conclusion {
                 draws(fit, &task.likelihood, task.settings.seed, number, DRAWS)
             }),
         };
+        let known = |fit: &LaplaceFit| FitChiSquare::of_known_noise(fit, &task.likelihood);
+        let (before, after) = (base.and_then(known), fit.and_then(known));
+        let excess = before.map(|chi| chi.excess()).filter(|excess| *excess > 0.0);
+        let left = after.map(|chi| chi.excess().max(0.0));
         Self {
             verdict,
+            complete: after.map(|chi| chi.is_complete()),
+            explained: excess
+                .zip(left)
+                .map(|(excess, left)| (1.0 - left / excess).max(0.0)),
             agreed: weighing.agreed().filter(|_| verdict == SearchVerdict::Undecided),
             ranking: weighing.ranking,
             not_in_library: weighing.not_in_library,
@@ -137,20 +155,6 @@ impl Conclusion {
             next_runs,
             evaluations: *evaluations,
         }
-    }
-
-    /// Whether the best explanation leaves nothing to explain; `None` where the noise is not known.
-    #[must_use]
-    pub fn is_complete(&self) -> Option<bool> {
-        self.chi_square_best.map(|chi| chi.is_complete())
-    }
-
-    /// The share of the base's excess chi-square that the best explanation takes away, 0 to 1; `None` without an excess, and where the
-    /// noise is not known.
-    #[must_use]
-    pub fn explained(&self) -> Option<f64> {
-        let (base, best) = (self.chi_square?.excess(), self.chi_square_best?.excess());
-        (base > 0.0).then(|| (1.0 - best.max(0.0) / base).max(0.0))
     }
 
     /// The reductions without which the base loses no detectable evidence: effects that may be dropped.

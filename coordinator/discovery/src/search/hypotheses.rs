@@ -144,4 +144,11 @@ impl Hypotheses {
         best.filter(|chi| !chi.is_complete())
             .map_or(1.0, |chi| chi.ratio())
     }
+
+    /// Whether the best explanation contradicts the data, or with a model discrepancy the declared noise.
+    pub(super) fn is_incomplete(&self, likelihood: &Likelihood) -> bool {
+        let fit = self.detected().map(|best| &best.fit).or(self.base_fit());
+        let chi = fit.and_then(|fit| FitChiSquare::of_known_noise(fit, likelihood));
+        chi.is_some_and(|chi| !chi.is_complete())
+    }
 }

@@ -166,8 +166,14 @@ impl SearchState {
 
     pub(super) fn after_predictions(&mut self, sets: &[Vec<usize>], validation: &CrossValidation) -> Stage {
         let gains = validation.gains().unwrap_or_default();
+        // A measurement is left out once with the level of each of its conditions.
+        let left_out: usize = self.task.levels.iter().map(Vec::len).sum();
+        let times = (left_out as f64 / self.task.likelihood.data().len() as f64).max(1.0);
         // The base comes first.
-        let of_sets = sets.iter().cloned().zip(gains.into_iter().skip(1));
+        let of_sets = sets
+            .iter()
+            .cloned()
+            .zip(gains.into_iter().skip(1).map(|gain| gain / times));
         self.hypotheses.predictive = of_sets.collect();
         self.next_runs()
     }

@@ -26,8 +26,14 @@ impl SearchVerdict {
     /// A misfit that remains with the best explanation does not prevent a name: the probabilities account for it.
     ///
     /// # Arguments
-    /// - `law`: one that passed the cross-validation and explains the misfit.
-    pub(super) fn new(weighing: &Weighing, hypotheses: &Hypotheses, law: Option<&FittedLaw>) -> Self {
+    /// - `law`: one that passed the cross-validation and explains the misfit. `is_incomplete`: the best explanation contradicts the
+    ///   data, or with a model discrepancy the declared noise.
+    pub(super) fn new(
+        weighing: &Weighing,
+        hypotheses: &Hypotheses,
+        law: Option<&FittedLaw>,
+        is_incomplete: bool,
+    ) -> Self {
         let effects = &weighing.ranking.effects;
         let library = hypotheses.best().map_or(0.0, |best| best.log_bayes_factor);
         let detected = library / weighing.misfit > DETECTED;
@@ -42,7 +48,7 @@ impl SearchVerdict {
             return Self::NotInLibrary;
         }
         if !detected {
-            return if weighing.misfit > 1.0 {
+            return if is_incomplete {
                 Self::Undecided
             } else {
                 Self::NothingDetectable
@@ -56,7 +62,12 @@ impl SearchVerdict {
             Some(best) if best.candidate.is_some() && weighing.is_disputed() => Self::Undecided,
             // Where nothing missing is the most probable, no effect is claimed.
             Some(best) if best.probability > NAMED || best.candidate.is_none() => {
-                best.candidate.map_or(Self::NothingDetectable, Self::Named)
+                let nothing = if is_incomplete {
+                    Self::Undecided
+                } else {
+                    Self::NothingDetectable
+                };
+                best.candidate.map_or(nothing, Self::Named)
             }
             Some(_) => {
                 let classes = effects.iter().map(|e| e.class).max().unwrap_or(0);

@@ -29,7 +29,8 @@ pub struct WeighedSet {
     pub prior: f64,
     /// Posterior probability; over all sets they sum to 1.
     pub probability: f64,
-    /// Log predictive density of left-out levels over that of the base; `None` where it was not computed.
+    /// Log predictive density of left-out levels over that of the base, each measurement counted once; `None` where it was not
+    /// computed.
     pub predictive: Option<f64>,
 }
 

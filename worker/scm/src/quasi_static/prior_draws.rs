@@ -22,6 +22,8 @@ const SITE: Site = Site {
     grouser_count: 12,
     grouser_height_m: 0.009,
     bin_length_m: Some(1.5),
+    // The last run of a campaign, where a drift is largest.
+    order: Some(0.5),
 };
 
 /// A linear congruential generator (Knuth's MMIX constants).
