@@ -38,7 +38,7 @@ impl UntriedEffect {
 /// values stand for that.
 ///
 /// # Arguments
-/// - `excluded`: names as [`library`](super::candidate::library) gives them.
+/// - `excluded`: names as [`library`] gives them.
 ///
 /// # Errors
 /// [`FileError`] of the experiment.
