@@ -28,6 +28,7 @@ pub use job_file::JobFile;
 pub use plain_parameter::{PLAIN_PARAMETERS, PlainParameter};
 pub use spec::{EffectsChanged, PREDICTION_DRAWS, Spec};
 pub use table::algorithm_settings::{AlgorithmName, AlgorithmSettings, AlgorithmSettingsError};
+pub use table::candidate_priors::candidate_priors;
 pub use table::discovery_settings::{Apply, DiscoverySettings};
 pub use table::likelihood_settings::LikelihoodSettings;
 pub use table::posterior_prior::{ImpliedModuli, JointPrior, PosteriorPrior};

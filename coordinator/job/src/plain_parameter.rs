@@ -115,6 +115,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_table_of_priors_knows_their_names() {
+        assert_eq!(
+            PLAIN_PARAMETERS.map(|plain| plain.name),
+            crate::table::candidate_priors::PLAIN
+        );
+    }
+
+    #[test]
     fn every_one_is_a_parameter_whose_default_its_prior_holds() {
         for plain in &PLAIN_PARAMETERS {
             let (_, density) = plain.prior().unwrap_or_else(|| panic!("{}", plain.name));

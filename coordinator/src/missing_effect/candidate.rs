@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use formula::Effect;
 use formula::catalogue::{catalogue, find};
+use formula::{Effect, Parameter};
 use shared::experiment::RunUse;
 use shared::file::{FileError, FileSet, unknown_word};
 use shared::model::effects::parameter_name;
 
-use job::{PlainParameter, Spec, extended_job, with_free};
+use job::{PlainParameter, Spec, candidate_priors, extended_job, with_free};
 use record::Extension;
 
 /// A candidate effect as an addition to a job.
@@ -34,7 +34,8 @@ pub enum ExclusionReason {
 /// The job with further effects.
 ///
 /// Effects of the catalogue join those under `[model]`, a plain parameter of the model gets its prior under `[priors]`, effect files come with the job, and an effect on one wheel is a line
-/// under `[priors]` for each of its strengths, with the prior of the effect's file.
+/// under `[priors]` for each of its strengths, with the prior of the effect's file. A prior under `[discovery.priors]` replaces that of
+/// the catalogue.
 ///
 /// # Errors
 /// [`FileError`] of the job: an effect is unknown, a file or a line exists already, the text is not a job. Whether the model can
@@ -44,11 +45,20 @@ pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<
     let (mut effects, mut named, mut priors) = (Vec::new(), Vec::new(), Vec::new());
     let mut files = job.files.clone();
     let mut toml = job.toml.clone();
+    let stated = candidate_priors(&job.toml);
     for extension in extensions {
         match extension {
             Extension::Effect(effect) => match PlainParameter::find(effect).and_then(PlainParameter::prior) {
-                Some((prior, _)) => toml = with_free(name, &toml, effect, &prior)?,
-                None => effects.push(effect.clone()),
+                Some((prior, _)) => {
+                    toml = with_free(name, &toml, effect, stated.get(effect).unwrap_or(&prior))?
+                }
+                None => {
+                    let own = stated
+                        .iter()
+                        .filter(|(name, _)| name.split_once('.').is_some_and(|(of, _)| of == effect));
+                    priors.extend(own.map(|(name, prior)| (name.clone(), prior.clone())));
+                    effects.push(effect.clone());
+                }
             },
             Extension::OnWheel { effect, wheel } => {
                 let known = find(effect).ok_or_else(|| {
@@ -56,7 +66,13 @@ pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<
                     fail(unknown_word("effect", effect, known))
                 })?;
                 let strengths = known.parameters.iter().filter(|p| p.neutral.is_some());
-                priors.extend(strengths.map(|p| (parameter_name(known, p, Some(wheel)), p.prior.clone())));
+                let prior = |p: &Parameter| {
+                    stated
+                        .get(&parameter_name(known, p, None))
+                        .unwrap_or(&p.prior)
+                        .clone()
+                };
+                priors.extend(strengths.map(|p| (parameter_name(known, p, Some(wheel)), prior(p))));
             }
             Extension::File { name: file, text } => {
                 if files.insert(file.clone(), text.clone()).is_some() {
@@ -186,6 +202,32 @@ mod tests {
             "{}",
             reason("end_wall")
         );
+    }
+
+    #[test]
+    fn a_prior_that_the_job_states_for_a_candidate_replaces_the_catalogue_s() {
+        let (mut job, files, _) = read("tests/data/shear-mobilisation");
+        job.toml += "\n[discovery.priors]\nslip_sinkage.exponent_per_slip = { half_normal = 2.5 }\ncohesion_pa = { half_normal = 90.0 }\n";
+        let width = |job: &FileSet, effect: &str, parameter: &str| {
+            let added = Extension::Effect(effect.to_owned());
+            let with = spec(&extended("job.toml", job, &[&added]).unwrap(), &files).unwrap();
+            let place = with.parameters.iter().position(|p| p.name == parameter).unwrap();
+            with.parameters[place].marginal.quantile(0.5)
+        };
+        // The median of a half-normal is 0.6745 of its scale.
+        let median = |scale: f64| 0.674_489_750_196 * scale;
+        for (effect, parameter, scale) in [
+            ("slip_sinkage", "slip_sinkage.exponent_per_slip", 2.5),
+            ("cohesion_pa", "cohesion_pa", 90.0),
+        ] {
+            let given = width(&job, effect, parameter);
+            assert!((given / median(scale) - 1.0).abs() < 1e-6, "{effect}: {given}");
+        }
+        // A search of the job, and what follows from it, keep them.
+        let search = job::discovery_job("job.toml", &job).unwrap();
+        assert_eq!(candidate_priors(&search.toml), candidate_priors(&job.toml));
+        let next = job::continued_job("job.toml", &job).unwrap();
+        assert_eq!(candidate_priors(&next.toml), candidate_priors(&job.toml));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use discovery::{
     Conclusion, EvidenceMethod, FitChiSquare, OutsideLaw, RankedEffect, SearchVerdict, WeighedSet,
 };
-use job::PlainParameter;
+use job::{PlainParameter, candidate_priors};
 use record::{
     ChiSquare, Discovery, Extension, JudgedEffect, JudgedSet, NONE, NOT_IN_LIBRARY, NextRun, Outside, Verdict,
 };
@@ -126,7 +126,7 @@ fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> 
             probability: effect.probability,
             class: effect.class as u32,
             in_credible_set: effect.is_credible,
-            strength_prior: entry.and_then(|entry| strength_prior(&entry.effect)),
+            strength_prior: entry.and_then(|entry| strength_prior(&entry.effect, models)),
             parameters: entry.map_or(BTreeMap::new(), |entry| parameters(entry, &effect.theta[base..])),
             method: method(effect.method).to_owned(),
         }
@@ -178,13 +178,20 @@ fn method(method: EvidenceMethod) -> &'static str {
     }
 }
 
-fn strength_prior(candidate: &CandidateEffect) -> Option<String> {
+/// As it stands under `[discovery.priors]`, or else in the catalogue.
+fn strength_prior(candidate: &CandidateEffect, models: &SearchModels) -> Option<String> {
+    let stated = candidate_priors(&models.job.toml);
     if let Some(plain) = PlainParameter::find(&candidate.name) {
-        return Some(format!("{} = {}", plain.name, plain.prior));
+        let prior = stated
+            .get(plain.name)
+            .map_or(plain.prior.to_owned(), ToString::to_string);
+        return Some(format!("{} = {prior}", plain.name));
     }
     let effect = formula::catalogue::find(candidate.name.split('.').next()?)?;
     let strength = effect.parameters.iter().find(|p| p.neutral.is_some())?;
-    Some(format!("{}.{} = {}", effect.name, strength.name, strength.prior))
+    let name = format!("{}.{}", effect.name, strength.name);
+    let prior = stated.get(&name).unwrap_or(&strength.prior);
+    Some(format!("{name} = {prior}"))
 }
 
 /// The law with its curve, and its file as an extension.

@@ -30,7 +30,7 @@ const STARTS: usize = 32;
 /// The models of a search.
 #[derive(Debug)]
 pub struct SearchModels {
-    job: FileSet,
+    pub(super) job: FileSet,
     experiment: FileSet,
     /// The same with typical values for what it leaves unsaid.
     assumed: FileSet,

@@ -15,8 +15,7 @@ pub fn point_job(name: &str, toml: &str, algorithm: &AlgorithmSettings) -> Resul
     with_algorithm(name, toml, algorithm.algorithm_name())
 }
 
-/// The same with another algorithm by its usual settings. The table `[discovery]` goes: what follows from a job asks for
-/// nothing itself.
+/// The same with another algorithm by its usual settings. Of the table `[discovery]` the priors alone stay.
 pub(super) fn with_algorithm(name: &str, toml: &str, algorithm: AlgorithmName) -> Result<String, FileError> {
     edited(name, toml, |document| {
         let sampler = document
@@ -32,9 +31,23 @@ pub(super) fn with_algorithm(name: &str, toml: &str, algorithm: AlgorithmName) -
             sampler.remove(&key);
         }
         sampler.insert("algorithm", toml_edit::value(algorithm.name()));
-        document.remove("discovery");
+        keep_priors_alone(document);
         Ok(())
     })
+}
+
+/// Removes `[discovery]` but for these priors: what follows from a job asks for nothing itself.
+pub(super) fn keep_priors_alone(document: &mut DocumentMut) {
+    let Some(discovery) = document.get_mut("discovery").and_then(Item::as_table_like_mut) else {
+        return;
+    };
+    let others: Vec<String> = discovery.iter().map(|(key, _)| key.to_owned()).collect();
+    for key in others.iter().filter(|key| *key != "priors") {
+        discovery.remove(key);
+    }
+    if discovery.is_empty() {
+        document.remove("discovery");
+    }
 }
 
 /// The text of a job with a change; what the change leaves alone stays as it is written.

@@ -4,6 +4,7 @@ use serde::Deserialize;
 use shared::file::unknown_word;
 
 use super::algorithm_settings::AlgorithmSettings;
+use super::candidate_priors;
 use super::error::TableError;
 
 /// Most effects that a job may allow: as many as a model takes.
@@ -35,6 +36,7 @@ pub enum Apply {
 pub(crate) struct RawDiscovery {
     apply: String,
     max_effects: usize,
+    priors: toml::Table,
 }
 
 impl Default for RawDiscovery {
@@ -42,6 +44,7 @@ impl Default for RawDiscovery {
         RawDiscovery {
             apply: "off".into(),
             max_effects: 3,
+            priors: toml::Table::new(),
         }
     }
 }
@@ -69,6 +72,7 @@ impl RawDiscovery {
                 algorithm: algorithm.name(),
             });
         }
+        candidate_priors::check(&self.priors)?;
         Ok(DiscoverySettings { apply, max_effects })
     }
 }

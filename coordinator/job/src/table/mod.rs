@@ -1,6 +1,7 @@
 //! The tables of `job.toml`: as written, and what they mean.
 
 pub(crate) mod algorithm_settings;
+pub(crate) mod candidate_priors;
 pub(crate) mod discovery_settings;
 mod error;
 pub(crate) mod likelihood_settings;
