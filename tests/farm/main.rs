@@ -22,6 +22,7 @@ mod posterior_prior;
 mod rig;
 mod search;
 mod spatial;
+mod square_root;
 mod stored_results;
 mod study;
 mod summary_contract;

@@ -123,7 +123,10 @@ impl Weighing {
                 .find(|(effects, _)| set.effects.as_ref() == Some(effects))
                 .map(|(_, gain)| *gain);
         }
-        sets.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        sets.sort_by(|a, b| {
+            let by_factor = b.log_bayes_factor.total_cmp(&a.log_bayes_factor);
+            b.probability.total_cmp(&a.probability).then(by_factor)
+        });
         Self {
             ranking,
             not_in_library: outside.zip(probabilities.outside),
