@@ -360,6 +360,7 @@ fn all_effects_at_once_are_finite_and_repeat() {
         }
         track.site.density_kg_m3 = Some(1400.0);
         track.site.bin_length_m = Some(2.0);
+        track.site.order = Some(0.5);
         for effect in formula::catalogue::catalogue() {
             track.enter(effect, &typical(effect));
         }
