@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use farm_tests::programs::{coordinator, run, worker};
-use farm_tests::workspace::text;
+use farm_tests::workspace::{root, text};
 
 const EXPERIMENT: &str = r#"plates = "plates.csv"
 shear = "shear.csv"
@@ -189,4 +189,27 @@ fn the_papers_rings_alone_give_thirty_degrees_to_one_and_a_half() {
     assert!((angle - 30.0).abs() < 0.02, "{angle}");
     // sd of ln tan(phi) by hand: sqrt(0.12^2 / 4 + 0.03^2 / 12) = 0.0606; times sin(2 phi) / 2 = 0.433: 1.504 deg
     assert!((sd - 1.504).abs() < 0.01, "{sd}");
+}
+
+/// With this seed a draw has a noise sd that rounds to zero. It is impossible, as the limit of its likelihood is, and no failure.
+#[test]
+fn a_draw_without_noise_is_impossible_and_fails_no_calibration() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sand = root().join("examples/cmu-sand");
+    for name in ["plates.csv", "plates-experiment.toml"] {
+        std::fs::copy(sand.join(name), folder.path().join(name)).expect("a copy");
+    }
+    let job = text(&sand.join("plates.toml")).replace("seed = 1", "seed = 3");
+    assert!(job.contains("seed = 3"));
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    std::fs::write(path("plates.toml"), job).expect("a file");
+    run(coordinator(["run", &path("plates.toml"), "--out", &path("out")])).success();
+    let summary = text(&folder.path().join("out/summary.json"));
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+    let calibration = &summary["calibrations"][0];
+    let evidence = calibration["log_evidence"].as_f64().expect("a number");
+    assert!(
+        (evidence - 118.29).abs() < 0.1 && calibration["equilibrated"] == true,
+        "{calibration}"
+    );
 }

@@ -160,7 +160,11 @@ impl Calibration {
             return Ok(LogLikelihood::Impossible);
         };
         let values = self.spec.predicted_values(observables);
-        self.spec.likelihood.log_likelihood(&values, theta)
+        match self.spec.likelihood.log_likelihood(&values, theta) {
+            // A draw from the tail of a prior that reaches zero: such a sd says something about theta, not about the model.
+            Err(LikelihoodError::Noise { .. }) => Ok(LogLikelihood::Impossible),
+            scored => scored,
+        }
     }
 
     /// Lets a completed evaluation take effect on counts, engine and phase.
