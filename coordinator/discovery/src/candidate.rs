@@ -9,7 +9,8 @@ pub struct Candidate {
     pub name: String,
     /// The priors of its parameters, which follow the base's in theta.
     pub parameters: Vec<Marginal>,
-    /// Which of them are strengths; the others shape the effect. Several are the knots of a curve.
+    /// Which of them are strengths; the others shape the effect. Several are the knots of a curve. A candidate without parameters is a
+    /// switch: another model with the same parameters.
     pub strengths: Vec<usize>,
     /// The value of every strength at which the effect is absent.
     pub neutral: f64,
@@ -20,7 +21,8 @@ impl Candidate {
     pub(crate) fn check(&self) -> Result<(), CandidateError> {
         let name = || self.name.clone();
         let parameters = self.parameters.len();
-        if self.strengths.is_empty() || self.strengths.iter().any(|k| *k >= parameters) {
+        let is_switch = self.parameters.is_empty();
+        if self.strengths.is_empty() != is_switch || self.strengths.iter().any(|k| *k >= parameters) {
             return Err(CandidateError::NoStrength {
                 name: name(),
                 strengths: self.strengths.clone(),

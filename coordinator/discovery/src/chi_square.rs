@@ -84,3 +84,14 @@ impl FitChiSquare {
         self.value - self.degrees_of_freedom
     }
 }
+
+/// Measured less predicted value of each datum, in declared noise sds; 0 where the sd is inferred.
+pub(crate) fn residuals(fit: &LaplaceFit, likelihood: &Likelihood) -> Vec<f64> {
+    let pairs = likelihood.data().iter().zip(&fit.point.values);
+    pairs
+        .map(|(datum, value)| match datum.sd {
+            ErrorSd::Known(sd) => (datum.value - value) / sd,
+            ErrorSd::Inferred { .. } => 0.0,
+        })
+        .collect()
+}

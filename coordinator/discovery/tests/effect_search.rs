@@ -59,7 +59,7 @@ fn likelihood(values: &[f64]) -> Likelihood {
     Likelihood::new(values.iter().enumerate().map(datum).collect()).unwrap()
 }
 
-/// Searches candidates; candidate k changes the predictions along column `columns[k]`.
+/// Searches candidates; candidate k changes the predictions along column `columns[k]`, a switch by that column.
 fn search(values: &[f64], candidates: &[Candidate], columns: &[usize], backwards: bool) -> EffectRanking {
     let mut search = EffectSearch::new(
         &base(),
@@ -77,9 +77,9 @@ fn search(values: &[f64], candidates: &[Candidate], columns: &[usize], backwards
         for index in order {
             let request = &pending[index];
             let predict = |i: usize| {
-                let own = request
-                    .candidate
-                    .map_or(0.0, |k| request.theta[2] * column(columns[k], i));
+                let own = request.candidate.map_or(0.0, |k| {
+                    request.theta.get(2).unwrap_or(&1.0) * column(columns[k], i)
+                });
                 request.theta[0] * column(0, i) + request.theta[1] * column(1, i) + own
             };
             let predicted: Vec<f64> = (0..DATA).map(predict).collect();
@@ -140,6 +140,25 @@ fn evidence_of_a_linear_extension_is_exact() {
     fitted(ranked.log_bayes_factor, expected);
     near(ranked.screen_log_bayes_factor, expected);
     assert_eq!(ranked.method, EvidenceMethod::Confirmed);
+}
+
+#[test]
+fn a_switch_has_the_evidence_of_its_model() {
+    let switch = Candidate {
+        parameters: Vec::new(),
+        strengths: Vec::new(),
+        ..effect("other square", normal(0.0, 1.0))
+    };
+    for (truth, is_better) in [(1.0, true), (0.0, false)] {
+        let values = measured(&[(0, 0.7), (2, truth)]);
+        let without: Vec<f64> = values.iter().enumerate().map(|(i, y)| y - column(2, i)).collect();
+        let expected = log_evidence(&without, &BASE) - log_evidence(&values, &BASE);
+        let ranking = search(&values, std::slice::from_ref(&switch), &[2], false);
+        let ranked = ranking.of(Some(0)).unwrap();
+        fitted(ranked.log_bayes_factor, expected);
+        near(ranked.screen_log_bayes_factor, expected);
+        assert_eq!((ranked.probability > 0.5, ranked.theta.len()), (is_better, 2));
+    }
 }
 
 #[test]

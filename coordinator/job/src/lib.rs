@@ -5,12 +5,13 @@
 //! - `table`: the tables of a job, as written and what they mean.
 //! - `data`: the fitted measurements: noise, likelihood, predicted values; whether their order follows a condition.
 //! - `spec`: [`Spec`], a calibration as its files determine it; `spec_words` says it in words.
-//! - `plain_parameter`: [`PlainParameter`], what a search may free.
+//! - `plain_parameter`: [`PlainParameter`], what a search may free. `model_switch`: [`ModelSwitch`], what it may turn.
 //! - `derived`: the jobs, and the experiment, that follow from a job and its experiment.
 
 mod data;
 mod derived;
 mod job_file;
+mod model_switch;
 mod plain_parameter;
 mod spec;
 mod spec_words;
@@ -22,9 +23,10 @@ pub use data::noise::repeat_scatter;
 pub use data::soil_scatter::SoilScatter;
 pub use derived::assumed_experiment::{AssumedExperiment, SiteProperty, UnsaidProperty};
 pub use derived::discovery_job::{continued_job, discovery_job, effect_name, is_discovery, without_effects};
-pub use derived::extended_job::{extended_job, with_free};
+pub use derived::extended_job::{extended_job, with_free, with_setting};
 pub use derived::point_job::point_job;
 pub use job_file::JobFile;
+pub use model_switch::{MODEL_SWITCHES, ModelSwitch};
 pub use plain_parameter::{PLAIN_PARAMETERS, PlainParameter};
 pub use spec::{EffectsChanged, PREDICTION_DRAWS, Spec};
 pub use table::algorithm_settings::{AlgorithmName, AlgorithmSettings, AlgorithmSettingsError};

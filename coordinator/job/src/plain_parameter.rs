@@ -4,6 +4,7 @@ use shared::model::ModelKind;
 use shared::parameters::{BASE, SPATIAL};
 use statistics::Marginal;
 
+use crate::model_switch::MODEL_SWITCHES;
 use crate::spec::Spec;
 use crate::table::prior_entry::marginal;
 
@@ -102,11 +103,15 @@ impl PlainParameter {
 }
 
 impl Spec {
-    /// The names of the plain parameters that are free.
+    /// The names of the plain parameters that are free, and of the settings of the model that a search may turn.
     pub fn freed(&self) -> Vec<String> {
         let free = |plain: &&PlainParameter| self.parameters.iter().any(|p| p.name == plain.name);
-        let freed = PLAIN_PARAMETERS.iter().filter(free);
-        freed.map(|plain| plain.name.to_owned()).collect()
+        let freed = PLAIN_PARAMETERS.iter().filter(free).map(|plain| plain.name);
+        let turned = MODEL_SWITCHES.iter().filter(|switch| switch.is_on(self));
+        freed
+            .chain(turned.map(|switch| switch.name))
+            .map(str::to_owned)
+            .collect()
     }
 }
 

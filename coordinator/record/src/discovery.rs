@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use job::effect_name;
+use shared::channel::Channel;
 
 /// Name of the explanation that nothing is missing.
 pub const NONE: &str = "none";
@@ -59,6 +60,9 @@ pub struct Discovery {
     /// The share of the searched model's excess chi-square that the best explanation takes away; null without an excess.
     #[serde(default)]
     pub explained: Option<f64>,
+    /// The channels that the best explanation leaves unexplained, the worst first.
+    #[serde(default)]
+    pub remaining: Vec<RemainingMisfit>,
     /// The law outside the library, if that is the verdict.
     pub outside: Option<Outside>,
     /// Effects that are not detectable with these data at their usual strength.
@@ -132,7 +136,8 @@ pub struct JudgedEffect {
 /// A model that explains the data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct JudgedSet {
-    /// Its effects; `none`, or `not_in_library`, stands alone.
+    /// Its effects; `none`, or `not_in_library`, stands alone. A law outside the library beyond effects has the name of its quantity,
+    /// variable and form.
     pub members: Vec<String>,
     /// Log evidence over that of the searched model, with widened priors of the strengths \[nats\].
     pub log_bayes_factor: f64,
@@ -143,6 +148,47 @@ pub struct JudgedSet {
     /// Log predictive density of left-out levels over that of the searched model, each measurement counted once \[nats\]; null where
     /// it was not computed.
     pub predictive: Option<f64>,
+}
+
+/// What the best explanation leaves of a channel.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RemainingMisfit {
+    /// Channel without unit.
+    #[schema(value_type = String)]
+    pub channel: Channel,
+    /// Root mean square of measured less predicted values, in declared noise sds.
+    pub noise_sds: f64,
+    /// Number of values.
+    pub values: u64,
+    /// The condition that orders them: `slip`, `wheel_load`, `rim_speed`, `sled_speed` or `order`; null where none does.
+    pub along: Option<String>,
+    /// Their correlation with it.
+    pub correlation: Option<f64>,
+}
+
+impl RemainingMisfit {
+    /// `sinkage (3.2 noise sds over 24 values; measured less predicted falls with slip)`.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let trend = self
+            .along
+            .as_ref()
+            .zip(self.correlation)
+            .map(|(along, correlation)| {
+                let moves = if correlation > 0.0 { "rises" } else { "falls" };
+                format!(
+                    "; measured less predicted {moves} with {}",
+                    along.replace('_', " ")
+                )
+            });
+        format!(
+            "{} ({:.1} noise sds over {} values{})",
+            self.channel.name().replace('_', " "),
+            self.noise_sds,
+            self.values,
+            trend.unwrap_or_default()
+        )
+    }
 }
 
 /// The misfit of what fits.

@@ -18,7 +18,7 @@ mod sample;
 pub use calibration::{CalibrationRow, ExperimentRow};
 pub use discovery::{
     ChiSquare, Discovery, Extension, JudgedEffect, JudgedSet, NEXT_RUNS, NONE, NOT_IN_LIBRARY, NextRun,
-    NotTried, Outside, Verdict, effect_of,
+    NotTried, Outside, RemainingMisfit, Verdict, effect_of,
 };
 pub use estimate::EstimateRow;
 pub use evaluation_key::{EvaluationKey, LIKELIEST, PREDICTIONS_FROM};

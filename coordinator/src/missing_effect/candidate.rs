@@ -8,7 +8,7 @@ use shared::experiment::RunUse;
 use shared::file::{FileError, FileSet, unknown_word};
 use shared::model::effects::parameter_name;
 
-use job::{PlainParameter, Spec, candidate_priors, extended_job, with_free};
+use job::{ModelSwitch, PlainParameter, Spec, candidate_priors, extended_job, with_free, with_setting};
 use record::Extension;
 
 /// A candidate effect as an addition to a job.
@@ -33,9 +33,9 @@ pub enum ExclusionReason {
 
 /// The job with further effects.
 ///
-/// Effects of the catalogue join those under `[model]`, a plain parameter of the model gets its prior under `[priors]`, effect files come with the job, and an effect on one wheel is a line
-/// under `[priors]` for each of its strengths, with the prior of the effect's file. A prior under `[discovery.priors]` replaces that of
-/// the catalogue.
+/// Effects of the catalogue join those under `[model]`, where a setting is turned; a plain parameter of the model gets its prior under
+/// `[priors]`; effect files come with the job; and an effect on one wheel is a line under `[priors]` for each of its strengths, with the
+/// prior of the effect's file. A prior under `[discovery.priors]` replaces that of the catalogue.
 ///
 /// # Errors
 /// [`FileError`] of the job: an effect is unknown, a file or a line exists already, the text is not a job. Whether the model can
@@ -48,18 +48,19 @@ pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<
     let stated = candidate_priors(&job.toml);
     for extension in extensions {
         match extension {
-            Extension::Effect(effect) => match PlainParameter::find(effect).and_then(PlainParameter::prior) {
-                Some((prior, _)) => {
-                    toml = with_free(name, &toml, effect, stated.get(effect).unwrap_or(&prior))?
-                }
-                None => {
+            Extension::Effect(effect) => {
+                if let Some((prior, _)) = PlainParameter::find(effect).and_then(PlainParameter::prior) {
+                    toml = with_free(name, &toml, effect, stated.get(effect).unwrap_or(&prior))?;
+                } else if let Some(switch) = ModelSwitch::find(effect) {
+                    toml = with_setting(name, &toml, switch)?;
+                } else {
                     let own = stated
                         .iter()
                         .filter(|(name, _)| name.split_once('.').is_some_and(|(of, _)| of == effect));
                     priors.extend(own.map(|(name, prior)| (name.clone(), prior.clone())));
                     effects.push(effect.clone());
                 }
-            },
+            }
             Extension::OnWheel { effect, wheel } => {
                 let known = find(effect).ok_or_else(|| {
                     let known = catalogue().iter().map(|e| e.name.as_str());
@@ -266,9 +267,16 @@ mod tests {
             let with = extended(JOB, &job, &[&Extension::Effect(name.into())]).unwrap();
             spec(&with, &files).map(|spec| spec.freed())
         };
-        assert_eq!(free("cohesion_pa").unwrap(), ["cohesion_pa"]);
+        assert_eq!(free("cohesion_pa").unwrap(), ["cohesion_pa", "kind_quasi_static"]);
         // the job holds it under [model]
-        assert_eq!(free("shear_velocity_m_s").unwrap(), ["shear_velocity_m_s"]);
+        assert_eq!(
+            free("shear_velocity_m_s").unwrap(),
+            ["shear_velocity_m_s", "kind_quasi_static"]
+        );
+        assert_eq!(
+            free("kind_scm").unwrap(),
+            ["pressure_direction_wheel_normal", "displacement_rim", "kind_scm"]
+        );
         let message = free("flow_fraction").unwrap_err().to_string();
         assert!(message.contains("quasi_static has no terrain"), "{message}");
     }

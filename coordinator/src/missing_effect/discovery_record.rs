@@ -15,6 +15,7 @@ use super::entry::CandidateEntry;
 use super::law::curve;
 use super::models::SearchModels;
 use super::narrative::sentence;
+use super::remaining_misfit::remaining_misfit;
 use super::rig_test;
 
 /// A law outside the library with more probability is in the credible set.
@@ -93,6 +94,7 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
             .filter_map(|e| e.not_tried.clone())
             .collect(),
         next_runs: next_runs.collect(),
+        remaining: remaining_misfit(models, &conclusion.remaining),
         chi2: chi_square(conclusion.chi_square, models),
         chi2_best: chi_square(conclusion.chi_square_best, models),
         evaluations_to_name: conclusion.ranking.evaluations.to_name() as u64,
@@ -122,7 +124,9 @@ fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> 
         JudgedEffect {
             name: entry.map_or(NONE.to_owned(), |entry| entry.effect.name.clone()),
             log_bayes_factor: effect.stated_log_bayes_factor,
-            prior_sds: entry.map(|_| effect.prior_sds),
+            prior_sds: entry
+                .filter(|entry| !entry.candidate.strengths.is_empty())
+                .map(|_| effect.prior_sds),
             probability: effect.probability,
             class: effect.class as u32,
             in_credible_set: effect.is_credible,

@@ -2,10 +2,12 @@
 
 use discovery::Candidate;
 use formula::Effect;
-use job::{FreeParameter, PlainParameter, Spec};
+use job::{FreeParameter, ModelSwitch, PlainParameter, Spec};
 use record::{Extension, NotTried};
 
-use super::candidate::CandidateEffect;
+use shared::file::FileSet;
+
+use super::candidate::{CandidateEffect, JOB, extended, spec};
 use super::law::dependence::Dependence;
 use super::law::form::LawForm;
 
@@ -46,6 +48,34 @@ impl CandidateEntry {
                 extension: Extension::Effect(name.clone()),
                 name,
             },
+        })
+    }
+
+    /// The candidate that is another setting of the model; `None` where the job has it, where the model with it is not valid or has other
+    /// parameters, and of the other kind of model unless the job asks for it.
+    pub(super) fn switch(
+        switch: &ModelSwitch,
+        base: &Spec,
+        job: &FileSet,
+        experiment: &FileSet,
+    ) -> Option<Self> {
+        if switch.is_on(base) || (switch.is_kind() && !base.discovery.other_kind) {
+            return None;
+        }
+        let name = switch.name.to_owned();
+        let extension = Extension::Effect(name.clone());
+        let with = spec(&extended(JOB, job, &[&extension]).ok()?, experiment).ok()?;
+        let names = |spec: &Spec| spec.parameters.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
+        (names(&with) == names(base)).then(|| Self {
+            candidate: Candidate {
+                name: name.clone(),
+                parameters: Vec::new(),
+                strengths: Vec::new(),
+                neutral: 0.0,
+            },
+            names: Vec::new(),
+            not_tried: None,
+            effect: CandidateEffect { name, extension },
         })
     }
 

@@ -6,7 +6,8 @@
 //! - `models`: the models of a search, made when they are queried; `entry`: their candidates. `design`: levels of the design, and
 //!   runs that the rig could make.
 //! - `search`: a search in progress, as leases take it.
-//! - `discovery_record`: its result as stored; `narrative`: in one sentence. `rig_test`: tests without a rolling wheel.
+//! - `discovery_record`: its result as stored; `narrative`: in one sentence; `remaining_misfit`: what it leaves. `rig_test`: tests
+//!   without a rolling wheel.
 
 pub mod candidate;
 mod design;
@@ -17,6 +18,7 @@ mod fixture;
 mod law;
 mod models;
 mod narrative;
+mod remaining_misfit;
 mod rig_test;
 mod search;
 pub mod untried;

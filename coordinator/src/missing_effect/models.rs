@@ -17,7 +17,7 @@ use super::entry::{CandidateEntry, LawEntry};
 use super::law::dependence::dependences;
 use super::law::form::LawForm;
 use super::untried::untried;
-use job::{FreeParameter, PLAIN_PARAMETERS, Spec, free_parameters, without_effects};
+use job::{FreeParameter, MODEL_SWITCHES, PLAIN_PARAMETERS, Spec, free_parameters, without_effects};
 use record::Extension;
 
 /// Shortest finite difference of the three-dimensional model, in standard deviations of the prior: shorter ones show its grid.
@@ -76,6 +76,8 @@ impl SearchModels {
                 .iter()
                 .filter_map(|plain| CandidateEntry::plain(plain, &base)),
         );
+        let switch = |switch| CandidateEntry::switch(switch, &base, job, experiment);
+        entries.extend(MODEL_SWITCHES.iter().filter_map(switch));
         for own in untried {
             let not_tried = Some(own.record());
             let own = entry(own.effect, &assumed)?;

@@ -1,10 +1,11 @@
 //! The result of a search in one sentence.
 
 use discovery::{Conclusion, DETECTED, SearchVerdict};
-use job::PlainParameter;
+use job::{ModelSwitch, PlainParameter};
 use record::{JudgedEffect, NONE, NOT_IN_LIBRARY, Outside};
 
 use super::models::SearchModels;
+use super::remaining_misfit::remaining_misfit;
 
 /// Members of a class with less probability are not listed.
 const LEAST_LISTED: f64 = 0.005;
@@ -33,6 +34,10 @@ pub(super) fn sentence(
             "; incomplete: {explained}chi-square {:.0} with {:.0} degrees of freedom remains",
             chi.value, chi.degrees_of_freedom
         );
+    }
+    let remaining = remaining_misfit(models, &conclusion.remaining);
+    if let Some(worst) = remaining.first() {
+        text += &format!("; what remains is largest in {}", worst.words());
     }
     if let Some(k) = conclusion.agreed {
         text += &format!(
@@ -91,12 +96,18 @@ fn verdict(
                 );
             }
             let effect = formula::catalogue::find(name.split('.').next().unwrap_or_default());
-            let summary = match PlainParameter::find(&name) {
-                Some(plain) => plain.summary,
-                None => effect.map_or("", |effect| effect.summary.as_str()),
+            let claim = match (PlainParameter::find(&name), ModelSwitch::find(&name)) {
+                (Some(plain), _) => format!("{name} is missing: {}", plain.summary),
+                (None, Some(switch)) => {
+                    format!("{} = \"{}\" fits: {}", switch.key, switch.value, switch.summary)
+                }
+                (None, None) => {
+                    let summary = effect.map_or("", |effect| effect.summary.as_str());
+                    format!("{name} is missing: {summary}")
+                }
             };
             format!(
-                "{name} is missing: {summary} (probability {:.3}, {:.1} nats over {kind})",
+                "{claim} (probability {:.3}, {:.1} nats over {kind})",
                 own.map_or(0.0, |e| e.probability),
                 own.map_or(0.0, |e| e.log_bayes_factor),
             )

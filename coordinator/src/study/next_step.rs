@@ -144,6 +144,7 @@ mod tests {
         let settings = DiscoverySettings {
             apply,
             max_effects: 2,
+            other_kind: false,
         };
         next_step(settings, members)
     }

@@ -16,14 +16,17 @@ pub(crate) const ANYWHERE: usize = 16;
 pub(crate) const MOST_STARTS: usize = 6;
 
 /// As thorough as the base's fit.
-pub(crate) const PLAN: [FitStep; 1] = [FitStep::Rounds { most: 3, trials: 12 }];
+pub(crate) const PLAN: [FitStep; 2] = [FitStep::Rounds { most: 3, trials: 12 }, FitStep::Differences];
 
 /// Distances of the strength from its neutral value, in standard deviations of its prior: very weak, weak, usual and strong.
 const ONE_SIDED: [f64; 4] = [0.05, 0.3, 1.0, 2.0];
 const TWO_SIDED: [f64; 4] = [0.5, -0.5, 1.5, -1.5];
 
-/// Starts at the base's fit with the effect added.
+/// Starts at the base's fit with the effect added; of a switch, that fit.
 pub(crate) fn starts(frame: &NormalFrame, base: &LaplaceFit) -> Vec<Vec<f64>> {
+    if frame.is_switch() {
+        return vec![base.point.position.clone()];
+    }
     let strengths: &[f64] = if frame.is_one_sided() {
         &ONE_SIDED
     } else {

@@ -1,13 +1,13 @@
 //! The fit of the base with one effect added, from the screen's result.
 
 use crate::effect_search::depth::Depth;
-use crate::effect_search::screen::Screened;
+use crate::effect_search::screen::{Screened, difference};
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::point::FitPoint;
 use statistics::likelihood::Likelihood;
 
-/// A fit that begins at the base's fit or at the screen's point, whichever is more probable.
+/// A fit that begins at the base's fit or at the screen's point, whichever is more probable; with a switch turned at the latter.
 pub(crate) fn fit(
     frame: &NormalFrame,
     base: &LaplaceFit,
@@ -15,6 +15,10 @@ pub(crate) fn fit(
     likelihood: &Likelihood,
     depth: &Depth,
 ) -> Option<LaplaceFit> {
+    if frame.is_switch() {
+        let (point, columns) = (screened.point.clone(), screened.columns.clone());
+        return Some(LaplaceFit::new(frame.clone(), point, columns, depth.extension));
+    }
     let position = frame.without(&screened.point.position);
     let absent = FitPoint::new(frame, likelihood, position, base.point.values.clone())?;
     let is_present = screened.point.value < absent.value;
@@ -23,9 +27,7 @@ pub(crate) fn fit(
     let shapes = || (base.columns.len()..frame.dimension()).filter(|k| !frame.is_strength(*k));
     if !is_present {
         if let Some((k, neutral)) = frame.strength() {
-            let step = screened.point.position[k] - neutral;
-            let pairs = screened.point.values.iter().zip(&base.point.values);
-            columns[k] = pairs.map(|(x, m)| (x - m) / step).collect();
+            columns[k] = difference(&screened.point.values, base, screened.point.position[k] - neutral);
         }
         // Where an effect is absent its shape changes nothing.
         for k in shapes() {

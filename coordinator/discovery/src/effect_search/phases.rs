@@ -121,6 +121,7 @@ impl EffectSearch {
                 Some(screened) => {
                     state.estimate = Some(EvidenceEstimate {
                         log_bayes_factor: screened.log_bayes_factor,
+                        stated_log_bayes_factor: screened.log_bayes_factor,
                         method: EvidenceMethod::Screen,
                         fit: None,
                     });
@@ -254,7 +255,13 @@ impl EffectSearch {
         }
         if asked.is_empty() {
             self.take_sampled(&models);
-            return self.finish();
+            // Another effect may lead now.
+            let more = self.samplers();
+            return if more.is_empty() {
+                self.finish()
+            } else {
+                self.sample(more)
+            };
         }
         self.ask(asked);
         self.phase = Phase::Sampling(models, waiting);

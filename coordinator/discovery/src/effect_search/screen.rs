@@ -31,9 +31,16 @@ pub(super) struct Screened {
     pub(super) log_bayes_factor: f64,
 }
 
-/// The positions to evaluate: every strength at the first shape and the usual strength at the others, or a step along each of several
-/// strengths.
+/// The positions to evaluate: every strength at the first shape and the usual strength at the others, a step along each of several
+/// strengths, or the base's fit with a switch turned.
 pub(super) fn positions(frame: &NormalFrame, base: &[f64], shapes: &[f64], level: usize) -> Vec<Vec<f64>> {
+    if frame.is_switch() {
+        return if level == 0 {
+            vec![base.to_vec()]
+        } else {
+            Vec::new()
+        };
+    }
     let Some((k, neutral)) = frame.strength() else {
         let mut absent = base.to_vec();
         absent.resize(frame.dimension(), 0.0);
@@ -74,7 +81,8 @@ pub(super) fn positions(frame: &NormalFrame, base: &[f64], shapes: &[f64], level
 /// With one strength, the log Bayes factor of the extension linear in it, `s^2 / (2 (I + 1)) - ln(1 + I) / 2` with `I = g' P g` and
 /// `s = g' P r` of the change g and the residuals r, P the projection of
 /// [`Projection`](crate::effect_search::class::Projection); one-sided strengths truncated. With several, that of the model linear
-/// in all of them. `None` if the model rejected all positions of the former, or one of the latter.
+/// in all of them. Of a switch, that of the model linear in the base's parameters, with the base's derivatives. `None` if the model
+/// rejected all positions of the first, or one of the others.
 pub(super) fn screened(
     frame: &NormalFrame,
     base: &FittedModel,
@@ -82,13 +90,14 @@ pub(super) fn screened(
     evaluated: &[Evaluated],
 ) -> Option<Screened> {
     match frame.strength() {
+        _ if frame.is_switch() => of_switch(frame, base, likelihood, evaluated),
         Some(strength) => of_one(frame, strength, base, likelihood, evaluated),
         None => of_several(frame, base, likelihood, evaluated),
     }
 }
 
 /// The finite difference of the predicted values over a step.
-fn difference(values: &[f64], base: &LaplaceFit, step: f64) -> Vec<f64> {
+pub(super) fn difference(values: &[f64], base: &LaplaceFit, step: f64) -> Vec<f64> {
     let pairs = values.iter().zip(&base.point.values);
     pairs.map(|(with, without)| (with - without) / step).collect()
 }
@@ -130,7 +139,7 @@ fn of_one(
             value -= 0.5 * position[k] * position[k];
             quadratic.gradient[k] = 0.0;
         }
-        let evidence = mixed_evidence(frame, &absent.position, &quadratic, value)?;
+        let evidence = mixed_evidence(frame, &absent.position, &quadratic, value, f64::INFINITY)?;
         let point = FitPoint::new(frame, likelihood, position.clone(), values)?;
         Some(Node {
             log_bayes_factor: evidence - base_evidence,
@@ -209,6 +218,25 @@ fn slope(
     pairs.map(|(x, m)| (x - m) / (to.step - low)).collect()
 }
 
+fn of_switch(
+    frame: &NormalFrame,
+    base: &FittedModel,
+    likelihood: &Likelihood,
+    evaluated: &[Evaluated],
+) -> Option<Screened> {
+    let (position, values) = evaluated.first()?;
+    let fit = &base.fit;
+    let point = FitPoint::new(frame, likelihood, position.clone(), values.clone()?)?;
+    let quadratic = quadratic(frame, likelihood, &point, &fit.columns);
+    let evidence = mixed_evidence(frame, &point.position, &quadratic, point.value, f64::INFINITY)?;
+    Some(Screened {
+        change: difference(&point.values, fit, 1.0),
+        columns: fit.columns.clone(),
+        log_bayes_factor: evidence - base.log_evidence,
+        point,
+    })
+}
+
 /// The log Bayes factor is `g' H^-1 g / 2 - ln det(H) / 2` less that of the base.
 fn of_several(
     frame: &NormalFrame,
@@ -225,7 +253,7 @@ fn of_several(
     let absent = frame.without(&evaluated.first()?.0);
     let absent = FitPoint::new(frame, likelihood, absent, fit.point.values.clone())?;
     let quadratic = quadratic(frame, likelihood, &absent, &columns);
-    let evidence = mixed_evidence(frame, &absent.position, &quadratic, absent.value)?;
+    let evidence = mixed_evidence(frame, &absent.position, &quadratic, absent.value, f64::INFINITY)?;
     let solution = quadratic.step(0.0)?;
     let own = || frame.strengths.iter().map(|(k, _)| *k);
     let change = (0..absent.values.len())

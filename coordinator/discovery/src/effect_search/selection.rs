@@ -9,7 +9,7 @@ use crate::effect_search::ranking::{EffectRanking, EvidenceMethod, RankedEffect}
 use crate::effect_search::state::{EffectSearch, EvidenceEstimate, Phase};
 use crate::laplace::batch::FitBatch;
 use crate::laplace::coordinate::NormalFrame;
-use crate::laplace::fit::{FittedModel, LaplaceFit};
+use crate::laplace::fit::LaplaceFit;
 use crate::laplace::importance::ImportanceSampler;
 use crate::laplace::point::FitPoint;
 
@@ -18,7 +18,13 @@ const LEAST_SEEN: f64 = 2.0;
 /// Two effects with closer Bayes factors are compared by importance sampling \[nats\].
 const CLOSE: f64 = 3.0;
 /// Least log Bayes factor of the best effect for which importance sampling is worth its evaluations \[nats\].
-const LEAST_CLAIMED: f64 = 2.0;
+const LEAST_CLAIMED: f64 = 1.0;
+/// Beyond this log Bayes factor the posterior of a strength excludes its absence \[nats\].
+const CERTAINLY_PRESENT: f64 = 10.0;
+/// A fit that is not confirmed counts at most so much less than the screen promises \[nats\].
+const MOST_SHORT: f64 = 3.0;
+/// A strength within so many standard deviations of its prior from where the effect is absent lies where the prior is not normal.
+const NEARLY_ABSENT: f64 = 0.1;
 
 /// One of the best effects.
 struct Best<'a> {
@@ -51,8 +57,11 @@ impl EffectSearch {
         for (state, fit) in self.candidates.iter_mut().zip(best) {
             let Some(fit) = fit else { continue };
             if let Some(evidence) = fit.log_evidence(&self.likelihood) {
+                let log_bayes_factor = evidence - base.log_evidence;
+                let gain = fit.stated_gain(&self.likelihood).unwrap_or(0.0);
                 state.estimate = Some(EvidenceEstimate {
-                    log_bayes_factor: evidence - base.log_evidence,
+                    log_bayes_factor,
+                    stated_log_bayes_factor: log_bayes_factor + gain,
                     method,
                     fit: Some(fit),
                 });
@@ -80,17 +89,23 @@ impl EffectSearch {
             return;
         };
         if fit.point.value < base.fit.point.value && log_evidence > base.log_evidence {
-            let gain = log_evidence - base.log_evidence;
-            *base = FittedModel {
-                fit: fit.clone(),
-                log_evidence,
-            };
-            for candidate in &mut self.candidates {
-                let estimate = candidate.estimate.as_mut().map(|e| &mut e.log_bayes_factor);
-                let screened = candidate.screened.as_mut().map(|s| &mut s.log_bayes_factor);
-                for factor in estimate.into_iter().chain(screened) {
-                    *factor -= gain;
-                }
+            base.fit = fit.clone();
+            self.take_base_evidence(log_evidence);
+        }
+    }
+
+    /// Replaces the base's evidence, and corrects all Bayes factors.
+    fn take_base_evidence(&mut self, log_evidence: f64) {
+        let Some(base) = &mut self.base else { return };
+        let gain = log_evidence - base.log_evidence;
+        base.log_evidence = log_evidence;
+        for candidate in &mut self.candidates {
+            if let Some(estimate) = &mut candidate.estimate {
+                estimate.log_bayes_factor -= gain;
+                estimate.stated_log_bayes_factor -= gain;
+            }
+            if let Some(screened) = &mut candidate.screened {
+                screened.log_bayes_factor -= gain;
             }
         }
     }
@@ -137,7 +152,8 @@ impl EffectSearch {
         order
     }
 
-    /// Samplers of the base and the two best effects, where these are close and of different classes, or the best is at a bound.
+    /// Samplers of the base and the best effect, where Laplace's approximation is doubtful: a parameter of either is at a bound, or the
+    /// effect is nearly absent; and of the second effect where it is close and of another class. None of what was sampled before.
     pub(super) fn samplers(&self) -> Vec<(Option<usize>, ImportanceSampler)> {
         let none = Vec::new();
         let (Some(base), Some((first, rest))) = (&self.base, self.fits_of_best()) else {
@@ -148,19 +164,35 @@ impl EffectSearch {
         }
         let classes = self.projected().map(|projected| projected.classes);
         let classes = classes.unwrap_or_default();
-        let at_bound = first.fit.frame.at_bound(&first.fit.point.position);
         let is_close = |second: &Best| {
             first.log_bayes_factor - second.log_bayes_factor < CLOSE
                 && classes.get(&first.candidate) != classes.get(&second.candidate)
         };
-        if !rest.as_ref().is_some_and(is_close) && !at_bound.contains(&true) {
+        let second = rest.filter(is_close);
+        let is_at_bound = |fit: &LaplaceFit| fit.frame.at_bound(&fit.point.position).contains(&true);
+        let position = &first.fit.point.position;
+        let strength = first.fit.frame.strength();
+        let is_nearly_absent =
+            strength.is_some_and(|(k, neutral)| (position[k] - neutral).abs() < NEARLY_ABSENT);
+        if second.is_none() && !is_nearly_absent && !is_at_bound(&base.fit) && !is_at_bound(first.fit) {
             return none;
         }
-        let effects = std::iter::once(first).chain(rest);
-        let effects = effects.map(|best| (Some(best.candidate), best.fit));
-        std::iter::once((None, &base.fit))
+        let of_base = || Some((None, ImportanceSampler::new(&base.fit, &self.likelihood)?));
+        let of_effect = |best: Best| {
+            let sampler = ImportanceSampler::new(best.fit, &self.likelihood)?;
+            let may_be_absent = best.log_bayes_factor < CERTAINLY_PRESENT;
+            let sampler = if may_be_absent {
+                sampler.or_absent(&base.fit, &self.likelihood)
+            } else {
+                sampler
+            };
+            Some((Some(best.candidate), sampler))
+        };
+        let effects = std::iter::once(first).chain(second).filter_map(of_effect);
+        of_base()
+            .into_iter()
             .chain(effects)
-            .filter_map(|(candidate, fit)| Some((candidate, ImportanceSampler::new(fit, &self.likelihood)?)))
+            .filter(|(candidate, _)| !self.sampled.contains_key(candidate))
             .collect()
     }
 
@@ -190,16 +222,21 @@ impl EffectSearch {
         })
     }
 
-    /// Takes the evidence of the sampled effects, where the base was sampled too.
+    /// Takes the evidence of the sampled models, where the base was sampled too.
     pub(super) fn take_sampled(&mut self, models: &[(Option<usize>, ImportanceSampler)]) {
-        let of_base = models.iter().find(|(candidate, _)| candidate.is_none());
-        let Some(base) = of_base.and_then(|(_, model)| model.log_evidence()) else {
+        let evidences = models
+            .iter()
+            .map(|(candidate, model)| (*candidate, model.log_evidence()));
+        self.sampled.extend(evidences);
+        let Some(base) = self.sampled.get(&None).copied().flatten() else {
             return;
         };
+        self.take_base_evidence(base);
         for (candidate, model) in models {
             let estimate = candidate.and_then(|k| self.candidates[k].estimate.as_mut());
             if let (Some(estimate), Some(evidence)) = (estimate, model.log_evidence()) {
                 estimate.log_bayes_factor = evidence - base;
+                estimate.stated_log_bayes_factor = estimate.log_bayes_factor + model.stated_gain();
                 estimate.method = EvidenceMethod::Sampled;
             }
         }
@@ -232,13 +269,15 @@ impl EffectSearch {
                 continue;
             };
             let point = estimate.fit.as_ref().map_or(&screened.point, |fit| &fit.point);
-            let gain = estimate
-                .fit
-                .as_ref()
-                .and_then(|fit| fit.stated_gain(&self.likelihood));
+            // A fit that falls far short of the screen's promise, and that is not confirmed, may be stuck.
+            let least = if self.depth.confirms && estimate.method < EvidenceMethod::Confirmed {
+                screened.log_bayes_factor - MOST_SHORT
+            } else {
+                f64::NEG_INFINITY
+            };
             effects.push(RankedEffect {
-                log_bayes_factor: estimate.log_bayes_factor,
-                stated_log_bayes_factor: estimate.log_bayes_factor + gain.unwrap_or(0.0),
+                log_bayes_factor: estimate.log_bayes_factor.max(least),
+                stated_log_bayes_factor: estimate.stated_log_bayes_factor.max(least),
                 screen_log_bayes_factor: screened.log_bayes_factor,
                 method: estimate.method,
                 class: class + 1,

@@ -1,5 +1,7 @@
 //! The state of a search for one effect.
 
+use std::collections::BTreeMap;
+
 use crate::candidate::Candidate;
 use crate::effect_search::depth::{Depth, FULL};
 use crate::effect_search::ranking::{EffectRanking, EvaluationCounts, EvidenceMethod};
@@ -26,6 +28,8 @@ pub struct EffectSearch {
     pub(super) seed: u64,
     pub(super) depth: &'static Depth,
     pub(super) base: Option<FittedModel>,
+    /// Log evidence of the models that were sampled, the base among them; `None` where the sampling failed.
+    pub(super) sampled: BTreeMap<Option<usize>, Option<f64>>,
     pub(super) evaluations: EvaluationCounts,
 }
 
@@ -44,6 +48,8 @@ pub(super) struct CandidateState {
 #[derive(Debug, Clone)]
 pub(super) struct EvidenceEstimate {
     pub(super) log_bayes_factor: f64,
+    /// The same with the stated prior of the strength.
+    pub(super) stated_log_bayes_factor: f64,
     pub(super) method: EvidenceMethod,
     pub(super) fit: Option<LaplaceFit>,
 }
@@ -89,6 +95,7 @@ impl EffectSearch {
             seed,
             depth: &FULL,
             base: None,
+            sampled: BTreeMap::new(),
             evaluations: EvaluationCounts::default(),
         }
     }

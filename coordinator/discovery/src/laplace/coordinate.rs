@@ -129,6 +129,11 @@ impl NormalFrame {
         }
     }
 
+    /// Whether the last candidate is a switch, without parameters.
+    pub(crate) fn is_switch(&self) -> bool {
+        self.strengths.is_empty()
+    }
+
     /// Whether a coordinate is a strength of the last candidate.
     pub(crate) fn is_strength(&self, k: usize) -> bool {
         self.strengths.iter().any(|(strength, _)| *strength == k)

@@ -1,6 +1,6 @@
 //! The evidence by Laplace's approximation, in coordinates in which the prior is standard normal.
 
-use nalgebra::{Cholesky, DVector};
+use nalgebra::{Cholesky, DVector, Dyn};
 
 use inference::lm::QuadraticModel;
 use statistics::prior::normal;
@@ -26,9 +26,7 @@ pub(crate) fn log_evidence(quadratic: &QuadraticModel, value: f64, halves: &[usi
     let cholesky = Cholesky::new(quadratic.hessian.clone())?;
     let gradient = DVector::from_column_slice(&quadratic.gradient);
     let to_mode = cholesky.solve(&gradient);
-    let lower = cholesky.l();
-    let half_log_determinant: f64 = (0..gradient.len()).map(|k| libm::log(lower[(k, k)])).sum();
-    let whole = -value + 0.5 * gradient.dot(&to_mode) - half_log_determinant;
+    let whole = -value + 0.5 * gradient.dot(&to_mode) + log_volume_of(&cholesky);
     if halves.is_empty() {
         return Some(whole);
     }
@@ -39,6 +37,16 @@ pub(crate) fn log_evidence(quadratic: &QuadraticModel, value: f64, halves: &[usi
         log_share_above_zero(mean, covariance[(k, k)])
     };
     Some(whole + halves.iter().map(share).sum::<f64>())
+}
+
+/// `-ln det(H) / 2`; `None` where the Hessian is not positive definite.
+pub(crate) fn log_volume(quadratic: &QuadraticModel) -> Option<f64> {
+    Some(log_volume_of(&Cholesky::new(quadratic.hessian.clone())?))
+}
+
+fn log_volume_of(cholesky: &Cholesky<f64, Dyn>) -> f64 {
+    let lower = cholesky.l_dirty();
+    -(0..lower.nrows()).map(|k| libm::log(lower[(k, k)])).sum::<f64>()
 }
 
 /// `ln 2 Phi(mean / sqrt(variance))`: the evidence under a half-normal prior over that under the normal one.

@@ -18,6 +18,8 @@ const LEAST_GAIN: f64 = 0.01;
 /// The damping after the first rejected step, and the factor between successive dampings.
 const FIRST_DAMPING: f64 = 0.05;
 const DAMPING_FACTOR: f64 = 8.0;
+/// Most gain beyond the point that the evidence counts, though no step has reached it `[nats]`.
+const MOST_UNREACHED: f64 = 3.0;
 /// Rejected steps in a row that end the trials.
 const MOST_FAILURES: usize = 4;
 
@@ -293,7 +295,8 @@ impl LaplaceFit {
     /// but not reached by a trial step is unbounded far from the mode or at the limits of the search.
     pub(crate) fn log_evidence(&self, likelihood: &Likelihood) -> Option<f64> {
         let quadratic = self.at_mode(likelihood);
-        mixed_evidence(&self.frame, &self.point.position, &quadratic, self.point.value)
+        let (position, value) = (&self.point.position, self.point.value);
+        mixed_evidence(&self.frame, position, &quadratic, value, MOST_UNREACHED)
     }
 
     /// The log evidence with the stated priors of the strengths less that with the widened ones; `None` as

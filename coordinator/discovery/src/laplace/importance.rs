@@ -6,126 +6,188 @@ use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::point::FitPoint;
+use crate::laplace::strength_prior::{self, stated_over_mixed};
+use crate::laplace::student::Student;
 use statistics::likelihood::Likelihood;
 use statistics::prior::LN_SQRT_TAU;
 use statistics::rng::Stream;
 
 /// Draws per round, and the most rounds.
 const DRAWS: usize = 150;
-const ROUNDS: u64 = 2;
+const ROUNDS: usize = 8;
 /// Effective sample size at which the sampling ends (a standard error of 0.13 nats), and the least for an estimate.
 const ENOUGH: f64 = 60.0;
 const LEAST: f64 = 30.0;
-/// Degrees of freedom of the proposal: its tails are heavier than those of a normal posterior.
-const FREEDOM: usize = 6;
+/// Scale of the strength about its absence, in standard deviations of its prior.
+const WEAK: f64 = 0.5;
 /// Random streams of the draws, separate from those of any sampler.
 const STAGE: u64 = 1 << 42;
 
-/// The evidence of one model by draws from a multivariate t about its fit, adapted after each round.
+/// The evidence of one model by draws from a t about its fit, adapted after each round; of an effect that may be absent also from one
+/// about its absence, where its shape may be anything.
+///
+/// The draws of all rounds count, each weighted by prior times likelihood over the mean density of all t's: a draw in a tail that the
+/// adapted t misses keeps a bounded weight.
+///
+/// # Source
+/// Cornuet et al. 2012, doi:10.1111/j.1467-9469.2011.00756.x.
 #[derive(Debug, Clone)]
 pub(crate) struct ImportanceSampler {
     frame: NormalFrame,
-    mean: DVector<f64>,
-    /// Lower factor of the t's scale matrix.
-    factor: DMatrix<f64>,
-    round: u64,
-    /// Draws of the round within the limits, with their log densities under the t.
+    /// The t of each round so far, and those of rounds that are certain.
+    proposals: Vec<Student>,
+    round: usize,
+    /// Draws of the round within the limits.
+    asked: Vec<Vec<f64>>,
+    /// Draws of all rounds with their log prior times likelihood.
     drawn: Vec<(Vec<f64>, f64)>,
     log_evidence: Option<f64>,
+    /// Log evidence with the stated priors of the strengths, over that.
+    stated_gain: f64,
+    is_done: bool,
 }
 
 impl ImportanceSampler {
     /// About a fit; `None` where its Hessian is not positive definite.
     pub(crate) fn new(fitted: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
-        let covariance = Cholesky::new(fitted.quadratic(likelihood).hessian)?.inverse();
+        // Near absence the mixture's prior is narrower than the posterior's tail.
+        let quadratic = fitted.quadratic(likelihood);
+        let stated = strength_prior::stated(&fitted.frame, &fitted.point.position, &quadratic);
+        let covariance = Cholesky::new(stated.hessian)?.inverse();
+        let mean = DVector::from_column_slice(&fitted.point.position);
         Some(Self {
             frame: fitted.frame.clone(),
-            mean: DVector::from_column_slice(&fitted.point.position),
-            factor: Cholesky::new(covariance)?.l(),
+            proposals: vec![Student::new(mean, covariance)?],
             round: 0,
+            asked: Vec::new(),
             drawn: Vec::new(),
             log_evidence: None,
+            stated_gain: 0.0,
+            is_done: false,
         })
+    }
+
+    /// The same with draws about the base's fit, where the effect is absent and its shape has its prior.
+    pub(crate) fn or_absent(mut self, base: &LaplaceFit, likelihood: &Likelihood) -> Self {
+        let mut position = base.point.position.clone();
+        position.resize(self.frame.dimension(), 0.0);
+        let mean = DVector::from_vec(self.frame.without(&position));
+        let of_base = Cholesky::new(base.quadratic(likelihood).hessian).map(|c| c.inverse());
+        let own = base.frame.dimension();
+        let scale = of_base.map(|of_base| {
+            DMatrix::from_fn(mean.len(), mean.len(), |k, l| match (k.max(l) < own, k == l) {
+                (true, _) => of_base[(k, l)],
+                (false, true) if self.frame.is_strength(k) => WEAK * WEAK,
+                (false, true) => 1.0,
+                (false, false) => 0.0,
+            })
+        });
+        let absent = scale.and_then(|scale| Student::new(mean, scale));
+        self.proposals.extend(absent);
+        self
     }
 
     /// The positions to evaluate next; none once the sampling has ended.
     pub(crate) fn ask(&mut self, seed: u64, number: u64) -> Vec<Vec<f64>> {
-        if self.round == ROUNDS {
+        let Some(proposal) = self.proposals.get(self.round).filter(|_| !self.is_done) else {
             return Vec::new();
-        }
-        let mut stream = Stream::new(seed, STAGE, number, self.round);
-        let dimension = self.mean.len();
-        let (d, nu) = (dimension as f64, FREEDOM as f64);
-        let log_determinant: f64 = (0..dimension).map(|k| libm::log(self.factor[(k, k)])).sum();
-        let constant = libm::lgamma(0.5 * (nu + d))
-            - libm::lgamma(0.5 * nu)
-            - 0.5 * d * libm::log(nu * std::f64::consts::PI)
-            - log_determinant;
-        self.drawn.clear();
-        for _ in 0..DRAWS {
-            let normals = stream.normals(dimension + FREEDOM);
-            let (z, rest) = normals.split_at(dimension);
-            let stretch = nu / rest.iter().map(|x| x * x).sum::<f64>();
-            let z = DVector::from_column_slice(z) * stretch.sqrt();
-            let log_density = constant - 0.5 * (nu + d) * libm::log1p(z.norm_squared() / nu);
-            let position: Vec<f64> = (&self.mean + &self.factor * z).iter().copied().collect();
-            if self.frame.holds(&position) {
-                self.drawn.push((position, log_density));
-            }
-        }
-        self.drawn.iter().map(|(position, _)| position.clone()).collect()
+        };
+        let mut stream = Stream::new(seed, STAGE, number, self.round as u64);
+        let draws = (0..DRAWS).map(|_| proposal.draw(&mut stream));
+        self.asked = draws.filter(|position| self.frame.holds(position)).collect();
+        self.asked.clone()
     }
 
-    /// Takes the predicted values at those positions; `None` where the model rejected one.
-    ///
-    /// The evidence is the mean of prior times likelihood over the density of the t; draws outside the support count as zero.
+    /// Takes the predicted values at those positions; `None` where the model rejected one. Draws outside the support count as zero.
     pub(crate) fn tell(&mut self, likelihood: &Likelihood, answers: Vec<Option<Vec<f64>>>) {
-        self.round += 1;
+        let dimension = self.frame.dimension() as f64;
         // The prior of a half-normal coordinate is twice the normal one.
-        let halves = libm::log(2.0) * self.frame.halves().len() as f64;
-        let constant = halves - self.mean.len() as f64 * LN_SQRT_TAU - libm::log(DRAWS as f64);
-        let drawn = std::mem::take(&mut self.drawn);
-        let weighted: Vec<(Vec<f64>, f64)> = drawn
-            .into_iter()
-            .zip(answers)
-            .filter_map(|((position, log_density), values)| {
-                let point = FitPoint::new(&self.frame, likelihood, position, values?)?;
-                let log_weight = constant - point.value - log_density;
-                Some((point.position, log_weight))
-            })
-            .collect();
-        let log_sum = log_sum_exp(weighted.iter().map(|(_, w)| *w));
-        let shares: Vec<f64> = weighted.iter().map(|(_, w)| libm::exp(w - log_sum)).collect();
-        let effective = 1.0 / shares.iter().map(|s| s * s).sum::<f64>();
-        self.log_evidence = (effective >= LEAST).then_some(log_sum);
-        if effective >= ENOUGH {
-            self.round = ROUNDS;
-        } else {
-            self.adapt(&weighted, &shares);
+        let constant = libm::log(2.0) * self.frame.halves().len() as f64 - dimension * LN_SQRT_TAU;
+        for (position, values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
+            let point = values.and_then(|v| FitPoint::new(&self.frame, likelihood, position, v));
+            self.drawn
+                .extend(point.map(|point| (point.position, constant - point.value)));
         }
+        self.round += 1;
+        if self.round < self.proposals.len() {
+            return;
+        }
+        let log_draws = libm::log(DRAWS as f64);
+        let log_weight = |(position, log_posterior): &(Vec<f64>, f64)| {
+            let densities = self.proposals.iter().map(|t| t.log_density(position));
+            log_posterior - log_sum_exp(densities) - log_draws
+        };
+        let log_weights: Vec<f64> = self.drawn.iter().map(log_weight).collect();
+        let shares = shares(&log_weights, 1.0);
+        let effective = effective(&shares);
+        self.log_evidence = (effective >= LEAST).then(|| log_sum_exp(log_weights.iter().copied()));
+        let stated = self.drawn.iter().zip(&shares);
+        let stated =
+            stated.map(|((position, _), share)| share * libm::exp(stated_over_mixed(&self.frame, position)));
+        self.stated_gain = libm::log(stated.sum());
+        let adapted = (effective < ENOUGH && self.proposals.len() < ROUNDS)
+            .then(|| self.adapted(&tempered(&log_weights)))
+            .flatten();
+        self.is_done = adapted.is_none();
+        self.proposals.extend(adapted);
     }
 
-    /// Moves the t to the weighted draws, unless their covariance is singular.
-    fn adapt(&mut self, weighted: &[(Vec<f64>, f64)], shares: &[f64]) {
-        let dimension = self.mean.len();
-        let pairs = || weighted.iter().map(|(position, _)| position).zip(shares);
+    /// The t with mean and scale of the weighted draws; `None` where their covariance is singular.
+    fn adapted(&self, shares: &[f64]) -> Option<Student> {
+        let own = self.proposals.last()?.scale();
+        let dimension = self.frame.dimension();
+        let pairs = || self.drawn.iter().map(|(position, _)| position).zip(shares);
         let mean = DVector::from_fn(dimension, |k, _| pairs().map(|(t, share)| share * t[k]).sum());
-        let own = &self.factor * self.factor.transpose();
-        let covariance = DMatrix::from_fn(dimension, dimension, |k, l| {
+        let scale = DMatrix::from_fn(dimension, dimension, |k, l| {
             let seen: f64 = pairs()
                 .map(|(t, share)| share * (t[k] - mean[k]) * (t[l] - mean[l]))
                 .sum();
             // Averaged with the old scale, so that a few draws of large weight do not collapse it.
             0.5 * (seen + own[(k, l)])
         });
-        if let Some(cholesky) = Cholesky::new(covariance) {
-            self.mean = mean;
-            self.factor = cholesky.l();
-        }
+        Student::new(mean, scale)
     }
 
     /// Log evidence; `None` where the effective sample size is too small.
     pub(crate) fn log_evidence(&self) -> Option<f64> {
         self.log_evidence
     }
+
+    /// The log evidence with the stated priors of the strengths, less [`log_evidence`](Self::log_evidence).
+    pub(crate) fn stated_gain(&self) -> f64 {
+        self.stated_gain
+    }
+}
+
+/// The share of each draw in the sum of the weights to a power.
+fn shares(log_weights: &[f64], power: f64) -> Vec<f64> {
+    let log_sum = log_sum_exp(log_weights.iter().map(|w| power * w));
+    log_weights
+        .iter()
+        .map(|w| libm::exp(power * w - log_sum))
+        .collect()
+}
+
+/// The effective sample size.
+fn effective(shares: &[f64]) -> f64 {
+    1.0 / shares.iter().map(|s| s * s).sum::<f64>()
+}
+
+/// The shares at the highest power of the weights, up to 1, that leaves the least effective sample size of an estimate: a t adapted to
+/// fewer draws would collapse.
+fn tempered(log_weights: &[f64]) -> Vec<f64> {
+    let all = shares(log_weights, 1.0);
+    if effective(&all) >= LEAST {
+        return all;
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        if effective(&shares(log_weights, middle)) >= LEAST {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    shares(log_weights, low)
 }

@@ -16,3 +16,4 @@ mod noise;
 pub(crate) mod point;
 pub(crate) mod quadratic;
 pub(crate) mod strength_prior;
+pub(crate) mod student;

@@ -4,7 +4,7 @@ use inference::lm::QuadraticModel;
 use nalgebra::DMatrix;
 
 use crate::laplace::coordinate::NormalFrame;
-use crate::laplace::evidence::{log_evidence, log_sum_exp};
+use crate::laplace::evidence::{log_evidence, log_sum_exp, log_volume};
 
 /// Weight and scale of each part, in standard deviations of the stated prior.
 ///
@@ -17,11 +17,16 @@ const PARTS: [(f64, f64); 4] = [(0.4, 1.0), (0.2, 4.0), (0.2, 0.25), (0.2, 0.062
 /// coordinates of the base, of shapes and of curves, and `-ln sum_i w_i exp(-t^2 / (2 s_i^2)) / s_i` of each other strength.
 pub(crate) fn penalty(frame: &NormalFrame, position: &[f64]) -> f64 {
     let all: f64 = position.iter().map(|t| t * t).sum();
+    0.5 * all + stated_over_mixed(frame, position)
+}
+
+/// Log of the density of the stated priors of the strengths over that of the mixture.
+pub(crate) fn stated_over_mixed(frame: &NormalFrame, position: &[f64]) -> f64 {
     let of_strengths = frame.widened.iter().map(|&k| {
         let t = position[k];
         -log_sum_exp(log_parts(t)) - 0.5 * t * t
     });
-    0.5 * all + of_strengths.sum::<f64>()
+    of_strengths.sum()
 }
 
 /// Adds the difference from a normal prior to gradient and Hessian: with the strengths given, the mixture is a normal prior of the
@@ -34,10 +39,21 @@ pub(crate) fn add(frame: &NormalFrame, position: &[f64], gradient: &mut [f64], h
     }
 }
 
+/// A part of the mixture: one of the normal priors for each strength.
+struct MixturePart {
+    /// With that prior.
+    quadratic: QuadraticModel,
+    value: f64,
+    /// Log density of that prior at its highest, relative to standard normals.
+    log_peak: f64,
+}
+
 /// Log evidence under the mixture: the parts are normal priors, so their evidences add.
 ///
 /// # Arguments
 /// - `quadratic`, `value`: the expansion at `position`, with the prior of [`add`] and [`penalty`].
+/// - `most_gain`: nats by which the likelihood may rise above that at `position` where a part's prior is wider than the mixture there.
+///   The expansion of a fit that a narrow part holds near absence predicts any gain, but no step has reached it.
 ///
 /// # Returns
 /// Nats; `None` where a Hessian is not positive definite.
@@ -49,25 +65,35 @@ pub(crate) fn mixed_evidence(
     position: &[f64],
     quadratic: &QuadraticModel,
     value: f64,
+    most_gain: f64,
 ) -> Option<f64> {
-    let mut parts = vec![(quadratic.clone(), value)];
+    let mut parts = vec![MixturePart {
+        quadratic: quadratic.clone(),
+        value,
+        log_peak: 0.0,
+    }];
+    let mut without_strengths = value;
     for &k in &frame.widened {
         let t = position[k];
         let own = -log_sum_exp(log_parts(t));
-        let with = |(quadratic, value): &(QuadraticModel, f64)| {
-            let of_part = |(log_part, (_, scale)): (f64, (f64, f64))| {
-                let part = with_precision(quadratic, k, t, 1.0 / (scale * scale));
-                (part, value - own - log_part)
+        without_strengths -= own;
+        let with = |part: &MixturePart| {
+            let of_part = |(log_part, (weight, scale)): (f64, (f64, f64))| MixturePart {
+                quadratic: with_precision(&part.quadratic, k, t, 1.0 / (scale * scale)),
+                value: part.value - own - log_part,
+                log_peak: part.log_peak + libm::log(weight / scale),
             };
             log_parts(t).zip(PARTS).map(of_part).collect::<Vec<_>>()
         };
         parts = parts.iter().flat_map(with).collect();
     }
     let halves = frame.halves();
-    let evidences: Option<Vec<f64>> = parts
-        .iter()
-        .map(|(quadratic, value)| log_evidence(quadratic, *value, &halves))
-        .collect();
+    let most = most_gain + libm::log(2.0) * halves.len() as f64 - without_strengths;
+    let evidence = |part: &MixturePart| {
+        let own = log_evidence(&part.quadratic, part.value, &halves)?;
+        Some(own.min(most + part.log_peak + log_volume(&part.quadratic)?))
+    };
+    let evidences: Option<Vec<f64>> = parts.iter().map(evidence).collect();
     Some(log_sum_exp(evidences?.into_iter()))
 }
 
@@ -78,13 +104,19 @@ pub(crate) fn stated_less_mixed(
     quadratic: &QuadraticModel,
     value: f64,
 ) -> Option<f64> {
-    let stated = frame.widened.iter().fold(quadratic.clone(), |stated, &k| {
-        with_precision(&stated, k, position[k], 1.0)
-    });
+    let stated = stated(frame, position, quadratic);
     let squares: f64 = position.iter().map(|t| t * t).sum();
     let stated_value = value - penalty(frame, position) + 0.5 * squares;
     let own = log_evidence(&stated, stated_value, &frame.halves())?;
-    Some(own - mixed_evidence(frame, position, quadratic, value)?)
+    Some(own - mixed_evidence(frame, position, quadratic, value, f64::INFINITY)?)
+}
+
+/// The expansion with the stated priors of the strengths.
+pub(crate) fn stated(frame: &NormalFrame, position: &[f64], quadratic: &QuadraticModel) -> QuadraticModel {
+    let strengths = frame.widened.iter();
+    strengths.fold(quadratic.clone(), |stated, &k| {
+        with_precision(&stated, k, position[k], 1.0)
+    })
 }
 
 /// The expansion with a normal prior of another precision of the strength `k`, at t.

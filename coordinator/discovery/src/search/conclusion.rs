@@ -1,6 +1,6 @@
 //! The conclusion of a search.
 
-use crate::chi_square::FitChiSquare;
+use crate::chi_square::{FitChiSquare, residuals};
 use crate::effect_search::ranking::EffectRanking;
 use crate::laplace::draws::draws;
 use crate::laplace::fit::LaplaceFit;
@@ -61,6 +61,8 @@ pub struct Conclusion {
     /// The share of the base's excess chi-square that the best explanation takes away, 0 to 1; `None` without an excess, and where the
     /// noise is not known.
     pub explained: Option<f64>,
+    /// What the best explanation leaves of each datum, in declared noise sds; empty where it is complete or the noise is not known.
+    pub remaining: Vec<f64>,
     /// Chi-square of the best explanation over its degrees of freedom, by which log Bayes factors are divided before they become
     /// probabilities; 1 where it fits.
     pub misfit: f64,
@@ -128,8 +130,10 @@ impl Conclusion {
         let (before, after) = (base.and_then(known), fit.and_then(known));
         let excess = before.map(|chi| chi.excess()).filter(|excess| *excess > 0.0);
         let left = after.map(|chi| chi.excess().max(0.0));
+        let incomplete = fit.filter(|_| after.is_some_and(|chi| !chi.is_complete()));
         Self {
             verdict,
+            remaining: incomplete.map_or(Vec::new(), |fit| residuals(fit, &task.likelihood)),
             complete: after.map(|chi| chi.is_complete()),
             explained: excess
                 .zip(left)

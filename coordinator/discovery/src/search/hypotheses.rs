@@ -3,6 +3,7 @@
 use crate::candidate::Candidate;
 use crate::chi_square::FitChiSquare;
 use crate::effect_search::ranking::EffectRanking;
+use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::probability::DETECTED;
 use statistics::likelihood::Likelihood;
@@ -23,10 +24,10 @@ pub(super) struct Hypotheses {
     pub(super) combinations: Vec<EffectCombination>,
     /// Log Bayes factor of the base over itself without each effect that may be dropped; `None` where that cannot be fitted.
     pub(super) gains: Vec<Option<f64>>,
-    /// Laws outside the library by falling Bayes factor, one for each quantity and variable; `None`: not searched.
-    pub(super) laws: Option<Vec<FittedLaw>>,
-    /// The law that passed the cross-validation.
-    pub(super) confirmed: Option<usize>,
+    /// Laws outside the library beyond the base; `None`: not searched.
+    pub(super) laws: Option<LawScan>,
+    /// The same beyond the best combination, where that leaves misfit.
+    pub(super) further_laws: Option<LawScan>,
     /// The leading sets with their log predictive density of left-out levels over that of the base.
     pub(super) predictive: Vec<(Vec<usize>, f64)>,
 }
@@ -41,6 +42,17 @@ pub(super) struct EffectCombination {
     pub(super) fit: LaplaceFit,
 }
 
+/// Laws outside the library, fitted beyond one model.
+#[derive(Debug, Clone)]
+pub(super) struct LawScan {
+    /// The effects of that model beyond the base.
+    pub(super) beyond: Vec<usize>,
+    /// By falling Bayes factor, one for each quantity and variable.
+    pub(super) laws: Vec<FittedLaw>,
+    /// The law that passed the cross-validation.
+    pub(super) confirmed: Option<usize>,
+}
+
 /// A fitted law outside the library.
 #[derive(Debug, Clone)]
 pub(super) struct FittedLaw {
@@ -48,12 +60,22 @@ pub(super) struct FittedLaw {
     pub(super) law: usize,
     /// Its best description: a form, or the curve.
     pub(super) candidate: usize,
+    /// Over the model that was scanned.
     pub(super) log_bayes_factor: f64,
     /// Of the mean evidence of curve and forms.
     pub(super) mean_log_bayes_factor: f64,
     pub(super) fit: LaplaceFit,
     /// Log predictive density of the left-out data over that of the base and of the library's best combination.
     pub(super) left_out: Option<[f64; 2]>,
+}
+
+impl LawScan {
+    /// Log Bayes factor of a law outside the library over the model that was scanned: one of all that could be fitted; those that were
+    /// not count without evidence.
+    pub(super) fn log_bayes_factor(&self, possible: usize) -> f64 {
+        let means = self.laws.iter().map(|law| law.mean_log_bayes_factor);
+        log_sum_exp(means) - libm::log(possible.max(1) as f64)
+    }
 }
 
 impl Hypotheses {
@@ -65,7 +87,7 @@ impl Hypotheses {
             combinations: Vec::new(),
             gains: Vec::new(),
             laws: None,
-            confirmed: None,
+            further_laws: None,
             predictive: Vec::new(),
         }
     }
@@ -116,12 +138,23 @@ impl Hypotheses {
 
     /// A single effect.
     pub(super) fn single(&self, candidate: usize) -> Option<&EffectCombination> {
-        self.combinations.iter().find(|c| c.effects == [candidate])
+        self.of(&[candidate])
     }
 
-    /// The law that passed the cross-validation.
+    /// The combination of these effects, in this order.
+    pub(super) fn of(&self, effects: &[usize]) -> Option<&EffectCombination> {
+        self.combinations.iter().find(|c| c.effects == effects)
+    }
+
+    /// The scan for laws that is in progress or was the last.
+    pub(super) fn current_scan(&mut self) -> Option<&mut LawScan> {
+        self.further_laws.as_mut().or(self.laws.as_mut())
+    }
+
+    /// The law beyond the base that passed the cross-validation.
     pub(super) fn confirmed_law(&self) -> Option<&FittedLaw> {
-        Some(&self.laws.as_ref()?[self.confirmed?])
+        let scan = self.laws.as_ref()?;
+        scan.laws.get(scan.confirmed?)
     }
 
     /// Goodness of fit of the detected combination, otherwise of the base.

@@ -1,18 +1,16 @@
-//! The stages that search laws outside the library, and the last stages.
+//! The stages that search laws outside the library: beyond the base, and beyond the best combination where that leaves misfit.
 
-use crate::chi_square::{FURTHER_EFFECT, OUTSIDE_LAW};
+use crate::chi_square::{FURTHER_EFFECT, FitChiSquare, OUTSIDE_LAW};
 use crate::effect_search::depth::{ALL_CURVES, CURVES, Depth, FORMS};
 use crate::effect_search::state::EffectSearch;
 use crate::laplace::evidence::log_sum_exp;
+use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::probability::DETECTED;
 use crate::search::branch::SearchBranch;
-use crate::search::conclusion::Conclusion;
-use crate::search::cross_validation::{ComparedModel, CrossValidation};
-use crate::search::hypotheses::FittedLaw;
-use crate::search::next_run::{InformativeRun, RunSelection};
+use crate::search::cross_validation::CrossValidation;
+use crate::search::hypotheses::{EffectCombination, FittedLaw, LawScan};
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
-use crate::search::weighing::Weighing;
 
 /// Laws whose simple forms are fitted and that are cross-validated, the best.
 const LAWS: usize = 3;
@@ -23,37 +21,79 @@ impl SearchState {
     /// Searches curves outside the library, if the library leaves misfit or needs several effects: one law may stand behind them.
     pub(super) fn curves(&mut self) -> Stage {
         let chi_square = self.hypotheses.chi_square(&self.task.likelihood);
-        let detected = self.hypotheses.detected();
-        let leaves_misfit = match (chi_square, detected) {
+        let leaves_misfit = match (chi_square, self.hypotheses.detected()) {
             (Some(chi), None) => chi.p() < OUTSIDE_LAW,
             (Some(chi), Some(best)) => best.effects.len() > 1 || chi.p() < FURTHER_EFFECT,
             (None, detected) => detected.is_some(),
         };
+        if !leaves_misfit {
+            return self.further_curves();
+        }
+        self.scan(Vec::new(), chi_square)
+    }
+
+    /// Searches curves beyond the best combination, if it contradicts the data and no law beyond the base explains them.
+    fn further_curves(&mut self) -> Stage {
+        let chi_square = |fit: &LaplaceFit| FitChiSquare::of_known_noise(fit, &self.task.likelihood);
+        let law = self
+            .hypotheses
+            .confirmed_law()
+            .and_then(|law| chi_square(&law.fit));
+        let is_explained = law.is_some_and(|chi| chi.is_complete());
+        let best = self.hypotheses.detected().filter(|_| !is_explained);
+        let incomplete = best.and_then(|best| {
+            let chi = chi_square(&best.fit).filter(|chi| !chi.is_complete())?;
+            Some((best.effects.clone(), chi))
+        });
+        match incomplete {
+            Some((effects, chi)) => self.scan(effects, Some(chi)),
+            None => self.predictions(),
+        }
+    }
+
+    /// # Arguments
+    /// - `beyond`: effects of a combination; none: the base. `chi_square`: of the best explanation so far.
+    fn scan(&mut self, beyond: Vec<usize>, chi_square: Option<FitChiSquare>) -> Stage {
         let depth = if chi_square.is_some_and(|chi| chi.is_wrong()) {
             &ALL_CURVES
         } else {
             &CURVES
         };
-        if !leaves_misfit || self.task.laws.is_empty() {
-            return self.predictions();
-        }
-        let curves = (0..self.task.laws.len()).map(|law| self.task.curve(law));
-        match self.branch(curves.collect(), depth) {
+        let curves: Vec<usize> = (0..self.task.laws.len())
+            .map(|law| self.task.curve(law))
+            .collect();
+        match self.branch(beyond, curves, depth) {
             Some(branch) => Stage::Curves(branch),
             None => self.predictions(),
         }
     }
 
-    /// A search of some candidates beyond the base.
-    fn branch(&self, candidates: Vec<usize>, depth: &'static Depth) -> Option<SearchBranch> {
+    /// A search of some candidates beyond a combination; `None` without candidates.
+    fn branch(
+        &self,
+        beyond: Vec<usize>,
+        candidates: Vec<usize>,
+        depth: &'static Depth,
+    ) -> Option<SearchBranch> {
         let own: Vec<_> = candidates
             .iter()
             .map(|&k| self.hypotheses.candidates[k].clone())
             .collect();
-        let base = self.hypotheses.base.clone()?;
+        let base = if beyond.is_empty() {
+            self.hypotheses.base.clone()?
+        } else {
+            let combination = self.hypotheses.of(&beyond)?;
+            FittedModel {
+                fit: combination.fit.clone(),
+                log_evidence: self.hypotheses.base_evidence() + combination.log_bayes_factor,
+            }
+        };
+        if own.is_empty() {
+            return None;
+        }
         let likelihood = self.task.likelihood.clone();
         let search = EffectSearch::beyond(base, likelihood, &own, depth, self.task.settings.seed);
-        Some(SearchBranch::new(Vec::new(), candidates, search))
+        Some(SearchBranch::new(beyond, candidates, search))
     }
 
     pub(super) fn after_curves(&mut self, branch: &SearchBranch) -> Stage {
@@ -68,21 +108,32 @@ impl SearchState {
                 left_out: None,
             })
         });
-        let laws: Vec<FittedLaw> = laws.collect();
-        let forms = laws.iter().take(LAWS).flat_map(|law| self.task.forms(law.law));
-        let forms = forms.collect();
-        self.hypotheses.laws = Some(laws);
-        match self.branch(forms, &FORMS) {
+        let scan = LawScan {
+            beyond: branch.effects.clone(),
+            laws: laws.collect(),
+            confirmed: None,
+        };
+        let best = scan.laws.iter().take(LAWS);
+        let forms = best.flat_map(|law| self.task.forms(law.law)).collect();
+        let forms = self.branch(scan.beyond.clone(), forms, &FORMS);
+        if scan.beyond.is_empty() {
+            self.hypotheses.laws = Some(scan);
+        } else {
+            self.hypotheses.further_laws = Some(scan);
+        }
+        match forms {
             Some(branch) => Stage::Forms(branch),
-            None => self.predictions(),
+            None => self.after_scan(),
         }
     }
 
     pub(super) fn after_forms(&mut self, branch: &SearchBranch) -> Stage {
         let task = &self.task;
+        let Some(scan) = self.hypotheses.current_scan() else {
+            return self.predictions();
+        };
         let ranked = branch.ranked();
-        let mut laws = self.hypotheses.laws.take().unwrap_or_default();
-        for law in &mut laws {
+        for law in &mut scan.laws {
             let own = task.forms(law.law);
             let forms: Vec<_> = ranked.iter().filter(|(k, _)| own.contains(k)).collect();
             let factors = forms.iter().map(|(_, form)| form.log_bayes_factor);
@@ -101,25 +152,26 @@ impl SearchState {
         }
         let handicap = |law: &FittedLaw| f64::from(u8::from(task.laws[law.law].is_description)) * DETECTED;
         let score = |law: &FittedLaw| law.log_bayes_factor - handicap(law);
-        laws.sort_by(|a, b| score(b).total_cmp(&score(a)));
-        self.hypotheses.laws = Some(laws);
+        scan.laws.sort_by(|a, b| score(b).total_cmp(&score(a)));
         self.cross_validation(0)
     }
 
     /// Cross-validates the law of a rank, if it is a detection.
     fn cross_validation(&mut self, rank: usize) -> Stage {
-        let laws = self.hypotheses.laws.as_deref().unwrap_or_default();
-        let law = laws.get(rank).filter(|_| rank < LAWS);
-        let law = law.filter(|law| law.log_bayes_factor > DETECTED);
-        let (Some(law), Some(base)) = (law, self.hypotheses.base_fit()) else {
-            return self.predictions();
+        let scan = self.hypotheses.current_scan();
+        let law = scan.and_then(|scan| Some((scan.beyond.clone(), scan.laws.get(rank)?.clone())));
+        let law = law.filter(|(_, law)| rank < LAWS && law.log_bayes_factor > DETECTED);
+        let (Some((beyond, law)), Some(base)) = (law, self.hypotheses.base_fit()) else {
+            return self.after_scan();
         };
         let parameters = |k: usize| self.hypotheses.candidates[k].parameters.len();
         let library = self.hypotheses.best().map_or((Vec::new(), 0, base), |best| {
             let last = best.effects.last().map_or(0, |&k| parameters(k));
             (best.effects.clone(), last, &best.fit)
         });
-        let of_law = (vec![law.candidate], parameters(law.candidate), &law.fit);
+        let mut effects = beyond;
+        effects.push(law.candidate);
+        let of_law = (effects, parameters(law.candidate), &law.fit);
         let fits = [(Vec::new(), 0, base), library, of_law];
         let validation = CrossValidation::new(&self.task.likelihood, &self.task.levels, &fits);
         Stage::CrossValidation(rank, validation)
@@ -131,62 +183,40 @@ impl SearchState {
             &[base, library, law] => Some([law - base, law - library]),
             _ => None,
         });
-        if let Some(law) = self.hypotheses.laws.as_mut().and_then(|laws| laws.get_mut(rank)) {
+        let Some(scan) = self.hypotheses.current_scan() else {
+            return self.predictions();
+        };
+        // A law in place of the library's best need not predict better by much, one beyond it must.
+        let least = if scan.beyond.is_empty() { 0.0 } else { DETECTED };
+        let passes =
+            gains.is_some_and(|[over_base, over_library]| over_base > DETECTED && over_library > least);
+        if let Some(law) = scan.laws.get_mut(rank) {
             law.left_out = gains;
         }
-        let passes =
-            gains.is_some_and(|[over_base, over_library]| over_base > DETECTED && over_library > 0.0);
-        if passes {
-            self.hypotheses.confirmed = Some(rank);
-            return self.predictions();
+        if !passes {
+            return self.cross_validation(rank + 1);
         }
-        self.cross_validation(rank + 1)
+        scan.confirmed = Some(rank);
+        self.after_scan()
     }
 
-    /// Predicts left-out levels by the leading sets, where the evidence leaves several.
-    fn predictions(&self) -> Stage {
-        let weighing = Weighing::new(&self.task, &self.hypotheses);
-        let Some(base) = self.hypotheses.base_fit() else {
-            return self.next_runs();
+    /// A law beyond the best combination joins it.
+    fn after_scan(&mut self) -> Stage {
+        let Some(scan) = &self.hypotheses.further_laws else {
+            return self.further_curves();
         };
-        let leading = weighing.leading(&self.hypotheses);
-        if leading.len() < 2 {
-            return self.next_runs();
+        let law = scan.confirmed.and_then(|rank| scan.laws.get(rank));
+        let begun = self.hypotheses.of(&scan.beyond);
+        if let (Some(law), Some(begun)) = (law, begun) {
+            let mut effects = scan.beyond.clone();
+            effects.push(law.candidate);
+            let with = EffectCombination {
+                effects,
+                log_bayes_factor: begun.log_bayes_factor + scan.log_bayes_factor(self.task.laws.len()),
+                fit: law.fit.clone(),
+            };
+            self.hypotheses.add(with);
         }
-        let mut models: Vec<ComparedModel> = vec![(Vec::new(), 0, base)];
-        for set in &leading {
-            let last = set.effects.last();
-            let own = last.map_or(0, |&k| self.hypotheses.candidates[k].parameters.len());
-            models.push((set.effects.clone(), own, &set.fit));
-        }
-        let validation = CrossValidation::new(&self.task.likelihood, &self.task.levels, &models);
-        let sets = leading.iter().map(|set| set.effects.clone()).collect();
-        Stage::Predictions(sets, validation)
-    }
-
-    pub(super) fn after_predictions(&mut self, sets: &[Vec<usize>], validation: &CrossValidation) -> Stage {
-        let gains = validation.gains().unwrap_or_default();
-        // A measurement is left out once with the level of each of its conditions.
-        let left_out: usize = self.task.levels.iter().map(Vec::len).sum();
-        let times = (left_out as f64 / self.task.likelihood.data().len() as f64).max(1.0);
-        // The base comes first.
-        let of_sets = sets
-            .iter()
-            .cloned()
-            .zip(gains.into_iter().skip(1).map(|gain| gain / times));
-        self.hypotheses.predictive = of_sets.collect();
-        self.next_runs()
-    }
-
-    fn next_runs(&self) -> Stage {
-        let open = Weighing::new(&self.task, &self.hypotheses).open(&self.hypotheses);
-        match RunSelection::new(&self.task, open) {
-            Some(runs) => Stage::NextRuns(runs),
-            None => self.done(Vec::new()),
-        }
-    }
-
-    pub(super) fn done(&self, next_runs: Vec<InformativeRun>) -> Stage {
-        Stage::Done(Box::new(Conclusion::new(self, next_runs)))
+        self.predictions()
     }
 }

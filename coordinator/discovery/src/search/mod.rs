@@ -6,11 +6,13 @@
 //! 4. Backward elimination: the best combination without each of its effects.
 //! 5. Laws outside the library, where it leaves misfit: curves, each of one quantity along one variable, then simple forms of the best.
 //! 6. Cross-validation of a law: levels of the design are left out and predicted.
-//! 7. Next runs: the information of runs that the rig could make on the explanations that remain.
+//! 7. Laws beyond the best combination, by the same steps, where it contradicts the data.
+//! 8. Predictions of left-out levels by the leading sets.
+//! 9. Next runs: the information of runs that the rig could make on the explanations that remain.
 //!
 //! # Layout
 //! - `discovery`: the interface. `query`: what the model is asked. `branch`: a search for one effect that is part of this one.
-//! - `stage`: the stages. `state`: task and hypotheses. `effects`, `laws`: from one stage to the next.
+//! - `stage`: the stages. `state`: task and hypotheses. `effects`, `laws`, `prediction`: from one stage to the next.
 //! - `hypotheses`: combinations and laws found so far. `weighing`: their probabilities. `verdict`, `conclusion`: the result.
 //! - `cross_validation`: fits without some of the data. `next_run`: the information of runs not yet made.
 
@@ -22,6 +24,7 @@ mod effects;
 mod hypotheses;
 mod laws;
 pub(crate) mod next_run;
+mod prediction;
 pub(crate) mod query;
 mod stage;
 mod state;

@@ -47,12 +47,13 @@ impl SearchVerdict {
         {
             return Self::NotInLibrary;
         }
+        let nothing = if is_incomplete {
+            Self::Undecided
+        } else {
+            Self::NothingDetectable
+        };
         if !detected {
-            return if is_incomplete {
-                Self::Undecided
-            } else {
-                Self::NothingDetectable
-            };
+            return nothing;
         }
         let best = effects
             .iter()
@@ -62,11 +63,6 @@ impl SearchVerdict {
             Some(best) if best.candidate.is_some() && weighing.is_disputed() => Self::Undecided,
             // Where nothing missing is the most probable, no effect is claimed.
             Some(best) if best.probability > NAMED || best.candidate.is_none() => {
-                let nothing = if is_incomplete {
-                    Self::Undecided
-                } else {
-                    Self::NothingDetectable
-                };
                 best.candidate.map_or(nothing, Self::Named)
             }
             Some(_) => {

@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::effect_search::ranking::EffectRanking;
-use crate::laplace::evidence::log_sum_exp;
+use crate::effect_search::ranking::{EffectRanking, EvidenceMethod};
 use crate::probability::{DETECTED, ModelProbability};
 use crate::search::hypotheses::{EffectCombination, Hypotheses};
 use crate::search::next_run::OpenHypothesis;
@@ -45,6 +44,28 @@ pub(super) struct Weighing {
     pub(super) misfit: f64,
 }
 
+/// A combination that counts for its leading effect.
+struct LedCombination<'a> {
+    effects: &'a [usize],
+    log_bayes_factor: f64,
+    /// Log prior cost of the effects after the first.
+    cost: f64,
+}
+
+/// The effect of a combination with the highest Bayes factor of its own; `None` without an effect of the library.
+fn leader(ranking: &EffectRanking, effects: &[usize]) -> Option<usize> {
+    let ranked = effects.iter().filter_map(|&k| ranking.of(Some(k)));
+    ranked
+        .reduce(|a, b| {
+            if b.log_bayes_factor > a.log_bayes_factor {
+                b
+            } else {
+                a
+            }
+        })
+        .and_then(|effect| effect.candidate)
+}
+
 impl Weighing {
     /// A combination counts for its member with the highest Bayes factor; each further effect has the prior of one among all.
     pub(super) fn new(task: &SearchTask, hypotheses: &Hypotheses) -> Self {
@@ -52,7 +73,12 @@ impl Weighing {
         // The backward elimination may have found a better fit of a single effect.
         for effect in &mut ranking.effects {
             let single = effect.candidate.and_then(|k| hypotheses.single(k));
-            if let Some(single) = single.filter(|s| s.log_bayes_factor > effect.log_bayes_factor) {
+            // A sampled evidence yields to another mode, not to Laplace's approximation of the same.
+            let known = match effect.method {
+                EvidenceMethod::Sampled => effect.log_bayes_factor + DETECTED,
+                _ => effect.log_bayes_factor,
+            };
+            if let Some(single) = single.filter(|s| s.log_bayes_factor > known) {
                 effect.log_bayes_factor = single.log_bayes_factor;
                 let gain = single.fit.stated_gain(&task.likelihood).unwrap_or(0.0);
                 effect.stated_log_bayes_factor = single.log_bayes_factor + gain;
@@ -62,40 +88,31 @@ impl Weighing {
                 effect.at_bound = single.fit.frame.at_bound(&single.fit.point.position);
             }
         }
-        let factor = |k: usize| {
-            ranking
-                .of(Some(k))
-                .map_or(f64::NEG_INFINITY, |e| e.log_bayes_factor)
-        };
         let further = libm::log(task.library.len().max(1) as f64);
-        let mut led: BTreeMap<usize, Vec<(f64, f64)>> = BTreeMap::new();
-        let mut members_led: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
+        let mut led: BTreeMap<usize, Vec<LedCombination>> = BTreeMap::new();
         for combination in hypotheses.combinations.iter().filter(|c| c.effects.len() > 1) {
-            let members = combination.effects.iter().copied();
-            let leader = members.reduce(|a, b| if factor(b) > factor(a) { b } else { a });
-            let cost = further * (combination.effects.len() as f64 - 1.0);
-            if let Some(leader) = leader {
-                let own = led.entry(leader).or_default();
-                own.push((combination.log_bayes_factor, cost));
-                let members = members_led.entry(leader).or_default();
-                members.push(combination.effects.clone());
+            if let Some(leader) = leader(&ranking, &combination.effects) {
+                led.entry(leader).or_default().push(LedCombination {
+                    effects: &combination.effects,
+                    log_bayes_factor: combination.log_bayes_factor,
+                    cost: further * (combination.effects.len() as f64 - 1.0),
+                });
             }
         }
-        // The law is one of all that could be fitted; those that were not count without evidence.
-        let outside = hypotheses.laws.as_ref().map(|laws| {
-            let means = laws.iter().map(|law| law.mean_log_bayes_factor);
-            log_sum_exp(means) - libm::log(task.laws.len().max(1) as f64)
-        });
+        let led_by = |k: usize| led.get(&k).map_or(&[][..], Vec::as_slice);
+        let outside = hypotheses.laws.as_ref();
+        let outside = outside.map(|scan| scan.log_bayes_factor(task.laws.len()));
         let misfit = hypotheses.misfit(&task.likelihood);
-        let probabilities = ranking.weigh(|k| led.get(&k).cloned().unwrap_or_default(), outside, misfit);
+        let weights = |k: usize| led_by(k).iter().map(|c| (c.log_bayes_factor, c.cost)).collect();
+        let probabilities = ranking.weigh(weights, outside, misfit);
         let of_model = |model: &ModelProbability| {
             let effect = ranking.effects.get(model.explanation)?;
             let (effects, log_bayes_factor) = match (model.combination, effect.candidate) {
                 (None, candidate) => (candidate.into_iter().collect(), effect.log_bayes_factor),
-                (Some(place), Some(k)) => (
-                    members_led.get(&k)?.get(place)?.clone(),
-                    led.get(&k)?.get(place)?.0,
-                ),
+                (Some(place), Some(k)) => {
+                    let own = led_by(k).get(place)?;
+                    (own.effects.to_vec(), own.log_bayes_factor)
+                }
                 (Some(_), None) => return None,
             };
             Some(WeighedSet {
@@ -144,7 +161,7 @@ impl Weighing {
         let effects = effects
             .filter_map(|set| set.effects.as_ref())
             .filter(|e| !e.is_empty());
-        let found = effects.filter_map(|own| hypotheses.combinations.iter().find(|c| c.effects == *own));
+        let found = effects.filter_map(|own| hypotheses.of(own));
         found.take(MOST_LEADING).collect()
     }
 
@@ -162,15 +179,7 @@ impl Weighing {
             .iter()
             .filter(|set| set.predictive.is_none())
             .all(|set| set.probability < LEADING);
-        let factor = |k: usize| {
-            self.ranking
-                .of(Some(k))
-                .map_or(f64::NEG_INFINITY, |e| e.log_bayes_factor)
-        };
-        let leader = effects
-            .iter()
-            .copied()
-            .reduce(|a, b| if factor(b) > factor(a) { b } else { a });
+        let leader = leader(&self.ranking, effects);
         leader.filter(|_| predicted.all(is_beaten) && others_are_improbable)
     }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use shared::file::{FileError, FileSet};
 use toml_edit::{DocumentMut, Item, TableLike};
 
-use super::point_job::{edited, keep_priors_alone, with_algorithm};
+use super::point_job::{edited, keep_candidates, with_algorithm};
 use crate::table::algorithm_settings::AlgorithmName;
 
 /// The job that searches the model of another for missing effects; equal jobs have equal searches.
@@ -35,7 +35,7 @@ pub fn continued_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
         if let Some(sampler) = table(document, "sampler") {
             sampler.remove("point_estimates");
         }
-        keep_priors_alone(document);
+        keep_candidates(document);
         Ok(())
     })?;
     Ok(FileSet {

@@ -1,6 +1,10 @@
 //! The job of a model with more effects: the same job, and what is added to it.
 
 use shared::file::FileError;
+use shared::model::SpatialSettings;
+use shared::parameters::SPATIAL;
+
+use crate::model_switch::ModelSwitch;
 
 /// The text of a job with further effects and effect files under `[model]` and further lines under `[priors]`; everything
 /// else stays as it is written.
@@ -60,6 +64,29 @@ pub fn extended_job(
     Ok(document.to_string())
 }
 
+/// The text of a job with another setting of its model. A job of another kind loses the settings that only its own kind has.
+///
+/// # Errors
+/// [`FileError`] where the text is no job with a table `[model]`.
+pub fn with_setting(name: &str, toml: &str, switch: &ModelSwitch) -> Result<String, FileError> {
+    let fail = |message: String| FileError::whole(name, message);
+    let mut document: toml_edit::DocumentMut = toml
+        .parse()
+        .map_err(|e: toml_edit::TomlError| fail(e.to_string()))?;
+    let model = document
+        .get_mut("model")
+        .and_then(toml_edit::Item::as_table_like_mut);
+    let model = model.ok_or_else(|| fail("[model] is missing".into()))?;
+    if switch.is_kind() {
+        let own = SPATIAL.iter().map(|p| p.name).chain(SpatialSettings::KEYS);
+        for key in own {
+            model.remove(key);
+        }
+    }
+    model.insert(switch.key, toml_edit::value(switch.value));
+    Ok(document.to_string())
+}
+
 /// The text of a job in which a parameter is free that it holds fixed: under `[model]`, under `[priors]`, or in silence.
 ///
 /// # Errors
@@ -90,6 +117,21 @@ pub fn with_free(name: &str, toml: &str, parameter: &str, prior: &toml::Value) -
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn another_kind_leaves_the_settings_of_its_own() {
+        let job = "[model]\nkind = \"scm\" # three dimensions\ndem_spacing_m = 0.005\nflow_fraction = 0.2\ncohesion_pa = 5.0\n";
+        let turned = |name| with_setting("job.toml", job, ModelSwitch::find(name).unwrap()).unwrap();
+        assert_eq!(
+            turned("kind_quasi_static"),
+            "[model]\nkind = \"quasi_static\"\ncohesion_pa = 5.0\n"
+        );
+        let node = turned("displacement_node");
+        assert!(
+            node.ends_with("cohesion_pa = 5.0\ndisplacement = \"node\"\n"),
+            "{node}"
+        );
+    }
 
     const JOB: &str = "# why\n[model]\nkind = \"scm\" # here\neffects = [\"hard_pan\"]\n\n[priors]\nn = 1.1\n\n[sampler]\nseed = 3\n";
 

@@ -15,7 +15,7 @@ pub fn point_job(name: &str, toml: &str, algorithm: &AlgorithmSettings) -> Resul
     with_algorithm(name, toml, algorithm.algorithm_name())
 }
 
-/// The same with another algorithm by its usual settings. Of the table `[discovery]` the priors alone stay.
+/// The same with another algorithm by its usual settings. Of the table `[discovery]` only what says which candidates there are stays.
 pub(super) fn with_algorithm(name: &str, toml: &str, algorithm: AlgorithmName) -> Result<String, FileError> {
     edited(name, toml, |document| {
         let sampler = document
@@ -31,18 +31,21 @@ pub(super) fn with_algorithm(name: &str, toml: &str, algorithm: AlgorithmName) -
             sampler.remove(&key);
         }
         sampler.insert("algorithm", toml_edit::value(algorithm.name()));
-        keep_priors_alone(document);
+        keep_candidates(document);
         Ok(())
     })
 }
 
-/// Removes `[discovery]` but for these priors: what follows from a job asks for nothing itself.
-pub(super) fn keep_priors_alone(document: &mut DocumentMut) {
+/// Removes `[discovery]` but for what says which candidates there are: what follows from a job asks for nothing itself.
+pub(super) fn keep_candidates(document: &mut DocumentMut) {
     let Some(discovery) = document.get_mut("discovery").and_then(Item::as_table_like_mut) else {
         return;
     };
     let others: Vec<String> = discovery.iter().map(|(key, _)| key.to_owned()).collect();
-    for key in others.iter().filter(|key| *key != "priors") {
+    for key in others
+        .iter()
+        .filter(|key| !["priors", "other_kind"].contains(&key.as_str()))
+    {
         discovery.remove(key);
     }
     if discovery.is_empty() {

@@ -17,6 +17,8 @@ pub struct DiscoverySettings {
     pub apply: Apply,
     /// Most effects that are added to the job's own.
     pub max_effects: usize,
+    /// Whether the other forward model is a candidate.
+    pub other_kind: bool,
 }
 
 /// Who decides whether a missing effect is added.
@@ -36,6 +38,7 @@ pub enum Apply {
 pub(crate) struct RawDiscovery {
     apply: String,
     max_effects: usize,
+    other_kind: bool,
     priors: toml::Table,
 }
 
@@ -44,6 +47,7 @@ impl Default for RawDiscovery {
         RawDiscovery {
             apply: "off".into(),
             max_effects: 3,
+            other_kind: false,
             priors: toml::Table::new(),
         }
     }
@@ -73,7 +77,11 @@ impl RawDiscovery {
             });
         }
         candidate_priors::check(&self.priors)?;
-        Ok(DiscoverySettings { apply, max_effects })
+        Ok(DiscoverySettings {
+            apply,
+            max_effects,
+            other_kind: self.other_kind,
+        })
     }
 }
 
@@ -91,7 +99,13 @@ mod tests {
 
     #[test]
     fn a_job_says_who_decides() {
-        let settings = |apply, max_effects| Ok(DiscoverySettings { apply, max_effects });
+        let settings = |apply, max_effects| {
+            Ok(DiscoverySettings {
+                apply,
+                max_effects,
+                other_kind: false,
+            })
+        };
         assert_eq!(parse("", ""), settings(Apply::Off, 3));
         assert_eq!(parse("", "[discovery]\napply = \"ask\""), settings(Apply::Ask, 3));
         assert_eq!(

@@ -1,6 +1,9 @@
 //! The block `discovery` of `summary.json`.
 
-use record::{ChiSquare, Discovery, JudgedEffect, JudgedSet, NextRun, NotTried, Outside, Verdict, effect_of};
+use record::{
+    ChiSquare, Discovery, JudgedEffect, JudgedSet, NextRun, NotTried, Outside, RemainingMisfit, Verdict,
+    effect_of,
+};
 
 use super::round::DiscoveryRound;
 
@@ -19,6 +22,8 @@ pub struct DiscoverySummary {
     pub complete: Option<bool>,
     /// The share of the first searched model's excess chi-square that the last search's best explanation takes away, 0 to 1.
     pub explained: Option<f64>,
+    /// The channels that the last search's best explanation leaves unexplained, the worst first.
+    pub remaining: Vec<RemainingMisfit>,
     /// The law outside the library, if one was found.
     pub outside: Option<Outside>,
     /// Effects that the last search could not detect.
@@ -70,6 +75,7 @@ impl DiscoverySummary {
             sets: first.sets.clone(),
             complete: last.complete,
             explained: explained(first, last),
+            remaining: last.remaining.clone(),
             outside: records.iter().find_map(|record| record.outside.clone()),
             cannot_exclude: last.cannot_exclude.clone(),
             not_tried: last.not_tried.clone(),

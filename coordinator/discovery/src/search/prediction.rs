@@ -1,0 +1,57 @@
+//! The last stages: what the leading sets predict, and the runs to make next.
+
+use crate::search::conclusion::Conclusion;
+use crate::search::cross_validation::{ComparedModel, CrossValidation};
+use crate::search::next_run::{InformativeRun, RunSelection};
+use crate::search::stage::Stage;
+use crate::search::state::SearchState;
+use crate::search::weighing::Weighing;
+
+impl SearchState {
+    /// Predicts left-out levels by the leading sets, where the evidence leaves several.
+    pub(super) fn predictions(&self) -> Stage {
+        let weighing = Weighing::new(&self.task, &self.hypotheses);
+        let Some(base) = self.hypotheses.base_fit() else {
+            return self.next_runs();
+        };
+        let leading = weighing.leading(&self.hypotheses);
+        if leading.len() < 2 {
+            return self.next_runs();
+        }
+        let mut models: Vec<ComparedModel> = vec![(Vec::new(), 0, base)];
+        for set in &leading {
+            let last = set.effects.last();
+            let own = last.map_or(0, |&k| self.hypotheses.candidates[k].parameters.len());
+            models.push((set.effects.clone(), own, &set.fit));
+        }
+        let validation = CrossValidation::new(&self.task.likelihood, &self.task.levels, &models);
+        let sets = leading.iter().map(|set| set.effects.clone()).collect();
+        Stage::Predictions(sets, validation)
+    }
+
+    pub(super) fn after_predictions(&mut self, sets: &[Vec<usize>], validation: &CrossValidation) -> Stage {
+        let gains = validation.gains().unwrap_or_default();
+        // A measurement is left out once with the level of each of its conditions.
+        let left_out: usize = self.task.levels.iter().map(Vec::len).sum();
+        let times = (left_out as f64 / self.task.likelihood.data().len() as f64).max(1.0);
+        // The base comes first.
+        let of_sets = sets
+            .iter()
+            .cloned()
+            .zip(gains.into_iter().skip(1).map(|gain| gain / times));
+        self.hypotheses.predictive = of_sets.collect();
+        self.next_runs()
+    }
+
+    fn next_runs(&self) -> Stage {
+        let open = Weighing::new(&self.task, &self.hypotheses).open(&self.hypotheses);
+        match RunSelection::new(&self.task, open) {
+            Some(runs) => Stage::NextRuns(runs),
+            None => self.done(Vec::new()),
+        }
+    }
+
+    pub(super) fn done(&self, next_runs: Vec<InformativeRun>) -> Stage {
+        Stage::Done(Box::new(Conclusion::new(self, next_runs)))
+    }
+}

@@ -1,0 +1,103 @@
+//! Settings of the model itself that a job may have otherwise: candidates of a search, as effects are.
+
+use shared::model::ModelKind;
+use shared::model::spatial::{DisplacementFrame, PressureAxis};
+
+use crate::spec::Spec;
+
+/// A setting of the model that a search may turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ModelSwitch {
+    /// Its name as a candidate.
+    pub name: &'static str,
+    /// Its key under `[model]`.
+    pub key: &'static str,
+    /// The value of the key.
+    pub value: &'static str,
+    /// What the model with it assumes, in a line.
+    pub summary: &'static str,
+}
+
+/// Every such setting.
+pub const MODEL_SWITCHES: [ModelSwitch; 6] = [
+    ModelSwitch {
+        name: "pressure_direction_vertical",
+        key: "pressure_direction",
+        value: "vertical",
+        summary: "the pressure acts upwards: the soil does not resist compaction",
+    },
+    ModelSwitch {
+        name: "pressure_direction_wheel_normal",
+        key: "pressure_direction",
+        value: "wheel_normal",
+        summary: "the pressure acts along the normal of the rim: the soil resists compaction",
+    },
+    ModelSwitch {
+        name: "displacement_node",
+        key: "displacement",
+        value: "node",
+        summary: "the shear displacement belongs to the soil that is sheared",
+    },
+    ModelSwitch {
+        name: "displacement_rim",
+        key: "displacement",
+        value: "rim",
+        summary: "the shear displacement belongs to the point of the rim",
+    },
+    ModelSwitch {
+        name: "kind_scm",
+        key: "kind",
+        value: "scm",
+        summary: "the soil is a terrain in three dimensions that keeps its deformation",
+    },
+    ModelSwitch {
+        name: "kind_quasi_static",
+        key: "kind",
+        value: "quasi_static",
+        summary: "the wheel is a smooth cylinder in balance on undisturbed soil",
+    },
+];
+
+impl ModelSwitch {
+    /// The setting of a candidate's name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        MODEL_SWITCHES.iter().find(|switch| switch.name == name)
+    }
+
+    /// Whether it exchanges the forward model for another.
+    pub fn is_kind(&self) -> bool {
+        self.key == "kind"
+    }
+
+    /// Whether a job has it.
+    pub fn is_on(&self, spec: &Spec) -> bool {
+        let spatial = spec.model.spatial.as_ref();
+        let displacement = spatial.map(|s| s.displacement);
+        let direction = spatial.map(|s| s.pressure_direction);
+        match self.name {
+            "pressure_direction_vertical" => direction == Some(PressureAxis::Vertical),
+            "pressure_direction_wheel_normal" => direction == Some(PressureAxis::WheelNormal),
+            "displacement_node" => displacement == Some(DisplacementFrame::Node),
+            "displacement_rim" => displacement == Some(DisplacementFrame::Rim),
+            "kind_scm" => spec.model.kind == ModelKind::Scm,
+            _ => spec.model.kind == ModelKind::QuasiStatic,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::model::ModelSettings;
+
+    #[test]
+    fn every_switch_is_a_setting_of_its_model() {
+        for switch in MODEL_SWITCHES {
+            let text = match switch.key {
+                "kind" => format!("kind = \"{}\"", switch.value),
+                key => format!("kind = \"scm\"\n{key} = \"{}\"", switch.value),
+            };
+            ModelSettings::from_table(&text.parse().unwrap()).unwrap();
+        }
+    }
+}
