@@ -192,6 +192,28 @@ fn found(truth: impl Fn(f64, f64) -> f64) -> Conclusion {
 }
 
 #[test]
+fn a_law_beyond_an_effect_is_found_beside_it() {
+    let line_over_w = OVER_W + 1;
+    let found = found(|x, w| 0.3 + 0.5 * x + 1.2 * x * x + 0.8 * w);
+    assert_eq!(found.verdict, SearchVerdict::Named(SQUARE));
+    assert_eq!(found.combination, [SQUARE, line_over_w]);
+    assert_eq!(found.sets[0].effects.as_deref(), Some(&[SQUARE, line_over_w][..]));
+    assert_eq!(found.complete, Some(true));
+    assert!(found.explained.unwrap() > 0.99 && found.remaining.is_empty());
+}
+
+#[test]
+fn what_nothing_explains_is_left() {
+    // Neither an effect nor a law follows a zigzag.
+    let zigzag = |x: f64, w: f64| if libm::cos(20.0 * x * w) > 0.0 { 0.5 } else { -0.5 };
+    let found = found(|x, w| 0.3 + 0.5 * x + 1.2 * x * x + zigzag(x, w));
+    assert_eq!(found.complete, Some(false));
+    assert_eq!(found.remaining.len(), DATA);
+    let squares: f64 = found.remaining.iter().map(|r| r * r).sum();
+    assert!((squares - found.chi_square_best.unwrap().value).abs() < 1e-6 * squares);
+}
+
+#[test]
 fn where_nothing_is_hidden_nothing_is_claimed_and_no_law_is_searched() {
     let found = found(|x, _| 0.3 + 0.5 * x);
     assert_eq!(found.verdict, SearchVerdict::NothingDetectable);

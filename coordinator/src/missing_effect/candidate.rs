@@ -183,6 +183,7 @@ pub(super) fn spec(job: &FileSet, experiment: &FileSet) -> Result<Spec, FileErro
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::missing_effect::SearchModels;
     use crate::missing_effect::fixture::read;
 
     #[test]
@@ -279,6 +280,31 @@ mod tests {
         );
         let message = free("flow_fraction").unwrap_err().to_string();
         assert!(message.contains("quasi_static has no terrain"), "{message}");
+    }
+
+    #[test]
+    fn settings_of_a_job_s_model_are_candidates_and_the_other_kind_where_it_is_asked_for() {
+        let (job, files, _) = read("examples/hidden-effect");
+        let switches = |toml: String| -> Vec<String> {
+            let job = FileSet { toml, ..job.clone() };
+            let models = SearchModels::new(&job, &files, 1).unwrap();
+            let candidates = models.task().library.into_iter();
+            let switches = candidates.filter(|c| c.parameters.is_empty());
+            switches.map(|c| c.name).collect()
+        };
+        assert!(switches(job.toml.clone()).is_empty());
+        let asked = job
+            .toml
+            .replace("[discovery]\n", "[discovery]\nother_kind = true\n");
+        assert_eq!(switches(asked), ["kind_scm"]);
+        let spatial = job.toml.replace("quasi_static", "scm");
+        assert_eq!(switches(spatial.clone()), ["pressure_direction_vertical"]);
+        // Without a shear displacement it makes no difference where it is kept.
+        let mobilised = spatial.replacen("[model]\n", "[model]\neffects = [\"janosi_hanamoto\"]\n", 1);
+        assert_eq!(
+            switches(mobilised),
+            ["pressure_direction_vertical", "displacement_node"]
+        );
     }
 
     #[test]

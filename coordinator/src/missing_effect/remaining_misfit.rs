@@ -89,7 +89,7 @@ mod tests {
         let slip = |run: usize| spec.experiment.runs[spec.fit_runs[run]].slip;
         let residual = |channel: usize, run: usize| match Channel::ALL[channel] {
             Channel::Sinkage => 4.0 - 12.0 * slip(run),
-            Channel::Torque => 2.5,
+            Channel::Torque => 1.6,
             _ => 0.5,
         };
         let residuals: Vec<f64> = data.iter().map(|d| residual(d.channel, d.run)).collect();
@@ -100,7 +100,7 @@ mod tests {
             .collect();
         assert_eq!(names, [(Channel::Sinkage, Some("slip")), (Channel::Torque, None)]);
         assert!(left[0].correlation.unwrap() < -0.999);
-        assert!((left[1].noise_sds - 2.5).abs() < 1e-12);
+        assert!((left[1].noise_sds - 1.6).abs() < 1e-12);
         assert!(left[0].words().contains("falls with slip"), "{}", left[0].words());
         assert!(remaining_misfit(&models, &[]).is_empty());
     }

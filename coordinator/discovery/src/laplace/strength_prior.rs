@@ -142,3 +142,37 @@ fn precision(t: f64) -> f64 {
         .map(|(log_part, (_, scale))| libm::exp(log_part - sum) / (scale * scale))
         .sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::candidate::Candidate;
+    use statistics::prior::{Distribution, Marginal};
+
+    #[test]
+    fn a_fit_that_a_narrow_part_holds_near_absence_promises_no_more_than_it_may() {
+        let prior = Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
+        let effect = Candidate {
+            name: "e".into(),
+            parameters: vec![prior],
+            strengths: vec![0],
+            neutral: 0.0,
+        };
+        let frame = NormalFrame::base(&[], 0.03).with(&effect);
+        // The likelihood rises by 8 nats per standard deviation and hardly bends; the narrow parts balance it at once.
+        let position = [0.04];
+        let (mut gradient, mut hessian) = (position.to_vec(), DMatrix::from_element(1, 1, 1.001));
+        add(&frame, &position, &mut gradient, &mut hessian);
+        let quadratic = QuadraticModel {
+            gradient: vec![0.0],
+            hessian,
+            lower: vec![-10.0],
+            upper: vec![10.0],
+            held: vec![false],
+        };
+        let value = penalty(&frame, &position);
+        let evidence = |most| mixed_evidence(&frame, &position, &quadratic, value, most).unwrap();
+        assert!(evidence(f64::INFINITY) > 100.0);
+        assert!(evidence(3.0) < 3.0 && evidence(3.0) > 0.0);
+    }
+}
