@@ -1,24 +1,13 @@
 //! Error models through the whole farm: heavy tails, discrepancy, scatter of the soil, plates and rings.
 
 use farm_tests::job::Job;
-use farm_tests::programs::{coordinator, run};
+use farm_tests::programs::study;
 use farm_tests::service::Service;
 use farm_tests::text::same;
 use farm_tests::wait::until;
 use serde_json::Value;
 
 use super::point_fit::fit;
-
-/// Terminal and summary of a run in a fresh folder.
-fn ran(job: &Job) -> (String, Value) {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = job.write(&folder.path().join("job")).display().to_string();
-    let out = folder.path().join("out");
-    let text = run(coordinator(["run", &path, "--out", &out.display().to_string()])).success();
-    let summary = std::fs::read_to_string(out.join("summary.json")).expect("summary.json");
-    assert!(out.join("report.html").exists());
-    (text, serde_json::from_str(&summary).expect("JSON"))
-}
 
 fn likelihood(keys: &str) -> Job {
     let small = Job::small();
@@ -34,10 +23,10 @@ fn timeless(mut summary: Value) -> Value {
 
 #[test]
 fn an_error_model_of_nothing_changes_no_number() {
-    let (_, plain) = ran(&Job::small());
+    let (_, plain) = study(&Job::small());
     let zero = likelihood("kind = \"gaussian\"\ndiscrepancy = 0.0")
         .in_experiment("[noise]", "[noise]\nrun_scatter = 0.0\nplate_scatter = 0.3");
-    let (text, summary) = ran(&zero);
+    let (text, summary) = study(&zero);
     assert_eq!(timeless(summary), timeless(plain));
     assert!(!text.contains("noise sds in each condition"), "{text}");
 }
@@ -48,7 +37,7 @@ fn each_error_model_is_said_and_widens_the_intervals() {
         let coverage = &summary["calibrations"][0]["coverage90"][rows];
         coverage.as_f64().expect("a share")
     };
-    let (_, plain) = ran(&Job::small());
+    let (_, plain) = study(&Job::small());
     let scatter =
         |value: &str| Job::small().in_experiment("[noise]", &format!("[noise]\nrun_scatter = {value}"));
     for (job, words) in [
@@ -63,7 +52,7 @@ fn each_error_model_is_said_and_widens_the_intervals() {
         ),
         (scatter("0.1"), "scatters from run to run, relative sd 0.1;"),
     ] {
-        let (text, summary) = ran(&job);
+        let (text, summary) = study(&job);
         assert!(text.contains(words), "{words} in\n{text}");
         assert_eq!(summary["status"], "finished");
         for rows in ["fit", "holdout"] {
@@ -75,7 +64,7 @@ fn each_error_model_is_said_and_widens_the_intervals() {
             words.contains("marginalised")
         );
     }
-    let (_, summary) = ran(&scatter("\"unknown\""));
+    let (_, summary) = study(&scatter("\"unknown\""));
     let scatter = &summary["calibrations"][0]["parameters"]["noise.run_scatter"];
     // The data have none: far below the prior's mean of 0.16.
     assert!(scatter["mean"].as_f64().is_some_and(|m| m < 0.05), "{scatter}");
@@ -176,7 +165,7 @@ fn plates_and_rings_alone_are_fitted_without_a_wheel() {
         others: Vec::new(),
     };
     let job = job.beside("plates.csv", plates()).beside("shear.csv", shear());
-    let (text, summary) = ran(&job);
+    let (text, summary) = study(&job);
     for words in [
         "48 readings in 6 tests of plates",
         "30 readings in 3 tests of rings",
@@ -207,7 +196,7 @@ fn plates_and_rings_alone_are_fitted_without_a_wheel() {
             "[soil.s]",
             "[soil.s]\n[noise]\nplate_scatter = \"unknown\"\nplate_noise = \"unknown\"\nring_scatter = \"unknown\"\nring_noise = \"unknown\"",
         );
-    let (text, summary) = ran(&sampled);
+    let (text, summary) = study(&sampled);
     assert!(text.contains("relative sd unknown from test to test"), "{text}");
     let noise = &summary["calibrations"][0]["parameters"]["noise.plate_noise"]["mean"];
     assert!(
@@ -229,7 +218,7 @@ fn a_ring_beside_wheels_has_a_transfer() {
         .filter(|line| line.starts_with("test") || line.contains(",0.04,"))
         .map(|line| format!("{line}\n"))
         .collect();
-    let (text, summary) = ran(&job.beside("shear.csv", csv));
+    let (text, summary) = study(&job.beside("shear.csv", csv));
     assert!(text.contains("3 readings in 3 tests of rings"), "{text}");
     let transfer = &summary["calibrations"][0]["parameters"]["bevameter.ln_transfer"];
     let (mean, sd) = (&transfer["mean"], &transfer["sd"]);

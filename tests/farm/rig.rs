@@ -1,7 +1,7 @@
 //! The rig as a suspect: nothing is missing from the model, but the soil drifts, sensors drift, and preparations differ.
 
 use farm_tests::job::Job;
-use farm_tests::programs::{coordinator, run};
+use farm_tests::programs::{coordinator, run, study};
 use serde_json::Value;
 
 /// The soil stiffens by 20 % and the zero of the pull moves by 2.4 sds, over runs made in the order of their slip.
@@ -51,12 +51,7 @@ fn checked(job: &Job) -> String {
 
 /// The summary of a finished study.
 fn summary(job: &Job) -> Value {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = job.write(&folder.path().join("job")).display().to_string();
-    let out = folder.path().join("out").display().to_string();
-    run(coordinator(["run", &path, "--out", &out])).success();
-    let summary = std::fs::read_to_string(folder.path().join("out/summary.json")).expect("summary.json");
-    serde_json::from_str(&summary).expect("JSON")
+    study(job).1
 }
 
 /// The explanations with their probabilities.

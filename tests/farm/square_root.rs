@@ -1,24 +1,12 @@
 //! Effects that act like a square root of their strength near zero: a fit from one prior standard deviation sticks.
 
 use farm_tests::job::Job;
-use farm_tests::programs::{coordinator, run};
-use serde_json::Value;
-
-/// The block `discovery` of the summary of a job.
-fn discovery(job: &Job) -> Value {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = job.write(&folder.path().join("job")).display().to_string();
-    let out = folder.path().join("out").display().to_string();
-    run(coordinator(["run", &path, "--out", &out])).success();
-    let summary = std::fs::read_to_string(folder.path().join("out/summary.json")).expect("summary.json");
-    let summary: Value = serde_json::from_str(&summary).expect("JSON");
-    summary["discovery"].clone()
-}
+use farm_tests::programs::study;
 
 /// The truth is named, and its log Bayes factor is the sampler's within a nat.
 #[track_caller]
 fn named(job: &Job, truth: &str, sampled: f64) {
-    let discovery = discovery(job);
+    let discovery = &study(job).1["discovery"];
     assert_eq!(discovery["verdict"], "named", "{discovery:#}");
     assert_eq!(discovery["chosen"], serde_json::json!([truth]));
     let effects = discovery["effects"].as_array().expect("a list");

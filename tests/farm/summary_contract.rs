@@ -1,8 +1,7 @@
 //! `summary.json` keeps its contract: every key is there, of its kind, null only where that may be.
 
 use farm_tests::job::Job;
-use farm_tests::programs::{coordinator, run};
-use farm_tests::workspace::text;
+use farm_tests::programs::study;
 use serde_json::Value;
 
 /// What a value must be.
@@ -179,12 +178,7 @@ fn complaints(summary: &Value) -> Vec<String> {
 
 /// The summary of a finished run.
 fn summary(job: &Job) -> Value {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = job.write(&folder.path().join("job")).display().to_string();
-    let out = folder.path().join("out");
-    run(coordinator(["run", &path, "--out", &out.display().to_string()])).success();
-    let text = text(&out.join("summary.json"));
-    serde_json::from_str(&text).expect("JSON, which has no form for what is no number")
+    study(job).1
 }
 
 #[test]

@@ -4,6 +4,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
+use serde_json::Value;
+
+use crate::job::Job;
+
 /// What a program left behind when it ended.
 #[derive(Debug)]
 pub struct Ended {
@@ -123,4 +127,20 @@ fn built() -> &'static Path {
         built.success().then_some(folder)
     });
     built.as_deref().expect("the programs build")
+}
+
+/// What `coordinator run` prints of a job in a fresh folder, and its summary.
+///
+/// # Panics
+/// It fails, or writes no report.
+#[track_caller]
+pub fn study(job: &Job) -> (String, Value) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = job.write(&folder.path().join("job")).display().to_string();
+    let out = folder.path().join("out");
+    let text = run(coordinator(["run", &path, "--out", &out.display().to_string()])).success();
+    assert!(out.join("report.html").exists());
+    let summary = std::fs::read_to_string(out.join("summary.json")).expect("summary.json");
+    let summary = serde_json::from_str(&summary).expect("JSON, which has no form for what is no number");
+    (text, summary)
 }

@@ -23,6 +23,8 @@ const LEAST_CLAIMED: f64 = 1.0;
 const CERTAINLY_PRESENT: f64 = 10.0;
 /// A fit that is not confirmed counts at most so much less than the screen promises \[nats\].
 const MOST_SHORT: f64 = 3.0;
+/// Once so many effects were sampled, no other is: where many lead in turn, none is a detection.
+const MOST_SAMPLED: usize = 3;
 /// A strength within so many standard deviations of its prior from where the effect is absent lies where the prior is not normal.
 const NEARLY_ABSENT: f64 = 0.1;
 
@@ -159,7 +161,7 @@ impl EffectSearch {
         let (Some(base), Some((first, rest))) = (&self.base, self.fits_of_best()) else {
             return none;
         };
-        if first.log_bayes_factor < LEAST_CLAIMED {
+        if first.log_bayes_factor < LEAST_CLAIMED || self.sampled.len() > MOST_SAMPLED {
             return none;
         }
         let classes = self.projected().map(|projected| projected.classes);
