@@ -208,6 +208,7 @@ async fn work(
                 lease: l.lease,
                 calibration: l.calibration,
                 evaluation: l.evaluation,
+                seal: l.seal,
                 end: None,
                 outcome: Some(outcome.clone()),
             })

@@ -185,18 +185,13 @@ impl LeaseQueue {
             .collect()
     }
 
-    /// The evaluation of a lease that is out.
-    pub fn evaluation_of(&self, lease: u64) -> Option<u64> {
-        self.leased.get(&lease).copied()
-    }
-
-    /// Extends a lease; `false` where it is no longer out.
-    pub fn renew(&mut self, lease: u64, until_ms: u64) -> bool {
+    /// Extends a lease of a worker; `false` where it is no longer out, or another worker's.
+    pub fn renew(&mut self, lease: u64, worker: &str, until_ms: u64) -> bool {
         let Some(evaluation) = self.leased.get(&lease) else {
             return false;
         };
         match self.entries.get_mut(evaluation).map(|e| &mut e.state) {
-            Some(State::Leased(claim)) => {
+            Some(State::Leased(claim)) if claim.worker == worker => {
                 claim.expires_ms = until_ms;
                 true
             }
@@ -223,8 +218,12 @@ impl LeaseQueue {
         }
     }
 
-    /// Takes back a lease that its worker returns unevaluated; it costs no attempt.
-    pub fn give_back(&mut self, lease: u64) -> bool {
+    /// Takes back a lease that its worker returns unevaluated; it costs no attempt. `false` where it is no longer out, or
+    /// another worker's.
+    pub fn give_back(&mut self, lease: u64, worker: &str) -> bool {
+        if !self.is_held_by(lease, worker) {
+            return false;
+        }
         let Some((evaluation, claim)) = self.take_claim(lease) else {
             return false;
         };
@@ -253,6 +252,14 @@ impl LeaseQueue {
             worker: claim.worker,
             attempt,
         })
+    }
+
+    fn is_held_by(&self, lease: u64, worker: &str) -> bool {
+        let entry = self
+            .leased
+            .get(&lease)
+            .map(|evaluation| &self.entries[evaluation]);
+        entry.is_some_and(|entry| matches!(&entry.state, State::Leased(claim) if claim.worker == worker))
     }
 
     /// Ends a claim; its evaluation is ready again.
@@ -339,8 +346,9 @@ mod tests {
     fn a_returned_lease_costs_no_attempt() {
         let mut queue = queue(2);
         let leases = claim(&mut queue, "a", 2, 0, 0);
-        assert!(queue.give_back(leases[1].0));
-        assert!(!queue.give_back(leases[1].0));
+        assert!(!queue.give_back(leases[1].0, "b"), "not its own");
+        assert!(queue.give_back(leases[1].0, "a"));
+        assert!(!queue.give_back(leases[1].0, "a"));
         assert_eq!(claim(&mut queue, "b", 5, 0, 10), vec![(11, 1)]);
     }
 
@@ -348,10 +356,11 @@ mod tests {
     fn a_renewed_lease_outlives_its_first_time() {
         let mut queue = queue(1);
         let lease = claim(&mut queue, "a", 1, 0, 0)[0].0;
-        assert!(queue.renew(lease, 200));
+        assert!(!queue.renew(lease, "b", 300), "not its own");
+        assert!(queue.renew(lease, "a", 200));
         assert!(queue.expire(100).is_empty());
         assert_eq!(queue.expire(200).len(), 1);
-        assert!(!queue.renew(lease, 300));
+        assert!(!queue.renew(lease, "a", 300));
     }
 
     proptest! {
@@ -375,7 +384,7 @@ mod tests {
                         let first = queue.complete(target) == Completion::First;
                         prop_assert_eq!(first, completed.insert(target));
                     }
-                    2 => { if let Some(&(lease, _)) = out.first() { queue.give_back(lease); out.remove(0); } }
+                    2 => { if let Some(&(lease, _)) = out.first() { queue.give_back(lease, "w"); out.remove(0); } }
                     3 => { if let Some(&(lease, _)) = out.last() { queue.fail(lease); out.pop(); } }
                     _ => { now += target; queue.expire(now); }
                 }

@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 use crate::outcome::Outcome;
 
 /// Version of these messages; a coordinator answers any other version with 426.
-pub const PROTOCOL_VERSION: u32 = 7;
+pub const PROTOCOL_VERSION: u32 = 8;
 
 /// `POST /v1/work/exchange`: results of finished leases, and how many more are wanted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -41,6 +41,8 @@ pub struct WorkResult {
     pub calibration: i64,
     /// The evaluation within the calibration.
     pub evaluation: u64,
+    /// The seal of the lease, as it came.
+    pub seal: String,
     /// Where the subchain of the lease ended, if it asked for one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Object>)]
@@ -62,7 +64,7 @@ pub struct ExchangeResponse {
     pub remaining: u64,
     /// Workers active recently; bounds the next `want`.
     pub workers: u32,
-    /// Results that changed nothing: late duplicates, or of a calibration that ended.
+    /// Results that changed nothing: late duplicates, of a calibration that ended, or refused for their seal.
     pub duplicates: u32,
     /// Why the worker got no lease although a calibration is waiting, if so.
     pub refused: Option<String>,
@@ -78,6 +80,8 @@ pub struct Lease {
     pub calibration: i64,
     /// The evaluation within the calibration.
     pub evaluation: u64,
+    /// Proves what was asked of whom; a result without it is refused. Nothing that a worker need understand.
+    pub seal: String,
     /// Hash of the variant to evaluate; `GET /v1/work/variants/HASH`.
     pub variant: String,
     /// Parameter vector in the variant's order; of a subchain, the whole one that the sampler has, noise included.

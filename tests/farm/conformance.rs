@@ -92,6 +92,7 @@ fn an_exchange_request_has_one_form() {
         lease,
         calibration: 1,
         evaluation: 7,
+        seal: "0a1b".into(),
         end: None,
         outcome: Some(outcome),
     };
@@ -99,6 +100,7 @@ fn an_exchange_request_has_one_form() {
         lease: 4,
         calibration: 1,
         evaluation: 8,
+        seal: "2c3d".into(),
         end: Some(SubchainEnd {
             theta: vec![1.5],
             log_gain: 0.25,
@@ -134,11 +136,12 @@ fn an_exchange_request_has_one_form() {
         &json!({
             "worker": "host-1", "protocol": 1, "model_version": "1",
             "results": [
-                {"lease": 4_294_967_297_u64, "calibration": 1, "evaluation": 7, "outcome": {"evaluated": observables_json()}},
-                {"lease": 2, "calibration": 1, "evaluation": 7,
+                {"lease": 4_294_967_297_u64, "calibration": 1, "evaluation": 7, "seal": "0a1b",
+                 "outcome": {"evaluated": observables_json()}},
+                {"lease": 2, "calibration": 1, "evaluation": 7, "seal": "0a1b",
                  "outcome": {"rejected": {"kind": "no_support", "condition": 3, "message": "sinkage 0.2 m"}}},
-                {"lease": 3, "calibration": 1, "evaluation": 7, "outcome": {"fault": {"message": "disk full"}}},
-                {"lease": 4, "calibration": 1, "evaluation": 8, "end": {"theta": [1.5], "log_gain": 0.25, "moves": 20,
+                {"lease": 3, "calibration": 1, "evaluation": 7, "seal": "0a1b", "outcome": {"fault": {"message": "disk full"}}},
+                {"lease": 4, "calibration": 1, "evaluation": 8, "seal": "2c3d", "end": {"theta": [1.5], "log_gain": 0.25, "moves": 20,
                  "accepted": 0, "scaled": 17, "scaled_accepted": 0}},
             ],
             "holding": [9], "returned": [10, 11], "want": 16, "wait_ms": 20_000,
@@ -152,6 +155,7 @@ fn an_exchange_response_has_one_form() {
         lease: 5,
         calibration: 1,
         evaluation: 7,
+        seal: "0a1b".into(),
         variant: "00ff".into(),
         theta: vec![4.5, 0.1 + 0.2],
         subchain: Some(Subchain {
@@ -171,7 +175,7 @@ fn an_exchange_response_has_one_form() {
     golden(
         &response,
         &json!({
-            "leases": [{"lease": 5, "calibration": 1, "evaluation": 7, "variant": "00ff", "theta": [4.5, 0.30000000000000004],
+            "leases": [{"lease": 5, "calibration": 1, "evaluation": 7, "seal": "0a1b", "variant": "00ff", "theta": [4.5, 0.30000000000000004],
                         "subchain": {"chain": 3, "step": 2, "scale": 0.75}}],
             "lease_ms": 15_000, "remaining": 40, "workers": 3, "duplicates": 1, "refused": "another version",
         }),
@@ -397,7 +401,8 @@ fn a_living_coordinator_speaks_these_forms() {
     assert_eq!(
         shape(&response),
         json!({
-            "leases": [{"lease": "whole", "calibration": "whole", "evaluation": "whole", "variant": "text", "theta": ["number"]}],
+            "leases": [{"lease": "whole", "calibration": "whole", "evaluation": "whole", "seal": "text",
+                        "variant": "text", "theta": ["number"]}],
             "lease_ms": "whole", "remaining": "whole", "workers": "whole", "duplicates": "whole", "refused": null,
         })
     );

@@ -31,6 +31,7 @@ fn result(lease: &Lease, observables: Observables) -> WorkResult {
         lease: lease.lease,
         calibration: lease.calibration,
         evaluation: lease.evaluation,
+        seal: lease.seal.clone(),
         end: None,
         outcome: Some(Outcome::Evaluated(observables)),
     }

@@ -134,12 +134,14 @@ fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) ->
         lease,
         calibration,
         evaluation,
+        seal,
         ..
     } = lease;
     WorkResult {
         lease,
         calibration,
         evaluation,
+        seal,
         end,
         outcome,
     }

@@ -322,6 +322,7 @@ impl<C: Coordinator> Worker<C> {
             lease,
             calibration,
             evaluation,
+            seal,
             ..
         } = lease;
         let outcome = Outcome::Fault(Fault { message });
@@ -329,6 +330,7 @@ impl<C: Coordinator> Worker<C> {
             lease,
             calibration,
             evaluation,
+            seal,
             end: None,
             outcome: Some(outcome),
         });

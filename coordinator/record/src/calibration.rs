@@ -12,6 +12,16 @@ pub struct ExperimentRow {
     pub files: FileSet,
 }
 
+/// Seals the leases of one calibration: random, drawn when the calibration is stored, never shown.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct SealKey(pub [u8; 16]);
+
+impl std::fmt::Debug for SealKey {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str("SealKey(..)")
+    }
+}
+
 /// A stored calibration.
 #[derive(Debug, Clone)]
 pub struct CalibrationRow {

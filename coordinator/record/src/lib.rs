@@ -15,7 +15,7 @@ pub mod fact;
 mod replay;
 mod sample;
 
-pub use calibration::{CalibrationRow, ExperimentRow};
+pub use calibration::{CalibrationRow, ExperimentRow, SealKey};
 pub use discovery::{
     ChiSquare, Discovery, Extension, JudgedEffect, JudgedSet, NEXT_RUNS, NONE, NOT_IN_LIBRARY, NextRun,
     NotTried, Outside, RemainingMisfit, Verdict, effect_of,

@@ -18,6 +18,7 @@ use super::state::Farm;
 use super::worker_record::WorkerRecord;
 use crate::calibration::Calibration;
 use crate::store::FactSink;
+use record::SealKey;
 use record::fact::Fact;
 
 /// How often time passes for leases `[ms]`.
@@ -40,6 +41,7 @@ enum Message {
     },
     Add {
         calibration: Box<Calibration>,
+        key: SealKey,
         facts: Vec<Fact>,
         reply: oneshot::Sender<()>,
     },
@@ -107,10 +109,11 @@ impl Dispatcher {
     ///
     /// # Errors
     /// [`Stopped`].
-    pub async fn add(&self, calibration: Calibration, facts: Vec<Fact>) -> Result<(), Stopped> {
+    pub async fn add(&self, calibration: Calibration, key: SealKey, facts: Vec<Fact>) -> Result<(), Stopped> {
         let calibration = Box::new(calibration);
         let add = |reply| Message::Add {
             calibration,
+            key,
             facts,
             reply,
         };
@@ -253,10 +256,11 @@ impl Thread {
             Message::Exchange { request, reply } => self.exchange(request, reply, now_ms),
             Message::Add {
                 calibration,
+                key,
                 facts,
                 reply,
             } => {
-                self.farm.add(*calibration, facts, now_ms);
+                self.farm.add(*calibration, key, facts, now_ms);
                 let _ = reply.send(());
             }
             Message::Control { id, control, reply } => {
@@ -283,7 +287,7 @@ impl Thread {
                 reply,
             });
         } else {
-            self.answer(reply, (response, fact), now_ms);
+            self.answer(&worker, reply, (response, fact), now_ms);
         }
     }
 
@@ -316,15 +320,15 @@ impl Thread {
                 continue;
             }
             let Some(fact) = self.flush() else { return };
-            self.answer(parked.reply, (response, fact), now_ms);
+            self.answer(&parked.worker, parked.reply, (response, fact), now_ms);
         }
     }
 
     /// Answers; leases for a worker that has gone away meanwhile are taken back at once.
-    fn answer(&mut self, reply: ExchangeReply, answer: Durable<ExchangeResponse>, now_ms: u64) {
+    fn answer(&mut self, worker: &str, reply: ExchangeReply, answer: Durable<ExchangeResponse>, now_ms: u64) {
         if let Err((response, _)) = reply.send(answer) {
             for lease in response.leases {
-                self.farm.give_back(lease.lease);
+                self.farm.give_back(lease.lease, worker);
             }
             self.farm.tick(now_ms);
         }

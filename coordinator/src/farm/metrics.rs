@@ -7,6 +7,8 @@ pub struct FarmCounters {
     pub completed: u64,
     /// Results that changed nothing.
     pub duplicates: u64,
+    /// Results whose seal does not prove what they answer.
+    pub refused: u64,
     /// Leases given out.
     pub leased: u64,
     /// Leases that expired or ended in a fault.

@@ -4,7 +4,8 @@
 //! - `state`: [`Farm`]. Pure: the clock comes as an argument and facts go out as a list.
 //! - [`dispatch`]: gives it a thread.
 //! - `control`: the commands of a user on a calibration.
-//! - `lease_numbers`: numbers of leases that no other store gives out.
+//! - `lease_numbers`: numbers of leases.
+//! - `seal`: binds a result to what was asked of whom.
 //! - `progress`: how fast a calibration goes.
 //! - `worker_record`, `metrics`: what is known of workers, and counted.
 
@@ -13,6 +14,7 @@ pub mod dispatch;
 mod lease_numbers;
 mod metrics;
 mod progress;
+mod seal;
 mod state;
 mod worker_record;
 

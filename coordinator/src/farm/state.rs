@@ -10,8 +10,10 @@ use super::control::{Control, ControlError};
 use super::lease_numbers::LeaseNumbers;
 use super::metrics::{FarmCounters, FarmMetrics};
 use super::progress::{self, Pace};
+use super::seal::{LeaseTerms, proves, seal};
 use super::worker_record::WorkerRecord;
 use crate::calibration::{Calibration, SimulationResult};
+use record::SealKey;
 use record::fact::Fact;
 
 /// A worker is counted as connected for so long after its last message `[ms]`.
@@ -21,6 +23,8 @@ const WORKER_SILENCE_MS: u64 = 60_000;
 #[derive(Debug)]
 pub struct Farm {
     calibrations: BTreeMap<i64, Entry>,
+    /// Calibrations that ended since the start: their late results are compared.
+    ended: BTreeMap<i64, Ended>,
     workers: BTreeMap<String, WorkerRecord>,
     counters: FarmCounters,
     facts: Vec<Fact>,
@@ -31,31 +35,51 @@ pub struct Farm {
 #[derive(Debug)]
 struct Entry {
     calibration: Calibration,
+    key: SealKey,
     pace: Pace,
     /// When busy time was last added up `[ms]`.
     counted_ms: u64,
 }
 
+/// What the late results of a calibration that ended are checked by.
+#[derive(Debug)]
+struct Ended {
+    key: SealKey,
+    model_version: String,
+}
+
+/// What becomes of a result.
+enum Taken {
+    /// It counts, or its machine failed.
+    New,
+    /// It changes nothing.
+    Duplicate,
+    /// It does not answer what was asked of its worker.
+    Refused,
+}
+
 impl Farm {
-    /// An empty farm; `epochs` number the starts of the coordinator, this one included, so lease numbers never repeat.
-    pub fn new(epochs: &[u64], lease_ms: u64) -> Self {
+    /// An empty farm; `epoch` numbers the starts of the coordinator, so lease numbers never repeat.
+    pub fn new(epoch: u64, lease_ms: u64) -> Self {
         Farm {
             calibrations: BTreeMap::new(),
+            ended: BTreeMap::new(),
             workers: BTreeMap::new(),
             counters: FarmCounters::default(),
             facts: Vec::new(),
-            lease_numbers: LeaseNumbers::new(epochs.iter().copied()),
+            lease_numbers: LeaseNumbers::new(epoch),
             lease_ms,
         }
     }
 
     /// Adds a calibration, with facts of its replay that may have been lost.
-    pub fn add(&mut self, calibration: Calibration, facts: Vec<Fact>, now_ms: u64) {
+    pub fn add(&mut self, calibration: Calibration, key: SealKey, facts: Vec<Fact>, now_ms: u64) {
         self.facts.extend(facts);
         if !calibration.state.is_final() {
             let pace = Pace::new(calibration.evaluations, now_ms);
             let entry = Entry {
                 calibration,
+                key,
                 pace,
                 counted_ms: now_ms,
             };
@@ -104,20 +128,34 @@ impl Farm {
                 last_seen_ms: now_ms,
             });
         record.last_seen_ms = now_ms;
-        let mut duplicates = 0;
+        let (mut duplicates, mut refused_leases) = (0, Vec::new());
         for result in request.results {
-            if !self.take_result(&worker, result, now_ms) {
-                duplicates += 1;
+            let lease = result.lease;
+            match self.take_result(&worker, result, now_ms) {
+                Taken::New => {}
+                Taken::Duplicate => duplicates += 1,
+                Taken::Refused => refused_leases.push(lease),
             }
         }
+        if let Some(lease) = refused_leases.first() {
+            let results = refused_leases.len();
+            tracing::warn!(
+                worker,
+                lease,
+                results,
+                "results refused: their seals do not prove that they answer leases of this worker; the first lease is named"
+            );
+            self.counters.refused += results as u64;
+        }
+        self.counters.duplicates += u64::from(duplicates);
         for lease in request.holding {
             let until = now_ms + self.lease_ms;
             self.calibrations
                 .values_mut()
-                .any(|e| e.calibration.queue.renew(lease, until));
+                .any(|e| e.calibration.queue.renew(lease, &worker, until));
         }
         for lease in request.returned {
-            self.give_back(lease);
+            self.give_back(lease, &worker);
         }
         self.account(now_ms);
         let (leases, refused) = self.lease(&worker, &request.model_version, request.want as usize, now_ms);
@@ -126,26 +164,36 @@ impl Farm {
             lease_ms: self.lease_ms,
             remaining: self.remaining(),
             workers: self.workers.len() as u32,
-            duplicates,
+            duplicates: duplicates + refused_leases.len() as u32,
             refused,
         }
     }
 
-    /// Takes a result; `false` where it changes nothing.
-    fn take_result(&mut self, worker: &str, result: WorkResult, now_ms: u64) -> bool {
-        let ours = self.lease_numbers.is_ours(result.lease);
-        let Some(entry) = self.calibrations.get_mut(&result.calibration).filter(|_| ours) else {
-            self.counters.duplicates += 1;
-            return false;
+    /// Takes a result.
+    fn take_result(&mut self, worker: &str, result: WorkResult, now_ms: u64) -> Taken {
+        let (id, lease, evaluation) = (result.calibration, result.lease, result.evaluation);
+        let terms = |model_version| LeaseTerms {
+            lease,
+            worker,
+            calibration: id,
+            evaluation,
+            model_version,
+        };
+        let Some(entry) = self.calibrations.get_mut(&id) else {
+            return match self.ended.get(&id) {
+                Some(ended) if !proves(&result.seal, ended.key, terms(&ended.model_version), None) => {
+                    Taken::Refused
+                }
+                _ => Taken::Duplicate,
+            };
         };
         let calibration = &mut entry.calibration;
-        let (lease, evaluation) = (result.lease, result.evaluation);
-        let leased = calibration.queue.evaluation_of(lease);
+        let pinned = calibration.model_version.as_deref();
+        let question = calibration.question(evaluation);
+        if !pinned.is_some_and(|version| proves(&result.seal, entry.key, terms(version), question)) {
+            return Taken::Refused;
+        }
         let taken = match SimulationResult::of(result) {
-            // A lapsed lease is taken on trust; one that is out must be answered for what it was given for.
-            Ok(_) if leased.is_some_and(|e| e != evaluation) => Err(format!(
-                "the result of lease {lease} names evaluation {evaluation}, not its own"
-            )),
             Ok(computed) => match calibration.complete(evaluation, computed, worker) {
                 Ok((facts, counted)) => {
                     self.facts.extend(facts);
@@ -164,27 +212,24 @@ impl Farm {
             Ok(true) => {
                 record.completed += 1;
                 self.counters.completed += 1;
-                true
+                Taken::New
             }
-            Ok(false) => {
-                self.counters.duplicates += 1;
-                false
-            }
+            Ok(false) => Taken::Duplicate,
             Err(message) => {
                 record.faults += 1;
                 self.counters.failed_leases += 1;
                 if let Some(failure) = calibration.queue.fail(lease) {
                     self.facts.extend(calibration.lease_failed(&failure, &message));
                 }
-                true
+                Taken::New
             }
         }
     }
 
-    pub(super) fn give_back(&mut self, lease: u64) {
+    pub(super) fn give_back(&mut self, lease: u64, worker: &str) {
         self.calibrations
             .values_mut()
-            .any(|e| e.calibration.queue.give_back(lease));
+            .any(|e| e.calibration.queue.give_back(lease, worker));
     }
 
     fn held_by(&self, worker: &str) -> usize {
@@ -245,10 +290,18 @@ impl Farm {
                 let question = calibration
                     .question(evaluation)
                     .expect("a claimed evaluation is asked for at present");
+                let terms = LeaseTerms {
+                    lease,
+                    worker,
+                    calibration: id,
+                    evaluation,
+                    model_version: calibration.model_version.as_deref().unwrap_or_default(),
+                };
                 leases.push(Lease {
                     lease,
                     calibration: id,
                     evaluation,
+                    seal: seal(entry.key, terms, question),
                     variant: question.variant.to_owned(),
                     theta: question.theta.to_vec(),
                     subchain: question.subchain,
@@ -286,7 +339,14 @@ impl Farm {
             }
             entry.counted_ms = now_ms;
         }
-        self.calibrations.retain(|_, e| !e.calibration.state.is_final());
+        let ended = self
+            .calibrations
+            .extract_if(.., |_, e| e.calibration.state.is_final());
+        self.ended.extend(ended.map(|(id, entry)| {
+            let model_version = entry.calibration.model_version.unwrap_or_default();
+            let key = entry.key;
+            (id, Ended { key, model_version })
+        }));
     }
 
     /// Executes a user's command.

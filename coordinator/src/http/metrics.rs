@@ -52,6 +52,12 @@ async fn metrics(State(service): State<Service>) -> Result<String, HttpError> {
         "Results that changed nothing",
         metrics.counters.duplicates,
     );
+    counter(
+        r,
+        "evaluations_refused",
+        "Results whose seal does not prove that they answer a lease of their worker",
+        metrics.counters.refused,
+    );
     counter(r, "leases_given", "Leases given out", metrics.counters.leased);
     counter(
         r,

@@ -233,7 +233,7 @@ impl Service {
             .add_member(study, experiment, row, now_ms())
             .await?;
         (identity.id, identity.experiment) = (id, experiment);
-        self.dispatcher().add(calibration, Vec::new()).await?;
+        self.take_in_hand(calibration).await?;
         Ok(CalibrationCreated {
             id,
             study,

@@ -12,6 +12,7 @@ use super::error::ServiceError;
 use super::recovery::recover;
 use super::stored_calibration;
 use super::study_results;
+use crate::calibration::Calibration;
 use crate::farm::dispatch::Dispatcher;
 use crate::farm::{Control, ControlError, Farm};
 use crate::store::Store;
@@ -41,7 +42,7 @@ impl Service {
     /// [`ServiceError`].
     pub async fn open(path: &str, lease_ms: u64) -> Result<Service, ServiceError> {
         let store = Store::open(path, now_ms()).await?;
-        let farm = Farm::new(store.epochs(), lease_ms);
+        let farm = Farm::new(store.epoch(), lease_ms);
         let dispatcher = Dispatcher::start(farm, store.writer().sink()).map_err(ServiceError::Thread)?;
         let left_alone = Arc::new(recover(&store, &dispatcher).await?);
         Ok(Service {
@@ -71,6 +72,12 @@ impl Service {
     /// The farm's thread.
     pub fn dispatcher(&self) -> &Dispatcher {
         &self.dispatcher
+    }
+
+    /// Gives a stored calibration to the farm.
+    pub(super) async fn take_in_hand(&self, calibration: Calibration) -> Result<(), ServiceError> {
+        let key = self.store.reader().seal_key(calibration.identity.id).await?;
+        Ok(self.dispatcher.add(calibration, key, Vec::new()).await?)
     }
 
     /// A stored calibration.

@@ -59,7 +59,8 @@ pub(super) async fn recover(
             state = calibration.state.name(),
             "resumed"
         );
-        dispatcher.add(calibration, facts).await?;
+        let key = reader.seal_key(id).await?;
+        dispatcher.add(calibration, key, facts).await?;
     }
     for (id, reason) in &left_alone {
         tracing::error!(id, reason, "not resumed: this version cannot read it");

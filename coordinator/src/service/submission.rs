@@ -62,7 +62,7 @@ impl Service {
         let StudyIds { study, calibrations } = self.store().writer().add_study(study).await?;
         for ((mut calibration, _), &id) in members.into_iter().zip(&calibrations) {
             (calibration.identity.id, calibration.identity.study) = (id, study);
-            self.dispatcher().add(calibration, Vec::new()).await?;
+            self.take_in_hand(calibration).await?;
         }
         let (id, point_estimates) = calibrations.split_first().expect("a study begins with its job");
         Ok(CalibrationCreated {

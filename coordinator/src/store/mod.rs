@@ -35,7 +35,7 @@ pub use writer::{FactSink, NewCalibrationRow, NewStudy, StudyIds, Writer};
 pub struct Store {
     readers: SqlitePool,
     writer: Writer,
-    epochs: Vec<u64>,
+    epoch: u64,
 }
 
 impl Store {
@@ -64,13 +64,13 @@ impl Store {
                 path: path.into(),
                 source,
             })?;
-        let epochs = begin_epoch(&mut connection, now_ms).await.map_err(wrap)?;
+        let epoch = begin_epoch(&mut connection, now_ms).await.map_err(wrap)?;
         let readers = pool(options).await.map_err(wrap)?;
         let writer = Writer::start(connection, lock);
         Ok(Store {
             readers,
             writer,
-            epochs,
+            epoch,
         })
     }
 
@@ -86,9 +86,9 @@ impl Store {
         self.writer.close().await;
     }
 
-    /// Numbers of the coordinator's starts on this store, the present one included.
-    pub fn epochs(&self) -> &[u64] {
-        &self.epochs
+    /// Number of the present start of the coordinator on this store.
+    pub fn epoch(&self) -> u64 {
+        self.epoch
     }
 
     /// What can be read.
@@ -102,18 +102,15 @@ impl Store {
 /// Seconds from 1970 to 2026.
 const EPOCHS_FROM_S: i64 = 1_767_225_600;
 
-/// Numbers this start by the clock, but above every start before: so two stores never share an epoch. All of them.
-async fn begin_epoch(connection: &mut SqliteConnection, now_ms: i64) -> Result<Vec<u64>, sqlx::Error> {
-    sqlx::query(
+/// Numbers this start by the clock, but above every start before.
+async fn begin_epoch(connection: &mut SqliteConnection, now_ms: i64) -> Result<u64, sqlx::Error> {
+    let epoch: i64 = sqlx::query_scalar(
         "INSERT INTO epochs (epoch, started_at_ms)
-         VALUES (max(?, 1 + (SELECT coalesce(max(epoch), 0) FROM epochs)), ?)",
+         VALUES (max(?, 1 + (SELECT coalesce(max(epoch), 0) FROM epochs)), ?) RETURNING epoch",
     )
     .bind(now_ms / 1000 - EPOCHS_FROM_S)
     .bind(now_ms)
-    .execute(&mut *connection)
+    .fetch_one(connection)
     .await?;
-    let epochs: Vec<i64> = sqlx::query_scalar("SELECT epoch FROM epochs ORDER BY epoch")
-        .fetch_all(connection)
-        .await?;
-    Ok(epochs.into_iter().map(i64::unsigned_abs).collect())
+    Ok(epoch.unsigned_abs())
 }

@@ -11,7 +11,7 @@ use super::blob;
 use super::error::StoreError;
 use super::reader::Reader;
 use super::theta::theta;
-use record::{Stored, StoredEvaluation};
+use record::{SealKey, Stored, StoredEvaluation};
 
 /// Most evaluations that one statement reads: a long calibration has hundreds of thousands.
 const PAGE: usize = 2_000;
@@ -28,6 +28,24 @@ impl Reader {
         .fetch_all(&self.pool)
         .await?;
         Ok(ids)
+    }
+
+    /// The key that seals the leases of a calibration.
+    ///
+    /// # Errors
+    /// [`StoreError`]; [`StoreError::Corrupt`] where the key does not have 16 bytes.
+    pub async fn seal_key(&self, calibration: i64) -> Result<SealKey, StoreError> {
+        let key: Option<Vec<u8>> = sqlx::query_scalar("SELECT seal_key FROM calibrations WHERE id = ?")
+            .bind(calibration)
+            .fetch_one(&self.pool)
+            .await?;
+        let bytes = key.and_then(|key| key.try_into().ok());
+        let corrupt = || {
+            StoreError::Corrupt(format!(
+                "the seal key of calibration {calibration} is not 16 bytes"
+            ))
+        };
+        bytes.map(SealKey).ok_or_else(corrupt)
     }
 
     /// Everything a replay needs; with `fitted`, also the models' values, which a fit is told and a metamodel

@@ -410,8 +410,8 @@ async fn insert_calibration(
     now_ms: i64,
 ) -> Result<i64, sqlx::Error> {
     sqlx::query_scalar(
-        "INSERT INTO calibrations (study, experiment, name, toml, files, state, created_at_ms)
-         VALUES (?1, nullif(?2, (SELECT experiment FROM studies WHERE id = ?1)), ?3, ?4, ?5, 'queued', ?6)
+        "INSERT INTO calibrations (study, experiment, name, toml, files, state, created_at_ms, seal_key)
+         VALUES (?1, nullif(?2, (SELECT experiment FROM studies WHERE id = ?1)), ?3, ?4, ?5, 'queued', ?6, randomblob(16))
          RETURNING id",
     )
     .bind(study)

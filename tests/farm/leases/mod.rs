@@ -3,6 +3,7 @@
 mod durable;
 mod faults;
 mod lost;
+mod restored;
 mod tokens;
 mod workers;
 
