@@ -92,6 +92,17 @@ pub enum Fact {
     },
 }
 
+/// Two different answers to one evaluation.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Dispute {
+    /// The evaluation.
+    pub evaluation: u64,
+    /// The worker whose answer is stored.
+    pub first: String,
+    /// The worker whose answer differs; it may be the same.
+    pub second: String,
+}
+
 /// A simulated parameter vector, as the store keeps it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluationRow {

@@ -22,6 +22,6 @@ pub use discovery::{
 };
 pub use estimate::EstimateRow;
 pub use evaluation_key::{EvaluationKey, LIKELIEST, PREDICTIONS_FROM};
-pub use fact::{EvaluationRow, Fact, Fingerprint, Kept};
+pub use fact::{Dispute, EvaluationRow, Fact, Fingerprint, Kept};
 pub use replay::{Stored, StoredEvaluation};
 pub use sample::{Prediction, PriorDraw, RejectionReason, Sample, StageRow, Subchains};

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use job::Spec;
-use record::{CalibrationRow, EstimateRow, Prediction, PriorDraw, Sample, StageRow, Subchains};
+use record::{CalibrationRow, Dispute, EstimateRow, Prediction, PriorDraw, Sample, StageRow, Subchains};
 use shared::outcome::SimulatedHistory;
 use statistics::Marginal;
 
@@ -38,6 +38,8 @@ pub struct FinishedCalibration {
     pub prior_draws: Vec<PriorDraw>,
     /// Number of failed leases by message.
     pub faults: BTreeMap<String, u64>,
+    /// Evaluations that were answered in two ways.
+    pub disputes: Vec<Dispute>,
 }
 
 impl FinishedCalibration {

@@ -53,7 +53,7 @@ impl SimulationResult {
     }
 
     /// What a second computation of the same evaluation must agree with.
-    pub(super) fn fingerprint(&self) -> Fingerprint {
+    pub fn fingerprint(&self) -> Fingerprint {
         let outcome = match &self.outcome {
             None => 0,
             Some(Ok(observables)) => observables.fingerprint().cast_signed(),

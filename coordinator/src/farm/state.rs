@@ -180,12 +180,21 @@ impl Farm {
             model_version,
         };
         let Some(entry) = self.calibrations.get_mut(&id) else {
-            return match self.ended.get(&id) {
-                Some(ended) if !proves(&result.seal, ended.key, terms(&ended.model_version), None) => {
-                    Taken::Refused
-                }
-                _ => Taken::Duplicate,
+            let Some(ended) = self.ended.get(&id) else {
+                return Taken::Duplicate;
             };
+            if !proves(&result.seal, ended.key, terms(&ended.model_version), None) {
+                return Taken::Refused;
+            }
+            if let Ok(computed) = SimulationResult::of(result) {
+                self.facts.push(Fact::Duplicate {
+                    calibration: id,
+                    evaluation,
+                    fingerprint: computed.fingerprint(),
+                    worker: worker.to_owned(),
+                });
+            }
+            return Taken::Duplicate;
         };
         let calibration = &mut entry.calibration;
         let pinned = calibration.model_version.as_deref();

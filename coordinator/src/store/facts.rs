@@ -207,7 +207,7 @@ async fn compare(
     )
     .bind(calibration)
     .bind(evaluation as i64)
-    .fetch_optional(connection)
+    .fetch_optional(&mut *connection)
     .await?;
     match stored {
         None => tracing::warn!(
@@ -226,6 +226,21 @@ async fn compare(
                 second,
                 "two workers returned different results for the same evaluation: the farm is not deterministic"
             );
+            sqlx::query(
+                "INSERT OR IGNORE INTO disputes (calibration, evaluation, first, second, at_ms)
+                 VALUES (?, ?, ?, ?, unixepoch('subsec') * 1000)",
+            )
+            .bind(calibration)
+            .bind(evaluation as i64)
+            .bind(first)
+            .bind(second)
+            .execute(&mut *connection)
+            .await?;
+            // What the study ended with says nothing of it yet.
+            sqlx::query("DELETE FROM results WHERE study = (SELECT study FROM calibrations WHERE id = ?)")
+                .bind(calibration)
+                .execute(&mut *connection)
+                .await?;
         }
     }
     Ok(())

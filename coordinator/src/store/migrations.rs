@@ -6,7 +6,7 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 /// Number, name and text of each file of `migrations/`.
 ///
 /// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
-const FILES: [(i64, &str, &str); 11] = [
+const FILES: [(i64, &str, &str); 12] = [
     (
         1,
         "experiments",
@@ -61,6 +61,11 @@ const FILES: [(i64, &str, &str); 11] = [
         11,
         "seal keys",
         include_str!("../../../migrations/0011_seal_keys.sql"),
+    ),
+    (
+        12,
+        "disputes",
+        include_str!("../../../migrations/0012_disputes.sql"),
     ),
 ];
 

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use sqlx::Row;
+use sqlx::sqlite::SqliteRow;
 
 use super::blob;
 use super::error::StoreError;
 use super::reader::Reader;
 use super::theta::theta;
-use record::{PriorDraw, RejectionReason};
+use record::{Dispute, PriorDraw, RejectionReason};
 
 impl Reader {
     /// The draws of a sampler's first round.
@@ -58,5 +59,31 @@ impl Reader {
             .iter()
             .map(|row| (row.get("message"), row.get::<i64, _>("n").unsigned_abs()))
             .collect())
+    }
+
+    /// Evaluations that were answered in two ways, in order. A store of before migration 12, which only reading leaves as it is,
+    /// has none.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn disputes(&self, calibration: i64) -> Result<Vec<Dispute>, StoreError> {
+        let table: i64 = sqlx::query_scalar("SELECT count(*) FROM sqlite_schema WHERE name = 'disputes'")
+            .fetch_one(&self.pool)
+            .await?;
+        if table == 0 {
+            return Ok(Vec::new());
+        }
+        let rows = sqlx::query(
+            "SELECT evaluation, first, second FROM disputes WHERE calibration = ? ORDER BY evaluation, second",
+        )
+        .bind(calibration)
+        .fetch_all(&self.pool)
+        .await?;
+        let dispute = |row: &SqliteRow| Dispute {
+            evaluation: row.get::<i64, _>("evaluation").unsigned_abs(),
+            first: row.get("first"),
+            second: row.get("second"),
+        };
+        Ok(rows.iter().map(dispute).collect())
     }
 }

@@ -45,6 +45,8 @@ pub enum FlagKind {
     Incomplete,
     /// The runs were made in the order of a condition.
     Order,
+    /// A worker computed wrongly, or evaluations failed on every worker that tried them.
+    Worker,
 }
 
 impl FlagKind {
@@ -61,6 +63,7 @@ impl FlagKind {
             FlagKind::Rejections => "rejections",
             FlagKind::Incomplete => "incomplete",
             FlagKind::Order => "order",
+            FlagKind::Worker => "worker",
         }
     }
 }

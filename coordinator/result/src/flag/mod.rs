@@ -3,7 +3,7 @@
 //! # Layout
 //! - `kind`: a flag.
 //! - `finding`: flags of the diagnostics' tests; `cause`: what a trend may come from.
-//! - `calibration`: all flags of a calibration. `study`: of a study.
+//! - `calibration`: all flags of a calibration. `study`: of a study. `worker`: of what workers did wrong.
 //! - `model_limit`, `unsettled_run`: notes that raise no flag.
 
 pub(crate) mod calibration;
@@ -13,3 +13,4 @@ pub(crate) mod kind;
 pub(crate) mod model_limit;
 pub(crate) mod study;
 pub(crate) mod unsettled_run;
+mod worker;

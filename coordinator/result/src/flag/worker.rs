@@ -1,0 +1,58 @@
+//! Flags of what workers did wrong.
+
+use super::kind::{Flag, FlagKind};
+use crate::finished_calibration::FinishedCalibration;
+
+impl FinishedCalibration {
+    /// Evaluations that were answered in two ways: one of the machines computes wrongly.
+    pub(super) fn disputed(&self) -> Option<Flag> {
+        let first = self.disputes.first()?;
+        let who = if first.first == first.second {
+            format!("by worker {} twice", first.first)
+        } else {
+            format!("by workers {} and {}", first.first, first.second)
+        };
+        let more = match self.disputes.len() {
+            1 => String::new(),
+            n => format!(", and {} more", n - 1),
+        };
+        let text = format!(
+            "evaluation {} was answered {who} with different results{more}: a machine computes wrongly, and no number of this calibration can be trusted; find the machine and repeat the calibration without it",
+            first.evaluation
+        );
+        Some(Flag::plain(FlagKind::Worker, text))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use record::Dispute;
+
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn a_disputed_evaluation_names_its_workers() {
+        let mut calibration = fixture::calibration();
+        assert_eq!(calibration.disputed(), None);
+        let dispute = |evaluation, second: &str| Dispute {
+            evaluation,
+            first: "a-1".into(),
+            second: second.into(),
+        };
+        calibration.disputes = vec![dispute(17, "b-2"), dispute(19, "a-1")];
+        let flag = calibration.disputed().unwrap();
+        assert_eq!(flag.kind.name(), "worker");
+        for part in ["evaluation 17", "a-1 and b-2", "and 1 more"] {
+            assert!(flag.text.contains(part), "{}", flag.text);
+        }
+        calibration.disputes.remove(0);
+        assert!(
+            calibration
+                .disputed()
+                .unwrap()
+                .text
+                .contains("by worker a-1 twice with")
+        );
+    }
+}

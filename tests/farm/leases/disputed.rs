@@ -1,0 +1,62 @@
+//! Two different answers to one evaluation.
+
+use farm_tests::fake_worker::{FakeWorker, evaluated};
+use farm_tests::job::{FIT_RUNS, Job};
+use farm_tests::service::Service;
+use farm_tests::wait::until;
+use serde_json::Value;
+
+use super::rejected;
+
+/// The texts of the flags of kind `worker` in the summary of a finished calibration.
+fn worker_flags(service: &Service, id: i64) -> Vec<String> {
+    let summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
+    let flags = summary["flags"].as_array().expect("flags").iter();
+    flags
+        .filter(|flag| flag["kind"] == "worker")
+        .map(|flag| flag["text"].as_str().expect("a text").to_owned())
+        .collect()
+}
+
+#[test]
+fn an_answer_that_differs_leaves_a_flag_before_and_after_the_end_and_over_restarts() {
+    let mut service = Service::start(&[]);
+    let id = service.submit(&Job::small());
+    let first = FakeWorker::new(&service.client, "first").computing(&service.model_version());
+    let leases = first.take(3);
+    first.answer(&leases, |l| evaluated(l, FIT_RUNS));
+    let faults = |count: u64| {
+        until("differing answers noticed", || {
+            (service.metric("grouser_determinism_faults_total") == count).then_some(())
+        });
+    };
+    first.answer(&leases[..1], |_| rejected());
+    faults(1);
+    let real = service.worker("real", 2);
+    service.wait_for(id, "finished");
+    drop(real);
+    let flags = worker_flags(&service, id);
+    assert_eq!(flags.len(), 1, "{flags:?}");
+    assert!(
+        flags[0].contains("evaluation 0 was answered by worker first twice"),
+        "{flags:?}"
+    );
+    // The summary is stored by now; an answer after the end still reaches it.
+    first.answer(&leases[1..2], |_| rejected());
+    faults(2);
+    let flags = worker_flags(&service, id);
+    assert!(flags[0].contains("and 1 more"), "{flags:?}");
+    service.kill();
+    service.restart();
+    assert_eq!(worker_flags(&service, id), flags);
+    let shown: Vec<Value> = service
+        .client
+        .json(&format!("/v1/calibrations/{id}/flags"))
+        .as_array()
+        .cloned()
+        .unwrap();
+    assert_eq!(
+        shown[0]["kind"], "worker",
+        "it casts doubt on all others: {shown:?}"
+    );
+}
