@@ -178,7 +178,7 @@ async fn work(
         simulated_travel_m: vec![0.0],
         ..Observables::default()
     });
-    let mut results: Vec<WorkResult> = Vec::new();
+    let (mut results, mut received): (Vec<WorkResult>, u64) = (Vec::new(), 0);
     let mut latencies_ms = Vec::new();
     while Instant::now() < until {
         let done = results.len() as u64;
@@ -189,6 +189,8 @@ async fn work(
             results: std::mem::take(&mut results),
             holding: Vec::new(),
             returned: Vec::new(),
+            started: Vec::new(),
+            received,
             want: batch,
             wait_ms: 1000,
         };
@@ -201,6 +203,7 @@ async fn work(
         let response: ExchangeResponse = response.error_for_status()?.json().await?;
         latencies_ms.push(sent.elapsed().as_secs_f64() * 1e3);
         completed.fetch_add(done, Ordering::Relaxed);
+        received = response.leases.iter().map(|l| l.lease).max().unwrap_or(received);
         results = response
             .leases
             .into_iter()

@@ -34,7 +34,7 @@ pub enum CoordinatorCommand {
     /// Pause a calibration: no further evaluations are leased.
     Pause(TargetArguments),
     /// Resume a paused calibration.
-    Resume(TargetArguments),
+    Resume(ResumeArguments),
     /// Compare model and measurement, run by run.
     Compare(TargetArguments),
     /// Write the report of a calibration.
@@ -171,6 +171,17 @@ pub struct TargetArguments {
     /// Where it is stored.
     #[command(flatten)]
     pub source: SourceArguments,
+}
+
+/// Resume a paused calibration.
+#[derive(Debug, Args)]
+pub struct ResumeArguments {
+    /// The calibration.
+    #[command(flatten)]
+    pub target: TargetArguments,
+    /// Count evaluations that used up their attempts as rejected; else they are tried again.
+    #[arg(long)]
+    pub skip_faults: bool,
 }
 
 /// Write the report of a calibration.

@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 use crate::outcome::Outcome;
 
 /// Version of these messages; a coordinator answers any other version with 426.
-pub const PROTOCOL_VERSION: u32 = 8;
+pub const PROTOCOL_VERSION: u32 = 9;
 
 /// `POST /v1/work/exchange`: results of finished leases, and how many more are wanted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -25,6 +25,10 @@ pub struct ExchangeRequest {
     pub holding: Vec<u64>,
     /// Leases given back unevaluated.
     pub returned: Vec<u64>,
+    /// Leases whose evaluation has begun and has no result yet; renewed too. Only of these does a loss count as a failed attempt.
+    pub started: Vec<u64>,
+    /// The highest lease number that has reached this worker, 0 before the first: what was given to it above was lost on the way.
+    pub received: u64,
     /// Most leases that the worker takes now.
     pub want: u32,
     /// How long the coordinator may wait for work before it answers `[ms]`.
@@ -86,6 +90,8 @@ pub struct Lease {
     pub variant: String,
     /// Parameter vector in the variant's order; of a subchain, the whole one that the sampler has, noise included.
     pub theta: Vec<f64>,
+    /// Whether the lease is to be reported as started, and that answered, before its evaluation begins: it was lost before.
+    pub announce: bool,
     /// The moves to take from there by the variant's metamodel, before the model is evaluated at their end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Object>)]

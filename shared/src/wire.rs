@@ -191,6 +191,8 @@ mod tests {
             }],
             holding: vec![9],
             returned: Vec::new(),
+            started: vec![9],
+            received: 9,
             want: 16,
             wait_ms: 20_000,
         }
@@ -205,6 +207,7 @@ mod tests {
                 seal: "0a".into(),
                 variant: "00ff".into(),
                 theta: AWKWARD.to_vec(),
+                announce: false,
                 subchain: None,
             }],
             lease_ms: 15_000,

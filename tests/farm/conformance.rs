@@ -128,6 +128,8 @@ fn an_exchange_request_has_one_form() {
         ],
         holding: vec![9],
         returned: vec![10, 11],
+        started: vec![9],
+        received: 11,
         want: 16,
         wait_ms: 20_000,
     };
@@ -144,7 +146,7 @@ fn an_exchange_request_has_one_form() {
                 {"lease": 4, "calibration": 1, "evaluation": 8, "seal": "2c3d", "end": {"theta": [1.5], "log_gain": 0.25, "moves": 20,
                  "accepted": 0, "scaled": 17, "scaled_accepted": 0}},
             ],
-            "holding": [9], "returned": [10, 11], "want": 16, "wait_ms": 20_000,
+            "holding": [9], "returned": [10, 11], "started": [9], "received": 11, "want": 16, "wait_ms": 20_000,
         }),
     );
 }
@@ -158,6 +160,7 @@ fn an_exchange_response_has_one_form() {
         seal: "0a1b".into(),
         variant: "00ff".into(),
         theta: vec![4.5, 0.1 + 0.2],
+        announce: true,
         subchain: Some(Subchain {
             chain: 3,
             step: 2,
@@ -176,6 +179,7 @@ fn an_exchange_response_has_one_form() {
         &response,
         &json!({
             "leases": [{"lease": 5, "calibration": 1, "evaluation": 7, "seal": "0a1b", "variant": "00ff", "theta": [4.5, 0.30000000000000004],
+                        "announce": true,
                         "subchain": {"chain": 3, "step": 2, "scale": 0.75}}],
             "lease_ms": 15_000, "remaining": 40, "workers": 3, "duplicates": 1, "refused": "another version",
         }),
@@ -402,7 +406,7 @@ fn a_living_coordinator_speaks_these_forms() {
         shape(&response),
         json!({
             "leases": [{"lease": "whole", "calibration": "whole", "evaluation": "whole", "seal": "text",
-                        "variant": "text", "theta": ["number"]}],
+                        "variant": "text", "theta": ["number"], "announce": false}],
             "lease_ms": "whole", "remaining": "whole", "workers": "whole", "duplicates": "whole", "refused": null,
         })
     );

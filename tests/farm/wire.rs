@@ -21,6 +21,8 @@ fn request(want: u32, results: Vec<WorkResult>) -> ExchangeRequest {
         results,
         holding: Vec::new(),
         returned: Vec::new(),
+        started: Vec::new(),
+        received: u64::MAX,
         want,
         wait_ms: 0,
     }

@@ -1,11 +1,13 @@
 //! A worker that a test plays by hand, over plain HTTP.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use serde_json::{Value, json};
 
 use crate::http::{Client, Response};
 
 /// Version of the protocol.
-pub const PROTOCOL: u32 = 8;
+pub const PROTOCOL: u32 = 9;
 
 /// A worker by name; it does what a test says and nothing else.
 #[derive(Debug)]
@@ -13,6 +15,7 @@ pub struct FakeWorker {
     client: Client,
     name: String,
     model_version: String,
+    received: AtomicU64,
 }
 
 impl FakeWorker {
@@ -22,6 +25,7 @@ impl FakeWorker {
             client: client.clone(),
             name: name.into(),
             model_version: "fake-1".into(),
+            received: AtomicU64::new(0),
         }
     }
 
@@ -37,7 +41,8 @@ impl FakeWorker {
     pub fn request(&self) -> Value {
         json!({
             "worker": self.name, "protocol": PROTOCOL, "model_version": self.model_version,
-            "results": [], "holding": [], "returned": [], "want": 0, "wait_ms": 0,
+            "results": [], "holding": [], "returned": [], "started": [], "received": self.received.load(Ordering::Relaxed),
+            "want": 0, "wait_ms": 0,
         })
     }
 
@@ -54,7 +59,12 @@ impl FakeWorker {
     pub fn exchange(&self, request: &Value) -> Value {
         let response = self.send(request);
         assert_eq!(response.status, 200, "{}", response.body);
-        response.json()
+        let answer = response.json();
+        let leases = answer["leases"].as_array().into_iter().flatten();
+        if let Some(last) = leases.filter_map(|lease| lease["lease"].as_u64()).max() {
+            self.received.fetch_max(last, Ordering::Relaxed);
+        }
+        answer
     }
 
     /// Takes up to so many leases.
@@ -69,6 +79,17 @@ impl FakeWorker {
             .as_array()
             .cloned()
             .unwrap_or_default()
+    }
+
+    /// Says that the evaluation of leases has begun.
+    ///
+    /// # Panics
+    /// The exchange is refused.
+    #[track_caller]
+    pub fn start(&self, leases: &[Value]) {
+        let mut request = self.request();
+        request["started"] = leases.iter().map(|lease| lease["lease"].clone()).collect();
+        self.exchange(&request);
     }
 
     /// Answers leases with one outcome each; the whole answer.

@@ -1,8 +1,9 @@
 //! A pool of threads that evaluates leases and counts the time it simulates.
 
+use std::collections::BTreeSet;
 use std::panic::AssertUnwindSafe;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use shared::exchange::{Lease, WorkResult};
@@ -40,6 +41,8 @@ impl SimulationClock {
 #[derive(Debug, Default)]
 struct Bench {
     results: Mutex<Vec<WorkResult>>,
+    /// Leases that are being evaluated.
+    started: Mutex<BTreeSet<u64>>,
     /// Evaluations started and not done.
     outstanding: AtomicUsize,
     /// The loop is woken when so many are left, and when none is: waking it for every result would cost more
@@ -83,12 +86,12 @@ impl Evaluator {
             self.pool.spawn_fifo(move || {
                 // once the worker stops, evaluations that have not begun are given back instead
                 if !bench.cancelled.load(Ordering::Acquire) {
+                    let number = lease.lease;
+                    lock(&bench.started).insert(number);
                     let result = evaluate(lease, &variant, &clock);
-                    bench
-                        .results
-                        .lock()
-                        .unwrap_or_else(PoisonError::into_inner)
-                        .push(result);
+                    // With the result first, no lease is in neither list.
+                    lock(&bench.results).push(result);
+                    lock(&bench.started).remove(&number);
                 }
                 let left = bench.outstanding.fetch_sub(1, Ordering::AcqRel) - 1;
                 if left == 0 || left == bench.wake_at.load(Ordering::Acquire) {
@@ -105,7 +108,12 @@ impl Evaluator {
 
     /// The results since the last call, in the order in which they were done.
     pub fn take(&self) -> Vec<WorkResult> {
-        std::mem::take(&mut *self.bench.results.lock().unwrap_or_else(PoisonError::into_inner))
+        std::mem::take(&mut *lock(&self.bench.results))
+    }
+
+    /// Leases that are being evaluated.
+    pub fn started(&self) -> Vec<u64> {
+        lock(&self.bench.started).iter().copied().collect()
     }
 
     /// Drops the evaluations that have not begun, and waits for the others.
@@ -116,6 +124,10 @@ impl Evaluator {
             self.woken().await;
         }
     }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) -> WorkResult {

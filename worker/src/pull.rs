@@ -13,7 +13,7 @@ use shared::model::ModelVariant;
 use shared::outcome::{Fault, Outcome};
 
 use crate::evaluator::{Evaluator, SimulationClock};
-use crate::model::VariantCache;
+use crate::model::{CompiledVariant, VariantCache};
 
 /// A worker holds about so much work `[s]`.
 const WORK_S: f64 = 1.5;
@@ -84,6 +84,8 @@ pub async fn run<C: Coordinator>(
         held: BTreeSet::new(),
         outbox: Vec::new(),
         returned: Vec::new(),
+        announced: Vec::new(),
+        received: 0,
         known: Known {
             remaining: 0,
             workers: 1,
@@ -129,6 +131,10 @@ struct Worker<C> {
     outbox: Vec<WorkResult>,
     /// Leases that this worker cannot serve at present, to be given back.
     returned: Vec<u64>,
+    /// Leases whose start the coordinator must know of before they are evaluated.
+    announced: Vec<(Lease, Arc<CompiledVariant>)>,
+    /// The highest lease number received.
+    received: u64,
     known: Known,
     flushed: Instant,
     renewed: Instant,
@@ -158,7 +164,10 @@ impl<C: Coordinator> Worker<C> {
                 () = &mut shutdown => {
                     // leases may be under way: wait briefly for the answer, to give them back too
                     match tokio::time::timeout(PARTING, exchange).await {
-                        Ok(Ok(response)) => self.held.extend(response.leases.iter().map(|l| l.lease)),
+                        Ok(Ok(response)) => {
+                            self.held.extend(response.leases.iter().map(|l| l.lease));
+                            self.note_received(&response);
+                        }
                         Ok(Err((_, results))) => self.outbox.extend(results),
                         Err(_) => {}
                     }
@@ -214,6 +223,7 @@ impl<C: Coordinator> Worker<C> {
         self.held.is_empty()
             || (half_done && (self.known.remaining > 0 || much_done))
             || (!self.outbox.is_empty() && self.flushed.elapsed() >= FLUSH)
+            || !self.announced.is_empty()
             || self.renewal_due()
     }
 
@@ -268,13 +278,29 @@ impl<C: Coordinator> Worker<C> {
                 Vec::new()
             },
             returned: std::mem::take(&mut self.returned),
+            started: self.started(),
+            received: self.received,
             want: self.want().max(u32::from(idle)),
             // a worker that still holds work returns for more by itself
             wait_ms: if idle { WAIT_MS } else { 0 },
         }
     }
 
+    /// Leases whose evaluation has begun, or begins when the coordinator has answered.
+    fn started(&self) -> Vec<u64> {
+        let announced = self.announced.iter().map(|(lease, _)| lease.lease);
+        self.evaluator.started().into_iter().chain(announced).collect()
+    }
+
+    fn note_received(&mut self, response: &ExchangeResponse) {
+        let leases = response.leases.iter().map(|lease| lease.lease);
+        self.received = leases.fold(self.received, u64::max);
+    }
+
     async fn accept(&mut self, response: ExchangeResponse) {
+        self.note_received(&response);
+        // Their start is known now.
+        self.evaluator.start(std::mem::take(&mut self.announced));
         self.known = Known {
             remaining: response.remaining,
             workers: response.workers,
@@ -304,7 +330,11 @@ impl<C: Coordinator> Worker<C> {
                 (Some(variant), _) => {
                     self.held.insert(lease.lease);
                     self.known.runs = self.known.runs.max(variant.runs());
-                    batch.push((lease, variant));
+                    if lease.announce {
+                        self.announced.push((lease, variant));
+                    } else {
+                        batch.push((lease, variant));
+                    }
                 }
                 (None, Some(Missing::Unusable(reason))) => self.refuse(lease, reason.clone()),
                 (None, _) => self.returned.push(lease.lease),
@@ -361,6 +391,7 @@ impl<C: Coordinator> Worker<C> {
             want: 0,
             wait_ms: 0,
             holding: Vec::new(),
+            started: Vec::new(),
             ..self.request()
         };
         let (sent, returned) = (request.results.len(), request.returned.len());

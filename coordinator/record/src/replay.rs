@@ -18,8 +18,8 @@ pub struct Stored {
     pub busy_ms: u64,
     /// Its evaluations by number: parameter vector, log-likelihood, whether the model rejected.
     pub evaluations: BTreeMap<u64, StoredEvaluation>,
-    /// Failed leases by evaluation.
-    pub failed: BTreeMap<u64, u32>,
+    /// The workers of failed leases, by evaluation.
+    pub failed: BTreeMap<u64, Vec<String>>,
 }
 
 /// An evaluation as far as a replay needs it.
@@ -31,6 +31,8 @@ pub struct StoredEvaluation {
     pub log_likelihood: Option<f64>,
     /// Whether the model rejected.
     pub rejected: bool,
+    /// Whether it was given up after faults: nobody computed it.
+    pub given_up: bool,
     /// The model's values of the fitted measurements; read back for a fit and with a metamodel, which need
     /// them.
     pub fitted: Option<Vec<f64>>,

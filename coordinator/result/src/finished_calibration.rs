@@ -38,6 +38,8 @@ pub struct FinishedCalibration {
     pub prior_draws: Vec<PriorDraw>,
     /// Number of failed leases by message.
     pub faults: BTreeMap<String, u64>,
+    /// Number of evaluations that were given up after faults.
+    pub given_up: u64,
     /// Evaluations that were answered in two ways.
     pub disputes: Vec<Dispute>,
 }

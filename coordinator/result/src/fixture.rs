@@ -261,6 +261,7 @@ fn build(last: &str) -> FinishedCalibration {
         subchains: None,
         prior_draws,
         faults: BTreeMap::from([("the lease expired".into(), 1)]),
+        given_up: 0,
         disputes: Vec::new(),
         spec,
     }

@@ -6,10 +6,11 @@ use shared::outcome::Observables;
 use statistics::{LikelihoodError, LogLikelihood};
 
 use super::engine::{CalibrationResult, EvaluationScore};
+use super::faults::NOBODY;
 use super::final_draws::{FinalDraws, final_draws};
 use super::process::Calibration;
 use super::simulation_result::SimulationResult;
-use crate::lease::{Completion, LeaseFailure, LeaseQueue};
+use crate::lease::{Completion, LeaseQueue};
 use job::AlgorithmSettings;
 use record::{EvaluationKey, EvaluationRow, Fact, Kept};
 
@@ -100,6 +101,7 @@ impl Calibration {
             end: end.as_ref(),
         });
         let mut consequences = Vec::new();
+        self.given_up += usize::from(worker == NOBODY);
         self.record(evaluation, rejected, scored, &mut consequences);
         let row = EvaluationRow {
             evaluation,
@@ -251,53 +253,6 @@ impl Calibration {
             message,
             busy_ms: self.busy_ms,
         });
-    }
-
-    /// Records that a lease failed: kept over restarts; when the attempts are used up, the calibration pauses.
-    pub fn lease_failed(&mut self, failure: &LeaseFailure, message: &str) -> Vec<Fact> {
-        self.failed.insert(failure.evaluation, failure.attempt);
-        let mut facts = vec![Fact::Fault {
-            calibration: self.identity.id,
-            evaluation: failure.evaluation,
-            attempt: failure.attempt,
-            worker: failure.worker.clone(),
-            message: message.to_owned(),
-        }];
-        if failure.exhausted() {
-            let theta = self
-                .theta(failure.evaluation)
-                .map(<[f64]>::to_vec)
-                .unwrap_or_default();
-            let message = format!(
-                "evaluation {} at theta = {theta:?} failed on {} attempts, the last on worker {}: {message}",
-                failure.evaluation, failure.attempt, failure.worker
-            );
-            self.change_state(CalibrationState::Paused, Some(message), &mut facts);
-        }
-        facts
-    }
-
-    /// Resumes after a pause; evaluations that had used up their attempts get new ones.
-    pub fn resume(&mut self, facts: &mut Vec<Fact>) {
-        // An attempt 0 in the list of faults: the new attempts outlive a restart.
-        facts.extend(
-            std::mem::take(&mut self.failed)
-                .into_keys()
-                .map(|evaluation| Fact::Fault {
-                    calibration: self.identity.id,
-                    evaluation,
-                    attempt: 0,
-                    worker: String::new(),
-                    message: "given new attempts by a user".into(),
-                }),
-        );
-        let done = std::mem::take(&mut self.done);
-        self.ask();
-        for &evaluation in &done {
-            self.queue.complete(evaluation);
-        }
-        self.done = done;
-        self.change_state(CalibrationState::Running, None, facts);
     }
 
     fn kept(&self, evaluation: u64, outcome: Option<Result<Observables, String>>) -> Kept {

@@ -5,6 +5,7 @@
 
 mod completion;
 mod engine;
+mod faults;
 mod final_draws;
 mod process;
 mod replay;

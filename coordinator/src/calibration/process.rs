@@ -66,8 +66,10 @@ pub struct Calibration {
     pub(super) draws: Option<FinalDraws>,
     /// Evaluations of the present round that are done.
     pub(super) done: BTreeSet<u64>,
-    /// Failed leases by evaluation, kept over a restart.
-    pub(super) failed: BTreeMap<u64, u32>,
+    /// Evaluations of the present round that were given up after faults.
+    pub(super) given_up: usize,
+    /// The workers of failed leases by evaluation, kept over a restart.
+    pub(super) failed: BTreeMap<u64, Vec<String>>,
 }
 
 /// What an evaluation is leased with.
@@ -134,6 +136,7 @@ impl Calibration {
             stage_variant: None,
             draws: None,
             done: BTreeSet::new(),
+            given_up: 0,
             failed: BTreeMap::new(),
         };
         calibration.ask();
@@ -245,7 +248,8 @@ impl Calibration {
         self.prepare_stage();
         let particles = self.spec.algorithm.width();
         self.done.clear();
-        let failed = |evaluation| self.failed.get(&evaluation).copied().unwrap_or(0);
+        self.given_up = 0;
+        let failed = |evaluation| self.failed.get(&evaluation).cloned().unwrap_or_default();
         match &self.draws {
             Some(draws) => {
                 let parts = if self.holdout_hash.is_some() { 2 } else { 1 };

@@ -100,6 +100,7 @@ impl Calibration {
             }
         };
         self.queue.complete(evaluation);
+        self.given_up += usize::from(stored.given_up);
         let scored = scored.map(|log_likelihood| EvaluationScore {
             log_likelihood,
             fitted: stored.fitted.as_deref(),
@@ -264,6 +265,7 @@ mod tests {
                     theta: row.theta.clone(),
                     log_likelihood: row.log_likelihood,
                     rejected: matches!(row.kept, Kept::Rejected(_)),
+                    given_up: row.worker.is_empty(),
                     fitted: match &row.kept {
                         Kept::Fitted(values) => Some(values.clone()),
                         _ => None,

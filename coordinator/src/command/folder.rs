@@ -83,7 +83,9 @@ impl Folder {
             );
         }
         if row.state == CalibrationState::Paused {
-            service.control(row.id, Control::Resume).await?;
+            service
+                .control(row.id, Control::Resume { skip_faults: false })
+                .await?;
         }
         Ok(())
     }

@@ -29,7 +29,7 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Status(target) => verbs::status(&target).await,
         CoordinatorCommand::Cancel(target) => verbs::control(&target, "cancel").await,
         CoordinatorCommand::Pause(target) => verbs::control(&target, "pause").await,
-        CoordinatorCommand::Resume(target) => verbs::control(&target, "resume").await,
+        CoordinatorCommand::Resume(resume) => verbs::resume(&resume).await,
         CoordinatorCommand::Compare(target) => verbs::compare(&target).await,
         CoordinatorCommand::Report(report) => verbs::report(&report).await,
         CoordinatorCommand::Export(export) => verbs::export(&export).await,

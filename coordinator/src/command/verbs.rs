@@ -10,7 +10,8 @@ use super::job_on_disk;
 use super::output::say;
 use super::source::{CalibrationSource, ServiceClient};
 use crate::config::{
-    ExportArguments, ExportFormat, ReportArguments, SourceArguments, SubmitArguments, TargetArguments,
+    ExportArguments, ExportFormat, ReportArguments, ResumeArguments, SourceArguments, SubmitArguments,
+    TargetArguments,
 };
 use result::{self, terminal};
 
@@ -60,6 +61,15 @@ pub(super) async fn control(target: &TargetArguments, verb: &str) -> anyhow::Res
         .await?;
     let state = answer["state"].as_str().unwrap_or("in an unknown state");
     Ok(say(&format!("calibration {id} is {state}\n"))?)
+}
+
+pub(super) async fn resume(config: &ResumeArguments) -> anyhow::Result<()> {
+    let verb = if config.skip_faults {
+        "resume?skip_faults=true"
+    } else {
+        "resume"
+    };
+    control(&config.target, verb).await
 }
 
 pub(super) async fn compare(target: &TargetArguments) -> anyhow::Result<()> {

@@ -35,6 +35,9 @@ pub enum Control {
     Cancel,
     /// Lease nothing until resumed.
     Pause,
-    /// Resume; evaluations that had used up their attempts get new ones.
-    Resume,
+    /// Resume.
+    Resume {
+        /// Whether evaluations that had used up their attempts count as rejected; else they get new attempts.
+        skip_faults: bool,
+    },
 }

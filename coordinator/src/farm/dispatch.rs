@@ -195,9 +195,8 @@ impl Dispatcher {
 }
 
 struct Parked {
-    worker: String,
-    model_version: String,
-    want: u32,
+    /// What the worker asked for, without what has been taken of it.
+    request: ExchangeRequest,
     until_ms: u64,
     reply: ExchangeReply,
 }
@@ -274,20 +273,27 @@ impl Thread {
     }
 
     fn exchange(&mut self, request: ExchangeRequest, reply: ExchangeReply, now_ms: u64) {
-        let (worker, model_version) = (request.worker.clone(), request.model_version.clone());
-        let (want, until_ms) = (request.want, now_ms + request.wait_ms);
+        let question = ExchangeRequest {
+            worker: request.worker.clone(),
+            model_version: request.model_version.clone(),
+            results: Vec::new(),
+            holding: Vec::new(),
+            returned: Vec::new(),
+            started: Vec::new(),
+            ..request
+        };
+        let until_ms = now_ms + request.wait_ms;
         let response = self.farm.exchange(request, now_ms);
         let Some(fact) = self.flush() else { return };
-        if response.leases.is_empty() && want > 0 && until_ms > now_ms && response.refused.is_none() {
+        let may_wait = question.want > 0 && until_ms > now_ms;
+        if response.leases.is_empty() && may_wait && response.refused.is_none() {
             self.parked.push_back(Parked {
-                worker,
-                model_version,
-                want,
+                request: question,
                 until_ms,
                 reply,
             });
         } else {
-            self.answer(&worker, reply, (response, fact), now_ms);
+            self.answer(&question.worker, reply, (response, fact), now_ms);
         }
     }
 
@@ -304,23 +310,13 @@ impl Thread {
                 self.parked.push_back(parked);
                 continue;
             }
-            let request = ExchangeRequest {
-                worker: parked.worker.clone(),
-                protocol: shared::exchange::PROTOCOL_VERSION,
-                model_version: parked.model_version.clone(),
-                results: Vec::new(),
-                holding: Vec::new(),
-                returned: Vec::new(),
-                want: parked.want,
-                wait_ms: 0,
-            };
-            let response = self.farm.exchange(request, now_ms);
+            let response = self.farm.exchange(parked.request.clone(), now_ms);
             if response.leases.is_empty() && parked.until_ms > now_ms && response.refused.is_none() {
                 self.parked.push_back(parked);
                 continue;
             }
             let Some(fact) = self.flush() else { return };
-            self.answer(&parked.worker, parked.reply, (response, fact), now_ms);
+            self.answer(&parked.request.worker, parked.reply, (response, fact), now_ms);
         }
     }
 

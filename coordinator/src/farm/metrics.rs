@@ -11,6 +11,8 @@ pub struct FarmCounters {
     pub refused: u64,
     /// Leases given out.
     pub leased: u64,
+    /// Leases that never reached their worker.
+    pub lost: u64,
     /// Leases that expired or ended in a fault.
     pub failed_leases: u64,
 }

@@ -126,8 +126,12 @@ impl Farm {
                 faults: 0,
                 silent_ms: 0,
                 last_seen_ms: now_ms,
+                given: 0,
             });
         record.last_seen_ms = now_ms;
+        // An answer to this worker was lost: it speaks again without having received its last leases.
+        let lost = request.received < record.given;
+        record.given = record.given.min(request.received);
         let (mut duplicates, mut refused_leases) = (0, Vec::new());
         for result in request.results {
             let lease = result.lease;
@@ -153,6 +157,18 @@ impl Farm {
             self.calibrations
                 .values_mut()
                 .any(|e| e.calibration.queue.renew(lease, &worker, until));
+        }
+        for lease in request.started {
+            let until = now_ms + self.lease_ms;
+            self.calibrations
+                .values_mut()
+                .any(|e| e.calibration.queue.start(lease, &worker, until));
+        }
+        if lost {
+            let queues = self.calibrations.values_mut().map(|e| &mut e.calibration.queue);
+            self.counters.lost += queues
+                .map(|q| q.take_back_above(request.received, &worker))
+                .sum::<u64>();
         }
         for lease in request.returned {
             self.give_back(lease, &worker);
@@ -287,15 +303,24 @@ impl Farm {
             }
             let lease_numbers = &mut self.lease_numbers;
             let next_lease = || lease_numbers.next_number();
+            let workers = &self.workers;
+            let has_other = |failed: &[String]| {
+                workers.iter().any(|(name, other)| {
+                    let is_able = equations_of(&other.model_version) == equations_of(version);
+                    is_able && !failed.contains(name)
+                })
+            };
+            let wanted = want - leases.len();
             let claims = calibration
                 .queue
-                .claim(worker, want - leases.len(), holds, expires_ms, next_lease);
+                .claim(worker, wanted, holds, expires_ms, has_other, next_lease);
             holds += claims.len();
             self.counters.leased += claims.len() as u64;
             if !claims.is_empty() && calibration.state == CalibrationState::Queued {
                 calibration.change_state(CalibrationState::Running, None, &mut self.facts);
             }
-            for (lease, evaluation) in claims {
+            for claim in claims {
+                let (lease, evaluation) = (claim.lease, claim.evaluation);
                 let question = calibration
                     .question(evaluation)
                     .expect("a claimed evaluation is asked for at present");
@@ -313,9 +338,13 @@ impl Farm {
                     seal: seal(entry.key, terms, question),
                     variant: question.variant.to_owned(),
                     theta: question.theta.to_vec(),
+                    announce: claim.suspect,
                     subchain: question.subchain,
                 });
             }
+        }
+        if let (Some(record), Some(last)) = (self.workers.get_mut(worker), leases.last()) {
+            record.given = last.lease;
         }
         (leases, refused)
     }
@@ -323,7 +352,9 @@ impl Farm {
     /// Advances the clock: expires leases, removes silent workers, adds up busy time.
     pub fn tick(&mut self, now_ms: u64) {
         for entry in self.calibrations.values_mut() {
-            for failure in entry.calibration.queue.expire(now_ms) {
+            let expired = entry.calibration.queue.expire(now_ms);
+            self.counters.failed_leases += expired.unstarted;
+            for failure in expired.failures {
                 self.counters.failed_leases += 1;
                 if let Some(record) = self.workers.get_mut(&failure.worker) {
                     record.faults += 1;
@@ -382,7 +413,9 @@ impl Farm {
                 let message = Some("paused by a user".to_owned());
                 calibration.change_state(CalibrationState::Paused, message, &mut self.facts);
             }
-            (Control::Resume, CalibrationState::Paused) => calibration.resume(&mut self.facts),
+            (Control::Resume { skip_faults }, CalibrationState::Paused) => {
+                calibration.resume(skip_faults, &mut self.facts);
+            }
             (Control::Pause, _) => {
                 return Err(ControlError::WrongState {
                     id,
@@ -390,7 +423,7 @@ impl Farm {
                     verb: "paused",
                 });
             }
-            (Control::Resume, _) => {
+            (Control::Resume { .. }, _) => {
                 return Err(ControlError::WrongState {
                     id,
                     state,

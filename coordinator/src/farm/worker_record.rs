@@ -18,4 +18,7 @@ pub struct WorkerRecord {
     pub silent_ms: u64,
     #[serde(skip)]
     pub(super) last_seen_ms: u64,
+    /// The highest number of a lease given to it and not known to be lost.
+    #[serde(skip)]
+    pub(super) given: u64,
 }

@@ -94,11 +94,24 @@ async fn pause(State(service): State<Service>, Id(id): Id) -> Result<Json<NewSta
     control(&service, id, Control::Pause).await
 }
 
-/// Goes on after a pause.
-#[utoipa::path(post, path = "/calibrations/{id}/resume", params(("id" = i64, Path)), responses(
+/// How to go on after a pause.
+#[derive(Debug, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Resume {
+    #[serde(default)]
+    skip_faults: bool,
+}
+
+/// Goes on after a pause. With `skip_faults`, evaluations that had used up their attempts count as rejected.
+#[utoipa::path(post, path = "/calibrations/{id}/resume", params(("id" = i64, Path), ("skip_faults" = Option<bool>, Query)), responses(
     (status = 200, body = NewState), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
-async fn resume(State(service): State<Service>, Id(id): Id) -> Result<Json<NewState>, HttpError> {
-    control(&service, id, Control::Resume).await
+async fn resume(
+    State(service): State<Service>,
+    Id(id): Id,
+    Query(resume): Query<Resume>,
+) -> Result<Json<NewState>, HttpError> {
+    let skip_faults = resume.skip_faults;
+    control(&service, id, Control::Resume { skip_faults }).await
 }
 
 /// The stages so far: tempering exponents, acceptance, drift.

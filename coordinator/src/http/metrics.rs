@@ -61,6 +61,12 @@ async fn metrics(State(service): State<Service>) -> Result<String, HttpError> {
     counter(r, "leases_given", "Leases given out", metrics.counters.leased);
     counter(
         r,
+        "leases_lost",
+        "Leases that never reached their worker and were given to others",
+        metrics.counters.lost,
+    );
+    counter(
+        r,
         "leases_failed",
         "Leases that expired or ended in a fault",
         metrics.counters.failed_leases,

@@ -77,6 +77,7 @@ pub async fn finished_calibration(
         rejections: reader.rejections(row.id).await?,
         subchains,
         faults: reader.faults(row.id).await?,
+        given_up: reader.given_up(row.id).await?,
         disputes: reader.disputes(row.id).await?,
         stages,
         row: row.clone(),

@@ -166,7 +166,7 @@ impl Service {
                 let verb = match control {
                     Control::Cancel => "cancelled",
                     Control::Pause => "paused",
-                    Control::Resume => "resumed",
+                    Control::Resume { .. } => "resumed",
                 };
                 Err(ControlError::WrongState { id, state, verb }.into())
             }

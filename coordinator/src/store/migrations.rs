@@ -6,7 +6,7 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 /// Number, name and text of each file of `migrations/`.
 ///
 /// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
-const FILES: [(i64, &str, &str); 12] = [
+const FILES: [(i64, &str, &str); 13] = [
     (
         1,
         "experiments",
@@ -66,6 +66,11 @@ const FILES: [(i64, &str, &str); 12] = [
         12,
         "disputes",
         include_str!("../../../migrations/0012_disputes.sql"),
+    ),
+    (
+        13,
+        "given up",
+        include_str!("../../../migrations/0013_given_up.sql"),
     ),
 ];
 

@@ -61,6 +61,19 @@ impl Reader {
             .collect())
     }
 
+    /// Number of evaluations that were given up after faults.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn given_up(&self, calibration: i64) -> Result<u64, StoreError> {
+        let count: i64 =
+            sqlx::query_scalar("SELECT count(*) FROM evaluations WHERE calibration = ? AND worker = ''")
+                .bind(calibration)
+                .fetch_one(&self.pool)
+                .await?;
+        Ok(count.unsigned_abs())
+    }
+
     /// Evaluations that were answered in two ways, in order. A store of before migration 12, which only reading leaves as it is,
     /// has none.
     ///

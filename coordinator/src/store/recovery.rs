@@ -64,7 +64,7 @@ impl Reader {
                 .last_key_value()
                 .map_or(-1, |(&number, _)| number as i64);
             let rows = sqlx::query(
-                "SELECT evaluation, theta, log_likelihood, rejection IS NOT NULL AS rejected,
+                "SELECT evaluation, theta, log_likelihood, rejection IS NOT NULL AS rejected, worker = '' AS given_up,
                  CASE WHEN ?2 THEN fitted END AS fitted, CASE WHEN ?2 THEN coarse END AS coarse, subchain
                  FROM evaluations WHERE calibration = ?1 AND evaluation > ?3 ORDER BY evaluation LIMIT ?4",
             )
@@ -84,21 +84,23 @@ impl Reader {
                 break;
             }
         }
-        let faults = sqlx::query(
-            "SELECT evaluation, attempt AS n, max(id) FROM faults WHERE calibration = ? GROUP BY evaluation",
-        )
-        .bind(calibration)
-        .fetch_all(&self.pool)
-        .await?;
-        let failed = faults
-            .iter()
-            .map(|row| {
-                (
-                    row.get::<i64, _>("evaluation").unsigned_abs(),
-                    row.get::<u32, _>("n"),
-                )
-            })
-            .collect();
+        let faults =
+            sqlx::query("SELECT evaluation, attempt, worker FROM faults WHERE calibration = ? ORDER BY id")
+                .bind(calibration)
+                .fetch_all(&self.pool)
+                .await?;
+        let mut failed: BTreeMap<u64, Vec<String>> = BTreeMap::new();
+        for fault in &faults {
+            let workers = failed
+                .entry(fault.get::<i64, _>("evaluation").unsigned_abs())
+                .or_default();
+            match fault.get::<u32, _>("attempt") {
+                // a user granted new attempts
+                0 => workers.clear(),
+                _ => workers.push(fault.get("worker")),
+            }
+        }
+        failed.retain(|_, workers| !workers.is_empty());
         let state: String = row.get("state");
         Ok(Stored {
             state: CalibrationState::from_name(&state),
@@ -121,6 +123,7 @@ fn stored_evaluation(row: &SqliteRow) -> Result<StoredEvaluation, StoreError> {
         theta: theta(row)?,
         log_likelihood: row.get("log_likelihood"),
         rejected: row.get("rejected"),
+        given_up: row.get("given_up"),
         fitted: values("fitted")?,
         coarse: values("coarse")?,
         end: end.map(subchain_end).transpose()?,

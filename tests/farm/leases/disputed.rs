@@ -21,8 +21,9 @@ fn worker_flags(service: &Service, id: i64) -> Vec<String> {
 #[test]
 fn an_answer_that_differs_leaves_a_flag_before_and_after_the_end_and_over_restarts() {
     let mut service = Service::start(&[]);
+    let version = service.model_version();
     let id = service.submit(&Job::small());
-    let first = FakeWorker::new(&service.client, "first").computing(&service.model_version());
+    let first = FakeWorker::new(&service.client, "first").computing(&version);
     let leases = first.take(3);
     first.answer(&leases, |l| evaluated(l, FIT_RUNS));
     let faults = |count: u64| {

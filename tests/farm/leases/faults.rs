@@ -2,88 +2,175 @@
 
 use farm_tests::fake_worker::{FakeWorker, evaluated};
 use farm_tests::job::{FIT_RUNS, Job};
+use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::wait::until;
 use serde_json::{Value, json};
 
 use super::{fault, numbers, rejected};
 
-/// Parameter vectors that the model refused, of a calibration that will finish.
-fn rejections(service: &Service, id: i64) -> Value {
+#[test]
+fn a_poisonous_evaluation_is_given_up_and_an_innocent_one_is_not_blamed() {
+    let mut service = Service::start(&["--lease-ms", "300"]);
+    let version = service.model_version();
+    // A round of 60 may give up one.
+    let id = service.submit(&Job::small().sampler(60, [2, 4], 1));
+    let victims: Vec<FakeWorker> = (0..4)
+        .map(|k| FakeWorker::new(&service.client, &format!("victim-{k}")).computing(&version))
+        .collect();
+    // The first dies with three leases in hand, having begun two of them.
+    let batch = victims[0].take(3);
+    assert!(batch.iter().all(|lease| lease["announce"] == false));
+    victims[0].start(&batch[..2]);
+    failed(&service, 3);
+    // From then on each goes out alone: 0 kills, the others do not.
+    let mut lost = 3;
+    for victim in &victims[1..3] {
+        until("the poisonous one", || {
+            let leases = victim.take(50);
+            let poisonous = leases.iter().any(|lease| lease["evaluation"] == 0);
+            if poisonous {
+                assert_eq!(
+                    (leases.len(), &leases[0]["announce"]),
+                    (1, &json!(true)),
+                    "{leases:?}"
+                );
+                victim.start(&leases);
+            } else {
+                victim.answer(&leases, |l| evaluated(l, FIT_RUNS));
+            }
+            poisonous.then_some(())
+        });
+        lost += 1;
+        failed(&service, lost);
+    }
+    let status = service.status(id);
+    assert_eq!(
+        (&status["state"], &status["message"]),
+        (&json!("running"), &Value::Null)
+    );
+    // A second one is too many of this round. Of what never began nothing is an attempt.
+    let second = poison(&service, &victims, lost);
+    let paused = until("a pause", || {
+        Some(service.status(id)).filter(|s| s["state"] == "paused")
+    });
+    let message = paused["message"].as_str().expect("a reason");
+    for part in [
+        &format!("evaluation {second} at theta = "),
+        "failed on 3 attempts",
+        "expired after 300 ms",
+        "resume --skip-faults counts it as rejected",
+    ] {
+        assert!(message.contains(part), "{message} lacks {part}");
+    }
+    assert!(victims[3].take(50).is_empty(), "a paused calibration leased");
+    service.kill();
+    service.restart();
+    let told = run(coordinator([
+        "resume",
+        "1",
+        "--skip-faults",
+        "--url",
+        &service.url(),
+    ]))
+    .success();
+    assert!(told.contains("calibration 1 is running"), "{told}");
+    service.kill();
+    service.restart();
+    // A late answer to what was given up is no dispute.
+    let late = victims[0].answer(&batch[..1], |l| evaluated(l, FIT_RUNS));
+    assert_eq!(late["duplicates"], 1);
+    let _cured = service.worker("cured", 2);
     service.wait_for(id, "finished");
-    service.client.json(&format!("/v1/calibrations/{id}/summary"))["calibrations"][0]["rejected"].clone()
+    assert_eq!(service.metric("grouser_determinism_faults_total"), 0);
+    let summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
+    let flags = summary["flags"].as_array().expect("flags");
+    let flag = flags.iter().find(|flag| flag["kind"] == "worker");
+    let text = flag.and_then(|flag| flag["text"].as_str()).expect("a flag");
+    assert!(
+        text.contains("2 evaluations failed on every worker that tried them"),
+        "{text}"
+    );
+    let found = service.client.json(&format!("/v1/calibrations/{id}/diagnostics"));
+    assert!(
+        found["rejections"]["faults"]["the lease expired after 300 ms without renewal"].as_u64() >= Some(6)
+    );
+}
+
+/// Waits until so many leases have failed or expired.
+fn failed(service: &Service, count: u64) {
+    until(&format!("{count} lost leases"), || {
+        (service.metric("grouser_leases_failed_total") >= count).then_some(())
+    });
+}
+
+/// Lets the next evaluation kill three workers; its number.
+fn poison(service: &Service, victims: &[FakeWorker], mut lost: u64) -> u64 {
+    let mut target: Option<Value> = None;
+    for victim in victims.iter().cycle().skip(1).take(3) {
+        until("the second poisonous one", || {
+            let leases = victim.take(1);
+            let lease = leases.first()?;
+            if *target.get_or_insert_with(|| lease["evaluation"].clone()) == lease["evaluation"] {
+                victim.start(&leases);
+                return Some(());
+            }
+            victim.answer(&leases, |l| evaluated(l, FIT_RUNS));
+            None
+        });
+        lost += 1;
+        failed(service, lost);
+    }
+    target
+        .and_then(|evaluation| evaluation.as_u64())
+        .expect("an evaluation")
 }
 
 #[test]
-fn a_poisonous_evaluation_pauses_its_calibration_and_an_innocent_one_is_not_blamed() {
-    let service = Service::start(&["--lease-ms", "100"]);
-    let version = service.model_version();
+fn answers_lost_on_the_way_cost_no_attempt_and_no_time() {
+    let service = Service::start(&["--lease-ms", "60000"]);
     let id = service.submit(&Job::small());
-    let worker = FakeWorker::new(&service.client, "poisoned").computing(&version);
-    let batch = worker.take(2);
-    assert_eq!(numbers(&batch, "evaluation"), [0, 1]);
-    let theta = batch[0]["theta"].clone();
-    // Both leases of the batch are lost once. From then on each goes out alone: 0 kills, 1 does not.
-    let mut alone = Vec::new();
-    let paused = until("a pause", || {
-        let status = service.status(id);
-        if status["state"] == "paused" {
-            return Some(status);
+    let worker = FakeWorker::new(&service.client, "unlucky");
+    let mut lost = 0;
+    for exchange in 0..30 {
+        let mut request = worker.request();
+        request["want"] = 4.into();
+        if exchange % 3 == 0 {
+            // Sent and executed; the answer never arrives, so nothing of it is known here.
+            let answer = worker.send(&request).json();
+            lost += answer["leases"].as_array().map_or(0, Vec::len) as u64;
+        } else {
+            let leases = worker.take(4);
+            assert!(
+                leases.iter().all(|lease| lease["announce"] == false),
+                "no suspects: {leases:?}"
+            );
+            assert_eq!(
+                worker.answer(&leases, |l| evaluated(l, FIT_RUNS))["duplicates"],
+                0
+            );
         }
-        let leases = worker.take(50);
-        for lease in &leases {
-            if lease["evaluation"] != 0 {
-                worker.answer(std::slice::from_ref(lease), |l| evaluated(l, FIT_RUNS));
-            }
-        }
-        if leases
-            .iter()
-            .any(|l| l["evaluation"] == 0 || l["evaluation"] == 1)
-        {
-            alone.push(numbers(&leases, "evaluation"));
-        }
-        None
-    });
-    assert!(
-        alone.iter().all(|batch| batch.len() == 1),
-        "a suspect shared its batch: {alone:?}"
-    );
-    assert_eq!(alone.iter().filter(|batch| batch[0] == 0).count(), 2, "{alone:?}");
-    assert_eq!(alone.iter().filter(|batch| batch[0] == 1).count(), 1, "{alone:?}");
-    let message = paused["message"].as_str().expect("a reason");
-    assert!(message.contains("evaluation 0 at theta = "), "{message}");
-    let first = theta[0].as_f64().expect("a number").to_string();
-    assert!(message.contains(&first), "{message} lacks {first}");
-    assert!(
-        message.contains("failed on 3 attempts") && message.contains("worker poisoned"),
-        "{message}"
-    );
-    assert!(message.contains("expired after 100 ms"), "{message}");
-    assert!(worker.take(50).is_empty(), "a paused calibration leased");
+    }
+    assert!(lost >= 20, "{lost}");
+    assert_eq!(service.metric("grouser_leases_lost_total"), lost);
+    assert_eq!(service.metric("grouser_leases_failed_total"), 0);
+    assert_eq!(service.metric("grouser_leases_out"), 0);
+    assert_eq!(service.status(id)["state"], "running");
+}
 
-    let resumed = service
-        .client
-        .post(&format!("/v1/calibrations/{id}/resume"), &json!({}));
+#[test]
+fn a_worker_that_dies_before_it_begins_costs_no_attempt() {
+    let service = Service::start(&["--lease-ms", "100"]);
+    let id = service.submit(&Job::small());
+    for round in 1..=5 {
+        let worker = FakeWorker::new(&service.client, &format!("gone-{round}"));
+        assert_eq!(numbers(&worker.take(1), "evaluation"), [0]);
+        failed(&service, round);
+    }
+    let status = service.status(id);
     assert_eq!(
-        (resumed.status, resumed.json()["state"].as_str()),
-        (200, Some("running"))
-    );
-    assert_eq!(service.status(id)["message"], Value::Null);
-    let _cured = service.worker("cured", 2);
-    let finished = service.wait_for(id, "finished");
-    assert_eq!(finished["message"], Value::Null);
-    // Three leases of 0 and one of 1 were lost; both are draws from the prior.
-    let diagnostics = service.client.json(&format!("/v1/calibrations/{id}/diagnostics"));
-    let found = &diagnostics["rejections"];
-    let lost = &found["faults"]["the lease expired after 100 ms without renewal"];
-    assert!(lost.as_u64() >= Some(4), "{found}");
-    let bins = found["parameters"][0]["bins"].as_array().expect("bins").iter();
-    let of_prior: u64 = bins.filter_map(|bin| bin["faults"].as_u64()).sum();
-    assert!(of_prior >= 4, "{found}");
-    let undisturbed = Service::start(&["--local-workers", "1"]);
-    assert_eq!(
-        rejections(&service, id),
-        rejections(&undisturbed, undisturbed.submit(&Job::small()))
+        (&status["state"], &status["message"]),
+        (&json!("running"), &Value::Null)
     );
 }
 

@@ -94,6 +94,8 @@ impl FinishedCalibration {
             }
             flag(FlagKind::Rejections, text);
         }
+        flags.extend(self.given_up());
+        let mut flag = |kind: FlagKind, text: String| flags.push(Flag::plain(kind, text));
         let holdout = self.predictions.iter().filter_map(|p| p.holdout.as_ref());
         let rejected: Vec<&RejectionReason> = holdout.filter_map(|h| h.as_ref().err()).collect();
         if let Some(reason) = rejected.first() {

@@ -2,6 +2,7 @@
 
 use super::kind::{Flag, FlagKind};
 use crate::finished_calibration::FinishedCalibration;
+use crate::words::number;
 
 impl FinishedCalibration {
     /// Evaluations that were answered in two ways: one of the machines computes wrongly.
@@ -22,6 +23,15 @@ impl FinishedCalibration {
         );
         Some(Flag::plain(FlagKind::Worker, text))
     }
+
+    /// Evaluations that no worker came back from.
+    pub(super) fn given_up(&self) -> Option<Flag> {
+        let count = number::count(usize::try_from(self.given_up).ok()?, "evaluation");
+        let text = format!(
+            "{count} failed on every worker that tried them and count as rejected: near their parameters the posterior is too small; the workers' logs and diagnose say what failed"
+        );
+        (self.given_up > 0).then(|| Flag::plain(FlagKind::Worker, text))
+    }
 }
 
 #[cfg(test)]
@@ -30,6 +40,16 @@ mod tests {
 
     use super::*;
     use crate::fixture;
+
+    #[test]
+    fn given_up_evaluations_are_counted() {
+        let mut calibration = fixture::calibration();
+        assert_eq!(calibration.given_up(), None);
+        calibration.given_up = 2;
+        let flag = calibration.given_up().unwrap();
+        assert_eq!(flag.kind, FlagKind::Worker);
+        assert!(flag.text.starts_with("2 evaluations failed"), "{}", flag.text);
+    }
 
     #[test]
     fn a_disputed_evaluation_names_its_workers() {

@@ -1,0 +1,117 @@
+//! Evaluations that machines failed at: how often they are tried, and when they are given up.
+//!
+//! Three failed attempts on three different workers are the evaluation's own fault: it is recorded as rejected, with the reason
+//! `fault`, and the calibration goes on, for at most [`GIVEN_UP_PERCENT`] of a round. Above that share, and where fewer workers
+//! failed, so that a machine may be at fault, the calibration pauses.
+
+use shared::api::CalibrationState;
+use statistics::SubchainEnd;
+
+use super::process::Calibration;
+use super::simulation_result::SimulationResult;
+use crate::lease::{LeaseFailure, MAX_ATTEMPTS};
+use record::Fact;
+
+/// So many of the evaluations of a round may be given up, rounded to the next whole number: none of fewer than 50 `[%]`.
+const GIVEN_UP_PERCENT: usize = 1;
+/// The worker of an evaluation that was given up.
+pub(super) const NOBODY: &str = "";
+
+impl Calibration {
+    /// Records that a lease failed: kept over restarts. When the attempts are used up, the evaluation is given up or the
+    /// calibration pauses.
+    pub fn lease_failed(&mut self, failure: &LeaseFailure, message: &str) -> Vec<Fact> {
+        let evaluation = failure.evaluation;
+        self.failed
+            .entry(evaluation)
+            .or_default()
+            .push(failure.worker.clone());
+        let mut facts = vec![Fact::Fault {
+            calibration: self.identity.id,
+            evaluation,
+            attempt: failure.attempt,
+            worker: failure.worker.clone(),
+            message: message.to_owned(),
+        }];
+        if !failure.exhausted() {
+            return facts;
+        }
+        let theta = self.theta(evaluation).map(<[f64]>::to_vec).unwrap_or_default();
+        let what = format!(
+            "evaluation {evaluation} at theta = {theta:?} failed on {} attempts, the last on worker {}: {message}",
+            failure.attempt, failure.worker
+        );
+        let most = (GIVEN_UP_PERCENT * self.queue.len() + 50) / 100;
+        if failure.is_evaluations_own() && self.given_up < most {
+            tracing::warn!(
+                calibration = self.identity.id,
+                what,
+                "given up: it counts as rejected"
+            );
+            self.give_up(evaluation, message, &mut facts);
+        } else {
+            let help = "resume tries it again; resume --skip-faults counts it as rejected";
+            self.change_state(
+                CalibrationState::Paused,
+                Some(format!("{what}; {help}")),
+                &mut facts,
+            );
+        }
+        facts
+    }
+
+    /// Resumes after a pause. Evaluations that had used up their attempts are given up with `skip_faults`, else they get new ones.
+    pub fn resume(&mut self, skip_faults: bool, facts: &mut Vec<Fact>) {
+        let failed = std::mem::take(&mut self.failed);
+        let exhausted = failed
+            .iter()
+            .filter(|(evaluation, workers)| {
+                let open = !self.done.contains(evaluation) && self.theta(**evaluation).is_some();
+                skip_faults && open && workers.len() >= MAX_ATTEMPTS as usize
+            })
+            .map(|(&evaluation, _)| evaluation)
+            .collect::<Vec<u64>>();
+        // An attempt 0 in the list of faults: the new attempts outlive a restart.
+        facts.extend(failed.into_keys().map(|evaluation| Fact::Fault {
+            calibration: self.identity.id,
+            evaluation,
+            attempt: 0,
+            worker: NOBODY.into(),
+            message: "given new attempts by a user".into(),
+        }));
+        let (done, given_up) = (std::mem::take(&mut self.done), self.given_up);
+        self.ask();
+        for &evaluation in &done {
+            self.queue.complete(evaluation);
+        }
+        (self.done, self.given_up) = (done, given_up);
+        self.change_state(CalibrationState::Running, None, facts);
+        for evaluation in exhausted {
+            self.give_up(evaluation, "skipped by a user after failed attempts", facts);
+        }
+    }
+
+    /// Records an evaluation as rejected because of faults; a subchain stays where it was.
+    fn give_up(&mut self, evaluation: u64, message: &str, facts: &mut Vec<Fact>) {
+        let start = self.theta(evaluation).map(<[f64]>::to_vec);
+        let stayed = start
+            .filter(|_| self.subchain(evaluation).is_some())
+            .map(|theta| SubchainEnd {
+                theta,
+                log_gain: 0.0,
+                moves: 0,
+                accepted: 0,
+                scaled: 0,
+                scaled_accepted: 0,
+            });
+        let rejected = || Err(format!("fault: given up: {message}"));
+        let given_up = SimulationResult {
+            outcome: stayed.is_none().then(rejected),
+            end: stayed,
+        };
+        match self.complete(evaluation, given_up, NOBODY) {
+            Ok((more, _)) => facts.extend(more),
+            Err(error) => self.change_state(CalibrationState::Paused, Some(error.to_string()), facts),
+        }
+    }
+}
