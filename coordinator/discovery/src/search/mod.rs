@@ -12,7 +12,8 @@
 //! - `discovery`: the interface. `query`: what the model is asked. `branch`: a search for one effect that is part of this one.
 //! - `stage`: the stages. `state`: task and hypotheses. `effects`, `laws`: from one stage to the next.
 //! - `hypotheses`: combinations and laws found so far. `weighing`: their probabilities. `verdict`, `conclusion`: the result.
-//! - `cross_validation`: fits without some of the data. `next_run`: the information of runs not yet made.
+//! - `cross_validation`: fits without some of the data. `next_run`: the choice of runs not yet made; `predictive`: what they
+//!   would tell.
 
 mod branch;
 pub(crate) mod conclusion;
@@ -22,6 +23,7 @@ mod effects;
 mod hypotheses;
 mod laws;
 pub(crate) mod next_run;
+mod predictive;
 pub(crate) mod query;
 mod stage;
 mod state;
