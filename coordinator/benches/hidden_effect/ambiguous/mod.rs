@@ -11,14 +11,12 @@ mod strategy;
 
 use campaign::{Answer, Campaign};
 use story::Story;
-use strategy::Strategy;
+use strategy::{MOST, Strategy};
 
 use crate::study::error::StudyError;
 use crate::study::parallel::each;
 use crate::study::rate::{Rate, mean};
 
-/// Most further runs.
-pub(crate) const MOST: usize = 4;
 /// Pairs of runs that are tried at random where the two proposed ones leave the case open.
 const PAIRS: u64 = 25;
 

@@ -4,9 +4,11 @@ use std::ops::RangeInclusive;
 
 use shared::model::RunCondition;
 
-use super::MOST;
 use super::campaign::{Answer, Campaign};
 use super::space::Space;
+
+/// Most further runs.
+pub(super) const MOST: usize = 4;
 
 /// How further runs are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
