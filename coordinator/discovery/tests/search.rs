@@ -158,7 +158,7 @@ fn task(values: &[f64]) -> SearchTask {
             .collect(),
         proposed: ProposedRuns {
             runs: PROPOSED.len(),
-            groups: (0..PROPOSED.len()).collect(),
+            beyond: vec![0.0; PROPOSED.len()],
             noise_sds: vec![SD],
         },
         max_effects: 3,

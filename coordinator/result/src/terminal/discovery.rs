@@ -135,14 +135,16 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
             "not tried as the experiment is: {effects}: {why} (needs {needs})"
         );
     }
-    for run in &record.next_runs {
+    for (place, run) in record.next_runs.iter().enumerate() {
         let _ = writeln!(
             text,
-            "next run: slip {:.2}, {:.1} N, {:.4} m/s distinguishes {} ({:.2} nats)",
+            "{}: slip {:.2}, {:.1} N, {:.4} m/s distinguishes {} ({} {:.2} nats)",
+            if place == 0 { "next run" } else { "and then" },
             run.slip,
             run.wheel_load_n,
             run.sled_speed_m_s,
             run.separates.join(", "),
+            if place == 0 { "tells" } else { "adds" },
             run.information_nats
         );
     }
@@ -226,7 +228,7 @@ mod tests {
             "slip_sinkage                     40.00      0.9600      1        in       1.2  half_normal 0.2",
             "slip_sinkage + bulldozing        40.00    0.0030      0.0600                +28.0",
             "not detectable at the usual strength: moisture",
-            "next run: slip 0.60, 80.0 N, 0.0200 m/s distinguishes slip_sinkage, bulldozing (0.40 nats)",
+            "next run: slip 0.60, 80.0 N, 0.0200 m/s distinguishes slip_sinkage, bulldozing (tells 0.40 nats)",
             "other test: a plate test at 80 N",
             "to add it: coordinator extend 7 --effect slip_sinkage --out out/sand",
         ] {

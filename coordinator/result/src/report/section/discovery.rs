@@ -231,11 +231,11 @@ fn next(record: &Discovery) -> Markup {
     html! {
         p { "Informative tests:" }
         ul {
-            @for run in &record.next_runs {
+            @for (place, run) in record.next_runs.iter().enumerate() {
                 li {
-                    "a run at slip " (number::significant(run.slip, 2)) ", " (number::significant(run.wheel_load_n, 3)) "\u{a0}N, "
+                    (if place == 0 { "a run" } else { "and then a run" }) " at slip " (number::significant(run.slip, 2)) ", " (number::significant(run.wheel_load_n, 3)) "\u{a0}N, "
                     (number::significant(run.sled_speed_m_s, 3)) "\u{a0}m/s distinguishes " (number::list(&run.separates)) " ("
-                    (number::significant(run.information_nats, 2)) " nats)"
+                    (if place == 0 { "tells " } else { "adds " }) (number::significant(run.information_nats, 2)) "\u{a0}nats)"
                 }
             }
             @for test in &record.other_tests { li { (test) } }
