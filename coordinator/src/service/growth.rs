@@ -17,7 +17,7 @@ use crate::farm::dispatch::Stopped;
 use crate::missing_effect::candidate::extended;
 use crate::store::NewCalibrationRow;
 use crate::study::StudyStep;
-use job::{AlgorithmSettings, Spec, continued_job, discovery_job, is_discovery, without_effects};
+use job::{Spec, continued_job, discovery_job, is_discovery, without_effects};
 use record::CalibrationRow;
 use record::Extension;
 use record::effect_of;
@@ -68,9 +68,9 @@ impl Service {
             .filter(|row| !is_discovery(&row.job.toml))
             .filter(meant)
         {
-            match self.spec_of(row).await?.algorithm {
-                AlgorithmSettings::Sample(_) => ledger = Some(row),
-                _ => beside = Some(row),
+            match self.spec_of(row).await?.algorithm.has_posterior() {
+                true => ledger = Some(row),
+                false => beside = Some(row),
             }
         }
         let (Some(last), Some(newest)) = (ledger.or(beside), rows.last()) else {

@@ -6,7 +6,7 @@ use super::error::ServiceError;
 use super::stored_calibration::spec_of;
 use crate::store::Reader;
 use crate::study::{StudyMember, StudyRole, StudyStep, next_step};
-use job::{AlgorithmSettings, Apply, JobFile, discovery_job, is_discovery};
+use job::{Apply, JobFile, discovery_job, is_discovery};
 use record::{CalibrationRow, Discovery};
 
 /// The next step of a study.
@@ -52,7 +52,7 @@ async fn part(
     }
     let spec = spec_of(reader, row).await?;
     Ok(match spec.algorithm {
-        AlgorithmSettings::Sample(_) => StudyRole::Ledger {
+        algorithm if algorithm.has_posterior() => StudyRole::Ledger {
             effects: spec
                 .fit_variant
                 .effects

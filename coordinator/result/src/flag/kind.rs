@@ -45,6 +45,8 @@ pub enum FlagKind {
     Incomplete,
     /// The runs were made in the order of a condition.
     Order,
+    /// Interpolation without physics predicts held-out runs better than the model.
+    InterpolationBeats,
 }
 
 impl FlagKind {
@@ -61,6 +63,7 @@ impl FlagKind {
             FlagKind::Rejections => "rejections",
             FlagKind::Incomplete => "incomplete",
             FlagKind::Order => "order",
+            FlagKind::InterpolationBeats => "interpolation_beats",
         }
     }
 }
