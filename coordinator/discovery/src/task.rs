@@ -3,13 +3,13 @@
 use crate::candidate::Candidate;
 use crate::settings::SearchSettings;
 use statistics::likelihood::Likelihood;
-use statistics::prior::Marginal;
+use statistics::prior::Prior;
 
 /// A search for what a model is missing.
 #[derive(Debug, Clone)]
 pub struct SearchTask {
-    /// Priors of the model's parameters, independent; inferred noise sds are among them.
-    pub prior: Vec<Marginal>,
+    /// Prior of the model's parameters; inferred noise sds are among them.
+    pub prior: Prior,
     /// The data.
     pub likelihood: Likelihood,
     /// The effects that may be missing.

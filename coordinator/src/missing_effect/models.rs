@@ -146,7 +146,7 @@ impl SearchModels {
             is_description: law.dependence.acts_on.channel().is_some(),
         };
         SearchTask {
-            prior: base.parameters.iter().map(|p| p.marginal.clone()).collect(),
+            prior: base.prior(),
             likelihood: base.likelihood.clone(),
             library: self.library.iter().map(|entry| entry.candidate.clone()).collect(),
             laws: self.laws.iter().map(law).collect(),

@@ -33,7 +33,7 @@ impl SearchState {
         let reductions = self.task.reductions.iter().enumerate();
         let branches = reductions.filter_map(|(k, reduction)| {
             let kept = reduction.parameters.iter();
-            let prior: Vec<_> = kept.clone().map(|&i| self.task.prior[i].clone()).collect();
+            let prior = self.task.prior.of_some(&reduction.parameters);
             let settings = SearchSettings {
                 starts: Starts::Draws(vec![kept.map(|&i| theta[i]).collect()]),
                 ..self.task.settings.clone()
@@ -116,7 +116,7 @@ impl SearchState {
         };
         let branches = best.effects.iter().map(|&dropped| {
             let mut frame = NormalFrame::base(&self.task.prior, self.task.settings.least_difference);
-            let (own, mut rest) = best.fit.point.position.split_at(self.task.prior.len());
+            let (own, mut rest) = best.fit.point.position.split_at(self.task.prior.dimension());
             let mut start = own.to_vec();
             let mut effects = Vec::new();
             for &k in &best.effects {
