@@ -13,7 +13,7 @@ use statistics::rng::Stream;
 const DRAWS: u64 = 1 << 42;
 /// A parameter at a bound begins at this score: the score of the bound itself is infinite.
 const FARTHEST_START: f64 = 3.0;
-/// Most steps to the mode of the scores; most halvings of a step; the gain at which it is reached [nats].
+/// Most steps to the mode of the scores; most halvings of a step; the gain at which it is reached \[nats\].
 const STEPS: u32 = 50;
 const HALVINGS: u32 = 30;
 const NO_GAIN: f64 = 1e-9;
