@@ -11,6 +11,7 @@ use shared::file::FileSet;
 use super::clock::now_ms;
 use super::error::ServiceError;
 use super::handle::Service;
+use super::stored_calibration::has_posterior;
 use super::study_step::{next_step_of, search_of};
 use crate::calibration::{Calibration, CalibrationIdentity};
 use crate::farm::dispatch::Stopped;
@@ -68,7 +69,8 @@ impl Service {
             .filter(|row| !is_discovery(&row.job.toml))
             .filter(meant)
         {
-            match self.spec_of(row).await?.algorithm.has_posterior() {
+            let spec = self.spec_of(row).await?;
+            match has_posterior(&self.store().reader(), row, &spec).await? {
                 true => ledger = Some(row),
                 false => beside = Some(row),
             }

@@ -47,25 +47,33 @@ impl NormalCoordinate {
         }
     }
 
-    /// The coordinate of x.
-    pub(crate) fn position(&self, x: f64) -> f64 {
+    /// The normal score of x, without limits.
+    fn score(&self, x: f64) -> f64 {
         let [below, above] = self.marginal.tails(x);
-        let t = match self.side {
+        match self.side {
             Side::Both => self.marginal.normal_score(x),
             Side::Above => -normal::lower_quantile((0.5 * above).max(f64::MIN_POSITIVE)),
             Side::Below => -normal::lower_quantile((0.5 * below).max(f64::MIN_POSITIVE)),
-        };
+        }
+    }
+
+    /// The coordinate of a normal score, within the limits of the search.
+    fn limited(&self, t: f64) -> f64 {
         t.max(self.lower()).min(FARTHEST)
+    }
+
+    /// The coordinate of x.
+    pub(crate) fn position(&self, x: f64) -> f64 {
+        self.limited(self.score(x))
     }
 
     /// x of a coordinate.
     pub(crate) fn value(&self, t: f64) -> f64 {
-        let p = match self.side {
-            Side::Both => normal::cdf(t),
-            Side::Above => 1.0 - 2.0 * normal::cdf(-t),
-            Side::Below => 2.0 * normal::cdf(-t),
-        };
-        self.marginal.quantile(p)
+        match self.side {
+            Side::Both => self.marginal.of_normal_score(t),
+            Side::Above => self.marginal.quantile(1.0 - 2.0 * normal::cdf(-t)),
+            Side::Below => self.marginal.quantile(2.0 * normal::cdf(-t)),
+        }
     }
 
     fn lower(&self) -> f64 {
@@ -185,12 +193,10 @@ impl NormalFrame {
 
     pub(crate) fn position(&self, theta: &[f64]) -> Vec<f64> {
         let pairs = self.coordinates.iter().zip(theta);
-        let mut position: Vec<f64> = pairs.map(|(coordinate, &x)| coordinate.position(x)).collect();
+        let mut position: Vec<f64> = pairs.map(|(coordinate, &x)| coordinate.score(x)).collect();
         self.base.make_independent(&mut position);
         let limited = self.coordinates.iter().zip(position);
-        limited
-            .map(|(coordinate, t)| t.max(coordinate.lower()).min(FARTHEST))
-            .collect()
+        limited.map(|(coordinate, t)| coordinate.limited(t)).collect()
     }
 
     /// The distance of each coordinate from its lower and upper limit.

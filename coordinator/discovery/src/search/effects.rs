@@ -63,6 +63,8 @@ impl SearchState {
             .combinations
             .iter()
             .filter(|c| c.effects.len() == size && c.log_bayes_factor > DETECTED)
+            // A model with a switch turned may lack what others have.
+            .filter(|c| !c.effects.iter().any(|k| self.task.library[*k].is_switch()))
             .take(BEAM)
             .collect();
         let leaves_misfit = hypotheses
@@ -73,7 +75,7 @@ impl SearchState {
         }
         let branches = best.into_iter().map(|combination| {
             let others: Vec<usize> = (0..self.task.library.len())
-                .filter(|k| !combination.effects.contains(k))
+                .filter(|k| !combination.effects.contains(k) && !self.task.library[*k].is_switch())
                 .collect();
             let candidates: Vec<_> = others.iter().map(|&k| self.task.library[k].clone()).collect();
             let base = FittedModel {

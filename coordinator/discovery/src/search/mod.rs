@@ -14,7 +14,7 @@
 //! - `discovery`: the interface. `query`: what the model is asked. `branch`: a search for one effect that is part of this one.
 //! - `stage`: the stages. `state`: task and hypotheses. `effects`, `laws`, `last_stages`: from one stage to the next.
 //! - `hypotheses`: combinations and laws found so far. `weighing`: their probabilities. `verdict`, `conclusion`: the result.
-//! - `cross_validation`: fits without some of the data. `next_run`: the choice of runs not yet made; `predictive`: what they
+//! - `cross_validation`: fits without some of the data. `next_run`: the choice of runs not yet made; `run_information`: what they
 //!   would tell.
 
 mod branch;
@@ -26,8 +26,8 @@ mod hypotheses;
 mod last_stages;
 mod laws;
 pub(crate) mod next_run;
-mod predictive;
 pub(crate) mod query;
+mod run_information;
 mod stage;
 mod state;
 pub(crate) mod verdict;

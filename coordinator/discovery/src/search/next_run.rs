@@ -2,8 +2,8 @@
 
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::spread::spread;
-use crate::search::predictive::{Prediction, Predictive};
 use crate::search::query::{QueriedModel, Query};
+use crate::search::run_information::{Prediction, Predictive};
 use crate::task::{ProposedRuns, SearchTask};
 
 /// Most runs that are proposed.

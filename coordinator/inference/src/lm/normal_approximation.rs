@@ -128,7 +128,7 @@ impl LinearisedPosterior<'_> {
         for _ in 0..STEPS {
             let (gradient, hessian) = self.parabola(&scores)?;
             let step = Cholesky::new(hessian)?.solve(&gradient);
-            let tried = (0..HALVINGS).map(|k| &scores + &step * 0.5_f64.powi(k as i32));
+            let tried = (0..HALVINGS).map(|k| &scores + &step / f64::from(1_u32 << k));
             let mut gains = tried.map(|moved| (self.log_density(moved.as_slice()), moved));
             let Some((higher, moved)) = gains.find(|(density, _)| *density > value) else {
                 break;

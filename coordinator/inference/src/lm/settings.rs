@@ -47,6 +47,8 @@ impl Default for LmSettings {
 
 /// Most evaluations of a fit.
 const MOST_EVALUATIONS: usize = 1_000_000;
+/// Least draws: intervals are their quantiles.
+const LEAST_DRAWS: usize = 20;
 /// Most draws.
 const MOST_DRAWS: usize = 100_000;
 /// Longest difference: a step to one side always fits between the bounds.
@@ -91,6 +93,12 @@ pub enum LmSettingsError {
     DifferenceStep {
         /// The setting.
         value: f64,
+    },
+    /// Too few draws for an interval.
+    #[error("particles = {draws} must be 0 or at least {LEAST_DRAWS}")]
+    TooFewDraws {
+        /// The setting.
+        draws: usize,
     },
     /// More draws than a store keeps well.
     #[error("particles = {draws} is above {MOST_DRAWS}")]
@@ -149,6 +157,9 @@ impl LmSettings {
         }
         if max_evaluations > MOST_EVALUATIONS {
             return Err(LmSettingsError::TooManyEvaluations { max_evaluations });
+        }
+        if (1..LEAST_DRAWS).contains(&self.draws) {
+            return Err(LmSettingsError::TooFewDraws { draws: self.draws });
         }
         if self.draws > MOST_DRAWS {
             return Err(LmSettingsError::TooManyDraws { draws: self.draws });

@@ -7,6 +7,7 @@ use shared::experiment::RunUse;
 use super::kind::{Flag, FlagKind};
 use crate::study::Study;
 use crate::table::errors::ErrorTable;
+use crate::table::fixed_sigma::SigmaSource;
 use crate::table::row::rows_of;
 use crate::words::data_channel::{DataChannel, ShownUnit};
 use crate::words::number;
@@ -40,21 +41,28 @@ impl Study {
             let sigma = sigmas.get(channel)?;
             let (runs, in_sigmas) = (model.runs as f64, model.rmse / sigma.sd);
             let by_noise = chi_square_tail(runs * in_sigmas * in_sigmas, runs)?;
-            if model.runs < LEAST_RUNS || model.rmse <= RATIO * baseline.rmse || by_noise >= BY_CHANCE {
+            // An inferred noise is the model's own error: no excuse, and no news.
+            let noise = Some(sigma).filter(|sigma| sigma.source != SigmaSource::Inferred);
+            let is_excused = noise.is_some() && by_noise >= BY_CHANCE;
+            if model.runs < LEAST_RUNS || model.rmse <= RATIO * baseline.rmse || is_excused {
                 return None;
             }
+            let noise = noise.map(|sigma| sigma.sd);
             let unit = ShownUnit::of(channel);
             let text = format!(
-                "interpolation between the fitted measurements predicts {} better than the model: {} against {} on {} of held-out runs, where the noise is {}: the model misses something that the measurements show",
+                "interpolation between the fitted measurements predicts {} better than the model: {} against {} on {} of held-out runs{}: the model misses something that the measurements show",
                 channel.words(),
                 unit.size(baseline.rmse),
                 unit.size(model.rmse),
                 number::count(model.runs, "measurement"),
-                unit.size(sigma.sd)
+                noise.map_or(String::new(), |sd| format!(
+                    ", where the noise is {}",
+                    unit.size(sd)
+                ))
             );
             Some(Flag {
                 channel: Some(DataChannel::Wheel(channel)),
-                p: Some(by_noise),
+                p: noise.map(|_| by_noise),
                 ..Flag::plain(FlagKind::InterpolationBeats, text)
             })
         };
