@@ -27,7 +27,7 @@ pub(crate) struct LedgerRow {
     pub(crate) usage: RunUse,
     /// In SI units, and in the noise sds of the study.
     pub(crate) errors: ErrorTable,
-    /// Channels whose error is more than 5 % above that of the line before.
+    /// Channels whose error is more than 5 % above that of the line before, on the same measurements.
     pub(crate) worse: Vec<Channel>,
     pub(crate) coverage: Option<Coverage>,
 }
@@ -46,8 +46,10 @@ impl Study {
             let comparison = calibration.comparison();
             let row = |(usage, errors): (RunUse, &Option<ErrorTable>)| {
                 let errors = errors.clone()?.in_fixed_sigmas(&sigmas);
+                // Errors on other measurements say nothing.
                 let last = lines
                     .last()
+                    .filter(|line| line.calibration.row.experiment == calibration.row.experiment)
                     .and_then(|line| line.rows.iter().find(|r| r.usage == usage));
                 let is_worse = |channel: &Channel| {
                     let before = last.and_then(|last| last.errors.channel(*channel));
@@ -115,5 +117,7 @@ mod tests {
         assert_eq!(marked(&study), []);
         worsen(0.05, &mut study);
         assert_eq!(marked(&study), [Channel::Sinkage]);
+        study.extensions[0].row.experiment += 1;
+        assert_eq!(marked(&study), []);
     }
 }
