@@ -4,8 +4,14 @@
 #[path = "../benches/hidden_effect/study/mod.rs"]
 mod study;
 
+#[path = "../benches/hidden_effect/rig/mod.rs"]
+#[expect(dead_code, reason = "the bench prints all campaigns")]
+mod rig;
+
 use discovery::SearchVerdict;
 
+use rig::Flaw;
+use rig::untryable::{self, Said};
 use study::error::StudyError;
 use study::kind::HiddenKind;
 use study::noise_free::LEAST_SEPARATION;
@@ -98,4 +104,25 @@ fn a_truth_that_is_swapped_for_another_is_not_found() {
         .hidden;
     let score = search(HiddenKind::One, &case, ONE[0]).expect("it is searched");
     assert!(!score.is_right && !score.claim_is_right, "{score}");
+}
+
+#[test]
+fn a_rig_that_states_its_order_and_preparations_is_not_taken_for_physics() {
+    for flaw in [
+        Flaw::SortedDrift,
+        Flaw::RandomDrift,
+        Flaw::Preparations,
+        Flaw::Understated,
+    ] {
+        let tally = rig::stated(flaw, 0..2, SEED).expect("every campaign is searched");
+        assert_eq!(tally.false_claims(), 0, "{tally}");
+    }
+}
+
+#[test]
+fn where_the_truth_cannot_be_tried_no_stand_in_is_named() {
+    for number in 0..2 {
+        let (said, line) = untryable::one(SEED, number).expect("it is searched");
+        assert_ne!(said, Said::StandIn, "{line}");
+    }
 }

@@ -19,6 +19,7 @@ mod not_tried;
 mod older_store;
 mod point_fit;
 mod posterior_prior;
+mod reference;
 mod rig;
 mod search;
 mod spatial;

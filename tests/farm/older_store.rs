@@ -36,7 +36,9 @@ fn same_numbers(summary: &str) {
     for number in [
         "/calibrations/0/log_evidence",
         "/calibrations/0/parameters",
-        "/calibrations/0/error",
+        "/calibrations/0/error/fit/all/rmse_sigma",
+        "/calibrations/0/error/fit/drawbar_pull/rmse",
+        "/calibrations/0/error/fit/sinkage/rmse",
         "/calibrations/0/evaluations",
         "/point_estimates/0/parameters",
         "/point_estimates/0/log_posterior",

@@ -10,11 +10,11 @@ use serde_json::Value;
 
 use super::bad_input::{refusal, refused};
 
-/// The small job as a fit.
+/// The small job as a fit without draws.
 pub(super) fn fit() -> Job {
     Job::small().in_job(
         "algorithm = \"tmcmc\"\nparticles = 60\nmoves = [2, 4]",
-        "algorithm = \"lm\"",
+        "algorithm = \"lm\"\nparticles = 0",
     )
 }
 
@@ -145,10 +145,10 @@ fn a_run_of_a_fit_prints_it_again_and_check_says_what_it_costs() {
 #[test]
 fn keys_of_another_algorithm_are_refused_by_name() {
     let small = Job::small;
-    let own = "lm takes starts, max_evaluations, difference_step, seed";
+    let own = "lm takes particles, starts, max_evaluations, difference_step, seed";
     let message = refusal(&small().in_job("\"tmcmc\"", "\"lm\""));
     assert!(
-        message.contains("[sampler] particles belongs to algorithm tmcmc and ching-chen-2007 and basis")
+        message.contains("[sampler] moves belongs to algorithm tmcmc and ching-chen-2007")
             && message.contains(own),
         "{message}"
     );
@@ -163,7 +163,7 @@ fn keys_of_another_algorithm_are_refused_by_name() {
     }
     refused(
         fit().in_job("seed = 1", "max_evaluation = 50"),
-        "job.toml line 16: unknown key \"max_evaluation\"; the nearest known is \"max_evaluations\"",
+        "job.toml line 17: unknown key \"max_evaluation\"; the nearest known is \"max_evaluations\"",
     );
     refused(
         fit().in_job("seed = 1", "max_evaluations = 9"),

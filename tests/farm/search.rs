@@ -129,7 +129,7 @@ fn keys_of_other_algorithms_are_refused_by_name() {
         (
             "cma-es",
             "particles = 9",
-            "particles belongs to algorithm tmcmc and ching-chen-2007 and basis; cma-es takes population, max_evaluations, restarts, seed",
+            "particles belongs to algorithm tmcmc and ching-chen-2007 and basis and lm; cma-es takes population, max_evaluations, restarts, seed",
         ),
     ];
     for (algorithm, key, message) in refusals {

@@ -54,7 +54,11 @@ fn each_calibration_of_a_study_is_what_the_same_job_gives_alone() {
     // whichever calibration is asked, the summary is of its study
     assert_eq!(summary(&service, ids[2]), study);
     let mut alone = Vec::new();
-    for sampler in [SAMPLER, "algorithm = \"lm\"", "algorithm = \"cma-es\""] {
+    for sampler in [
+        SAMPLER,
+        "algorithm = \"lm\"\nparticles = 0",
+        "algorithm = \"cma-es\"",
+    ] {
         let id = service.submit(&Job::small().in_job(SAMPLER, sampler));
         service.wait_for(id, "finished");
         alone.push(summary(&service, id));

@@ -6,7 +6,13 @@
 //! - `outside`: one of the laws of `laws/`, which are in nobody's library.
 //! - `one+none`, or another list: COUNT of each. `all`: of each of these.
 //! - `scm`: one effect, of the three-dimensional model on a coarse grid.
-//! - `ambiguous`: one effect, at one load and one speed: whether the proposed runs, made and measured, tell what it is.
+//! - `ambiguous`: one effect, at one load and one speed: how many further runs tell what it is, proposed ones made one at a time or
+//!   two at once, random ones, and ones that fill the space of conditions.
+//! - `drift`: nothing, but the soil stiffens and the force sensor's zero moves over the series, with the runs sorted by slip or in random
+//!   order, and `order` stated or not. `preparations`: nothing, but each load and speed has a soil preparation of its own, with
+//!   `prepared` stated or not. `understated`: nothing, with noise 1.5 times larger than declared.
+//! - `untryable`: one effect that needs what the experiment does not state.
+//! - `steady`: as `scm`, one experiment after the other as a study searches them: the answer, its reason and its time.
 //! - `tmcmc`: one effect of the catalogue, each in turn; the search's log Bayes factor of it beside that of full evidences by the
 //!   sampler.
 //! - `data`: the experiments of `tests/data`.
@@ -18,11 +24,15 @@
 
 mod ambiguous;
 mod data;
+#[expect(dead_code, reason = "tests search a few campaigns")]
+mod rig;
+mod steady;
 mod study;
 mod tmcmc;
 
 use std::process::ExitCode;
 
+use rig::Flaw;
 use study::error::StudyError;
 use study::kind::HiddenKind;
 use study::parallel::each;
@@ -45,7 +55,12 @@ fn main() -> ExitCode {
     };
     let done = match arguments.first().map_or("one", String::as_str) {
         "ambiguous" => ambiguous::run(count, seed),
+        "drift" => rig::run(&Flaw::DRIFTS, count, seed),
+        "preparations" => rig::run(&[Flaw::Preparations], count, seed),
+        "steady" => steady::run(count, seed),
         "tmcmc" => tmcmc::run(count, seed),
+        "understated" => rig::run(&[Flaw::Understated], count, seed),
+        "untryable" => rig::untryable::run(count, seed),
         "data" => data::run(),
         "all" => tables("one+none+outside+two+three", count, seed),
         kinds => tables(kinds, count, seed),

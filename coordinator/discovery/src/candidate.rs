@@ -17,12 +17,17 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// Whether it is another model with the same parameters.
+    #[must_use]
+    pub fn is_switch(&self) -> bool {
+        self.parameters.is_empty()
+    }
+
     /// Checks strengths and neutral value.
     pub(crate) fn check(&self) -> Result<(), CandidateError> {
         let name = || self.name.clone();
         let parameters = self.parameters.len();
-        let is_switch = self.parameters.is_empty();
-        if self.strengths.is_empty() != is_switch || self.strengths.iter().any(|k| *k >= parameters) {
+        if self.strengths.is_empty() != self.is_switch() || self.strengths.iter().any(|k| *k >= parameters) {
             return Err(CandidateError::NoStrength {
                 name: name(),
                 strengths: self.strengths.clone(),

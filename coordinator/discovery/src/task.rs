@@ -3,13 +3,13 @@
 use crate::candidate::Candidate;
 use crate::settings::SearchSettings;
 use statistics::likelihood::Likelihood;
-use statistics::prior::Marginal;
+use statistics::prior::Prior;
 
 /// A search for what a model is missing.
 #[derive(Debug, Clone)]
 pub struct SearchTask {
-    /// Priors of the model's parameters, independent; inferred noise sds are among them.
-    pub prior: Vec<Marginal>,
+    /// Prior of the model's parameters; inferred noise sds are among them.
+    pub prior: Prior,
     /// The data.
     pub likelihood: Likelihood,
     /// The effects that may be missing.
@@ -51,8 +51,8 @@ pub struct Reduction {
 pub struct ProposedRuns {
     /// Their number.
     pub runs: usize,
-    /// The group of each run; of similar runs, which form a group, at most one is proposed.
-    pub groups: Vec<usize>,
+    /// How far each run lies beyond the measured range of wheel load and rim speed: the logarithm of the ratio, 0 within the range.
+    pub beyond: Vec<f64>,
     /// Noise sd of each measured channel, in its unit.
     pub noise_sds: Vec<f64>,
 }

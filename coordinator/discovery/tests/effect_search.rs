@@ -2,7 +2,7 @@
 
 use discovery::{Candidate, CandidateError, EffectRanking, EffectSearch, EvidenceMethod, SearchSettings};
 use nalgebra::{DMatrix, DVector};
-use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal};
+use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
 
 const SD: f64 = 0.5;
 const DATA: usize = 12;
@@ -39,8 +39,8 @@ fn column(k: usize, i: usize) -> f64 {
 }
 
 /// Two straight-line parameters with unit priors.
-fn base() -> [Marginal; 2] {
-    [normal(0.0, 1.0), normal(0.0, 1.0)]
+fn base() -> Prior {
+    Prior::new(vec![normal(0.0, 1.0), normal(0.0, 1.0)])
 }
 
 fn measured(truth: &[(usize, f64)]) -> Vec<f64> {
@@ -61,13 +61,19 @@ fn likelihood(values: &[f64]) -> Likelihood {
 
 /// Searches candidates; candidate k changes the predictions along column `columns[k]`, a switch by that column.
 fn search(values: &[f64], candidates: &[Candidate], columns: &[usize], backwards: bool) -> EffectRanking {
-    let mut search = EffectSearch::new(
-        &base(),
-        likelihood(values),
-        candidates,
-        &SearchSettings::default(),
-    )
-    .unwrap();
+    search_from(&base(), values, candidates, columns, backwards)
+}
+
+/// The same with another prior of the base.
+fn search_from(
+    prior: &Prior,
+    values: &[f64],
+    candidates: &[Candidate],
+    columns: &[usize],
+    backwards: bool,
+) -> EffectRanking {
+    let mut search =
+        EffectSearch::new(prior, likelihood(values), candidates, &SearchSettings::default()).unwrap();
     while search.ranking().is_none() {
         let pending: Vec<_> = search.pending().collect();
         let mut order: Vec<usize> = (0..pending.len()).collect();
@@ -96,6 +102,10 @@ fn log_evidence(values: &[f64], columns: &[(usize, f64)]) -> f64 {
         let of = |&(k, scale): &(usize, f64)| scale * scale * column(k, i) * column(k, j);
         noise + columns.iter().map(of).sum::<f64>()
     });
+    normal_log_density(values, covariance)
+}
+
+fn normal_log_density(values: &[f64], covariance: DMatrix<f64>) -> f64 {
     let y = DVector::from_column_slice(values);
     let cholesky = covariance.cholesky().unwrap();
     let log_determinant: f64 = (0..DATA).map(|i| 2.0 * libm::log(cholesky.l()[(i, i)])).sum();
@@ -140,6 +150,34 @@ fn evidence_of_a_linear_extension_is_exact() {
     fitted(ranked.log_bayes_factor, expected);
     near(ranked.screen_log_bayes_factor, expected);
     assert_eq!(ranked.method, EvidenceMethod::Confirmed);
+}
+
+#[test]
+fn correlations_of_the_prior_count() {
+    let values = measured(&[(0, 0.7), (1, 0.9), (2, 1.0)]);
+    let prior = base()
+        .correlated(vec![0, 1], &[vec![1.0, -0.8], vec![-0.8, 1.0]])
+        .unwrap();
+    let ranking = search_from(
+        &prior,
+        &values,
+        &[effect("square", normal(0.0, 2.0))],
+        &[2],
+        false,
+    );
+    // c0 z0 + c1 (-0.8 z0 + 0.6 z1): the same model with independent z along other columns.
+    let evidence = |strength: &[(usize, f64)]| {
+        let covariance = DMatrix::from_fn(DATA, DATA, |i, j| {
+            let noise = if i == j { SD * SD } else { 0.0 };
+            let first = |i: usize| column(0, i) - 0.8 * column(1, i);
+            let second = |i: usize| 0.6 * column(1, i);
+            let of = |&(k, scale): &(usize, f64)| scale * scale * column(k, i) * column(k, j);
+            noise + first(i) * first(j) + second(i) * second(j) + strength.iter().map(of).sum::<f64>()
+        });
+        normal_log_density(&values, covariance)
+    };
+    let expected = mixed(|scale| evidence(&[(2, 2.0 * scale)])) - evidence(&[]);
+    fitted(ranking.of(Some(0)).unwrap().log_bayes_factor, expected);
 }
 
 #[test]

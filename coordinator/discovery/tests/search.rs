@@ -6,7 +6,7 @@ use discovery::{
 };
 use inference::TellProgress;
 use statistics::rng::Stream;
-use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal};
+use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
 
 const SD: f64 = 0.1;
 /// Eight levels of x, each with three values of w.
@@ -148,7 +148,7 @@ fn task(values: &[f64]) -> SearchTask {
         sd: ErrorSd::Known(SD),
     };
     SearchTask {
-        prior: vec![normal(1.0), normal(1.0)],
+        prior: Prior::new(vec![normal(1.0), normal(1.0)]),
         likelihood: Likelihood::new(values.iter().enumerate().map(datum).collect()).unwrap(),
         library: library(),
         laws: laws(),
@@ -158,7 +158,7 @@ fn task(values: &[f64]) -> SearchTask {
             .collect(),
         proposed: ProposedRuns {
             runs: PROPOSED.len(),
-            groups: (0..PROPOSED.len()).collect(),
+            beyond: vec![0.0; PROPOSED.len()],
             noise_sds: vec![SD],
         },
         max_effects: 3,
@@ -298,7 +298,7 @@ fn an_effect_of_the_model_without_evidence_is_redundant() {
     // The base has a square of its own, which the truth has or has not.
     let gain = |square: f64| {
         let mut task = task(&measured(|x, _| 0.3 + 0.5 * x + square * x * x));
-        task.prior.push(normal(1.0));
+        task.prior = Prior::new(vec![normal(1.0); 3]);
         task.library.remove(SQUARE);
         task.laws.clear();
         task.reductions = vec![Reduction {
@@ -342,16 +342,12 @@ fn the_order_within_a_round_does_not_matter() {
 fn inferred_noise_is_fitted_too() {
     let values = measured(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
     let mut task = task(&values);
-    task.prior.push(
-        Marginal::new(
-            Distribution::Lognormal {
-                median: 0.2,
-                factor: 3.0,
-            },
-            None,
-        )
-        .unwrap(),
-    );
+    let sd = Distribution::Lognormal {
+        median: 0.2,
+        factor: 3.0,
+    };
+    let sd = Marginal::new(sd, None).unwrap();
+    task.prior = Prior::new(vec![normal(1.0), normal(1.0), sd]);
     let data = task.likelihood.data().iter().map(|d| Datum {
         sd: ErrorSd::Inferred { parameter: 2 },
         ..*d

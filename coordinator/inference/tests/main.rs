@@ -11,5 +11,6 @@ mod evolution;
 mod flags;
 mod lm;
 mod metamodel;
+mod normal_approximation;
 mod problems;
 mod trends;

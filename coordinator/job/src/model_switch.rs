@@ -69,6 +69,11 @@ impl ModelSwitch {
         self.key == "kind"
     }
 
+    /// Whether a job of `scm` has it without a word.
+    pub fn is_usual(&self) -> bool {
+        matches!(self.name, "pressure_direction_wheel_normal" | "displacement_rim")
+    }
+
     /// Whether a job has it.
     pub fn is_on(&self, spec: &Spec) -> bool {
         let spatial = spec.model.spatial.as_ref();

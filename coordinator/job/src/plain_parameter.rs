@@ -107,7 +107,9 @@ impl Spec {
     pub fn freed(&self) -> Vec<String> {
         let free = |plain: &&PlainParameter| self.parameters.iter().any(|p| p.name == plain.name);
         let freed = PLAIN_PARAMETERS.iter().filter(free).map(|plain| plain.name);
-        let turned = MODEL_SWITCHES.iter().filter(|switch| switch.is_on(self));
+        // The usual settings go without saying; the kind is said.
+        let turned = MODEL_SWITCHES.iter();
+        let turned = turned.filter(|switch| switch.is_on(self) && !switch.is_usual());
         freed
             .chain(turned.map(|switch| switch.name))
             .map(str::to_owned)

@@ -184,12 +184,6 @@ impl Spec {
             algorithm
                 .check(parameters.len())
                 .map_err(|e| in_job(format!("[sampler] {e}")))?;
-            if matches!(algorithm, AlgorithmSettings::Fit(_)) && likelihood.entangles_unknown_sds() {
-                return Err(in_job(format!(
-                    "[sampler] {}",
-                    inference::lm::LmSettingsError::EntangledNoise
-                )));
-            }
         }
         let model_parameters: Vec<String> = parameters
             .iter()

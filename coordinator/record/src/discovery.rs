@@ -72,7 +72,7 @@ pub struct Discovery {
     /// Effects that need what the experiment does not state: they are weighed with typical values, and never named.
     #[serde(default)]
     pub not_tried: Vec<NotTried>,
-    /// Test runs that would distinguish the remaining explanations, the most informative first.
+    /// Test runs that together would distinguish the remaining explanations, each given those before it.
     pub next_runs: Vec<NextRun>,
     /// Tests without a rolling wheel that would distinguish them.
     pub other_tests: Vec<String>,
@@ -237,7 +237,7 @@ pub struct NextRun {
     pub sled_speed_m_s: f64,
     /// The explanations that it distinguishes.
     pub separates: Vec<String>,
-    /// Expected information on them \[nats\].
+    /// Expected information on them beyond that of the runs before it in the list \[nats\].
     pub information_nats: f64,
 }
 

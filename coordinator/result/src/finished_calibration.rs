@@ -18,8 +18,10 @@ pub struct FinishedCalibration {
     pub experiment: String,
     /// Its stages.
     pub stages: Vec<StageRow>,
-    /// The point estimate; `None` where the posterior was sampled.
+    /// The point estimate; `None` where there are draws of the posterior.
     pub estimate: Option<EstimateRow>,
+    /// The fit about which the draws are those of a normal approximation; `None` where the posterior was sampled.
+    pub approximated: Option<EstimateRow>,
     /// The equally weighted draws of the posterior; none of a fit.
     pub posterior: Vec<Sample>,
     /// The draws from the prior, then the populations at the end of the stages before the last; none of a fit.
@@ -57,12 +59,21 @@ impl FinishedCalibration {
         &self.predictions[first..]
     }
 
-    /// The most probable particle: highest likelihood times prior; the first of equals.
-    pub fn most_probable(&self) -> Option<&Sample> {
+    /// The most probable parameters: those that a fit found, else those of the particle of the highest likelihood times prior,
+    /// the first of equals.
+    pub fn most_probable(&self) -> Option<Sample> {
+        if let Some(mode) = &self.approximated {
+            return Some(Sample {
+                theta: mode.theta.clone(),
+                log_likelihood: Some(mode.log_likelihood),
+                log_prior: mode.log_prior,
+            });
+        }
         let score = |s: &Sample| s.log_likelihood.unwrap_or(f64::NEG_INFINITY) + s.log_prior;
         self.posterior
             .iter()
             .reduce(|best, s| if score(s) > score(best) { s } else { best })
+            .cloned()
     }
 
     /// The draws of one parameter.

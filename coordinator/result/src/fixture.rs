@@ -53,12 +53,36 @@ e,a,sand,0.4,25,0.01,1.2,0.022,LAST
 
 /// A calibration with a holdout run.
 pub(crate) fn calibration() -> FinishedCalibration {
-    build("holdout")
+    build(&RUNS.replace("LAST", "holdout"))
 }
 
 /// The same with every run fitted.
 pub(crate) fn without_holdout() -> FinishedCalibration {
-    build("fit")
+    build(&RUNS.replace("LAST", "fit"))
+}
+
+/// The same with more holdout runs, whose pull lies on a line through those of the fitted ones; the model is off by this much `[N]`.
+pub(crate) fn with_held_out_runs(count: usize, error: f64) -> FinishedCalibration {
+    let mut runs = RUNS.replace("LAST", "fit");
+    for k in 0..count {
+        let slip = 0.21 + 0.28 * k as f64 / count as f64;
+        let pull = 0.5 + (slip - 0.2) / 0.3;
+        runs += &format!("h{k},a,sand,{slip},25,0.01,{pull},,holdout\n");
+    }
+    let mut calibration = build(&runs);
+    let experiment = &calibration.spec.experiment;
+    let measured = calibration
+        .spec
+        .holdout_runs
+        .iter()
+        .map(|&i| experiment.runs[i].measured[0]);
+    let predicted: Vec<f64> = measured.flatten().map(|pull| pull + error).collect();
+    for prediction in &mut calibration.predictions {
+        if let Some(Ok(observables)) = &mut prediction.holdout {
+            observables.drawbar_pull_n.clone_from(&predicted);
+        }
+    }
+    calibration
 }
 
 /// The same where the model rejected all final draws, drifted, and has no evidence.
@@ -157,11 +181,10 @@ pub(crate) fn grown() -> Study {
     }
 }
 
-fn build(last: &str) -> FinishedCalibration {
-    let runs = RUNS.replace("LAST", last);
+fn build(runs: &str) -> FinishedCalibration {
     let files = FileSet {
         toml: EXPERIMENT.into(),
-        files: BTreeMap::from([("runs.csv".into(), runs)]),
+        files: BTreeMap::from([("runs.csv".into(), runs.to_owned())]),
     };
     let job = FileSet {
         toml: JOB.into(),
@@ -251,6 +274,7 @@ fn build(last: &str) -> FinishedCalibration {
         experiment: row.name.clone(),
         row,
         estimate: None,
+        approximated: None,
         stages: vec![stage(1, 0.001), stage(2, 0.1), stage(3, 1.0)],
         populations: vec![posterior.clone(); 3],
         likeliest_values: Some(likeliest_values),

@@ -43,6 +43,7 @@ pub use summary::point_estimate::PointEstimate;
 pub use summary::study::StudySummary;
 pub use table::comparison::Comparison;
 pub use table::errors::{ChannelError, ErrorTable};
+pub use table::fixed_sigma::{FixedSigma, FixedSigmas, SigmaSource};
 pub use table::group::{ErrorGroup, GroupBy, GroupError};
 pub use table::posterior::PosteriorTable;
 pub use table::predictive::Predictive;

@@ -43,10 +43,21 @@ impl Study {
         [calibration.effects(), self.freed(calibration)].concat()
     }
 
-    /// The lines of the error ledger: the calibrations that have a posterior.
+    /// The lines of the error ledger: the calibrations that have a posterior. A fit beside a sample is a point estimate, even
+    /// with draws, which those of earlier versions are given when they go on.
     pub fn ledger(&self) -> impl Iterator<Item = &FinishedCalibration> {
-        self.calibrations()
-            .filter(|calibration| calibration.estimate.is_none())
+        let approximates = self.lead.approximated.is_some();
+        self.calibrations().filter(move |calibration| {
+            calibration.estimate.is_none() && (approximates || calibration.approximated.is_none())
+        })
+    }
+
+    /// The current model: the line of the ledger with the most evidence on the newest measurements; the first of equals.
+    pub fn current(&self) -> Option<&FinishedCalibration> {
+        let newest = self.ledger().map(|o| o.row.experiment).max();
+        let of_newest = self.ledger().filter(|o| Some(o.row.experiment) == newest);
+        let evidence = |o: &FinishedCalibration| o.row.log_evidence.unwrap_or(f64::NEG_INFINITY);
+        of_newest.reduce(|a, b| if evidence(b) > evidence(a) { b } else { a })
     }
 }
 

@@ -9,7 +9,7 @@ use crate::terminal;
 pub enum StudyFile {
     /// Summary, as JSON.
     Summary,
-    /// Draws of the posterior.
+    /// Draws of the current model's posterior.
     Posterior,
     /// Report.
     Report,
@@ -55,7 +55,7 @@ impl Study {
     pub fn file(&self, file: StudyFile) -> Option<String> {
         Some(match file {
             StudyFile::Summary => json(&self.summary()) + "\n",
-            StudyFile::Posterior => self.lead.posterior_table().to_csv(),
+            StudyFile::Posterior => self.current().unwrap_or(&self.lead).posterior_table().to_csv(),
             StudyFile::Report => report::page(self),
             StudyFile::Text => terminal::study(self),
             StudyFile::Story => terminal::discovery::story(self),

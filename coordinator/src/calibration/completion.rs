@@ -207,16 +207,19 @@ impl Calibration {
                 let calibration = self.identity.id;
                 match self.engine.finding() {
                     Some(CalibrationResult::Posterior(posterior)) => {
-                        self.draws = Some(final_draws(posterior));
+                        self.draws = Some(final_draws(&posterior.particles, None));
                         facts.push(Fact::Posterior {
                             calibration,
                             posterior: Box::new(posterior.clone()),
                         });
                     }
                     Some(CalibrationResult::Estimate(estimate)) => {
-                        self.draws = Some(FinalDraws {
-                            thetas: vec![estimate.theta.clone()],
-                            likeliest: self.histories.is_some().then(|| estimate.theta.clone()),
+                        self.draws = Some(match &estimate.approximation {
+                            Some(approximation) => final_draws(&approximation.draws, Some(&estimate.theta)),
+                            None => FinalDraws {
+                                thetas: vec![estimate.theta.clone()],
+                                likeliest: self.histories.is_some().then(|| estimate.theta.clone()),
+                            },
                         });
                         facts.push(Fact::Estimate {
                             calibration,

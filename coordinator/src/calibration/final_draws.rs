@@ -1,6 +1,6 @@
 //! The parameter vectors simulated after a sampler or a fit has ended.
 
-use inference::PosteriorSample;
+use inference::Particle;
 
 /// What is simulated once the posterior, or the estimate, is known.
 #[derive(Debug)]
@@ -11,21 +11,24 @@ pub(super) struct FinalDraws {
     pub(super) likeliest: Option<Vec<f64>>,
 }
 
-/// The draws that are simulated on every run: the most probable particle, then evenly spaced ones; beside, the likeliest.
-pub(super) fn final_draws(posterior: &PosteriorSample) -> FinalDraws {
-    let particles = &posterior.particles;
+/// The draws that are simulated on every run: the most probable parameters, by default the particle's, then evenly spaced
+/// draws; beside, the likeliest.
+pub(super) fn final_draws(particles: &[Particle], mode: Option<&[f64]>) -> FinalDraws {
     let highest = |score: &dyn Fn(usize) -> f64| {
         (0..particles.len()).reduce(|a, b| if score(b) > score(a) { b } else { a })
     };
     let log_likelihood = |i: usize| particles[i].log_likelihood.value();
-    let best = highest(&|i| log_likelihood(i) + particles[i].log_prior);
     let likeliest = highest(&log_likelihood);
     let spread = job::PREDICTION_DRAWS - 1;
     let count = particles.len().min(spread);
     let even = (0..count).map(|k| k * particles.len() / count);
     let theta = |i: usize| particles[i].theta.clone();
+    let best = mode.map(<[f64]>::to_vec).or_else(|| {
+        let best = highest(&|i| log_likelihood(i) + particles[i].log_prior);
+        best.map(theta)
+    });
     FinalDraws {
-        thetas: best.into_iter().chain(even).map(theta).collect(),
+        thetas: best.into_iter().chain(even.map(theta)).collect(),
         likeliest: likeliest.map(theta),
     }
 }

@@ -135,7 +135,7 @@ mod tests {
     const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\na,w,s,0.2,100,0.008,5.0,fit\nb,w,s,0.4,100,0.008,5.1,holdout\n";
 
     const FITS: [&str; 3] = [
-        "algorithm = \"lm\"\nstarts = 3\nmax_evaluations = 60\n",
+        "algorithm = \"lm\"\nparticles = 0\nstarts = 3\nmax_evaluations = 60\n",
         "algorithm = \"ga\"\npopulation = 9\ngenerations = 6\n",
         "algorithm = \"cma-es\"\nmax_evaluations = 60\n",
     ];

@@ -9,7 +9,7 @@ use utoipa_axum::routes;
 use super::error::{HttpError, Id};
 use crate::service::{Service, finished_calibration};
 use job::is_discovery;
-use result::{CalibrationSummary, PointEstimate};
+use result::{CalibrationSummary, FixedSigmas, PointEstimate};
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(ledger))
@@ -56,13 +56,20 @@ async fn ledger(State(service): State<Service>, Id(id): Id) -> Result<Json<Ledge
         .into_iter()
         .find(|study| study.0 == id)
         .ok_or_else(|| HttpError::new(ErrorKind::NotFound, format!("there is no study {id}")))?;
+    // Those of the first calibration, by which all are measured.
+    let mut sigmas = None;
     let (mut ledger, mut point_estimates) = (Vec::new(), Vec::new());
     for &calibration in &calibrations {
         let row = service.calibration_row(calibration).await?;
         if row.state == CalibrationState::Finished && !is_discovery(&row.job.toml) {
             let outcome = finished_calibration(&reader, &row).await?;
-            ledger.extend(outcome.calibration_summary());
-            point_estimates.extend(outcome.point_estimate());
+            let sigmas = sigmas.get_or_insert_with(|| FixedSigmas::of(&outcome));
+            ledger.extend(
+                outcome
+                    .calibration_summary()
+                    .map(|line| line.in_fixed_sigmas(sigmas)),
+            );
+            point_estimates.extend(outcome.point_estimate().map(|own| own.in_fixed_sigmas(sigmas)));
         }
     }
     Ok(Json(Ledger {

@@ -274,10 +274,7 @@ mod tests {
             free("shear_velocity_m_s").unwrap(),
             ["shear_velocity_m_s", "kind_quasi_static"]
         );
-        assert_eq!(
-            free("kind_scm").unwrap(),
-            ["pressure_direction_wheel_normal", "displacement_rim", "kind_scm"]
-        );
+        assert_eq!(free("kind_scm").unwrap(), ["kind_scm"]);
         let message = free("flow_fraction").unwrap_err().to_string();
         assert!(message.contains("quasi_static has no terrain"), "{message}");
     }

@@ -15,10 +15,10 @@ const LEAST_LEVELS: usize = 3;
 const SLIPS: [f64; 7] = [0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8];
 /// Slip of a braked run, proposed where the rig has made one.
 const BRAKED: f64 = -0.2;
-/// Factor beyond the measured loads and rim speeds, and the number of each: a rig reaches further than one experiment.
-const BEYOND: f64 = 2.0;
-const LOADS: usize = 4;
-const SPEEDS: usize = 3;
+/// A rig reaches further than one campaign: half to twice its median load and rim speed, and all that it has measured.
+const REACH: f64 = 2.0;
+/// Number of loads, and of rim speeds.
+const LEVELS: usize = 3;
 
 /// The data of each level of slip, wheel load and rim speed, of the variables with enough levels.
 pub(super) fn levels(spec: &Spec) -> Vec<Vec<usize>> {
@@ -64,27 +64,65 @@ fn level_of(values: &[f64]) -> Vec<usize> {
     level
 }
 
+/// The measured wheel loads, and rim speeds above 0.
+fn measured(conditions: &[RunCondition]) -> [Vec<f64>; 2] {
+    let rims = conditions.iter().map(|c| rim_speed_m_s(c.slip, c.sled_speed_m_s));
+    [
+        conditions.iter().map(|c| c.wheel_load_n).collect(),
+        rims.filter(|speed| *speed > 0.0).collect(),
+    ]
+}
+
+/// Least and greatest of some values.
+fn range(values: &[f64]) -> [f64; 2] {
+    [
+        values.iter().copied().fold(f64::INFINITY, f64::min),
+        values.iter().copied().fold(0.0, f64::max),
+    ]
+}
+
+/// Values that the rig can set, equal ratios apart. The reach follows the median, so that it does not grow when a proposed run at its
+/// end is added to the campaign.
+fn reach(values: &[f64]) -> Vec<f64> {
+    let mut ascending = values.to_vec();
+    ascending.sort_by(f64::total_cmp);
+    let median = ascending[ascending.len() / 2];
+    let [least, greatest] = range(values);
+    let (least, greatest) = (least.min(median / REACH), greatest.max(median * REACH));
+    let share = |k: usize| k as f64 / (LEVELS - 1) as f64;
+    (0..LEVELS)
+        .map(|k| two_digits(least * libm::pow(greatest / least, share(k))))
+        .collect()
+}
+
+/// How far each run lies beyond the measured range of wheel load and rim speed: the logarithm of the ratio, 0 within the range.
+pub(super) fn beyond(spec: &Spec, design: &[RunCondition]) -> Vec<f64> {
+    let ranges = measured(&spec.fit_variant.conditions).map(|values| range(&values));
+    let of_run = |condition: &RunCondition| {
+        let own = [
+            condition.wheel_load_n,
+            rim_speed_m_s(condition.slip, condition.sled_speed_m_s),
+        ];
+        let beyond = own
+            .iter()
+            .zip(&ranges)
+            .map(|(x, [least, greatest])| libm::log((least / x).max(x / greatest).max(1.0)));
+        beyond.fold(0.0, f64::max)
+    };
+    design.iter().map(of_run).collect()
+}
+
 /// Runs that the rig could make, with wheel and soil of the first fitted run: each slip at each load and rim speed.
 pub(super) fn proposed(spec: &Spec) -> Vec<RunCondition> {
     let conditions = &spec.fit_variant.conditions;
     let Some(first) = conditions.first() else {
         return Vec::new();
     };
-    let spread = |values: Vec<f64>, count: usize| -> Vec<f64> {
-        let least = values.iter().copied().fold(f64::INFINITY, f64::min) / BEYOND;
-        let greatest = values.iter().copied().fold(0.0, f64::max) * BEYOND;
-        let share = |k: usize| k as f64 / (count - 1) as f64;
-        (0..count)
-            .map(|k| two_digits(least * libm::pow(greatest / least, share(k))))
-            .collect()
-    };
-    let loads = spread(conditions.iter().map(|c| c.wheel_load_n).collect(), LOADS);
-    let rims = conditions.iter().map(|c| rim_speed_m_s(c.slip, c.sled_speed_m_s));
-    let rims: Vec<f64> = rims.filter(|speed| *speed > 0.0).collect();
+    let [loads, rims] = measured(conditions);
     if rims.is_empty() {
         return Vec::new();
     }
-    let rims = spread(rims, SPEEDS);
+    let (loads, rims) = (reach(&loads), reach(&rims));
     let braked = conditions.iter().any(|c| c.slip < -0.05);
     let mut proposed = Vec::new();
     for slip in SLIPS.into_iter().chain(braked.then_some(BRAKED)) {
@@ -133,6 +171,18 @@ fn two_digits(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_reach_does_not_grow_with_a_run_at_its_end() {
+        let campaign = [90.0; 6];
+        assert_eq!(reach(&campaign), [45.0, 90.0, 180.0]);
+        assert_eq!(
+            reach(&[&campaign[..], &[180.0, 45.0]].concat()),
+            [45.0, 90.0, 180.0]
+        );
+        // What has been measured is within reach.
+        assert_eq!(reach(&[10.0, 100.0, 100.0, 400.0]), [10.0, 63.0, 400.0]);
+    }
 
     #[test]
     fn scatter_within_a_level_makes_no_further_one() {

@@ -146,7 +146,7 @@ impl SearchModels {
             is_description: law.dependence.acts_on.channel().is_some(),
         };
         SearchTask {
-            prior: base.parameters.iter().map(|p| p.marginal.clone()).collect(),
+            prior: base.prior(),
             likelihood: base.likelihood.clone(),
             library: self.library.iter().map(|entry| entry.candidate.clone()).collect(),
             laws: self.laws.iter().map(law).collect(),
@@ -154,7 +154,7 @@ impl SearchModels {
             levels: design::levels(base),
             proposed: ProposedRuns {
                 runs: self.design.len(),
-                groups: self.slips(),
+                beyond: design::beyond(base, &self.design),
                 noise_sds: self.channels.iter().map(|(_, sd)| *sd).collect(),
             },
             max_effects: self.max_effects,
@@ -167,12 +167,6 @@ impl SearchModels {
                 },
             },
         }
-    }
-
-    /// The group of each proposed run: runs with the same slip.
-    fn slips(&self) -> Vec<usize> {
-        let same = |slip: f64| self.design.iter().position(|c| (c.slip - slip).abs() < 1e-9);
-        self.design.iter().filter_map(|c| same(c.slip)).collect()
     }
 
     /// The candidate of an index: the library, then the curve and the forms of each law.

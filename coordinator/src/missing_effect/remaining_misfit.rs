@@ -8,21 +8,23 @@ use shared::experiment::{TestRun, rim_speed_m_s};
 
 use super::models::SearchModels;
 
-/// p-value below which a channel is left unexplained, and a condition is said to order what is left.
+/// p-value below which a channel is left unexplained.
 const UNLIKELY: f64 = 0.01;
-/// The same as a standard normal score, two-sided.
-const SCORE: f64 = 2.576;
+/// Standard normal score beyond which a correlation is not chance: two-sided p of 0.01 over five conditions.
+const SCORE: f64 = 3.09;
 
 /// A condition of a run by its name in results.
-type Condition = (&'static str, fn(&TestRun) -> f64);
+type Condition = (&'static str, fn(&TestRun) -> Option<f64>);
 
 /// Slip before the sled's speed, from which the rig may set it.
 const CONDITIONS: [Condition; 5] = [
-    ("slip", |run| run.slip),
-    ("wheel_load", |run| run.wheel_load_n),
-    ("rim_speed", |run| rim_speed_m_s(run.slip, run.sled_speed_m_s)),
-    ("sled_speed", |run| run.sled_speed_m_s),
-    ("order", |run| run.order.map_or(0.0, f64::from)),
+    ("slip", |run| Some(run.slip)),
+    ("wheel_load", |run| Some(run.wheel_load_n)),
+    ("rim_speed", |run| {
+        Some(rim_speed_m_s(run.slip, run.sled_speed_m_s))
+    }),
+    ("sled_speed", |run| Some(run.sled_speed_m_s)),
+    ("order", |run| run.order.map(f64::from)),
 ];
 
 /// The channels that are left unexplained, the worst first.
@@ -58,8 +60,8 @@ pub(super) fn remaining_misfit(models: &SearchModels, residuals: &[f64]) -> Vec<
 /// The condition with which residuals are most correlated, if by Fisher's z the correlation is not chance.
 fn along(runs: &[&TestRun], residuals: &[f64]) -> Option<(&'static str, f64)> {
     let found = CONDITIONS.iter().filter_map(|(name, of)| {
-        let values: Vec<f64> = runs.iter().map(|run| of(run)).collect();
-        Some((*name, correlation(&values, residuals)?))
+        let values: Option<Vec<f64>> = runs.iter().map(|run| of(run)).collect();
+        Some((*name, correlation(&values?, residuals)?))
     });
     let best = found.reduce(|a, b| if b.1.abs() > a.1.abs() { b } else { a })?;
     let score = libm::atanh(best.1.abs().min(1.0 - 1e-12)) * (runs.len() as f64 - 3.0).max(0.0).sqrt();

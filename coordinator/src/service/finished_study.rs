@@ -42,7 +42,15 @@ pub async fn finished_calibration(
         }
     };
     let mut populations = reader.populations(row.id).await?;
-    let posterior = populations.pop().unwrap_or_default();
+    // The draws of a normal approximation belong to no stage.
+    let posterior = match populations.pop() {
+        Some(last) => last,
+        None => reader.samples(row.id, None).await?,
+    };
+    let (estimate, approximated) = match posterior.is_empty() {
+        true => (estimate, None),
+        false => (None, estimate),
+    };
     if let AlgorithmSettings::Sample(_) = spec.algorithm {
         populations.insert(0, first_population(&spec, &prior_draws));
     }
@@ -67,6 +75,7 @@ pub async fn finished_calibration(
     Ok(FinishedCalibration {
         spec,
         estimate,
+        approximated,
         prior_draws,
         experiment: row.name.clone(),
         posterior,

@@ -11,13 +11,14 @@ use shared::file::FileSet;
 use super::clock::now_ms;
 use super::error::ServiceError;
 use super::handle::Service;
+use super::stored_calibration::has_posterior;
 use super::study_step::{next_step_of, search_of};
 use crate::calibration::{Calibration, CalibrationIdentity};
 use crate::farm::dispatch::Stopped;
 use crate::missing_effect::candidate::extended;
 use crate::store::NewCalibrationRow;
 use crate::study::StudyStep;
-use job::{AlgorithmSettings, Spec, continued_job, discovery_job, is_discovery, without_effects};
+use job::{Spec, continued_job, discovery_job, is_discovery, without_effects};
 use record::CalibrationRow;
 use record::Extension;
 use record::effect_of;
@@ -68,9 +69,10 @@ impl Service {
             .filter(|row| !is_discovery(&row.job.toml))
             .filter(meant)
         {
-            match self.spec_of(row).await?.algorithm {
-                AlgorithmSettings::Sample(_) => ledger = Some(row),
-                _ => beside = Some(row),
+            let spec = self.spec_of(row).await?;
+            match has_posterior(&self.store().reader(), row, &spec).await? {
+                true => ledger = Some(row),
+                false => beside = Some(row),
             }
         }
         let (Some(last), Some(newest)) = (ledger.or(beside), rows.last()) else {

@@ -1,11 +1,11 @@
 //! A stored calibration: its row, its specification, where it stands.
 
-use shared::api::CalibrationStatus;
+use shared::api::{CalibrationState, CalibrationStatus};
 use shared::file::FileSet;
 
 use super::error::ServiceError;
 use crate::store::Reader;
-use job::{JobFile, Spec};
+use job::{AlgorithmSettings, JobFile, Spec};
 use record::CalibrationRow;
 
 /// A stored calibration.
@@ -32,6 +32,22 @@ pub(super) async fn experiment_files(reader: &Reader, id: i64) -> Result<FileSet
 pub(super) async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, ServiceError> {
     let experiment = experiment_files(reader, row.experiment).await?;
     Ok(Spec::new("job.toml", &row.job, "experiment.toml", &experiment)?)
+}
+
+/// Whether a calibration has draws of the posterior, or will have: of a sample, or of a fit's normal approximation. A finished fit has them
+/// where they are stored: fits of earlier versions have none.
+pub(super) async fn has_posterior(
+    reader: &Reader,
+    row: &CalibrationRow,
+    spec: &Spec,
+) -> Result<bool, ServiceError> {
+    let is_stored = match spec.algorithm {
+        AlgorithmSettings::Fit(_) if row.state == CalibrationState::Finished => {
+            !reader.samples(row.id, None).await?.is_empty()
+        }
+        _ => true,
+    };
+    Ok(spec.algorithm.has_posterior() && is_stored)
 }
 
 /// The status of a stored calibration that the farm does not hold.

@@ -3,10 +3,10 @@
 use shared::api::CalibrationState;
 
 use super::error::ServiceError;
-use super::stored_calibration::spec_of;
+use super::stored_calibration::{has_posterior, spec_of};
 use crate::store::Reader;
 use crate::study::{StudyMember, StudyRole, StudyStep, next_step};
-use job::{AlgorithmSettings, Apply, JobFile, discovery_job, is_discovery};
+use job::{Apply, JobFile, discovery_job, is_discovery};
 use record::{CalibrationRow, Discovery};
 
 /// The next step of a study.
@@ -51,8 +51,8 @@ async fn part(
         return Ok(StudyRole::Search(reader.discovery(row.id).await?.map(Box::new)));
     }
     let spec = spec_of(reader, row).await?;
-    Ok(match spec.algorithm {
-        AlgorithmSettings::Sample(_) => StudyRole::Ledger {
+    Ok(match has_posterior(reader, row, &spec).await? {
+        true => StudyRole::Ledger {
             effects: spec
                 .fit_variant
                 .effects
@@ -62,7 +62,7 @@ async fn part(
                 .collect(),
             search: find_search(row, study)?.map(|row| row.id),
         },
-        _ => StudyRole::Beside,
+        false => StudyRole::Beside,
     })
 }
 

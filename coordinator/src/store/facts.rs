@@ -2,8 +2,8 @@
 
 use std::sync::atomic::Ordering;
 
-use inference::StageRecord;
 use inference::point_estimate::ModeEstimate;
+use inference::{Particle, StageRecord};
 use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 
 use super::blob;
@@ -141,7 +141,15 @@ async fn stage(
     .bind(s.equilibrated)
     .execute(&mut *connection)
     .await?;
-    for (part, particles) in s.population.chunks(ROWS).enumerate() {
+    samples(connection, (calibration, s.stage), &s.population).await
+}
+
+async fn samples(
+    connection: &mut SqliteConnection,
+    (calibration, stage): (i64, usize),
+    population: &[Particle],
+) -> Result<(), sqlx::Error> {
+    for (part, particles) in population.chunks(ROWS).enumerate() {
         let mut query: QueryBuilder<Sqlite> = QueryBuilder::new(
             "INSERT OR REPLACE INTO samples (calibration, stage, particle, theta, log_likelihood, log_prior) ",
         );
@@ -149,7 +157,7 @@ async fn stage(
             let log_likelihood = Some(particle.log_likelihood.value()).filter(|l| l.is_finite());
             values
                 .push_bind(calibration)
-                .push_bind(s.stage as i64)
+                .push_bind(stage as i64)
                 .push_bind((part * ROWS + k) as i64)
                 .push_bind(blob::encode(&particle.theta))
                 .push_bind(log_likelihood)
@@ -184,7 +192,16 @@ async fn estimate(
     .bind(json(&history))
     .execute(&mut *connection)
     .await?;
-    sqlx::query("UPDATE calibrations SET evaluations = ?, rejected = ? WHERE id = ?")
+    if let Some(approximation) = &e.approximation {
+        // Draws that belong to no stage: there is no other population.
+        samples(connection, (calibration, 0), &approximation.draws).await?;
+    }
+    sqlx::query("UPDATE calibrations SET log_evidence = ?, evaluations = ?, rejected = ? WHERE id = ?")
+        .bind(
+            e.approximation
+                .as_ref()
+                .map(|approximation| approximation.log_evidence),
+        )
         .bind(e.evaluations as i64)
         .bind(e.rejected as i64)
         .bind(calibration)

@@ -243,17 +243,4 @@ fn error_models_that_mean_nothing_are_refused() {
         Job::small().in_experiment("[noise]", "[noise]\nrun_scatter = 1.5"),
         "experiment.toml: [noise] run_scatter 1.5 must lie in [0, 1]: it is relative",
     );
-    let lm = |job: Job| {
-        job.in_job(
-            "algorithm = \"tmcmc\"\nparticles = 60\nmoves = [2, 4]",
-            "algorithm = \"lm\"",
-        )
-    };
-    let message = refusal(&lm(
-        Job::small().in_experiment("[noise]", "[noise]\nrun_scatter = \"unknown\"")
-    ));
-    assert!(
-        message.starts_with("job.toml: [sampler] lm infers noise sds of independent normal errors only"),
-        "{message}"
-    );
 }

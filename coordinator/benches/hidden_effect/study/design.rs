@@ -35,6 +35,9 @@ pub(crate) struct PlannedRun {
     pub(crate) sled_speed_m_s: f64,
     pub(crate) pass: u32,
     pub(crate) is_holdout: bool,
+    /// Its place in time, and its soil preparation, where the experiment states them.
+    pub(crate) order: Option<usize>,
+    pub(crate) prepared: Option<usize>,
 }
 
 impl Plan {
@@ -82,6 +85,8 @@ impl Plan {
                         sled_speed_m_s: rim * (1.0 - slip),
                         pass: if is_second && self == Plan::Passes { 2 } else { 1 },
                         is_holdout,
+                        order: None,
+                        prepared: None,
                     });
                 }
             }
@@ -127,8 +132,17 @@ pub(crate) fn experiment(rows: &[PlannedRun], values: &[[f64; CHANNELS]], sds: [
         "[soil.s]\ndensity_kg_m3 = 1400.0\n[rig]\nbin_length_m = 1.5\n[noise]\ndrawbar_pull_n = {pull:?}\ntorque_n_m = {torque:?}\nsinkage_m = {sinkage:?}\n"
     );
     let mut runs =
-        "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,pass,drawbar_pull_n,torque_n_m,sinkage_m,use\n"
+        "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,pass,drawbar_pull_n,torque_n_m,sinkage_m,use"
             .to_owned();
+    let columns = [
+        ("order", rows.iter().map(|row| row.order).collect::<Vec<_>>()),
+        ("prepared", rows.iter().map(|row| row.prepared).collect()),
+    ];
+    let stated = columns
+        .into_iter()
+        .filter(|(_, values)| values.iter().any(Option::is_some));
+    let stated: Vec<_> = stated.collect();
+    runs.extend(stated.iter().map(|(name, _)| format!(",{name}")));
     for (number, (row, [pull, torque, sinkage])) in rows.iter().zip(values).enumerate() {
         let PlannedRun {
             wheel,
@@ -137,12 +151,19 @@ pub(crate) fn experiment(rows: &[PlannedRun], values: &[[f64; CHANNELS]], sds: [
             sled_speed_m_s,
             pass,
             is_holdout,
+            ..
         } = row;
         let usage = if *is_holdout { "holdout" } else { "fit" };
         runs += &format!(
-            "r{number},{wheel},s,{slip:?},{wheel_load_n:?},{sled_speed_m_s:?},{pass},{pull:?},{torque:?},{sinkage:?},{usage}\n"
+            "\nr{number},{wheel},s,{slip:?},{wheel_load_n:?},{sled_speed_m_s:?},{pass},{pull:?},{torque:?},{sinkage:?},{usage}"
+        );
+        runs.extend(
+            stated
+                .iter()
+                .map(|(_, values)| values[number].map_or(",".to_owned(), |value| format!(",{value}"))),
         );
     }
+    runs += "\n";
     FileSet {
         toml,
         files: [("runs.csv".to_owned(), runs)].into(),

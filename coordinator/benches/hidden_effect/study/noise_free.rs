@@ -38,7 +38,7 @@ pub(crate) fn shortfall(case: &SyntheticCase, effects: &[&Extension]) -> Result<
         starts: Starts::Draws(vec![start]),
         ..SearchSettings::default()
     };
-    let prior: Vec<_> = spec.parameters.iter().map(|p| p.marginal.clone()).collect();
+    let prior = spec.prior();
     let search = EffectSearch::new(&prior, spec.likelihood.clone(), &[], &settings)?;
     let evaluate = Evaluate::new(&spec.fit_variant)?;
     let ranking = run(search, |_, theta| {

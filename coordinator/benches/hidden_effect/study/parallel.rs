@@ -4,9 +4,22 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::error::StudyError;
 
+/// The threads of the machine.
+pub(crate) fn threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
 /// The results of pieces of work, in their order; which thread does which piece changes nothing.
 pub(crate) fn each<T: Send>(count: u64, work: impl Fn(u64) -> T + Sync) -> Result<Vec<T>, StudyError> {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    each_on(threads(), count, work)
+}
+
+/// As [`each`], on so many threads.
+pub(crate) fn each_on<T: Send>(
+    threads: usize,
+    count: u64,
+    work: impl Fn(u64) -> T + Sync,
+) -> Result<Vec<T>, StudyError> {
     let next = AtomicU64::new(0);
     let run = || {
         let mut done = Vec::new();

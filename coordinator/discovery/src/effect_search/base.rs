@@ -58,12 +58,12 @@ pub(crate) fn fits(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use statistics::prior::{Distribution, Marginal};
+    use statistics::prior::{Distribution, Marginal, Prior};
 
     #[test]
     fn starts_fill_the_prior() {
         let uniform = |lower, upper| Marginal::new(Distribution::Uniform { lower, upper }, None).unwrap();
-        let frame = NormalFrame::base(&[uniform(0.0, 1.0), uniform(0.0, 4.0)], 0.03);
+        let frame = NormalFrame::base(&Prior::new(vec![uniform(0.0, 1.0), uniform(0.0, 4.0)]), 0.03);
         let thetas: Vec<Vec<f64>> = starts(&frame, 32).iter().map(|t| frame.theta(t)).collect();
         for quarter in 0..4 {
             let low = f64::from(quarter);

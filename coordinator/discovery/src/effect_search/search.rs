@@ -10,7 +10,7 @@ use crate::laplace::fit::FittedModel;
 use crate::settings::{SearchSettings, Starts};
 use inference::{InferenceFailure, TellError, TellProgress};
 use statistics::likelihood::Likelihood;
-use statistics::prior::Marginal;
+use statistics::prior::Prior;
 
 /// A parameter vector to evaluate.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,17 +25,17 @@ impl EffectSearch {
     /// A search whose first round holds the starts of the base's fit.
     ///
     /// # Arguments
-    /// - `prior`: of the base's parameters, independent; inferred noise sds are among them. `likelihood`: the data.
+    /// - `prior`: of the base's parameters; inferred noise sds are among them. `likelihood`: the data.
     ///
     /// # Errors
     /// [`CandidateError`].
     pub fn new(
-        prior: &[Marginal],
+        prior: &Prior,
         likelihood: Likelihood,
         candidates: &[Candidate],
         settings: &SearchSettings,
     ) -> Result<Self, CandidateError> {
-        if prior.is_empty() {
+        if prior.dimension() == 0 {
             return Err(CandidateError::NoBase);
         }
         candidates.iter().try_for_each(Candidate::check)?;

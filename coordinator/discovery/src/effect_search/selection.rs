@@ -9,7 +9,7 @@ use crate::effect_search::ranking::{EffectRanking, EvidenceMethod, RankedEffect}
 use crate::effect_search::state::{EffectSearch, EvidenceEstimate, Phase};
 use crate::laplace::batch::FitBatch;
 use crate::laplace::coordinate::NormalFrame;
-use crate::laplace::fit::LaplaceFit;
+use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::laplace::importance::ImportanceSampler;
 use crate::laplace::point::FitPoint;
 
@@ -23,7 +23,7 @@ const LEAST_CLAIMED: f64 = 1.0;
 const CERTAINLY_PRESENT: f64 = 10.0;
 /// A fit that is not confirmed counts at most so much less than the screen promises \[nats\].
 const MOST_SHORT: f64 = 3.0;
-/// Once so many effects were sampled, no other is: where many lead in turn, none is a detection.
+/// Most effects that are sampled, which bounds the cost where many lead in turn.
 const MOST_SAMPLED: usize = 3;
 /// A strength within so many standard deviations of its prior from where the effect is absent lies where the prior is not normal.
 const NEARLY_ABSENT: f64 = 0.1;
@@ -91,23 +91,19 @@ impl EffectSearch {
             return;
         };
         if fit.point.value < base.fit.point.value && log_evidence > base.log_evidence {
-            base.fit = fit.clone();
-            self.take_base_evidence(log_evidence);
-        }
-    }
-
-    /// Replaces the base's evidence, and corrects all Bayes factors.
-    fn take_base_evidence(&mut self, log_evidence: f64) {
-        let Some(base) = &mut self.base else { return };
-        let gain = log_evidence - base.log_evidence;
-        base.log_evidence = log_evidence;
-        for candidate in &mut self.candidates {
-            if let Some(estimate) = &mut candidate.estimate {
-                estimate.log_bayes_factor -= gain;
-                estimate.stated_log_bayes_factor -= gain;
-            }
-            if let Some(screened) = &mut candidate.screened {
-                screened.log_bayes_factor -= gain;
+            let gain = log_evidence - base.log_evidence;
+            *base = FittedModel {
+                fit: fit.clone(),
+                log_evidence,
+            };
+            for candidate in &mut self.candidates {
+                if let Some(estimate) = &mut candidate.estimate {
+                    estimate.log_bayes_factor -= gain;
+                    estimate.stated_log_bayes_factor -= gain;
+                }
+                if let Some(screened) = &mut candidate.screened {
+                    screened.log_bayes_factor -= gain;
+                }
             }
         }
     }
@@ -224,7 +220,8 @@ impl EffectSearch {
         })
     }
 
-    /// Takes the evidence of the sampled models, where the base was sampled too.
+    /// Takes the evidence of the sampled effects over the sampled base. Other factors keep Laplace's approximation of both, whose errors at
+    /// a common bound cancel.
     pub(super) fn take_sampled(&mut self, models: &[(Option<usize>, ImportanceSampler)]) {
         let evidences = models
             .iter()
@@ -233,7 +230,6 @@ impl EffectSearch {
         let Some(base) = self.sampled.get(&None).copied().flatten() else {
             return;
         };
-        self.take_base_evidence(base);
         for (candidate, model) in models {
             let estimate = candidate.and_then(|k| self.candidates[k].estimate.as_mut());
             if let (Some(estimate), Some(evidence)) = (estimate, model.log_evidence()) {

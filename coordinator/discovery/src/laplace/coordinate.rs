@@ -1,6 +1,6 @@
 //! Parameters as coordinates in which every prior is standard normal or half-normal.
 
-use statistics::prior::{Marginal, normal};
+use statistics::prior::{Marginal, Prior, normal};
 
 use crate::candidate::Candidate;
 
@@ -29,6 +29,8 @@ pub(crate) struct NormalCoordinate {
 #[derive(Debug, Clone)]
 pub(crate) struct NormalFrame {
     pub(crate) coordinates: Vec<NormalCoordinate>,
+    /// Of the base model; its correlations make the normal scores of its parameters from the coordinates.
+    base: Prior,
     /// Shortest finite difference, in standard deviations of the prior.
     pub(crate) least_difference: f64,
     /// Index of each strength of the last candidate, and its coordinate at which the candidate is absent.
@@ -45,25 +47,33 @@ impl NormalCoordinate {
         }
     }
 
-    /// The coordinate of x.
-    pub(crate) fn position(&self, x: f64) -> f64 {
+    /// The normal score of x, without limits.
+    fn score(&self, x: f64) -> f64 {
         let [below, above] = self.marginal.tails(x);
-        let t = match self.side {
+        match self.side {
             Side::Both => self.marginal.normal_score(x),
             Side::Above => -normal::lower_quantile((0.5 * above).max(f64::MIN_POSITIVE)),
             Side::Below => -normal::lower_quantile((0.5 * below).max(f64::MIN_POSITIVE)),
-        };
+        }
+    }
+
+    /// The coordinate of a normal score, within the limits of the search.
+    fn limited(&self, t: f64) -> f64 {
         t.max(self.lower()).min(FARTHEST)
+    }
+
+    /// The coordinate of x.
+    pub(crate) fn position(&self, x: f64) -> f64 {
+        self.limited(self.score(x))
     }
 
     /// x of a coordinate.
     pub(crate) fn value(&self, t: f64) -> f64 {
-        let p = match self.side {
-            Side::Both => normal::cdf(t),
-            Side::Above => 1.0 - 2.0 * normal::cdf(-t),
-            Side::Below => 2.0 * normal::cdf(-t),
-        };
-        self.marginal.quantile(p)
+        match self.side {
+            Side::Both => self.marginal.of_normal_score(t),
+            Side::Above => self.marginal.quantile(1.0 - 2.0 * normal::cdf(-t)),
+            Side::Below => self.marginal.quantile(2.0 * normal::cdf(-t)),
+        }
     }
 
     fn lower(&self) -> f64 {
@@ -79,9 +89,10 @@ impl NormalCoordinate {
 }
 
 impl NormalFrame {
-    pub(crate) fn base(prior: &[Marginal], least_difference: f64) -> Self {
+    pub(crate) fn base(prior: &Prior, least_difference: f64) -> Self {
         Self {
-            coordinates: prior.iter().map(NormalCoordinate::whole).collect(),
+            coordinates: prior.marginals().iter().map(NormalCoordinate::whole).collect(),
+            base: prior.clone(),
             least_difference,
             strengths: Vec::new(),
             widened: Vec::new(),
@@ -115,6 +126,7 @@ impl NormalFrame {
         }
         Self {
             coordinates,
+            base: self.base.clone(),
             least_difference: self.least_difference,
             strengths,
             widened,
@@ -173,13 +185,18 @@ impl NormalFrame {
     }
 
     pub(crate) fn theta(&self, position: &[f64]) -> Vec<f64> {
-        let pairs = self.coordinates.iter().zip(position);
-        pairs.map(|(coordinate, &t)| coordinate.value(t)).collect()
+        let mut scores = position.to_vec();
+        self.base.make_dependent(&mut scores);
+        let pairs = self.coordinates.iter().zip(scores);
+        pairs.map(|(coordinate, t)| coordinate.value(t)).collect()
     }
 
     pub(crate) fn position(&self, theta: &[f64]) -> Vec<f64> {
         let pairs = self.coordinates.iter().zip(theta);
-        pairs.map(|(coordinate, &x)| coordinate.position(x)).collect()
+        let mut position: Vec<f64> = pairs.map(|(coordinate, &x)| coordinate.score(x)).collect();
+        self.base.make_independent(&mut position);
+        let limited = self.coordinates.iter().zip(position);
+        limited.map(|(coordinate, t)| coordinate.limited(t)).collect()
     }
 
     /// The distance of each coordinate from its lower and upper limit.
@@ -199,11 +216,11 @@ impl NormalFrame {
 
     /// Which parameters lie within 2 % of a bound of their range, or at the value at which a half-normal strength is absent.
     pub(crate) fn at_bound(&self, position: &[f64]) -> Vec<bool> {
-        let near = |(coordinate, &t): (&NormalCoordinate, &f64)| {
-            let x = coordinate.value(t);
+        let near = |((coordinate, x), &t): ((&NormalCoordinate, f64), &f64)| {
             coordinate.marginal.at_bound(x, x) || (coordinate.is_half() && t <= 0.0)
         };
-        self.coordinates.iter().zip(position).map(near).collect()
+        let values = self.coordinates.iter().zip(self.theta(position));
+        values.zip(position).map(near).collect()
     }
 }
 
@@ -221,13 +238,34 @@ mod tests {
             strengths: vec![0],
             neutral: 0.0,
         };
-        let frame = NormalFrame::base(&[], 0.03).with(&effect);
+        let frame = NormalFrame::base(&Prior::new(Vec::new()), 0.03).with(&effect);
         for t in [0.0, 0.1, 1.0, 2.5, 5.0] {
             let x = frame.theta(&[t])[0];
             assert!((x - 3.0 * t).abs() < 1e-6, "{x} at {t}");
             assert!((frame.position(&[x])[0] - t).abs() < 1e-6);
         }
         assert!(frame.is_one_sided() && frame.halves() == [0]);
+    }
+
+    #[test]
+    fn correlated_parameters_have_independent_coordinates() {
+        let normal = |mean, sd| Marginal::new(Distribution::Normal { mean, sd }, None).unwrap();
+        let prior = Prior::new(vec![normal(1.0, 2.0), normal(0.0, 1.0)]);
+        let prior = prior
+            .correlated(vec![0, 1], &[vec![1.0, 0.6], vec![0.6, 1.0]])
+            .unwrap();
+        let frame = NormalFrame::base(&prior, 0.03);
+        // The second given the first has the mean 0.6 t and the sd 0.8.
+        let theta = frame.theta(&[1.0, -0.5]);
+        assert!(
+            (theta[0] - 3.0).abs() < 1e-9 && (theta[1] - 0.2).abs() < 1e-9,
+            "{theta:?}"
+        );
+        let back = frame.position(&theta);
+        assert!(
+            (back[0] - 1.0).abs() < 1e-9 && (back[1] + 0.5).abs() < 1e-9,
+            "{back:?}"
+        );
     }
 
     #[test]
@@ -239,7 +277,7 @@ mod tests {
             strengths: vec![0],
             neutral: 0.0,
         };
-        let frame = NormalFrame::base(&[], 0.03).with(&effect);
+        let frame = NormalFrame::base(&Prior::new(Vec::new()), 0.03).with(&effect);
         let (_, neutral) = frame.strength().unwrap();
         assert!((neutral + 0.5).abs() < 1e-12 && !frame.is_one_sided());
     }

@@ -168,8 +168,11 @@ fn shares(log_weights: &[f64], power: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The effective sample size.
+/// The effective sample size; 0 without draws.
 fn effective(shares: &[f64]) -> f64 {
+    if shares.is_empty() {
+        return 0.0;
+    }
     1.0 / shares.iter().map(|s| s * s).sum::<f64>()
 }
 

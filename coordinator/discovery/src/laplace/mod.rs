@@ -5,6 +5,7 @@
 //! - `point`: an evaluated position. `quadratic`: the expansion of the log posterior about it. `noise`: its part along noise sds.
 //! - `fit`: the minimisation for one model. `batch`: several side by side.
 //! - `evidence`: the integral over a quadratic. `importance`: the same integral by importance sampling. `draws`: posterior draws.
+//! - `spread`: points one standard deviation from the mode.
 
 pub(crate) mod batch;
 pub(crate) mod coordinate;
@@ -15,5 +16,6 @@ pub(crate) mod importance;
 mod noise;
 pub(crate) mod point;
 pub(crate) mod quadratic;
+pub(crate) mod spread;
 pub(crate) mod strength_prior;
 pub(crate) mod student;

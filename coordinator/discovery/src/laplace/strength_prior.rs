@@ -147,7 +147,7 @@ fn precision(t: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::candidate::Candidate;
-    use statistics::prior::{Distribution, Marginal};
+    use statistics::prior::{Distribution, Marginal, Prior};
 
     #[test]
     fn a_fit_that_a_narrow_part_holds_near_absence_promises_no_more_than_it_may() {
@@ -158,7 +158,7 @@ mod tests {
             strengths: vec![0],
             neutral: 0.0,
         };
-        let frame = NormalFrame::base(&[], 0.03).with(&effect);
+        let frame = NormalFrame::base(&Prior::new(Vec::new()), 0.03).with(&effect);
         // The likelihood rises by 8 nats per standard deviation and hardly bends; the narrow parts balance it at once.
         let position = [0.04];
         let (mut gradient, mut hessian) = (position.to_vec(), DMatrix::from_element(1, 1, 1.001));

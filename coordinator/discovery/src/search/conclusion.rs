@@ -147,7 +147,7 @@ impl Conclusion {
                 law: law.law,
                 candidate: law.candidate,
                 log_bayes_factor: law.log_bayes_factor,
-                parameters: law.fit.theta()[task.prior.len()..].to_vec(),
+                parameters: law.fit.theta()[task.prior.dimension()..].to_vec(),
                 left_out_nats: law.left_out.unwrap_or([0.0; 2]),
             }),
             combination: detected.map_or(Vec::new(), |best| best.effects.clone()),

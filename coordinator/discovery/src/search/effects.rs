@@ -33,7 +33,7 @@ impl SearchState {
         let reductions = self.task.reductions.iter().enumerate();
         let branches = reductions.filter_map(|(k, reduction)| {
             let kept = reduction.parameters.iter();
-            let prior: Vec<_> = kept.clone().map(|&i| self.task.prior[i].clone()).collect();
+            let prior = self.task.prior.of_some(&reduction.parameters);
             let settings = SearchSettings {
                 starts: Starts::Draws(vec![kept.map(|&i| theta[i]).collect()]),
                 ..self.task.settings.clone()
@@ -63,6 +63,8 @@ impl SearchState {
             .combinations
             .iter()
             .filter(|c| c.effects.len() == size && c.log_bayes_factor > DETECTED)
+            // A model with a switch turned may lack what others have.
+            .filter(|c| !c.effects.iter().any(|k| self.task.library[*k].is_switch()))
             .take(BEAM)
             .collect();
         let leaves_misfit = hypotheses
@@ -73,7 +75,7 @@ impl SearchState {
         }
         let branches = best.into_iter().map(|combination| {
             let others: Vec<usize> = (0..self.task.library.len())
-                .filter(|k| !combination.effects.contains(k))
+                .filter(|k| !combination.effects.contains(k) && !self.task.library[*k].is_switch())
                 .collect();
             let candidates: Vec<_> = others.iter().map(|&k| self.task.library[k].clone()).collect();
             let base = FittedModel {
@@ -116,7 +118,7 @@ impl SearchState {
         };
         let branches = best.effects.iter().map(|&dropped| {
             let mut frame = NormalFrame::base(&self.task.prior, self.task.settings.least_difference);
-            let (own, mut rest) = best.fit.point.position.split_at(self.task.prior.len());
+            let (own, mut rest) = best.fit.point.position.split_at(self.task.prior.dimension());
             let mut start = own.to_vec();
             let mut effects = Vec::new();
             for &k in &best.effects {

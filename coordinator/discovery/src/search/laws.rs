@@ -40,7 +40,9 @@ impl SearchState {
             .confirmed_law()
             .and_then(|law| chi_square(&law.fit));
         let is_explained = law.is_some_and(|chi| chi.is_complete());
+        let is_switch = |k: &usize| self.hypotheses.candidates[*k].is_switch();
         let best = self.hypotheses.detected().filter(|_| !is_explained);
+        let best = best.filter(|best| !best.effects.iter().any(is_switch));
         let incomplete = best.and_then(|best| {
             let chi = chi_square(&best.fit).filter(|chi| !chi.is_complete())?;
             Some((best.effects.clone(), chi))

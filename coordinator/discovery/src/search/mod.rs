@@ -12,9 +12,10 @@
 //!
 //! # Layout
 //! - `discovery`: the interface. `query`: what the model is asked. `branch`: a search for one effect that is part of this one.
-//! - `stage`: the stages. `state`: task and hypotheses. `effects`, `laws`, `prediction`: from one stage to the next.
+//! - `stage`: the stages. `state`: task and hypotheses. `effects`, `laws`, `last_stages`: from one stage to the next.
 //! - `hypotheses`: combinations and laws found so far. `weighing`: their probabilities. `verdict`, `conclusion`: the result.
-//! - `cross_validation`: fits without some of the data. `next_run`: the information of runs not yet made.
+//! - `cross_validation`: fits without some of the data. `next_run`: the choice of runs not yet made; `run_information`: what they
+//!   would tell.
 
 mod branch;
 pub(crate) mod conclusion;
@@ -22,10 +23,11 @@ mod cross_validation;
 pub(crate) mod discovery;
 mod effects;
 mod hypotheses;
+mod last_stages;
 mod laws;
 pub(crate) mod next_run;
-mod prediction;
 pub(crate) mod query;
+mod run_information;
 mod stage;
 mod state;
 pub(crate) mod verdict;

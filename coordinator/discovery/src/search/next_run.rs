@@ -1,26 +1,17 @@
-//! The expected information of runs not yet made.
+//! The runs to make next: those that together tell most about the explanations.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
-
-use crate::laplace::draws::draws;
-use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::LaplaceFit;
+use crate::laplace::spread::spread;
 use crate::search::query::{QueriedModel, Query};
+use crate::search::run_information::{Prediction, Predictive};
 use crate::task::{ProposedRuns, SearchTask};
-use statistics::rng::Stream;
 
-/// Draws of each explanation.
-const DRAWS: usize = 16;
-/// Outcomes of a run that its information is averaged over, for each explanation.
-const OUTCOMES: usize = 200;
 /// Most runs that are proposed.
 const MOST: usize = 3;
-/// A run with less information is not proposed \[nats\].
-const LEAST: f64 = 0.02;
-/// A run distinguishes explanations whose predictions differ by more standard deviations.
-const APART: f64 = 2.0;
-/// Random streams of the outcomes, beside those of the posterior draws.
-const STAGE: u64 = (1 << 43) + 1;
+/// A run that adds less information is not proposed \[nats\].
+const LEAST: f64 = 0.005;
+/// Of runs that add nearly as much as the best, the one closest to the measured range is proposed.
+const NEARLY: f64 = 0.9;
 
 /// An explanation that remains open.
 #[derive(Debug, Clone)]
@@ -36,46 +27,58 @@ pub(super) struct OpenHypothesis<'a> {
 pub struct InformativeRun {
     /// Index among the proposed runs.
     pub run: usize,
-    /// Expected information on the explanations \[nats\].
+    /// Expected information on the explanations beyond that of the runs before it \[nats\].
     pub information_nats: f64,
     /// The most probable explanation and those that the run distinguishes from it: combinations of candidates, empty for the base.
     pub separates: Vec<Vec<usize>>,
 }
 
-/// An explanation with its posterior draws.
+/// An explanation with the parameters at which it is asked for its predictions.
 #[derive(Debug, Clone)]
-struct DrawnHypothesis {
+struct AskedHypothesis {
     effects: Vec<usize>,
     probability: f64,
-    thetas: Vec<Vec<f64>>,
-    /// The predicted values of each draw: each channel of the first run, then of the next.
-    values: Vec<Vec<f64>>,
+    mode: Vec<f64>,
+    spread: Vec<[Option<Vec<f64>>; 2]>,
+    /// `None` before it is told, and where the model rejects the mode.
+    prediction: Option<Prediction>,
 }
 
 /// The comparison of the explanations on the proposed runs.
 #[derive(Debug, Clone)]
 pub(super) struct RunSelection {
-    drawn: Vec<DrawnHypothesis>,
+    asked: Vec<AskedHypothesis>,
     proposed: ProposedRuns,
     seed: u64,
     is_told: bool,
 }
 
-/// The posterior predictive of one run, noise included.
-struct RunPrediction {
-    mean: DVector<f64>,
-    factor: DMatrix<f64>,
-    half_log_determinant: f64,
-}
+impl AskedHypothesis {
+    fn thetas(&self) -> impl Iterator<Item = &Vec<f64>> {
+        std::iter::once(&self.mode).chain(self.spread.iter().flatten().flatten())
+    }
 
-impl RunPrediction {
-    /// Log density up to a constant that all share.
-    fn log_density(&self, outcome: &DVector<f64>) -> f64 {
-        let whitened = self
-            .factor
-            .solve_lower_triangular(&(outcome - &self.mean))
-            .unwrap_or_else(|| outcome.clone());
-        -0.5 * whitened.norm_squared() - self.half_log_determinant
+    /// Takes the answers to [`thetas`](Self::thetas). Along an axis with one answer its difference from the mode counts, along one
+    /// without any nothing.
+    fn take(&mut self, mut answers: impl Iterator<Item = Option<Vec<f64>>>) {
+        let mean = answers.next().flatten();
+        let mut columns = Vec::new();
+        for sides in &self.spread {
+            let [above, below] = sides
+                .each_ref()
+                .map(|side| side.as_ref().and_then(|_| answers.next().flatten()));
+            let half_difference = |a: &[f64], b: &[f64], share: f64| -> Vec<f64> {
+                a.iter().zip(b).map(|(a, b)| share * (a - b)).collect()
+            };
+            columns.extend(match (above, below, &mean) {
+                (Some(above), Some(below), _) => Some(half_difference(&above, &below, 0.5)),
+                (Some(one), None, Some(mean)) | (None, Some(one), Some(mean)) => {
+                    Some(half_difference(&one, mean, 1.0))
+                }
+                _ => None,
+            });
+        }
+        self.prediction = mean.map(|mean| Prediction { mean, columns });
     }
 }
 
@@ -85,20 +88,17 @@ impl RunSelection {
         if explanations.len() < 2 || task.proposed.values() == 0 {
             return None;
         }
-        let seed = task.settings.seed;
-        let drawn = explanations.into_iter().enumerate().map(|(number, explanation)| {
-            let fit = explanation.fit;
-            DrawnHypothesis {
-                effects: explanation.effects,
-                probability: explanation.probability,
-                thetas: draws(fit, &task.likelihood, seed, number as u64, DRAWS),
-                values: Vec::new(),
-            }
+        let asked = explanations.into_iter().map(|explanation| AskedHypothesis {
+            effects: explanation.effects,
+            probability: explanation.probability,
+            mode: explanation.fit.theta(),
+            spread: spread(explanation.fit, &task.likelihood),
+            prediction: None,
         });
         Some(Self {
-            drawn: drawn.collect(),
+            asked: asked.collect(),
             proposed: task.proposed.clone(),
-            seed,
+            seed: task.settings.seed,
             is_told: false,
         })
     }
@@ -107,115 +107,70 @@ impl RunSelection {
         if self.is_told {
             return Vec::new();
         }
-        let of = |drawn: &DrawnHypothesis| {
-            let model = QueriedModel::With(drawn.effects.clone());
-            let queries = drawn.thetas.iter().map(move |theta| Query {
+        let of = |asked: &AskedHypothesis| {
+            let model = QueriedModel::With(asked.effects.clone());
+            let queries = asked.thetas().map(|theta| Query {
                 model: model.clone(),
                 is_proposed: true,
                 theta: theta.clone(),
             });
             queries.collect::<Vec<_>>()
         };
-        self.drawn.iter().flat_map(of).collect()
+        self.asked.iter().flat_map(of).collect()
     }
 
     pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
         self.is_told = true;
         let mut answers = answers.into_iter();
-        for drawn in &mut self.drawn {
-            let own = answers.by_ref().take(drawn.thetas.len());
-            drawn.values = own.flatten().collect();
+        for asked in &mut self.asked {
+            let count = asked.thetas().count();
+            let own: Vec<_> = answers.by_ref().take(count).collect();
+            asked.take(own.into_iter());
         }
     }
 
-    /// The most informative runs, the best first.
+    /// The most informative runs, each given those before it: the first tells most by itself, the next one most beyond the first.
     pub(super) fn best(&self) -> Vec<InformativeRun> {
-        let mut runs: Vec<InformativeRun> = (0..self.proposed.runs)
-            .filter_map(|run| self.information(run))
-            .collect();
-        runs.sort_by(|a, b| b.information_nats.total_cmp(&a.information_nats));
-        runs.retain(|run| run.information_nats >= LEAST);
-        let mut groups = Vec::new();
-        runs.retain(|run| {
-            let group = self.proposed.groups[run.run];
-            let is_new = !groups.contains(&group);
-            groups.push(group);
-            is_new
-        });
-        runs.truncate(MOST);
-        runs
-    }
-
-    /// The expected information of a run, `sum_m P_m E[ln p(y | m) - ln sum_k P_k p(y | k)]`, with normal predictives; `None` where an
-    /// explanation cannot predict it.
-    ///
-    /// # Source
-    /// Lindley 1956, doi:10.1214/aoms/1177728069.
-    fn information(&self, run: usize) -> Option<InformativeRun> {
-        let predicted: Option<Vec<RunPrediction>> = self
-            .drawn
+        let predicted = self
+            .asked
             .iter()
-            .map(|drawn| self.predicted(drawn, run))
-            .collect();
-        let predicted = predicted?;
-        let total: f64 = self.drawn.iter().map(|drawn| drawn.probability).sum();
-        let shares: Vec<f64> = self.drawn.iter().map(|d| d.probability / total).collect();
-        let mut nats = 0.0;
-        for (m, own) in predicted.iter().enumerate() {
-            let mut sum = 0.0;
-            for k in 0..OUTCOMES {
-                let z = Stream::new(self.seed, STAGE, m as u64, k as u64).normals(own.mean.len());
-                let outcome = &own.mean + &own.factor * DVector::from_vec(z);
-                let all = predicted.iter().zip(&shares);
-                let all: Vec<f64> = all
-                    .map(|(p, share)| libm::log(*share) + p.log_density(&outcome))
-                    .collect();
-                sum += own.log_density(&outcome) - log_sum_exp(all.into_iter());
+            .filter_map(|own| Some((own, own.prediction.as_ref()?)));
+        let (asked, predictions): (Vec<&AskedHypothesis>, Vec<_>) = predicted
+            .map(|(own, prediction)| (own, (own.probability, prediction)))
+            .unzip();
+        if asked.len() < 2 {
+            return Vec::new();
+        }
+        let predictive = Predictive::new(predictions, &self.proposed.noise_sds, MOST, self.seed);
+        let mut runs: Vec<InformativeRun> = Vec::new();
+        let mut known = 0.0;
+        while runs.len() < MOST {
+            let chosen: Vec<usize> = runs.iter().map(|run| run.run).collect();
+            let gain = |run: usize| {
+                let together: Vec<usize> = chosen.iter().copied().chain([run]).collect();
+                Some((run, predictive.information(&together)? - known))
+            };
+            let left = (0..self.proposed.runs).filter(|run| !chosen.contains(run));
+            let gains: Vec<(usize, f64)> = left.filter_map(gain).collect();
+            let most = gains.iter().map(|(_, gain)| *gain).fold(0.0, f64::max);
+            if most < LEAST {
+                break;
             }
-            nats += shares[m] * sum / OUTCOMES as f64;
-        }
-        let first = (0..shares.len()).reduce(|a, b| if shares[b] > shares[a] { b } else { a })?;
-        let apart = |k: &usize| {
-            let difference = &predicted[*k].mean - &predicted[first].mean;
-            let distances = [*k, first].map(|i| {
-                let whitened = predicted[i].factor.solve_lower_triangular(&difference);
-                whitened.map_or(0.0, |w| w.norm())
+            let nearly = gains.into_iter().filter(|(_, gain)| *gain >= NEARLY * most);
+            let beyond = |run: usize| self.proposed.beyond[run];
+            let closest = nearly.reduce(|a, b| {
+                let order = beyond(b.0).total_cmp(&beyond(a.0)).then(a.1.total_cmp(&b.1));
+                if order.is_lt() { b } else { a }
             });
-            distances[0].min(distances[1]) > APART
-        };
-        let others: Vec<usize> = (0..shares.len()).filter(|k| *k != first).collect();
-        let far: Vec<usize> = others.iter().copied().filter(apart).collect();
-        let named = if far.is_empty() { others } else { far };
-        let separates = std::iter::once(first).chain(named);
-        Some(InformativeRun {
-            run,
-            // A Monte Carlo mean may be negative where the information is zero.
-            information_nats: nats.max(0.0),
-            separates: separates.map(|k| self.drawn[k].effects.clone()).collect(),
-        })
-    }
-
-    fn predicted(&self, drawn: &DrawnHypothesis, run: usize) -> Option<RunPrediction> {
-        let channels = self.proposed.noise_sds.len();
-        let of_run =
-            |values: &Vec<f64>| DVector::from_column_slice(&values[run * channels..(run + 1) * channels]);
-        let outcomes: Vec<DVector<f64>> = drawn.values.iter().map(of_run).collect();
-        let count = outcomes.len() as f64;
-        let mean = outcomes.iter().fold(DVector::zeros(channels), |sum, y| sum + y) / count;
-        let mut covariance = DMatrix::from_diagonal(&DVector::from_iterator(
-            channels,
-            self.proposed.noise_sds.iter().map(|sd| sd * sd),
-        ));
-        for outcome in &outcomes {
-            let off = outcome - &mean;
-            covariance += &off * off.transpose() / count;
+            let Some((run, gain)) = closest else { break };
+            known += gain;
+            let separated = predictive.separated(run).into_iter();
+            runs.push(InformativeRun {
+                run,
+                information_nats: gain,
+                separates: separated.map(|k| asked[k].effects.clone()).collect(),
+            });
         }
-        let factor = Cholesky::new(covariance)?.l();
-        let half_log_determinant = (0..channels).map(|k| libm::log(factor[(k, k)])).sum();
-        (!outcomes.is_empty()).then_some(RunPrediction {
-            mean,
-            factor,
-            half_log_determinant,
-        })
+        runs
     }
 }

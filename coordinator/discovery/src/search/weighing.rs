@@ -9,9 +9,9 @@ use crate::search::next_run::OpenHypothesis;
 use crate::task::SearchTask;
 
 /// Explanations with less probability are not compared by further runs.
-const OPEN: f64 = 0.02;
+const OPEN: f64 = 0.005;
 /// Most explanations that further runs compare.
-const MOST_OPEN: usize = 5;
+const MOST_OPEN: usize = 12;
 /// Sets with less probability are no rivals.
 const LEADING: f64 = 0.01;
 /// Most sets that predict left-out levels.

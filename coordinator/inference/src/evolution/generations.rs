@@ -172,6 +172,7 @@ impl Evolution {
             log_prior: best.log_prior,
             at_bound: self.space.at_bound(&best.position),
             laplace: None,
+            approximation: None,
             evaluations: self.count.evaluations as u64,
             rejected: self.count.rejected as u64,
             stop,

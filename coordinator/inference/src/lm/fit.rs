@@ -61,9 +61,6 @@ impl LmFit {
     /// [`LmSettingsError`] names the setting, its value and its bound.
     pub fn new(prior: Prior, likelihood: Likelihood, settings: LmSettings) -> Result<Self, LmSettingsError> {
         settings.check(prior.dimension())?;
-        if likelihood.entangles_unknown_sds() {
-            return Err(LmSettingsError::EntangledNoise);
-        }
         let objective = Objective::new(prior, likelihood);
         let mut optimiser = Self {
             columns: vec![None; objective.axes.len()],
@@ -172,6 +169,10 @@ impl LmFit {
         let mut estimate = self.objective.estimate(point, &self.columns, stop);
         estimate.evaluations = self.count.evaluations as u64;
         estimate.rejected = self.count.rejected as u64;
+        if self.settings.draws > 0 {
+            let draws = (self.settings.draws, self.settings.seed);
+            estimate.approximation = self.objective.approximation(point, &self.columns, draws);
+        }
         self.phase = RunPhase::Done(Box::new(estimate));
     }
 }

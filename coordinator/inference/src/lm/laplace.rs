@@ -15,8 +15,7 @@ impl Objective {
         for (axis, &t) in self.axes.iter().zip(&point.position) {
             at_bound[axis.parameter] = axis.is_bound(t);
         }
-        for (noise, profiled) in self.noises.iter().zip(&point.noise) {
-            let k = noise.parameter;
+        for (k, profiled) in self.noises.parameters().into_iter().zip(&point.noise) {
             at_bound[k] = profiled.at_bound;
             sd[k] = profiled.uncertainty;
             covariance[k][k] = profiled.uncertainty.map_or(0.0, |sd| sd * sd);
@@ -46,6 +45,7 @@ impl Objective {
             log_prior: point.log_prior,
             at_bound,
             laplace: Some(Laplace { sd, covariance }),
+            approximation: None,
             evaluations: 0,
             rejected: 0,
             stop,

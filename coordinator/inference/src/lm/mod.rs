@@ -20,15 +20,16 @@
 //!
 //! Noise standard deviations cost no evaluation: given the residuals, each is the solution of a one-dimensional
 //! problem, solved at every point before points are compared (profiling). Every step keeps to the bounds, and a
-//! parameter that ends at one is reported so.
+//! parameter that ends at one is reported so. Sds that depend on each other (of common errors, of heavy tails) are
+//! searched one after the other.
 //!
 //! # Layout
 //! - `settings`: starts, budget, step of the differences.
 //! - `fit`: the rounds. `iteration`: what each leads to.
-//! - `noise`: one profiled noise sd.
+//! - `noise_profile`: the profiled sds; `noise`: one of independent normal errors.
 //! - `objective`: f at a point, and its parabola there. `quadratic_model`: the minimum of a damped parabola in a box.
 //! - `stencil`: the differences. `damping`: the damping of the steps.
-//! - `laplace`: the result, with its covariance.
+//! - `laplace`: the result, with its covariance. `normal_approximation`: draws about it, and the evidence.
 //!
 //! # Source
 //! Levenberg 1944, Q. Appl. Math. 2:164, doi:10.1090/qam/10666; Marquardt 1963, J. SIAM 11:431, doi:10.1137/0111030; the
@@ -39,6 +40,8 @@ mod fit;
 mod iteration;
 mod laplace;
 mod noise;
+mod noise_profile;
+mod normal_approximation;
 mod objective;
 mod quadratic_model;
 mod settings;

@@ -2,7 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use super::noise::{InferredNoise, Profiled};
+use super::noise::Profiled;
+use super::noise_profile::NoiseProfile;
 use super::quadratic_model::QuadraticModel;
 use crate::point_estimate::PriorAxis;
 use statistics::likelihood::Likelihood;
@@ -19,8 +20,8 @@ pub(super) struct Objective {
     pub(super) likelihood: Likelihood,
     /// The parameters of the model.
     pub(super) axes: Vec<PriorAxis>,
-    /// The inferred noise sds.
-    pub(super) noises: Vec<InferredNoise>,
+    /// The inferred sds of noise and common errors.
+    pub(super) noises: NoiseProfile,
 }
 
 /// An evaluated point with the most probable noise sds there.
@@ -34,18 +35,19 @@ pub(super) struct FitPoint {
     pub(super) value: f64,
     pub(super) log_likelihood: f64,
     pub(super) log_prior: f64,
-    /// One for each of [`Objective::noises`].
+    /// One for each parameter of [`Objective::noises`].
     pub(super) noise: Vec<Profiled>,
 }
 
 impl Objective {
     pub(super) fn new(prior: Prior, likelihood: Likelihood) -> Self {
-        let noises = InferredNoise::all(&prior, &likelihood);
+        let noises = NoiseProfile::new(&prior, &likelihood);
+        let sds = noises.parameters();
         let axes = prior
             .marginals()
             .iter()
             .enumerate()
-            .filter(|(parameter, _)| noises.iter().all(|noise| noise.parameter != *parameter))
+            .filter(|(parameter, _)| !sds.contains(parameter))
             .map(|(parameter, marginal)| PriorAxis::new(parameter, marginal))
             .collect();
         Self {
@@ -58,28 +60,19 @@ impl Objective {
 
     /// The point of a parameter vector, whose noise sds are ignored; `None` where f is infinite.
     pub(super) fn point(&self, theta: &[f64], predicted: &[f64]) -> Option<FitPoint> {
-        let residuals: Vec<f64> = self
-            .likelihood
-            .data()
-            .iter()
-            .zip(predicted)
-            .map(|(datum, value)| datum.value - value)
-            .collect();
-        let noise: Vec<Profiled> = self
+        let noise = self
             .noises
-            .iter()
-            .map(|noise| noise.profile(&residuals))
-            .collect();
+            .profile(&self.prior, &self.likelihood, theta, predicted);
         let mut theta = theta.to_vec();
-        for (source, profiled) in self.noises.iter().zip(&noise) {
-            theta[source.parameter] = profiled.sd;
+        for (parameter, profiled) in self.noises.parameters().into_iter().zip(&noise) {
+            theta[parameter] = profiled.sd;
         }
         let log_prior = self.prior.log_density(&theta);
         let Ok(LogLikelihood::Finite(log_likelihood)) = self.likelihood.log_likelihood(predicted, &theta)
         else {
             return None;
         };
-        let value = -(log_likelihood.get() + log_prior);
+        let value = -(log_likelihood.get() + log_prior + self.noises.change_of_measure(&self.prior, &theta));
         value.is_finite().then(|| FitPoint {
             position: self
                 .axes

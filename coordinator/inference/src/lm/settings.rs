@@ -9,6 +9,8 @@ pub struct LmSettings {
     pub starts: usize,
     /// Most evaluations, all rounds together.
     pub max_evaluations: usize,
+    /// Draws from the normal approximation about the result; 0: a point estimate alone.
+    pub draws: usize,
     /// Shortest step of the differences, in units of the prior's width: its standard deviation, or that of a uniform
     /// density between its bounds where these are closer.
     ///
@@ -29,11 +31,12 @@ pub struct LmSettings {
 }
 
 impl Default for LmSettings {
-    /// 5 starts, 200 evaluations, differences over 2 % of the prior's width, seed 1, tolerances 1e-6 and 1e-4.
+    /// 5 starts, 200 evaluations, 1000 draws, differences over 2 % of the prior's width, seed 1, tolerances 1e-6 and 1e-4.
     fn default() -> Self {
         Self {
             starts: 5,
             max_evaluations: 200,
+            draws: 1000,
             difference_step: 0.02,
             seed: 1,
             decrease_tolerance: 1e-6,
@@ -44,6 +47,10 @@ impl Default for LmSettings {
 
 /// Most evaluations of a fit.
 const MOST_EVALUATIONS: usize = 1_000_000;
+/// Least draws: intervals are their quantiles.
+const LEAST_DRAWS: usize = 20;
+/// Most draws.
+const MOST_DRAWS: usize = 100_000;
 /// Longest difference: a step to one side always fits between the bounds.
 const LONGEST_DIFFERENCE: f64 = 0.5;
 
@@ -87,11 +94,18 @@ pub enum LmSettingsError {
         /// The setting.
         value: f64,
     },
-    /// The most probable value of an unknown noise sd or scatter has no closed form.
-    #[error(
-        "lm infers noise sds of independent normal errors only: with common errors (discrepancy, run_scatter, preparation_scatter, plate and ring tests) or student_t, state the sds and scatters, or sample them with tmcmc"
-    )]
-    EntangledNoise,
+    /// Too few draws for an interval.
+    #[error("particles = {draws} must be 0 or at least {LEAST_DRAWS}")]
+    TooFewDraws {
+        /// The setting.
+        draws: usize,
+    },
+    /// More draws than a store keeps well.
+    #[error("particles = {draws} is above {MOST_DRAWS}")]
+    TooManyDraws {
+        /// The setting.
+        draws: usize,
+    },
     /// A tolerance is not a finite number above 0.
     #[error("{name} = {value} is not a finite number above 0")]
     Tolerance {
@@ -143,6 +157,12 @@ impl LmSettings {
         }
         if max_evaluations > MOST_EVALUATIONS {
             return Err(LmSettingsError::TooManyEvaluations { max_evaluations });
+        }
+        if (1..LEAST_DRAWS).contains(&self.draws) {
+            return Err(LmSettingsError::TooFewDraws { draws: self.draws });
+        }
+        if self.draws > MOST_DRAWS {
+            return Err(LmSettingsError::TooManyDraws { draws: self.draws });
         }
         if !(value > 0.0 && value <= LONGEST_DIFFERENCE) {
             return Err(LmSettingsError::DifferenceStep { value });

@@ -10,4 +10,4 @@ mod axis;
 mod mode;
 
 pub(crate) use axis::PriorAxis;
-pub use mode::{Generation, Laplace, ModeEstimate, StopReason};
+pub use mode::{Generation, Laplace, ModeEstimate, NormalApproximation, StopReason};

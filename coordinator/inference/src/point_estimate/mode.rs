@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::tmcmc::Particle;
+
 /// Why an optimisation stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -69,6 +71,15 @@ pub struct Laplace {
     pub covariance: Vec<Vec<f64>>,
 }
 
+/// A normal density in place of the posterior, in the normal scores of the parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NormalApproximation {
+    /// ln p(data) by Laplace's approximation, in nats.
+    pub log_evidence: f64,
+    /// Equally weighted draws. Their log-likelihoods are those of the linearised model.
+    pub draws: Vec<Particle>,
+}
+
 /// The state of an evolution after a generation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Generation {
@@ -93,6 +104,8 @@ pub struct ModeEstimate {
     pub at_bound: Vec<bool>,
     /// Their uncertainty, where the algorithm knows the curvature.
     pub laplace: Option<Laplace>,
+    /// Draws about the mode, where the algorithm gives any.
+    pub approximation: Option<NormalApproximation>,
     /// Evaluations spent.
     pub evaluations: u64,
     /// Those that the model rejected.

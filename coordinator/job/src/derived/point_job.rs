@@ -12,7 +12,15 @@ use crate::table::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 /// # Errors
 /// [`FileError`] where the text is no job.
 pub fn point_job(name: &str, toml: &str, algorithm: &AlgorithmSettings) -> Result<String, FileError> {
-    with_algorithm(name, toml, algorithm.algorithm_name())
+    let text = with_algorithm(name, toml, algorithm.algorithm_name())?;
+    match algorithm {
+        AlgorithmSettings::Fit(_) => edited(name, &text, |document| {
+            // The sample is the posterior: beside it no approximation is drawn from.
+            document["sampler"]["particles"] = toml_edit::value(0);
+            Ok(())
+        }),
+        _ => Ok(text),
+    }
 }
 
 /// The same with another algorithm by its usual settings. Of the table `[discovery]` only what says which candidates there are stays.

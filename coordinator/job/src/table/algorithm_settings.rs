@@ -108,6 +108,13 @@ impl AlgorithmSettings {
                 "{name} with at most {} generations of {}",
                 settings.generations, settings.population
             ),
+            AlgorithmSettings::Fit(LmSettings {
+                max_evaluations,
+                draws: draws @ 1..,
+                ..
+            }) => format!(
+                "{name} with at most {max_evaluations} evaluations, and {draws} draws of the normal approximation"
+            ),
             AlgorithmSettings::Fit(LmSettings { max_evaluations, .. })
             | AlgorithmSettings::Evolve(EvolutionSettings::CmaEs(CmaEsSettings {
                 max_evaluations, ..
@@ -115,6 +122,15 @@ impl AlgorithmSettings {
                 format!("{name} with at most {max_evaluations} evaluations")
             }
             AlgorithmSettings::Discover { .. } => name.to_owned(),
+        }
+    }
+
+    /// Whether it ends with draws of the posterior, or of its normal approximation.
+    pub fn has_posterior(&self) -> bool {
+        match self {
+            AlgorithmSettings::Sample(_) => true,
+            AlgorithmSettings::Fit(settings) => settings.draws > 0,
+            AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => false,
         }
     }
 

@@ -70,7 +70,7 @@ impl RawDiscovery {
                 return Err(TableError::Unknown(unknown));
             }
         };
-        if apply != Apply::Off && !matches!(algorithm, AlgorithmSettings::Sample(_)) {
+        if apply != Apply::Off && !algorithm.has_posterior() {
             return Err(TableError::NoLedger {
                 apply: self.apply.clone(),
                 algorithm: algorithm.name(),
@@ -125,9 +125,9 @@ mod tests {
             ("", "max_effects = 0", "max_effects = 0 must lie in [1, 10]"),
             ("", "max_effects = 11", "max_effects = 11 must lie in [1, 10]"),
             (
-                "algorithm = \"lm\"",
+                "algorithm = \"lm\"\nparticles = 0",
                 "apply = \"ask\"",
-                "apply = \"ask\" needs a sampler: lm keeps no ledger",
+                "apply = \"ask\" needs a posterior: lm without draws keeps no ledger",
             ),
         ] {
             let error = parse(sampler, &format!("[discovery]\n{table}")).unwrap_err();

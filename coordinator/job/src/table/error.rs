@@ -35,7 +35,7 @@ pub(crate) enum TableError {
     #[error("point_estimates names {0} twice")]
     Twice(String),
     /// A study is extended only by calibrations that sample.
-    #[error("apply = \"{apply}\" needs a sampler: {algorithm} keeps no ledger of errors")]
+    #[error("apply = \"{apply}\" needs a posterior: {algorithm} without draws keeps no ledger of errors")]
     NoLedger {
         /// The value as written.
         apply: String,

@@ -36,7 +36,13 @@ const ALL: [SamplerKeys; 7] = [
     },
     SamplerKeys {
         algorithm: AlgorithmName::Lm,
-        keys: &["starts", "max_evaluations", "difference_step", "seed"],
+        keys: &[
+            "particles",
+            "starts",
+            "max_evaluations",
+            "difference_step",
+            "seed",
+        ],
     },
     SamplerKeys {
         algorithm: AlgorithmName::Ga,

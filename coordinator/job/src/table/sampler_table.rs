@@ -82,6 +82,8 @@ impl RawSampler {
             RawSampler {
                 algorithm: Some(name.clone()),
                 seed: Some(seed),
+                // Beside a sample no draws of an approximation are wanted.
+                particles: (name == AlgorithmName::Lm.name()).then_some(0),
                 ..RawSampler::default()
             }
             .algorithm()
@@ -132,6 +134,7 @@ impl RawSampler {
         AlgorithmSettings::Fit(LmSettings {
             starts: self.starts.unwrap_or(usual.starts),
             max_evaluations: self.max_evaluations.unwrap_or(usual.max_evaluations),
+            draws: self.particles.unwrap_or(usual.draws),
             difference_step: self.difference_step.unwrap_or(usual.difference_step),
             seed: self.seed.unwrap_or(usual.seed),
             ..usual

@@ -1,6 +1,5 @@
 //! Measured and simulated histories, filtered.
 
-use job::AlgorithmSettings;
 use serde::Serialize;
 use shared::channel::Channel;
 use shared::experiment::MeasuredHistory;
@@ -56,11 +55,9 @@ impl FinishedCalibration {
     /// model without time. Both have gone through the same filter.
     pub fn histories(&self) -> Option<Vec<ChannelHistory>> {
         let simulated = self.simulated_histories.as_ref()?;
-        let label = match self.spec.algorithm {
-            AlgorithmSettings::Sample(_) => "maximum likelihood".to_owned(),
-            AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => {
-                format!("{} optimum", self.spec.algorithm.name().to_uppercase())
-            }
+        let label = match self.estimate {
+            None => "maximum likelihood".to_owned(),
+            Some(_) => format!("{} optimum", self.spec.algorithm.name().to_uppercase()),
         };
         // A cut-off beyond what 10 Hz can represent filters nothing; the averaging protocol rejects it.
         let lowpass_hz = self.spec.experiment.protocol.lowpass_hz;

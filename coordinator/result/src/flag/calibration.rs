@@ -38,18 +38,21 @@ impl FinishedCalibration {
                 flag(FlagKind::NoInformation, text);
             }
         }
+        if let Some(estimate) = self.estimate.as_ref().or(self.approximated.as_ref())
+            && estimate.stop.is_early()
+        {
+            let (what, rough) = match (&estimate.sd, &self.approximated) {
+                (_, Some(_)) => ("fit", ", and the normal approximation is not about the mode"),
+                (Some(_), None) => ("fit", ", and the standard deviations are approximate"),
+                (None, None) => ("search", ""),
+            };
+            let text = format!(
+                "the {what} used its budget before it converged: a better point may be near{rough}; allow more {}",
+                self.spec.algorithm.budget_key()
+            );
+            flag(FlagKind::NotEquilibrated, text);
+        }
         if let Some(estimate) = &self.estimate {
-            if estimate.stop.is_early() {
-                let (what, rough) = match estimate.sd {
-                    Some(_) => ("fit", ", and the standard deviations are approximate"),
-                    None => ("search", ""),
-                };
-                let text = format!(
-                    "the {what} used its budget before it converged: a better point may be near{rough}; allow more {}",
-                    self.spec.algorithm.budget_key()
-                );
-                flag(FlagKind::NotEquilibrated, text);
-            }
             for p in fitted(estimate, &self.spec.parameters) {
                 let (name, prior_sd) = (&p.free.name, p.free.marginal.sd());
                 if p.at_bound {

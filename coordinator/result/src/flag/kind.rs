@@ -47,6 +47,8 @@ pub enum FlagKind {
     Order,
     /// A worker computed wrongly, or evaluations failed on every worker that tried them.
     Worker,
+    /// Interpolation without physics predicts held-out runs better than the model.
+    InterpolationBeats,
 }
 
 impl FlagKind {
@@ -64,6 +66,7 @@ impl FlagKind {
             FlagKind::Incomplete => "incomplete",
             FlagKind::Order => "order",
             FlagKind::Worker => "worker",
+            FlagKind::InterpolationBeats => "interpolation_beats",
         }
     }
 }

@@ -24,6 +24,7 @@ impl Study {
                 ..flag
             }));
         }
+        flags.extend(self.interpolation_beats());
         flags.extend(self.incomplete());
         flags
     }

@@ -23,7 +23,10 @@ pub fn page(study: &Study) -> String {
         ),
         None => (
             section::parameters(calibration),
-            ("stages", "Sampler", section::stages(calibration)),
+            match &calibration.approximated {
+                Some(mode) => ("fit", "Fit", section::fit(calibration, mode)),
+                None => ("stages", "Sampler", section::stages(calibration)),
+            },
         ),
     };
     let mut sections: Vec<(&str, &str, Markup)> = vec![
@@ -35,7 +38,7 @@ pub fn page(study: &Study) -> String {
         (
             "errors",
             "Errors by channel",
-            html! { (section::errors(calibration, &comparison)) (section::groups(&comparison)) },
+            html! { (section::errors(calibration, &comparison)) (section::groups(&comparison)) (section::ledger(study).unwrap_or_default()) },
         ),
         ("parameters", "Parameters", parameters),
         method,
@@ -208,9 +211,9 @@ mod tests {
     fn a_grown_study_shows_its_ledger_and_its_searches() {
         let study = fixture::grown();
         let page = super::page(&study);
+        assert!(page.contains("<h3>Error ledger</h3>"));
         let (_, discovery) = page.split_once("id=\"discovery\"").unwrap();
         for words in [
-            "sand+slip_sinkage",
             "The data name slip_sinkage.",
             "coordinator extend 1 --effect slip_sinkage",
             "shear depends on slip (step",

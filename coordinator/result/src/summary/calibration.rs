@@ -11,6 +11,7 @@ use super::error::{BaselineSummary, ErrorSummary};
 use super::parameter::ParameterSummary;
 use crate::finished_calibration::FinishedCalibration;
 use crate::table::coverage::Coverage;
+use crate::table::fixed_sigma::FixedSigmas;
 use crate::table::row::{ComparisonRow, rows_of};
 
 /// A calibration of the ledger.
@@ -21,9 +22,11 @@ pub struct CalibrationSummary {
     /// Algorithm.
     #[schema(value_type = String)]
     pub algorithm: AlgorithmName,
+    /// Whether draws, intervals and evidence are those of a normal approximation about a fit.
+    pub normal_approximation: bool,
     /// Log-evidence.
     pub log_evidence: Option<f64>,
-    /// Its standard error.
+    /// Its standard error; null of a normal approximation.
     pub log_evidence_se: Option<f64>,
     /// Whether every stage reached equilibrium.
     pub equilibrated: Option<bool>,
@@ -82,6 +85,18 @@ pub struct CoverageSummary {
     pub holdout: Option<f64>,
 }
 
+impl CalibrationSummary {
+    /// The line with its errors in the noise sds of its study.
+    #[must_use]
+    pub fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
+        CalibrationSummary {
+            baseline: self.baseline.in_fixed_sigmas(sigmas),
+            error: self.error.in_fixed_sigmas(sigmas),
+            ..self
+        }
+    }
+}
+
 impl FinishedCalibration {
     /// Names of the effects of its model.
     pub fn effects(&self) -> Vec<String> {
@@ -89,7 +104,7 @@ impl FinishedCalibration {
         effects.iter().map(|e| e.name.clone()).collect()
     }
 
-    /// The calibration's line of the ledger; `None` for a fit: point estimates stand apart.
+    /// The calibration's line of the ledger; `None` without draws: point estimates stand apart.
     pub fn calibration_summary(&self) -> Option<CalibrationSummary> {
         if self.estimate.is_some() {
             return None;
@@ -109,6 +124,7 @@ impl FinishedCalibration {
         Some(CalibrationSummary {
             effects: self.effects(),
             algorithm: self.spec.algorithm.algorithm_name(),
+            normal_approximation: self.approximated.is_some(),
             log_evidence: self.row.log_evidence,
             log_evidence_se: self.row.log_evidence_se,
             equilibrated: self.row.equilibrated,

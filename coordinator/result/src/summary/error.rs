@@ -2,6 +2,7 @@
 
 use crate::table::comparison::Comparison;
 use crate::table::errors::ErrorTable;
+use crate::table::fixed_sigma::FixedSigmas;
 
 /// Errors on both kinds of runs.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -10,6 +11,16 @@ pub struct ErrorSummary {
     pub fit: Option<ErrorTable>,
     /// Runs that were not fitted.
     pub holdout: Option<ErrorTable>,
+}
+
+impl ErrorSummary {
+    pub(super) fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
+        let table = |table: Option<ErrorTable>| table.map(|table| table.in_fixed_sigmas(sigmas));
+        ErrorSummary {
+            fit: table(self.fit),
+            holdout: table(self.holdout),
+        }
+    }
 }
 
 /// Interpolation without physics.
@@ -26,6 +37,13 @@ impl BaselineSummary {
         BaselineSummary {
             name: "interpolation".into(),
             holdout: comparison.baseline_holdout.clone(),
+        }
+    }
+
+    pub(super) fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
+        BaselineSummary {
+            holdout: self.holdout.map(|table| table.in_fixed_sigmas(sigmas)),
+            ..self
         }
     }
 }

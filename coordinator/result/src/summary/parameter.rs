@@ -44,7 +44,7 @@ impl FinishedCalibration {
                     q05: draws.q05,
                     q50: draws.q50,
                     q95: draws.q95,
-                    map: best?.theta[i],
+                    map: best.as_ref()?.theta[i],
                     prior_mean: finite(prior_mean(&parameter.marginal)),
                     prior_sd: finite(parameter.marginal.sd()),
                     at_bound: parameter.marginal.at_bound(draws.q05, draws.q95),

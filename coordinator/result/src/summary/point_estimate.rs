@@ -8,6 +8,7 @@ use record::EstimateRow;
 
 use super::error::{BaselineSummary, ErrorSummary};
 use crate::finished_calibration::FinishedCalibration;
+use crate::table::fixed_sigma::FixedSigmas;
 
 /// Deterministic updating.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -85,10 +86,22 @@ pub(crate) fn fitted<'a>(
     })
 }
 
+impl PointEstimate {
+    /// The estimate with its errors in the noise sds of its study.
+    #[must_use]
+    pub fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
+        PointEstimate {
+            baseline: self.baseline.in_fixed_sigmas(sigmas),
+            error: self.error.in_fixed_sigmas(sigmas),
+            ..self
+        }
+    }
+}
+
 impl FinishedCalibration {
-    /// The result of a fit or a search; `None` of a sample.
+    /// The result of a fit, drawn from or not, or of a search; `None` of a sample.
     pub fn point_estimate(&self) -> Option<PointEstimate> {
-        let estimate = self.estimate.as_ref()?;
+        let estimate = self.estimate.as_ref().or(self.approximated.as_ref())?;
         let comparison = self.comparison();
         let fitted = || fitted(estimate, &self.spec.parameters);
         let name = |p: FittedParameter| p.free.name.clone();

@@ -1,11 +1,13 @@
 //! `summary.json`: the contract's summary of a study.
 
+use std::collections::BTreeMap;
+
 use super::calibration::CalibrationSummary;
 use super::point_estimate::PointEstimate;
 use crate::discovery::DiscoverySummary;
-use crate::finished_calibration::FinishedCalibration;
 use crate::flag::kind::Flag;
 use crate::study::Study;
+use crate::table::fixed_sigma::FixedSigma;
 
 /// The summary of a study; what does not apply is null.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -20,8 +22,10 @@ pub struct StudySummary {
     pub model_kind: String,
     /// State of the study.
     pub status: String,
-    /// The error ledger: base first, then each extension. Empty for a fit, which has no posterior.
+    /// The error ledger: base first, then each extension. Empty for a search by generations, and for a fit without draws.
     pub calibrations: Vec<CalibrationSummary>,
+    /// The noise sd of each channel that `rmse_fixed_sigma` is in, by name.
+    pub fixed_sigma: BTreeMap<String, FixedSigma>,
     /// Deterministic fits.
     pub point_estimates: Vec<PointEstimate>,
     /// The flags.
@@ -34,11 +38,8 @@ impl Study {
     /// Effects that the first calibration did not have, of the line of the ledger with the most evidence on the newest data.
     fn added(&self) -> Vec<String> {
         let had = self.lead.effects();
-        let newest = self.ledger().map(|o| o.row.experiment).max();
-        let of_newest = self.ledger().filter(|o| Some(o.row.experiment) == newest);
-        let evidence = |o: &FinishedCalibration| o.row.log_evidence.unwrap_or(f64::NEG_INFINITY);
-        let best = of_newest.reduce(|a, b| if evidence(b) > evidence(a) { b } else { a });
-        best.map(|best| self.parts(best))
+        self.current()
+            .map(|best| self.parts(best))
             .unwrap_or_default()
             .into_iter()
             .filter(|effect| !had.contains(effect))
@@ -48,6 +49,7 @@ impl Study {
     /// `summary.json`.
     pub fn summary(&self) -> StudySummary {
         let lead = &self.lead;
+        let sigmas = self.fixed_sigmas();
         StudySummary {
             experiment: lead.experiment.clone(),
             seed: lead.spec.algorithm.seed(),
@@ -55,17 +57,21 @@ impl Study {
             model_kind: lead.spec.model.kind.name().to_owned(),
             status: self.state.name().to_owned(),
             calibrations: self
-                .calibrations()
+                .ledger()
                 .filter_map(|calibration| {
                     let line = calibration.calibration_summary()?;
                     let effects = self.parts(calibration);
-                    Some(CalibrationSummary { effects, ..line })
+                    Some(CalibrationSummary {
+                        effects,
+                        ..line.in_fixed_sigmas(&sigmas)
+                    })
                 })
                 .collect(),
             point_estimates: self
                 .calibrations()
-                .filter_map(FinishedCalibration::point_estimate)
+                .filter_map(|calibration| Some(calibration.point_estimate()?.in_fixed_sigmas(&sigmas)))
                 .collect(),
+            fixed_sigma: sigmas.by_name(),
             flags: self.flags(),
             discovery: DiscoverySummary::of(&self.rounds, self.added()),
         }

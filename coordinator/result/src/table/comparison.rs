@@ -5,6 +5,7 @@ use shared::experiment::RunUse;
 
 use super::baseline::Baseline;
 use super::errors::ErrorTable;
+use super::fixed_sigma::FixedSigmas;
 use super::group::{ErrorGroup, error_groups};
 use super::predictive::{Levels, predictive};
 use super::row::{ComparisonRow, rows_of};
@@ -62,11 +63,13 @@ impl FinishedCalibration {
                 });
             }
         }
-        let errors = |usage| ErrorTable::of_model(rows_of(&rows, usage));
+        let sigmas = FixedSigmas::of(self);
+        let errors = |usage| Some(ErrorTable::of_model(rows_of(&rows, usage))?.in_fixed_sigmas(&sigmas));
         Comparison {
             fit: errors(RunUse::Fit),
             holdout: errors(RunUse::Holdout),
-            baseline_holdout: ErrorTable::of_baseline(rows_of(&rows, RunUse::Holdout)),
+            baseline_holdout: ErrorTable::of_baseline(rows_of(&rows, RunUse::Holdout))
+                .map(|table| table.in_fixed_sigmas(&sigmas)),
             groups: error_groups(&rows),
             rows,
         }

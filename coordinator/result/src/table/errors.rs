@@ -28,6 +28,8 @@ pub struct ChannelError {
     pub rmse: f64,
     /// The same in units of each row's noise sd; a perfect model scores about 1.
     pub rmse_sigma: Option<f64>,
+    /// The same in units of one noise sd, equal for all calibrations of the study: declared, from repeats, or inferred by the first.
+    pub rmse_fixed_sigma: Option<f64>,
     /// Rows that count.
     pub runs: usize,
 }
@@ -35,8 +37,10 @@ pub struct ChannelError {
 /// The error over all channels.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct AllError {
-    /// Root mean square in units of the noise sd.
+    /// Root mean square in units of each row's noise sd.
     pub rmse_sigma: Option<f64>,
+    /// The same in units of the study's noise sds.
+    pub rmse_fixed_sigma: Option<f64>,
 }
 
 impl ErrorTable {
@@ -57,6 +61,18 @@ impl ErrorTable {
             Channel::Torque => self.torque,
             Channel::Sinkage => self.sinkage,
             Channel::LateralForce => self.lateral_force,
+        }
+    }
+}
+
+impl ErrorTable {
+    /// The error of a channel, to change.
+    pub(super) fn channel_mut(&mut self, channel: Channel) -> Option<&mut ChannelError> {
+        match channel {
+            Channel::DrawbarPull => self.drawbar_pull.as_mut(),
+            Channel::Torque => self.torque.as_mut(),
+            Channel::Sinkage => self.sinkage.as_mut(),
+            Channel::LateralForce => self.lateral_force.as_mut(),
         }
     }
 }
@@ -93,6 +109,7 @@ fn table<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, f64)>) -> Option<Err
         squares.get(&c).map(|s| ChannelError {
             rmse: (s.sum / s.rows as f64).sqrt(),
             rmse_sigma: sigma(s),
+            rmse_fixed_sigma: None,
             runs: s.rows,
         })
     };
@@ -103,6 +120,7 @@ fn table<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, f64)>) -> Option<Err
         lateral_force: channel(Channel::LateralForce),
         all: AllError {
             rmse_sigma: sigma(&all),
+            rmse_fixed_sigma: None,
         },
     })
 }

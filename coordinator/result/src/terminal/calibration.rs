@@ -36,7 +36,11 @@ pub(super) fn brief(calibration: &FinishedCalibration) -> String {
 fn told(calibration: &FinishedCalibration, compared: &Comparison, table: &str) -> String {
     let mut text = String::new();
     let row = &calibration.row;
-    let how = match &calibration.estimate {
+    let fit = calibration
+        .estimate
+        .as_ref()
+        .or(calibration.approximated.as_ref());
+    let how = match fit {
         Some(estimate) => format!(
             "{} stopped by {}",
             calibration.spec.algorithm.name(),
@@ -61,13 +65,22 @@ fn told(calibration: &FinishedCalibration, compared: &Comparison, table: &str) -
             metamodel.moved
         );
     }
-    if let (Some(z), Some(se)) = (row.log_evidence, row.log_evidence_se) {
-        let _ = writeln!(text, "log-evidence {z:.2} +- {se:.2}");
+    if calibration.approximated.is_some() {
+        let _ = writeln!(
+            text,
+            "normal approximation: {} about the most probable parameters",
+            number::count(calibration.posterior.len(), "draw")
+        );
+    }
+    match (row.log_evidence, row.log_evidence_se) {
+        (Some(z), Some(se)) => drop(writeln!(text, "log-evidence {z:.2} +- {se:.2}")),
+        (Some(z), None) => drop(writeln!(text, "log-evidence {z:.2} by the normal approximation")),
+        (None, _) => {}
     }
     if !calibration.spec.fit_variant.effects.is_empty() {
         let _ = writeln!(text, "model {}", calibration.spec.model_words());
     }
-    if let Some(estimate) = &calibration.estimate {
+    if let Some(estimate) = fit {
         let _ = writeln!(text, "log-posterior {:.2}", estimate.log_posterior());
     }
     for words in error_model(calibration) {

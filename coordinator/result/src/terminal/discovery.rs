@@ -7,9 +7,9 @@ use std::path::Path;
 use record::{ChiSquare, Discovery, JudgedSet};
 
 use super::column::{cell, width};
+use super::ledger::ledger;
 use crate::discovery::{arguments, effect_file, word};
 use crate::study::Study;
-use crate::table::errors::ErrorTable;
 use crate::words::probability::p_words;
 
 /// Most explanations that are shown.
@@ -30,35 +30,7 @@ pub fn story(study: &Study) -> String {
         };
         let _ = writeln!(text, "search, {given}: {}", round.record.text);
     }
-    let _ = writeln!(
-        text,
-        "\n{:<40} {:>16} {:>20} {:>20} {:>10}",
-        "error ledger", "ln evidence", "fit, sigma", "held out, sigma", "intervals"
-    );
-    let lines = study.ledger().filter_map(|o| Some((o, o.calibration_summary()?)));
-    for (calibration, line) in lines {
-        let mut effects = match study.parts(calibration).as_slice() {
-            [] => "base".to_owned(),
-            effects => format!("with {}", effects.join(", ")),
-        };
-        if calibration.row.experiment != study.lead.row.experiment {
-            let _ = write!(effects, ", {} fitted runs", calibration.spec.fit_runs.len());
-        }
-        let number = |x: Option<f64>| cell(x, |x| format!("{x:.2}"));
-        let sigma = |table: &Option<ErrorTable>| number(table.as_ref().and_then(|t| t.all.rmse_sigma));
-        let _ = writeln!(
-            text,
-            "{effects:<40} {:>16} {:>20} {:>20} {:>10}",
-            number(line.log_evidence),
-            sigma(&line.error.fit),
-            sigma(&line.error.holdout),
-            line.coverage90
-                .holdout
-                .or(line.coverage90.fit)
-                .map_or("-".to_owned(), |c| format!("{:.0} %", 100.0 * c))
-        );
-    }
-    text
+    text + &ledger(study)
 }
 
 /// The result of a search, and the command that adds it to the model.
@@ -135,14 +107,16 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
             "not tried as the experiment is: {effects}: {why} (needs {needs})"
         );
     }
-    for run in &record.next_runs {
+    for (place, run) in record.next_runs.iter().enumerate() {
         let _ = writeln!(
             text,
-            "next run: slip {:.2}, {:.1} N, {:.4} m/s distinguishes {} ({:.2} nats)",
+            "{}: slip {:.2}, {:.1} N, {:.4} m/s distinguishes {} ({} {:.2} nats)",
+            if place == 0 { "next run" } else { "and then" },
             run.slip,
             run.wheel_load_n,
             run.sled_speed_m_s,
             run.separates.join(", "),
+            if place == 0 { "tells" } else { "adds" },
             run.information_nats
         );
     }
@@ -226,7 +200,7 @@ mod tests {
             "slip_sinkage                     40.00      0.9600      1        in       1.2  half_normal 0.2",
             "slip_sinkage + bulldozing        40.00    0.0030      0.0600                +28.0",
             "not detectable at the usual strength: moisture",
-            "next run: slip 0.60, 80.0 N, 0.0200 m/s distinguishes slip_sinkage, bulldozing (0.40 nats)",
+            "next run: slip 0.60, 80.0 N, 0.0200 m/s distinguishes slip_sinkage, bulldozing (tells 0.40 nats)",
             "other test: a plate test at 80 N",
             "to add it: coordinator extend 7 --effect slip_sinkage --out out/sand",
         ] {

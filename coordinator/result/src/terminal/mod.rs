@@ -3,6 +3,7 @@
 //! # Layout
 //! - `specification`: a job before it runs. `status`: states of calibrations.
 //! - `study`: the results of a study; `calibration`: of one calibration; `comparison`: its errors.
+//! - `ledger`: the errors of a study's calibrations.
 //! - `diagnostics`: how far a result can be trusted. [`discovery`]: a search for a missing effect.
 //! - `column`: widths and cells of columns.
 
@@ -11,6 +12,7 @@ mod column;
 mod comparison;
 mod diagnostics;
 pub mod discovery;
+mod ledger;
 mod specification;
 mod status;
 mod study;

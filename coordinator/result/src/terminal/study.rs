@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::calibration::{brief, summary};
+use super::ledger::ledger;
 use crate::study::Study;
 
 /// The results of a study, one calibration after the other; of one that has grown without the tables of their runs.
@@ -12,8 +13,15 @@ pub fn study(study: &Study) -> String {
         _ => study.calibrations().map(brief).collect(),
     };
     let mut text = results.join("\n");
-    for flag in study.missed_modes() {
+    for flag in study
+        .missed_modes()
+        .into_iter()
+        .chain(study.interpolation_beats())
+    {
         let _ = writeln!(text, "\nflag {}: {}", flag.kind.name(), flag.text);
+    }
+    if study.rounds.is_empty() && study.ledger().count() > 1 {
+        text.push_str(&ledger(study));
     }
     text
 }

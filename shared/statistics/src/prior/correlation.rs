@@ -98,6 +98,27 @@ impl Correlation {
         }
     }
 
+    /// Replaces independent normal scores of the correlated parameters by theirs, `L z`.
+    pub(super) fn colour(&self, scores: &mut [f64]) {
+        let z = DVector::from_iterator(self.parameters.len(), self.parameters.iter().map(|&p| scores[p]));
+        for (&parameter, z) in self.parameters.iter().zip((&self.factor * z).iter()) {
+            scores[parameter] = *z;
+        }
+    }
+
+    /// The correlations among some of all parameters, these being numbered anew; `None` where fewer than two remain.
+    pub(super) fn of_some(self, marginals: &[Marginal], kept: &[usize]) -> Option<Self> {
+        let (parameters, correlations) = self.given();
+        let own: Vec<(usize, usize)> = (0..kept.len())
+            .filter_map(|new| Some((new, parameters.iter().position(|&p| p == kept[new])?)))
+            .collect();
+        let row = |i: usize| own.iter().map(|&(_, j)| correlations[i][j]).collect();
+        let correlations: Vec<Vec<f64>> = own.iter().map(|&(_, i)| row(i)).collect();
+        let parameters = own.into_iter().map(|(new, _)| new).collect();
+        // A principal part of a correlation matrix is one.
+        Self::new(marginals, parameters, &correlations).ok()
+    }
+
     /// Replaces independent draws of the correlated parameters by dependent ones.
     pub(super) fn correlate(&self, marginals: &[Marginal], theta: &mut [f64]) {
         let coordinates: Vec<f64> = marginals

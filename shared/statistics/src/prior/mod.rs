@@ -135,6 +135,28 @@ impl Prior {
         }
     }
 
+    /// The inverse of [`Prior::make_independent`].
+    pub fn make_dependent(&self, scores: &mut [f64]) {
+        if let Some(correlation) = &self.correlation {
+            correlation.colour(scores);
+        }
+    }
+
+    /// The prior of some of the parameters, whatever the others are: their marginals, and their correlations among themselves.
+    ///
+    /// # Arguments
+    /// - `kept`: ascending positions in theta.
+    #[must_use]
+    pub fn of_some(&self, kept: &[usize]) -> Self {
+        let marginals: Vec<Marginal> = kept.iter().map(|&k| self.marginals[k].clone()).collect();
+        let correlation = self.correlation.clone();
+        let correlation = correlation.and_then(|correlation| correlation.of_some(&marginals, kept));
+        Self {
+            marginals,
+            correlation,
+        }
+    }
+
     /// Whether some parameters are correlated.
     #[must_use]
     pub fn is_correlated(&self) -> bool {

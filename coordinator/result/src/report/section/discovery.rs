@@ -1,101 +1,22 @@
-//! The error ledger, and the results of the searches for a missing effect.
+//! The results of the searches for a missing effect.
 
 use std::path::Path;
 
 use maud::{Markup, html};
 use record::{Discovery, JudgedEffect, Outside};
-use shared::channel::Channel;
-use shared::experiment::RunUse;
 
 use crate::discovery::{DiscoveryRound, arguments};
-use crate::finished_calibration::FinishedCalibration;
 use crate::report::chart;
 use crate::study::Study;
-use crate::table::comparison::Comparison;
-use crate::table::coverage::Coverage;
-use crate::table::errors::ErrorTable;
-use crate::table::row::{measured_channels, rows_of};
-use crate::words::data_channel::{ShownUnit, title};
 use crate::words::number;
 
-/// Ledger, then each search; nothing where the study has neither a search nor an extension.
+/// Each search; nothing where the study has none.
 pub(in crate::report) fn discovery(study: &Study) -> Option<Markup> {
-    let is_grown = !(study.rounds.is_empty() && study.extensions.is_empty());
-    is_grown.then(|| {
+    (!study.rounds.is_empty()).then(|| {
         html! {
-            (ledger(study))
             @for round in &study.rounds { (search(study, round)) }
         }
     })
-}
-
-/// The errors of each calibration, by which an added effect is judged.
-fn ledger(study: &Study) -> Markup {
-    let lines: Vec<(&FinishedCalibration, Comparison)> =
-        study.ledger().map(|o| (o, o.comparison())).collect();
-    let rows: Vec<_> = lines.iter().flat_map(|(_, c)| c.rows.iter().cloned()).collect();
-    let channels = measured_channels(&rows);
-    html! {
-        div.scroll { table {
-            thead { tr {
-                th.text { "calibration" } th.text { "effects" } th.text { "rows" }
-                @for channel in &channels { th { (title(*channel)) br; "(noise sds)" } }
-                th { "all" br; "[noise sds]" } th { "inside" br; "90 %" } th { "log-evidence" }
-            } }
-            tbody {
-                @for (calibration, comparison) in &lines {
-                    @for (usage, table) in [(RunUse::Fit, &comparison.fit), (RunUse::Holdout, &comparison.holdout)] {
-                        @if let Some(table) = table {
-                            tr.first[usage == RunUse::Fit] { (cells(study, calibration, comparison, usage, table, &channels)) }
-                        }
-                    }
-                }
-            }
-        } }
-        p.note {
-            "Root mean square errors of the posterior-mean prediction. A real effect also lowers them on held-out rows. "
-            "Log evidences are comparable only on the same measurements."
-        }
-    }
-}
-
-fn cells(
-    study: &Study,
-    calibration: &FinishedCalibration,
-    comparison: &Comparison,
-    usage: RunUse,
-    table: &ErrorTable,
-    channels: &[Channel],
-) -> Markup {
-    let is_first = usage == RunUse::Fit;
-    let effects = study.parts(calibration);
-    let coverage = Coverage::count(rows_of(&comparison.rows, usage));
-    html! {
-        td.text { @if is_first { (calibration.experiment) } }
-        td.text { @if is_first { (if effects.is_empty() { number::NONE.to_owned() } else { effects.join(", ") }) } }
-        td.text { (usage.name()) }
-        @for channel in channels {
-            td {
-                @match table.channel(*channel) {
-                    Some(error) => {
-                        (number::significant(error.rmse * ShownUnit::of(*channel).factor, 3))
-                        " (" (number::or_none(error.rmse_sigma, |s| number::significant(s, 3))) ")"
-                    },
-                    None => (number::NONE),
-                }
-            }
-        }
-        td { (number::or_none(table.all.rmse_sigma, |s| number::significant(s, 3))) }
-        td { (number::or_none(coverage, |c| format!("{} of {}", c.inside, c.of))) }
-        td {
-            @if is_first {
-                @match (calibration.row.log_evidence, calibration.row.log_evidence_se) {
-                    (Some(z), Some(se)) => (number::with_spread(z, se)),
-                    _ => (number::NONE),
-                }
-            }
-        }
-    }
 }
 
 /// The result of a search.
@@ -231,11 +152,11 @@ fn next(record: &Discovery) -> Markup {
     html! {
         p { "Informative tests:" }
         ul {
-            @for run in &record.next_runs {
+            @for (place, run) in record.next_runs.iter().enumerate() {
                 li {
-                    "a run at slip " (number::significant(run.slip, 2)) ", " (number::significant(run.wheel_load_n, 3)) "\u{a0}N, "
+                    (if place == 0 { "a run" } else { "and then a run" }) " at slip " (number::significant(run.slip, 2)) ", " (number::significant(run.wheel_load_n, 3)) "\u{a0}N, "
                     (number::significant(run.sled_speed_m_s, 3)) "\u{a0}m/s distinguishes " (number::list(&run.separates)) " ("
-                    (number::significant(run.information_nats, 2)) " nats)"
+                    (if place == 0 { "tells " } else { "adds " }) (number::significant(run.information_nats, 2)) "\u{a0}nats)"
                 }
             }
             @for test in &record.other_tests { li { (test) } }

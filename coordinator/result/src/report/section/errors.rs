@@ -105,6 +105,7 @@ fn cells(channel: Channel, first: bool, line: &ErrorLine, intervals: bool) -> Ma
         rmse,
         rmse_sigma,
         runs,
+        ..
     } = line.error;
     let unit = ShownUnit::of(channel);
     html! {

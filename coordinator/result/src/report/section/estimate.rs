@@ -54,7 +54,13 @@ pub(in crate::report) fn fit(calibration: &FinishedCalibration, estimate: &Estim
             dt { "log-posterior" }
             dd {
                 (number::significant(estimate.log_posterior(), 5)) " (log-likelihood " (number::significant(estimate.log_likelihood, 5))
-                " plus log-density of the prior " (number::significant(estimate.log_prior, 5)) "; without the evidence, which is unknown)"
+                " plus log-density of the prior " (number::significant(estimate.log_prior, 5))
+                @if calibration.approximated.is_none() { "; without the evidence, which is unknown" } ")"
+            }
+            @if calibration.approximated.is_some() {
+                dt { "log-evidence" }
+                dd { (number::or_none(calibration.row.log_evidence, |z| number::significant(z, 5))) " (natural logarithm; by the normal approximation)" }
+                dt { "draws" } dd { (calibration.posterior.len()) " of the normal approximation, in the normal scores of the parameters" }
             }
             dt { "stopped because" } dd { (reason(estimate.stop)) }
             (cost(calibration))

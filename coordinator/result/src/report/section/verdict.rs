@@ -47,7 +47,14 @@ fn sentences(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<
             number::count(calibration.row.evaluations.unwrap_or(0) as usize, "evaluation"),
             reason(estimate.stop)
         ),
-        None => equilibrium(calibration),
+        None => match &calibration.approximated {
+            Some(mode) => format!(
+                "A fit found the most probable parameters in {}; it stopped because {}. Draws, intervals and evidence below are those of a normal approximation about them: exact where the posterior is normal in the normal scores of the parameters.",
+                number::count(calibration.row.evaluations.unwrap_or(0) as usize, "evaluation"),
+                reason(mode.stop)
+            ),
+            None => equilibrium(calibration),
+        },
     }];
     text.push(match &comparison.fit {
         Some(fit) => format!(

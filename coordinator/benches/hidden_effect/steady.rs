@@ -1,0 +1,67 @@
+//! Searches with the three-dimensional model as a study runs them: the answer of each, its reason, and its time.
+
+use std::time::Instant;
+
+use record::{Discovery, Verdict};
+
+use crate::study::design::Plan;
+use crate::study::error::StudyError;
+use crate::study::parallel::threads;
+use crate::study::rate::Rate;
+use crate::study::record::record;
+use crate::study::trial::draw_detectable;
+
+/// The truths are others than those of the other kinds.
+const FIRST: u64 = 3_000_000;
+/// Most seconds of a search.
+const MOST_S: f64 = 60.0;
+
+/// Searches so many experiments one after the other, each on all threads.
+pub(crate) fn run(count: u64, seed: u64) -> Result<(), StudyError> {
+    let mut times = Vec::new();
+    let mut right = Vec::new();
+    let mut wrong = Vec::new();
+    for number in 0..count {
+        let case = draw_detectable(Plan::Spatial, 1, seed, FIRST + number)?;
+        let begin = Instant::now();
+        let record = record(&case.plan.job(), &case.experiment(), 1, threads())?;
+        let seconds = begin.elapsed().as_secs_f64();
+        let is_right = is_right(&record, &case.hidden[0]);
+        println!(
+            "steady {number} {}: {seconds:.1} s, {} evaluations, {}: {}",
+            case.hidden[0],
+            record.evaluations,
+            match is_right {
+                Some(true) => "right",
+                Some(false) => "WRONG",
+                None => "open",
+            },
+            record.text
+        );
+        times.push(seconds);
+        right.push(is_right == Some(true));
+        wrong.push(is_right == Some(false));
+    }
+    let longest = times.iter().copied().fold(0.0, f64::max);
+    println!("named or classed right: {}", Rate::new(right.into_iter()));
+    println!("wrong: {} (goal 0)", Rate::new(wrong.into_iter()));
+    let short = Rate::new(times.iter().map(|time| *time <= MOST_S));
+    println!(
+        "within {MOST_S} s on {} threads: {short} (goal 1); longest {longest:.1} s",
+        threads()
+    );
+    Ok(())
+}
+
+/// Whether the truth's class is claimed; `None` without a claim.
+fn is_right(record: &Discovery, truth: &str) -> Option<bool> {
+    let class = |name: &str| record.effects.iter().find(|e| e.name == name).map(|e| e.class);
+    match record.verdict {
+        Verdict::NothingDetectable | Verdict::Undecided => None,
+        Verdict::NotInLibrary => Some(false),
+        Verdict::Named | Verdict::Class => {
+            let leading = record.effects.iter().find(|e| e.name != record::NONE);
+            Some(leading.map(|e| e.class) == class(truth))
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! A search as the farm runs it, with the record that a study stores.
+
+use std::collections::BTreeMap;
+
+use coordinator::embedded::Evaluate;
+use coordinator::missing_effect::{RunningDiscovery, SearchModels};
+use record::Discovery;
+use shared::file::FileSet;
+use shared::outcome::Outcome;
+
+use super::error::StudyError;
+use super::parallel::each_on;
+
+/// Searches what is missing.
+///
+/// # Arguments
+/// - `max_effects`: most effects in a combination. `threads`: that share the evaluations of a round.
+pub(crate) fn record(
+    job: &FileSet,
+    experiment: &FileSet,
+    max_effects: usize,
+    threads: usize,
+) -> Result<Discovery, StudyError> {
+    let mut search = RunningDiscovery::new(SearchModels::new(job, experiment, max_effects)?)?;
+    let mut evaluates: BTreeMap<String, Evaluate> = BTreeMap::new();
+    loop {
+        if let Some(record) = search.record() {
+            return Ok(record);
+        }
+        let count = search.pending().len();
+        let lease = |index: usize| search.lease(index).ok_or("no query is pending");
+        for index in 0..count {
+            let (hash, _) = lease(index)?;
+            if !evaluates.contains_key(hash) {
+                let variant = search.variant(hash).ok_or("a variant is missing")?;
+                evaluates.insert(hash.to_owned(), Evaluate::new(variant)?);
+            }
+        }
+        let outcomes = each_on(threads, count as u64, |index| {
+            let (hash, theta) = lease(index as usize)?;
+            Ok::<_, StudyError>(evaluates[hash].evaluate(theta))
+        })?;
+        for (index, outcome) in outcomes.into_iter().enumerate() {
+            let values = match outcome? {
+                Outcome::Evaluated(observables) => search.values(index, &observables),
+                Outcome::Rejected(_) | Outcome::Fault(_) => None,
+            };
+            search.tell(index, values.as_deref())?;
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! The most probable sds of noise and of common errors at given predicted values.
+
+use super::noise::{InferredNoise, Profiled};
+use statistics::likelihood::{CommonErrorSize, ErrorSd, Likelihood};
+use statistics::prior::{LN_SQRT_TAU, Prior};
+
+/// Normal scores between which an sd without a closed form is searched.
+const FARTHEST_SCORE: f64 = 4.0;
+/// Sections of that interval: down to a width of 2e-4.
+const SECTIONS: u32 = 22;
+/// Most passes over the sds, and the change of the scores at which they end.
+const PASSES: u32 = 6;
+const SETTLED: f64 = 1e-3;
+/// Half the width of the second difference along a score.
+const DIFFERENCE: f64 = 1e-2;
+const GOLDEN: f64 = 0.618_033_988_749_894_8;
+
+/// The inferred sds of a likelihood.
+#[derive(Debug, Clone)]
+pub(super) enum NoiseProfile {
+    /// Noise sds of independent normal errors: each is the solution of a one-dimensional problem.
+    Separate(Vec<InferredNoise>),
+    /// Sds that depend on each other: with common errors or heavy tails. Their indices in theta.
+    Entangled(Vec<usize>),
+}
+
+impl NoiseProfile {
+    pub(super) fn new(prior: &Prior, likelihood: &Likelihood) -> Self {
+        match likelihood.entangles_unknown_sds() {
+            false => Self::Separate(InferredNoise::all(prior, likelihood)),
+            true => Self::Entangled(inferred_sds(likelihood)),
+        }
+    }
+
+    /// The indices of the sds in theta.
+    pub(super) fn parameters(&self) -> Vec<usize> {
+        match self {
+            Self::Separate(noises) => noises.iter().map(|noise| noise.parameter).collect(),
+            Self::Entangled(parameters) => parameters.clone(),
+        }
+    }
+
+    /// The most probable sds at predicted values; those of theta are ignored.
+    ///
+    /// Entangled sds maximise the density of their normal scores, one after the other by golden sections. A scatter that the
+    /// data do not show has its most probable value at 0, where nothing follows for its uncertainty; its score has an
+    /// inner mode.
+    pub(super) fn profile(
+        &self,
+        prior: &Prior,
+        likelihood: &Likelihood,
+        theta: &[f64],
+        predicted: &[f64],
+    ) -> Vec<Profiled> {
+        match self {
+            Self::Separate(noises) => {
+                let data = likelihood.data().iter().zip(predicted);
+                let residuals: Vec<f64> = data.map(|(datum, value)| datum.value - value).collect();
+                noises.iter().map(|noise| noise.profile(&residuals)).collect()
+            }
+            Self::Entangled(parameters) => entangled(parameters, prior, likelihood, theta, predicted),
+        }
+    }
+
+    /// What the log-density of entangled sds gains where their scores take their place; 0 of separate ones.
+    pub(super) fn change_of_measure(&self, prior: &Prior, theta: &[f64]) -> f64 {
+        match self {
+            Self::Separate(_) => 0.0,
+            Self::Entangled(parameters) => {
+                let gain = |&k: &usize| {
+                    let marginal = &prior.marginals()[k];
+                    let score = marginal.normal_score(theta[k]);
+                    -0.5 * score * score - LN_SQRT_TAU - marginal.log_density(theta[k])
+                };
+                parameters.iter().map(gain).sum()
+            }
+        }
+    }
+}
+
+/// Every inferred sd, of noise and of common errors, by ascending parameter.
+fn inferred_sds(likelihood: &Likelihood) -> Vec<usize> {
+    let of_common = likelihood.common().iter().filter_map(|error| match error.size {
+        CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity { sd, .. } => Some(sd),
+        CommonErrorSize::Discrepancy { .. } => None,
+    });
+    let of_data = likelihood.data().iter().map(|datum| datum.sd);
+    let mut parameters: Vec<usize> = of_data
+        .chain(of_common)
+        .filter_map(|sd| match sd {
+            ErrorSd::Inferred { parameter } => Some(parameter),
+            ErrorSd::Known(_) => None,
+        })
+        .collect();
+    parameters.sort_unstable();
+    parameters.dedup();
+    parameters
+}
+
+fn entangled(
+    parameters: &[usize],
+    prior: &Prior,
+    likelihood: &Likelihood,
+    theta: &[f64],
+    predicted: &[f64],
+) -> Vec<Profiled> {
+    let marginal = |i: usize| &prior.marginals()[parameters[i]];
+    let density = |scores: &[f64]| {
+        let mut theta = theta.to_vec();
+        for (i, score) in scores.iter().enumerate() {
+            theta[parameters[i]] = marginal(i).of_normal_score(*score);
+        }
+        let squares: f64 = scores.iter().map(|score| score * score).sum();
+        let scored = likelihood.log_likelihood(predicted, &theta);
+        scored.map_or(f64::NEG_INFINITY, |l| l.value()) - 0.5 * squares
+    };
+    let along = |scores: &[f64], i: usize, score: f64| {
+        let mut moved = scores.to_vec();
+        moved[i] = score;
+        density(&moved)
+    };
+    let mut scores = vec![0.0; parameters.len()];
+    for _ in 0..PASSES {
+        let before = scores.clone();
+        for i in 0..scores.len() {
+            scores[i] = golden_maximum(|score| along(&scores, i, score));
+        }
+        if scores.iter().zip(&before).all(|(a, b)| (a - b).abs() < SETTLED) {
+            break;
+        }
+    }
+    let here = density(&scores);
+    (0..scores.len())
+        .map(|i| {
+            let value = |score| marginal(i).of_normal_score(score);
+            let (low, high) = (scores[i] - DIFFERENCE, scores[i] + DIFFERENCE);
+            let bend = 2.0 * here - along(&scores, i, low) - along(&scores, i, high);
+            let curvature = bend / (DIFFERENCE * DIFFERENCE);
+            let rate = (value(high) - value(low)) / (2.0 * DIFFERENCE);
+            Profiled {
+                sd: value(scores[i]),
+                at_bound: false,
+                uncertainty: (curvature > 0.0).then(|| rate / curvature.sqrt()),
+            }
+        })
+        .collect()
+}
+
+/// The score of the highest density, which has one maximum.
+fn golden_maximum(density: impl Fn(f64) -> f64) -> f64 {
+    let (mut low, mut high) = (-FARTHEST_SCORE, FARTHEST_SCORE);
+    let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+    let [mut a, mut b] = inner(low, high);
+    let (mut at_a, mut at_b) = (density(a), density(b));
+    for _ in 0..SECTIONS {
+        if at_a < at_b {
+            low = a;
+            (a, at_a) = (b, at_b);
+            b = inner(low, high)[1];
+            at_b = density(b);
+        } else {
+            high = b;
+            (b, at_b) = (a, at_a);
+            a = inner(low, high)[0];
+            at_a = density(a);
+        }
+    }
+    0.5 * (low + high)
+}

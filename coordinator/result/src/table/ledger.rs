@@ -1,0 +1,123 @@
+//! The error ledger: errors of the calibrations of a study, each beside the one before.
+
+use shared::channel::Channel;
+use shared::experiment::RunUse;
+
+use super::coverage::Coverage;
+use super::errors::ErrorTable;
+use super::fixed_sigma::FixedSigmas;
+use super::row::rows_of;
+use crate::finished_calibration::FinishedCalibration;
+use crate::study::Study;
+
+/// Growth of an error that counts as worse: below it, draws and runs scatter.
+const WORSE: f64 = 1.05;
+
+/// A calibration of the ledger.
+pub(crate) struct LedgerLine<'a> {
+    pub(crate) calibration: &'a FinishedCalibration,
+    /// `base`, or what it has, and its runs where there are more.
+    pub(crate) model: String,
+    /// Fitted runs, then those held out.
+    pub(crate) rows: Vec<LedgerRow>,
+}
+
+/// The errors of a calibration on fitted runs, or on others.
+pub(crate) struct LedgerRow {
+    pub(crate) usage: RunUse,
+    /// In SI units, and in the noise sds of the study.
+    pub(crate) errors: ErrorTable,
+    /// Channels whose error is more than 5 % above that of the line before, on the same measurements.
+    pub(crate) worse: Vec<Channel>,
+    pub(crate) coverage: Option<Coverage>,
+}
+
+impl Study {
+    /// The noise sds that all lines of the ledger are measured by.
+    pub fn fixed_sigmas(&self) -> FixedSigmas {
+        FixedSigmas::of(&self.lead)
+    }
+
+    /// The ledger, line by line.
+    pub(crate) fn ledger_lines(&self) -> Vec<LedgerLine<'_>> {
+        let sigmas = self.fixed_sigmas();
+        let mut lines: Vec<LedgerLine> = Vec::new();
+        for calibration in self.ledger() {
+            let comparison = calibration.comparison();
+            let row = |(usage, errors): (RunUse, &Option<ErrorTable>)| {
+                let errors = errors.clone()?.in_fixed_sigmas(&sigmas);
+                // Errors on other measurements say nothing.
+                let last = lines
+                    .last()
+                    .filter(|line| line.calibration.row.experiment == calibration.row.experiment)
+                    .and_then(|line| line.rows.iter().find(|r| r.usage == usage));
+                let is_worse = |channel: &Channel| {
+                    let before = last.and_then(|last| last.errors.channel(*channel));
+                    let now = errors.channel(*channel);
+                    before
+                        .zip(now)
+                        .is_some_and(|(before, now)| now.rmse > WORSE * before.rmse)
+                };
+                Some(LedgerRow {
+                    usage,
+                    worse: Channel::ALL.into_iter().filter(is_worse).collect(),
+                    coverage: Coverage::count(rows_of(&comparison.rows, usage)),
+                    errors,
+                })
+            };
+            let tables = [
+                (RunUse::Fit, &comparison.fit),
+                (RunUse::Holdout, &comparison.holdout),
+            ];
+            let rows = tables.into_iter().filter_map(row).collect();
+            lines.push(LedgerLine {
+                model: self.model_words(calibration),
+                calibration,
+                rows,
+            });
+        }
+        lines
+    }
+
+    fn model_words(&self, calibration: &FinishedCalibration) -> String {
+        let parts = self.parts(calibration);
+        let model = match parts.as_slice() {
+            [] => "base".to_owned(),
+            parts => format!("with {}", parts.join(", ")),
+        };
+        match calibration.row.experiment == self.lead.row.experiment {
+            true => model,
+            false => format!("{model}, {} fitted runs", calibration.spec.fit_runs.len()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn a_channel_that_got_worse_is_marked_and_no_other() {
+        let mut study = fixture::grown();
+        let worsen = |by: f64, study: &mut Study| {
+            for prediction in &mut study.extensions[0].predictions {
+                let observables = prediction.fit.as_mut().unwrap();
+                observables.sinkage_m.iter_mut().for_each(|z| *z += by);
+            }
+        };
+        let marked = |study: &Study| -> Vec<Channel> {
+            study
+                .ledger_lines()
+                .into_iter()
+                .flat_map(|line| line.rows)
+                .flat_map(|row| row.worse)
+                .collect()
+        };
+        assert_eq!(marked(&study), []);
+        worsen(0.05, &mut study);
+        assert_eq!(marked(&study), [Channel::Sinkage]);
+        study.extensions[0].row.experiment += 1;
+        assert_eq!(marked(&study), []);
+    }
+}
