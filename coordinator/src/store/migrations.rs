@@ -6,7 +6,7 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 /// Number, name and text of each file of `migrations/`.
 ///
 /// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
-const FILES: [(i64, &str, &str); 10] = [
+const FILES: [(i64, &str, &str); 11] = [
     (
         1,
         "experiments",
@@ -57,6 +57,7 @@ const FILES: [(i64, &str, &str); 10] = [
         "results",
         include_str!("../../../migrations/0010_results.sql"),
     ),
+    (12, "tokens", include_str!("../../../migrations/0012_tokens.sql")),
 ];
 
 /// Brings the tables of a store up to date.
