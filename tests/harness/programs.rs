@@ -88,6 +88,7 @@ fn command<S: AsRef<std::ffi::OsStr>>(name: &str, arguments: impl IntoIterator<I
         "GROUSER_COORDINATOR",
         "GROUSER_THREADS",
         "GROUSER_WIRE",
+        "GROUSER_TOKEN",
         "RUST_LOG",
     ] {
         command.env_remove(variable);
