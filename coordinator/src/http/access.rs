@@ -90,8 +90,7 @@ impl Access {
             )
         })?;
         let hash = TokenHash::of(stated.trim());
-        // All are compared, whichever it is.
-        let found = tokens.iter().filter(|token| token.hash.is(&hash)).last();
+        let found = tokens.iter().find(|token| token.hash.is(&hash));
         let token = found
             .filter(|token| !token.is_revoked)
             .ok_or_else(|| refused("the token is unknown or revoked"))?;

@@ -1,12 +1,13 @@
 //! The REST interface under `/v1`; the only place that knows axum.
 //!
-//! One file per resource; each exports `routes()`. The OpenAPI document is made from the handlers. Before these stand
+//! One file per resource; each exports `routes()`. The OpenAPI `document` is made from the handlers. Before these stand
 //! `connections` (how many, how long) and `gate` (`host`, `body`, `access`: what is let through).
 
 mod access;
 mod body;
 mod calibrations;
 mod connections;
+mod document;
 mod effects;
 mod error;
 mod events;
@@ -26,8 +27,6 @@ use axum::extract::DefaultBodyLimit;
 use axum::http::header::CONTENT_TYPE;
 use axum::routing::get;
 use tokio::net::TcpListener;
-use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityScheme};
-use utoipa::{Modify, OpenApi};
 use utoipa_axum::router::OpenApiRouter;
 
 use crate::service::Service;
@@ -38,32 +37,6 @@ pub use access::TokenRule;
 pub use error::HttpError;
 use gate::Gate;
 use host::Hosts;
-
-/// The document that the handlers complete.
-#[derive(OpenApi)]
-#[openapi(
-    info(
-        title = "Grouser coordinator",
-        description = "Calibrates wheel-soil contact models by Bayesian updating on a farm of workers. Every POST is \
-                       application/json. Where the service asks for tokens, GET needs the role read or submit, POST \
-                       the role submit, /v1/work the role work, and /health none; 401 without a token that is \
-                       accepted, 403 with one of another role."
-    ),
-    modifiers(&BearerToken),
-    security((), ("token" = []))
-)]
-struct Document;
-
-/// Adds the scheme of the tokens to the document.
-struct BearerToken;
-
-impl Modify for BearerToken {
-    fn modify(&self, document: &mut utoipa::openapi::OpenApi) {
-        let scheme = SecurityScheme::Http(Http::new(HttpAuthScheme::Bearer));
-        let components = document.components.get_or_insert_default();
-        components.add_security_scheme("token", scheme);
-    }
-}
 
 /// How a service shows itself: by which names it is reached, and when it asks for tokens.
 #[derive(Debug, Clone)]
@@ -80,7 +53,7 @@ pub struct Exposure {
 
 /// Every route, behind the gate.
 fn router(service: Service, gate: Gate) -> Router {
-    let (router, document) = OpenApiRouter::with_openapi(Document::openapi())
+    let (router, document) = OpenApiRouter::with_openapi(document::base())
         .nest(
             "/v1",
             OpenApiRouter::new()
@@ -95,7 +68,11 @@ fn router(service: Service, gate: Gate) -> Router {
         .merge(metrics::routes())
         .split_for_parts();
     // As bytes, which connections share: as a value it is 1.7 MB for each clone of its route.
-    let document = Bytes::from(document.to_json().expect("the document has a form in JSON"));
+    let document = Bytes::from(
+        document::complete(document)
+            .to_json()
+            .expect("the document has a form in JSON"),
+    );
     let document = get(async move || ([(CONTENT_TYPE, "application/json")], document));
     router
         .route("/openapi.json", document)

@@ -177,3 +177,25 @@ fn a_token_has_one_holder_and_a_plain_name() {
     let second = run(&["add", "anna", "--role", "submit"]).success();
     assert_ne!(first, second);
 }
+
+#[test]
+fn the_description_of_the_interface_has_tokens_and_refusals() {
+    let service = Service::start(&[]);
+    let document = service.client.json("/openapi.json");
+    assert_eq!(
+        document["components"]["securitySchemes"]["token"]["scheme"],
+        "bearer"
+    );
+    for (path, item) in document["paths"].as_object().expect("paths") {
+        for (method, operation) in item.as_object().expect("operations") {
+            let all = ["401", "403", "408", "413", "415"];
+            let due = if method == "post" { &all[..] } else { &all[..2] };
+            for status in due {
+                assert!(
+                    !operation["responses"][status].is_null(),
+                    "{method} {path}: {status}"
+                );
+            }
+        }
+    }
+}
