@@ -117,8 +117,8 @@ pub struct RunArguments {
 /// Who may use a listening address.
 #[derive(Debug, Args)]
 pub struct ExposureArguments {
-    /// Accepts requests to this host name too, as of a reverse proxy; may be repeated.
-    #[arg(long, value_name = "NAME")]
+    /// Accepts requests to this host name too, as of a reverse proxy; may be repeated, or several between commas.
+    #[arg(long, value_name = "NAME", env = "GROUSER_HOST", value_delimiter = ',')]
     pub host: Vec<String>,
     /// Asks nobody for a token: whoever reaches the address may read everything, submit, cancel, and answer as a worker.
     #[arg(long)]
@@ -336,12 +336,20 @@ pub struct AddRunsArguments {
     pub local_workers: Option<usize>,
 }
 
-/// What is logged: `RUST_LOG`, as a level or as `target=level` between commas, else `info,sqlx::query=warn`.
-pub fn log_filter() -> Targets {
-    let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
-    stated.unwrap_or_else(|| {
-        Targets::new()
-            .with_default(LevelFilter::INFO)
-            .with_target("sqlx::query", LevelFilter::WARN)
-    })
+impl CoordinatorCommand {
+    /// What is logged: `RUST_LOG`, as a level or as `target=level` between commas, else `info,sqlx::query=warn`. The journal, a
+    /// line for each start, pause and end of a calibration, is a service's: a run in a folder shows these itself.
+    pub fn log_filter(&self) -> Targets {
+        let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
+        let journal = match self {
+            CoordinatorCommand::Serve(_) => LevelFilter::INFO,
+            _ => LevelFilter::OFF,
+        };
+        stated.unwrap_or_else(|| {
+            Targets::new()
+                .with_default(LevelFilter::INFO)
+                .with_target("sqlx::query", LevelFilter::WARN)
+                .with_target("journal", journal)
+        })
+    }
 }
