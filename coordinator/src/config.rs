@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use shared::bearer::{BearerToken, BearerTokenError};
 use tracing_subscriber::filter::{LevelFilter, Targets};
 
 /// Finds the physics that a wheel-soil model is missing.
@@ -51,6 +52,9 @@ pub enum CoordinatorCommand {
     AddRuns(AddRunsArguments),
     /// List the effects of the catalogue, or show one: its file and its influence on the measured quantities.
     Effects(EffectsArguments),
+    /// Add, list and revoke the tokens that a service asks for.
+    #[command(subcommand)]
+    Token(TokenCommand),
 }
 
 /// A job file and additional effects.
@@ -105,6 +109,20 @@ pub struct RunArguments {
     /// Address at which remote workers may join.
     #[arg(long, value_name = "ADDR")]
     pub listen: Option<std::net::SocketAddr>,
+    /// Who may use that address.
+    #[command(flatten)]
+    pub exposure: ExposureArguments,
+}
+
+/// Who may use a listening address.
+#[derive(Debug, Args)]
+pub struct ExposureArguments {
+    /// Accepts requests to this host name too, as of a reverse proxy; may be repeated, or several between commas.
+    #[arg(long, value_name = "NAME", env = "GROUSER_HOST", value_delimiter = ',')]
+    pub host: Vec<String>,
+    /// Asks nobody for a token: whoever reaches the address may read everything, submit, cancel, and answer as a worker.
+    #[arg(long)]
+    pub insecure: bool,
 }
 
 /// Run the service.
@@ -113,6 +131,49 @@ pub struct ServeArguments {
     /// Address to listen on.
     #[arg(long, env = "GROUSER_LISTEN", default_value = "127.0.0.1:7070")]
     pub listen: std::net::SocketAddr,
+    /// Where everything is kept.
+    #[command(flatten)]
+    pub store: StoreArguments,
+    /// Number of simulation threads in this process.
+    #[arg(long, env = "GROUSER_LOCAL_WORKERS", default_value_t = 0)]
+    pub local_workers: usize,
+    /// Duration of a lease without renewal `[ms]`.
+    #[arg(long, env = "GROUSER_LEASE_MS", default_value_t = crate::service::LEASE_MS)]
+    pub lease_ms: u64,
+    /// Who may use the address.
+    #[command(flatten)]
+    pub exposure: ExposureArguments,
+}
+
+/// Add, list and revoke tokens; a running service follows within a second.
+#[derive(Debug, Subcommand)]
+pub enum TokenCommand {
+    /// Add a token and print it; it is shown this once.
+    Add {
+        /// Name of its holder.
+        name: String,
+        /// What its holder may do: read; read, submit and control; or work as a worker.
+        #[arg(long, value_enum)]
+        role: crate::token::Role,
+        /// Where it is kept.
+        #[command(flatten)]
+        store: StoreArguments,
+    },
+    /// List the tokens: name, role, whether it is accepted.
+    List(StoreArguments),
+    /// Revoke the token of a name; a store that has had a token keeps asking for one.
+    Revoke {
+        /// Name of its holder.
+        name: String,
+        /// Where it is kept.
+        #[command(flatten)]
+        store: StoreArguments,
+    },
+}
+
+/// The store of a service.
+#[derive(Debug, Args)]
+pub struct StoreArguments {
     /// The store, an SQLite file.
     #[arg(
         long,
@@ -121,12 +182,24 @@ pub struct ServeArguments {
         value_name = "sqlite://FILE"
     )]
     pub store: String,
-    /// Number of simulation threads in this process.
-    #[arg(long, env = "GROUSER_LOCAL_WORKERS", default_value_t = 0)]
-    pub local_workers: usize,
-    /// Duration of a lease without renewal `[ms]`.
-    #[arg(long, env = "GROUSER_LEASE_MS", default_value_t = crate::service::LEASE_MS)]
-    pub lease_ms: u64,
+}
+
+/// The token that a service asks for; in the environment, `GROUSER_TOKEN` has the token itself.
+#[derive(Debug, Args)]
+pub struct ClientTokenArguments {
+    /// File with the token that the service asks for; by default, `GROUSER_TOKEN` from the environment.
+    #[arg(long, value_name = "FILE")]
+    pub token_file: Option<PathBuf>,
+}
+
+impl ClientTokenArguments {
+    /// The token: of the file, or else of the environment.
+    ///
+    /// # Errors
+    /// The file cannot be read, or the token has no form.
+    pub fn token(&self) -> Result<Option<BearerToken>, BearerTokenError> {
+        BearerToken::find(self.token_file.as_deref(), std::env::var("GROUSER_TOKEN").ok())
+    }
 }
 
 /// Submit a job to a service.
@@ -138,18 +211,23 @@ pub struct SubmitArguments {
     /// URL of the service.
     #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
     pub url: String,
+    /// The token for it.
+    #[command(flatten)]
+    pub token: ClientTokenArguments,
 }
 
 /// Where calibrations are looked up: a service or a folder.
 #[derive(Debug, Args)]
-#[group(multiple = false)]
 pub struct SourceArguments {
     /// URL of a service; by default `GROUSER_URL` from the environment, or port 7070 of this machine.
     #[arg(long)]
     pub url: Option<String>,
     /// The output folder of a run.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["url", "token_file"])]
     pub out: Option<PathBuf>,
+    /// The token for the service.
+    #[command(flatten)]
+    pub token: ClientTokenArguments,
 }
 
 impl SourceArguments {
@@ -269,12 +347,20 @@ pub struct AddRunsArguments {
     pub local_workers: Option<usize>,
 }
 
-/// What is logged: `RUST_LOG`, as a level or as `target=level` between commas, else `info,sqlx::query=warn`.
-pub fn log_filter() -> Targets {
-    let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
-    stated.unwrap_or_else(|| {
-        Targets::new()
-            .with_default(LevelFilter::INFO)
-            .with_target("sqlx::query", LevelFilter::WARN)
-    })
+impl CoordinatorCommand {
+    /// What is logged: `RUST_LOG`, as a level or as `target=level` between commas, else `info,sqlx::query=warn`. The journal, a
+    /// line for each start, pause and end of a calibration, is a service's: a run in a folder shows these itself.
+    pub fn log_filter(&self) -> Targets {
+        let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
+        let journal = match self {
+            CoordinatorCommand::Serve(_) => LevelFilter::INFO,
+            _ => LevelFilter::OFF,
+        };
+        stated.unwrap_or_else(|| {
+            Targets::new()
+                .with_default(LevelFilter::INFO)
+                .with_target("sqlx::query", LevelFilter::WARN)
+                .with_target("journal", journal)
+        })
+    }
 }

@@ -22,7 +22,7 @@ async fn run() -> std::process::ExitCode {
         .with_writer(std::io::stderr)
         .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()));
     tracing_subscriber::registry()
-        .with(log.with_filter(coordinator::config::log_filter()))
+        .with(log.with_filter(config.command.log_filter()))
         .init();
     match coordinator::command::execute(config.command).await {
         Ok(()) => std::process::ExitCode::SUCCESS,

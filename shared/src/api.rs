@@ -232,6 +232,12 @@ pub enum ErrorKind {
     InvalidBody,
     /// The body is in a form that the route does not take.
     UnsupportedMediaType,
+    /// The body did not arrive in time.
+    Timeout,
+    /// The request names no token, or one that is not accepted.
+    Unauthorized,
+    /// The request comes through a foreign host or page, or its token has another role.
+    Forbidden,
     /// A file in the body is malformed.
     InvalidFile,
     /// No such thing.

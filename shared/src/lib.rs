@@ -11,12 +11,14 @@
 //! - [`exchange`]: the messages between worker and coordinator.
 //! - [`wire`]: their two forms in bytes.
 //! - [`api`]: the messages between a user and the service.
+//! - [`bearer`]: the token that a client shows to the service.
 //! - [`sentence`]: an error and its causes in one sentence.
 //! - [`mod@file`]: text files by name, and errors that name file, line and the nearest known word.
 //!
 //! The crate only parses and validates: no clock, no network, no database.
 
 pub mod api;
+pub mod bearer;
 pub mod channel;
 pub mod exchange;
 pub mod experiment;

@@ -1,5 +1,6 @@
 //! The whole farm, black-box: the two programs as processes, SQLite files, HTTP.
 
+mod access;
 mod architecture;
 mod bad_input;
 mod bevameter;

@@ -112,7 +112,11 @@ impl Client {
         self.exchange(method, path, head, body.map(str::as_bytes))
     }
 
-    fn exchange(
+    /// Any request with these head lines; one that names a host takes the place of ours.
+    ///
+    /// # Errors
+    /// No connection, or one that broke.
+    pub fn exchange(
         &self,
         method: &str,
         path: &str,
@@ -174,8 +178,10 @@ impl Client {
     ) -> std::io::Result<(u16, Vec<(String, String)>, BufReader<TcpStream>)> {
         let mut stream = TcpStream::connect(&self.0)?;
         stream.set_read_timeout(Some(Duration::from_secs(60)))?;
-        let mut request = format!("{method} {path} HTTP/1.0\r\nHost: {}\r\n", self.0);
-        for (name, value) in head {
+        let mut request = format!("{method} {path} HTTP/1.0\r\n");
+        let names_host = head.iter().any(|(name, _)| name.eq_ignore_ascii_case("host"));
+        let host = ("Host", self.0.as_str());
+        for (name, value) in head.iter().chain((!names_host).then_some(&host)) {
             request += &format!("{name}: {value}\r\n");
         }
         if let Some(body) = body {

@@ -73,6 +73,18 @@ impl Process {
         assert!(sent.success(), "{line}");
     }
 
+    /// Memory that it holds `[kB]`.
+    ///
+    /// # Panics
+    /// It has ended.
+    pub fn resident_kb(&self) -> u64 {
+        let path = format!("/proc/{}/status", self.child.id());
+        let status = std::fs::read_to_string(path).expect("a running process");
+        let value = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+        let value = value.and_then(|v| v.trim_end_matches("kB").trim().parse().ok());
+        value.expect("a size of the resident set")
+    }
+
     /// Whether it has not ended.
     ///
     /// # Panics

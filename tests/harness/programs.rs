@@ -80,6 +80,7 @@ fn command<S: AsRef<std::ffi::OsStr>>(name: &str, arguments: impl IntoIterator<I
     command.args(arguments).stdin(Stdio::null()).env("NO_COLOR", "1");
     // settings of the user's environment must not affect the tests
     for variable in [
+        "GROUSER_HOST",
         "GROUSER_LISTEN",
         "GROUSER_STORE",
         "GROUSER_LOCAL_WORKERS",
@@ -88,6 +89,7 @@ fn command<S: AsRef<std::ffi::OsStr>>(name: &str, arguments: impl IntoIterator<I
         "GROUSER_COORDINATOR",
         "GROUSER_THREADS",
         "GROUSER_WIRE",
+        "GROUSER_TOKEN",
         "RUST_LOG",
     ] {
         command.env_remove(variable);

@@ -87,6 +87,17 @@ impl Service {
         format!("http://{}", self.client.0)
     }
 
+    /// Memory that its process holds `[kB]`.
+    ///
+    /// # Panics
+    /// It is not running.
+    pub fn resident_kb(&self) -> u64 {
+        self.process
+            .as_ref()
+            .expect("the service is running")
+            .resident_kb()
+    }
+
     /// The file of its store.
     pub fn store(&self) -> PathBuf {
         self.folder.path().join("grouser.db")

@@ -5,6 +5,7 @@ use std::time::Duration;
 use reqwest::header::CONTENT_TYPE;
 use reqwest::{Client, RequestBuilder, StatusCode};
 use shared::api::ErrorBody;
+use shared::bearer::BearerToken;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
 use shared::model::ModelVariant;
 use shared::wire::WireForm;
@@ -17,6 +18,7 @@ pub struct HttpCoordinator {
     client: Client,
     url: String,
     form: WireForm,
+    token: Option<BearerToken>,
 }
 
 /// Why a coordinator cannot be reached at all.
@@ -34,11 +36,12 @@ pub enum ClientError {
 const TIMEOUT: Duration = Duration::from_secs(60);
 
 impl HttpCoordinator {
-    /// A client of the coordinator at `url`, as in `http://host:7070`, that exchanges messages in this form.
+    /// A client of the coordinator at `url`, as in `http://host:7070`, that exchanges messages in this form, with the token
+    /// that the coordinator asks for, if it does.
     ///
     /// # Errors
     /// [`ClientError`] names the URL and what is wrong with it.
-    pub fn new(url: &str, form: WireForm) -> Result<Self, ClientError> {
+    pub fn new(url: &str, form: WireForm, token: Option<BearerToken>) -> Result<Self, ClientError> {
         let owned = || url.to_owned();
         let parsed = reqwest::Url::parse(url).map_err(|e| ClientError::Url(owned(), e.to_string()))?;
         if parsed.scheme() != "http" {
@@ -54,6 +57,7 @@ impl HttpCoordinator {
             client,
             url: url.trim_end_matches('/').to_owned(),
             form,
+            token,
         })
     }
 
@@ -78,6 +82,10 @@ impl HttpCoordinator {
     }
 
     async fn send(&self, request: RequestBuilder) -> Result<reqwest::Response, ExchangeError> {
+        let request = match &self.token {
+            Some(token) => request.bearer_auth(token.expose()),
+            None => request,
+        };
         let response = request
             .send()
             .await

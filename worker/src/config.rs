@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use shared::bearer::{BearerToken, BearerTokenError};
 use shared::wire::WireForm;
 use tracing_subscriber::filter::{LevelFilter, Targets};
 
@@ -29,6 +30,19 @@ pub struct PullArguments {
     /// Form of the messages: msgpack, or json to read along.
     #[arg(long, env = "GROUSER_WIRE", default_value_t = WireForm::MessagePack)]
     pub wire: WireForm,
+    /// File with the token that the coordinator asks for; by default, `GROUSER_TOKEN` from the environment.
+    #[arg(long, value_name = "FILE")]
+    pub token_file: Option<PathBuf>,
+}
+
+impl PullArguments {
+    /// The token: of the file, or else of the environment.
+    ///
+    /// # Errors
+    /// The file cannot be read, or the token has no form.
+    pub fn token(&self) -> Result<Option<BearerToken>, BearerTokenError> {
+        BearerToken::find(self.token_file.as_deref(), std::env::var("GROUSER_TOKEN").ok())
+    }
 }
 
 /// What a worker does besides serving a coordinator.

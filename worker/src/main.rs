@@ -43,7 +43,7 @@ fn main() -> std::process::ExitCode {
 
 #[tokio::main]
 async fn pull(serve: &PullArguments) -> anyhow::Result<()> {
-    let coordinator = HttpCoordinator::new(&serve.coordinator, serve.wire)?;
+    let coordinator = HttpCoordinator::new(&serve.coordinator, serve.wire, serve.token()?)?;
     let cores = std::thread::available_parallelism().map_or(1, Into::into);
     let threads = serve.threads.map_or(cores, Into::into);
     let name = name();

@@ -77,6 +77,9 @@ pub struct EffectsChanged {
 /// At most so many final draws are simulated on every run, holdout included.
 pub const PREDICTION_DRAWS: usize = 200;
 
+/// Most predicted values of one population: 400 MB.
+const MOST_NUMBERS: usize = 50_000_000;
+
 impl Spec {
     /// Builds and validates a specification.
     ///
@@ -204,6 +207,15 @@ impl Spec {
         let radius = |&i: &usize| experiment.wheels[&experiment.runs[i].wheel].radius_m;
         let radii_m: Vec<f64> = fit_runs.iter().map(radius).collect();
         let predicted = predicted_values(&likelihood, &radii_m);
+        if let AlgorithmSettings::Sample(settings) = &job.algorithm {
+            let (particles, values) = (settings.particles, predicted.len());
+            if particles.saturating_mul(values) > MOST_NUMBERS {
+                return Err(in_job(format!(
+                    "[sampler] {particles} particles of {values} fitted values each are {} numbers; they must be at most {MOST_NUMBERS}",
+                    particles.saturating_mul(values)
+                )));
+            }
+        }
         if job.algorithm.has_metamodel() {
             if model.kind == ModelKind::QuasiStatic {
                 return Err(in_job(

@@ -8,11 +8,14 @@ use shared::api::CalibrationState;
 use shared::model::equations_of;
 use tokio::net::TcpListener;
 
+use super::exposure::exposure;
 use super::output::{note, say};
 use super::progress::Display;
 use super::shutdown::{Shutdown, stop_signal};
+use crate::config::ExposureArguments;
 use crate::embedded::{LocalWorkers, model_version};
 use crate::farm::Control;
+use crate::http::Exposure;
 use crate::service::{LEASE_MS, Service, next_step_of, search_rounds};
 use record::CalibrationRow;
 use result::discovery::effect_file;
@@ -35,7 +38,7 @@ pub(super) struct Folder {
     /// Its store, and a farm for it.
     pub(super) service: Service,
     local_workers: Option<usize>,
-    listener: Option<TcpListener>,
+    server: Option<(TcpListener, Exposure)>,
 }
 
 impl Folder {
@@ -43,14 +46,23 @@ impl Folder {
     pub(super) async fn open(
         out: &Path,
         local_workers: Option<usize>,
-        listener: Option<TcpListener>,
+        listener: Option<(TcpListener, &ExposureArguments)>,
     ) -> anyhow::Result<Folder> {
         let store = out.join("grouser.db").display().to_string();
+        let service = Service::open(&store, LEASE_MS).await?;
+        let server = match listener {
+            Some((listener, config)) => {
+                let reader = service.store().reader();
+                let exposure = exposure(listener.local_addr()?, config, &reader, &store).await?;
+                Some((listener, exposure))
+            }
+            None => None,
+        };
         Ok(Folder {
             out: out.to_owned(),
-            service: Service::open(&store, LEASE_MS).await?,
+            service,
             local_workers,
-            listener,
+            server,
         })
     }
 
@@ -146,16 +158,20 @@ impl Folder {
 
     /// Simulates until the study is over, or until ^C.
     async fn calibrate(&mut self, study: i64) -> anyhow::Result<End> {
-        let listener = self.listener.take();
+        let server = self.server.take();
         let service = &self.service;
         let stop = Shutdown::new();
-        let server = listener.map(|listener| {
-            if let Ok(address) = listener.local_addr() {
-                note(&format!(
-                    "workers may join: worker --coordinator http://{address}"
-                ));
-            }
-            tokio::spawn(crate::http::serve(listener, service.clone(), stop.wait()))
+        let server = server.map(|(listener, exposure)| {
+            let address = exposure.listening;
+            note(&format!(
+                "workers may join: worker --coordinator http://{address}"
+            ));
+            tokio::spawn(crate::http::serve(
+                listener,
+                service.clone(),
+                exposure,
+                stop.wait(),
+            ))
         });
         let cores = std::thread::available_parallelism().map_or(1, Into::into);
         let threads = self.local_workers.unwrap_or(cores);

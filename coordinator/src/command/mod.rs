@@ -2,6 +2,7 @@
 
 mod check;
 mod effects;
+mod exposure;
 mod folder;
 mod growth;
 mod job_on_disk;
@@ -11,6 +12,7 @@ mod run;
 mod serve;
 mod shutdown;
 mod source;
+mod token;
 mod verbs;
 
 use crate::config::CoordinatorCommand;
@@ -38,5 +40,6 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Extend(extend) => growth::extend(&extend).await,
         CoordinatorCommand::AddRuns(runs) => growth::add_runs(&runs).await,
         CoordinatorCommand::Effects(config) => effects::effects(&config).await,
+        CoordinatorCommand::Token(command) => token::token(&command).await,
     }
 }

@@ -31,7 +31,12 @@ pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
         None => None,
     };
     std::fs::create_dir_all(&out).with_context(|| format!("--out {}", out.display()))?;
-    let folder = Folder::open(&out, config.local_workers, listener).await?;
+    let folder = Folder::open(
+        &out,
+        config.local_workers,
+        listener.map(|l| (l, &config.exposure)),
+    )
+    .await?;
     let service = folder.service.clone();
     let result = async {
         let study = take_up(&job, &folder).await?;

@@ -1,28 +1,45 @@
 //! `coordinator serve`: the service.
 
+use std::ops::RangeInclusive;
+
 use anyhow::{Context, bail};
 use tokio::net::TcpListener;
 
+use super::exposure::exposure;
 use super::shutdown::{Shutdown, stop_signal};
 use crate::config::ServeArguments;
 use crate::embedded::LocalWorkers;
 use crate::service::Service;
 
+/// Durations that a lease may have `[ms]`: what a network may take, to a day.
+const LEASE_MS: RangeInclusive<u64> = 100..=86_400_000;
+
 pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
-    if config.lease_ms < 100 {
-        bail!("--lease-ms {} ms must be >= 100 ms", config.lease_ms);
+    if !LEASE_MS.contains(&config.lease_ms) {
+        let (least, most) = (LEASE_MS.start(), LEASE_MS.end());
+        bail!(
+            "--lease-ms {} ms must lie in [{least}, {most}] ms",
+            config.lease_ms
+        );
     }
     let listener = TcpListener::bind(config.listen)
         .await
         .with_context(|| format!("--listen {}", config.listen))?;
-    let service = Service::open(&config.store, config.lease_ms).await?;
+    let store = &config.store.store;
+    let service = Service::open(store, config.lease_ms).await?;
     let address = listener.local_addr()?;
-    tracing::info!(%address, store = config.store, "serving");
+    let exposure = exposure(address, &config.exposure, &service.store().reader(), store).await?;
+    tracing::info!(%address, store, "serving");
 
     let stop = Shutdown::new();
     let workers = (config.local_workers > 0)
         .then(|| LocalWorkers::start(service.dispatcher().clone(), config.local_workers, stop.wait()));
-    let server = tokio::spawn(crate::http::serve(listener, service.clone(), stop.wait()));
+    let server = tokio::spawn(crate::http::serve(
+        listener,
+        service.clone(),
+        exposure,
+        stop.wait(),
+    ));
     let signal = stop_signal()?;
     tokio::select! {
         () = service.keep_growing() => {}

@@ -3,8 +3,9 @@
 use anyhow::{Context, bail};
 use serde::de::DeserializeOwned;
 use shared::api::{CalibrationStatus, ErrorBody};
+use shared::bearer::BearerToken;
 
-use crate::config::{SourceArguments, TargetArguments};
+use crate::config::{ClientTokenArguments, SourceArguments, TargetArguments};
 use crate::service::{calibration_row, diagnostics, finished_calibration, stored_status, study_file};
 use crate::store::Reader;
 use result::{self, Comparison, Diagnostics, FinishedCalibration, PosteriorTable, StudyFile, StudySummary};
@@ -24,7 +25,10 @@ impl CalibrationSource {
                     Reader::open(&file.display().to_string()).await?,
                 ))
             }
-            None => Ok(CalibrationSource::Service(ServiceClient::new(&source.url())?)),
+            None => Ok(CalibrationSource::Service(ServiceClient::new(
+                &source.url(),
+                &source.token,
+            )?)),
         }
     }
 
@@ -115,10 +119,11 @@ async fn file(reader: &Reader, id: i64, file: StudyFile) -> anyhow::Result<Strin
 pub(super) struct ServiceClient {
     client: reqwest::Client,
     url: String,
+    token: Option<BearerToken>,
 }
 
 impl ServiceClient {
-    pub(super) fn new(url: &str) -> anyhow::Result<ServiceClient> {
+    pub(super) fn new(url: &str, token: &ClientTokenArguments) -> anyhow::Result<ServiceClient> {
         let parsed = reqwest::Url::parse(url).with_context(|| format!("--url {url}"))?;
         if parsed.scheme() != "http" {
             bail!("--url {url}: scheme {} is not http", parsed.scheme());
@@ -126,10 +131,15 @@ impl ServiceClient {
         Ok(ServiceClient {
             client: reqwest::Client::new(),
             url: url.trim_end_matches('/').to_owned(),
+            token: token.token()?,
         })
     }
 
     async fn answer(&self, request: reqwest::RequestBuilder) -> anyhow::Result<String> {
+        let request = match &self.token {
+            Some(token) => request.bearer_auth(token.expose()),
+            None => request,
+        };
         let response = request
             .send()
             .await

@@ -17,7 +17,7 @@ use result::{self, terminal};
 
 pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file)?;
-    let client = ServiceClient::new(&config.url)?;
+    let client = ServiceClient::new(&config.url, &config.token)?;
     let experiment = NewExperiment {
         toml: job.experiment.toml,
         files: job.experiment.files,

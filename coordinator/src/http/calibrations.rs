@@ -9,6 +9,7 @@ use shared::api::{CalibrationCreated, CalibrationState, CalibrationStatus, Error
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::access::Caller;
 use super::error::{Body, HttpError, Id};
 use crate::farm::Control;
 use crate::service::{Service, finished_calibration, finished_study};
@@ -45,9 +46,12 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
 ))]
 async fn create(
     State(service): State<Service>,
+    by: Caller,
     Body(new): Body<NewCalibration>,
 ) -> Result<(StatusCode, HeaderMap, Json<CalibrationCreated>), HttpError> {
+    let name = new.name.clone();
     let created = service.add_calibration(new).await?;
+    tracing::info!(calibration = created.id, name, %by, "submitted");
     let mut headers = HeaderMap::new();
     if let Ok(location) = HeaderValue::from_str(&format!("/v1/calibrations/{}", created.id)) {
         headers.insert(header::LOCATION, location);
@@ -74,24 +78,30 @@ struct NewState {
     state: CalibrationState,
 }
 
-async fn control(service: &Service, id: i64, control: Control) -> Result<Json<NewState>, HttpError> {
-    Ok(Json(NewState {
-        state: service.control(id, control).await?,
-    }))
+async fn control(
+    service: &Service,
+    id: i64,
+    control: Control,
+    by: &Caller,
+) -> Result<Json<NewState>, HttpError> {
+    let state = service.control(id, control).await?;
+    let name = service.calibration_row(id).await?.name;
+    tracing::info!(calibration = id, name, %by, state = state.name(), ?control, "told");
+    Ok(Json(NewState { state }))
 }
 
 /// Stops a calibration for good.
 #[utoipa::path(post, path = "/calibrations/{id}/cancel", params(("id" = i64, Path)), responses(
     (status = 200, body = NewState), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
-async fn cancel(State(service): State<Service>, Id(id): Id) -> Result<Json<NewState>, HttpError> {
-    control(&service, id, Control::Cancel).await
+async fn cancel(State(service): State<Service>, by: Caller, Id(id): Id) -> Result<Json<NewState>, HttpError> {
+    control(&service, id, Control::Cancel, &by).await
 }
 
 /// Leases nothing more until resumed.
 #[utoipa::path(post, path = "/calibrations/{id}/pause", params(("id" = i64, Path)), responses(
     (status = 200, body = NewState), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
-async fn pause(State(service): State<Service>, Id(id): Id) -> Result<Json<NewState>, HttpError> {
-    control(&service, id, Control::Pause).await
+async fn pause(State(service): State<Service>, by: Caller, Id(id): Id) -> Result<Json<NewState>, HttpError> {
+    control(&service, id, Control::Pause, &by).await
 }
 
 /// How to go on after a pause.
@@ -107,11 +117,12 @@ struct Resume {
     (status = 200, body = NewState), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
 async fn resume(
     State(service): State<Service>,
+    by: Caller,
     Id(id): Id,
     Query(resume): Query<Resume>,
 ) -> Result<Json<NewState>, HttpError> {
     let skip_faults = resume.skip_faults;
-    control(&service, id, Control::Resume { skip_faults }).await
+    control(&service, id, Control::Resume { skip_faults }, &by).await
 }
 
 /// The stages so far: tempering exponents, acceptance, drift.

@@ -3,7 +3,7 @@
 use axum::Json;
 use axum::extract::FromRequest;
 use axum::extract::rejection::{BytesRejection, JsonRejection, PathRejection, QueryRejection};
-use axum::http::StatusCode;
+use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use shared::api::{ErrorBody, ErrorDetail, ErrorKind};
 
@@ -38,6 +38,9 @@ impl HttpError {
         match self.kind {
             ErrorKind::InvalidBody => StatusCode::BAD_REQUEST,
             ErrorKind::UnsupportedMediaType => StatusCode::UNSUPPORTED_MEDIA_TYPE,
+            ErrorKind::Timeout => StatusCode::REQUEST_TIMEOUT,
+            ErrorKind::Unauthorized => StatusCode::UNAUTHORIZED,
+            ErrorKind::Forbidden => StatusCode::FORBIDDEN,
             ErrorKind::InvalidFile => StatusCode::UNPROCESSABLE_ENTITY,
             ErrorKind::NotFound => StatusCode::NOT_FOUND,
             ErrorKind::Conflict => StatusCode::CONFLICT,
@@ -53,17 +56,20 @@ impl HttpError {
 impl IntoResponse for HttpError {
     fn into_response(self) -> Response {
         let status = self.status();
-        let busy = self.kind == ErrorKind::Busy;
+        let demand = match self.kind {
+            ErrorKind::Busy => Some((header::RETRY_AFTER, "1")),
+            ErrorKind::Unauthorized => Some((header::WWW_AUTHENTICATE, "Bearer")),
+            _ => None,
+        };
         let body = ErrorBody {
             error: ErrorDetail {
                 kind: self.kind,
                 message: self.message,
             },
         };
-        if busy {
-            (status, [("retry-after", "1")], Json(body)).into_response()
-        } else {
-            (status, Json(body)).into_response()
+        match demand {
+            Some(demand) => (status, [demand], Json(body)).into_response(),
+            None => (status, Json(body)).into_response(),
         }
     }
 }

@@ -7,6 +7,7 @@ use shared::api::{CalibrationCreated, ErrorBody, ErrorKind, NewExtension, NewRun
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::access::Caller;
 use super::error::{Body, HttpError, Id};
 use crate::service::{Service, finished_search};
 use record::{Discovery, Extension};
@@ -26,10 +27,12 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
 ))]
 async fn extend(
     State(service): State<Service>,
+    by: Caller,
     Id(id): Id,
     Body(new): Body<NewExtension>,
 ) -> Result<(StatusCode, Json<CalibrationCreated>), HttpError> {
     let created = service.extend(id, extension(new)?).await?;
+    tracing::info!(calibration = created.id, extends = id, %by, "submitted");
     Ok((StatusCode::CREATED, Json(created)))
 }
 
@@ -55,9 +58,12 @@ fn extension(new: NewExtension) -> Result<Extension, HttpError> {
 ))]
 async fn discover(
     State(service): State<Service>,
+    by: Caller,
     Id(id): Id,
 ) -> Result<(StatusCode, Json<CalibrationCreated>), HttpError> {
-    Ok((StatusCode::CREATED, Json(service.discover(id).await?)))
+    let created = service.discover(id).await?;
+    tracing::info!(calibration = created.id, searches = id, %by, "submitted");
+    Ok((StatusCode::CREATED, Json(created)))
 }
 
 /// What the search of a calibration's model found.
@@ -77,11 +83,11 @@ async fn discovery(State(service): State<Service>, Id(id): Id) -> Result<Json<Di
 ))]
 async fn add_runs(
     State(service): State<Service>,
+    by: Caller,
     Id(id): Id,
     Body(new): Body<NewRuns>,
 ) -> Result<(StatusCode, Json<RunsAdded>), HttpError> {
-    Ok((
-        StatusCode::CREATED,
-        Json(service.add_runs(id, new.runs, new.calibration).await?),
-    ))
+    let added = service.add_runs(id, new.runs, new.calibration).await?;
+    tracing::info!(calibration = added.id, study = id, %by, "submitted");
+    Ok((StatusCode::CREATED, Json(added)))
 }

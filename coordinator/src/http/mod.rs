@@ -1,13 +1,20 @@
 //! The REST interface under `/v1`; the only place that knows axum.
 //!
-//! One file per resource; each exports `routes()`. The OpenAPI document is made from the handlers.
+//! One file per resource; each exports `routes()`. The OpenAPI `document` is made from the handlers. Before these stand
+//! `connections` (how many, how long) and `gate` (`host`, `body`, `access`: what is let through).
 
+mod access;
+mod body;
 mod calibrations;
+mod connections;
+mod document;
 mod effects;
 mod error;
 mod events;
 mod experiments;
+mod gate;
 mod growth;
+mod host;
 mod metrics;
 mod studies;
 mod work;
@@ -15,30 +22,38 @@ mod work;
 use std::future::Future;
 
 use axum::Router;
+use axum::body::Bytes;
 use axum::extract::DefaultBodyLimit;
+use axum::http::header::CONTENT_TYPE;
 use axum::routing::get;
 use tokio::net::TcpListener;
-use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 
 use crate::service::Service;
+use crate::token::Token;
 
+use access::Access;
+pub use access::TokenRule;
 pub use error::HttpError;
+use gate::Gate;
+use host::Hosts;
 
-/// Largest body: the results of a large batch, or the files of a large experiment `[bytes]`.
-const BODY_LIMIT: usize = 64 << 20;
+/// How a service shows itself: by which names it is reached, and when it asks for tokens.
+#[derive(Debug, Clone)]
+pub struct Exposure {
+    /// The listening address.
+    pub listening: std::net::SocketAddr,
+    /// Names besides the listening address.
+    pub names: Vec<String>,
+    /// When a token is asked for.
+    pub token_rule: TokenRule,
+    /// The tokens of the store, as of its start.
+    pub tokens: Vec<Token>,
+}
 
-/// The document that the handlers complete.
-#[derive(OpenApi)]
-#[openapi(info(
-    title = "Grouser coordinator",
-    description = "Calibrates wheel-soil contact models by Bayesian updating on a farm of workers."
-))]
-struct Document;
-
-/// Every route.
-pub fn router(service: Service) -> Router {
-    let (router, document) = OpenApiRouter::with_openapi(Document::openapi())
+/// Every route, behind the gate.
+fn router(service: Service, gate: Gate) -> Router {
+    let (router, document) = OpenApiRouter::with_openapi(document::base())
         .nest(
             "/v1",
             OpenApiRouter::new()
@@ -52,25 +67,33 @@ pub fn router(service: Service) -> Router {
         )
         .merge(metrics::routes())
         .split_for_parts();
-    let document = axum::Json(document);
+    // As bytes, which connections share: as a value it is 1.7 MB for each clone of its route.
+    let document = Bytes::from(
+        document::complete(document)
+            .to_json()
+            .expect("the document has a form in JSON"),
+    );
+    let document = get(async move || ([(CONTENT_TYPE, "application/json")], document));
     router
-        .route("/openapi.json", get(async move || document))
+        .route("/openapi.json", document)
         .fallback(error::no_route)
         .method_not_allowed_fallback(error::no_method)
-        .layer(DefaultBodyLimit::max(BODY_LIMIT))
+        // The gate bounds bodies, by route.
+        .layer(DefaultBodyLimit::disable())
+        .layer(axum::middleware::from_fn_with_state(gate, gate::pass))
         .with_state(service)
 }
 
 /// Serves until `shutdown` is ready.
-///
-/// # Errors
-/// The listener fails.
 pub async fn serve(
     listener: TcpListener,
     service: Service,
+    exposure: Exposure,
     shutdown: impl Future<Output = ()> + Send + 'static,
-) -> std::io::Result<()> {
-    axum::serve(listener, router(service))
-        .with_graceful_shutdown(shutdown)
-        .await
+) {
+    let gate = Gate {
+        hosts: Hosts::new(exposure.listening, exposure.names),
+        access: Access::start(exposure.token_rule, exposure.tokens, service.store().reader()),
+    };
+    connections::serve(listener, router(service, gate), shutdown).await;
 }

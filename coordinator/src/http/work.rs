@@ -10,6 +10,7 @@ use axum::response::IntoResponse;
 use shared::api::{ErrorBody, ErrorKind};
 use shared::exchange::{ExchangeRequest, ExchangeResponse, PROTOCOL_VERSION};
 use shared::model::ModelVariant;
+use shared::outcome::Outcome;
 use shared::wire::WireForm;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -20,6 +21,12 @@ use crate::service::Service;
 
 /// A poll may last so long `[ms]`.
 const LONGEST_WAIT_MS: u64 = 30_000;
+/// Most leases in one answer.
+const MOST_WANTED: u32 = 10_000;
+/// Longest name of a worker, or of the version of its equations `[bytes]`.
+const LONGEST_NAME: usize = 200;
+/// Longest message of an outcome `[bytes]`.
+const LONGEST_MESSAGE: usize = 10_000;
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new()
@@ -51,10 +58,36 @@ async fn exchange(
         );
         return Err(HttpError::new(ErrorKind::ProtocolMismatch, message));
     }
+    check_texts(&request)?;
     request.wait_ms = request.wait_ms.min(LONGEST_WAIT_MS);
+    request.want = request.want.min(MOST_WANTED);
     let response = service.exchange(request).await?.to_bytes(answer);
     let body = response.map_err(|e| HttpError::new(ErrorKind::Internal, e.to_string()))?;
     Ok(([(CONTENT_TYPE, answer.media_type())], body))
+}
+
+/// Refuses what a worker says at such length that it would burden lists, logs and the store.
+fn check_texts(request: &ExchangeRequest) -> Result<(), HttpError> {
+    let check = |what: &str, text: &str, longest: usize| {
+        if text.len() <= longest {
+            return Ok(());
+        }
+        let message = format!("{what}: {} bytes must be at most {longest} bytes", text.len());
+        Err(HttpError::new(ErrorKind::InvalidBody, message))
+    };
+    check("worker", &request.worker, LONGEST_NAME)?;
+    check("model_version", &request.model_version, LONGEST_NAME)?;
+    for result in &request.results {
+        match &result.outcome {
+            Some(Outcome::Rejected(rejection)) => {
+                check("kind", &rejection.kind, LONGEST_NAME)?;
+                check("message", &rejection.message, LONGEST_MESSAGE)?;
+            }
+            Some(Outcome::Fault(fault)) => check("message", &fault.message, LONGEST_MESSAGE)?,
+            Some(Outcome::Evaluated(_)) | None => {}
+        }
+    }
+    Ok(())
 }
 
 /// A request in either form, and the form of its answer.

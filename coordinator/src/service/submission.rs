@@ -14,6 +14,9 @@ use crate::farm::dispatch::Stopped;
 use crate::store::{NewCalibrationRow, NewStudy, StudyIds};
 use job::{AlgorithmSettings, JobFile, Spec, point_job};
 
+/// Longest name of a calibration `[bytes]`.
+const LONGEST_NAME: usize = 200;
+
 impl Service {
     /// Stores an experiment after validating it; its id.
     ///
@@ -35,6 +38,10 @@ impl Service {
     pub async fn add_calibration(&self, new: NewCalibration) -> Result<CalibrationCreated, ServiceError> {
         let experiment = self.experiment(new.experiment).await?;
         let name = new.name.unwrap_or_else(|| "calibration".into());
+        if name.len() > LONGEST_NAME {
+            let message = format!("{} bytes must be at most {LONGEST_NAME} bytes", name.len());
+            return Err(FileError::whole("name", message).into());
+        }
         let job = FileSet {
             toml: new.toml,
             files: new.files,

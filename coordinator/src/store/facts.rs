@@ -70,12 +70,15 @@ pub(super) async fn write(
             message,
             busy_ms,
         } => {
-            sqlx::query("UPDATE calibrations SET state = ?, message = ? WHERE id = ?")
-                .bind(state.name())
-                .bind(message)
-                .bind(calibration)
-                .execute(&mut *connection)
-                .await?;
+            let name: Option<String> = sqlx::query_scalar(
+                "UPDATE calibrations SET state = ?, message = ? WHERE id = ? RETURNING name",
+            )
+            .bind(state.name())
+            .bind(&message)
+            .bind(calibration)
+            .fetch_optional(&mut *connection)
+            .await?;
+            tracing::info!(target: "journal", calibration, name, reason = message, "{}", state.name());
             busy(connection, calibration, busy_ms).await
         }
         Fact::ModelVersion { calibration, version } => {

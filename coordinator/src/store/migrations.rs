@@ -6,7 +6,7 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 /// Number, name and text of each file of `migrations/`.
 ///
 /// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
-const FILES: [(i64, &str, &str); 13] = [
+const FILES: [(i64, &str, &str); 14] = [
     (
         1,
         "experiments",
@@ -72,6 +72,7 @@ const FILES: [(i64, &str, &str); 13] = [
         "given up",
         include_str!("../../../migrations/0013_given_up.sql"),
     ),
+    (14, "tokens", include_str!("../../../migrations/0014_tokens.sql")),
 ];
 
 /// Brings the tables of a store up to date.

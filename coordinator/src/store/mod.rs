@@ -18,6 +18,7 @@ mod reader;
 mod recovery;
 mod results;
 mod theta;
+mod tokens;
 mod writer;
 
 use sqlx::sqlite::{SqliteJournalMode, SqliteSynchronous};
@@ -28,6 +29,7 @@ use file::{examine, lock, options, pool, recognise};
 pub use health::StoreHealth;
 pub use reader::Reader;
 pub use results::StudyResults;
+pub use tokens::TokenTable;
 pub use writer::{FactSink, NewCalibrationRow, NewStudy, StudyIds, Writer};
 
 /// The store: a pool of readers and the way to the one writer.

@@ -81,6 +81,7 @@ fn columns<'a>(names: &'a [&'a str; 4]) -> Columns<'a> {
     Columns {
         known: names.to_vec(),
         required: &names[..3],
+        most_rows: table::MOST_ROWS,
     }
 }
 

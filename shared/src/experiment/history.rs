@@ -8,6 +8,9 @@ use super::wheel::WheelGeometry;
 use crate::channel::Channel;
 use crate::file::FileError;
 
+/// Most samples of a history: a day at 10 Hz.
+const MOST_SAMPLES: usize = 864_000;
+
 /// A step between two times may differ from the first one by this share of it: loggers round their times.
 const UNEVEN: f64 = 0.01;
 
@@ -77,6 +80,7 @@ pub(super) fn averaged(
     let columns = Columns {
         known,
         required: &["t_s"],
+        most_rows: MOST_SAMPLES,
     };
     let mut lines = Vec::new();
     let mut samples: [Vec<f64>; 4] = Default::default();

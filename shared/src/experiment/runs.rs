@@ -91,6 +91,7 @@ fn columns<'a>(sd_columns: &'a [String; 4]) -> Columns<'a> {
     Columns {
         known,
         required: &CONDITION_COLUMNS[..REQUIRED],
+        most_rows: table::MOST_ROWS,
     }
 }
 

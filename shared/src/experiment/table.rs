@@ -5,12 +5,18 @@ use std::collections::BTreeMap;
 use super::check::{ValueError, not_negative, positive};
 use crate::file::{FileError, unknown_word};
 
+/// Most rows of a file of runs or readings: 64 threads post as many results, each with nine values of 9 bytes for every run,
+/// in one message of 64 MiB.
+pub(super) const MOST_ROWS: usize = 10_000;
+
 /// Which columns a file may and must have.
 pub(super) struct Columns<'a> {
     /// Every known name.
     pub(super) known: Vec<&'a str>,
     /// Names that must be there.
     pub(super) required: &'a [&'a str],
+    /// Most rows.
+    pub(super) most_rows: usize,
 }
 
 impl Columns<'_> {
@@ -66,6 +72,10 @@ pub(super) fn rows<T>(
         let line = line_of(text, &record);
         if record.len() != header.len() {
             let message = format!("{} fields where the header has {}", record.len(), header.len());
+            return Err(FileError::at(file, line, message));
+        }
+        if parsed.len() == columns.most_rows {
+            let message = format!("the file must have at most {} rows", columns.most_rows);
             return Err(FileError::at(file, line, message));
         }
         let fields = Row {

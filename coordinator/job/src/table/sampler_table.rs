@@ -10,6 +10,9 @@ use super::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 use super::error::TableError;
 use super::sampler_keys::SamplerKeys;
 
+/// Most particles: at 310 bytes each, a population takes 31 MB.
+const MOST_PARTICLES: usize = 100_000;
+
 /// Least and most steps of a stage whose steps are subchains of a metamodel.
 const METAMODEL_STEPS: [usize; 2] = [3, 30];
 /// The values of `stages`.
@@ -55,6 +58,10 @@ impl RawSampler {
             ("restarts", self.restarts.is_some()),
             ("point_estimates", self.point_estimates.is_some()),
         ])?;
+        if let Some(particles) = self.particles.filter(|&particles| particles > MOST_PARTICLES) {
+            let rule = format!("must be at most {MOST_PARTICLES}");
+            return Err(TableError::value("particles", particles, rule));
+        }
         Ok(match keys.algorithm {
             AlgorithmName::Tmcmc => self.sample(Algorithm::Tmcmc)?,
             AlgorithmName::ChingChen2007 => self.sample(Algorithm::ChingChen2007)?,

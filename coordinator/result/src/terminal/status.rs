@@ -18,7 +18,7 @@ pub fn status_table(statuses: &[CalibrationStatus]) -> String {
             text,
             "{:>4} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}",
             s.id,
-            s.name,
+            printable(&s.name),
             s.state.name(),
             cell(p, |p| p.stage.to_string()),
             cell(p, |p| format!("{:.3e}", p.tempering_exponent)),
@@ -27,8 +27,27 @@ pub fn status_table(statuses: &[CalibrationStatus]) -> String {
             cell(p.and_then(|p| p.remaining_s), |s| format!("{s:.0}"))
         );
         if let Some(message) = &s.message {
-            let _ = writeln!(text, "     {message}");
+            let _ = writeln!(text, "     {}", printable(message));
         }
     }
     text
+}
+
+/// A stranger's text with its control characters as escapes: it moves no cursor and sets no colour.
+fn printable(text: &str) -> String {
+    let shown = |c: char| match c.is_control() {
+        true => c.escape_default().to_string(),
+        false => c.to_string(),
+    };
+    text.chars().map(shown).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_are_escaped_and_letters_are_not() {
+        assert_eq!(printable("süß \u{1b}[2J\n\u{9b}"), "süß \\u{1b}[2J\\n\\u{9b}");
+    }
 }

@@ -1,0 +1,42 @@
+//! Whether a service may listen where it is told to, and whom it asks for a token.
+
+use std::net::SocketAddr;
+
+use anyhow::bail;
+
+use crate::config::ExposureArguments;
+use crate::http::{Exposure, TokenRule};
+use crate::store::Reader;
+
+/// How a service shows itself at an address; refused where others reach it and no token stands between.
+pub(super) async fn exposure(
+    listening: SocketAddr,
+    config: &ExposureArguments,
+    reader: &Reader,
+    store: &str,
+) -> anyhow::Result<Exposure> {
+    let tokens = reader.tokens().await?;
+    let token_rule = if config.insecure {
+        tracing::warn!(
+            "--insecure: nobody is asked for a token; whoever reaches {listening} may read every measurement and result, \
+             submit, pause and cancel calibrations, and answer as a worker"
+        );
+        TokenRule::Never
+    } else if listening.ip().is_loopback() {
+        TokenRule::OnceThereIsOne
+    } else if tokens.iter().any(|token| !token.is_revoked) {
+        TokenRule::Always
+    } else {
+        bail!(
+            "--listen {listening} is reached by other machines, and {store} has no token: add one with \
+             \"coordinator token add NAME --role submit --store {store}\", and one with --role work for the workers; \
+             or start with --insecure to let everybody in"
+        );
+    };
+    Ok(Exposure {
+        listening,
+        names: config.host.clone(),
+        token_rule,
+        tokens,
+    })
+}

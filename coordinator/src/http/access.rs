@@ -1,0 +1,118 @@
+//! Who may do what: the bearer token of a request, and the role that its route needs.
+
+use std::fmt;
+use std::time::Duration;
+
+use axum::extract::FromRequestParts;
+use axum::http::header::AUTHORIZATION;
+use axum::http::{HeaderMap, Method};
+use shared::api::ErrorKind;
+use tokio::sync::watch;
+
+use super::error::HttpError;
+use crate::store::Reader;
+use crate::token::{Role, Token, TokenHash};
+
+/// A change of the tokens takes effect after this time at most.
+const LOOK: Duration = Duration::from_secs(1);
+
+/// When a token is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TokenRule {
+    /// Always.
+    Always,
+    /// As soon as the store has had one: for a service that this machine alone reaches.
+    OnceThereIsOne,
+    /// Never.
+    Never,
+}
+
+/// Who sends a request, for the log.
+#[derive(Debug, Clone, FromRequestParts)]
+#[from_request(via(axum::Extension))]
+pub(super) struct Caller(Option<String>);
+
+impl fmt::Display for Caller {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            Some(name) => write!(f, "{}", name.escape_debug()),
+            None => f.write_str("no token"),
+        }
+    }
+}
+
+/// The tokens of the store, as of a moment ago.
+#[derive(Debug, Clone)]
+pub(super) struct Access {
+    rule: TokenRule,
+    tokens: watch::Receiver<Vec<Token>>,
+}
+
+impl Access {
+    /// Begins with these tokens, and reads them again and again for as long as the access is used.
+    pub(super) fn start(rule: TokenRule, tokens: Vec<Token>, reader: Reader) -> Access {
+        let (sender, tokens) = watch::channel(tokens);
+        tokio::spawn(async move {
+            while !sender.is_closed() {
+                tokio::time::sleep(LOOK).await;
+                match reader.tokens().await {
+                    Ok(tokens) => drop(sender.send_replace(tokens)),
+                    Err(error) => tracing::error!(%error, "failed to read the tokens; the last ones stand"),
+                }
+            }
+        });
+        Access { rule, tokens }
+    }
+
+    /// The sender of a request, if it may be sent.
+    pub(super) fn caller(
+        &self,
+        method: &Method,
+        path: &str,
+        headers: &HeaderMap,
+    ) -> Result<Caller, HttpError> {
+        let tokens = self.tokens.borrow();
+        let is_asked_for = match self.rule {
+            TokenRule::Always => true,
+            TokenRule::OnceThereIsOne => !tokens.is_empty(),
+            TokenRule::Never => false,
+        };
+        let Some(needed) = needed(method, path).filter(|_| is_asked_for) else {
+            return Ok(Caller(None));
+        };
+        let refused = |message| HttpError::new(ErrorKind::Unauthorized, message);
+        let stated = headers.get(AUTHORIZATION).and_then(|value| value.to_str().ok());
+        let stated = stated.and_then(|text| text.split_once(' '));
+        let stated = stated.filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"));
+        let (_, stated) = stated.ok_or_else(|| {
+            refused(
+                "a token is needed: GROUSER_TOKEN or --token-file, sent as \"Authorization: Bearer TOKEN\"",
+            )
+        })?;
+        let hash = TokenHash::of(stated.trim());
+        let found = tokens.iter().find(|token| token.hash.is(&hash));
+        let token = found
+            .filter(|token| !token.is_revoked)
+            .ok_or_else(|| refused("the token is unknown or revoked"))?;
+        if token.role.includes(needed) {
+            return Ok(Caller(Some(token.name.clone())));
+        }
+        let message = format!(
+            "the token {:?} has the role {}; {method} {path} needs the role {}",
+            token.name,
+            token.role.name(),
+            needed.name()
+        );
+        Err(HttpError::new(ErrorKind::Forbidden, message))
+    }
+}
+
+/// The role that a request needs; none asks whether the service is alive.
+fn needed(method: &Method, path: &str) -> Option<Role> {
+    match path {
+        "/health" => None,
+        _ if path.starts_with("/v1/work/") => Some(Role::Work),
+        _ if [Method::GET, Method::HEAD].contains(method) => Some(Role::Read),
+        _ => Some(Role::Submit),
+    }
+}

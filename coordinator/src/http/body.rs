@@ -1,0 +1,70 @@
+//! The body of a request: its form, its size and the time that it takes are checked before its handler sees it.
+
+use std::time::Duration;
+
+use axum::body::{Body, HttpBody, to_bytes};
+use axum::extract::Request;
+use axum::http::Method;
+use axum::http::header::CONTENT_TYPE;
+use shared::api::ErrorKind;
+use shared::wire::WireForm;
+
+use super::error::HttpError;
+
+/// Where workers post.
+const EXCHANGE: &str = "/v1/work/exchange";
+/// A body must have arrived after this time.
+const BODY_TIME: Duration = Duration::from_secs(120);
+
+/// Largest body of a route `[bytes]`: the results of a large batch or the files of a large experiment; a job with the
+/// draws that it names; the rows of further runs; an effect file; else next to nothing.
+fn limit(path: &str) -> usize {
+    match path.rsplit('/').next() {
+        _ if path == EXCHANGE => 64 << 20,
+        Some("experiments") => 64 << 20,
+        Some("calibrations" | "runs") => 16 << 20,
+        Some("extend" | "effects") => 1 << 20,
+        _ => 64 << 10,
+    }
+}
+
+/// A POST is JSON, or a worker's message: no page can send these to another site without being asked first.
+pub(super) fn check_form(request: &Request) -> Result<(), HttpError> {
+    let path = request.uri().path();
+    // The exchange names the forms that it takes itself; below a path that is none of ours it is not found.
+    if request.method() != Method::POST || path.ends_with(EXCHANGE) {
+        return Ok(());
+    }
+    let stated = request.headers().get(CONTENT_TYPE);
+    let stated = stated.and_then(|value| value.to_str().ok()).unwrap_or_default();
+    if WireForm::of_media_type(stated) == Some(WireForm::Json) {
+        return Ok(());
+    }
+    let message = format!(
+        "Content-Type \"{stated}\" must be {}",
+        WireForm::Json.media_type()
+    );
+    Err(HttpError::new(ErrorKind::UnsupportedMediaType, message))
+}
+
+/// The request with its whole body.
+pub(super) async fn received(request: Request) -> Result<Request, HttpError> {
+    let limit = limit(request.uri().path());
+    let too_large = || {
+        let message = format!("the body is above the limit of {limit} bytes for this route");
+        HttpError::new(ErrorKind::TooLarge, message)
+    };
+    let (parts, body) = request.into_parts();
+    if body.size_hint().lower() > limit as u64 {
+        return Err(too_large());
+    }
+    let late = |_| {
+        let message = format!("the body has not arrived within {} s", BODY_TIME.as_secs());
+        HttpError::new(ErrorKind::Timeout, message)
+    };
+    let bytes = tokio::time::timeout(BODY_TIME, to_bytes(body, limit))
+        .await
+        .map_err(late)?
+        .map_err(|_| too_large())?;
+    Ok(Request::from_parts(parts, Body::from(bytes)))
+}

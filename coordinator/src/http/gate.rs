@@ -1,0 +1,31 @@
+//! What every request passes before its handler: host and origin, form, token, body.
+
+use axum::extract::{Request, State};
+use axum::middleware::Next;
+use axum::response::Response;
+
+use super::access::Access;
+use super::body;
+use super::error::HttpError;
+use super::host::Hosts;
+
+/// The checks of one service.
+#[derive(Debug, Clone)]
+pub(super) struct Gate {
+    pub(super) hosts: Hosts,
+    pub(super) access: Access,
+}
+
+/// Lets a request through, with its [`super::access::Caller`] and its whole body.
+pub(super) async fn pass(
+    State(gate): State<Gate>,
+    mut request: Request,
+    next: Next,
+) -> Result<Response, HttpError> {
+    gate.hosts.check(request.headers())?;
+    body::check_form(&request)?;
+    let path = request.uri().path();
+    let caller = gate.access.caller(request.method(), path, request.headers())?;
+    request.extensions_mut().insert(caller);
+    Ok(next.run(body::received(request).await?).await)
+}

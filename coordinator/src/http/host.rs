@@ -1,0 +1,148 @@
+//! Which hosts a request may name: a page of another site must not speak to the service through a browser.
+//!
+//! A name that an attacker lets point to this machine is refused as a foreign `Host`, and a page of another site by
+//! its `Origin`. An address as a `Host` cannot be made to point elsewhere.
+
+use std::net::{IpAddr, SocketAddr};
+
+use axum::http::HeaderMap;
+use axum::http::header::{HOST, HeaderName, ORIGIN};
+use axum::http::uri::Authority;
+use shared::api::ErrorKind;
+
+use super::error::HttpError;
+
+/// The hosts that are ours.
+#[derive(Debug, Clone)]
+pub(super) struct Hosts {
+    listening: IpAddr,
+    names: Vec<String>,
+}
+
+impl Hosts {
+    /// Those of a listening address, with names by which the service is reached besides.
+    pub(super) fn new(listening: SocketAddr, names: Vec<String>) -> Hosts {
+        Hosts {
+            listening: listening.ip(),
+            names,
+        }
+    }
+
+    /// Refuses a request that names a foreign host, or comes from a page of another one.
+    pub(super) fn check(&self, headers: &HeaderMap) -> Result<(), HttpError> {
+        let text = |name: HeaderName| headers.get(name).map(|value| value.to_str().unwrap_or_default());
+        let forbidden = |message: String| Err(HttpError::new(ErrorKind::Forbidden, message));
+        let stated = text(HOST).unwrap_or_default();
+        let host = stated.parse::<Authority>().ok();
+        let Some(host) = host.filter(|host| self.is_ours(host.host())) else {
+            return forbidden(format!(
+                "Host \"{stated}\" is not this service; start it with --host NAME if it is reached by that name"
+            ));
+        };
+        match text(ORIGIN) {
+            None => Ok(()),
+            Some(origin) if is_of(origin, &host) => Ok(()),
+            Some(origin) => forbidden(format!(
+                "Origin \"{origin}\" is another site than Host \"{stated}\""
+            )),
+        }
+    }
+
+    fn is_ours(&self, host: &str) -> bool {
+        let address = host
+            .trim_start_matches('[')
+            .trim_end_matches(']')
+            .parse::<IpAddr>();
+        let is_listened_to = match address {
+            Ok(address) => {
+                address == self.listening
+                    || self.listening.is_unspecified()
+                    || (self.listening.is_loopback() && address.is_loopback())
+            }
+            Err(_) => {
+                let local = self.listening.is_loopback() || self.listening.is_unspecified();
+                local && host.eq_ignore_ascii_case("localhost")
+            }
+        };
+        is_listened_to || self.names.iter().any(|name| name.eq_ignore_ascii_case(host))
+    }
+}
+
+/// Whether an origin, as in `https://farm.example:8443`, is that of a host.
+fn is_of(origin: &str, host: &Authority) -> bool {
+    let place = origin
+        .split_once("://")
+        .map(|(_, place)| place.parse::<Authority>());
+    matches!(place, Some(Ok(place)) if place == *host)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn accepts(listening: &str, names: &[&str], host: &str, origin: Option<&str>) -> bool {
+        let names = names.iter().map(|&name| name.to_owned()).collect();
+        let mut headers = HeaderMap::new();
+        headers.insert(HOST, host.parse().unwrap());
+        if let Some(origin) = origin {
+            headers.insert(ORIGIN, origin.parse().unwrap());
+        }
+        Hosts::new(listening.parse().unwrap(), names)
+            .check(&headers)
+            .is_ok()
+    }
+
+    #[test]
+    fn a_loopback_service_is_named_by_loopback_alone() {
+        for host in [
+            "127.0.0.1:7070",
+            "localhost:7070",
+            "LOCALHOST",
+            "[::1]:7070",
+            "127.0.0.2",
+        ] {
+            assert!(accepts("127.0.0.1:7070", &[], host, None), "{host}");
+        }
+        for host in [
+            "evil.example",
+            "localhost.evil.example",
+            "192.0.2.1:7070",
+            "",
+            "a b",
+            "127.0.0.1.evil.example",
+        ] {
+            assert!(!accepts("127.0.0.1:7070", &[], host, None), "{host}");
+        }
+        assert!(accepts(
+            "127.0.0.1:7070",
+            &["farm.example"],
+            "Farm.Example:443",
+            None
+        ));
+    }
+
+    #[test]
+    fn a_service_on_every_address_is_named_by_any_address_and_by_no_foreign_name() {
+        for host in ["192.0.2.1:7070", "[2001:db8::1]:7070", "localhost"] {
+            assert!(accepts("0.0.0.0:7070", &[], host, None), "{host}");
+        }
+        assert!(!accepts("0.0.0.0:7070", &[], "evil.example", None));
+        assert!(!accepts("192.0.2.1:7070", &[], "192.0.2.2:7070", None));
+        assert!(!accepts("192.0.2.1:7070", &[], "localhost:7070", None));
+    }
+
+    #[test]
+    fn a_page_is_of_the_same_host_and_port() {
+        let ours = |origin| accepts("127.0.0.1:7070", &[], "127.0.0.1:7070", Some(origin));
+        assert!(ours("http://127.0.0.1:7070"));
+        assert!(!ours("http://127.0.0.1:8080"));
+        assert!(!ours("http://evil.example"));
+        assert!(!ours("null"));
+        assert!(accepts(
+            "127.0.0.1:1",
+            &["farm.example"],
+            "farm.example",
+            Some("https://farm.example")
+        ));
+    }
+}

@@ -1,0 +1,79 @@
+//! The bearer token of a client, from a file or from the environment, never from the command line.
+
+use std::fmt;
+use std::path::Path;
+
+use crate::file::{FileError, read_text};
+
+/// A token; its `Debug` does not show it.
+#[derive(Clone, PartialEq, Eq)]
+pub struct BearerToken(String);
+
+/// Why there is no token.
+#[derive(Debug, thiserror::Error)]
+pub enum BearerTokenError {
+    /// Its file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// It cannot stand in a request.
+    #[error("{source_name}: the token must be one line of printable ASCII characters without spaces")]
+    Form {
+        /// The file, or the variable of the environment.
+        source_name: String,
+    },
+}
+
+impl BearerToken {
+    /// The token of a file, or else of `GROUSER_TOKEN`; space around it does not count.
+    ///
+    /// # Errors
+    /// [`BearerTokenError`] names the file or the variable, never the token.
+    pub fn find(
+        file: Option<&Path>,
+        environment: Option<String>,
+    ) -> Result<Option<BearerToken>, BearerTokenError> {
+        let (source_name, text) = match (file, environment) {
+            (Some(file), _) => (file.display().to_string(), read_text(file)?),
+            (None, Some(text)) => ("GROUSER_TOKEN".to_owned(), text),
+            (None, None) => return Ok(None),
+        };
+        let token = text.trim();
+        if token.is_empty() || !token.chars().all(|c| c.is_ascii_graphic()) {
+            return Err(BearerTokenError::Form { source_name });
+        }
+        Ok(Some(BearerToken(token.to_owned())))
+    }
+
+    /// The token itself, for a request.
+    pub fn expose(&self) -> &str {
+        &self.0
+    }
+}
+
+impl fmt::Debug for BearerToken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("BearerToken")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_token_is_one_line_and_is_not_shown() {
+        let of = |text: &str| BearerToken::find(None, Some(text.to_owned()));
+        let token = of(" abc-1\n").unwrap().unwrap();
+        assert_eq!(token.expose(), "abc-1");
+        assert!(!format!("{token:?}").contains("abc"));
+        for wrong in ["", " ", "two words", "two\nlines", "naïve"] {
+            let message = of(wrong).unwrap_err().to_string();
+            assert!(message.starts_with("GROUSER_TOKEN: "), "{message}");
+            assert!(
+                !message.contains("two") && !message.contains("naïve"),
+                "{message}"
+            );
+        }
+        assert_eq!(BearerToken::find(None, None).unwrap(), None);
+    }
+}

@@ -1,0 +1,201 @@
+//! Tokens: who has which role, what an address that others reach demands, and what the log says.
+
+use farm_tests::fake_worker::FakeWorker;
+use farm_tests::http::Client;
+use farm_tests::job::Job;
+use farm_tests::process::Process;
+use farm_tests::programs;
+use farm_tests::service::{Service, free_address};
+use farm_tests::wait::until;
+
+/// A token as the command line makes it.
+fn add(service: &Service, name: &str, role: &str) -> String {
+    let store = format!("sqlite://{}", service.store().display());
+    let command = programs::coordinator(["token", "add", name, "--role", role, "--store", &store]);
+    programs::run(command).success().trim().to_owned()
+}
+
+fn status(client: &Client, method: &str, path: &str, token: Option<&str>) -> u16 {
+    let bearer = format!("Bearer {}", token.unwrap_or_default());
+    let mut head = vec![("Content-Type", "application/json")];
+    head.extend(token.map(|_| ("Authorization", bearer.as_str())));
+    let body = (method == "POST").then_some(b"{}".as_slice());
+    client
+        .exchange(method, path, &head, body)
+        .expect("an answer")
+        .status
+}
+
+#[test]
+fn each_role_does_its_own_and_no_more() {
+    let mut service = Service::start(&[]);
+    let id = service.submit(&Job::small());
+    let tokens = ["read", "submit", "work"].map(|role| add(&service, &format!("anna-{role}"), role));
+    until("a token asked for", || {
+        (status(&service.client, "GET", "/v1/calibrations", None) == 401).then_some(())
+    });
+    let [read, submit, work] = tokens.each_ref().map(String::as_str);
+    let pause = format!("/v1/calibrations/{id}/pause");
+    let resume = format!("/v1/calibrations/{id}/resume");
+    for (method, path, token, expected) in [
+        ("GET", "/health", None, 200),
+        ("GET", "/metrics", None, 401),
+        ("GET", "/openapi.json", None, 401),
+        ("GET", "/v1/work/variants/0", None, 401),
+        ("GET", "/metrics", Some(read), 200),
+        ("GET", "/v1/calibrations", Some(read), 200),
+        ("GET", "/v1/calibrations", Some(submit), 200),
+        ("GET", "/v1/calibrations", Some(work), 403),
+        ("GET", "/v1/calibrations", Some("grouser-0"), 401),
+        ("GET", "/v1/work/variants/0", Some(submit), 403),
+        ("GET", "/v1/work/variants/0", Some(work), 404),
+        ("POST", "/v1/work/exchange", Some(submit), 403),
+        ("POST", "/v1/work/exchange", Some(work), 400),
+        ("POST", &pause, None, 401),
+        ("POST", &pause, Some(read), 403),
+        ("POST", &pause, Some(work), 403),
+        ("POST", &pause, Some(submit), 200),
+        ("POST", &resume, Some(submit), 200),
+    ] {
+        assert_eq!(
+            status(&service.client, method, path, token),
+            expected,
+            "{method} {path} {token:?}"
+        );
+    }
+
+    // Our own programs: a file for one, the environment for the other.
+    let file = service.folder().join("token");
+    std::fs::write(&file, format!("{submit}\n")).expect("a file");
+    let file = file.display().to_string();
+    let url = service.url();
+    let list =
+        |more: &[&str]| programs::run(programs::coordinator([&["list", "--url", &url], more].concat()));
+    assert!(list(&["--token-file", &file]).success().contains("calibration"));
+    assert!(list(&[]).refusal().starts_with("a token is needed"));
+    let mut command = programs::worker(["--coordinator", &url, "--threads", "1"]);
+    command.env("GROUSER_TOKEN", work);
+    let worker = Process::start(command, &service.folder().join("worker.log"));
+    until("a result of the worker", || {
+        let mut command = programs::coordinator(["list", "--url", &url]);
+        command.env("GROUSER_TOKEN", read);
+        programs::run(command)
+            .success()
+            .contains("finished")
+            .then_some(())
+    });
+
+    let store = format!("sqlite://{}", service.store().display());
+    let revoke = programs::coordinator(["token", "revoke", "anna-read", "--store", &store]);
+    programs::run(revoke).success();
+    until("a token revoked", || {
+        (status(&service.client, "GET", "/v1/calibrations", Some(read)) == 401).then_some(())
+    });
+    let listed = programs::run(programs::coordinator(["token", "list", "--store", &store])).success();
+    assert!(
+        listed.contains("anna-read") && listed.contains("revoked"),
+        "{listed}"
+    );
+
+    let log = service.log() + &worker.log();
+    assert!(log.contains("by=anna-submit"), "{log}");
+    let kept = std::fs::read(service.store()).expect("the store");
+    for token in [read, submit, work] {
+        assert!(!log.contains(token), "a token in the log");
+        let bytes = token.as_bytes();
+        assert!(
+            !kept.windows(bytes.len()).any(|window| window == bytes),
+            "a token in the store"
+        );
+        assert!(!listed.contains(token), "a token in the list");
+    }
+    // A store that has had a token does not open again when the last one goes.
+    for name in ["anna-submit", "anna-work"] {
+        programs::run(programs::coordinator([
+            "token", "revoke", name, "--store", &store,
+        ]))
+        .success();
+    }
+    service.kill();
+    service.restart();
+    assert_eq!(status(&service.client, "GET", "/v1/calibrations", None), 401);
+}
+
+#[test]
+fn an_address_that_others_reach_demands_a_token_or_says_what_insecure_means() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let store = format!("sqlite://{}", folder.path().join("grouser.db").display());
+    let address = free_address().replace("127.0.0.1", "0.0.0.0");
+    let serve = ["serve", "--listen", &address, "--store", &store];
+    let refusal = programs::run(programs::coordinator(serve)).refusal();
+    assert!(
+        refusal.contains(&format!(
+            "coordinator token add NAME --role submit --store {store}"
+        )),
+        "{refusal}"
+    );
+
+    let client = Client(address.replace("0.0.0.0", "127.0.0.1"));
+    let log = folder.path().join("log");
+    let insecure = programs::coordinator(serve.iter().chain(&["--insecure"]));
+    let process = Process::start(insecure, &log);
+    until("an answer", || client.try_get("/health").ok());
+    assert_eq!(status(&client, "GET", "/v1/calibrations", None), 200);
+    assert!(
+        process.log().contains("nobody is asked for a token"),
+        "{}",
+        process.log()
+    );
+    drop(process);
+
+    let add = programs::coordinator(["token", "add", "w", "--role", "work", "--store", &store]);
+    let token = programs::run(add).success().trim().to_owned();
+    let _process = Process::start(programs::coordinator(serve), &log);
+    until("an answer", || client.try_get("/health").ok());
+    assert_eq!(status(&client, "GET", "/v1/calibrations", None), 401);
+    assert_eq!(status(&client, "GET", "/v1/work/variants/0", Some(&token)), 404);
+    let refused = FakeWorker::new(&client, "w");
+    assert_eq!(refused.send(&refused.request()).status, 401);
+}
+
+#[test]
+fn a_token_has_one_holder_and_a_plain_name() {
+    let service = Service::start(&[]);
+    let store = format!("sqlite://{}", service.store().display());
+    let run = |arguments: &[&str]| {
+        let arguments = [&["token"], arguments, &["--store", store.as_str()]].concat();
+        programs::run(programs::coordinator(arguments))
+    };
+    let first = run(&["add", "anna", "--role", "read"]).success();
+    let again = run(&["add", "anna", "--role", "submit"]).refusal();
+    assert!(again.contains("has a token anna already"), "{again}");
+    let odd = run(&["add", "an na", "--role", "read"]).refusal();
+    assert!(odd.starts_with("name \"an na\" must have"), "{odd}");
+    let absent = run(&["revoke", "bert"]).refusal();
+    assert!(absent.ends_with("has no token bert"), "{absent}");
+    run(&["revoke", "anna"]).success();
+    let second = run(&["add", "anna", "--role", "submit"]).success();
+    assert_ne!(first, second);
+}
+
+#[test]
+fn the_description_of_the_interface_has_tokens_and_refusals() {
+    let service = Service::start(&[]);
+    let document = service.client.json("/openapi.json");
+    assert_eq!(
+        document["components"]["securitySchemes"]["token"]["scheme"],
+        "bearer"
+    );
+    for (path, item) in document["paths"].as_object().expect("paths") {
+        for (method, operation) in item.as_object().expect("operations") {
+            let all = ["401", "403", "408", "413", "415"];
+            let due = if method == "post" { &all[..] } else { &all[..2] };
+            for status in due {
+                assert!(
+                    !operation["responses"][status].is_null(),
+                    "{method} {path}: {status}"
+                );
+            }
+        }
+    }
+}
