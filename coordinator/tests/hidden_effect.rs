@@ -8,6 +8,10 @@ mod study;
 #[expect(dead_code, reason = "the bench prints all campaigns")]
 mod rig;
 
+#[path = "../benches/hidden_effect/reference.rs"]
+#[expect(dead_code, reason = "the bench prints a tally")]
+mod reference;
+
 use discovery::SearchVerdict;
 
 use rig::Flaw;
@@ -126,4 +130,16 @@ fn where_the_truth_cannot_be_tried_no_stand_in_is_named() {
         let (said, line) = untryable::one(SEED, number).expect("it is searched");
         assert_ne!(said, Said::StandIn, "{line}");
     }
+}
+
+#[test]
+fn what_changed_since_a_reference_campaign_is_named_and_nothing_else() {
+    let said = |number| {
+        let compared = reference::one(SEED, number).expect("both campaigns are searched");
+        (compared.is_right(), compared.line(number))
+    };
+    let (changed, line) = said(1);
+    assert_eq!(changed, Some(true), "{line}");
+    let (unchanged, line) = said(3);
+    assert_eq!(unchanged, None, "{line}");
 }

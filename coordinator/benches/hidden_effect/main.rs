@@ -12,6 +12,8 @@
 //!   order, and `order` stated or not. `preparations`: nothing, but each load and speed has a soil preparation of its own, with
 //!   `prepared` stated or not. `understated`: nothing, with noise 1.5 times larger than declared.
 //! - `untryable`: one effect that needs what the experiment does not state.
+//! - `reference`: one effect, after a reference campaign on the same soil without it, whose posterior is the prior; of every fourth
+//!   nothing. Beside it the search without the reference.
 //! - `steady`: as `scm`, one experiment after the other as a study searches them: the answer, its reason and its time.
 //! - `tmcmc`: one effect of the catalogue, each in turn; the search's log Bayes factor of it beside that of full evidences by the
 //!   sampler.
@@ -24,6 +26,7 @@
 
 mod ambiguous;
 mod data;
+mod reference;
 #[expect(dead_code, reason = "tests search a few campaigns")]
 mod rig;
 mod steady;
@@ -57,6 +60,7 @@ fn main() -> ExitCode {
         "ambiguous" => ambiguous::run(count, seed),
         "drift" => rig::run(&Flaw::DRIFTS, count, seed),
         "preparations" => rig::run(&[Flaw::Preparations], count, seed),
+        "reference" => reference::run(count, seed),
         "steady" => steady::run(count, seed),
         "tmcmc" => tmcmc::run(count, seed),
         "understated" => rig::run(&[Flaw::Understated], count, seed),

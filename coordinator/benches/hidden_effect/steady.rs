@@ -2,13 +2,11 @@
 
 use std::time::Instant;
 
-use record::{Discovery, Verdict};
-
 use crate::study::design::Plan;
 use crate::study::error::StudyError;
 use crate::study::parallel::threads;
 use crate::study::rate::Rate;
-use crate::study::record::record;
+use crate::study::record::{is_right, record};
 use crate::study::trial::draw_detectable;
 
 /// The truths are others than those of the other kinds.
@@ -26,7 +24,7 @@ pub(crate) fn run(count: u64, seed: u64) -> Result<(), StudyError> {
         let begin = Instant::now();
         let record = record(&case.plan.job(), &case.experiment(), 1, threads())?;
         let seconds = begin.elapsed().as_secs_f64();
-        let is_right = is_right(&record, &case.hidden[0]);
+        let is_right = is_right(&record, case.hidden.first().map(String::as_str));
         println!(
             "steady {number} {}: {seconds:.1} s, {} evaluations, {}: {}",
             case.hidden[0],
@@ -51,17 +49,4 @@ pub(crate) fn run(count: u64, seed: u64) -> Result<(), StudyError> {
         threads()
     );
     Ok(())
-}
-
-/// Whether the truth's class is claimed; `None` without a claim.
-fn is_right(record: &Discovery, truth: &str) -> Option<bool> {
-    let class = |name: &str| record.effects.iter().find(|e| e.name == name).map(|e| e.class);
-    match record.verdict {
-        Verdict::NothingDetectable | Verdict::Undecided => None,
-        Verdict::NotInLibrary => Some(false),
-        Verdict::Named | Verdict::Class => {
-            let leading = record.effects.iter().find(|e| e.name != record::NONE);
-            Some(leading.map(|e| e.class) == class(truth))
-        }
-    }
 }

@@ -1,8 +1,5 @@
 //! The search's log Bayes factors beside those of full evidences by the sampler.
 
-use std::sync::Arc;
-
-use coordinator::calibration::{Calibration, CalibrationIdentity, CalibrationResult, result_of};
 use coordinator::embedded::Evaluate;
 use coordinator::missing_effect::candidate::extended;
 use record::Extension;
@@ -12,9 +9,9 @@ use shared::outcome::Outcome;
 use crate::study::case::{SyntheticCase, spec};
 use crate::study::error::StudyError;
 use crate::study::kind::HiddenKind;
-use crate::study::parallel::each;
-
 use crate::study::local_search::LocalSearch;
+use crate::study::parallel::each;
+use crate::study::posterior::{PosteriorSample, sample};
 use crate::study::rate::{mean, median};
 use crate::study::trial::draw;
 
@@ -65,10 +62,10 @@ fn one(seed: u64, number: u64) -> Result<Compared, StudyError> {
         .ranking
         .of(Some(truth.ok_or("the truth is no candidate")?));
     let truth = truth.ok_or("the model rejected the truth")?;
-    let base = Sampled::new(&case, &case.plan.job(), seed)?;
+    let base = sampled(&case, &case.plan.job(), seed)?;
     let added = Extension::Effect(name.clone());
     let job = extended("job.toml", &case.plan.job(), &[&added])?;
-    let with = Sampled::new(&case, &job, seed)?;
+    let with = sampled(&case, &job, seed)?;
     let compared = Compared {
         search: truth.stated_log_bayes_factor,
         sampler: with.log_evidence - base.log_evidence,
@@ -81,11 +78,15 @@ fn one(seed: u64, number: u64) -> Result<Compared, StudyError> {
         truth.prior_sds,
         compared.sampler,
         log_likelihood(&case, &case.plan.job(), conclusion.base.draws.first())?,
-        base.highest,
+        base.highest(),
         log_likelihood(&case, &job, Some(&truth.theta))?,
-        with.highest
+        with.highest()
     );
     Ok(compared)
+}
+
+fn sampled(case: &SyntheticCase, job: &FileSet, seed: u64) -> Result<PosteriorSample, StudyError> {
+    sample(job, &case.experiment(), SAMPLER, seed)
 }
 
 /// ln p(data | theta) where the search ended; NaN where it ended elsewhere.
@@ -101,48 +102,4 @@ fn log_likelihood(case: &SyntheticCase, job: &FileSet, theta: Option<&Vec<f64>>)
         .likelihood
         .log_likelihood(&spec.predicted_values(&seen), theta);
     Ok(scored?.value())
-}
-
-/// What the sampler says of a job.
-struct Sampled {
-    log_evidence: f64,
-    /// The highest ln p(data | theta) among the particles.
-    highest: f64,
-}
-
-impl Sampled {
-    fn new(case: &SyntheticCase, job: &FileSet, seed: u64) -> Result<Self, StudyError> {
-        let job = FileSet {
-            toml: format!("{}{SAMPLER}seed = {seed}\n", job.toml),
-            files: job.files.clone(),
-        };
-        let spec = spec(&job, &case.experiment())?;
-        let model = Evaluate::new(&spec.fit_variant)?;
-        let identity = CalibrationIdentity {
-            id: 0,
-            name: "hidden effect".into(),
-            study: 0,
-            experiment: 0,
-        };
-        let mut calibration = Calibration::new(identity, Arc::new(spec))?;
-        loop {
-            if let Some(CalibrationResult::Posterior(posterior)) = calibration.engine().finding() {
-                let particles = posterior.particles.iter().map(|p| p.log_likelihood.value());
-                return Ok(Self {
-                    log_evidence: posterior.log_evidence,
-                    highest: particles.fold(f64::NEG_INFINITY, f64::max),
-                });
-            }
-            if let Some(message) = &calibration.message {
-                return Err(message.clone().into());
-            }
-            for evaluation in calibration.queue.asked() {
-                let Some(question) = calibration.question(evaluation) else {
-                    break;
-                };
-                let outcome = result_of(model.evaluate(question.theta))?;
-                calibration.complete(evaluation, outcome, "hidden effect")?;
-            }
-        }
-    }
 }

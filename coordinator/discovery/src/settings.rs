@@ -18,15 +18,18 @@ pub struct SearchSettings {
     pub seed: u64,
     /// Shortest finite difference, in standard deviations of the prior; shorter ones show the roughness of a model on a grid.
     pub least_difference: f64,
+    /// Whether the scatter of the model's predictions is measured, and counted as noise.
+    pub has_numerical_noise: bool,
 }
 
 impl Default for SearchSettings {
-    /// 32 starts that fill the prior, seed 1, differences for a smooth model.
+    /// 32 starts that fill the prior, seed 1, differences for a smooth model, without numerical noise.
     fn default() -> Self {
         Self {
             starts: Starts::Even(32),
             seed: 1,
             least_difference: 0.03,
+            has_numerical_noise: false,
         }
     }
 }

@@ -53,6 +53,8 @@ pub struct ProposedRuns {
     pub runs: usize,
     /// How far each run lies beyond the measured range of wheel load and rim speed: the logarithm of the ratio, 0 within the range.
     pub beyond: Vec<f64>,
+    /// The measured channels, by their index in the data.
+    pub channels: Vec<usize>,
     /// Noise sd of each measured channel, in its unit.
     pub noise_sds: Vec<f64>,
 }

@@ -159,6 +159,7 @@ fn task(values: &[f64]) -> SearchTask {
         proposed: ProposedRuns {
             runs: PROPOSED.len(),
             beyond: vec![0.0; PROPOSED.len()],
+            channels: vec![0],
             noise_sds: vec![SD],
         },
         max_effects: 3,

@@ -76,6 +76,10 @@ pub struct Discovery {
     pub next_runs: Vec<NextRun>,
     /// Tests without a rolling wheel that would distinguish them.
     pub other_tests: Vec<String>,
+    /// Scatter of the model's predictions about a smooth function of its parameters, which the search counts as noise: an sd for each
+    /// channel by its column, in its unit; empty where it is negligible.
+    #[serde(default)]
+    pub numerical_noise: BTreeMap<String, f64>,
     /// Goodness of fit of the searched model.
     pub chi2: ChiSquare,
     /// Goodness of fit with the best explanation.

@@ -293,7 +293,22 @@ mod tests {
         let asked = job
             .toml
             .replace("[discovery]\n", "[discovery]\nother_kind = true\n");
-        assert_eq!(switches(asked), ["kind_scm"]);
+        assert_eq!(switches(asked.clone()), ["kind_scm"]);
+        // A free parameter that the other kind does not have leaves no job of that kind, which is said.
+        let bound = asked.replace("quasi_static", "scm").replace(
+            "[priors]\n",
+            "[priors]\nflow_fraction = { uniform = [0.0, 1.0] }\n",
+        );
+        let bound = FileSet {
+            toml: bound,
+            ..job.clone()
+        };
+        let models = SearchModels::new(&bound, &files, 1).unwrap();
+        let other = models
+            .not_tried()
+            .find(|own| own.name == "kind_quasi_static")
+            .unwrap();
+        assert!(other.why.contains("flow_fraction"), "{other:?}");
         let spatial = job.toml.replace("quasi_static", "scm");
         assert_eq!(switches(spatial.clone()), ["pressure_direction_vertical"]);
         // Without a shear displacement it makes no difference where it is kept.

@@ -185,6 +185,28 @@ mod tests {
     }
 
     #[test]
+    fn a_run_lies_beyond_what_was_measured_by_the_greater_of_its_ratios() {
+        let (job, files, _) = crate::missing_effect::fixture::read("examples/hidden-effect");
+        let spec = super::super::candidate::spec(&job, &files).unwrap();
+        let [loads, rims] = measured(&spec.fit_variant.conditions).map(|values| range(&values));
+        let run = |load: f64, rim: f64| RunCondition {
+            slip: 0.2,
+            wheel_load_n: load,
+            sled_speed_m_s: 0.8 * rim,
+            ..spec.fit_variant.conditions[0].clone()
+        };
+        let runs = [
+            run(loads[0], rims[1]),
+            run(2.0 * loads[1], rims[0]),
+            run(2.0 * loads[1], rims[0] / 3.0),
+        ];
+        let found = beyond(&spec, &runs);
+        for (own, ratio) in found.iter().zip([1.0, 2.0, 3.0]) {
+            assert!((own - libm::log(ratio)).abs() < 1e-12, "{found:?}");
+        }
+    }
+
+    #[test]
     fn scatter_within_a_level_makes_no_further_one() {
         assert_eq!(level_of(&[0.6, 0.2, 0.201, 0.4, 0.599]), [2, 0, 0, 1, 2]);
         assert_eq!(level_of(&[5.0, 5.0]), [0, 0]);

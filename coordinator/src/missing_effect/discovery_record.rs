@@ -9,6 +9,7 @@ use job::{PlainParameter, candidate_priors};
 use record::{
     ChiSquare, Discovery, Extension, JudgedEffect, JudgedSet, NONE, NOT_IN_LIBRARY, NextRun, Outside, Verdict,
 };
+use shared::channel::Channel;
 
 use super::candidate::CandidateEffect;
 use super::entry::CandidateEntry;
@@ -88,18 +89,23 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         outside,
         cannot_exclude: names(&conclusion.ranking.cannot_exclude),
         refused: names(&conclusion.ranking.refused),
-        not_tried: models
-            .library
-            .iter()
-            .filter_map(|e| e.not_tried.clone())
-            .collect(),
+        not_tried: models.not_tried().cloned().collect(),
         next_runs: next_runs.collect(),
         remaining: remaining_misfit(models, &conclusion.remaining),
+        numerical_noise: numerical_noise(&conclusion.numerical_noise_sds),
         chi2: chi_square(conclusion.chi_square, models),
         chi2_best: chi_square(conclusion.chi_square_best, models),
         evaluations_to_name: conclusion.ranking.evaluations.to_name() as u64,
         evaluations: conclusion.evaluations as u64,
     }
+}
+
+/// The channels that scatter, by their columns.
+fn numerical_noise(sds: &[f64]) -> BTreeMap<String, f64> {
+    let own = Channel::ALL
+        .iter()
+        .filter_map(|channel| Some((channel.column().to_owned(), *sds.get(channel.index())?)));
+    own.filter(|(_, sd)| *sd > 0.0).collect()
 }
 
 fn chi_square(chi: Option<FitChiSquare>, models: &SearchModels) -> ChiSquare {

@@ -51,22 +51,38 @@ impl CandidateEntry {
         })
     }
 
-    /// The candidate that is another setting of the model; `None` where the job has it, where the model with it is not valid or has other
-    /// parameters, and of the other kind of model unless the job asks for it.
+    /// The candidate that is another setting of the model; `None` where the job has it, and of the other kind of model unless the job asks
+    /// for it.
+    ///
+    /// # Errors
+    /// [`NotTried`] where the model with it is not valid or has other parameters.
     pub(super) fn switch(
         switch: &ModelSwitch,
         base: &Spec,
         job: &FileSet,
         experiment: &FileSet,
-    ) -> Option<Self> {
+    ) -> Result<Option<Self>, NotTried> {
         if switch.is_on(base) || (switch.is_kind() && !base.discovery.other_kind) {
-            return None;
+            return Ok(None);
         }
         let name = switch.name.to_owned();
+        let not_tried = |why: String| NotTried {
+            name: name.clone(),
+            why,
+            needs: format!(
+                "a job that is valid with {} = \"{}\" as well",
+                switch.key, switch.value
+            ),
+        };
         let extension = Extension::Effect(name.clone());
-        let with = spec(&extended(JOB, job, &[&extension]).ok()?, experiment).ok()?;
+        let with = extended(JOB, job, &[&extension]).and_then(|with| spec(&with, experiment));
+        let with = with.map_err(|e| not_tried(e.to_string()))?;
         let names = |spec: &Spec| spec.parameters.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
-        (names(&with) == names(base)).then(|| Self {
+        if names(&with) != names(base) {
+            let others = names(&with).join(", ");
+            return Err(not_tried(format!("its free parameters are others: {others}")));
+        }
+        Ok(Some(Self {
             candidate: Candidate {
                 name: name.clone(),
                 parameters: Vec::new(),
@@ -76,7 +92,7 @@ impl CandidateEntry {
             names: Vec::new(),
             not_tried: None,
             effect: CandidateEffect { name, extension },
-        })
+        }))
     }
 
     /// The candidate with the free parameters that an effect brings; `None` without a free strength.

@@ -18,7 +18,7 @@ use super::law::dependence::dependences;
 use super::law::form::LawForm;
 use super::untried::untried;
 use job::{FreeParameter, MODEL_SWITCHES, PLAIN_PARAMETERS, Spec, free_parameters, without_effects};
-use record::Extension;
+use record::{Extension, NotTried};
 
 /// Shortest finite difference of the three-dimensional model, in standard deviations of the prior: shorter ones show its grid.
 const ROUGH: f64 = 0.15;
@@ -36,6 +36,8 @@ pub struct SearchModels {
     assumed: FileSet,
     pub(super) base: Spec,
     pub(super) library: Vec<CandidateEntry>,
+    /// The other kind of model, where the job asks for it and cannot have it.
+    kinds_not_tried: Vec<NotTried>,
     pub(super) laws: Vec<LawEntry>,
     /// The base's own effects, each with the names of the parameters that remain without it.
     pub(super) reductions: Vec<(String, Vec<String>)>,
@@ -76,8 +78,14 @@ impl SearchModels {
                 .iter()
                 .filter_map(|plain| CandidateEntry::plain(plain, &base)),
         );
-        let switch = |switch| CandidateEntry::switch(switch, &base, job, experiment);
-        entries.extend(MODEL_SWITCHES.iter().filter_map(switch));
+        let mut kinds_not_tried = Vec::new();
+        for switch in &MODEL_SWITCHES {
+            match CandidateEntry::switch(switch, &base, job, experiment) {
+                Ok(own) => entries.extend(own),
+                // A setting that the model cannot have is none of the job's alternatives; another kind was asked for.
+                Err(why) => kinds_not_tried.extend(switch.is_kind().then_some(why)),
+            }
+        }
         for own in untried {
             let not_tried = Some(own.record());
             let own = entry(own.effect, &assumed)?;
@@ -125,12 +133,19 @@ impl SearchModels {
             experiment: experiment.clone(),
             assumed,
             library: entries,
+            kinds_not_tried,
             laws,
             reductions,
             variants: BTreeMap::new(),
             max_effects,
             base,
         })
+    }
+
+    /// What is not tried: effects that need what the experiment does not state, and another kind that the job cannot have.
+    pub fn not_tried(&self) -> impl Iterator<Item = &NotTried> {
+        let effects = self.library.iter().filter_map(|entry| entry.not_tried.as_ref());
+        effects.chain(&self.kinds_not_tried)
     }
 
     /// The task of the search.
@@ -155,6 +170,7 @@ impl SearchModels {
             proposed: ProposedRuns {
                 runs: self.design.len(),
                 beyond: design::beyond(base, &self.design),
+                channels: self.channels.iter().map(|(channel, _)| channel.index()).collect(),
                 noise_sds: self.channels.iter().map(|(_, sd)| *sd).collect(),
             },
             max_effects: self.max_effects,
@@ -165,6 +181,7 @@ impl SearchModels {
                     ModelKind::QuasiStatic => SearchSettings::default().least_difference,
                     ModelKind::Scm => ROUGH,
                 },
+                has_numerical_noise: base.model.kind == ModelKind::Scm,
             },
         }
     }

@@ -114,7 +114,7 @@ fn verdict(
         }
         (SearchVerdict::Class(class), _) => {
             let own = || library().filter(|e| e.class as usize == class && e.probability > LEAST_LISTED);
-            let untried = models.library.iter().filter_map(|entry| entry.not_tried.as_ref());
+            let untried = models.not_tried();
             let untried = untried.filter(|untried| own().any(|e| e.name == untried.name));
             let needs = untried.map(|untried| format!("; {} needs {}", untried.name, untried.needs));
             format!(

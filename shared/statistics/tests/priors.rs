@@ -318,6 +318,21 @@ fn correlated_parameters_have_the_closed_form() {
     }
 }
 
+/// The prior of x and y, and that of y alone, are the joint one integrated over the others.
+#[test]
+fn some_parameters_keep_their_correlations() {
+    let prior = joint();
+    let both = prior.of_some(&[0, 2]);
+    let point = [3.93, 1.5, 0.007];
+    let of_second = prior.of_some(&[1]).log_density(&[1.5]);
+    let got = both.log_density(&[3.93, 0.007]) + of_second;
+    assert!((got - prior.log_density(&point)).abs() < 1e-12, "{got}");
+    let alone = prior.of_some(&[2]);
+    assert!(both.is_correlated() && !alone.is_correlated());
+    let marginal = prior.marginals()[2].log_density(0.007);
+    assert!((alone.log_density(&[0.007]) - marginal).abs() < 1e-12);
+}
+
 #[test]
 fn draws_of_correlated_parameters_have_their_moments() {
     let ([m, l], [s, t], rho) = JOINT;

@@ -135,6 +135,32 @@ impl SyntheticCase {
         Err(format!("the model rejected {MOST_REFUSED} draws of the prior in a row").into())
     }
 
+    /// The files of a campaign on the same soil before its effects acted; `None` where the model rejects that.
+    ///
+    /// # Arguments
+    /// - `noise`: the random stream of its noise.
+    pub(crate) fn reference(&self, mut noise: Stream) -> Result<Option<FileSet>, StudyError> {
+        let names = |job: &FileSet| {
+            let all = spec(job, &blank(&self.rows))?.parameters;
+            Ok::<_, StudyError>(all.into_iter().map(|p| p.name).collect::<Vec<_>>())
+        };
+        let with = names(&self.truth_job)?;
+        let place = |name: &String| with.iter().position(|own| own == name);
+        let base = names(&self.plan.job())?;
+        let theta: Vec<f64> = base
+            .iter()
+            .filter_map(|name| Some(self.theta[place(name)?]))
+            .collect();
+        let Some(mut values) = run(&self.plan.job(), &self.rows, &theta)? else {
+            return Ok(None);
+        };
+        let mut normals = noise.normals(CHANNELS * values.len()).into_iter();
+        for (x, sd) in values.iter_mut().flat_map(|run| run.iter_mut().zip(self.sds)) {
+            *x += sd * normals.next().unwrap_or(0.0);
+        }
+        Ok(Some(experiment(&self.rows, &values, self.sds)))
+    }
+
     /// The files that the search gets.
     pub(crate) fn experiment(&self) -> FileSet {
         experiment(&self.rows, &self.measured, self.sds)

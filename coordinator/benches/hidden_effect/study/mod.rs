@@ -5,6 +5,7 @@
 //! - `design`: the runs of the rig and their files. `case`: a truth and its measurements.
 //! - `local_search`: the search on this thread; `record`: what a study would store of it. `noise_free`: how well the data determine the truth. `held_out`: prediction of unseen runs.
 //! - `score`: the result of a trial; `line`: in one line.
+//! - `posterior`: a calibration by the sampler on this thread.
 //! - `rate`: shares with their uncertainty. `target`: a line of the table; `tally`: the table.
 //! - `parallel`: trials on all threads. `error`: why one cannot be made.
 
@@ -18,6 +19,7 @@ mod line;
 pub(crate) mod local_search;
 pub(crate) mod noise_free;
 pub(crate) mod parallel;
+pub(crate) mod posterior;
 pub(crate) mod rate;
 pub(crate) mod record;
 pub(crate) mod score;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use coordinator::embedded::Evaluate;
 use coordinator::missing_effect::{RunningDiscovery, SearchModels};
-use record::Discovery;
+use record::{Discovery, NONE, Verdict};
 use shared::file::FileSet;
 use shared::outcome::Outcome;
 
@@ -46,6 +46,22 @@ pub(crate) fn record(
                 Outcome::Rejected(_) | Outcome::Fault(_) => None,
             };
             search.tell(index, values.as_deref())?;
+        }
+    }
+}
+
+/// Whether the truth's class is claimed; `None` without a claim.
+///
+/// # Arguments
+/// - `truth`: the hidden effect; `None`: nothing is hidden.
+pub(crate) fn is_right(record: &Discovery, truth: Option<&str>) -> Option<bool> {
+    let class = |name: &str| record.effects.iter().find(|e| e.name == name).map(|e| e.class);
+    match record.verdict {
+        Verdict::NothingDetectable | Verdict::Undecided => None,
+        Verdict::NotInLibrary => Some(false),
+        Verdict::Named | Verdict::Class => {
+            let leading = record.effects.iter().find(|e| e.name != NONE);
+            Some(truth.is_some() && leading.map(|e| e.class) == truth.and_then(class))
         }
     }
 }

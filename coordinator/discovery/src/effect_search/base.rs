@@ -6,7 +6,7 @@ use crate::laplace::point::FitPoint;
 use statistics::likelihood::Likelihood;
 
 /// Until a new Jacobian predicts no gain: every comparison is with this fit.
-const PLAN: [FitStep; 2] = [FitStep::Rounds { most: 6, trials: 12 }, FitStep::Differences];
+pub(crate) const PLAN: [FitStep; 2] = [FitStep::Rounds { most: 6, trials: 12 }, FitStep::Differences];
 
 /// How many of the starts are fitted, the most probable.
 const COUNT: usize = 3;

@@ -1,6 +1,7 @@
 //! The search for one effect: every candidate is compared with the base model by its evidence.
 //!
 //! 1. Base: the most probable parameters, from starts that fill the prior.
+//!    Where the model has numerical noise: its size, which is added to that of the data, and the fit again.
 //! 2. Screen: each candidate at one standard deviation of its strength's prior, projected out of what the base absorbs.
 //! 3. Extensions: base and candidate fitted together, with Broyden's update of the Jacobian.
 //! 4. Polish: the best again, with new Jacobians. Now the effect has a name.
@@ -9,7 +10,8 @@
 //! # Layout
 //! - `state`: the state of a search. `search`: its interface. `phases`: from one phase to the next.
 //! - `base`, `screen`, `extension`, `confirmation`: the positions or fits of one phase. `depth`: how far a search goes.
-//! - `selection`: the candidates that are kept, sampled and ranked. `ranking`: the result.
+//! - `numerical_noise`: the scatter of the model's predictions.
+//! - `selection`: the candidates that are kept, confirmed and ranked. `sampling`: those whose evidence is sampled. `ranking`: the result.
 //! - `class`: effects that the data cannot distinguish.
 
 mod base;
@@ -17,8 +19,10 @@ mod class;
 mod confirmation;
 pub(crate) mod depth;
 mod extension;
+mod numerical_noise;
 mod phases;
 pub(crate) mod ranking;
+mod sampling;
 mod screen;
 pub(crate) mod search;
 mod selection;

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use crate::effect_search::ranking::EvidenceMethod;
 use crate::effect_search::screen::{self, Evaluated, LEVELS};
 use crate::effect_search::state::{EffectSearch, EvidenceEstimate, Phase};
-use crate::effect_search::{base, confirmation, extension};
+use crate::effect_search::{base, confirmation, extension, numerical_noise};
 use crate::laplace::batch::FitBatch;
-use crate::laplace::fit::{FittedModel, LaplaceFit};
+use crate::laplace::fit::{FitStep, FittedModel, LaplaceFit};
 use crate::laplace::importance::ImportanceSampler;
 use crate::laplace::point::FitPoint;
 use inference::InferenceFailure;
@@ -32,6 +32,7 @@ impl EffectSearch {
                 batch.tell(&self.likelihood, answers);
                 self.fit_base(batch);
             }
+            Phase::NumericalNoise(batch) => self.after_numerical_noise(batch, &answers),
             Phase::Screen(level) => self.after_screen(level, answers),
             Phase::Extensions(mut batch) => {
                 batch.tell(&self.likelihood, answers);
@@ -70,16 +71,58 @@ impl EffectSearch {
         let Some(batch) = self.next_round(batch, Phase::Base) else {
             return;
         };
+        if std::mem::take(&mut self.measures_noise) {
+            return self.measure_noise(batch);
+        }
         self.evaluations.base += batch.evaluations();
-        let fits = batch.fits.into_iter().map(|(_, fit)| fit);
-        let best = fits.reduce(|a, b| if b.point.value < a.point.value { b } else { a });
-        self.base = best.and_then(|fit| {
+        self.base = batch.best().cloned().and_then(|fit| {
             Some(FittedModel {
                 log_evidence: fit.log_evidence(&self.likelihood)?,
                 fit,
             })
         });
         self.screen(0, (0..self.candidates.len()).collect());
+    }
+
+    /// Evaluates the base along a line through its best fit.
+    fn measure_noise(&mut self, batch: FitBatch) {
+        let Some(best) = batch.best() else { return };
+        let asked = numerical_noise::positions(&best.point.position);
+        self.ask(asked.into_iter().map(|position| (None, position)).collect());
+        self.phase = Phase::NumericalNoise(batch);
+    }
+
+    /// Adds what the predictions scatter to the noise, and fits the base again where that matters.
+    fn after_numerical_noise(&mut self, batch: FitBatch, answers: &[Option<Vec<f64>>]) {
+        self.evaluations.base += batch.evaluations() + answers.len();
+        let sds = numerical_noise::sds(&self.likelihood, answers);
+        let mut again = FitBatch::new(Vec::new());
+        if let Some((sds, likelihood)) = sds.and_then(|sds| {
+            let likelihood = self.likelihood.with_numerical_noise(&sds).ok()?;
+            Some((sds, likelihood))
+        }) {
+            self.numerical_noise_sds = sds;
+            self.likelihood = likelihood;
+        }
+        for (_, fit) in batch.fits {
+            let LaplaceFit {
+                frame,
+                point,
+                columns,
+                ..
+            } = fit;
+            if let Some(point) = FitPoint::new(&frame, &self.likelihood, point.position, point.values) {
+                let plan: &[FitStep] = if self.numerical_noise_sds.is_empty() {
+                    &[]
+                } else {
+                    &base::PLAN
+                };
+                again
+                    .fits
+                    .push((None, LaplaceFit::new(frame, point, columns, plan)));
+            }
+        }
+        self.fit_base(again);
     }
 
     /// Screens candidates by a step of the strength.

@@ -45,6 +45,7 @@ impl EffectSearch {
             Starts::Even(count) => base::starts(&frame, *count),
         };
         let mut search = Self::unasked(frame, likelihood, candidates, settings.seed);
+        search.measures_noise = settings.has_numerical_noise;
         search.ask(positions.into_iter().map(|position| (None, position)).collect());
         Ok(search)
     }

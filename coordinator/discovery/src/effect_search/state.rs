@@ -18,7 +18,7 @@ use statistics::likelihood::Likelihood;
 /// Its state is a function of priors, likelihood, candidates, settings and the told values, whatever their order within a round.
 #[derive(Debug, Clone)]
 pub struct EffectSearch {
-    pub(super) likelihood: Likelihood,
+    pub(crate) likelihood: Likelihood,
     pub(super) base_frame: NormalFrame,
     pub(super) candidates: Vec<CandidateState>,
     pub(super) round: ProposalRound<Option<Vec<f64>>>,
@@ -28,6 +28,10 @@ pub struct EffectSearch {
     pub(super) seed: u64,
     pub(super) depth: &'static Depth,
     pub(super) base: Option<FittedModel>,
+    /// Whether the numerical noise is to be measured.
+    pub(super) measures_noise: bool,
+    /// Numerical noise sd of each channel, in its unit; empty where it is negligible.
+    pub(crate) numerical_noise_sds: Vec<f64>,
     /// Log evidence of the models that were sampled, the base among them; `None` where the sampling failed.
     pub(super) sampled: BTreeMap<Option<usize>, Option<f64>>,
     pub(super) evaluations: EvaluationCounts,
@@ -58,6 +62,8 @@ pub(super) struct EvidenceEstimate {
 pub(super) enum Phase {
     Starts,
     Base(FitBatch),
+    /// Of the base, with its fits.
+    NumericalNoise(FitBatch),
     /// Index of the strength that the screen tries.
     Screen(usize),
     Extensions(FitBatch),
@@ -95,6 +101,8 @@ impl EffectSearch {
             seed,
             depth: &FULL,
             base: None,
+            measures_noise: false,
+            numerical_noise_sds: Vec::new(),
             sampled: BTreeMap::new(),
             evaluations: EvaluationCounts::default(),
         }

@@ -41,6 +41,12 @@ impl FitBatch {
         }
     }
 
+    /// The most probable fit, the first of equal ones.
+    pub(crate) fn best(&self) -> Option<&LaplaceFit> {
+        let fits = self.fits.iter().map(|(_, fit)| fit);
+        fits.reduce(|a, b| if b.point.value < a.point.value { b } else { a })
+    }
+
     /// Evaluations spent by all.
     pub(crate) fn evaluations(&self) -> usize {
         self.fits.iter().map(|(_, fit)| fit.evaluations).sum()

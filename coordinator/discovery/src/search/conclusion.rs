@@ -61,7 +61,7 @@ pub struct Conclusion {
     /// The share of the base's excess chi-square that the best explanation takes away, 0 to 1; `None` without an excess, and where the
     /// noise is not known.
     pub explained: Option<f64>,
-    /// What the best explanation leaves of each datum, in declared noise sds; empty where it is complete or the noise is not known.
+    /// What the best explanation leaves of each datum, in noise sds (declared and numerical); empty where it is complete or the noise is not known.
     pub remaining: Vec<f64>,
     /// Chi-square of the best explanation over its degrees of freedom, by which log Bayes factors are divided before they become
     /// probabilities; 1 where it fits.
@@ -82,6 +82,9 @@ pub struct Conclusion {
     pub best: PosteriorModel,
     /// Runs to make next.
     pub next_runs: Vec<InformativeRun>,
+    /// Scatter of the model's predictions about a smooth function of its parameters, which counts as noise: an sd for each channel by its
+    /// index, in its unit; empty where it is negligible.
+    pub numerical_noise_sds: Vec<f64>,
     /// All evaluations; those of the search for one effect stand in the ranking.
     pub evaluations: usize,
 }
@@ -100,6 +103,7 @@ impl Conclusion {
             task,
             hypotheses,
             evaluations,
+            numerical_noise_sds,
         } = state;
         let weighing = Weighing::new(task, hypotheses);
         let chi_square = |fit: &LaplaceFit| FitChiSquare::of(fit, &task.likelihood);
@@ -157,6 +161,7 @@ impl Conclusion {
             base: model(Vec::new(), base, OF_BASE),
             best: model(effects, fit, OF_BEST),
             next_runs,
+            numerical_noise_sds: numerical_noise_sds.clone(),
             evaluations: *evaluations,
         }
     }

@@ -44,6 +44,7 @@ impl DiscoverySearch {
                 task,
                 hypotheses: Hypotheses::new(candidates),
                 evaluations: 0,
+                numerical_noise_sds: Vec::new(),
             },
             round: ProposalRound::default(),
             queries: Vec::new(),

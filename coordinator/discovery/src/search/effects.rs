@@ -21,6 +21,7 @@ impl SearchState {
         if let Some(failure) = branch.search.failure() {
             return Stage::Failed(failure);
         }
+        self.take_numerical_noise(&branch.search);
         self.hypotheses.base = branch.search.base_fit().cloned();
         self.hypotheses.ranking = branch.search.ranking().cloned().unwrap_or_default();
         self.add_combinations(branch, 0.0);

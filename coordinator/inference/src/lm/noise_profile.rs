@@ -6,6 +6,8 @@ use statistics::prior::{LN_SQRT_TAU, Prior};
 
 /// Normal scores between which an sd without a closed form is searched.
 const FARTHEST_SCORE: f64 = 4.0;
+/// A score so near to an end of that interval lies at it.
+const AT_END: f64 = 0.01;
 /// Sections of that interval: down to a width of 2e-4.
 const SECTIONS: u32 = 22;
 /// Most passes over the sds, and the change of the scores at which they end.
@@ -137,10 +139,11 @@ fn entangled(
             let bend = 2.0 * here - along(&scores, i, low) - along(&scores, i, high);
             let curvature = bend / (DIFFERENCE * DIFFERENCE);
             let rate = (value(high) - value(low)) / (2.0 * DIFFERENCE);
+            let at_bound = scores[i].abs() > FARTHEST_SCORE - AT_END;
             Profiled {
                 sd: value(scores[i]),
-                at_bound: false,
-                uncertainty: (curvature > 0.0).then(|| rate / curvature.sqrt()),
+                at_bound,
+                uncertainty: (!at_bound && curvature > 0.0).then(|| rate / curvature.sqrt()),
             }
         })
         .collect()

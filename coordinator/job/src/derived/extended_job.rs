@@ -6,6 +6,11 @@ use shared::parameters::SPATIAL;
 
 use crate::model_switch::ModelSwitch;
 
+fn document(name: &str, toml: &str) -> Result<toml_edit::DocumentMut, FileError> {
+    toml.parse()
+        .map_err(|e: toml_edit::TomlError| FileError::whole(name, e.to_string()))
+}
+
 /// The text of a job with further effects and effect files under `[model]` and further lines under `[priors]`; everything
 /// else stays as it is written.
 ///
@@ -26,9 +31,7 @@ pub fn extended_job(
         return Ok(toml.to_owned());
     }
     let fail = |message: String| FileError::whole(name, message);
-    let mut document: toml_edit::DocumentMut = toml
-        .parse()
-        .map_err(|e: toml_edit::TomlError| fail(e.to_string()))?;
+    let mut document = document(name, toml)?;
     let model = document
         .get_mut("model")
         .and_then(toml_edit::Item::as_table_like_mut);
@@ -70,9 +73,7 @@ pub fn extended_job(
 /// [`FileError`] where the text is no job with a table `[model]`.
 pub fn with_setting(name: &str, toml: &str, switch: &ModelSwitch) -> Result<String, FileError> {
     let fail = |message: String| FileError::whole(name, message);
-    let mut document: toml_edit::DocumentMut = toml
-        .parse()
-        .map_err(|e: toml_edit::TomlError| fail(e.to_string()))?;
+    let mut document = document(name, toml)?;
     let model = document
         .get_mut("model")
         .and_then(toml_edit::Item::as_table_like_mut);
@@ -92,10 +93,7 @@ pub fn with_setting(name: &str, toml: &str, switch: &ModelSwitch) -> Result<Stri
 /// # Errors
 /// [`FileError`] where the text is no job with a table `[model]`, or where the parameter has a prior already.
 pub fn with_free(name: &str, toml: &str, parameter: &str, prior: &toml::Value) -> Result<String, FileError> {
-    let fail = |message: String| FileError::whole(name, message);
-    let mut document: toml_edit::DocumentMut = toml
-        .parse()
-        .map_err(|e: toml_edit::TomlError| fail(e.to_string()))?;
+    let mut document = document(name, toml)?;
     for table in ["model", "priors"] {
         let Some(table) = document
             .get_mut(table)

@@ -53,6 +53,10 @@ impl FinishedCalibration {
             flag(FlagKind::NotEquilibrated, text);
         }
         if let Some(estimate) = &self.estimate {
+            if self.spec.algorithm.has_posterior() {
+                let text = "the density about the fit is not that of a normal distribution along every parameter, so there is no normal approximation: no posterior, no ledger, no search; let tmcmc sample";
+                flag(FlagKind::NotEquilibrated, text.into());
+            }
             for p in fitted(estimate, &self.spec.parameters) {
                 let (name, prior_sd) = (&p.free.name, p.free.marginal.sd());
                 if p.at_bound {
@@ -152,4 +156,27 @@ fn bound_text(name: &str, p: &ParameterSummary) -> String {
         number::significant(p.q05, 4),
         number::significant(p.q95, 4)
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn a_fit_that_was_to_have_a_posterior_and_has_none_says_so() {
+        let of = |draws: usize| {
+            let mut fit = fixture::fit();
+            fit.spec.algorithm = job::AlgorithmSettings::Fit(inference::lm::LmSettings {
+                draws,
+                ..Default::default()
+            });
+            let flags = fit.diagnostics(&fit.comparison()).flags;
+            flags
+                .iter()
+                .any(|f| f.kind == FlagKind::NotEquilibrated && f.text.contains("tmcmc"))
+        };
+        assert!(of(1000));
+        assert!(!of(0));
+    }
 }

@@ -8,7 +8,7 @@ use record::{ChiSquare, Discovery, JudgedSet};
 
 use super::column::{cell, width};
 use super::ledger::ledger;
-use crate::discovery::{arguments, effect_file, word};
+use crate::discovery::{arguments, effect_file, numerical_noise, word};
 use crate::study::Study;
 use crate::words::probability::p_words;
 
@@ -68,6 +68,9 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
         chi_square(record.chi2),
         chi_square(record.chi2_best)
     );
+    if let Some(said) = numerical_noise(record) {
+        let _ = writeln!(text, "{said}");
+    }
     if let Some(outside) = &record.outside {
         let _ = writeln!(
             text,

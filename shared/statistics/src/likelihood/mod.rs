@@ -9,6 +9,7 @@
 //! - `common_error`: errors in common, and the blocks that they make. `spread`: the covariance of a block.
 //! - `error_model`: data, law and common errors together. `density`: their log-density.
 //! - `factor`: the Cholesky factor of a block's covariance. `subset`: the likelihood of some of the data.
+//! - `numerical_noise`: the likelihood of a model whose predictions scatter.
 //! - `whitening`: residuals and derivatives made independent, for least squares.
 
 mod common_error;
@@ -17,6 +18,7 @@ mod density;
 mod error_model;
 mod factor;
 mod law;
+mod numerical_noise;
 mod spread;
 mod subset;
 mod whitening;

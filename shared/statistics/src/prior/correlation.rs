@@ -112,6 +112,9 @@ impl Correlation {
         let own: Vec<(usize, usize)> = (0..kept.len())
             .filter_map(|new| Some((new, parameters.iter().position(|&p| p == kept[new])?)))
             .collect();
+        if own.len() < 2 {
+            return None;
+        }
         let row = |i: usize| own.iter().map(|&(_, j)| correlations[i][j]).collect();
         let correlations: Vec<Vec<f64>> = own.iter().map(|&(_, i)| row(i)).collect();
         let parameters = own.into_iter().map(|(new, _)| new).collect();

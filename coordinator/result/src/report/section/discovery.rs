@@ -5,7 +5,7 @@ use std::path::Path;
 use maud::{Markup, html};
 use record::{Discovery, JudgedEffect, Outside};
 
-use crate::discovery::{DiscoveryRound, arguments};
+use crate::discovery::{DiscoveryRound, arguments, numerical_noise};
 use crate::report::chart;
 use crate::study::Study;
 use crate::words::number;
@@ -29,6 +29,7 @@ fn search(study: &Study, round: &DiscoveryRound) -> Markup {
         h3 { "Search of " (of.map_or("the model", |calibration| calibration.experiment.as_str())) }
         p.verdict { (record.text) }
         (explanations(record))
+        @if let Some(said) = numerical_noise(record) { p.note { (said) "." } }
         @if let Some(outside) = &record.outside { (law(outside)) }
         @if !record.drop.is_empty() { p { "No longer improves the evidence: " (number::list(&record.drop)) "." } }
         @if !record.cannot_exclude.is_empty() {

@@ -1,0 +1,85 @@
+//! A calibration by the sampler on this thread.
+
+use std::sync::Arc;
+
+use coordinator::calibration::{Calibration, CalibrationIdentity, CalibrationResult, result_of};
+use coordinator::embedded::Evaluate;
+use shared::file::FileSet;
+
+use super::case::spec;
+use super::error::StudyError;
+
+/// A sample of the posterior.
+#[derive(Debug, Clone)]
+pub(crate) struct PosteriorSample {
+    pub(crate) log_evidence: f64,
+    parameters: Vec<String>,
+    draws: Vec<Vec<f64>>,
+    log_likelihoods: Vec<f64>,
+}
+
+impl PosteriorSample {
+    /// The highest ln p(data | theta) among the draws.
+    pub(crate) fn highest(&self) -> f64 {
+        let all = self.log_likelihoods.iter().copied();
+        all.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// As `posterior.csv` has the draws.
+    pub(crate) fn csv(&self) -> String {
+        let mut text = self.parameters.join(",");
+        for draw in &self.draws {
+            let cells: Vec<String> = draw.iter().map(|x| format!("{x:?}")).collect();
+            text += "\n";
+            text += &cells.join(",");
+        }
+        text + "\n"
+    }
+}
+
+/// Calibrates a job.
+///
+/// # Arguments
+/// - `sampler`: the table `[sampler]` but its seed.
+pub(crate) fn sample(
+    job: &FileSet,
+    experiment: &FileSet,
+    sampler: &str,
+    seed: u64,
+) -> Result<PosteriorSample, StudyError> {
+    let job = FileSet {
+        toml: format!("{}{sampler}seed = {seed}\n", job.toml),
+        files: job.files.clone(),
+    };
+    let spec = spec(&job, experiment)?;
+    let parameters = spec.parameters.iter().map(|p| p.name.clone()).collect();
+    let model = Evaluate::new(&spec.fit_variant)?;
+    let identity = CalibrationIdentity {
+        id: 0,
+        name: "hidden effect".into(),
+        study: 0,
+        experiment: 0,
+    };
+    let mut calibration = Calibration::new(identity, Arc::new(spec))?;
+    loop {
+        if let Some(CalibrationResult::Posterior(posterior)) = calibration.engine().finding() {
+            let particles = &posterior.particles;
+            return Ok(PosteriorSample {
+                log_evidence: posterior.log_evidence,
+                parameters,
+                draws: particles.iter().map(|p| p.theta.clone()).collect(),
+                log_likelihoods: particles.iter().map(|p| p.log_likelihood.value()).collect(),
+            });
+        }
+        if let Some(message) = &calibration.message {
+            return Err(message.clone().into());
+        }
+        for evaluation in calibration.queue.asked() {
+            let Some(question) = calibration.question(evaluation) else {
+                break;
+            };
+            let outcome = result_of(model.evaluate(question.theta))?;
+            calibration.complete(evaluation, outcome, "hidden effect")?;
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! The numerical noise of a model: how far its predictions scatter about a smooth function of its parameters.
+//!
+//! A model on a grid changes in jumps where a node enters or leaves the contact. A fit that takes the jumps for physics is sure of
+//! whatever effect happens to match them.
+
+use statistics::likelihood::{ErrorSd, Likelihood};
+
+/// Positions on the line, and the distance of neighbours along every coordinate, in standard deviations of the prior.
+const POINTS: usize = 9;
+const SPACING: f64 = 0.1;
+/// Coefficients of the fourth difference, in which the smooth part of the predictions vanishes; their squares sum to 70.
+const FOURTH_DIFFERENCE: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
+const SUM_OF_SQUARES: f64 = 70.0;
+/// A scatter below this share of a channel's declared noise is neglected.
+const NEGLIGIBLE: f64 = 0.1;
+
+/// The positions to evaluate: evenly on a line through the fit, which moves all parameters at once.
+pub(super) fn positions(fit: &[f64]) -> Vec<Vec<f64>> {
+    let offset = |i: usize| SPACING * (i as f64 - (POINTS / 2) as f64);
+    let moved = |i| fit.iter().map(|t| t + offset(i)).collect();
+    (0..POINTS).map(moved).collect()
+}
+
+/// The scatter of each channel by its index, in its unit: the root mean square of the fourth differences over the root of 70, over all
+/// data of the channel. `None` where all are negligible beside the declared noise, or inferred with it.
+///
+/// # Arguments
+/// - `answers`: the values at [`positions`]; a difference with a rejected position is left out.
+///
+/// # Source
+/// Moré & Wild 2011, "Estimating computational noise", SIAM Journal on Scientific Computing 33, doi:10.1137/100786125, Algorithm
+/// ECnoise at one order. Checked by `tests`.
+pub(super) fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<f64>> {
+    let data = likelihood.data();
+    let channels = data.iter().map(|datum| datum.channel + 1).max()?;
+    let mut squares = vec![(0.0, 0_usize); channels];
+    for window in answers.windows(FOURTH_DIFFERENCE.len()) {
+        let Some(window) = window.iter().map(Option::as_ref).collect::<Option<Vec<_>>>() else {
+            continue;
+        };
+        for (i, datum) in data.iter().enumerate() {
+            let terms = FOURTH_DIFFERENCE.iter().zip(&window);
+            let difference: f64 = terms.map(|(c, values)| c * values[i]).sum();
+            let (sum, count) = &mut squares[datum.channel];
+            *sum += difference * difference / SUM_OF_SQUARES;
+            *count += 1;
+        }
+    }
+    let sds: Vec<f64> = squares
+        .into_iter()
+        .map(|(sum, count)| (sum / count.max(1) as f64).sqrt())
+        .collect();
+    let matters = data.iter().any(|datum| match datum.sd {
+        ErrorSd::Known(sd) => sds[datum.channel] > NEGLIGIBLE * sd,
+        ErrorSd::Inferred { .. } => false,
+    });
+    matters.then_some(sds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use statistics::likelihood::Datum;
+    use statistics::rng::Stream;
+
+    const RUNS: usize = 20;
+
+    /// Two channels; the predictions are a cubic along the line, with scatter of the first channel.
+    fn answers(scatter: f64) -> (Likelihood, Vec<Option<Vec<f64>>>) {
+        let datum = |i: usize| Datum {
+            run: i / 2,
+            channel: i % 2,
+            value: 0.0,
+            sd: ErrorSd::Known(1.0),
+        };
+        let likelihood = Likelihood::new((0..2 * RUNS).map(datum).collect()).unwrap();
+        let values = |t: &Vec<f64>| {
+            let mut scattered = Stream::new(1, 0, t[0].to_bits(), 0).normals(RUNS).into_iter();
+            let value = |i: usize| {
+                let smooth = (i as f64) * (3.0 * t[0] + t[0] * t[0] - 2.0 * t[0].powi(3));
+                let rough = if i % 2 == 0 {
+                    scattered.next().unwrap()
+                } else {
+                    0.0
+                };
+                smooth + scatter * rough
+            };
+            Some((0..2 * RUNS).map(value).collect())
+        };
+        (likelihood, positions(&[0.3, -1.0]).iter().map(values).collect())
+    }
+
+    #[test]
+    fn the_scatter_about_a_smooth_function_is_found() {
+        let (likelihood, mut answers) = answers(0.5);
+        let found = sds(&likelihood, &answers).unwrap();
+        assert!((0.4..0.6).contains(&found[0]), "{found:?}");
+        assert!(found[1] < 1e-9, "{found:?}");
+        // Four differences of five are left.
+        answers[0] = None;
+        let found = sds(&likelihood, &answers).unwrap();
+        assert!((0.4..0.6).contains(&found[0]), "{found:?}");
+    }
+
+    #[test]
+    fn a_smooth_model_has_none() {
+        let (likelihood, answers) = answers(0.0);
+        assert_eq!(sds(&likelihood, &answers), None);
+        assert_eq!(sds(&likelihood, &[]), None);
+    }
+
+    #[test]
+    fn it_is_added_to_the_declared_noise() {
+        let (likelihood, _) = answers(0.0);
+        let with = likelihood.with_numerical_noise(&[0.75]).unwrap();
+        let sds: Vec<ErrorSd> = with.data().iter().take(2).map(|datum| datum.sd).collect();
+        assert_eq!(sds, [ErrorSd::Known(1.25), ErrorSd::Known(1.0)]);
+    }
+}
