@@ -57,7 +57,10 @@ pub(crate) fn run(count: u64, seed: u64) -> Result<(), StudyError> {
     ] {
         print!("{tally}");
     }
-    Ok(())
+    match compared.iter().filter(|c| c.is_right() == Some(false)).count() {
+        0 => Ok(()),
+        wrong => Err(format!("{wrong} searches with the reference name what did not change").into()),
+    }
 }
 
 /// Draws the two campaigns of a number, and searches the second.

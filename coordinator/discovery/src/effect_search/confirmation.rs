@@ -7,9 +7,9 @@ use crate::laplace::fit::{FitStep, LaplaceFit};
 pub(crate) const COUNT: usize = 4;
 /// Whatever lies, or promises to lie, within so many nats of the best is confirmed: a fit that stuck may lead.
 pub(crate) const WITHIN: f64 = 10.0;
-/// A fit that fell short of its promise has not converged, and its promise is that of a linear model: it is confirmed where that is more
-/// than this share of the best.
-pub(crate) const STUCK: f64 = 0.5;
+/// A fit that fell short of its promise has not converged, and its promise is that of a linear model: the best of them are
+/// confirmed where that is more than this share of the best.
+pub(crate) const STUCK: f64 = 0.6;
 /// Beyond the first, an extension is worth its confirmation where it promises more \[nats\].
 pub(crate) const LEAST_PROMISE: f64 = 0.0;
 

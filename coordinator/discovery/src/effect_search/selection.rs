@@ -96,33 +96,33 @@ impl EffectSearch {
         self.promises().into_iter().take(count).map(|(k, _)| k).collect()
     }
 
-    /// Candidates that are to be confirmed next: those near the best that are not confirmed yet.
-    pub(super) fn unconfirmed(&self) -> Vec<usize> {
+    /// Candidates that are to be confirmed next: those near the best that are not confirmed yet; once there are none, and once only,
+    /// those whose fits got stuck.
+    pub(super) fn unconfirmed(&mut self) -> Vec<usize> {
         let promises = self.promises();
         let Some(&(_, best)) = promises.first() else {
             return Vec::new();
         };
-        let near = (best - confirmation::WITHIN).max(confirmation::LEAST_PROMISE);
-        let is_open = |&(k, promise): &(usize, f64)| {
-            let open = self.candidates[k].estimate.as_ref();
-            open.filter(|estimate| estimate.method < EvidenceMethod::Confirmed)
-                .is_some_and(|estimate| {
-                    let is_stuck = estimate.log_bayes_factor < promise - MOST_SHORT;
-                    let least = if is_stuck {
-                        near.min(confirmation::STUCK * best)
-                            .max(confirmation::LEAST_PROMISE)
-                    } else {
-                        near
-                    };
-                    promise > least
-                })
+        let open = |k: usize| {
+            let estimate = self.candidates[k].estimate.as_ref();
+            estimate.filter(|estimate| estimate.method < EvidenceMethod::Confirmed)
         };
-        promises
-            .into_iter()
-            .filter(is_open)
-            .map(|(k, _)| k)
-            .take(confirmation::COUNT)
-            .collect()
+        let is_stuck = |k: usize, promise: f64| {
+            open(k).is_some_and(|estimate| estimate.log_bayes_factor < promise - MOST_SHORT)
+        };
+        let first = |wanted: &dyn Fn(usize, f64) -> bool, least: f64| -> Vec<usize> {
+            let above = promises.iter().filter(|(_, promise)| *promise > least);
+            let wanted = above.filter(|(k, promise)| wanted(*k, *promise));
+            wanted.map(|(k, _)| *k).take(confirmation::COUNT).collect()
+        };
+        let near = (best - confirmation::WITHIN).max(confirmation::LEAST_PROMISE);
+        let next = first(&|k, _| open(k).is_some(), near);
+        if !next.is_empty() || self.has_confirmed_stuck {
+            return next;
+        }
+        let stuck = first(&is_stuck, confirmation::STUCK * best.max(0.0));
+        self.has_confirmed_stuck = true;
+        stuck
     }
 
     /// The candidates with their Bayes factors, the highest first.

@@ -32,6 +32,8 @@ pub struct EffectSearch {
     pub(super) measures_noise: bool,
     /// Numerical noise sd of each channel, in its unit; empty where it is negligible.
     pub(crate) numerical_noise_sds: Vec<f64>,
+    /// Whether fits that got stuck were confirmed.
+    pub(super) has_confirmed_stuck: bool,
     /// Log evidence of the models that were sampled, the base among them; `None` where the sampling failed.
     pub(super) sampled: BTreeMap<Option<usize>, Option<f64>>,
     pub(super) evaluations: EvaluationCounts,
@@ -103,6 +105,7 @@ impl EffectSearch {
             base: None,
             measures_noise: false,
             numerical_noise_sds: Vec::new(),
+            has_confirmed_stuck: false,
             sampled: BTreeMap::new(),
             evaluations: EvaluationCounts::default(),
         }
