@@ -28,6 +28,7 @@ pub struct ExchangeRequest {
     /// Leases whose evaluation has begun and has no result yet; renewed too. Only of these does a loss count as a failed attempt.
     pub started: Vec<u64>,
     /// The highest lease number that has reached this worker, 0 before the first: what was given to it above was lost on the way.
+    /// `u64::MAX` while another answer is under way.
     pub received: u64,
     /// Most leases that the worker takes now.
     pub want: u32,

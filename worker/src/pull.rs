@@ -25,6 +25,10 @@ const WAIT_MS: u64 = 20_000;
 const MOST_RUNS: usize = 100_000;
 /// Results are sent at least so often, even while there is work left.
 const FLUSH: Duration = Duration::from_secs(1);
+/// How long a worker that stops waits for the evaluations that have begun: what takes longer is given back unfinished.
+const GRACE: Duration = Duration::from_secs(3);
+/// How long its last message may take.
+const FAREWELL: Duration = Duration::from_millis(1500);
 /// How long a worker that stops waits for an answer that may be on its way.
 const PARTING: Duration = Duration::from_millis(300);
 /// Pauses between attempts to reach a coordinator that is away: doubled from the first to the last.
@@ -63,7 +67,7 @@ pub struct PullSettings {
     pub threads: usize,
 }
 
-/// Runs until `shutdown` is ready; then gives back the leases that have not begun.
+/// Runs until `shutdown` is ready; then, within 5 s, gives back the leases that are not finished.
 ///
 /// # Errors
 /// [`ExchangeError::Refused`], also where the threads cannot be started, because retrying would not help.
@@ -160,20 +164,26 @@ impl<C: Coordinator> Worker<C> {
             let coordinator = self.coordinator.clone();
             let exchange = coordinator.exchange(request);
             tokio::pin!(exchange);
-            let answer = tokio::select! {
-                () = &mut shutdown => {
-                    // leases may be under way: wait briefly for the answer, to give them back too
-                    match tokio::time::timeout(PARTING, exchange).await {
-                        Ok(Ok(response)) => {
-                            self.held.extend(response.leases.iter().map(|l| l.lease));
-                            self.note_received(&response);
+            let answer = loop {
+                tokio::select! {
+                    () = &mut shutdown => {
+                        // leases may be under way: wait briefly for the answer, to give them back too
+                        match tokio::time::timeout(PARTING, exchange).await {
+                            Ok(Ok(response)) => {
+                                self.held.extend(response.leases.iter().map(|l| l.lease));
+                                self.note_received(&response);
+                            }
+                            Ok(Err((_, results))) => self.outbox.extend(results),
+                            Err(_) => {}
                         }
-                        Ok(Err((_, results))) => self.outbox.extend(results),
-                        Err(_) => {}
+                        return self.stop().await;
                     }
-                    return self.stop().await;
+                    answer = &mut exchange => break answer,
+                    // What is being evaluated must not be lost because an answer hangs.
+                    () = tokio::time::sleep(self.renewal_period()), if !self.held.is_empty() => {
+                        self.renew_beside();
+                    }
                 }
-                answer = &mut exchange => answer,
             };
             match answer {
                 Ok(response) => {
@@ -286,6 +296,28 @@ impl<C: Coordinator> Worker<C> {
         }
     }
 
+    /// Renews all leases while another exchange waits for its answer. Nothing follows from the answer, so nobody waits for it.
+    fn renew_beside(&mut self) {
+        let renewal = ExchangeRequest {
+            worker: self.settings.name.clone(),
+            protocol: PROTOCOL_VERSION,
+            model_version: crate::model_version().to_owned(),
+            results: Vec::new(),
+            holding: self.held.iter().copied().collect(),
+            returned: Vec::new(),
+            started: self.evaluator.started(),
+            // Leases of the answer that is under way are not lost.
+            received: u64::MAX,
+            want: 0,
+            wait_ms: 0,
+        };
+        self.renewed = Instant::now();
+        let (coordinator, period) = (self.coordinator.clone(), self.renewal_period());
+        tokio::spawn(async move {
+            let _ = tokio::time::timeout(period, coordinator.exchange(renewal)).await;
+        });
+    }
+
     /// Leases whose evaluation has begun, or begins when the coordinator has answered.
     fn started(&self) -> Vec<u64> {
         let announced = self.announced.iter().map(|(lease, _)| lease.lease);
@@ -382,9 +414,19 @@ impl<C: Coordinator> Worker<C> {
         }
     }
 
-    /// Gives back the leases that have not begun and sends the finished results.
+    /// Sends the finished results and gives back all other leases: those that have not begun, and those that take too long to wait for.
     async fn stop(mut self) -> Result<(), ExchangeError> {
-        self.evaluator.cancel().await;
+        if tokio::time::timeout(GRACE, self.evaluator.cancel())
+            .await
+            .is_err()
+        {
+            let unfinished = self.evaluator.started().len();
+            tracing::info!(
+                worker = self.settings.name,
+                unfinished,
+                "gives back what it has begun"
+            );
+        }
         self.collect();
         let request = ExchangeRequest {
             returned: self.held.iter().chain(&self.returned).copied().collect(),
@@ -395,7 +437,7 @@ impl<C: Coordinator> Worker<C> {
             ..self.request()
         };
         let (sent, returned) = (request.results.len(), request.returned.len());
-        let farewell = tokio::time::timeout(Duration::from_secs(5), self.coordinator.exchange(request)).await;
+        let farewell = tokio::time::timeout(FAREWELL, self.coordinator.exchange(request)).await;
         match farewell {
             Ok(Ok(_)) => tracing::info!(worker = self.settings.name, sent, returned, "stopped"),
             _ => tracing::warn!(

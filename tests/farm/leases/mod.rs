@@ -1,5 +1,6 @@
 //! Leases: what a worker that halts, leaves, lies or poisons costs, and whom.
 
+mod busy;
 mod disputed;
 mod durable;
 mod faults;

@@ -96,8 +96,8 @@ impl EffectSearch {
         self.promises().into_iter().take(count).map(|(k, _)| k).collect()
     }
 
-    /// Candidates that are to be confirmed next: those near the best that are not confirmed yet; once there are none, and once only,
-    /// those whose fits got stuck.
+    /// Candidates that are to be confirmed next: those near the best that are not confirmed yet; once there are none, of a
+    /// model with numerical noise and once only, those whose fits got stuck.
     pub(super) fn unconfirmed(&mut self) -> Vec<usize> {
         let promises = self.promises();
         let Some(&(_, best)) = promises.first() else {
@@ -117,7 +117,8 @@ impl EffectSearch {
         };
         let near = (best - confirmation::WITHIN).max(confirmation::LEAST_PROMISE);
         let next = first(&|k, _| open(k).is_some(), near);
-        if !next.is_empty() || self.has_confirmed_stuck {
+        // Where the model scatters, fits get stuck more often than elsewhere.
+        if !next.is_empty() || self.has_confirmed_stuck || self.numerical_noise_sds.is_empty() {
             return next;
         }
         let stuck = first(&is_stuck, confirmation::STUCK * best.max(0.0));
