@@ -75,16 +75,16 @@ impl Farm {
     /// Adds a calibration, with facts of its replay that may have been lost.
     pub fn add(&mut self, calibration: Calibration, key: SealKey, facts: Vec<Fact>, now_ms: u64) {
         self.facts.extend(facts);
-        if !calibration.state.is_final() {
-            let pace = Pace::new(calibration.evaluations, now_ms);
-            let entry = Entry {
-                calibration,
-                key,
-                pace,
-                counted_ms: now_ms,
-            };
-            self.calibrations.insert(entry.calibration.identity.id, entry);
-        }
+        let pace = Pace::new(calibration.evaluations, now_ms);
+        let entry = Entry {
+            calibration,
+            key,
+            pace,
+            counted_ms: now_ms,
+        };
+        self.calibrations.insert(entry.calibration.identity.id, entry);
+        // A replay may have ended it: then its late results are compared from now on.
+        self.account(now_ms);
     }
 
     /// The facts since the last call, in order.
