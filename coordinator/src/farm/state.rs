@@ -131,6 +131,8 @@ impl Farm {
         record.last_seen_ms = now_ms;
         // An answer to this worker was lost: it speaks again without having received its last leases.
         let lost = request.received < record.given;
+        // The last message tells: what waits for a worker of its version must not wait for one that has become another.
+        record.model_version.clone_from(&request.model_version);
         record.given = record.given.min(request.received);
         let (mut duplicates, mut refused_leases) = (0, Vec::new());
         for result in request.results {
