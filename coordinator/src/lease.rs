@@ -6,12 +6,16 @@
 //! A lost lease makes its evaluation a *suspect*: it is then leased alone, to a worker that holds nothing else and
 //! reports that it begins before it does. So a parameter vector that kills its worker is found out, and those that were
 //! merely with it are not blamed. Only the loss of a lease that was reported as started is a failed attempt: whoever dies,
-//! or is cut off, has done nothing to the evaluations that wait in its hands.
+//! or is cut off, has done nothing to the evaluations that wait in its hands. An evaluation that is lost twenty times in a row
+//! before anybody begins it is told to the caller: whatever ends its workers, leasing it on ends more of them.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 /// An evaluation is given up after so many failed leases.
 pub const MAX_ATTEMPTS: u32 = 3;
+
+/// A calibration pauses after an evaluation was leased so often in a row without being begun.
+pub const MAX_UNSTARTED: u32 = 20;
 
 /// A time-limited claim.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,6 +38,8 @@ enum State {
 struct Entry {
     /// The workers of the leases that failed: started and expired, or ended in a reported fault.
     failed: Vec<String>,
+    /// Leases in a row that expired before they were begun.
+    unstarted: u32,
     /// Whether a lease of it was lost or failed.
     suspect: bool,
     state: State,
@@ -92,6 +98,8 @@ pub struct Expired {
     pub failures: Vec<LeaseFailure>,
     /// How many leases expired that nobody had started.
     pub unstarted: u64,
+    /// Evaluations that were leased [`MAX_UNSTARTED`] times in a row without being begun.
+    pub never_begun: Vec<u64>,
 }
 
 impl LeaseFailure {
@@ -118,6 +126,7 @@ impl LeaseQueue {
                 evaluation,
                 Entry {
                     failed,
+                    unstarted: 0,
                     suspect,
                     state,
                 },
@@ -156,6 +165,19 @@ impl LeaseQueue {
         }
     }
 
+    /// Whether a worker holds a suspect.
+    pub fn holds_suspect(&self, worker: &str) -> bool {
+        self.leased.values().any(|evaluation| {
+            let entry = &self.entries[evaluation];
+            entry.suspect && matches!(&entry.state, State::Leased(claim) if claim.worker == worker)
+        })
+    }
+
+    /// Suspects that nobody holds.
+    pub fn suspects(&self) -> usize {
+        self.suspects.len()
+    }
+
     /// Leases that are out.
     pub fn leased(&self) -> usize {
         self.leased.len()
@@ -178,8 +200,9 @@ impl LeaseQueue {
 
     /// Claims up to `want` evaluations for a worker that holds `holds` leases of any calibration.
     ///
-    /// A suspect goes out alone, to a worker with empty hands; a worker that holds one gets nothing else. A worker that failed at
-    /// it gets it again only if there is no other: `has_other` tells whether a worker is there that is not among those that failed.
+    /// A suspect goes out alone, to a worker with empty hands; for a worker that holds one ([`LeaseQueue::holds_suspect`]), of any
+    /// calibration, the caller claims nothing. A worker that failed at it gets it again only if there is no other: `has_other`
+    /// tells whether a worker is there that is not among those that failed.
     pub fn claim(
         &mut self,
         worker: &str,
@@ -189,11 +212,6 @@ impl LeaseQueue {
         has_other: impl Fn(&[String]) -> bool,
         mut next_lease: impl FnMut() -> u64,
     ) -> Vec<NewClaim> {
-        let holds_suspect = holds > 0
-            && self.leased.values().any(|evaluation| {
-                let entry = &self.entries[evaluation];
-                entry.suspect && matches!(&entry.state, State::Leased(c) if c.worker == worker)
-            });
         let suits = |evaluation: &u64| {
             let failed = &self.entries[evaluation].failed;
             !failed.iter().any(|name| name == worker) || !has_other(failed)
@@ -203,7 +221,7 @@ impl LeaseQueue {
             _ => None,
         };
         let evaluations: Vec<u64> = match suspect {
-            _ if want == 0 || holds_suspect => Vec::new(),
+            _ if want == 0 => Vec::new(),
             Some(place) => self.suspects.remove(place).into_iter().collect(),
             None => self.ready.drain(..want.min(self.ready.len())).collect(),
         };
@@ -238,13 +256,31 @@ impl LeaseQueue {
     pub fn start(&mut self, lease: u64, worker: &str, until_ms: u64) -> bool {
         let held = self.renew(lease, worker, until_ms);
         let evaluation = self.leased.get(&lease).filter(|_| held);
-        if let Some(State::Leased(claim)) = evaluation
-            .and_then(|e| self.entries.get_mut(e))
-            .map(|e| &mut e.state)
+        if let Some(entry) = evaluation.and_then(|e| self.entries.get_mut(e))
+            && let State::Leased(claim) = &mut entry.state
         {
             claim.started = true;
+            entry.unstarted = 0;
         }
         held
+    }
+
+    /// Takes back the leases of some workers, at no cost.
+    pub fn take_back_of(&mut self, is_one: impl Fn(&str) -> bool) {
+        let leases: Vec<u64> = self.leased.keys().copied().collect();
+        // The first given is the first to go out again.
+        for lease in leases.into_iter().rev() {
+            let holder = self
+                .leased
+                .get(&lease)
+                .map(|evaluation| &self.entries[evaluation].state);
+            if let Some(State::Leased(claim)) = holder
+                && is_one(&claim.worker)
+            {
+                let worker = claim.worker.clone();
+                self.give_back(lease, &worker);
+            }
+        }
     }
 
     /// Takes back the leases of a worker above a number: the answer that gave them never arrived. How many.
@@ -366,6 +402,10 @@ impl LeaseQueue {
                 self.release(lease, &claim.worker);
                 if let Some(entry) = self.entries.get_mut(&evaluation) {
                     entry.suspect = true;
+                    entry.unstarted += 1;
+                    if entry.unstarted == MAX_UNSTARTED {
+                        expired.never_begun.push(evaluation);
+                    }
                 }
                 self.suspects.push_back(evaluation);
                 expired.unstarted += 1;
@@ -437,7 +477,7 @@ mod tests {
         assert_eq!((failed, expired.unstarted), (vec![(1, 1)], 2));
         assert_eq!(claim(&mut queue, "b", 3, 1, 10), vec![]);
         assert_eq!(claim(&mut queue, "b", 3, 0, 10), vec![(11, 0)]);
-        assert_eq!(claim(&mut queue, "b", 3, 1, 20), vec![]);
+        assert!(queue.holds_suspect("b") && !queue.holds_suspect("a"));
     }
 
     #[test]
@@ -483,6 +523,34 @@ mod tests {
         assert!(queue.give_back(leases[1].0, "a"));
         assert!(!queue.give_back(leases[1].0, "a"));
         assert_eq!(claim(&mut queue, "b", 5, 0, 10), vec![(11, 1)]);
+    }
+
+    #[test]
+    fn an_evaluation_that_nobody_begins_is_told_after_twenty_leases_in_a_row() {
+        let mut queue = queue(1);
+        for begun in [true, false] {
+            for lost in 1..=MAX_UNSTARTED {
+                let lease = claim(&mut queue, "a", 1, 0, u64::from(lost))[0].0;
+                if begun && lost == 10 {
+                    assert!(queue.start(lease, "a", 100));
+                    queue.give_back(lease, "a");
+                } else {
+                    let told = queue.expire(100).never_begun;
+                    assert_eq!(told.len(), usize::from(!begun && lost == 10), "{lost}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn leases_of_some_workers_come_back_at_no_cost() {
+        let mut queue = queue(4);
+        claim(&mut queue, "a", 1, 0, 0);
+        claim(&mut queue, "b", 2, 0, 10);
+        queue.take_back_of(|worker| worker == "b");
+        assert_eq!((queue.leased(), queue.held_by("b")), (1, 0));
+        let again: Vec<u64> = claim(&mut queue, "c", 4, 0, 20).iter().map(|c| c.1).collect();
+        assert_eq!(again, [1, 2, 3], "in their order, and no suspects");
     }
 
     #[test]

@@ -1,4 +1,6 @@
 //! The coordinator's parts together, without HTTP and store.
 
 mod hidden_effect;
+mod leasing;
 mod sbc;
+mod simulation;

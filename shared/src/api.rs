@@ -174,7 +174,7 @@ pub struct CalibrationStatus {
     pub message: Option<String>,
     /// `quasi_static` or `scm`; `None` where this version does not understand the job.
     pub model_kind: Option<String>,
-    /// Version of the equations, and of the effects, once the first lease has pinned it.
+    /// Version of the equations, and of the effects, once the first result has pinned it.
     pub model_version: Option<String>,
     /// Live figures of the sampler; `None` before it starts.
     pub progress: Option<Progress>,

@@ -70,7 +70,7 @@ pub enum Fact {
         /// Wall time spent on the calibration so far `[ms]`.
         busy_ms: u64,
     },
-    /// The first lease pinned the version of the equations, and of the effects.
+    /// The first result pinned the version of the equations, and of the effects.
     ModelVersion {
         /// The calibration.
         calibration: i64,

@@ -9,7 +9,7 @@ use statistics::SubchainEnd;
 
 use super::process::Calibration;
 use super::simulation_result::SimulationResult;
-use crate::lease::{LeaseFailure, MAX_ATTEMPTS};
+use crate::lease::{LeaseFailure, MAX_ATTEMPTS, MAX_UNSTARTED};
 use record::Fact;
 
 /// So many of the evaluations of a round may be given up, rounded to the next whole number: none of fewer than 50 `[%]`.
@@ -57,6 +57,20 @@ impl Calibration {
                 &mut facts,
             );
         }
+        facts
+    }
+
+    /// Pauses because no worker lives long enough to begin an evaluation: neither its fault nor that of a machine is known.
+    pub fn never_begun(&mut self, evaluation: u64) -> Vec<Fact> {
+        if !self.is_open() {
+            return Vec::new();
+        }
+        let theta = self.theta(evaluation).map(<[f64]>::to_vec).unwrap_or_default();
+        let message = format!(
+            "evaluation {evaluation} at theta = {theta:?} was leased {MAX_UNSTARTED} times in a row, and each worker was lost before it reported that it began; resume tries it again"
+        );
+        let mut facts = Vec::new();
+        self.change_state(CalibrationState::Paused, Some(message), &mut facts);
         facts
     }
 

@@ -43,7 +43,7 @@ pub struct Calibration {
     pub state: CalibrationState,
     /// Why it is paused or failed.
     pub message: Option<String>,
-    /// Version of the equations and the effects, pinned by the first lease.
+    /// Version of the equations and the effects, pinned by the first result.
     pub model_version: Option<String>,
     /// Evaluations asked for at present, and who holds them.
     pub queue: LeaseQueue,

@@ -5,6 +5,7 @@
 //! - [`dispatch`]: gives it a thread.
 //! - `control`: the commands of a user on a calibration.
 //! - `lease_numbers`: numbers of leases.
+//! - `share`: how calibrations share what a worker takes.
 //! - `seal`: binds a result to what was asked of whom.
 //! - `progress`: how fast a calibration goes.
 //! - `worker_record`, `metrics`: what is known of workers, and counted.
@@ -15,6 +16,7 @@ mod lease_numbers;
 mod metrics;
 mod progress;
 mod seal;
+mod share;
 mod state;
 mod worker_record;
 

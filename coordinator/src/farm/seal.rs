@@ -69,10 +69,10 @@ fn text(hash: &mut Sha256, text: &str) {
 }
 
 fn half(hash: Sha256) -> String {
-    hash.finalize()[..8]
+    let first = hash.finalize()[..8]
         .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+        .fold(0, |digits, &byte| digits << 8 | u64::from(byte));
+    format!("{first:016x}")
 }
 
 #[cfg(test)]

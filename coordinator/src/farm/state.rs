@@ -1,5 +1,6 @@
 //! The farm: all calibrations in progress and all known workers; which worker evaluates what.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use shared::api::{CalibrationState, CalibrationStatus};
@@ -11,6 +12,7 @@ use super::lease_numbers::LeaseNumbers;
 use super::metrics::{FarmCounters, FarmMetrics};
 use super::progress::{self, Pace};
 use super::seal::{LeaseTerms, proves, seal};
+use super::share::deal;
 use super::worker_record::WorkerRecord;
 use crate::calibration::{Calibration, SimulationResult};
 use record::SealKey;
@@ -75,16 +77,16 @@ impl Farm {
     /// Adds a calibration, with facts of its replay that may have been lost.
     pub fn add(&mut self, calibration: Calibration, key: SealKey, facts: Vec<Fact>, now_ms: u64) {
         self.facts.extend(facts);
-        if !calibration.state.is_final() {
-            let pace = Pace::new(calibration.evaluations, now_ms);
-            let entry = Entry {
-                calibration,
-                key,
-                pace,
-                counted_ms: now_ms,
-            };
-            self.calibrations.insert(entry.calibration.identity.id, entry);
-        }
+        let pace = Pace::new(calibration.evaluations, now_ms);
+        let entry = Entry {
+            calibration,
+            key,
+            pace,
+            counted_ms: now_ms,
+        };
+        self.calibrations.insert(entry.calibration.identity.id, entry);
+        // A replay may have ended it: then its late results are compared from now on.
+        self.account(now_ms);
     }
 
     /// The facts since the last call, in order.
@@ -129,13 +131,15 @@ impl Farm {
                 given: 0,
             });
         record.last_seen_ms = now_ms;
+        // The last message tells: what waits for a worker of its version must not wait for one that has become another.
+        record.model_version.clone_from(&request.model_version);
         // An answer to this worker was lost: it speaks again without having received its last leases.
         let lost = request.received < record.given;
         record.given = record.given.min(request.received);
         let (mut duplicates, mut refused_leases) = (0, Vec::new());
         for result in request.results {
             let lease = result.lease;
-            match self.take_result(&worker, result, now_ms) {
+            match self.take_result(&worker, &request.model_version, result, now_ms) {
                 Taken::New => {}
                 Taken::Duplicate => duplicates += 1,
                 Taken::Refused => refused_leases.push(lease),
@@ -185,8 +189,8 @@ impl Farm {
         }
     }
 
-    /// Takes a result.
-    fn take_result(&mut self, worker: &str, result: WorkResult, now_ms: u64) -> Taken {
+    /// Takes a result from a worker that computes a version of the equations. The first that counts pins its calibration to it.
+    fn take_result(&mut self, worker: &str, version: &str, result: WorkResult, now_ms: u64) -> Taken {
         let (id, lease, evaluation) = (result.calibration, result.lease, result.evaluation);
         let terms = |model_version| LeaseTerms {
             lease,
@@ -213,14 +217,28 @@ impl Farm {
             return Taken::Duplicate;
         };
         let calibration = &mut entry.calibration;
-        let pinned = calibration.model_version.as_deref();
+        let model_version = model_version(calibration, version);
         let question = calibration.question(evaluation);
-        if !pinned.is_some_and(|version| proves(&result.seal, entry.key, terms(version), question)) {
+        if !proves(&result.seal, entry.key, terms(&model_version), question) {
             return Taken::Refused;
         }
+        let pin = calibration
+            .model_version
+            .is_none()
+            .then(|| model_version.into_owned());
         let taken = match SimulationResult::of(result) {
             Ok(computed) => match calibration.complete(evaluation, computed, worker) {
                 Ok((facts, counted)) => {
+                    if let Some(version) = pin.filter(|_| counted) {
+                        let is_other = |name: &str| {
+                            let other = self.workers.get(name);
+                            other.is_none_or(|o| equations_of(&o.model_version) != equations_of(&version))
+                        };
+                        calibration.queue.take_back_of(is_other);
+                        calibration.model_version = Some(version.clone());
+                        let calibration = id;
+                        self.facts.push(Fact::ModelVersion { calibration, version });
+                    }
                     self.facts.extend(facts);
                     entry.pace.count(calibration.evaluations, now_ms);
                     Ok(counted)
@@ -264,7 +282,31 @@ impl Farm {
             .sum()
     }
 
-    /// Leases up to `want` evaluations, oldest calibration first.
+    /// The calibrations that may lease to a worker that holds so many leases, in turn, with the most that each may give: first
+    /// those with suspects where its hands are empty, then the oldest; first its share of each, then what is left.
+    fn turns(&self, want: usize, holds: usize) -> Vec<(i64, usize)> {
+        let waits = |e: &&Entry| e.calibration.is_open() && e.calibration.queue.unleased() > 0;
+        let waiting: Vec<&Calibration> = self
+            .calibrations
+            .values()
+            .filter(waits)
+            .map(|e| &e.calibration)
+            .collect();
+        let queues: Vec<(usize, usize)> = waiting
+            .iter()
+            .map(|c| (c.queue.leased(), c.queue.unleased()))
+            .collect();
+        let ids = waiting.iter().map(|c| c.identity.id);
+        let mut turns: Vec<(i64, usize)> = ids.clone().zip(deal(&queues, want)).collect();
+        if holds == 0 {
+            let suspected = |id: &i64| self.calibrations[id].calibration.queue.suspects() > 0;
+            turns.sort_by_key(|(id, _)| !suspected(id));
+        }
+        turns.extend(ids.map(|id| (id, want)));
+        turns
+    }
+
+    /// Leases up to `want` evaluations.
     fn lease(
         &mut self,
         worker: &str,
@@ -276,30 +318,22 @@ impl Farm {
         let mut refused = None;
         let expires_ms = now_ms + self.lease_ms;
         let mut holds = self.held_by(worker);
-        for (&id, entry) in &mut self.calibrations {
-            let calibration = &mut entry.calibration;
-            if leases.len() >= want || !calibration.is_open() || calibration.queue.unleased() == 0 {
+        let holds_suspect = |e: &Entry| e.calibration.queue.holds_suspect(worker);
+        if want == 0 || (holds > 0 && self.calibrations.values().any(holds_suspect)) {
+            return (leases, refused);
+        }
+        for (id, most) in self.turns(want, holds) {
+            let Some(entry) = self.calibrations.get_mut(&id) else {
                 continue;
-            }
-            match &calibration.model_version {
-                // The files of effects travel with the variant: a worker need not know them.
-                Some(pinned) if equations_of(pinned) != equations_of(version) => {
-                    let pinned = equations_of(pinned);
-                    refused = Some(format!(
-                        "calibration {id} was begun with model version {pinned}, worker {worker} computes {version}"
-                    ));
-                    continue;
-                }
-                Some(_) => {}
-                None => {
-                    let variant = &calibration.spec.fit_variant;
-                    let version = variant.model_version(equations_of(version));
-                    calibration.model_version = Some(version.clone());
-                    self.facts.push(Fact::ModelVersion {
-                        calibration: id,
-                        version,
-                    });
-                }
+            };
+            let calibration = &mut entry.calibration;
+            // The files of effects travel with the variant: a worker need not know them.
+            let pinned = calibration.model_version.as_deref().map(equations_of);
+            if let Some(pinned) = pinned.filter(|pinned| *pinned != equations_of(version)) {
+                refused = Some(format!(
+                    "calibration {id} was begun with model version {pinned}, worker {worker} computes {version}"
+                ));
+                continue;
             }
             let lease_numbers = &mut self.lease_numbers;
             let next_lease = || lease_numbers.next_number();
@@ -310,7 +344,7 @@ impl Farm {
                     is_able && !failed.contains(name)
                 })
             };
-            let wanted = want - leases.len();
+            let wanted = most.min(want - leases.len());
             let claims = calibration
                 .queue
                 .claim(worker, wanted, holds, expires_ms, has_other, next_lease);
@@ -319,6 +353,7 @@ impl Farm {
             if !claims.is_empty() && calibration.state == CalibrationState::Queued {
                 calibration.change_state(CalibrationState::Running, None, &mut self.facts);
             }
+            let is_alone = claims.iter().any(|claim| claim.suspect);
             for claim in claims {
                 let (lease, evaluation) = (claim.lease, claim.evaluation);
                 let question = calibration
@@ -329,7 +364,7 @@ impl Farm {
                     worker,
                     calibration: id,
                     evaluation,
-                    model_version: calibration.model_version.as_deref().unwrap_or_default(),
+                    model_version: &model_version(calibration, version),
                 };
                 leases.push(Lease {
                     lease,
@@ -341,6 +376,9 @@ impl Farm {
                     announce: claim.suspect,
                     subchain: question.subchain,
                 });
+            }
+            if is_alone {
+                break;
             }
         }
         if let (Some(record), Some(last)) = (self.workers.get_mut(worker), leases.last()) {
@@ -362,6 +400,9 @@ impl Farm {
                 let message = format!("the lease expired after {} ms without renewal", self.lease_ms);
                 self.facts
                     .extend(entry.calibration.lease_failed(&failure, &message));
+            }
+            for evaluation in expired.never_begun {
+                self.facts.extend(entry.calibration.never_begun(evaluation));
             }
         }
         self.workers
@@ -464,5 +505,13 @@ impl Farm {
             .values()
             .find_map(|e| e.calibration.variant(hash))
             .cloned()
+    }
+}
+
+/// The version that a calibration is pinned to; before its first result, what it would be pinned to by a worker's.
+fn model_version<'a>(calibration: &'a Calibration, version: &str) -> Cow<'a, str> {
+    match &calibration.model_version {
+        Some(pinned) => Cow::Borrowed(pinned),
+        None => Cow::Owned(calibration.spec.fit_variant.model_version(equations_of(version))),
     }
 }

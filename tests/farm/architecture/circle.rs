@@ -52,6 +52,7 @@ fn no_files_import_each_other() {
     let benches = [
         "coordinator/benches/hidden_effect",
         "coordinator/benches/sbc",
+        "coordinator/benches/simulation",
         "tests/harness",
     ]
     .map(str::to_owned);

@@ -1,7 +1,7 @@
 //! Who gets a lease: protocol, model version, patience.
 
-use farm_tests::fake_worker::{FakeWorker, PROTOCOL};
-use farm_tests::job::Job;
+use farm_tests::fake_worker::{FakeWorker, PROTOCOL, evaluated};
+use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::service::Service;
 use farm_tests::wait::until;
 use serde_json::json;
@@ -28,8 +28,16 @@ fn another_protocol_is_refused_with_426() {
 fn a_worker_of_another_model_version_gets_no_lease_and_is_told_why() {
     let mut service = Service::start(&[]);
     let id = service.submit(&Job::small());
+    let wrong = FakeWorker::new(&service.client, "wrong").computing("no-such-version");
+    assert_eq!(wrong.take(1).len(), 1);
     let first = FakeWorker::new(&service.client, "first");
-    assert_eq!(first.take(1).len(), 1);
+    let leases = first.take(1);
+    assert_eq!(
+        service.status(id)["model_version"],
+        json!(null),
+        "a lease pins nothing"
+    );
+    first.answer(&leases, |l| evaluated(l, FIT_RUNS));
     assert_eq!(service.status(id)["model_version"], "fake-1");
     let other = FakeWorker::new(&service.client, "other").computing("fake-2");
     for restarted in [false, true] {

@@ -1,0 +1,42 @@
+//! A lease that was given, and the honest answer to it.
+
+use shared::exchange::{Lease, WorkResult};
+use shared::model::equations_of;
+
+use super::case::{Answered, Case};
+use super::ledger::Table;
+
+/// A lease that was given.
+#[derive(Debug, Clone)]
+pub(crate) struct Issued<'a> {
+    pub(crate) worker: String,
+    pub(crate) lease: Lease,
+    pub(super) case: &'a Case,
+    pub(crate) answered: &'a Answered,
+    /// Whether the evaluation ends every worker.
+    pub(crate) poison: bool,
+    /// The version of the equations that its worker computes.
+    pub(super) version: String,
+    /// Since so many restored backups.
+    pub(super) history: u32,
+}
+
+impl Issued<'_> {
+    /// Whether it is a lease of this calibration, not of a lost one of the same number, and of the version that it is pinned to.
+    pub(super) fn is_of(&self, table: &Table) -> bool {
+        let pinned = table.model_version.as_deref().map(equations_of);
+        std::ptr::eq(self.case, table.case) && pinned.is_none_or(|pinned| pinned == self.version)
+    }
+
+    /// The honest answer to it.
+    pub(crate) fn answer(&self) -> WorkResult {
+        WorkResult {
+            lease: self.lease.lease,
+            calibration: self.lease.calibration,
+            evaluation: self.lease.evaluation,
+            seal: self.lease.seal.clone(),
+            end: self.answered.end.clone(),
+            outcome: self.answered.outcome.clone(),
+        }
+    }
+}

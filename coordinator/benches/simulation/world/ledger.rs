@@ -1,0 +1,249 @@
+//! The simulated store: facts in order, of which a prefix is on disk, and the tables that they make.
+//!
+//! Tables follow from facts as in the store's `facts.rs` and `recovery.rs`; a crash cuts the facts behind any that is on disk,
+//! and a backup that is put back cuts them at any place before.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use record::{EvaluationRow, Fact, Kept, SealKey, Stored, StoredEvaluation};
+use shared::api::CalibrationState;
+
+use super::case::{Case, CaseResult, posterior_bits};
+use super::promise::{Broken, Promise, demand};
+
+/// What is stored.
+#[derive(Debug)]
+pub(crate) enum Entry<'a> {
+    /// A user's new calibration.
+    Submitted { id: i64, case: &'a Case, key: SealKey },
+    /// A fact of the farm.
+    Fact(Fact),
+}
+
+/// Everything stored of one calibration.
+#[derive(Debug)]
+pub(crate) struct Table<'a> {
+    pub(crate) case: &'a Case,
+    pub(crate) key: SealKey,
+    pub(crate) state: CalibrationState,
+    pub(crate) message: Option<String>,
+    pub(crate) model_version: Option<String>,
+    pub(crate) busy_ms: u64,
+    /// The rows, each with its place among the facts.
+    pub(crate) rows: BTreeMap<u64, (usize, EvaluationRow)>,
+    /// The workers of failed attempts since a user granted new ones, by evaluation.
+    pub(crate) failed: BTreeMap<u64, Vec<String>>,
+    pub(crate) disputes: BTreeSet<u64>,
+    /// How many stages are stored.
+    pub(crate) stages: usize,
+    pub(crate) result: Option<CaseResult>,
+}
+
+/// Facts in order and what they make.
+#[derive(Debug, Default)]
+pub(crate) struct Ledger<'a> {
+    entries: Vec<Entry<'a>>,
+    /// So many of them are on disk.
+    durable: usize,
+    tables: BTreeMap<i64, Table<'a>>,
+}
+
+impl<'a> Table<'a> {
+    fn new(case: &'a Case, key: SealKey) -> Self {
+        Table {
+            case,
+            key,
+            state: CalibrationState::Queued,
+            message: None,
+            model_version: None,
+            busy_ms: 0,
+            rows: BTreeMap::new(),
+            failed: BTreeMap::new(),
+            disputes: BTreeSet::new(),
+            stages: 0,
+            result: None,
+        }
+    }
+
+    /// Applies a fact that stands at a place.
+    fn apply(&mut self, fact: &Fact, place: usize) {
+        match fact {
+            Fact::Evaluated { row, .. } => {
+                self.rows
+                    .entry(row.evaluation)
+                    .or_insert_with(|| (place, row.clone()));
+            }
+            Fact::Duplicate {
+                evaluation,
+                fingerprint,
+                ..
+            } => {
+                let differs = |(_, row): &&(usize, EvaluationRow)| {
+                    row.fingerprint != *fingerprint && !row.worker.is_empty()
+                };
+                if self.rows.get(evaluation).filter(differs).is_some() {
+                    self.disputes.insert(*evaluation);
+                }
+            }
+            Fact::Stage { record, busy_ms, .. } => {
+                self.stages = self.stages.max(record.stage);
+                self.busy_ms = *busy_ms;
+            }
+            Fact::Posterior { posterior, .. } => {
+                self.result = Some(CaseResult::Posterior(posterior_bits(posterior)));
+            }
+            Fact::Estimate { estimate, .. } => {
+                self.result = Some(CaseResult::Estimate(format!("{estimate:?}")));
+            }
+            Fact::Discovery { .. } => {}
+            Fact::State {
+                state,
+                message,
+                busy_ms,
+                ..
+            } => {
+                self.state = *state;
+                self.message.clone_from(message);
+                self.busy_ms = *busy_ms;
+            }
+            Fact::ModelVersion { version, .. } => self.model_version = Some(version.clone()),
+            Fact::Fault {
+                evaluation,
+                attempt: 0,
+                ..
+            } => {
+                self.failed.remove(evaluation);
+            }
+            Fact::Fault {
+                evaluation, worker, ..
+            } => self.failed.entry(*evaluation).or_default().push(worker.clone()),
+        }
+    }
+
+    /// Whether it has all its rows, its stages and its result, as a finished calibration must.
+    pub(crate) fn is_complete(&self, id: i64) -> Result<(), Broken> {
+        let case = self.case;
+        let rows = self.rows.len() == case.answers.len();
+        let is_whole = rows && self.stages == case.stages.len() && self.result.as_ref() == Some(&case.result);
+        demand(is_whole, Promise::Complete, || {
+            format!(
+                "calibration {id} is finished with {} of {} rows and {} of {} stages",
+                self.rows.len(),
+                case.answers.len(),
+                self.stages,
+                case.stages.len()
+            )
+        })
+    }
+
+    /// What a restart reads back.
+    pub(crate) fn stored(&self) -> Stored {
+        let told_values = self.case.spec.algorithm.is_told_values();
+        let evaluation = |row: &EvaluationRow| StoredEvaluation {
+            theta: row.theta.clone(),
+            log_likelihood: row.log_likelihood,
+            rejected: matches!(row.kept, Kept::Rejected(_)),
+            given_up: row.worker.is_empty(),
+            fitted: match &row.kept {
+                Kept::Fitted(values) if told_values => Some(values.clone()),
+                Kept::Scored if told_values => Some(Vec::new()),
+                _ => None,
+            },
+            coarse: row.coarse.clone().filter(|_| told_values),
+            end: row.end.clone(),
+        };
+        let evaluations = self.rows.iter();
+        Stored {
+            state: Some(self.state),
+            message: self.message.clone(),
+            model_version: self.model_version.clone(),
+            busy_ms: self.busy_ms,
+            evaluations: evaluations
+                .map(|(&number, (_, row))| (number, evaluation(row)))
+                .collect(),
+            failed: self.failed.clone(),
+        }
+    }
+}
+
+/// The calibration that a fact is about.
+pub(crate) fn calibration_of(fact: &Fact) -> i64 {
+    match fact {
+        Fact::Evaluated { calibration, .. }
+        | Fact::Duplicate { calibration, .. }
+        | Fact::Stage { calibration, .. }
+        | Fact::Posterior { calibration, .. }
+        | Fact::Estimate { calibration, .. }
+        | Fact::Discovery { calibration, .. }
+        | Fact::State { calibration, .. }
+        | Fact::ModelVersion { calibration, .. }
+        | Fact::Fault { calibration, .. } => *calibration,
+    }
+}
+
+impl<'a> Ledger<'a> {
+    /// Takes an entry, not yet on disk.
+    pub(crate) fn push(&mut self, entry: Entry<'a>) {
+        self.entries.push(entry);
+        self.apply(self.entries.len() - 1);
+    }
+
+    fn apply(&mut self, place: usize) {
+        match &self.entries[place] {
+            Entry::Submitted { id, case, key } => {
+                self.tables.insert(*id, Table::new(case, *key));
+            }
+            Entry::Fact(fact) => {
+                if let Some(table) = self.tables.get_mut(&calibration_of(fact)) {
+                    table.apply(fact, place);
+                }
+            }
+        }
+    }
+
+    /// How many entries there are.
+    pub(crate) fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// How many of them are on disk.
+    pub(crate) fn durable(&self) -> usize {
+        self.durable
+    }
+
+    /// Brings more entries to disk.
+    pub(crate) fn commit(&mut self, entries: usize) {
+        self.durable = self.durable.saturating_add(entries).min(self.entries.len());
+    }
+
+    /// Cuts everything behind a place: what a crash, or a backup that is put back, leaves.
+    pub(crate) fn cut(&mut self, place: usize) {
+        self.entries.truncate(place);
+        self.durable = self.entries.len();
+        self.tables.clear();
+        for place in 0..self.entries.len() {
+            self.apply(place);
+        }
+    }
+
+    /// Loses one entry and brings the others to disk: what no store may do.
+    pub(crate) fn lose(&mut self, place: usize) {
+        self.entries.remove(place);
+        self.durable = self.entries.len();
+    }
+
+    /// What all facts make, on disk or not, by calibration.
+    pub(crate) fn tables(&self) -> &BTreeMap<i64, Table<'a>> {
+        &self.tables
+    }
+
+    /// What all facts make of a calibration.
+    pub(crate) fn table(&self, id: i64) -> Option<&Table<'a>> {
+        self.tables.get(&id)
+    }
+
+    /// The row of an evaluation.
+    pub(crate) fn row(&self, id: i64, evaluation: u64) -> Option<&EvaluationRow> {
+        self.tables.get(&id)?.rows.get(&evaluation).map(|(_, row)| row)
+    }
+}

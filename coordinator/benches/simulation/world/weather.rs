@@ -1,0 +1,81 @@
+//! The weather of a schedule: how often what goes wrong.
+
+use statistics::rng::Stream;
+
+/// Probabilities, each at one occasion.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Weather {
+    /// A message is lost.
+    pub(crate) loss: f64,
+    /// A request arrives twice.
+    pub(crate) twice: f64,
+    /// A message is held up for longer than a lease.
+    pub(crate) delay: f64,
+    /// The coordinator dies.
+    pub(crate) crash: f64,
+    /// It comes back with an older file.
+    pub(crate) restore: f64,
+    /// A worker dies.
+    pub(crate) death: f64,
+    /// A worker stands still for longer than a lease.
+    pub(crate) stop: f64,
+    /// An evaluation takes another turn.
+    pub(crate) slow: f64,
+    /// A machine fails at an evaluation.
+    pub(crate) fault: f64,
+    /// A lease is returned.
+    pub(crate) returned: f64,
+    /// A worker renews nothing.
+    pub(crate) unrenewed: f64,
+    /// The clock jumps ahead.
+    pub(crate) jump: f64,
+    /// A user pauses or resumes.
+    pub(crate) user: f64,
+    /// A user cancels.
+    pub(crate) cancel: f64,
+    /// Somebody sends what is not theirs to send.
+    pub(crate) forged: f64,
+    /// A worker answers again, and otherwise.
+    pub(crate) lie: f64,
+}
+
+/// Whether what has a probability happens.
+pub(crate) fn chance(stream: &mut Stream, probability: f64) -> bool {
+    probability > 0.0 && stream.uniform() < probability
+}
+
+impl Weather {
+    /// Draws a weather: each fault is absent in half of the schedules, else anything from rare to frequent.
+    pub(crate) fn draw(stream: &mut Stream) -> Weather {
+        let mut often = |most: f64| {
+            if stream.uniform() < 0.5 {
+                0.0
+            } else {
+                most * libm::exp(-3.0 * stream.uniform())
+            }
+        };
+        let mut weather = Weather {
+            loss: often(0.4),
+            twice: often(0.3),
+            delay: often(0.1),
+            crash: often(0.4),
+            restore: often(1.0),
+            death: often(0.2),
+            stop: often(0.2),
+            slow: often(0.6),
+            fault: often(0.05),
+            returned: often(0.1),
+            unrenewed: often(0.5),
+            jump: often(0.1),
+            user: often(0.2),
+            cancel: often(0.01),
+            forged: often(0.4),
+            lie: often(0.3),
+        };
+        // After a restored backup a lie may be the first answer, which nothing tells from the truth.
+        if weather.lie > 0.0 {
+            weather.restore = 0.0;
+        }
+        weather
+    }
+}
