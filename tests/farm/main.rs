@@ -25,6 +25,7 @@ mod rig;
 mod search;
 mod spatial;
 mod square_root;
+mod store;
 mod stored_results;
 mod study;
 mod summary_contract;

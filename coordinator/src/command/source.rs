@@ -37,7 +37,7 @@ impl CalibrationSource {
             CalibrationSource::Service(client) => client.get("/v1/calibrations").await,
             CalibrationSource::Folder(reader) => {
                 let rows = reader.calibrations().await?;
-                Ok(rows.iter().map(stored_status).collect())
+                Ok(rows.iter().map(|(id, row)| stored_status(*id, row)).collect())
             }
         }
     }
@@ -57,7 +57,9 @@ impl CalibrationSource {
     pub(super) async fn status(&self, id: i64) -> anyhow::Result<CalibrationStatus> {
         match self {
             CalibrationSource::Service(client) => client.get(&format!("/v1/calibrations/{id}")).await,
-            CalibrationSource::Folder(reader) => Ok(stored_status(&calibration_row(reader, id).await?)),
+            CalibrationSource::Folder(reader) => {
+                Ok(stored_status(id, &Ok(calibration_row(reader, id).await?)))
+            }
         }
     }
 

@@ -79,14 +79,21 @@ impl From<ServiceError> for HttpError {
         let kind = match &error {
             ServiceError::File(_) | ServiceError::Begin(_) => ErrorKind::InvalidFile,
             ServiceError::NotFound { .. } => ErrorKind::NotFound,
-            ServiceError::Control(_) | ServiceError::Effects(_) | ServiceError::Search(_) => {
-                ErrorKind::Conflict
-            }
+            ServiceError::Control(_)
+            | ServiceError::Effects(_)
+            | ServiceError::Search(_)
+            | ServiceError::LeftAlone { .. } => ErrorKind::Conflict,
             ServiceError::Busy(_) => ErrorKind::Busy,
-            ServiceError::Store(_) | ServiceError::Thread(_) | ServiceError::Stopped(_) => {
-                ErrorKind::Internal
-            }
+            ServiceError::Store(_)
+            | ServiceError::Replay(_)
+            | ServiceError::Thread(_)
+            | ServiceError::Stopped(_) => ErrorKind::Internal,
         };
+        if let ServiceError::Store(StoreError::Corrupt(_)) = &error {
+            // Which row is bad is what its owner needs to know.
+            tracing::error!(%error, "a row cannot be read");
+            return HttpError::new(kind, error.to_string());
+        }
         if kind == ErrorKind::Internal {
             // The cause stays in the log; a client cannot mend it.
             tracing::error!(%error, "internal error");

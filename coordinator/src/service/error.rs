@@ -2,7 +2,7 @@
 
 use shared::file::FileError;
 
-use crate::calibration::BeginError;
+use crate::calibration::{BeginError, ReplayError};
 use crate::farm::ControlError;
 use crate::farm::dispatch::Stopped;
 use crate::store::StoreError;
@@ -18,6 +18,17 @@ pub enum ServiceError {
     /// A calibration cannot begin.
     #[error(transparent)]
     Begin(#[from] BeginError),
+    /// What is stored of a calibration is not what this version computes.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+    /// A calibration could not be taken up at the start.
+    #[error("calibration {id} cannot be resumed: {reason}")]
+    LeftAlone {
+        /// The calibration.
+        id: i64,
+        /// Why.
+        reason: String,
+    },
     /// The effects are not those that the calibration was computed with.
     #[error(transparent)]
     Effects(#[from] EffectsChanged),

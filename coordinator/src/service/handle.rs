@@ -15,7 +15,7 @@ use super::study_results;
 use crate::calibration::Calibration;
 use crate::farm::dispatch::Dispatcher;
 use crate::farm::{Control, ControlError, Farm};
-use crate::store::Store;
+use crate::store::{Store, StoreError};
 use job::Spec;
 use record::CalibrationRow;
 use result::{Diagnostics, StudyFile};
@@ -59,7 +59,7 @@ impl Service {
         self.store.close().await;
     }
 
-    /// Why this version cannot take up a stored calibration, if it cannot.
+    /// Why a stored calibration could not be taken up, if it could not.
     pub fn left_alone(&self, id: i64) -> Option<&str> {
         self.left_alone.get(&id).map(String::as_str)
     }
@@ -127,14 +127,16 @@ impl Service {
         if let Some(status) = self.dispatcher.status(id).await? {
             return Ok(status);
         }
-        let row = self.calibration_row(id).await?;
-        Ok(self.stored_status(&row))
+        let row = self.store.reader().calibration(id).await.transpose();
+        let row = row.ok_or_else(|| ServiceError::not_found("calibration", id))?;
+        Ok(self.stored_status(id, &row))
     }
 
-    fn stored_status(&self, row: &CalibrationRow) -> CalibrationStatus {
-        let mut status = stored_calibration::stored_status(row);
-        if let Some(reason) = self.left_alone(row.id) {
-            status.message = Some(format!("cannot be resumed by this version: {reason}"));
+    fn stored_status(&self, id: i64, row: &Result<CalibrationRow, StoreError>) -> CalibrationStatus {
+        let mut status = stored_calibration::stored_status(id, row);
+        if let Some(reason) = self.left_alone(id) {
+            status.state = CalibrationState::Paused;
+            status.message = Some(format!("cannot be resumed: {reason}"));
         }
         status
     }
@@ -146,9 +148,11 @@ impl Service {
     pub async fn list(&self) -> Result<Vec<CalibrationStatus>, ServiceError> {
         let mut in_hand = self.dispatcher.statuses().await?;
         let rows = self.store.reader().calibrations().await?;
-        let status =
-            |row: &CalibrationRow| in_hand.remove(&row.id).unwrap_or_else(|| self.stored_status(row));
-        Ok(rows.iter().map(status).collect())
+        let mut status = |(id, row): &(i64, Result<CalibrationRow, StoreError>)| {
+            let in_hand = in_hand.remove(id);
+            in_hand.unwrap_or_else(|| self.stored_status(*id, row))
+        };
+        Ok(rows.iter().map(&mut status).collect())
     }
 
     /// Executes a user's command; the answer is durable.
@@ -162,6 +166,10 @@ impl Service {
                 Ok(state)
             }
             Err(ControlError::NotInProgress(_)) => {
+                if let Some(reason) = self.left_alone(id) {
+                    let reason = reason.to_owned();
+                    return Err(ServiceError::LeftAlone { id, reason });
+                }
                 let state = self.calibration_row(id).await?.state;
                 let verb = match control {
                     Control::Cancel => "cancelled",

@@ -41,6 +41,20 @@ pub enum StoreError {
     Missing(String),
 }
 
+impl StoreError {
+    /// The same of a row: `place` says which.
+    pub(super) fn within(self, place: &str) -> StoreError {
+        match self {
+            StoreError::Corrupt(what) => StoreError::Corrupt(format!("{place}: {what}")),
+            StoreError::Sqlite {
+                source: source @ sqlx::Error::ColumnDecode { .. },
+                ..
+            } => StoreError::Corrupt(format!("{place}: {source}")),
+            other => other,
+        }
+    }
+}
+
 impl From<sqlx::Error> for StoreError {
     fn from(source: sqlx::Error) -> Self {
         StoreError::Sqlite {

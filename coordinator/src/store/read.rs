@@ -58,16 +58,17 @@ impl Reader {
         row.as_ref().map(calibration_row).transpose()
     }
 
-    /// Every calibration, oldest first.
+    /// Every calibration by its id, oldest first; in place of one whose row cannot be read, why.
     ///
     /// # Errors
-    /// [`StoreError`].
-    pub async fn calibrations(&self) -> Result<Vec<CalibrationRow>, StoreError> {
+    /// [`StoreError`] where none can be read.
+    pub async fn calibrations(&self) -> Result<Vec<(i64, Result<CalibrationRow, StoreError>)>, StoreError> {
         let query = format!("{CALIBRATION} ORDER BY c.id");
         let rows = sqlx::query(sqlx::AssertSqlSafe(query))
             .fetch_all(&self.pool)
             .await?;
-        rows.iter().map(calibration_row).collect()
+        let row = |row: &SqliteRow| Ok((row.try_get("id")?, calibration_row(row)));
+        rows.iter().map(row).collect()
     }
 
     /// The calibrations of a study, oldest first.
@@ -351,25 +352,34 @@ fn file_map(json: &str) -> Result<BTreeMap<String, String>, StoreError> {
     serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("files: {e}")))
 }
 
+/// A calibration; what cannot be read is named with its id.
 fn calibration_row(row: &SqliteRow) -> Result<CalibrationRow, StoreError> {
-    let state: String = row.get("state");
+    let id: i64 = row.try_get("id")?;
+    columns(id, row).map_err(|error| error.within(&format!("calibration {id}")))
+}
+
+fn columns(id: i64, row: &SqliteRow) -> Result<CalibrationRow, StoreError> {
+    let state: &str = row.try_get("state")?;
+    let unsigned =
+        |column| Ok::<_, StoreError>(row.try_get::<Option<i64>, _>(column)?.map(i64::unsigned_abs));
     Ok(CalibrationRow {
-        id: row.get("id"),
-        study: row.get("study"),
-        experiment: row.get("on_experiment"),
-        name: row.get("name"),
+        id,
+        study: row.try_get("study")?,
+        experiment: row.try_get("on_experiment")?,
+        name: row.try_get("name")?,
         job: FileSet {
-            toml: row.get("toml"),
-            files: file_map(row.get("files"))?,
+            toml: row.try_get("toml")?,
+            files: file_map(row.try_get("files")?)?,
         },
-        state: CalibrationState::from_name(&state).ok_or(StoreError::Corrupt(format!("state {state}")))?,
-        message: row.get("message"),
-        model_version: row.get("model_version"),
-        busy_ms: row.get::<i64, _>("busy_ms").unsigned_abs(),
-        log_evidence: row.get("log_evidence"),
-        log_evidence_se: row.get("log_evidence_se"),
-        equilibrated: row.get("equilibrated"),
-        evaluations: row.get::<Option<i64>, _>("evaluations").map(i64::unsigned_abs),
-        rejected: row.get::<Option<i64>, _>("rejected").map(i64::unsigned_abs),
+        state: CalibrationState::from_name(state)
+            .ok_or_else(|| StoreError::Corrupt(format!("state {state}")))?,
+        message: row.try_get("message")?,
+        model_version: row.try_get("model_version")?,
+        busy_ms: unsigned("busy_ms")?.unwrap_or_default(),
+        log_evidence: row.try_get("log_evidence")?,
+        log_evidence_se: row.try_get("log_evidence_se")?,
+        equilibrated: row.try_get("equilibrated")?,
+        evaluations: unsigned("evaluations")?,
+        rejected: unsigned("rejected")?,
     })
 }

@@ -1,0 +1,3 @@
+//! The store under fire.
+
+mod bad_row;
