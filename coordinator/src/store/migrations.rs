@@ -75,6 +75,9 @@ const FILES: [(i64, &str, &str); 14] = [
     (14, "tokens", include_str!("../../../migrations/0014_tokens.sql")),
 ];
 
+/// The version of the tables that this program writes.
+pub(super) const VERSION: i64 = FILES[FILES.len() - 1].0;
+
 /// Brings the tables of a store up to date.
 pub(super) fn migrator() -> Migrator {
     let migration = |(version, name, sql): (i64, &'static str, &'static str)| {

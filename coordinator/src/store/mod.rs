@@ -4,6 +4,7 @@
 //! in `migrations/README.md`.
 
 mod blob;
+mod damage;
 mod error;
 mod facts;
 mod file;
@@ -46,10 +47,7 @@ impl Store {
     /// # Errors
     /// [`StoreError`] with the file and SQLite's reason; [`StoreError::InUse`] where another coordinator holds it.
     pub async fn open(path: &str, now_ms: i64) -> Result<Store, StoreError> {
-        let wrap = |source| StoreError::Sqlite {
-            path: path.into(),
-            source,
-        };
+        let wrap = |source| StoreError::of(path, source);
         examine(path)?;
         // The writer holds its lock file for as long as it lives; a second coordinator is turned away at once.
         let lock = lock(path)?;
@@ -59,13 +57,9 @@ impl Store {
             .synchronous(SqliteSynchronous::Full);
         let mut connection = SqliteConnection::connect_with(&options).await.map_err(wrap)?;
         recognise(&mut connection, path).await?;
-        migrations::migrator()
-            .run(&mut connection)
-            .await
-            .map_err(|source| StoreError::Migrate {
-                path: path.into(),
-                source,
-            })?;
+        damage::check(&mut connection, path).await?;
+        let migrated = migrations::migrator().run(&mut connection).await;
+        migrated.map_err(|source| StoreError::of_migration(path, source))?;
         let epoch = begin_epoch(&mut connection, now_ms).await.map_err(wrap)?;
         let readers = pool(options).await.map_err(wrap)?;
         let writer = Writer::start(connection, lock);

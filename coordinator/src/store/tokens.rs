@@ -55,10 +55,7 @@ impl TokenTable {
     /// # Errors
     /// [`StoreError`].
     pub async fn open(path: &str) -> Result<TokenTable, StoreError> {
-        let wrap = |source| StoreError::Sqlite {
-            path: path.into(),
-            source,
-        };
+        let wrap = |source| StoreError::of(path, source);
         examine(path)?;
         let (lock, is_free) = match lock(path) {
             Ok(lock) => (lock, true),
@@ -73,10 +70,7 @@ impl TokenTable {
         recognise(&mut connection, path).await?;
         if is_free {
             let migrated = migrations::migrator().run(&mut connection).await;
-            migrated.map_err(|source| StoreError::Migrate {
-                path: path.into(),
-                source,
-            })?;
+            migrated.map_err(|source| StoreError::of_migration(path, source))?;
         }
         Ok(TokenTable {
             connection,
@@ -86,10 +80,7 @@ impl TokenTable {
     }
 
     fn failed(&self, source: sqlx::Error) -> StoreError {
-        StoreError::Sqlite {
-            path: self.path.clone(),
-            source,
-        }
+        StoreError::of(&self.path, source)
     }
 
     /// Every token that was ever made, oldest first.
@@ -139,6 +130,6 @@ impl TokenTable {
     pub async fn close(self) -> Result<(), StoreError> {
         let TokenTable { connection, path, .. } = self;
         let closed = connection.close().await;
-        closed.map_err(|source| StoreError::Sqlite { path, source })
+        closed.map_err(|source| StoreError::of(&path, source))
     }
 }

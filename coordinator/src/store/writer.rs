@@ -12,7 +12,7 @@ use sqlx::{Connection, QueryBuilder, Sqlite, SqliteConnection};
 use tokio::sync::{Notify, mpsc, oneshot, watch};
 
 use super::blob;
-use super::error::StoreError;
+use super::error::{StoreError, is_locked};
 use super::health::StoreHealth;
 use super::json::json;
 use super::results::StudyResults;
@@ -199,10 +199,23 @@ impl Writer {
         while committed.changed().await.is_ok() {}
     }
 
-    /// Stores what was sent before, then ends the task.
+    /// Stores what was sent before, then ends the task. What a lock of another program keeps from being stored is given up:
+    /// nobody has been told that it is.
     pub async fn close(&self) {
-        if self.sender.send(Write::Close).is_ok() {
-            self.waiting.while_urgent(self.stopped()).await;
+        if self.sender.send(Write::Close).is_err() {
+            return;
+        }
+        let locked = async {
+            while !self.health.is_locked.load(Ordering::Relaxed) {
+                tokio::time::sleep(LINGER).await;
+            }
+        };
+        tokio::select! {
+            () = self.waiting.while_urgent(self.stopped()) => {}
+            () = locked => {
+                let facts = self.backlog();
+                tracing::error!(facts, "another program holds a lock on the store: what it has not taken is given up");
+            }
         }
     }
 
@@ -293,7 +306,14 @@ async fn run(
         }
         closing = group.iter().any(|w| matches!(w, Write::Close));
         let began = std::time::Instant::now();
-        let mut transaction = connection.begin_with("BEGIN IMMEDIATE").await?;
+        let mut transaction = loop {
+            match connection.begin_with("BEGIN IMMEDIATE").await {
+                Ok(transaction) => break transaction,
+                Err(error) if is_locked(&error) => health.wait_for_lock(began.elapsed()),
+                Err(error) => return Err(error),
+            }
+        };
+        health.is_locked.store(false, Ordering::Relaxed);
         let mut replies = Replies::default();
         let facts = write_group(&mut transaction, group.drain(..), &mut replies, health).await?;
         transaction.commit().await?;
