@@ -27,7 +27,7 @@ pub enum CoordinatorCommand {
     /// Submit a job to a service.
     Submit(SubmitArguments),
     /// List calibrations.
-    List(SourceArguments),
+    List(ListArguments),
     /// Show the status of a calibration.
     Status(TargetArguments),
     /// Cancel a calibration; it cannot be resumed.
@@ -52,6 +52,14 @@ pub enum CoordinatorCommand {
     AddRuns(AddRunsArguments),
     /// List the effects of the catalogue, or show one: its file and its influence on the measured quantities.
     Effects(EffectsArguments),
+    /// Take a study out of the lists of a service; its results stay.
+    Archive(StudyArguments),
+    /// Take an archived study back into the lists.
+    Restore(StudyArguments),
+    /// Delete a study of a service, with its calibrations and results, for good.
+    Delete(StudyArguments),
+    /// Copy a store, also one that a service is using, to a new file.
+    Backup(BackupArguments),
     /// Add, list and revoke the tokens that a service asks for.
     #[command(subcommand)]
     Token(TokenCommand),
@@ -140,9 +148,26 @@ pub struct ServeArguments {
     /// Duration of a lease without renewal `[ms]`.
     #[arg(long, env = "GROUSER_LEASE_MS", default_value_t = crate::service::LEASE_MS)]
     pub lease_ms: u64,
+    /// Shows what the store holds and changes nothing: takes no jobs and no results, and starts no threads. Works beside a
+    /// service that uses the store, and where nothing can be written.
+    #[arg(long)]
+    pub read_only: bool,
+    /// Deletes studies so many days after they were archived; by default, archived studies are kept.
+    #[arg(long, env = "GROUSER_KEEP_DAYS", value_name = "DAYS", value_parser = clap::value_parser!(u32).range(1..=36_500))]
+    pub keep_days: Option<u32>,
     /// Who may use the address.
     #[command(flatten)]
     pub exposure: ExposureArguments,
+}
+
+/// Copy a store.
+#[derive(Debug, Args)]
+pub struct BackupArguments {
+    /// The new file.
+    pub file: PathBuf,
+    /// What is copied.
+    #[command(flatten)]
+    pub store: StoreArguments,
 }
 
 /// Add, list and revoke tokens; a running service follows within a second.
@@ -239,6 +264,30 @@ impl SourceArguments {
             .or_else(environment)
             .unwrap_or_else(|| "http://127.0.0.1:7070".into())
     }
+}
+
+/// Which calibrations are listed.
+#[derive(Debug, Args)]
+pub struct ListArguments {
+    /// Lists those of archived studies too.
+    #[arg(long)]
+    pub archived: bool,
+    /// Where they are stored.
+    #[command(flatten)]
+    pub source: SourceArguments,
+}
+
+/// One study of a service.
+#[derive(Debug, Args)]
+pub struct StudyArguments {
+    /// Number of the study.
+    pub study: i64,
+    /// URL of the service.
+    #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
+    pub url: String,
+    /// The token for it.
+    #[command(flatten)]
+    pub token: ClientTokenArguments,
 }
 
 /// One calibration.

@@ -98,6 +98,24 @@ pub struct RunsAdded {
     pub experiment: i64,
 }
 
+/// Answer to `POST /v1/studies/ID/archive` and `/restore`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct StudyArchived {
+    /// The study.
+    pub id: i64,
+    /// Whether it is out of the lists now.
+    pub archived: bool,
+}
+
+/// Answer to `DELETE /v1/studies/ID`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct StudyDeleted {
+    /// The study.
+    pub id: i64,
+    /// The calibrations that went with it.
+    pub calibrations: Vec<i64>,
+}
+
 /// The state of a calibration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]

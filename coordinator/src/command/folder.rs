@@ -243,7 +243,7 @@ async fn watch_until_over(
             reason = &mut failure => bail!("the local workers ended: {reason}"),
             () = tokio::time::sleep(LOOK) => {}
         }
-        let mut statuses = service.list().await?;
+        let mut statuses = service.list(true).await?;
         statuses.retain(|status| status.study == study && !status.state.is_final());
         let paused = statuses.iter().find(|s| s.state == CalibrationState::Paused);
         if let Some(status) = paused {

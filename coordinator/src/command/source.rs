@@ -6,7 +6,9 @@ use shared::api::{CalibrationStatus, ErrorBody};
 use shared::bearer::BearerToken;
 
 use crate::config::{ClientTokenArguments, SourceArguments, TargetArguments};
-use crate::service::{calibration_row, diagnostics, finished_calibration, stored_status, study_file};
+use crate::service::{
+    calibration_row, diagnostics, finished_calibration, leave_out_archived, stored_status, study_file,
+};
 use crate::store::Reader;
 use result::{self, Comparison, Diagnostics, FinishedCalibration, PosteriorTable, StudyFile, StudySummary};
 
@@ -32,12 +34,19 @@ impl CalibrationSource {
         }
     }
 
-    pub(super) async fn list(&self) -> anyhow::Result<Vec<CalibrationStatus>> {
+    pub(super) async fn list(&self, with_archived: bool) -> anyhow::Result<Vec<CalibrationStatus>> {
         match self {
+            CalibrationSource::Service(client) if with_archived => {
+                client.get("/v1/calibrations?archived=true").await
+            }
             CalibrationSource::Service(client) => client.get("/v1/calibrations").await,
             CalibrationSource::Folder(reader) => {
                 let rows = reader.calibrations().await?;
-                Ok(rows.iter().map(|(id, row)| stored_status(*id, row)).collect())
+                let mut statuses = rows.iter().map(|(id, row)| stored_status(*id, row)).collect();
+                if !with_archived {
+                    leave_out_archived(reader, &mut statuses).await?;
+                }
+                Ok(statuses)
             }
         }
     }
@@ -47,7 +56,7 @@ impl CalibrationSource {
         if let Some(id) = target.id {
             return Ok(id);
         }
-        match self.list().await?.as_slice() {
+        match self.list(false).await?.as_slice() {
             [first, others @ ..] if others.iter().all(|o| o.study == first.study) => Ok(first.id),
             [] => bail!("there is no calibration"),
             several => bail!("there are {} calibrations: name one by its id", several.len()),
@@ -163,6 +172,14 @@ impl ServiceClient {
 
     pub(super) async fn get<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
         let text = self.text(path).await?;
+        serde_json::from_str(&text)
+            .with_context(|| format!("{} is not a Grouser coordinator of this version", self.url))
+    }
+
+    pub(super) async fn delete<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
+        let text = self
+            .answer(self.client.delete(format!("{}{path}", self.url)))
+            .await?;
         serde_json::from_str(&text)
             .with_context(|| format!("{} is not a Grouser coordinator of this version", self.url))
     }

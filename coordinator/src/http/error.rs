@@ -82,7 +82,9 @@ impl From<ServiceError> for HttpError {
             ServiceError::Control(_)
             | ServiceError::Effects(_)
             | ServiceError::Search(_)
-            | ServiceError::LeftAlone { .. } => ErrorKind::Conflict,
+            | ServiceError::LeftAlone { .. }
+            | ServiceError::InProgress { .. }
+            | ServiceError::Archived(_) => ErrorKind::Conflict,
             ServiceError::Busy(_) => ErrorKind::Busy,
             ServiceError::Store(_)
             | ServiceError::Replay(_)
@@ -139,6 +141,11 @@ impl From<BytesRejection> for HttpError {
         HttpError::new(kind, rejection.body_text())
     }
 }
+
+/// Query parameters whose refusal has our form.
+#[derive(axum::extract::FromRequestParts)]
+#[from_request(via(axum::extract::Query), rejection(HttpError))]
+pub(super) struct Query<T>(pub(super) T);
 
 /// The number in a path.
 #[derive(axum::extract::FromRequestParts, serde::Deserialize)]

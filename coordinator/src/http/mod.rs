@@ -94,6 +94,7 @@ pub async fn serve(
     let gate = Gate {
         hosts: Hosts::new(exposure.listening, exposure.names),
         access: Access::start(exposure.token_rule, exposure.tokens, service.store().reader()),
+        is_read_only: service.store().is_read_only(),
     };
     connections::serve(listener, router(service, gate), shutdown).await;
 }

@@ -1,5 +1,6 @@
 //! Errors of the service.
 
+use shared::api::CalibrationState;
 use shared::file::FileError;
 
 use crate::calibration::{BeginError, ReplayError};
@@ -29,6 +30,21 @@ pub enum ServiceError {
         /// Why.
         reason: String,
     },
+    /// A study is still computed.
+    #[error("calibration {calibration} of study {study} is {}; the study cannot be {verb}: wait, or cancel it first", state.name())]
+    InProgress {
+        /// The study.
+        study: i64,
+        /// Its first calibration that is not over.
+        calibration: i64,
+        /// Where that stands.
+        state: CalibrationState,
+        /// What was asked for.
+        verb: &'static str,
+    },
+    /// An archived study does not grow.
+    #[error("study {0} is archived: restore it first")]
+    Archived(i64),
     /// The effects are not those that the calibration was computed with.
     #[error(transparent)]
     Effects(#[from] EffectsChanged),

@@ -15,7 +15,7 @@ use super::study_results;
 use crate::calibration::Calibration;
 use crate::farm::dispatch::Dispatcher;
 use crate::farm::{Control, ControlError, Farm};
-use crate::store::{Store, StoreError};
+use crate::store::{Store, StoreError, Writer};
 use job::Spec;
 use record::CalibrationRow;
 use result::{Diagnostics, StudyFile};
@@ -49,6 +49,22 @@ impl Service {
             store,
             dispatcher,
             left_alone,
+            growing: Arc::default(),
+        })
+    }
+
+    /// Opens the store for reading alone: there is nothing in progress, and whatever is told is refused.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn open_read_only(path: &str) -> Result<Service, ServiceError> {
+        let store = Store::open_read_only(path).await?;
+        let farm = Farm::new(store.epoch(), LEASE_MS);
+        let dispatcher = Dispatcher::start(farm, store.writer().sink()).map_err(ServiceError::Thread)?;
+        Ok(Service {
+            store,
+            dispatcher,
+            left_alone: Arc::default(),
             growing: Arc::default(),
         })
     }
@@ -101,13 +117,18 @@ impl Service {
         stored_calibration::experiment_files(&self.store.reader(), id).await
     }
 
+    /// The writer for what has to be computed; `None` where the store is only read.
+    fn results_writer(&self) -> Option<&Writer> {
+        (!self.store.is_read_only()).then(|| self.store.writer())
+    }
+
     /// A file of the study of a calibration; what has to be computed for it is stored.
     ///
     /// # Errors
     /// As those of [`super::study_file`].
     pub async fn study_file(&self, id: i64, file: StudyFile) -> Result<String, ServiceError> {
         let row = self.calibration_row(id).await?;
-        study_results::study_file(&self.store.reader(), Some(self.store.writer()), &row, file).await
+        study_results::study_file(&self.store.reader(), self.results_writer(), &row, file).await
     }
 
     /// The diagnostics of a finished calibration.
@@ -116,7 +137,7 @@ impl Service {
     /// As those of [`super::diagnostics`].
     pub async fn diagnostics(&self, id: i64) -> Result<Diagnostics, ServiceError> {
         let row = self.calibration_row(id).await?;
-        study_results::diagnostics(&self.store.reader(), Some(self.store.writer()), &row).await
+        study_results::diagnostics(&self.store.reader(), self.results_writer(), &row).await
     }
 
     /// The status of a calibration.
@@ -141,18 +162,22 @@ impl Service {
         status
     }
 
-    /// The status of every calibration, oldest first.
+    /// The status of every calibration, oldest first; of archived studies only where that is asked for.
     ///
     /// # Errors
     /// [`ServiceError`].
-    pub async fn list(&self) -> Result<Vec<CalibrationStatus>, ServiceError> {
+    pub async fn list(&self, with_archived: bool) -> Result<Vec<CalibrationStatus>, ServiceError> {
         let mut in_hand = self.dispatcher.statuses().await?;
         let rows = self.store.reader().calibrations().await?;
         let mut status = |(id, row): &(i64, Result<CalibrationRow, StoreError>)| {
             let in_hand = in_hand.remove(id);
             in_hand.unwrap_or_else(|| self.stored_status(*id, row))
         };
-        Ok(rows.iter().map(&mut status).collect())
+        let mut statuses: Vec<CalibrationStatus> = rows.iter().map(&mut status).collect();
+        if !with_archived {
+            stored_calibration::leave_out_archived(&self.store.reader(), &mut statuses).await?;
+        }
+        Ok(statuses)
     }
 
     /// Executes a user's command; the answer is durable.

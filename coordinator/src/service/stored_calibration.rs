@@ -82,3 +82,16 @@ pub fn stored_status(id: i64, row: &Result<CalibrationRow, StoreError>) -> Calib
         progress: None,
     }
 }
+
+/// Leaves out calibrations of archived studies.
+///
+/// # Errors
+/// [`ServiceError`].
+pub async fn leave_out_archived(
+    reader: &Reader,
+    statuses: &mut Vec<CalibrationStatus>,
+) -> Result<(), ServiceError> {
+    let archived = reader.archived().await?;
+    statuses.retain(|status| !archived.iter().any(|&(study, _)| study == status.study));
+    Ok(())
+}

@@ -2,7 +2,7 @@
 
 use sqlx::migrate::MigrateError;
 
-use super::file::PATIENCE;
+use super::health::PATIENCE;
 
 /// Why the store cannot be used.
 #[derive(Debug, thiserror::Error)]

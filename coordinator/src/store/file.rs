@@ -3,16 +3,13 @@
 use std::io::Read;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
-use std::time::Duration;
 
 use sqlx::sqlite::{SqliteConnectOptions, SqlitePoolOptions};
 use sqlx::{SqliteConnection, SqlitePool};
 
 use super::error::StoreError;
+use super::health::PATIENCE;
 use super::migrations;
-
-/// How long a lock of another program is waited for before that is said.
-pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 
 /// The file's name without the scheme.
 pub(super) fn file_of(path: &str) -> &str {

@@ -3,7 +3,8 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
-use super::file::PATIENCE;
+/// How long a lock of another program is waited for before that is said.
+pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Figures of the writer, for the metrics page.
 #[derive(Debug, Default)]

@@ -6,7 +6,7 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 /// Number, name and text of each file of `migrations/`.
 ///
 /// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
-const FILES: [(i64, &str, &str); 14] = [
+const FILES: [(i64, &str, &str); 15] = [
     (
         1,
         "experiments",
@@ -73,6 +73,11 @@ const FILES: [(i64, &str, &str); 14] = [
         include_str!("../../../migrations/0013_given_up.sql"),
     ),
     (14, "tokens", include_str!("../../../migrations/0014_tokens.sql")),
+    (
+        15,
+        "removal",
+        include_str!("../../../migrations/0015_removal.sql"),
+    ),
 ];
 
 /// The version of the tables that this program writes.

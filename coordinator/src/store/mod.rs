@@ -3,6 +3,7 @@
 //! One task writes (`writer`); everybody else reads through a pool of their own. What the tables mean stands
 //! in `migrations/README.md`.
 
+mod backup;
 mod blob;
 mod damage;
 mod error;
@@ -17,6 +18,7 @@ mod prior;
 mod read;
 mod reader;
 mod recovery;
+mod removal;
 mod results;
 mod theta;
 mod tokens;
@@ -25,9 +27,11 @@ mod writer;
 use sqlx::sqlite::{SqliteJournalMode, SqliteSynchronous};
 use sqlx::{Connection, SqliteConnection, SqlitePool};
 
+pub use backup::BackupError;
 pub use error::StoreError;
 use file::{examine, lock, options, pool, recognise};
 pub use health::StoreHealth;
+pub use read::StoredStudy;
 pub use reader::Reader;
 pub use results::StudyResults;
 pub use tokens::TokenTable;
@@ -39,6 +43,7 @@ pub struct Store {
     readers: SqlitePool,
     writer: Writer,
     epoch: u64,
+    is_read_only: bool,
 }
 
 impl Store {
@@ -67,7 +72,32 @@ impl Store {
             readers,
             writer,
             epoch,
+            is_read_only: false,
         })
+    }
+
+    /// Opens the file for reading alone, also beside a coordinator that writes to it; whatever is told is refused.
+    ///
+    /// # Errors
+    /// [`StoreError`]; damage is no error, but a warning of the log.
+    pub async fn open_read_only(path: &str) -> Result<Store, StoreError> {
+        let reader = Reader::open(path).await?;
+        let mut connection = reader.pool.acquire().await?;
+        if let Err(error) = damage::check(&mut connection, path).await {
+            tracing::warn!(%error, "what can be read is shown");
+        }
+        drop(connection);
+        Ok(Store {
+            readers: reader.pool,
+            writer: Writer::none(),
+            epoch: 0,
+            is_read_only: true,
+        })
+    }
+
+    /// Whether the file is opened for reading alone.
+    pub fn is_read_only(&self) -> bool {
+        self.is_read_only
     }
 
     /// The way to the writer.

@@ -22,6 +22,17 @@ use record::{
 const CALIBRATION: &str = "SELECT c.*, coalesce(c.experiment, s.experiment) AS on_experiment
      FROM calibrations c JOIN studies s ON s.id = c.study";
 
+/// A study with its members.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StoredStudy {
+    /// Its number.
+    pub id: i64,
+    /// The experiment that it is about.
+    pub experiment: i64,
+    /// Its calibrations, oldest first.
+    pub calibrations: Vec<i64>,
+}
+
 impl Reader {
     /// An experiment.
     ///
@@ -84,11 +95,11 @@ impl Reader {
         rows.iter().map(calibration_row).collect()
     }
 
-    /// Ids of all studies with their experiment and calibrations, oldest first.
+    /// All studies, oldest first.
     ///
     /// # Errors
     /// [`StoreError`].
-    pub async fn studies(&self) -> Result<Vec<(i64, i64, Vec<i64>)>, StoreError> {
+    pub async fn studies(&self) -> Result<Vec<StoredStudy>, StoreError> {
         let rows = sqlx::query(
             "SELECT s.id, s.experiment, json_group_array(c.id ORDER BY c.id) AS calibrations
              FROM studies s JOIN calibrations c ON c.study = s.id GROUP BY s.id ORDER BY s.id",
@@ -98,19 +109,25 @@ impl Reader {
         rows.iter()
             .map(|row| {
                 let list: String = row.get("calibrations");
-                let ids = serde_json::from_str(&list).map_err(|e| StoreError::Corrupt(e.to_string()))?;
-                Ok((row.get("id"), row.get("experiment"), ids))
+                let calibrations =
+                    serde_json::from_str(&list).map_err(|e| StoreError::Corrupt(e.to_string()))?;
+                Ok(StoredStudy {
+                    id: row.try_get("id")?,
+                    experiment: row.try_get("experiment")?,
+                    calibrations,
+                })
             })
             .collect()
     }
 
-    /// The studies whose members are all over, each with their number.
+    /// The studies whose members are all over, each with their number; archived ones left out.
     ///
     /// # Errors
     /// [`StoreError`].
     pub async fn settled_studies(&self) -> Result<Vec<(i64, i64)>, StoreError> {
         let rows = sqlx::query(
-            "SELECT study, count(*) AS members FROM calibrations GROUP BY study
+            "SELECT study, count(*) AS members FROM calibrations c JOIN studies s ON s.id = c.study
+             WHERE s.archived_at_ms IS NULL GROUP BY study
              HAVING sum(state NOT IN ('finished', 'failed', 'cancelled')) = 0 ORDER BY study",
         )
         .fetch_all(&self.pool)

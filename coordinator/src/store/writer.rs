@@ -47,6 +47,16 @@ enum Write {
         results: StudyResults,
         reply: oneshot::Sender<()>,
     },
+    Archive {
+        study: i64,
+        at_ms: Option<i64>,
+        reply: oneshot::Sender<()>,
+    },
+    Delete {
+        study: i64,
+        now_ms: i64,
+        reply: oneshot::Sender<()>,
+    },
     Close,
 }
 
@@ -169,6 +179,18 @@ impl Writer {
         }
     }
 
+    /// The way to a writer that is not there: whatever is sent is refused.
+    pub(super) fn none() -> Writer {
+        let (sender, _) = mpsc::unbounded_channel();
+        let (_, committed) = watch::channel(0);
+        Writer {
+            sender,
+            committed,
+            health: Arc::default(),
+            waiting: Arc::default(),
+        }
+    }
+
     /// The farm's end. Facts are numbered per sink, so a store has one.
     pub fn sink(&self) -> FactSink {
         FactSink {
@@ -278,6 +300,24 @@ impl Writer {
         self.committed(|reply| Write::Results { results, reply }).await
     }
 
+    /// Archives a study at a time, or takes it back where none is given.
+    ///
+    /// # Errors
+    /// [`StoreError::Stopped`].
+    pub async fn archive_study(&self, study: i64, at_ms: Option<i64>) -> Result<(), StoreError> {
+        self.committed(|reply| Write::Archive { study, at_ms, reply })
+            .await
+    }
+
+    /// Deletes a study with all that belongs to it alone.
+    ///
+    /// # Errors
+    /// [`StoreError::Stopped`].
+    pub async fn delete_study(&self, study: i64, now_ms: i64) -> Result<(), StoreError> {
+        self.committed(|reply| Write::Delete { study, now_ms, reply })
+            .await
+    }
+
     /// Sends a write and waits for what it replies once it is committed.
     async fn committed<T>(&self, write: impl FnOnce(oneshot::Sender<T>) -> Write) -> Result<T, StoreError> {
         let (reply, answer) = oneshot::channel();
@@ -335,7 +375,7 @@ async fn run(
 struct Replies {
     ids: Vec<(oneshot::Sender<i64>, i64)>,
     studies: Vec<(oneshot::Sender<StudyIds>, StudyIds)>,
-    results: Vec<oneshot::Sender<()>>,
+    done: Vec<oneshot::Sender<()>>,
 }
 
 impl Replies {
@@ -347,7 +387,7 @@ impl Replies {
         for (reply, ids) in self.studies {
             let _ = reply.send(ids);
         }
-        for reply in self.results {
+        for reply in self.done {
             let _ = reply.send(());
         }
     }
@@ -376,11 +416,23 @@ async fn write_group(
             Write::Close => {}
             Write::Results { results, reply } => {
                 super::results::write(connection, results).await?;
-                replies.results.push(reply);
+                replies.done.push(reply);
+            }
+            Write::Archive { study, at_ms, reply } => {
+                super::removal::archive(connection, study, at_ms).await?;
+                replies.done.push(reply);
+            }
+            Write::Delete { study, now_ms, reply } => {
+                // What was told of its calibrations before goes with them.
+                insert_evaluations(connection, &mut rows).await?;
+                super::removal::delete(connection, study, now_ms).await?;
+                replies.done.push(reply);
             }
             Write::Experiment { files, now_ms, reply } => {
                 let id = sqlx::query_scalar(
-                    "INSERT INTO experiments (toml, files, created_at_ms) VALUES (?, ?, ?) RETURNING id",
+                    "INSERT INTO experiments (id, toml, files, created_at_ms)
+                     VALUES (1 + max((SELECT coalesce(max(id), 0) FROM experiments),
+                                     (SELECT coalesce(max(last_experiment), 0) FROM deletions)), ?, ?, ?) RETURNING id",
                 )
                 .bind(files.toml)
                 .bind(json(&files.files))
@@ -409,10 +461,14 @@ async fn write_group(
 }
 
 async fn insert_study(connection: &mut SqliteConnection, new: NewStudy) -> Result<StudyIds, sqlx::Error> {
-    let study: i64 = sqlx::query_scalar("INSERT INTO studies (experiment) VALUES (?) RETURNING id")
-        .bind(new.experiment)
-        .fetch_one(&mut *connection)
-        .await?;
+    let study: i64 = sqlx::query_scalar(
+        "INSERT INTO studies (id, experiment)
+         VALUES (1 + max((SELECT coalesce(max(id), 0) FROM studies),
+                         (SELECT coalesce(max(study), 0) FROM deletions)), ?) RETURNING id",
+    )
+    .bind(new.experiment)
+    .fetch_one(&mut *connection)
+    .await?;
     let mut calibrations = Vec::new();
     for row in new.calibrations {
         let id = insert_calibration(connection, study, None, row, new.now_ms).await?;
@@ -430,8 +486,10 @@ async fn insert_calibration(
     now_ms: i64,
 ) -> Result<i64, sqlx::Error> {
     sqlx::query_scalar(
-        "INSERT INTO calibrations (study, experiment, name, toml, files, state, created_at_ms, seal_key)
-         VALUES (?1, nullif(?2, (SELECT experiment FROM studies WHERE id = ?1)), ?3, ?4, ?5, 'queued', ?6, randomblob(16))
+        "INSERT INTO calibrations (id, study, experiment, name, toml, files, state, created_at_ms, seal_key)
+         VALUES (1 + max((SELECT coalesce(max(id), 0) FROM calibrations),
+                         (SELECT coalesce(max(last_calibration), 0) FROM deletions)),
+                 ?1, nullif(?2, (SELECT experiment FROM studies WHERE id = ?1)), ?3, ?4, ?5, 'queued', ?6, randomblob(16))
          RETURNING id",
     )
     .bind(study)
