@@ -152,6 +152,14 @@ pub struct ServeArguments {
     /// service that uses the store, and where nothing can be written.
     #[arg(long)]
     pub read_only: bool,
+    /// Posts web hooks of jobs to this host; may be repeated, or several between commas. By default, to none.
+    #[arg(
+        long,
+        value_name = "HOST",
+        env = "GROUSER_WEBHOOK_HOST",
+        value_delimiter = ','
+    )]
+    pub webhook_host: Vec<String>,
     /// Deletes studies so many days after they were archived; by default, archived studies are kept.
     #[arg(long, env = "GROUSER_KEEP_DAYS", value_name = "DAYS", value_parser = clap::value_parser!(u32).range(1..=36_500))]
     pub keep_days: Option<u32>,
@@ -233,6 +241,10 @@ pub struct SubmitArguments {
     /// The job.
     #[command(flatten)]
     pub file: JobArguments,
+    /// The service posts every pause and end of the study's calibrations to this URL; its host must be one of the service's
+    /// `--webhook-host`.
+    #[arg(long, value_name = "URL")]
+    pub webhook: Option<String>,
     /// URL of the service.
     #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
     pub url: String,

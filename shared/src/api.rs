@@ -30,6 +30,9 @@ pub struct NewCalibration {
     /// A name for lists.
     #[serde(default)]
     pub name: Option<String>,
+    /// URL that the pauses and ends of the study's calibrations are posted to, of a host that the service lists.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub webhook: Option<String>,
 }
 
 /// Answer to a new experiment.

@@ -18,6 +18,7 @@ mod mesh;
 mod metamodel;
 mod not_tried;
 mod older_store;
+mod operation;
 mod point_fit;
 mod posterior_prior;
 mod reference;

@@ -62,6 +62,7 @@ async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
             toml: job.job.toml.clone(),
             files: job.job.files.clone(),
             name: Some(job.name.clone()),
+            webhook: None,
         };
         return Ok(service.add_calibration(new).await?.study);
     };

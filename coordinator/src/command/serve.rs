@@ -30,6 +30,7 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
         true => Service::open_read_only(store).await?,
         false => Service::open(store, config.lease_ms).await?,
     };
+    let service = service.with_webhook_hosts(config.webhook_host);
     let address = listener.local_addr()?;
     let exposure = exposure(address, &config.exposure, &service.store().reader(), store).await?;
     tracing::info!(%address, store, read_only = config.read_only, "serving");
@@ -48,6 +49,7 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     let keep_days = config.keep_days.filter(|_| is_written);
     tokio::select! {
         () = service.keep_growing(), if is_written => {}
+        () = service.announce(), if is_written => {}
         () = service.keep_archived_for(keep_days.unwrap_or_default()), if keep_days.is_some() => {}
         () = signal => tracing::info!("stopping; workers will reconnect"),
         () = service.store().writer().stopped(), if is_written => {

@@ -30,6 +30,7 @@ pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
         toml: job.job.toml,
         files: job.job.files,
         name: Some(job.name),
+        webhook: config.webhook.clone(),
     };
     let created: CalibrationCreated = client.post("/v1/calibrations", &new).await?;
     let mut text = format!("calibration {} of study {}\n", created.id, created.study);

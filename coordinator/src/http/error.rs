@@ -77,7 +77,9 @@ impl IntoResponse for HttpError {
 impl From<ServiceError> for HttpError {
     fn from(error: ServiceError) -> Self {
         let kind = match &error {
-            ServiceError::File(_) | ServiceError::Begin(_) => ErrorKind::InvalidFile,
+            ServiceError::File(_) | ServiceError::Begin(_) | ServiceError::Webhook(_) => {
+                ErrorKind::InvalidFile
+            }
             ServiceError::NotFound { .. } => ErrorKind::NotFound,
             ServiceError::Control(_)
             | ServiceError::Effects(_)

@@ -1,7 +1,7 @@
 //! The REST interface under `/v1`; the only place that knows axum.
 //!
 //! One file per resource; each exports `routes()`. The OpenAPI `document` is made from the handlers. Before these stand
-//! `connections` (how many, how long) and `gate` (`host`, `body`, `access`: what is let through).
+//! `connections` (how many, how long) and `gate` (`host`, `body`, `access`: what is let through); `request_metrics` counts around them.
 
 mod access;
 mod body;
@@ -16,6 +16,7 @@ mod gate;
 mod growth;
 mod host;
 mod metrics;
+mod request_metrics;
 mod studies;
 mod work;
 
@@ -37,6 +38,7 @@ pub use access::TokenRule;
 pub use error::HttpError;
 use gate::Gate;
 use host::Hosts;
+use request_metrics::RequestMetrics;
 
 /// How a service shows itself: by which names it is reached, and when it asks for tokens.
 #[derive(Debug, Clone)]
@@ -81,6 +83,11 @@ fn router(service: Service, gate: Gate) -> Router {
         // The gate bounds bodies, by route.
         .layer(DefaultBodyLimit::disable())
         .layer(axum::middleware::from_fn_with_state(gate, gate::pass))
+        // Refusals of the gate count too.
+        .layer(axum::middleware::from_fn_with_state(
+            RequestMetrics::new(),
+            request_metrics::measure,
+        ))
         .with_state(service)
 }
 

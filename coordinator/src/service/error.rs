@@ -7,6 +7,7 @@ use crate::calibration::{BeginError, ReplayError};
 use crate::farm::ControlError;
 use crate::farm::dispatch::Stopped;
 use crate::store::StoreError;
+use crate::webhook::WebhookError;
 use job::EffectsChanged;
 use record::CalibrationRow;
 
@@ -30,6 +31,9 @@ pub enum ServiceError {
         /// Why.
         reason: String,
     },
+    /// Nothing can be posted to a URL.
+    #[error(transparent)]
+    Webhook(#[from] WebhookError),
     /// A study is still computed.
     #[error("calibration {calibration} of study {study} is {}; the study cannot be {verb}: wait, or cancel it first", state.name())]
     InProgress {

@@ -16,6 +16,7 @@ use crate::calibration::Calibration;
 use crate::farm::dispatch::Dispatcher;
 use crate::farm::{Control, ControlError, Farm};
 use crate::store::{Store, StoreError, Writer};
+use crate::webhook::WebhookHosts;
 use job::Spec;
 use record::CalibrationRow;
 use result::{Diagnostics, StudyFile};
@@ -31,6 +32,7 @@ pub struct Service {
     store: Store,
     dispatcher: Dispatcher,
     left_alone: Arc<BTreeMap<i64, String>>,
+    pub(super) webhook_hosts: WebhookHosts,
     /// Held by whoever adds to a study: each sees what the one before has added.
     pub(super) growing: Arc<tokio::sync::Mutex<()>>,
 }
@@ -49,8 +51,18 @@ impl Service {
             store,
             dispatcher,
             left_alone,
+            webhook_hosts: WebhookHosts::default(),
             growing: Arc::default(),
         })
+    }
+
+    /// The same, with hosts that web hooks may be posted to.
+    #[must_use]
+    pub fn with_webhook_hosts(self, hosts: Vec<String>) -> Service {
+        Service {
+            webhook_hosts: WebhookHosts(hosts),
+            ..self
+        }
     }
 
     /// Opens the store for reading alone: there is nothing in progress, and whatever is told is refused.
@@ -65,6 +77,7 @@ impl Service {
             store,
             dispatcher,
             left_alone: Arc::default(),
+            webhook_hosts: WebhookHosts::default(),
             growing: Arc::default(),
         })
     }
@@ -78,6 +91,11 @@ impl Service {
     /// Why a stored calibration could not be taken up, if it could not.
     pub fn left_alone(&self, id: i64) -> Option<&str> {
         self.left_alone.get(&id).map(String::as_str)
+    }
+
+    /// Number of calibrations that could not be taken up.
+    pub fn count_left_alone(&self) -> usize {
+        self.left_alone.len()
     }
 
     /// The store, an SQLite file.

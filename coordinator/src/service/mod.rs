@@ -5,10 +5,12 @@
 //! - `recovery`: what a start takes up again.
 //! - `submission`: new experiments and calibrations.
 //! - `removal`: what is archived or deleted.
+//! - `announcement`: what web hooks are told.
 //! - `growth`: what is added to a study that is there.
 //! - `stored_calibration`, `study_step`, `finished_study`: what is read from the store.
 //! - `study_results`: the files of a study, computed once.
 
+mod announcement;
 mod clock;
 mod error;
 mod finished_study;

@@ -6,7 +6,7 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 /// Number, name and text of each file of `migrations/`.
 ///
 /// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
-const FILES: [(i64, &str, &str); 15] = [
+const FILES: [(i64, &str, &str); 16] = [
     (
         1,
         "experiments",
@@ -77,6 +77,11 @@ const FILES: [(i64, &str, &str); 15] = [
         15,
         "removal",
         include_str!("../../../migrations/0015_removal.sql"),
+    ),
+    (
+        16,
+        "webhooks",
+        include_str!("../../../migrations/0016_webhooks.sql"),
     ),
 ];
 

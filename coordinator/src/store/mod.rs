@@ -12,6 +12,7 @@ mod file;
 #[cfg(test)]
 mod fixture;
 mod health;
+mod insert;
 mod json;
 mod migrations;
 mod prior;
@@ -24,24 +25,28 @@ mod theta;
 mod tokens;
 mod writer;
 
+use std::path::PathBuf;
+
 use sqlx::sqlite::{SqliteJournalMode, SqliteSynchronous};
 use sqlx::{Connection, SqliteConnection, SqlitePool};
 
 pub use backup::BackupError;
 pub use error::StoreError;
-use file::{examine, lock, options, pool, recognise};
+use file::{examine, file_of, lock, options, pool, recognise};
 pub use health::StoreHealth;
-pub use read::StoredStudy;
+pub use insert::{NewCalibrationRow, NewStudy, StudyIds};
+pub use read::{StoredStudy, StoredWebhook};
 pub use reader::Reader;
 pub use results::StudyResults;
 pub use tokens::TokenTable;
-pub use writer::{FactSink, NewCalibrationRow, NewStudy, StudyIds, Writer};
+pub use writer::{FactSink, StateChange, Writer};
 
 /// The store: a pool of readers and the way to the one writer.
 #[derive(Debug, Clone)]
 pub struct Store {
     readers: SqlitePool,
     writer: Writer,
+    file: PathBuf,
     epoch: u64,
     is_read_only: bool,
 }
@@ -71,6 +76,7 @@ impl Store {
         Ok(Store {
             readers,
             writer,
+            file: file_of(path).into(),
             epoch,
             is_read_only: false,
         })
@@ -90,6 +96,7 @@ impl Store {
         Ok(Store {
             readers: reader.pool,
             writer: Writer::none(),
+            file: file_of(path).into(),
             epoch: 0,
             is_read_only: true,
         })
@@ -110,6 +117,12 @@ impl Store {
         // Readers first: the last connection folds the write-ahead log into the file.
         self.readers.close().await;
         self.writer.close().await;
+    }
+
+    /// Sizes of the file and of its write-ahead log `[bytes]`.
+    pub fn sizes_bytes(&self) -> [u64; 2] {
+        let log = PathBuf::from(format!("{}-wal", self.file.display()));
+        [&self.file, &log].map(|file| std::fs::metadata(file).map_or(0, |file| file.len()))
     }
 
     /// Number of the present start of the coordinator on this store.

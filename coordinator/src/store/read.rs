@@ -33,7 +33,49 @@ pub struct StoredStudy {
     pub calibrations: Vec<i64>,
 }
 
+/// Where a calibration's pauses and ends are posted to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StoredWebhook {
+    /// The study.
+    pub study: i64,
+    /// Name of the calibration.
+    pub name: String,
+    /// The URL.
+    pub url: String,
+}
+
 impl Reader {
+    /// The web hook of a calibration's study, if it has one.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn webhook(&self, calibration: i64) -> Result<Option<StoredWebhook>, StoreError> {
+        let row = sqlx::query(
+            "SELECT s.id, c.name, s.webhook FROM calibrations c JOIN studies s ON s.id = c.study
+             WHERE c.id = ? AND s.webhook IS NOT NULL",
+        )
+        .bind(calibration)
+        .fetch_optional(&self.pool)
+        .await?;
+        row.map(|row| {
+            Ok(StoredWebhook {
+                study: row.try_get("id")?,
+                name: row.try_get("name")?,
+                url: row.try_get("webhook")?,
+            })
+        })
+        .transpose()
+    }
+
+    /// Number of calibrations in each state, by its word.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn states(&self) -> Result<Vec<(String, i64)>, StoreError> {
+        let states = sqlx::query_as("SELECT state, count(*) FROM calibrations GROUP BY state");
+        Ok(states.fetch_all(&self.pool).await?)
+    }
+
     /// An experiment.
     ///
     /// # Errors

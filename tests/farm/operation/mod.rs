@@ -1,0 +1,4 @@
+//! The service as its operator sees it: figures, alerts, web hooks, encryption.
+
+mod figures;
+mod webhook;
