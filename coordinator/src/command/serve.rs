@@ -46,11 +46,10 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     ));
     let signal = stop_signal()?;
     let is_written = !config.read_only;
-    let keep_days = config.keep_days.filter(|_| is_written);
     tokio::select! {
         () = service.keep_growing(), if is_written => {}
         () = service.announce(), if is_written => {}
-        () = service.keep_archived_for(keep_days.unwrap_or_default()), if keep_days.is_some() => {}
+        () = service.keep_tidy(config.keep_days), if is_written => {}
         () = signal => tracing::info!("stopping; workers will reconnect"),
         () = service.store().writer().stopped(), if is_written => {
             bail!("the store can no longer be written; see the log")

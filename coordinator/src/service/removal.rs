@@ -17,8 +17,9 @@ impl Service {
     /// # Errors
     /// [`ServiceError::InProgress`] where one of its calibrations is not over.
     pub async fn delete_study(&self, study: i64) -> Result<Vec<i64>, ServiceError> {
-        let _growing = self.growing.lock().await;
         let calibrations = self.at_rest(study, "deleted").await?;
+        // Archived first, so that nothing is added to it while it goes.
+        self.archive_study(study).await?;
         self.store().writer().delete_study(study, now_ms()).await?;
         Ok(calibrations)
     }
@@ -40,6 +41,9 @@ impl Service {
     pub async fn restore_study(&self, study: i64) -> Result<(), ServiceError> {
         let _growing = self.growing.lock().await;
         self.at_rest(study, "restored").await?;
+        if self.store().reader().half_deleted().await?.contains(&study) {
+            return Err(ServiceError::not_found("study", study));
+        }
         Ok(self.store().writer().archive_study(study, None).await?)
     }
 
@@ -71,9 +75,21 @@ impl Service {
         }
     }
 
-    /// Deletes studies that were archived so many days ago, until the service ends.
-    pub async fn keep_archived_for(&self, days: u32) {
+    /// Finishes deletions that an end of the service has cut short; then deletes studies that were archived so many days ago,
+    /// where a number is given, until the service ends.
+    pub async fn keep_tidy(&self, days: Option<u32>) {
+        match self.store().reader().half_deleted().await {
+            Ok(studies) => {
+                for study in studies {
+                    self.delete_and_log(study, "its deletion was cut short").await;
+                }
+            }
+            Err(error) => tracing::error!(%error, "failed to read the deletions"),
+        }
         loop {
+            let Some(days) = days else {
+                return std::future::pending().await;
+            };
             let until_ms = now_ms() - i64::from(days) * DAY_MS;
             let archived = self.store().reader().archived().await;
             let archived = archived.unwrap_or_else(|error| {
@@ -81,19 +97,17 @@ impl Service {
                 Vec::new()
             });
             for (study, _) in archived.into_iter().filter(|&(_, at_ms)| at_ms <= until_ms) {
-                match self.delete_study(study).await {
-                    Ok(calibrations) => {
-                        tracing::info!(
-                            study,
-                            ?calibrations,
-                            days,
-                            "deleted: archived for as long as is kept"
-                        );
-                    }
-                    Err(error) => tracing::error!(study, %error, "failed to delete an archived study"),
-                }
+                self.delete_and_log(study, &format!("archived {days} days ago"))
+                    .await;
             }
             tokio::time::sleep(LOOK).await;
+        }
+    }
+
+    async fn delete_and_log(&self, study: i64, reason: &str) {
+        match self.delete_study(study).await {
+            Ok(calibrations) => tracing::info!(study, ?calibrations, reason, "deleted"),
+            Err(error) => tracing::error!(study, %error, reason, "failed to delete a study"),
         }
     }
 }

@@ -50,6 +50,11 @@ impl Reader {
         Reader::with(options.immutable(true), path).await
     }
 
+    /// Whether the store has been closed.
+    pub fn is_closed(&self) -> bool {
+        self.pool.is_closed()
+    }
+
     async fn with(options: SqliteConnectOptions, path: &str) -> Result<Reader, StoreError> {
         let wrap = |source| StoreError::of(path, source);
         let pool = pool(options).await.map_err(wrap)?;

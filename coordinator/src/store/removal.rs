@@ -5,23 +5,22 @@ use sqlx::{AssertSqlSafe, SqliteConnection};
 use super::error::StoreError;
 use super::reader::Reader;
 
-/// Tables with rows of a calibration.
-const OF_CALIBRATION: [&str; 7] = [
-    "evaluations",
-    "samples",
-    "stages",
-    "estimates",
-    "discoveries",
-    "faults",
-    "disputes",
+/// Tables that have many rows of a calibration, with their keys.
+const LARGE: [(&str, &str); 2] = [
+    ("evaluations", "calibration, evaluation"),
+    ("samples", "calibration, stage, particle"),
 ];
+/// Rows of these that one commit deletes: results of workers wait no longer than for them.
+const PART: u64 = 1000;
+/// Tables that have few.
+const SMALL: [&str; 5] = ["stages", "estimates", "discoveries", "faults", "disputes"];
 
-/// Deletes a study with all that belongs to it alone.
-pub(super) async fn delete(
+/// Deletes a part of what belongs to a study alone, and the study itself at last; whether nothing is left.
+pub(super) async fn delete_part(
     connection: &mut SqliteConnection,
     study: i64,
     now_ms: i64,
-) -> Result<(), sqlx::Error> {
+) -> Result<bool, sqlx::Error> {
     let experiments: Vec<i64> = sqlx::query_scalar(
         "SELECT experiment FROM studies WHERE id = ?1
          UNION SELECT experiment FROM calibrations WHERE study = ?1 AND experiment IS NOT NULL",
@@ -29,30 +28,39 @@ pub(super) async fn delete(
     .bind(study)
     .fetch_all(&mut *connection)
     .await?;
+    // From the first part on it is archived and its files are gone; a restart finds here what to go on with.
     sqlx::query(
-        "INSERT INTO deletions (study, last_calibration, last_experiment, deleted_at_ms)
-         SELECT ?1, coalesce(max(id), 0), ?2, ?3 FROM calibrations WHERE study = ?1",
+        "INSERT OR IGNORE INTO deletions (study, last_calibration, last_experiment, deleted_at_ms)
+         SELECT id, (SELECT coalesce(max(id), 0) FROM calibrations WHERE study = ?1), ?2, ?3 FROM studies WHERE id = ?1",
     )
     .bind(study)
     .bind(experiments.iter().max())
     .bind(now_ms)
     .execute(&mut *connection)
     .await?;
-    let of_calibration = OF_CALIBRATION.map(|table| {
-        format!("DELETE FROM {table} WHERE calibration IN (SELECT id FROM calibrations WHERE study = ?)")
-    });
-    let of_study = [
-        "results WHERE study",
-        "calibrations WHERE study",
-        "studies WHERE id",
-    ];
-    let of_study = of_study.map(|rows| format!("DELETE FROM {rows} = ?"));
-    for statement in of_calibration.into_iter().chain(of_study) {
-        sqlx::query(AssertSqlSafe(statement))
-            .bind(study)
-            .execute(&mut *connection)
-            .await?;
+    sqlx::query("UPDATE studies SET archived_at_ms = coalesce(archived_at_ms, ?2) WHERE id = ?1")
+        .bind(study)
+        .bind(now_ms)
+        .execute(&mut *connection)
+        .await?;
+    let mut delete = async |rows: String| {
+        let deleted = sqlx::query(AssertSqlSafe(format!("DELETE FROM {rows}")));
+        let deleted = deleted.bind(study).execute(&mut *connection).await?;
+        Ok::<_, sqlx::Error>(deleted.rows_affected())
+    };
+    let of_study = "calibration IN (SELECT id FROM calibrations WHERE study = ?)";
+    delete("results WHERE study = ?".into()).await?;
+    for (table, key) in LARGE {
+        let part = format!("SELECT {key} FROM {table} WHERE {of_study} LIMIT {PART}");
+        if delete(format!("{table} WHERE ({key}) IN ({part})")).await? > 0 {
+            return Ok(false);
+        }
     }
+    for table in SMALL {
+        delete(format!("{table} WHERE {of_study}")).await?;
+    }
+    delete("calibrations WHERE study = ?".into()).await?;
+    delete("studies WHERE id = ?".into()).await?;
     for experiment in experiments {
         sqlx::query(
             "DELETE FROM experiments WHERE id = ?1 AND NOT EXISTS (SELECT 1 FROM studies WHERE experiment = ?1)
@@ -62,7 +70,7 @@ pub(super) async fn delete(
         .execute(&mut *connection)
         .await?;
     }
-    Ok(())
+    Ok(true)
 }
 
 /// Archives a study at a time, or takes it back where none is given.
@@ -80,6 +88,16 @@ pub(super) async fn archive(
 }
 
 impl Reader {
+    /// Studies of which a part has been deleted.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn half_deleted(&self) -> Result<Vec<i64>, StoreError> {
+        let studies =
+            sqlx::query_scalar("SELECT study FROM deletions WHERE study IN (SELECT id FROM studies)");
+        Ok(studies.fetch_all(&self.pool).await?)
+    }
+
     /// Archived studies with the times at which they were archived `[ms since 1970]`. A store of before migration 15, which only
     /// reading leaves as it is, has none.
     ///

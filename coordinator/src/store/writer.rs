@@ -58,7 +58,7 @@ enum Write {
     Delete {
         study: i64,
         now_ms: i64,
-        reply: oneshot::Sender<()>,
+        reply: oneshot::Sender<bool>,
     },
     Close,
 }
@@ -313,13 +313,14 @@ impl Writer {
             .await
     }
 
-    /// Deletes a study with all that belongs to it alone.
+    /// Deletes a study with all that belongs to it alone, in parts: the facts of others are stored between them.
     ///
     /// # Errors
     /// [`StoreError::Stopped`].
     pub async fn delete_study(&self, study: i64, now_ms: i64) -> Result<(), StoreError> {
-        self.committed(|reply| Write::Delete { study, now_ms, reply })
-            .await
+        let delete = |reply| Write::Delete { study, now_ms, reply };
+        while !self.committed(delete).await? {}
+        Ok(())
     }
 
     /// Sends a write and waits for what it replies once it is committed.
@@ -381,6 +382,7 @@ struct Replies {
     ids: Vec<(oneshot::Sender<i64>, i64)>,
     studies: Vec<(oneshot::Sender<StudyIds>, StudyIds)>,
     done: Vec<oneshot::Sender<()>>,
+    deleted: Vec<(oneshot::Sender<bool>, bool)>,
     states: Vec<StateChange>,
 }
 
@@ -395,6 +397,9 @@ impl Replies {
         }
         for reply in self.done {
             let _ = reply.send(());
+        }
+        for (reply, is_gone) in self.deleted {
+            let _ = reply.send(is_gone);
         }
         for change in self.states {
             // Nobody may want to know.
@@ -436,8 +441,8 @@ async fn write_group(
             Write::Delete { study, now_ms, reply } => {
                 // What was told of its calibrations before goes with them.
                 insert_evaluations(connection, &mut rows).await?;
-                super::removal::delete(connection, study, now_ms).await?;
-                replies.done.push(reply);
+                let is_gone = super::removal::delete_part(connection, study, now_ms).await?;
+                replies.deleted.push((reply, is_gone));
             }
             Write::Experiment { files, now_ms, reply } => {
                 let id = insert_experiment(connection, files, now_ms).await?;

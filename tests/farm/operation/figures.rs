@@ -59,6 +59,11 @@ fn queue_states_store_and_requests_are_counted() {
     assert_eq!(service.metric("grouser_calibrations{state=\"running\"}"), 1);
     assert_eq!(service.metric("grouser_calibrations{state=\"cancelled\"}"), 1);
     assert_eq!(service.metric("grouser_calibrations{state=\"failed\"}"), 0);
+    assert!(
+        service.log().contains("cancelled calibration=2"),
+        "{}",
+        service.log()
+    );
     assert_eq!(service.metric("grouser_leases_out"), 2);
     assert_eq!(service.metric("grouser_evaluations_queued"), 58);
     assert!(service.metric("grouser_store_bytes") + service.metric("grouser_store_log_bytes") > 10_000);

@@ -52,6 +52,24 @@ fn a_deleted_study_is_gone_with_its_rows_and_its_numbers_are_not_given_out_again
 }
 
 #[test]
+fn a_deletion_that_was_cut_short_is_finished_at_the_next_start() {
+    let mut service = Service::start(&["--local-workers", "2"]);
+    service.submit(&Job::small());
+    service.wait_for(1, "finished");
+    service.terminate();
+    // As the first part of a deletion leaves it.
+    Database::open(&service.store()).execute(
+        "INSERT INTO deletions VALUES (1, 1, 1, 0); UPDATE studies SET archived_at_ms = 0;
+         DELETE FROM evaluations WHERE evaluation < 50",
+    );
+    service.restart();
+    until("the rest of the deletion", || {
+        (service.client.get("/v1/studies/1").status == 404).then_some(())
+    });
+    assert_eq!(service.submit(&Job::small()), 2);
+}
+
+#[test]
 fn a_study_in_progress_is_neither_deleted_nor_archived_and_late_results_of_a_deleted_one_are_harmless() {
     let service = Service::start(&[]);
     let id = service.submit(&Job::small());
@@ -131,5 +149,9 @@ fn archived_studies_are_deleted_by_age_where_the_operator_says_so_and_others_nev
         (service.client.get("/v1/studies/1").status == 404).then_some(())
     });
     assert_eq!(numbers(&service.client.json("/v1/studies?archived=true")), [2, 3]);
-    assert!(service.log().contains("days=30"), "{}", service.log());
+    assert!(
+        service.log().contains("archived 30 days ago"),
+        "{}",
+        service.log()
+    );
 }
