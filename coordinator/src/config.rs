@@ -128,6 +128,22 @@ pub struct ExposureArguments {
     /// Accepts requests to this host name too, as of a reverse proxy; may be repeated, or several between commas.
     #[arg(long, value_name = "NAME", env = "GROUSER_HOST", value_delimiter = ',')]
     pub host: Vec<String>,
+    /// Speaks TLS with this certificate, a PEM file with those of its authorities behind it; by default, plain HTTP.
+    #[arg(
+        long,
+        value_name = "PEM",
+        env = "GROUSER_TLS_CERTIFICATE",
+        requires = "tls_key"
+    )]
+    pub tls_certificate: Option<PathBuf>,
+    /// The private key of the certificate.
+    #[arg(
+        long,
+        value_name = "PEM",
+        env = "GROUSER_TLS_KEY",
+        requires = "tls_certificate"
+    )]
+    pub tls_key: Option<PathBuf>,
     /// Asks nobody for a token: whoever reaches the address may read everything, submit, cancel, and answer as a worker.
     #[arg(long)]
     pub insecure: bool,
@@ -217,15 +233,18 @@ pub struct StoreArguments {
     pub store: String,
 }
 
-/// The token that a service asks for; in the environment, `GROUSER_TOKEN` has the token itself.
+/// What a service asks for: a token, and trust in its certificate. In the environment, `GROUSER_TOKEN` has the token itself.
 #[derive(Debug, Args)]
-pub struct ClientTokenArguments {
+pub struct ClientArguments {
     /// File with the token that the service asks for; by default, `GROUSER_TOKEN` from the environment.
     #[arg(long, value_name = "FILE")]
     pub token_file: Option<PathBuf>,
+    /// Trusts a service at an https URL by this certificate of its authority, a PEM file, in place of those of this machine.
+    #[arg(long, value_name = "PEM", env = "GROUSER_CA_CERTIFICATE")]
+    pub ca_certificate: Option<PathBuf>,
 }
 
-impl ClientTokenArguments {
+impl ClientArguments {
     /// The token: of the file, or else of the environment.
     ///
     /// # Errors
@@ -248,9 +267,9 @@ pub struct SubmitArguments {
     /// URL of the service.
     #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
     pub url: String,
-    /// The token for it.
+    /// What it asks for.
     #[command(flatten)]
-    pub token: ClientTokenArguments,
+    pub client: ClientArguments,
 }
 
 /// Where calibrations are looked up: a service or a folder.
@@ -262,9 +281,9 @@ pub struct SourceArguments {
     /// The output folder of a run.
     #[arg(long, conflicts_with_all = ["url", "token_file"])]
     pub out: Option<PathBuf>,
-    /// The token for the service.
+    /// What the service asks for.
     #[command(flatten)]
-    pub token: ClientTokenArguments,
+    pub client: ClientArguments,
 }
 
 impl SourceArguments {
@@ -297,9 +316,9 @@ pub struct StudyArguments {
     /// URL of the service.
     #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
     pub url: String,
-    /// The token for it.
+    /// What it asks for.
     #[command(flatten)]
-    pub token: ClientTokenArguments,
+    pub client: ClientArguments,
 }
 
 /// One calibration.

@@ -163,8 +163,9 @@ impl Folder {
         let stop = Shutdown::new();
         let server = server.map(|(listener, exposure)| {
             let address = exposure.listening;
+            let scheme = if exposure.tls.is_some() { "https" } else { "http" };
             note(&format!(
-                "workers may join: worker --coordinator http://{address}"
+                "workers may join: worker --coordinator {scheme}://{address}"
             ));
             tokio::spawn(crate::http::serve(
                 listener,

@@ -33,7 +33,8 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     let service = service.with_webhook_hosts(config.webhook_host);
     let address = listener.local_addr()?;
     let exposure = exposure(address, &config.exposure, &service.store().reader(), store).await?;
-    tracing::info!(%address, store, read_only = config.read_only, "serving");
+    let tls = exposure.tls.is_some();
+    tracing::info!(%address, store, tls, read_only = config.read_only, "serving");
 
     let stop = Shutdown::new();
     let workers = (config.local_workers > 0 && !config.read_only)

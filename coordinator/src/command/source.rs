@@ -5,7 +5,7 @@ use serde::de::DeserializeOwned;
 use shared::api::{CalibrationStatus, ErrorBody};
 use shared::bearer::BearerToken;
 
-use crate::config::{ClientTokenArguments, SourceArguments, TargetArguments};
+use crate::config::{ClientArguments, SourceArguments, TargetArguments};
 use crate::service::{
     calibration_row, diagnostics, finished_calibration, leave_out_archived, stored_status, study_file,
 };
@@ -29,7 +29,7 @@ impl CalibrationSource {
             }
             None => Ok(CalibrationSource::Service(ServiceClient::new(
                 &source.url(),
-                &source.token,
+                &source.client,
             )?)),
         }
     }
@@ -134,15 +134,28 @@ pub(super) struct ServiceClient {
 }
 
 impl ServiceClient {
-    pub(super) fn new(url: &str, token: &ClientTokenArguments) -> anyhow::Result<ServiceClient> {
+    pub(super) fn new(url: &str, config: &ClientArguments) -> anyhow::Result<ServiceClient> {
         let parsed = reqwest::Url::parse(url).with_context(|| format!("--url {url}"))?;
-        if parsed.scheme() != "http" {
-            bail!("--url {url}: scheme {} is not http", parsed.scheme());
-        }
+        let builder = reqwest::Client::builder();
+        let builder = match (parsed.scheme(), &config.ca_certificate) {
+            // Without TLS no certificate is read: a machine may have none.
+            ("http", _) => builder.tls_certs_only([]),
+            ("https", None) => builder,
+            ("https", Some(file)) => {
+                let name = || file.display().to_string();
+                let pem = std::fs::read(file).with_context(name)?;
+                let authorities = reqwest::Certificate::from_pem_bundle(&pem).with_context(name)?;
+                if authorities.is_empty() {
+                    bail!("{}: no certificate in PEM form", name());
+                }
+                builder.tls_certs_only(authorities)
+            }
+            (scheme, _) => bail!("--url {url}: scheme {scheme} is not http or https"),
+        };
         Ok(ServiceClient {
-            client: reqwest::Client::new(),
+            client: builder.build()?,
             url: url.trim_end_matches('/').to_owned(),
-            token: token.token()?,
+            token: config.token()?,
         })
     }
 

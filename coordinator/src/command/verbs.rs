@@ -19,7 +19,7 @@ use result::{self, terminal};
 
 pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file)?;
-    let client = ServiceClient::new(&config.url, &config.token)?;
+    let client = ServiceClient::new(&config.url, &config.client)?;
     let experiment = NewExperiment {
         toml: job.experiment.toml,
         files: job.experiment.files,
@@ -78,7 +78,7 @@ pub(super) async fn resume(config: &ResumeArguments) -> anyhow::Result<()> {
 
 /// Archives or restores a study.
 pub(super) async fn archive(config: &StudyArguments, verb: &str) -> anyhow::Result<()> {
-    let client = ServiceClient::new(&config.url, &config.token)?;
+    let client = ServiceClient::new(&config.url, &config.client)?;
     let path = format!("/v1/studies/{}/{verb}", config.study);
     let study: StudyArchived = client.post(&path, &json!({})).await?;
     let now = if study.archived {
@@ -90,7 +90,7 @@ pub(super) async fn archive(config: &StudyArguments, verb: &str) -> anyhow::Resu
 }
 
 pub(super) async fn delete(config: &StudyArguments) -> anyhow::Result<()> {
-    let client = ServiceClient::new(&config.url, &config.token)?;
+    let client = ServiceClient::new(&config.url, &config.client)?;
     let study: StudyDeleted = client.delete(&format!("/v1/studies/{}", config.study)).await?;
     let calibrations: Vec<String> = study.calibrations.iter().map(i64::to_string).collect();
     let text = format!(

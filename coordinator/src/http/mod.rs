@@ -18,6 +18,7 @@ mod host;
 mod metrics;
 mod request_metrics;
 mod studies;
+mod tls;
 mod work;
 
 use std::future::Future;
@@ -28,6 +29,7 @@ use axum::extract::DefaultBodyLimit;
 use axum::http::header::CONTENT_TYPE;
 use axum::routing::get;
 use tokio::net::TcpListener;
+use tokio_rustls::TlsAcceptor;
 use utoipa_axum::router::OpenApiRouter;
 
 use crate::service::Service;
@@ -39,9 +41,10 @@ pub use error::HttpError;
 use gate::Gate;
 use host::Hosts;
 use request_metrics::RequestMetrics;
+pub use tls::{TlsError, tls_acceptor};
 
 /// How a service shows itself: by which names it is reached, and when it asks for tokens.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Exposure {
     /// The listening address.
     pub listening: std::net::SocketAddr,
@@ -51,6 +54,8 @@ pub struct Exposure {
     pub token_rule: TokenRule,
     /// The tokens of the store, as of its start.
     pub tokens: Vec<Token>,
+    /// The certificate, where the service speaks TLS itself.
+    pub tls: Option<TlsAcceptor>,
 }
 
 /// Every route, behind the gate.
@@ -103,5 +108,5 @@ pub async fn serve(
         access: Access::start(exposure.token_rule, exposure.tokens, service.store().reader()),
         is_read_only: service.store().is_read_only(),
     };
-    connections::serve(listener, router(service, gate), shutdown).await;
+    connections::serve(listener, exposure.tls, router(service, gate), shutdown).await;
 }
