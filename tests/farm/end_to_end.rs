@@ -346,9 +346,13 @@ fn the_metrics_page_counts_what_happened() {
     assert!(service.metric("grouser_store_facts_total") >= completed);
     let page = service.client.get("/metrics").body;
     for line in page.lines().filter(|line| !line.starts_with('#')) {
-        let name = line.split(' ').next().unwrap_or_default();
+        let name = line.split([' ', '{']).next().unwrap_or_default();
         assert!(name.starts_with("grouser_"), "{line}");
-        let bare = name.trim_end_matches("_total");
+        let parts = ["_total", "_bucket", "_count", "_sum"];
+        let bare = parts
+            .iter()
+            .find_map(|part| name.strip_suffix(part))
+            .unwrap_or(name);
         assert!(
             page.contains(&format!("# HELP {bare} ")) && page.contains(&format!("# TYPE {bare} ")),
             "{name}"
