@@ -126,7 +126,10 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
         assert!(answer.is_object() || answer.is_array(), "{part}: {answer}");
     }
     let studies = service.client.json("/v1/studies");
-    assert_eq!(studies[1], json!({"id": 2, "experiment": 2, "calibrations": [2]}));
+    assert_eq!(
+        studies[1],
+        json!({"id": 2, "experiment": 2, "calibrations": [2], "archived": false})
+    );
     let ledger = service.client.json("/v1/studies/1")["ledger"].clone();
     assert_eq!(
         ledger[0]["evaluations"],
