@@ -27,7 +27,7 @@ pub enum CoordinatorCommand {
     /// Submit a job to a service.
     Submit(SubmitArguments),
     /// List calibrations.
-    List(SourceArguments),
+    List(ListArguments),
     /// Show the status of a calibration.
     Status(TargetArguments),
     /// Cancel a calibration; it cannot be resumed.
@@ -52,6 +52,14 @@ pub enum CoordinatorCommand {
     AddRuns(AddRunsArguments),
     /// List the effects of the catalogue, or show one: its file and its influence on the measured quantities.
     Effects(EffectsArguments),
+    /// Take a study out of the lists of a service; its results stay.
+    Archive(StudyArguments),
+    /// Take an archived study back into the lists.
+    Restore(StudyArguments),
+    /// Delete a study of a service, with its calibrations and results, for good.
+    Delete(StudyArguments),
+    /// Copy a store, also one that a service is using, to a new file.
+    Backup(BackupArguments),
     /// Add, list and revoke the tokens that a service asks for.
     #[command(subcommand)]
     Token(TokenCommand),
@@ -120,6 +128,22 @@ pub struct ExposureArguments {
     /// Accepts requests to this host name too, as of a reverse proxy; may be repeated, or several between commas.
     #[arg(long, value_name = "NAME", env = "GROUSER_HOST", value_delimiter = ',')]
     pub host: Vec<String>,
+    /// Speaks TLS with this certificate, a PEM file with those of its authorities behind it; by default, plain HTTP.
+    #[arg(
+        long,
+        value_name = "PEM",
+        env = "GROUSER_TLS_CERTIFICATE",
+        requires = "tls_key"
+    )]
+    pub tls_certificate: Option<PathBuf>,
+    /// The private key of the certificate.
+    #[arg(
+        long,
+        value_name = "PEM",
+        env = "GROUSER_TLS_KEY",
+        requires = "tls_certificate"
+    )]
+    pub tls_key: Option<PathBuf>,
     /// Asks nobody for a token: whoever reaches the address may read everything, submit, cancel, and answer as a worker.
     #[arg(long)]
     pub insecure: bool,
@@ -140,9 +164,34 @@ pub struct ServeArguments {
     /// Duration of a lease without renewal `[ms]`.
     #[arg(long, env = "GROUSER_LEASE_MS", default_value_t = crate::service::LEASE_MS)]
     pub lease_ms: u64,
+    /// Shows what the store holds and changes nothing: takes no jobs and no results, and starts no threads. Works beside a
+    /// service that uses the store, and where nothing can be written.
+    #[arg(long)]
+    pub read_only: bool,
+    /// Posts web hooks of jobs to this host; may be repeated, or several between commas. By default, to none.
+    #[arg(
+        long,
+        value_name = "HOST",
+        env = "GROUSER_WEBHOOK_HOST",
+        value_delimiter = ','
+    )]
+    pub webhook_host: Vec<String>,
+    /// Deletes studies so many days after they were archived; by default, archived studies are kept.
+    #[arg(long, env = "GROUSER_KEEP_DAYS", value_name = "DAYS", value_parser = clap::value_parser!(u32).range(1..=36_500))]
+    pub keep_days: Option<u32>,
     /// Who may use the address.
     #[command(flatten)]
     pub exposure: ExposureArguments,
+}
+
+/// Copy a store.
+#[derive(Debug, Args)]
+pub struct BackupArguments {
+    /// The new file.
+    pub file: PathBuf,
+    /// What is copied.
+    #[command(flatten)]
+    pub store: StoreArguments,
 }
 
 /// Add, list and revoke tokens; a running service follows within a second.
@@ -184,15 +233,18 @@ pub struct StoreArguments {
     pub store: String,
 }
 
-/// The token that a service asks for; in the environment, `GROUSER_TOKEN` has the token itself.
+/// What a service asks for: a token, and trust in its certificate. In the environment, `GROUSER_TOKEN` has the token itself.
 #[derive(Debug, Args)]
-pub struct ClientTokenArguments {
+pub struct ClientArguments {
     /// File with the token that the service asks for; by default, `GROUSER_TOKEN` from the environment.
     #[arg(long, value_name = "FILE")]
     pub token_file: Option<PathBuf>,
+    /// Trusts a service at an https URL by this certificate of its authority, a PEM file, in place of those of this machine.
+    #[arg(long, value_name = "PEM", env = "GROUSER_CA_CERTIFICATE")]
+    pub ca_certificate: Option<PathBuf>,
 }
 
-impl ClientTokenArguments {
+impl ClientArguments {
     /// The token: of the file, or else of the environment.
     ///
     /// # Errors
@@ -208,12 +260,16 @@ pub struct SubmitArguments {
     /// The job.
     #[command(flatten)]
     pub file: JobArguments,
+    /// The service posts every pause and end of the study's calibrations to this URL; its host must be one of the service's
+    /// `--webhook-host`.
+    #[arg(long, value_name = "URL")]
+    pub webhook: Option<String>,
     /// URL of the service.
     #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
     pub url: String,
-    /// The token for it.
+    /// What it asks for.
     #[command(flatten)]
-    pub token: ClientTokenArguments,
+    pub client: ClientArguments,
 }
 
 /// Where calibrations are looked up: a service or a folder.
@@ -225,9 +281,9 @@ pub struct SourceArguments {
     /// The output folder of a run.
     #[arg(long, conflicts_with_all = ["url", "token_file"])]
     pub out: Option<PathBuf>,
-    /// The token for the service.
+    /// What the service asks for.
     #[command(flatten)]
-    pub token: ClientTokenArguments,
+    pub client: ClientArguments,
 }
 
 impl SourceArguments {
@@ -239,6 +295,30 @@ impl SourceArguments {
             .or_else(environment)
             .unwrap_or_else(|| "http://127.0.0.1:7070".into())
     }
+}
+
+/// Which calibrations are listed.
+#[derive(Debug, Args)]
+pub struct ListArguments {
+    /// Lists those of archived studies too.
+    #[arg(long)]
+    pub archived: bool,
+    /// Where they are stored.
+    #[command(flatten)]
+    pub source: SourceArguments,
+}
+
+/// One study of a service.
+#[derive(Debug, Args)]
+pub struct StudyArguments {
+    /// Number of the study.
+    pub study: i64,
+    /// URL of the service.
+    #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
+    pub url: String,
+    /// What it asks for.
+    #[command(flatten)]
+    pub client: ClientArguments,
 }
 
 /// One calibration.

@@ -7,6 +7,7 @@
 //! - [`store`]: the SQLite file; the only place that knows SQL.
 //! - [`study`]: how a study grows: its next step from where it stands.
 //! - [`service`]: store and farm together: submit, recover, control, grow.
+//! - [`webhook`]: what is posted when a calibration pauses or ends.
 //! - [`token`]: bearer tokens and their roles.
 //! - [`http`]: the REST interface; the only place that knows axum.
 //! - [`missing_effect`]: the search for a missing effect: candidates, and what is said in the end.
@@ -28,3 +29,4 @@ pub mod service;
 pub mod store;
 pub mod study;
 pub mod token;
+pub mod webhook;

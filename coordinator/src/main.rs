@@ -8,6 +8,8 @@ use tracing_subscriber::layer::SubscriberExt as _;
 use tracing_subscriber::util::SubscriberInitExt as _;
 
 fn main() -> std::process::ExitCode {
+    // The cryptography of every connection; only a second call would fail.
+    let _ = rustls::crypto::ring::default_provider().install_default();
     if let Err(error) = coordinator::embedded::check_processor() {
         eprintln!("error: {error}");
         return std::process::ExitCode::FAILURE;

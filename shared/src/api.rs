@@ -30,6 +30,9 @@ pub struct NewCalibration {
     /// A name for lists.
     #[serde(default)]
     pub name: Option<String>,
+    /// URL that the pauses and ends of the study's calibrations are posted to, of a host that the service lists.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub webhook: Option<String>,
 }
 
 /// Answer to a new experiment.
@@ -96,6 +99,24 @@ pub struct RunsAdded {
     pub study: i64,
     /// The enlarged experiment.
     pub experiment: i64,
+}
+
+/// Answer to `POST /v1/studies/ID/archive` and `/restore`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct StudyArchived {
+    /// The study.
+    pub id: i64,
+    /// Whether it is out of the lists now.
+    pub archived: bool,
+}
+
+/// Answer to `DELETE /v1/studies/ID`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct StudyDeleted {
+    /// The study.
+    pub id: i64,
+    /// The calibrations that went with it.
+    pub calibrations: Vec<i64>,
 }
 
 /// The state of a calibration.

@@ -126,7 +126,10 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
         assert!(answer.is_object() || answer.is_array(), "{part}: {answer}");
     }
     let studies = service.client.json("/v1/studies");
-    assert_eq!(studies[1], json!({"id": 2, "experiment": 2, "calibrations": [2]}));
+    assert_eq!(
+        studies[1],
+        json!({"id": 2, "experiment": 2, "calibrations": [2], "archived": false})
+    );
     let ledger = service.client.json("/v1/studies/1")["ledger"].clone();
     assert_eq!(
         ledger[0]["evaluations"],
@@ -346,9 +349,13 @@ fn the_metrics_page_counts_what_happened() {
     assert!(service.metric("grouser_store_facts_total") >= completed);
     let page = service.client.get("/metrics").body;
     for line in page.lines().filter(|line| !line.starts_with('#')) {
-        let name = line.split(' ').next().unwrap_or_default();
+        let name = line.split([' ', '{']).next().unwrap_or_default();
         assert!(name.starts_with("grouser_"), "{line}");
-        let bare = name.trim_end_matches("_total");
+        let parts = ["_total", "_bucket", "_count", "_sum"];
+        let bare = parts
+            .iter()
+            .find_map(|part| name.strip_suffix(part))
+            .unwrap_or(name);
         assert!(
             page.contains(&format!("# HELP {bare} ")) && page.contains(&format!("# TYPE {bare} ")),
             "{name}"

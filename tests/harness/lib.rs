@@ -9,11 +9,13 @@
 //! - [`cylinder`]: the surface of a wheel as a mesh file.
 //! - [`job`]: the files of a small job, and ways to change them.
 //! - [`workspace`]: the workspace's own files.
+//! - [`database`]: a store opened by another client.
 //! - [`text`]: comparing long texts.
 //! - [`wait`]: waiting with a deadline.
 //! - [`random`]: seeded numbers.
 
 pub mod cylinder;
+pub mod database;
 pub mod fake_worker;
 pub mod http;
 pub mod job;

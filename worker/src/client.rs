@@ -1,9 +1,10 @@
 //! HTTP client of the coordinator; no other file of the worker uses HTTP.
 
+use std::path::Path;
 use std::time::Duration;
 
 use reqwest::header::CONTENT_TYPE;
-use reqwest::{Client, RequestBuilder, StatusCode};
+use reqwest::{Certificate, Client, RequestBuilder, StatusCode};
 use shared::api::ErrorBody;
 use shared::bearer::BearerToken;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
@@ -27,6 +28,14 @@ pub enum ClientError {
     /// The URL, and what is wrong with it.
     #[error("coordinator URL \"{0}\": {1}")]
     Url(String, String),
+    /// The certificate of an authority cannot be used.
+    #[error("certificate {file}: {message}")]
+    Certificate {
+        /// Its file.
+        file: String,
+        /// What is wrong with it.
+        message: String,
+    },
     /// The HTTP client cannot be set up.
     #[error("HTTP client: {0}")]
     Client(reqwest::Error),
@@ -37,18 +46,30 @@ const TIMEOUT: Duration = Duration::from_secs(60);
 
 impl HttpCoordinator {
     /// A client of the coordinator at `url`, as in `http://host:7070`, that exchanges messages in this form, with the token
-    /// that the coordinator asks for, if it does.
+    /// that the coordinator asks for, if it does. An https URL is trusted by the certificates of this machine, or by those of a
+    /// PEM file in their place.
     ///
     /// # Errors
-    /// [`ClientError`] names the URL and what is wrong with it.
-    pub fn new(url: &str, form: WireForm, token: Option<BearerToken>) -> Result<Self, ClientError> {
+    /// [`ClientError`] names the URL or the file and what is wrong with it.
+    pub fn new(
+        url: &str,
+        ca_certificate: Option<&Path>,
+        form: WireForm,
+        token: Option<BearerToken>,
+    ) -> Result<Self, ClientError> {
         let owned = || url.to_owned();
         let parsed = reqwest::Url::parse(url).map_err(|e| ClientError::Url(owned(), e.to_string()))?;
-        if parsed.scheme() != "http" {
-            let wrong = format!("scheme {} is not http", parsed.scheme());
-            return Err(ClientError::Url(owned(), wrong));
-        }
-        let client = Client::builder()
+        let client = match (parsed.scheme(), ca_certificate) {
+            // Without TLS no certificate is read: a machine may have none.
+            ("http", _) => Client::builder().tls_certs_only([]),
+            ("https", None) => Client::builder(),
+            ("https", Some(file)) => Client::builder().tls_certs_only(authorities(file)?),
+            (scheme, _) => {
+                let wrong = format!("scheme {scheme} is not http or https");
+                return Err(ClientError::Url(owned(), wrong));
+            }
+        };
+        let client = client
             .timeout(TIMEOUT)
             .connect_timeout(Duration::from_secs(5))
             .build()
@@ -105,6 +126,20 @@ impl HttpCoordinator {
         } else {
             Err(ExchangeError::Away(message))
         }
+    }
+}
+
+/// The certificates of a PEM file.
+fn authorities(file: &Path) -> Result<Vec<Certificate>, ClientError> {
+    let failed = |message| ClientError::Certificate {
+        file: file.display().to_string(),
+        message,
+    };
+    let pem = std::fs::read(file).map_err(|e| failed(e.to_string()))?;
+    let authorities = Certificate::from_pem_bundle(&pem).map_err(|e| failed(root_cause(&e)))?;
+    match authorities.is_empty() {
+        true => Err(failed("none in PEM form".into())),
+        false => Ok(authorities),
     }
 }
 

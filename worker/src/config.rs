@@ -21,7 +21,7 @@ pub struct WorkerConfig {
 /// How to serve a coordinator.
 #[derive(Debug, clap::Args)]
 pub struct PullArguments {
-    /// The coordinator, as in `http://host:7070`.
+    /// The coordinator, as in `http://host:7070` or `https://farm.example`.
     #[arg(long, env = "GROUSER_COORDINATOR", value_name = "URL")]
     pub coordinator: String,
     /// Threads that simulate; by default, one for each core.
@@ -33,6 +33,9 @@ pub struct PullArguments {
     /// File with the token that the coordinator asks for; by default, `GROUSER_TOKEN` from the environment.
     #[arg(long, value_name = "FILE")]
     pub token_file: Option<PathBuf>,
+    /// Trusts a coordinator at an https URL by this certificate of its authority, a PEM file, in place of those of this machine.
+    #[arg(long, value_name = "PEM", env = "GROUSER_CA_CERTIFICATE")]
+    pub ca_certificate: Option<PathBuf>,
 }
 
 impl PullArguments {

@@ -14,6 +14,8 @@ use worker::evaluator::SimulationClock;
 use worker::pull::{PullSettings, run};
 
 fn main() -> std::process::ExitCode {
+    // The cryptography of every connection; only a second call would fail.
+    let _ = rustls::crypto::ring::default_provider().install_default();
     if let Err(error) = worker::processor::check() {
         eprintln!("error: {error}");
         return std::process::ExitCode::FAILURE;
@@ -43,7 +45,12 @@ fn main() -> std::process::ExitCode {
 
 #[tokio::main]
 async fn pull(serve: &PullArguments) -> anyhow::Result<()> {
-    let coordinator = HttpCoordinator::new(&serve.coordinator, serve.wire, serve.token()?)?;
+    let coordinator = HttpCoordinator::new(
+        &serve.coordinator,
+        serve.ca_certificate.as_deref(),
+        serve.wire,
+        serve.token()?,
+    )?;
     let cores = std::thread::available_parallelism().map_or(1, Into::into);
     let threads = serve.threads.map_or(cores, Into::into);
     let name = name();

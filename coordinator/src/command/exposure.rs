@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 use anyhow::bail;
 
 use crate::config::ExposureArguments;
-use crate::http::{Exposure, TokenRule};
+use crate::http::{Exposure, TokenRule, tls_acceptor};
 use crate::store::Reader;
 
 /// How a service shows itself at an address; refused where others reach it and no token stands between.
@@ -15,6 +15,10 @@ pub(super) async fn exposure(
     reader: &Reader,
     store: &str,
 ) -> anyhow::Result<Exposure> {
+    let tls = match (&config.tls_certificate, &config.tls_key) {
+        (Some(certificate), Some(key)) => Some(tls_acceptor(certificate, key)?),
+        _ => None,
+    };
     let tokens = reader.tokens().await?;
     let token_rule = if config.insecure {
         tracing::warn!(
@@ -38,5 +42,6 @@ pub(super) async fn exposure(
         names: config.host.clone(),
         token_rule,
         tokens,
+        tls,
     })
 }

@@ -163,8 +163,9 @@ impl Folder {
         let stop = Shutdown::new();
         let server = server.map(|(listener, exposure)| {
             let address = exposure.listening;
+            let scheme = if exposure.tls.is_some() { "https" } else { "http" };
             note(&format!(
-                "workers may join: worker --coordinator http://{address}"
+                "workers may join: worker --coordinator {scheme}://{address}"
             ));
             tokio::spawn(crate::http::serve(
                 listener,
@@ -243,7 +244,7 @@ async fn watch_until_over(
             reason = &mut failure => bail!("the local workers ended: {reason}"),
             () = tokio::time::sleep(LOOK) => {}
         }
-        let mut statuses = service.list().await?;
+        let mut statuses = service.list(true).await?;
         statuses.retain(|status| status.study == study && !status.state.is_final());
         let paused = statuses.iter().find(|s| s.state == CalibrationState::Paused);
         if let Some(status) = paused {

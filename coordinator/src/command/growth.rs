@@ -83,7 +83,7 @@ pub(super) async fn extend(config: &ExtendArguments) -> anyhow::Result<()> {
         wheel: config.wheel.clone(),
         effect_file: file,
     };
-    let created: CalibrationCreated = ServiceClient::new(&source.url(), &source.token)?
+    let created: CalibrationCreated = ServiceClient::new(&source.url(), &source.client)?
         .post(&format!("/v1/calibrations/{id}/extend"), &new)
         .await?;
     Ok(say(&format!(
@@ -111,7 +111,7 @@ pub(super) async fn add_runs(config: &AddRunsArguments) -> anyhow::Result<()> {
         })
         .await;
     }
-    let added: RunsAdded = ServiceClient::new(&source.url(), &source.token)?
+    let added: RunsAdded = ServiceClient::new(&source.url(), &source.client)?
         .post(
             &format!("/v1/studies/{study}/runs"),
             &NewRuns {

@@ -1,5 +1,6 @@
 //! The commands of the command line.
 
+mod backup;
 mod check;
 mod effects;
 mod exposure;
@@ -27,7 +28,7 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Check(file) => check::check(&file).await,
         CoordinatorCommand::Serve(serve) => serve::serve(serve).await,
         CoordinatorCommand::Submit(submit) => verbs::submit(&submit).await,
-        CoordinatorCommand::List(source) => verbs::list(&source).await,
+        CoordinatorCommand::List(config) => verbs::list(&config).await,
         CoordinatorCommand::Status(target) => verbs::status(&target).await,
         CoordinatorCommand::Cancel(target) => verbs::control(&target, "cancel").await,
         CoordinatorCommand::Pause(target) => verbs::control(&target, "pause").await,
@@ -40,6 +41,10 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Extend(extend) => growth::extend(&extend).await,
         CoordinatorCommand::AddRuns(runs) => growth::add_runs(&runs).await,
         CoordinatorCommand::Effects(config) => effects::effects(&config).await,
+        CoordinatorCommand::Archive(study) => verbs::archive(&study, "archive").await,
+        CoordinatorCommand::Restore(study) => verbs::archive(&study, "restore").await,
+        CoordinatorCommand::Delete(study) => verbs::delete(&study).await,
+        CoordinatorCommand::Backup(config) => backup::backup(&config).await,
         CoordinatorCommand::Token(command) => token::token(&command).await,
     }
 }

@@ -51,7 +51,7 @@ pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
 async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
     let service = &folder.service;
     let rows = service.store().reader().calibrations().await?;
-    let Some(first) = rows.first() else {
+    let Some((_, first)) = rows.into_iter().next() else {
         let experiment = NewExperiment {
             toml: job.experiment.toml.clone(),
             files: job.experiment.files.clone(),
@@ -62,11 +62,13 @@ async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
             toml: job.job.toml.clone(),
             files: job.job.files.clone(),
             name: Some(job.name.clone()),
+            webhook: None,
         };
         return Ok(service.add_calibration(new).await?.study);
     };
     // The others of the study follow from the first, or are added to it by the user.
-    let stored = service.spec_of(first).await?;
+    let first = first?;
+    let stored = service.spec_of(&first).await?;
     if !stored.same_as(&job.spec) {
         let differs =
             |(name, text): (&String, &String)| job.job.files.get(name).is_some_and(|now| now != text);

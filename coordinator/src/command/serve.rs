@@ -26,13 +26,18 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
         .await
         .with_context(|| format!("--listen {}", config.listen))?;
     let store = &config.store.store;
-    let service = Service::open(store, config.lease_ms).await?;
+    let service = match config.read_only {
+        true => Service::open_read_only(store).await?,
+        false => Service::open(store, config.lease_ms).await?,
+    };
+    let service = service.with_webhook_hosts(config.webhook_host);
     let address = listener.local_addr()?;
     let exposure = exposure(address, &config.exposure, &service.store().reader(), store).await?;
-    tracing::info!(%address, store, "serving");
+    let tls = exposure.tls.is_some();
+    tracing::info!(%address, store, tls, read_only = config.read_only, "serving");
 
     let stop = Shutdown::new();
-    let workers = (config.local_workers > 0)
+    let workers = (config.local_workers > 0 && !config.read_only)
         .then(|| LocalWorkers::start(service.dispatcher().clone(), config.local_workers, stop.wait()));
     let server = tokio::spawn(crate::http::serve(
         listener,
@@ -41,10 +46,15 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
         stop.wait(),
     ));
     let signal = stop_signal()?;
+    let is_written = !config.read_only;
     tokio::select! {
-        () = service.keep_growing() => {}
+        () = service.keep_growing(), if is_written => {}
+        () = service.announce(), if is_written => {}
+        () = service.keep_tidy(config.keep_days), if is_written => {}
         () = signal => tracing::info!("stopping; workers will reconnect"),
-        () = service.store().writer().stopped() => bail!("the store can no longer be written; see the log"),
+        () = service.store().writer().stopped(), if is_written => {
+            bail!("the store can no longer be written; see the log")
+        }
     }
     stop.now();
     if let Some(workers) = workers {

@@ -5,8 +5,10 @@ use serde::de::DeserializeOwned;
 use shared::api::{CalibrationStatus, ErrorBody};
 use shared::bearer::BearerToken;
 
-use crate::config::{ClientTokenArguments, SourceArguments, TargetArguments};
-use crate::service::{calibration_row, diagnostics, finished_calibration, stored_status, study_file};
+use crate::config::{ClientArguments, SourceArguments, TargetArguments};
+use crate::service::{
+    calibration_row, diagnostics, finished_calibration, leave_out_archived, stored_status, study_file,
+};
 use crate::store::Reader;
 use result::{self, Comparison, Diagnostics, FinishedCalibration, PosteriorTable, StudyFile, StudySummary};
 
@@ -27,17 +29,24 @@ impl CalibrationSource {
             }
             None => Ok(CalibrationSource::Service(ServiceClient::new(
                 &source.url(),
-                &source.token,
+                &source.client,
             )?)),
         }
     }
 
-    pub(super) async fn list(&self) -> anyhow::Result<Vec<CalibrationStatus>> {
+    pub(super) async fn list(&self, with_archived: bool) -> anyhow::Result<Vec<CalibrationStatus>> {
         match self {
+            CalibrationSource::Service(client) if with_archived => {
+                client.get("/v1/calibrations?archived=true").await
+            }
             CalibrationSource::Service(client) => client.get("/v1/calibrations").await,
             CalibrationSource::Folder(reader) => {
                 let rows = reader.calibrations().await?;
-                Ok(rows.iter().map(stored_status).collect())
+                let mut statuses = rows.iter().map(|(id, row)| stored_status(*id, row)).collect();
+                if !with_archived {
+                    leave_out_archived(reader, &mut statuses).await?;
+                }
+                Ok(statuses)
             }
         }
     }
@@ -47,7 +56,7 @@ impl CalibrationSource {
         if let Some(id) = target.id {
             return Ok(id);
         }
-        match self.list().await?.as_slice() {
+        match self.list(false).await?.as_slice() {
             [first, others @ ..] if others.iter().all(|o| o.study == first.study) => Ok(first.id),
             [] => bail!("there is no calibration"),
             several => bail!("there are {} calibrations: name one by its id", several.len()),
@@ -57,7 +66,9 @@ impl CalibrationSource {
     pub(super) async fn status(&self, id: i64) -> anyhow::Result<CalibrationStatus> {
         match self {
             CalibrationSource::Service(client) => client.get(&format!("/v1/calibrations/{id}")).await,
-            CalibrationSource::Folder(reader) => Ok(stored_status(&calibration_row(reader, id).await?)),
+            CalibrationSource::Folder(reader) => {
+                Ok(stored_status(id, &Ok(calibration_row(reader, id).await?)))
+            }
         }
     }
 
@@ -123,15 +134,28 @@ pub(super) struct ServiceClient {
 }
 
 impl ServiceClient {
-    pub(super) fn new(url: &str, token: &ClientTokenArguments) -> anyhow::Result<ServiceClient> {
+    pub(super) fn new(url: &str, config: &ClientArguments) -> anyhow::Result<ServiceClient> {
         let parsed = reqwest::Url::parse(url).with_context(|| format!("--url {url}"))?;
-        if parsed.scheme() != "http" {
-            bail!("--url {url}: scheme {} is not http", parsed.scheme());
-        }
+        let builder = reqwest::Client::builder();
+        let builder = match (parsed.scheme(), &config.ca_certificate) {
+            // Without TLS no certificate is read: a machine may have none.
+            ("http", _) => builder.tls_certs_only([]),
+            ("https", None) => builder,
+            ("https", Some(file)) => {
+                let name = || file.display().to_string();
+                let pem = std::fs::read(file).with_context(name)?;
+                let authorities = reqwest::Certificate::from_pem_bundle(&pem).with_context(name)?;
+                if authorities.is_empty() {
+                    bail!("{}: no certificate in PEM form", name());
+                }
+                builder.tls_certs_only(authorities)
+            }
+            (scheme, _) => bail!("--url {url}: scheme {scheme} is not http or https"),
+        };
         Ok(ServiceClient {
-            client: reqwest::Client::new(),
+            client: builder.build()?,
             url: url.trim_end_matches('/').to_owned(),
-            token: token.token()?,
+            token: config.token()?,
         })
     }
 
@@ -161,6 +185,14 @@ impl ServiceClient {
 
     pub(super) async fn get<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
         let text = self.text(path).await?;
+        serde_json::from_str(&text)
+            .with_context(|| format!("{} is not a Grouser coordinator of this version", self.url))
+    }
+
+    pub(super) async fn delete<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
+        let text = self
+            .answer(self.client.delete(format!("{}{path}", self.url)))
+            .await?;
         serde_json::from_str(&text)
             .with_context(|| format!("{} is not a Grouser coordinator of this version", self.url))
     }

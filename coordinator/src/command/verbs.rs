@@ -1,23 +1,25 @@
-//! The short commands: submit, list, status, cancel, pause, resume, compare, diagnose, report, export.
+//! The short commands: submit, list, status, cancel, pause, resume, archive, delete, compare, diagnose, report, export.
 
 use std::path::Path;
 
 use anyhow::{Context, bail};
 use serde_json::json;
-use shared::api::{CalibrationCreated, ExperimentCreated, NewCalibration, NewExperiment};
+use shared::api::{
+    CalibrationCreated, ExperimentCreated, NewCalibration, NewExperiment, StudyArchived, StudyDeleted,
+};
 
 use super::job_on_disk;
 use super::output::say;
 use super::source::{CalibrationSource, ServiceClient};
 use crate::config::{
-    ExportArguments, ExportFormat, ReportArguments, ResumeArguments, SourceArguments, SubmitArguments,
-    TargetArguments,
+    ExportArguments, ExportFormat, ListArguments, ReportArguments, ResumeArguments, StudyArguments,
+    SubmitArguments, TargetArguments,
 };
 use result::{self, terminal};
 
 pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file)?;
-    let client = ServiceClient::new(&config.url, &config.token)?;
+    let client = ServiceClient::new(&config.url, &config.client)?;
     let experiment = NewExperiment {
         toml: job.experiment.toml,
         files: job.experiment.files,
@@ -28,6 +30,7 @@ pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
         toml: job.job.toml,
         files: job.job.files,
         name: Some(job.name),
+        webhook: config.webhook.clone(),
     };
     let created: CalibrationCreated = client.post("/v1/calibrations", &new).await?;
     let mut text = format!("calibration {} of study {}\n", created.id, created.study);
@@ -37,8 +40,9 @@ pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
     Ok(say(&text)?)
 }
 
-pub(super) async fn list(source: &SourceArguments) -> anyhow::Result<()> {
-    let statuses = CalibrationSource::open(source).await?.list().await?;
+pub(super) async fn list(config: &ListArguments) -> anyhow::Result<()> {
+    let place = CalibrationSource::open(&config.source).await?;
+    let statuses = place.list(config.archived).await?;
     Ok(say(&terminal::status_table(&statuses))?)
 }
 
@@ -70,6 +74,31 @@ pub(super) async fn resume(config: &ResumeArguments) -> anyhow::Result<()> {
         "resume"
     };
     control(&config.target, verb).await
+}
+
+/// Archives or restores a study.
+pub(super) async fn archive(config: &StudyArguments, verb: &str) -> anyhow::Result<()> {
+    let client = ServiceClient::new(&config.url, &config.client)?;
+    let path = format!("/v1/studies/{}/{verb}", config.study);
+    let study: StudyArchived = client.post(&path, &json!({})).await?;
+    let now = if study.archived {
+        "archived"
+    } else {
+        "in the lists again"
+    };
+    Ok(say(&format!("study {} is {now}\n", study.id))?)
+}
+
+pub(super) async fn delete(config: &StudyArguments) -> anyhow::Result<()> {
+    let client = ServiceClient::new(&config.url, &config.client)?;
+    let study: StudyDeleted = client.delete(&format!("/v1/studies/{}", config.study)).await?;
+    let calibrations: Vec<String> = study.calibrations.iter().map(i64::to_string).collect();
+    let text = format!(
+        "study {} is deleted, with its calibrations: {}\n",
+        study.id,
+        calibrations.join(", ")
+    );
+    Ok(say(&text)?)
 }
 
 pub(super) async fn compare(target: &TargetArguments) -> anyhow::Result<()> {

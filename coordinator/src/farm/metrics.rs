@@ -22,6 +22,8 @@ pub struct FarmCounters {
 pub struct FarmMetrics {
     /// Counters since the start.
     pub counters: FarmCounters,
+    /// Evaluations that wait for a worker.
+    pub queued: u64,
     /// Leases that are out.
     pub leased: usize,
     /// Calibrations in progress.

@@ -99,6 +99,7 @@ impl Farm {
         let leased = |e: &Entry| e.calibration.queue.leased();
         FarmMetrics {
             counters: self.counters.clone(),
+            queued: self.remaining(),
             leased: self.calibrations.values().map(leased).sum(),
             calibrations: self.calibrations.len(),
             workers: self.workers.len(),

@@ -57,6 +57,7 @@ impl Access {
                 tokio::time::sleep(LOOK).await;
                 match reader.tokens().await {
                     Ok(tokens) => drop(sender.send_replace(tokens)),
+                    Err(_) if reader.is_closed() => return,
                     Err(error) => tracing::error!(%error, "failed to read the tokens; the last ones stand"),
                 }
             }

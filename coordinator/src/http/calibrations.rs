@@ -10,7 +10,8 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::access::Caller;
-use super::error::{Body, HttpError, Id};
+use super::error::{Body, HttpError, Id, Query};
+use super::studies::WithArchived;
 use crate::farm::Control;
 use crate::service::{Service, finished_calibration, finished_study};
 use record::{Sample, StageRow};
@@ -59,10 +60,14 @@ async fn create(
     Ok((StatusCode::CREATED, headers, Json(created)))
 }
 
-/// Every calibration, oldest first.
-#[utoipa::path(get, path = "/calibrations", responses((status = 200, body = Vec<CalibrationStatus>)))]
-async fn list(State(service): State<Service>) -> Result<Json<Vec<CalibrationStatus>>, HttpError> {
-    Ok(Json(service.list().await?))
+/// Every calibration, oldest first; those of archived studies with `archived=true` alone.
+#[utoipa::path(get, path = "/calibrations", params(("archived" = Option<bool>, Query)), responses(
+    (status = 200, body = Vec<CalibrationStatus>)))]
+async fn list(
+    State(service): State<Service>,
+    Query(which): Query<WithArchived>,
+) -> Result<Json<Vec<CalibrationStatus>>, HttpError> {
+    Ok(Json(service.list(which.archived).await?))
 }
 
 /// The status of a calibration.
@@ -140,11 +145,6 @@ struct WhichStage {
     /// Stage, counted from 0; the last one where nothing is said.
     stage: Option<u32>,
 }
-
-/// Query parameters whose refusal has our form.
-#[derive(axum::extract::FromRequestParts)]
-#[from_request(via(axum::extract::Query), rejection(HttpError))]
-struct Query<T>(T);
 
 /// The population at the end of a stage.
 #[derive(Debug, serde::Serialize, utoipa::ToSchema)]

@@ -11,12 +11,14 @@ use hyper_util::service::TowerToHyperService;
 use rustix::process::{Resource, getrlimit, setrlimit};
 use tokio::net::TcpListener;
 use tokio::sync::Semaphore;
+use tokio_rustls::TlsAcceptor;
 
 /// Most connections at a time.
 const CONNECTIONS: u64 = 4096;
 /// File descriptors that are left to the store and to outputs.
 const OTHER_DESCRIPTORS: u64 = 64;
-/// The head of a request must have arrived after this time; a connection without requests is closed after it too.
+/// The head of a request, or the greeting of TLS, must have arrived after this time; a connection without requests is closed
+/// after it too.
 const HEADER_TIME: Duration = Duration::from_secs(15);
 /// Largest head of a request, and most that is read ahead of a body `[bytes]`.
 const BUFFER: usize = 64 << 10;
@@ -40,7 +42,12 @@ fn most_connections() -> usize {
 }
 
 /// Answers connections until `shutdown` is ready, then lets requests in progress end.
-pub(super) async fn serve(listener: TcpListener, router: Router, shutdown: impl Future<Output = ()>) {
+pub(super) async fn serve(
+    listener: TcpListener,
+    tls: Option<TlsAcceptor>,
+    router: Router,
+    shutdown: impl Future<Output = ()>,
+) {
     let slots = Arc::new(Semaphore::new(most_connections()));
     let connections = GracefulShutdown::new();
     let mut http = http1::Builder::new();
@@ -61,12 +68,27 @@ pub(super) async fn serve(listener: TcpListener, router: Router, shutdown: impl 
             tokio::time::sleep(PAUSE).await;
             continue;
         };
-        let connection =
-            http.serve_connection(TokioIo::new(stream), TowerToHyperService::new(router.clone()));
-        let connection = connections.watch(connection);
+        let service = TowerToHyperService::new(router.clone());
+        let (http, tls, watcher) = (http.clone(), tls.clone(), connections.watcher());
         tokio::spawn(async move {
             // A broken connection is its client's affair.
-            let _ = connection.await;
+            match tls {
+                None => drop(
+                    watcher
+                        .watch(http.serve_connection(TokioIo::new(stream), service))
+                        .await,
+                ),
+                Some(tls) => {
+                    let greeted = tokio::time::timeout(HEADER_TIME, tls.accept(stream)).await;
+                    if let Ok(Ok(stream)) = greeted {
+                        drop(
+                            watcher
+                                .watch(http.serve_connection(TokioIo::new(stream), service))
+                                .await,
+                        );
+                    }
+                }
+            }
             drop(slot);
         });
     }

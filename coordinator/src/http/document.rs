@@ -11,13 +11,13 @@ use utoipa::openapi::{Content, Ref, ResponseBuilder};
         title = "Grouser coordinator",
         description = "Calibrates wheel-soil contact models by Bayesian updating on a farm of workers. Every POST is \
                        application/json. Where the service asks for tokens, GET needs the role read or submit, POST \
-                       the role submit, /v1/work the role work, and /health none."
+                       and DELETE the role submit, /v1/work the role work, and /health none."
     ),
     security((), ("token" = []))
 )]
 struct Document;
 
-/// Answers of the gate to a GET, then those to a POST besides.
+/// Answers of the gate to a GET or DELETE, then those to a POST besides.
 const REFUSALS: [(&str, &str); 5] = [
     ("401", "no token, or one that is not accepted"),
     ("403", "a foreign host or page, or a token of another role"),
@@ -38,7 +38,11 @@ pub(super) fn base() -> utoipa::openapi::OpenApi {
 /// The document of all handlers, with the answers of the gate where a handler states none of that status.
 pub(super) fn complete(mut document: utoipa::openapi::OpenApi) -> utoipa::openapi::OpenApi {
     for item in document.paths.paths.values_mut() {
-        for (operation, refusals) in [(&mut item.get, &REFUSALS[..2]), (&mut item.post, &REFUSALS[..])] {
+        for (operation, refusals) in [
+            (&mut item.get, &REFUSALS[..2]),
+            (&mut item.delete, &REFUSALS[..2]),
+            (&mut item.post, &REFUSALS[..]),
+        ] {
             let Some(operation) = operation else { continue };
             for &(status, description) in refusals {
                 let body = Content::new(Some(Ref::from_schema_name("ErrorBody")));

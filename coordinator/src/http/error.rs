@@ -77,16 +77,27 @@ impl IntoResponse for HttpError {
 impl From<ServiceError> for HttpError {
     fn from(error: ServiceError) -> Self {
         let kind = match &error {
-            ServiceError::File(_) | ServiceError::Begin(_) => ErrorKind::InvalidFile,
+            ServiceError::File(_) | ServiceError::Begin(_) | ServiceError::Webhook(_) => {
+                ErrorKind::InvalidFile
+            }
             ServiceError::NotFound { .. } => ErrorKind::NotFound,
-            ServiceError::Control(_) | ServiceError::Effects(_) | ServiceError::Search(_) => {
-                ErrorKind::Conflict
-            }
+            ServiceError::Control(_)
+            | ServiceError::Effects(_)
+            | ServiceError::Search(_)
+            | ServiceError::LeftAlone { .. }
+            | ServiceError::InProgress { .. }
+            | ServiceError::Archived(_) => ErrorKind::Conflict,
             ServiceError::Busy(_) => ErrorKind::Busy,
-            ServiceError::Store(_) | ServiceError::Thread(_) | ServiceError::Stopped(_) => {
-                ErrorKind::Internal
-            }
+            ServiceError::Store(_)
+            | ServiceError::Replay(_)
+            | ServiceError::Thread(_)
+            | ServiceError::Stopped(_) => ErrorKind::Internal,
         };
+        if let ServiceError::Store(StoreError::Corrupt(_)) = &error {
+            // Which row is bad is what its owner needs to know.
+            tracing::error!(%error, "a row cannot be read");
+            return HttpError::new(kind, error.to_string());
+        }
         if kind == ErrorKind::Internal {
             // The cause stays in the log; a client cannot mend it.
             tracing::error!(%error, "internal error");
@@ -132,6 +143,11 @@ impl From<BytesRejection> for HttpError {
         HttpError::new(kind, rejection.body_text())
     }
 }
+
+/// Query parameters whose refusal has our form.
+#[derive(axum::extract::FromRequestParts)]
+#[from_request(via(axum::extract::Query), rejection(HttpError))]
+pub(super) struct Query<T>(pub(super) T);
 
 /// The number in a path.
 #[derive(axum::extract::FromRequestParts, serde::Deserialize)]

@@ -1,8 +1,10 @@
 //! What every request passes before its handler: host and origin, form, token, body.
 
 use axum::extract::{Request, State};
+use axum::http::Method;
 use axum::middleware::Next;
 use axum::response::Response;
+use shared::api::ErrorKind;
 
 use super::access::Access;
 use super::body;
@@ -14,6 +16,8 @@ use super::host::Hosts;
 pub(super) struct Gate {
     pub(super) hosts: Hosts,
     pub(super) access: Access,
+    /// Whether nothing may be changed.
+    pub(super) is_read_only: bool,
 }
 
 /// Lets a request through, with its [`super::access::Caller`] and its whole body.
@@ -26,6 +30,10 @@ pub(super) async fn pass(
     body::check_form(&request)?;
     let path = request.uri().path();
     let caller = gate.access.caller(request.method(), path, request.headers())?;
+    if gate.is_read_only && ![Method::GET, Method::HEAD].contains(request.method()) {
+        let message = "this service only reads: it was started with --read-only";
+        return Err(HttpError::new(ErrorKind::Forbidden, message));
+    }
     request.extensions_mut().insert(caller);
     Ok(next.run(body::received(request).await?).await)
 }

@@ -2,16 +2,20 @@
 
 use std::sync::atomic::Ordering;
 
-use axum::Json;
 use axum::extract::State;
+use axum::{Extension, Json};
+use prometheus_client::encoding::EncodeLabelSet;
 use prometheus_client::encoding::text::encode;
 use prometheus_client::metrics::counter::Counter;
+use prometheus_client::metrics::family::Family;
 use prometheus_client::metrics::gauge::Gauge;
 use prometheus_client::registry::Registry;
+use shared::api::CalibrationState;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::HttpError;
+use super::request_metrics::RequestMetrics;
 use crate::service::Service;
 
 fn counter(registry: &mut Registry, name: &str, help: &str, value: u64) {
@@ -26,6 +30,22 @@ fn gauge(registry: &mut Registry, name: &str, help: &str, value: usize) {
     registry.register(name, help, gauge);
 }
 
+#[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct InState {
+    state: &'static str,
+}
+
+/// Calibrations of the store by state; of a state without any, 0.
+fn states(registry: &mut Registry, counts: &[(String, i64)]) {
+    let family = Family::<InState, Gauge>::default();
+    for state in CalibrationState::ALL.map(CalibrationState::name) {
+        let count = counts.iter().find(|(name, _)| name == state);
+        let count = count.map_or(0, |&(_, count)| count);
+        family.get_or_create(&InState { state }).set(count);
+    }
+    registry.register("calibrations", "Calibrations of the store by state", family);
+}
+
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new()
         .routes(routes!(metrics))
@@ -34,7 +54,10 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
 
 /// Numbers of farm and store in the text format of Prometheus.
 #[utoipa::path(get, path = "/metrics", responses((status = 200, content_type = "text/plain", body = String)))]
-async fn metrics(State(service): State<Service>) -> Result<String, HttpError> {
+async fn metrics(
+    State(service): State<Service>,
+    Extension(requests): Extension<RequestMetrics>,
+) -> Result<String, HttpError> {
     let metrics = service.dispatcher().metrics().await?;
     let health = service.store().writer().health();
     let stored = |value: &std::sync::atomic::AtomicU64| value.load(Ordering::Relaxed);
@@ -71,6 +94,12 @@ async fn metrics(State(service): State<Service>) -> Result<String, HttpError> {
         "Leases that expired or ended in a fault",
         metrics.counters.failed_leases,
     );
+    gauge(
+        r,
+        "evaluations_queued",
+        "Evaluations that wait for a worker",
+        usize::try_from(metrics.queued).unwrap_or(usize::MAX),
+    );
     gauge(r, "leases_out", "Leases that are out", metrics.leased);
     gauge(
         r,
@@ -78,6 +107,13 @@ async fn metrics(State(service): State<Service>) -> Result<String, HttpError> {
         "Calibrations that are not over",
         metrics.calibrations,
     );
+    gauge(
+        r,
+        "calibrations_left_alone",
+        "Calibrations that could not be resumed at the start",
+        service.count_left_alone(),
+    );
+    states(r, &service.store().reader().states().await?);
     gauge(
         r,
         "workers_connected",
@@ -103,6 +139,19 @@ async fn metrics(State(service): State<Service>) -> Result<String, HttpError> {
         "Late duplicates that differed from what is stored",
         stored(&health.differing_duplicates),
     );
+    let sizes = service.store().sizes_bytes();
+    let [file, log] = sizes.map(|bytes| usize::try_from(bytes).unwrap_or(usize::MAX));
+    gauge(r, "store_bytes", "Size of the store", file);
+    gauge(r, "store_log_bytes", "Size of its write-ahead log", log);
+    let backlog = usize::try_from(service.store().writer().backlog()).unwrap_or(usize::MAX);
+    gauge(r, "store_backlog_facts", "Facts that wait to be stored", backlog);
+    gauge(
+        r,
+        "store_locked",
+        "1 while a lock of another program keeps the store from being written",
+        usize::from(health.is_locked.load(Ordering::Relaxed)),
+    );
+    requests.register(r);
     let mut text = String::new();
     encode(&mut text, &registry).map_err(|_| HttpError::new(shared::api::ErrorKind::Internal, "metrics"))?;
     Ok(text)

@@ -1,7 +1,7 @@
 //! The REST interface under `/v1`; the only place that knows axum.
 //!
 //! One file per resource; each exports `routes()`. The OpenAPI `document` is made from the handlers. Before these stand
-//! `connections` (how many, how long) and `gate` (`host`, `body`, `access`: what is let through).
+//! `connections` (how many, how long) and `gate` (`host`, `body`, `access`: what is let through); `request_metrics` counts around them.
 
 mod access;
 mod body;
@@ -16,7 +16,9 @@ mod gate;
 mod growth;
 mod host;
 mod metrics;
+mod request_metrics;
 mod studies;
+mod tls;
 mod work;
 
 use std::future::Future;
@@ -27,6 +29,7 @@ use axum::extract::DefaultBodyLimit;
 use axum::http::header::CONTENT_TYPE;
 use axum::routing::get;
 use tokio::net::TcpListener;
+use tokio_rustls::TlsAcceptor;
 use utoipa_axum::router::OpenApiRouter;
 
 use crate::service::Service;
@@ -37,9 +40,11 @@ pub use access::TokenRule;
 pub use error::HttpError;
 use gate::Gate;
 use host::Hosts;
+use request_metrics::RequestMetrics;
+pub use tls::{TlsError, tls_acceptor};
 
 /// How a service shows itself: by which names it is reached, and when it asks for tokens.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Exposure {
     /// The listening address.
     pub listening: std::net::SocketAddr,
@@ -49,6 +54,8 @@ pub struct Exposure {
     pub token_rule: TokenRule,
     /// The tokens of the store, as of its start.
     pub tokens: Vec<Token>,
+    /// The certificate, where the service speaks TLS itself.
+    pub tls: Option<TlsAcceptor>,
 }
 
 /// Every route, behind the gate.
@@ -81,6 +88,11 @@ fn router(service: Service, gate: Gate) -> Router {
         // The gate bounds bodies, by route.
         .layer(DefaultBodyLimit::disable())
         .layer(axum::middleware::from_fn_with_state(gate, gate::pass))
+        // Refusals of the gate count too.
+        .layer(axum::middleware::from_fn_with_state(
+            RequestMetrics::new(),
+            request_metrics::measure,
+        ))
         .with_state(service)
 }
 
@@ -94,6 +106,7 @@ pub async fn serve(
     let gate = Gate {
         hosts: Hosts::new(exposure.listening, exposure.names),
         access: Access::start(exposure.token_rule, exposure.tokens, service.store().reader()),
+        is_read_only: service.store().is_read_only(),
     };
-    connections::serve(listener, router(service, gate), shutdown).await;
+    connections::serve(listener, exposure.tls, router(service, gate), shutdown).await;
 }

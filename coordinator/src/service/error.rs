@@ -1,11 +1,13 @@
 //! Errors of the service.
 
+use shared::api::CalibrationState;
 use shared::file::FileError;
 
-use crate::calibration::BeginError;
+use crate::calibration::{BeginError, ReplayError};
 use crate::farm::ControlError;
 use crate::farm::dispatch::Stopped;
 use crate::store::StoreError;
+use crate::webhook::WebhookError;
 use job::EffectsChanged;
 use record::CalibrationRow;
 
@@ -18,6 +20,35 @@ pub enum ServiceError {
     /// A calibration cannot begin.
     #[error(transparent)]
     Begin(#[from] BeginError),
+    /// What is stored of a calibration is not what this version computes.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+    /// A calibration could not be taken up at the start.
+    #[error("calibration {id} cannot be resumed: {reason}")]
+    LeftAlone {
+        /// The calibration.
+        id: i64,
+        /// Why.
+        reason: String,
+    },
+    /// Nothing can be posted to a URL.
+    #[error(transparent)]
+    Webhook(#[from] WebhookError),
+    /// A study is still computed.
+    #[error("calibration {calibration} of study {study} is {}; the study cannot be {verb}: wait, or cancel it first", state.name())]
+    InProgress {
+        /// The study.
+        study: i64,
+        /// Its first calibration that is not over.
+        calibration: i64,
+        /// Where that stands.
+        state: CalibrationState,
+        /// What was asked for.
+        verb: &'static str,
+    },
+    /// An archived study does not grow.
+    #[error("study {0} is archived: restore it first")]
+    Archived(i64),
     /// The effects are not those that the calibration was computed with.
     #[error(transparent)]
     Effects(#[from] EffectsChanged),

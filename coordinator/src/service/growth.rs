@@ -204,6 +204,7 @@ impl Service {
         job: FileSet,
         files: FileSet,
     ) -> Result<(Calibration, FileSet), ServiceError> {
+        self.check_not_archived(beside.study).await?;
         let identity = CalibrationIdentity {
             id: 0,
             name,

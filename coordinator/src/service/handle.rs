@@ -15,7 +15,8 @@ use super::study_results;
 use crate::calibration::Calibration;
 use crate::farm::dispatch::Dispatcher;
 use crate::farm::{Control, ControlError, Farm};
-use crate::store::Store;
+use crate::store::{Store, StoreError, Writer};
+use crate::webhook::WebhookHosts;
 use job::Spec;
 use record::CalibrationRow;
 use result::{Diagnostics, StudyFile};
@@ -31,6 +32,7 @@ pub struct Service {
     store: Store,
     dispatcher: Dispatcher,
     left_alone: Arc<BTreeMap<i64, String>>,
+    pub(super) webhook_hosts: WebhookHosts,
     /// Held by whoever adds to a study: each sees what the one before has added.
     pub(super) growing: Arc<tokio::sync::Mutex<()>>,
 }
@@ -49,6 +51,33 @@ impl Service {
             store,
             dispatcher,
             left_alone,
+            webhook_hosts: WebhookHosts::default(),
+            growing: Arc::default(),
+        })
+    }
+
+    /// The same, with hosts that web hooks may be posted to.
+    #[must_use]
+    pub fn with_webhook_hosts(self, hosts: Vec<String>) -> Service {
+        Service {
+            webhook_hosts: WebhookHosts(hosts),
+            ..self
+        }
+    }
+
+    /// Opens the store for reading alone: there is nothing in progress, and whatever is told is refused.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub async fn open_read_only(path: &str) -> Result<Service, ServiceError> {
+        let store = Store::open_read_only(path).await?;
+        let farm = Farm::new(store.epoch(), LEASE_MS);
+        let dispatcher = Dispatcher::start(farm, store.writer().sink()).map_err(ServiceError::Thread)?;
+        Ok(Service {
+            store,
+            dispatcher,
+            left_alone: Arc::default(),
+            webhook_hosts: WebhookHosts::default(),
             growing: Arc::default(),
         })
     }
@@ -59,9 +88,14 @@ impl Service {
         self.store.close().await;
     }
 
-    /// Why this version cannot take up a stored calibration, if it cannot.
+    /// Why a stored calibration could not be taken up, if it could not.
     pub fn left_alone(&self, id: i64) -> Option<&str> {
         self.left_alone.get(&id).map(String::as_str)
+    }
+
+    /// Number of calibrations that could not be taken up.
+    pub fn count_left_alone(&self) -> usize {
+        self.left_alone.len()
     }
 
     /// The store, an SQLite file.
@@ -101,13 +135,18 @@ impl Service {
         stored_calibration::experiment_files(&self.store.reader(), id).await
     }
 
+    /// The writer for what has to be computed; `None` where the store is only read.
+    fn results_writer(&self) -> Option<&Writer> {
+        (!self.store.is_read_only()).then(|| self.store.writer())
+    }
+
     /// A file of the study of a calibration; what has to be computed for it is stored.
     ///
     /// # Errors
     /// As those of [`super::study_file`].
     pub async fn study_file(&self, id: i64, file: StudyFile) -> Result<String, ServiceError> {
         let row = self.calibration_row(id).await?;
-        study_results::study_file(&self.store.reader(), Some(self.store.writer()), &row, file).await
+        study_results::study_file(&self.store.reader(), self.results_writer(), &row, file).await
     }
 
     /// The diagnostics of a finished calibration.
@@ -116,7 +155,7 @@ impl Service {
     /// As those of [`super::diagnostics`].
     pub async fn diagnostics(&self, id: i64) -> Result<Diagnostics, ServiceError> {
         let row = self.calibration_row(id).await?;
-        study_results::diagnostics(&self.store.reader(), Some(self.store.writer()), &row).await
+        study_results::diagnostics(&self.store.reader(), self.results_writer(), &row).await
     }
 
     /// The status of a calibration.
@@ -127,28 +166,36 @@ impl Service {
         if let Some(status) = self.dispatcher.status(id).await? {
             return Ok(status);
         }
-        let row = self.calibration_row(id).await?;
-        Ok(self.stored_status(&row))
+        let row = self.store.reader().calibration(id).await.transpose();
+        let row = row.ok_or_else(|| ServiceError::not_found("calibration", id))?;
+        Ok(self.stored_status(id, &row))
     }
 
-    fn stored_status(&self, row: &CalibrationRow) -> CalibrationStatus {
-        let mut status = stored_calibration::stored_status(row);
-        if let Some(reason) = self.left_alone(row.id) {
-            status.message = Some(format!("cannot be resumed by this version: {reason}"));
+    fn stored_status(&self, id: i64, row: &Result<CalibrationRow, StoreError>) -> CalibrationStatus {
+        let mut status = stored_calibration::stored_status(id, row);
+        if let Some(reason) = self.left_alone(id) {
+            status.state = CalibrationState::Paused;
+            status.message = Some(format!("cannot be resumed: {reason}"));
         }
         status
     }
 
-    /// The status of every calibration, oldest first.
+    /// The status of every calibration, oldest first; of archived studies only where that is asked for.
     ///
     /// # Errors
     /// [`ServiceError`].
-    pub async fn list(&self) -> Result<Vec<CalibrationStatus>, ServiceError> {
+    pub async fn list(&self, with_archived: bool) -> Result<Vec<CalibrationStatus>, ServiceError> {
         let mut in_hand = self.dispatcher.statuses().await?;
         let rows = self.store.reader().calibrations().await?;
-        let status =
-            |row: &CalibrationRow| in_hand.remove(&row.id).unwrap_or_else(|| self.stored_status(row));
-        Ok(rows.iter().map(status).collect())
+        let mut status = |(id, row): &(i64, Result<CalibrationRow, StoreError>)| {
+            let in_hand = in_hand.remove(id);
+            in_hand.unwrap_or_else(|| self.stored_status(*id, row))
+        };
+        let mut statuses: Vec<CalibrationStatus> = rows.iter().map(&mut status).collect();
+        if !with_archived {
+            stored_calibration::leave_out_archived(&self.store.reader(), &mut statuses).await?;
+        }
+        Ok(statuses)
     }
 
     /// Executes a user's command; the answer is durable.
@@ -162,6 +209,10 @@ impl Service {
                 Ok(state)
             }
             Err(ControlError::NotInProgress(_)) => {
+                if let Some(reason) = self.left_alone(id) {
+                    let reason = reason.to_owned();
+                    return Err(ServiceError::LeftAlone { id, reason });
+                }
                 let state = self.calibration_row(id).await?.state;
                 let verb = match control {
                     Control::Cancel => "cancelled",

@@ -4,16 +4,20 @@
 //! - `handle`: [`Service`], which everybody holds.
 //! - `recovery`: what a start takes up again.
 //! - `submission`: new experiments and calibrations.
+//! - `removal`: what is archived or deleted.
+//! - `announcement`: what web hooks are told.
 //! - `growth`: what is added to a study that is there.
 //! - `stored_calibration`, `study_step`, `finished_study`: what is read from the store.
 //! - `study_results`: the files of a study, computed once.
 
+mod announcement;
 mod clock;
 mod error;
 mod finished_study;
 mod growth;
 mod handle;
 mod recovery;
+mod removal;
 mod stored_calibration;
 mod study_results;
 mod study_step;
@@ -22,6 +26,6 @@ mod submission;
 pub use error::ServiceError;
 pub use finished_study::{finished_calibration, finished_study, search_rounds};
 pub use handle::{LEASE_MS, Service};
-pub use stored_calibration::{calibration_row, stored_status};
+pub use stored_calibration::{calibration_row, leave_out_archived, stored_status};
 pub use study_results::{diagnostics, study_file};
 pub use study_step::{finished_search, next_step_of};

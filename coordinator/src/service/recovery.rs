@@ -7,10 +7,10 @@ use super::error::ServiceError;
 use super::stored_calibration::{calibration_row, experiment_files, spec_of};
 use crate::calibration::{Calibration, CalibrationIdentity};
 use crate::farm::dispatch::{Dispatcher, Stopped};
-use crate::store::Store;
+use crate::store::{Reader, Store};
 
-/// Takes up what is not over; returns what this version cannot take up, with the reason. Nothing is written
-/// of those: another version may be able to.
+/// Takes up what is not over; returns what cannot be taken up, with the reason. Nothing is written of those: another
+/// version may be able to, or a backup has the row that is bad here.
 pub(super) async fn recover(
     store: &Store,
     dispatcher: &Dispatcher,
@@ -18,52 +18,46 @@ pub(super) async fn recover(
     let mut left_alone = BTreeMap::new();
     let reader = store.reader();
     for id in reader.unfinished().await? {
-        let row = calibration_row(&reader, id).await?;
-        // One calibration that this version cannot take up must not keep the others waiting.
-        let spec = match spec_of(&reader, &row).await {
-            Ok(spec) => Arc::new(spec),
+        match take_up(&reader, dispatcher, id).await {
+            Ok(()) => {}
+            Err(ServiceError::Stopped(stopped)) => return Err(stopped.into()),
+            // One calibration that cannot be taken up must not keep the others waiting.
             Err(error) => {
+                tracing::error!(id, reason = %error, "not resumed");
                 left_alone.insert(id, error.to_string());
-                continue;
             }
-        };
-        let stored = reader.stored(id, spec.algorithm.is_told_values()).await?;
-        let evaluations = stored.evaluations.len();
-        let identity = CalibrationIdentity {
-            id,
-            name: row.name.clone(),
-            study: row.study,
-            experiment: row.experiment,
-        };
-        let (job, experiment) = (row.job.clone(), experiment_files(&reader, row.experiment).await?);
-        // Replaying is seconds of CPU for a long calibration: not on the async runtime.
-        let replayed = tokio::task::spawn_blocking(move || {
-            let mut calibration = Calibration::of(identity, spec, &job, &experiment)?;
-            let facts = calibration.replay(stored).map_err(|e| e.to_string());
-            Ok::<_, ServiceError>((calibration, facts))
-        })
-        .await
-        .map_err(|_| Stopped)?;
-        let (calibration, facts) = replayed?;
-        let facts = match facts {
-            Ok(facts) => facts,
-            Err(reason) => {
-                left_alone.insert(id, reason);
-                continue;
-            }
-        };
-        tracing::info!(
-            id,
-            name = row.name,
-            evaluations,
-            state = calibration.state.name(),
-            "resumed"
-        );
-        let key = reader.seal_key(id).await?;
-        dispatcher.add(calibration, key, facts).await?;
-    }
-    for (id, reason) in &left_alone {
-        tracing::error!(id, reason, "not resumed: this version cannot read it");
+        }
     }
     Ok(left_alone)
+}
+
+/// Replays a calibration and gives it to the farm.
+async fn take_up(reader: &Reader, dispatcher: &Dispatcher, id: i64) -> Result<(), ServiceError> {
+    let row = calibration_row(reader, id).await?;
+    let spec = Arc::new(spec_of(reader, &row).await?);
+    let stored = reader.stored(id, spec.algorithm.is_told_values()).await?;
+    let key = reader.seal_key(id).await?;
+    let evaluations = stored.evaluations.len();
+    let identity = CalibrationIdentity {
+        id,
+        name: row.name.clone(),
+        study: row.study,
+        experiment: row.experiment,
+    };
+    let experiment = experiment_files(reader, row.experiment).await?;
+    // Replaying is seconds of CPU for a long calibration: not on the async runtime.
+    let replayed = tokio::task::spawn_blocking(move || {
+        let mut calibration = Calibration::of(identity, spec, &row.job, &experiment)?;
+        let facts = calibration.replay(stored)?;
+        Ok::<_, ServiceError>((calibration, facts))
+    });
+    let (calibration, facts) = replayed.await.map_err(|_| Stopped)??;
+    tracing::info!(
+        id,
+        name = calibration.identity.name,
+        evaluations,
+        state = calibration.state.name(),
+        "resumed"
+    );
+    Ok(dispatcher.add(calibration, key, facts).await?)
 }

@@ -4,7 +4,7 @@ use shared::api::{CalibrationState, CalibrationStatus};
 use shared::file::FileSet;
 
 use super::error::ServiceError;
-use crate::store::Reader;
+use crate::store::{Reader, StoreError};
 use job::{AlgorithmSettings, JobFile, Spec};
 use record::CalibrationRow;
 
@@ -50,12 +50,28 @@ pub(super) async fn has_posterior(
     Ok(spec.algorithm.has_posterior() && is_stored)
 }
 
-/// The status of a stored calibration that the farm does not hold.
-pub fn stored_status(row: &CalibrationRow) -> CalibrationStatus {
-    // A job that this version does not understand still has a line in every list.
+/// The status of a stored calibration that the farm does not hold. One whose row cannot be read still has a line in every list.
+pub fn stored_status(id: i64, row: &Result<CalibrationRow, StoreError>) -> CalibrationStatus {
+    let row = match row {
+        Ok(row) => row,
+        Err(error) => {
+            return CalibrationStatus {
+                id,
+                name: String::new(),
+                study: 0,
+                experiment: 0,
+                state: CalibrationState::Failed,
+                message: Some(error.to_string()),
+                model_kind: None,
+                model_version: None,
+                progress: None,
+            };
+        }
+    };
+    // So does one whose job this version does not understand.
     let model = JobFile::parse("job.toml", &row.job.toml).map(|job| job.model);
     CalibrationStatus {
-        id: row.id,
+        id,
         name: row.name.clone(),
         study: row.study,
         experiment: row.experiment,
@@ -65,4 +81,17 @@ pub fn stored_status(row: &CalibrationRow) -> CalibrationStatus {
         model_version: row.model_version.clone(),
         progress: None,
     }
+}
+
+/// Leaves out calibrations of archived studies.
+///
+/// # Errors
+/// [`ServiceError`].
+pub async fn leave_out_archived(
+    reader: &Reader,
+    statuses: &mut Vec<CalibrationStatus>,
+) -> Result<(), ServiceError> {
+    let archived = reader.archived().await?;
+    statuses.retain(|status| !archived.iter().any(|&(study, _)| study == status.study));
+    Ok(())
 }

@@ -36,6 +36,9 @@ impl Service {
     /// # Errors
     /// [`ServiceError`].
     pub async fn add_calibration(&self, new: NewCalibration) -> Result<CalibrationCreated, ServiceError> {
+        if let Some(url) = &new.webhook {
+            self.webhook_hosts.check(url)?;
+        }
         let experiment = self.experiment(new.experiment).await?;
         let name = new.name.unwrap_or_else(|| "calibration".into());
         if name.len() > LONGEST_NAME {
@@ -64,6 +67,7 @@ impl Service {
         let study = NewStudy {
             experiment: new.experiment,
             calibrations: members.iter().map(row).collect(),
+            webhook: new.webhook,
             now_ms: now_ms(),
         };
         let StudyIds { study, calibrations } = self.store().writer().add_study(study).await?;

@@ -90,10 +90,7 @@ pub(super) fn decode_values(bytes: &[u8]) -> Result<Vec<f64>, StoreError> {
     if rest.is_empty() {
         Ok(words.iter().map(|w| f64::from_le_bytes(*w)).collect())
     } else {
-        Err(StoreError::Corrupt(format!(
-            "fitted values of {} bytes",
-            bytes.len()
-        )))
+        Err(StoreError::Corrupt(format!("a vector of {} bytes", bytes.len())))
     }
 }
 

@@ -1,5 +1,9 @@
 //! Errors of the store.
 
+use sqlx::migrate::MigrateError;
+
+use super::health::PATIENCE;
+
 /// Why the store cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
@@ -17,7 +21,37 @@ pub enum StoreError {
         /// The file.
         path: String,
         /// What the migration says.
-        source: sqlx::migrate::MigrateError,
+        source: MigrateError,
+    },
+    /// The file was written by a later version of the program.
+    #[error(
+        "store {path}: a newer version of Grouser wrote it: its tables have version {found}, this program knows versions up to {known}; use the newer program"
+    )]
+    Newer {
+        /// The file.
+        path: String,
+        /// Version of its tables.
+        found: i64,
+        /// The latest version that this program knows.
+        known: i64,
+    },
+    /// The file is damaged.
+    #[error(
+        "store {path} is damaged: table {table}: {what}; put a backup back, or look at what can still be read with \"serve --read-only\" or --out"
+    )]
+    Damaged {
+        /// The file.
+        path: String,
+        /// The first damaged table.
+        table: String,
+        /// What SQLite says.
+        what: String,
+    },
+    /// Another program keeps a lock of SQLite.
+    #[error("store {path}: another program holds a lock on this file, and has kept it for {} s", PATIENCE.as_secs())]
+    Locked {
+        /// The file.
+        path: String,
     },
     /// Another coordinator has the file open.
     #[error("store {0}: another coordinator is using this file")]
@@ -39,6 +73,55 @@ pub enum StoreError {
     /// There is nothing to read.
     #[error("store {0}: no such file")]
     Missing(String),
+}
+
+/// Whether SQLite refuses because another program holds a lock.
+pub(super) fn is_locked(error: &sqlx::Error) -> bool {
+    primary_code(error) == Some(5)
+}
+
+/// The primary result code of SQLite.
+pub(super) fn primary_code(error: &sqlx::Error) -> Option<u32> {
+    let code = error.as_database_error()?.code()?;
+    code.parse::<u32>().ok().map(|code| code & 0xff)
+}
+
+impl StoreError {
+    /// What SQLite says of a file.
+    pub(super) fn of(path: &str, source: sqlx::Error) -> StoreError {
+        let path = path.to_owned();
+        match is_locked(&source) {
+            true => StoreError::Locked { path },
+            false => StoreError::Sqlite { path, source },
+        }
+    }
+
+    /// What bringing the tables of a file up to date ends with.
+    pub(super) fn of_migration(path: &str, source: MigrateError) -> StoreError {
+        match source {
+            MigrateError::Execute(source) | MigrateError::ExecuteMigration(source, _)
+                if is_locked(&source) =>
+            {
+                StoreError::of(path, source)
+            }
+            source => StoreError::Migrate {
+                path: path.to_owned(),
+                source,
+            },
+        }
+    }
+
+    /// The same of a row: `place` says which.
+    pub(super) fn within(self, place: &str) -> StoreError {
+        match self {
+            StoreError::Corrupt(what) => StoreError::Corrupt(format!("{place}: {what}")),
+            StoreError::Sqlite {
+                source: source @ sqlx::Error::ColumnDecode { .. },
+                ..
+            } => StoreError::Corrupt(format!("{place}: {source}")),
+            other => other,
+        }
+    }
 }
 
 impl From<sqlx::Error> for StoreError {

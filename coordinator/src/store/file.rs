@@ -1,12 +1,15 @@
 //! The file of a store: its name, its options, its lock, and what is refused as one.
 
 use std::io::Read;
+use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
 use sqlx::sqlite::{SqliteConnectOptions, SqlitePoolOptions};
 use sqlx::{SqliteConnection, SqlitePool};
 
 use super::error::StoreError;
+use super::health::PATIENCE;
+use super::migrations;
 
 /// The file's name without the scheme.
 pub(super) fn file_of(path: &str) -> &str {
@@ -18,23 +21,40 @@ pub(super) fn options(path: &str) -> SqliteConnectOptions {
     SqliteConnectOptions::new()
         .filename(file_of(path))
         .foreign_keys(true)
-        .busy_timeout(std::time::Duration::from_secs(2))
+        .busy_timeout(PATIENCE)
 }
 
-/// Refuses a database that somebody else has made.
+/// Refuses a database that somebody else has made, or a later version of this program.
 pub(super) async fn recognise(connection: &mut SqliteConnection, path: &str) -> Result<(), StoreError> {
+    let wrap = |source| StoreError::of(path, source);
     let ours = "SELECT count(*) FROM sqlite_schema WHERE name = '_sqlx_migrations' OR name = 'calibrations'";
-    let known: i64 = sqlx::query_scalar(ours).fetch_one(&mut *connection).await?;
+    let known: i64 = sqlx::query_scalar(ours)
+        .fetch_one(&mut *connection)
+        .await
+        .map_err(wrap)?;
     let all: i64 = sqlx::query_scalar("SELECT count(*) FROM sqlite_schema")
-        .fetch_one(connection)
-        .await?;
-    if known == 2 || all == 0 {
+        .fetch_one(&mut *connection)
+        .await
+        .map_err(wrap)?;
+    if all == 0 {
         return Ok(());
     }
-    Err(StoreError::Unfit {
-        path: file_of(path).into(),
-        reason: "the database was not created by Grouser".into(),
-    })
+    if known != 2 {
+        return Err(StoreError::Unfit {
+            path: file_of(path).into(),
+            reason: "the database was not created by Grouser".into(),
+        });
+    }
+    let found: Option<i64> = sqlx::query_scalar("SELECT max(version) FROM _sqlx_migrations")
+        .fetch_one(connection)
+        .await
+        .map_err(wrap)?;
+    let (found, known) = (found.unwrap_or_default(), migrations::VERSION);
+    if found > known {
+        let path = file_of(path).into();
+        return Err(StoreError::Newer { path, found, known });
+    }
+    Ok(())
 }
 
 pub(super) async fn pool(options: SqliteConnectOptions) -> Result<SqlitePool, sqlx::Error> {
@@ -76,22 +96,31 @@ pub(super) fn examine(path: &str) -> Result<(), StoreError> {
 }
 
 /// Takes the lock file beside the store; it is released when the returned file is dropped, or at any death.
+///
+/// It is named after the file itself, whatever symlinks lead there. A file with several names is refused: SQLite names
+/// the write-ahead log after the file, so what was acknowledged under one name would be missing under the other.
 pub(super) fn lock(path: &str) -> Result<Option<std::fs::File>, StoreError> {
     let file = file_of(path);
     if file.contains(":memory:") {
         return Ok(None);
     }
-    let name = format!("{file}.lock");
     let io = |e: std::io::Error| StoreError::Sqlite {
-        path: name.clone(),
+        path: file.into(),
         source: sqlx::Error::Io(e),
     };
-    let lock = std::fs::OpenOptions::new()
-        .create(true)
-        .truncate(false)
-        .write(true)
-        .open(&name)
-        .map_err(io)?;
+    let make = |name: &str| std::fs::OpenOptions::new().create(true).append(true).open(name);
+    // A link may lead to a file that is not there yet.
+    let names = make(file).and_then(|made| made.metadata()).map_err(io)?.nlink();
+    if names > 1 {
+        return Err(StoreError::Unfit {
+            path: file.into(),
+            reason: format!(
+                "the file has {names} names (hard links), and each would have a write-ahead log of its own; keep one of them"
+            ),
+        });
+    }
+    let own = std::fs::canonicalize(file).map_err(io)?;
+    let lock = make(&format!("{}.lock", own.display())).map_err(io)?;
     match lock.try_lock() {
         Ok(()) => Ok(Some(lock)),
         Err(std::fs::TryLockError::WouldBlock) => Err(StoreError::InUse(file.into())),

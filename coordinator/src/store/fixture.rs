@@ -24,6 +24,7 @@ pub(super) async fn store() -> (TempDir, Store, i64) {
     let new = NewStudy {
         experiment,
         calibrations: vec![row],
+        webhook: None,
         now_ms: 0,
     };
     let ids = store.writer().add_study(new).await.unwrap();

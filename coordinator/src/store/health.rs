@@ -1,6 +1,10 @@
 //! Counters of the writer, for the metrics page.
 
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Duration;
+
+/// How long a lock of another program is waited for before that is said.
+pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Figures of the writer, for the metrics page.
 #[derive(Debug, Default)]
@@ -15,4 +19,20 @@ pub struct StoreHealth {
     pub busy_us: AtomicU64,
     /// Late duplicates that differed from what is stored: faults of determinism.
     pub differing_duplicates: AtomicU64,
+    /// Whether a lock of another program keeps the writer from writing.
+    pub is_locked: AtomicBool,
+}
+
+impl StoreHealth {
+    /// Notes that a lock has been waited for, and says so once a minute.
+    pub(super) fn wait_for_lock(&self, waited: Duration) {
+        let is_news = !self.is_locked.swap(true, Ordering::Relaxed);
+        if is_news || waited.as_secs() % 60 < PATIENCE.as_secs() {
+            let seconds = waited.as_secs();
+            tracing::warn!(
+                seconds,
+                "another program holds a lock on the store; results wait until it lets go"
+            );
+        }
+    }
 }

@@ -6,7 +6,7 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 /// Number, name and text of each file of `migrations/`.
 ///
 /// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
-const FILES: [(i64, &str, &str); 14] = [
+const FILES: [(i64, &str, &str); 16] = [
     (
         1,
         "experiments",
@@ -73,7 +73,20 @@ const FILES: [(i64, &str, &str); 14] = [
         include_str!("../../../migrations/0013_given_up.sql"),
     ),
     (14, "tokens", include_str!("../../../migrations/0014_tokens.sql")),
+    (
+        15,
+        "removal",
+        include_str!("../../../migrations/0015_removal.sql"),
+    ),
+    (
+        16,
+        "webhooks",
+        include_str!("../../../migrations/0016_webhooks.sql"),
+    ),
 ];
+
+/// The version of the tables that this program writes.
+pub(super) const VERSION: i64 = FILES[FILES.len() - 1].0;
 
 /// Brings the tables of a store up to date.
 pub(super) fn migrator() -> Migrator {

@@ -3,41 +3,52 @@
 //! One task writes (`writer`); everybody else reads through a pool of their own. What the tables mean stands
 //! in `migrations/README.md`.
 
+mod backup;
 mod blob;
+mod damage;
 mod error;
 mod facts;
 mod file;
 #[cfg(test)]
 mod fixture;
 mod health;
+mod insert;
 mod json;
 mod migrations;
 mod prior;
 mod read;
 mod reader;
 mod recovery;
+mod removal;
 mod results;
 mod theta;
 mod tokens;
 mod writer;
 
+use std::path::PathBuf;
+
 use sqlx::sqlite::{SqliteJournalMode, SqliteSynchronous};
 use sqlx::{Connection, SqliteConnection, SqlitePool};
 
+pub use backup::BackupError;
 pub use error::StoreError;
-use file::{examine, lock, options, pool, recognise};
+use file::{examine, file_of, lock, options, pool, recognise};
 pub use health::StoreHealth;
+pub use insert::{NewCalibrationRow, NewStudy, StudyIds};
+pub use read::{StoredStudy, StoredWebhook};
 pub use reader::Reader;
 pub use results::StudyResults;
 pub use tokens::TokenTable;
-pub use writer::{FactSink, NewCalibrationRow, NewStudy, StudyIds, Writer};
+pub use writer::{FactSink, StateChange, Writer};
 
 /// The store: a pool of readers and the way to the one writer.
 #[derive(Debug, Clone)]
 pub struct Store {
     readers: SqlitePool,
     writer: Writer,
+    file: PathBuf,
     epoch: u64,
+    is_read_only: bool,
 }
 
 impl Store {
@@ -46,10 +57,7 @@ impl Store {
     /// # Errors
     /// [`StoreError`] with the file and SQLite's reason; [`StoreError::InUse`] where another coordinator holds it.
     pub async fn open(path: &str, now_ms: i64) -> Result<Store, StoreError> {
-        let wrap = |source| StoreError::Sqlite {
-            path: path.into(),
-            source,
-        };
+        let wrap = |source| StoreError::of(path, source);
         examine(path)?;
         // The writer holds its lock file for as long as it lives; a second coordinator is turned away at once.
         let lock = lock(path)?;
@@ -59,21 +67,44 @@ impl Store {
             .synchronous(SqliteSynchronous::Full);
         let mut connection = SqliteConnection::connect_with(&options).await.map_err(wrap)?;
         recognise(&mut connection, path).await?;
-        migrations::migrator()
-            .run(&mut connection)
-            .await
-            .map_err(|source| StoreError::Migrate {
-                path: path.into(),
-                source,
-            })?;
+        damage::check(&mut connection, path).await?;
+        let migrated = migrations::migrator().run(&mut connection).await;
+        migrated.map_err(|source| StoreError::of_migration(path, source))?;
         let epoch = begin_epoch(&mut connection, now_ms).await.map_err(wrap)?;
         let readers = pool(options).await.map_err(wrap)?;
         let writer = Writer::start(connection, lock);
         Ok(Store {
             readers,
             writer,
+            file: file_of(path).into(),
             epoch,
+            is_read_only: false,
         })
+    }
+
+    /// Opens the file for reading alone, also beside a coordinator that writes to it; whatever is told is refused.
+    ///
+    /// # Errors
+    /// [`StoreError`]; damage is no error, but a warning of the log.
+    pub async fn open_read_only(path: &str) -> Result<Store, StoreError> {
+        let reader = Reader::open(path).await?;
+        let mut connection = reader.pool.acquire().await?;
+        if let Err(error) = damage::check(&mut connection, path).await {
+            tracing::warn!(%error, "what can be read is shown");
+        }
+        drop(connection);
+        Ok(Store {
+            readers: reader.pool,
+            writer: Writer::none(),
+            file: file_of(path).into(),
+            epoch: 0,
+            is_read_only: true,
+        })
+    }
+
+    /// Whether the file is opened for reading alone.
+    pub fn is_read_only(&self) -> bool {
+        self.is_read_only
     }
 
     /// The way to the writer.
@@ -86,6 +117,12 @@ impl Store {
         // Readers first: the last connection folds the write-ahead log into the file.
         self.readers.close().await;
         self.writer.close().await;
+    }
+
+    /// Sizes of the file and of its write-ahead log `[bytes]`.
+    pub fn sizes_bytes(&self) -> [u64; 2] {
+        let log = PathBuf::from(format!("{}-wal", self.file.display()));
+        [&self.file, &log].map(|file| std::fs::metadata(file).map_or(0, |file| file.len()))
     }
 
     /// Number of the present start of the coordinator on this store.

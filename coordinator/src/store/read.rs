@@ -22,7 +22,60 @@ use record::{
 const CALIBRATION: &str = "SELECT c.*, coalesce(c.experiment, s.experiment) AS on_experiment
      FROM calibrations c JOIN studies s ON s.id = c.study";
 
+/// A study with its members.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StoredStudy {
+    /// Its number.
+    pub id: i64,
+    /// The experiment that it is about.
+    pub experiment: i64,
+    /// Its calibrations, oldest first.
+    pub calibrations: Vec<i64>,
+}
+
+/// Where a calibration's pauses and ends are posted to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StoredWebhook {
+    /// The study.
+    pub study: i64,
+    /// Name of the calibration.
+    pub name: String,
+    /// The URL.
+    pub url: String,
+}
+
 impl Reader {
+    /// The web hook of a calibration's study, if it has one.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn webhook(&self, calibration: i64) -> Result<Option<StoredWebhook>, StoreError> {
+        let row = sqlx::query(
+            "SELECT s.id, c.name, s.webhook FROM calibrations c JOIN studies s ON s.id = c.study
+             WHERE c.id = ? AND s.webhook IS NOT NULL",
+        )
+        .bind(calibration)
+        .fetch_optional(&self.pool)
+        .await?;
+        row.map(|row| {
+            Ok(StoredWebhook {
+                study: row.try_get("id")?,
+                name: row.try_get("name")?,
+                url: row.try_get("webhook")?,
+            })
+        })
+        .transpose()
+    }
+
+    /// Number of calibrations in each state, by its word.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn states(&self) -> Result<Vec<(String, i64)>, StoreError> {
+        let states = sqlx::query_as("SELECT state, count(*) FROM calibrations GROUP BY state");
+        Ok(states.fetch_all(&self.pool).await?)
+    }
+
     /// An experiment.
     ///
     /// # Errors
@@ -58,16 +111,17 @@ impl Reader {
         row.as_ref().map(calibration_row).transpose()
     }
 
-    /// Every calibration, oldest first.
+    /// Every calibration by its id, oldest first; in place of one whose row cannot be read, why.
     ///
     /// # Errors
-    /// [`StoreError`].
-    pub async fn calibrations(&self) -> Result<Vec<CalibrationRow>, StoreError> {
+    /// [`StoreError`] where none can be read.
+    pub async fn calibrations(&self) -> Result<Vec<(i64, Result<CalibrationRow, StoreError>)>, StoreError> {
         let query = format!("{CALIBRATION} ORDER BY c.id");
         let rows = sqlx::query(sqlx::AssertSqlSafe(query))
             .fetch_all(&self.pool)
             .await?;
-        rows.iter().map(calibration_row).collect()
+        let row = |row: &SqliteRow| Ok((row.try_get("id")?, calibration_row(row)));
+        rows.iter().map(row).collect()
     }
 
     /// The calibrations of a study, oldest first.
@@ -83,11 +137,11 @@ impl Reader {
         rows.iter().map(calibration_row).collect()
     }
 
-    /// Ids of all studies with their experiment and calibrations, oldest first.
+    /// All studies, oldest first.
     ///
     /// # Errors
     /// [`StoreError`].
-    pub async fn studies(&self) -> Result<Vec<(i64, i64, Vec<i64>)>, StoreError> {
+    pub async fn studies(&self) -> Result<Vec<StoredStudy>, StoreError> {
         let rows = sqlx::query(
             "SELECT s.id, s.experiment, json_group_array(c.id ORDER BY c.id) AS calibrations
              FROM studies s JOIN calibrations c ON c.study = s.id GROUP BY s.id ORDER BY s.id",
@@ -97,19 +151,25 @@ impl Reader {
         rows.iter()
             .map(|row| {
                 let list: String = row.get("calibrations");
-                let ids = serde_json::from_str(&list).map_err(|e| StoreError::Corrupt(e.to_string()))?;
-                Ok((row.get("id"), row.get("experiment"), ids))
+                let calibrations =
+                    serde_json::from_str(&list).map_err(|e| StoreError::Corrupt(e.to_string()))?;
+                Ok(StoredStudy {
+                    id: row.try_get("id")?,
+                    experiment: row.try_get("experiment")?,
+                    calibrations,
+                })
             })
             .collect()
     }
 
-    /// The studies whose members are all over, each with their number.
+    /// The studies whose members are all over, each with their number; archived ones left out.
     ///
     /// # Errors
     /// [`StoreError`].
     pub async fn settled_studies(&self) -> Result<Vec<(i64, i64)>, StoreError> {
         let rows = sqlx::query(
-            "SELECT study, count(*) AS members FROM calibrations GROUP BY study
+            "SELECT study, count(*) AS members FROM calibrations c JOIN studies s ON s.id = c.study
+             WHERE s.archived_at_ms IS NULL GROUP BY study
              HAVING sum(state NOT IN ('finished', 'failed', 'cancelled')) = 0 ORDER BY study",
         )
         .fetch_all(&self.pool)
@@ -351,25 +411,34 @@ fn file_map(json: &str) -> Result<BTreeMap<String, String>, StoreError> {
     serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("files: {e}")))
 }
 
+/// A calibration; what cannot be read is named with its id.
 fn calibration_row(row: &SqliteRow) -> Result<CalibrationRow, StoreError> {
-    let state: String = row.get("state");
+    let id: i64 = row.try_get("id")?;
+    columns(id, row).map_err(|error| error.within(&format!("calibration {id}")))
+}
+
+fn columns(id: i64, row: &SqliteRow) -> Result<CalibrationRow, StoreError> {
+    let state: &str = row.try_get("state")?;
+    let unsigned =
+        |column| Ok::<_, StoreError>(row.try_get::<Option<i64>, _>(column)?.map(i64::unsigned_abs));
     Ok(CalibrationRow {
-        id: row.get("id"),
-        study: row.get("study"),
-        experiment: row.get("on_experiment"),
-        name: row.get("name"),
+        id,
+        study: row.try_get("study")?,
+        experiment: row.try_get("on_experiment")?,
+        name: row.try_get("name")?,
         job: FileSet {
-            toml: row.get("toml"),
-            files: file_map(row.get("files"))?,
+            toml: row.try_get("toml")?,
+            files: file_map(row.try_get("files")?)?,
         },
-        state: CalibrationState::from_name(&state).ok_or(StoreError::Corrupt(format!("state {state}")))?,
-        message: row.get("message"),
-        model_version: row.get("model_version"),
-        busy_ms: row.get::<i64, _>("busy_ms").unsigned_abs(),
-        log_evidence: row.get("log_evidence"),
-        log_evidence_se: row.get("log_evidence_se"),
-        equilibrated: row.get("equilibrated"),
-        evaluations: row.get::<Option<i64>, _>("evaluations").map(i64::unsigned_abs),
-        rejected: row.get::<Option<i64>, _>("rejected").map(i64::unsigned_abs),
+        state: CalibrationState::from_name(state)
+            .ok_or_else(|| StoreError::Corrupt(format!("state {state}")))?,
+        message: row.try_get("message")?,
+        model_version: row.try_get("model_version")?,
+        busy_ms: unsigned("busy_ms")?.unwrap_or_default(),
+        log_evidence: row.try_get("log_evidence")?,
+        log_evidence_se: row.try_get("log_evidence_se")?,
+        equilibrated: row.try_get("equilibrated")?,
+        evaluations: unsigned("evaluations")?,
+        rejected: unsigned("rejected")?,
     })
 }

@@ -3,9 +3,13 @@
 use std::path::Path;
 
 use sqlx::SqlitePool;
+use sqlx::sqlite::SqliteConnectOptions;
 
-use super::error::StoreError;
+use super::error::{StoreError, primary_code};
 use super::file::{examine, file_of, options, pool, recognise};
+
+/// SQLite's codes where it cannot make its index of the write-ahead log: read-only, failed, full, cannot open.
+const DENIED: [u32; 4] = [8, 10, 13, 14];
 
 /// Reads a store, also one that another process is writing.
 #[derive(Debug, Clone)]
@@ -14,7 +18,7 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// Opens an existing file for reading alone.
+    /// Opens an existing file for reading alone, also in a folder or on a disk that takes no further byte.
     ///
     /// # Errors
     /// [`StoreError`] with the file and the reason.
@@ -24,13 +28,37 @@ impl Reader {
             return Err(StoreError::Missing(file.into()));
         }
         examine(path)?;
-        let pool = pool(options(path).read_only(true))
-            .await
-            .map_err(|source| StoreError::Sqlite {
-                path: path.into(),
-                source,
-            })?;
-        recognise(&mut *pool.acquire().await?, path).await?;
+        let options = options(path).read_only(true);
+        let denied = match Reader::with(options.clone(), path).await {
+            Err(StoreError::Sqlite { source, .. })
+                if primary_code(&source).is_some_and(|code| DENIED.contains(&code)) =>
+            {
+                source
+            }
+            opened => return opened,
+        };
+        let log = format!("{file}-wal");
+        if std::fs::metadata(&log).is_ok_and(|log| log.len() > 0) {
+            return Err(StoreError::Unfit {
+                path: file.into(),
+                reason: format!(
+                    "{denied}: {log} has what the file lacks, and reading both needs a folder that can be written; copy both to one"
+                ),
+            });
+        }
+        // The file is whole, and whoever could change it would have left an index to read by.
+        Reader::with(options.immutable(true), path).await
+    }
+
+    /// Whether the store has been closed.
+    pub fn is_closed(&self) -> bool {
+        self.pool.is_closed()
+    }
+
+    async fn with(options: SqliteConnectOptions, path: &str) -> Result<Reader, StoreError> {
+        let wrap = |source| StoreError::of(path, source);
+        let pool = pool(options).await.map_err(wrap)?;
+        recognise(&mut *pool.acquire().await.map_err(wrap)?, path).await?;
         Ok(Reader { pool })
     }
 }

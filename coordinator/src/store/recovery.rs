@@ -75,10 +75,11 @@ impl Reader {
             .fetch_all(&self.pool)
             .await?;
             for row in &rows {
-                evaluations.insert(
-                    row.get::<i64, _>("evaluation").unsigned_abs(),
-                    stored_evaluation(row)?,
-                );
+                let number = row.try_get::<i64, _>("evaluation")?.unsigned_abs();
+                let named = |error: StoreError| {
+                    error.within(&format!("calibration {calibration}, evaluation {number}"))
+                };
+                evaluations.insert(number, stored_evaluation(row).map_err(named)?);
             }
             if rows.len() < PAGE {
                 break;
@@ -92,21 +93,20 @@ impl Reader {
         let mut failed: BTreeMap<u64, Vec<String>> = BTreeMap::new();
         for fault in &faults {
             let workers = failed
-                .entry(fault.get::<i64, _>("evaluation").unsigned_abs())
+                .entry(fault.try_get::<i64, _>("evaluation")?.unsigned_abs())
                 .or_default();
-            match fault.get::<u32, _>("attempt") {
+            match fault.try_get::<u32, _>("attempt")? {
                 // a user granted new attempts
                 0 => workers.clear(),
-                _ => workers.push(fault.get("worker")),
+                _ => workers.push(fault.try_get("worker")?),
             }
         }
         failed.retain(|_, workers| !workers.is_empty());
-        let state: String = row.get("state");
         Ok(Stored {
-            state: CalibrationState::from_name(&state),
-            message: row.get("message"),
-            model_version: row.get("model_version"),
-            busy_ms: row.get::<i64, _>("busy_ms").unsigned_abs(),
+            state: CalibrationState::from_name(row.try_get("state")?),
+            message: row.try_get("message")?,
+            model_version: row.try_get("model_version")?,
+            busy_ms: row.try_get::<i64, _>("busy_ms")?.unsigned_abs(),
             evaluations,
             failed,
         })
@@ -115,15 +115,15 @@ impl Reader {
 
 fn stored_evaluation(row: &SqliteRow) -> Result<StoredEvaluation, StoreError> {
     let values = |column: &str| {
-        let bytes: Option<&[u8]> = row.get(column);
+        let bytes: Option<&[u8]> = row.try_get(column)?;
         bytes.map(blob::decode_values).transpose()
     };
-    let end: Option<&str> = row.get("subchain");
+    let end: Option<&str> = row.try_get("subchain")?;
     Ok(StoredEvaluation {
         theta: theta(row)?,
-        log_likelihood: row.get("log_likelihood"),
-        rejected: row.get("rejected"),
-        given_up: row.get("given_up"),
+        log_likelihood: row.try_get("log_likelihood")?,
+        rejected: row.try_get("rejected")?,
+        given_up: row.try_get("given_up")?,
         fitted: values("fitted")?,
         coarse: values("coarse")?,
         end: end.map(subchain_end).transpose()?,

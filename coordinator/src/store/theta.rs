@@ -11,7 +11,7 @@ use super::json::numbers;
 pub(super) fn theta(row: &SqliteRow) -> Result<Vec<f64>, StoreError> {
     let value = row.try_get_raw("theta")?;
     if value.type_info().name() == "TEXT" {
-        return numbers(row.get("theta"));
+        return numbers(row.try_get("theta")?);
     }
-    blob::decode_values(row.get("theta"))
+    blob::decode_values(row.try_get("theta")?)
 }

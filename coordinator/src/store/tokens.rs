@@ -12,11 +12,17 @@ use crate::token::{Role, Token, TokenHash};
 const TOKENS: &str = "SELECT name, role, hash, created_at_ms, revoked_at_ms FROM tokens ORDER BY id";
 
 impl Reader {
-    /// Every token that was ever made, oldest first.
+    /// Every token that was ever made, oldest first. A store of before migration 14, which only reading leaves as it is, has none.
     ///
     /// # Errors
     /// [`StoreError`].
     pub async fn tokens(&self) -> Result<Vec<Token>, StoreError> {
+        let table: i64 = sqlx::query_scalar("SELECT count(*) FROM sqlite_schema WHERE name = 'tokens'")
+            .fetch_one(&self.pool)
+            .await?;
+        if table == 0 {
+            return Ok(Vec::new());
+        }
         let rows = sqlx::query(TOKENS).fetch_all(&self.pool).await?;
         rows.iter().map(token).collect()
     }
@@ -55,10 +61,7 @@ impl TokenTable {
     /// # Errors
     /// [`StoreError`].
     pub async fn open(path: &str) -> Result<TokenTable, StoreError> {
-        let wrap = |source| StoreError::Sqlite {
-            path: path.into(),
-            source,
-        };
+        let wrap = |source| StoreError::of(path, source);
         examine(path)?;
         let (lock, is_free) = match lock(path) {
             Ok(lock) => (lock, true),
@@ -73,10 +76,7 @@ impl TokenTable {
         recognise(&mut connection, path).await?;
         if is_free {
             let migrated = migrations::migrator().run(&mut connection).await;
-            migrated.map_err(|source| StoreError::Migrate {
-                path: path.into(),
-                source,
-            })?;
+            migrated.map_err(|source| StoreError::of_migration(path, source))?;
         }
         Ok(TokenTable {
             connection,
@@ -86,10 +86,7 @@ impl TokenTable {
     }
 
     fn failed(&self, source: sqlx::Error) -> StoreError {
-        StoreError::Sqlite {
-            path: self.path.clone(),
-            source,
-        }
+        StoreError::of(&self.path, source)
     }
 
     /// Every token that was ever made, oldest first.
@@ -139,6 +136,6 @@ impl TokenTable {
     pub async fn close(self) -> Result<(), StoreError> {
         let TokenTable { connection, path, .. } = self;
         let closed = connection.close().await;
-        closed.map_err(|source| StoreError::Sqlite { path, source })
+        closed.map_err(|source| StoreError::of(&path, source))
     }
 }

@@ -7,23 +7,26 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
+use shared::api::CalibrationState;
 use shared::file::FileSet;
-use sqlx::{Connection, QueryBuilder, Sqlite, SqliteConnection};
-use tokio::sync::{Notify, mpsc, oneshot, watch};
+use sqlx::{Connection, SqliteConnection};
+use tokio::sync::{Notify, broadcast, mpsc, oneshot, watch};
 
-use super::blob;
-use super::error::StoreError;
+use super::error::{StoreError, is_locked};
 use super::health::StoreHealth;
-use super::json::json;
+use super::insert::{
+    NewCalibrationRow, NewStudy, StudyIds, insert_calibration, insert_evaluations, insert_experiment,
+    insert_study,
+};
 use super::results::StudyResults;
-use record::fact::{EvaluationRow, Fact, Kept};
+use record::fact::{EvaluationRow, Fact};
 
 /// Most facts in one commit.
 const GROUP: usize = 4096;
 /// Evaluations that nobody waits for gather for so long before they are committed: a commit writes whole pages.
 const LINGER: Duration = Duration::from_millis(250);
-/// Most rows in one statement; SQLite takes 32,766 parameters.
-const ROWS: usize = 1000;
+/// Changes of state that wait for whoever tells them; the oldest are dropped.
+const STATES: usize = 1024;
 
 enum Write {
     Fact(Fact),
@@ -47,36 +50,28 @@ enum Write {
         results: StudyResults,
         reply: oneshot::Sender<()>,
     },
+    Archive {
+        study: i64,
+        at_ms: Option<i64>,
+        reply: oneshot::Sender<()>,
+    },
+    Delete {
+        study: i64,
+        now_ms: i64,
+        reply: oneshot::Sender<bool>,
+    },
     Close,
 }
 
-/// A study to store, with the calibrations that it begins with: all of them, or none.
+/// A change of state that is stored.
 #[derive(Debug, Clone)]
-pub struct NewStudy {
-    /// The experiment that it is about.
-    pub experiment: i64,
-    /// Its calibrations.
-    pub calibrations: Vec<NewCalibrationRow>,
-    /// Now.
-    pub now_ms: i64,
-}
-
-/// Ids of a new study and its calibrations, in their order.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct StudyIds {
-    /// The study.
-    pub study: i64,
-    /// Its calibrations.
-    pub calibrations: Vec<i64>,
-}
-
-/// A calibration to store.
-#[derive(Debug, Clone)]
-pub struct NewCalibrationRow {
-    /// Name for lists.
-    pub name: String,
-    /// The job with the files it names.
-    pub job: FileSet,
+pub struct StateChange {
+    /// The calibration.
+    pub calibration: i64,
+    /// Its new state.
+    pub state: CalibrationState,
+    /// Why paused or failed.
+    pub message: Option<String>,
 }
 
 /// The way to the writer; clones are cheap.
@@ -84,6 +79,7 @@ pub struct NewCalibrationRow {
 pub struct Writer {
     sender: mpsc::UnboundedSender<Write>,
     committed: watch::Receiver<u64>,
+    states: broadcast::Sender<StateChange>,
     health: Arc<StoreHealth>,
     waiting: Arc<Waiting>,
 }
@@ -151,12 +147,23 @@ impl Writer {
     pub(super) fn start(connection: SqliteConnection, lock: Option<std::fs::File>) -> Writer {
         let (sender, receiver) = mpsc::unbounded_channel();
         let (committed_sender, committed) = watch::channel(0);
+        let states = broadcast::Sender::new(STATES);
+        let told = states.clone();
         let health = Arc::new(StoreHealth::default());
         let waiting = Arc::new(Waiting::default());
         let (shared, waited_for) = (health.clone(), waiting.clone());
         tokio::spawn(async move {
             let _lock = lock;
-            if let Err(error) = run(connection, receiver, &committed_sender, &shared, &waited_for).await {
+            if let Err(error) = run(
+                connection,
+                receiver,
+                &committed_sender,
+                &told,
+                &shared,
+                &waited_for,
+            )
+            .await
+            {
                 tracing::error!(%error, "the store cannot be written");
             }
             // Dropping `committed_sender` tells everyone who waits for a commit.
@@ -164,8 +171,22 @@ impl Writer {
         Writer {
             sender,
             committed,
+            states,
             health,
             waiting,
+        }
+    }
+
+    /// The way to a writer that is not there: whatever is sent is refused.
+    pub(super) fn none() -> Writer {
+        let (sender, _) = mpsc::unbounded_channel();
+        let (_, committed) = watch::channel(0);
+        Writer {
+            sender,
+            committed,
+            states: broadcast::Sender::new(1),
+            health: Arc::default(),
+            waiting: Arc::default(),
         }
     }
 
@@ -199,10 +220,23 @@ impl Writer {
         while committed.changed().await.is_ok() {}
     }
 
-    /// Stores what was sent before, then ends the task.
+    /// Stores what was sent before, then ends the task. What a lock of another program keeps from being stored is given up:
+    /// nobody has been told that it is.
     pub async fn close(&self) {
-        if self.sender.send(Write::Close).is_ok() {
-            self.waiting.while_urgent(self.stopped()).await;
+        if self.sender.send(Write::Close).is_err() {
+            return;
+        }
+        let locked = async {
+            while !self.health.is_locked.load(Ordering::Relaxed) {
+                tokio::time::sleep(LINGER).await;
+            }
+        };
+        tokio::select! {
+            () = self.waiting.while_urgent(self.stopped()) => {}
+            () = locked => {
+                let facts = self.backlog();
+                tracing::error!(facts, "another program holds a lock on the store: what it has not taken is given up");
+            }
         }
     }
 
@@ -212,6 +246,11 @@ impl Writer {
             .sent
             .load(Ordering::Relaxed)
             .saturating_sub(*self.committed.borrow())
+    }
+
+    /// Changes of state from now on, each after it is stored.
+    pub fn state_changes(&self) -> broadcast::Receiver<StateChange> {
+        self.states.subscribe()
     }
 
     /// Figures of the writer.
@@ -265,6 +304,25 @@ impl Writer {
         self.committed(|reply| Write::Results { results, reply }).await
     }
 
+    /// Archives a study at a time, or takes it back where none is given.
+    ///
+    /// # Errors
+    /// [`StoreError::Stopped`].
+    pub async fn archive_study(&self, study: i64, at_ms: Option<i64>) -> Result<(), StoreError> {
+        self.committed(|reply| Write::Archive { study, at_ms, reply })
+            .await
+    }
+
+    /// Deletes a study with all that belongs to it alone, in parts: the facts of others are stored between them.
+    ///
+    /// # Errors
+    /// [`StoreError::Stopped`].
+    pub async fn delete_study(&self, study: i64, now_ms: i64) -> Result<(), StoreError> {
+        let delete = |reply| Write::Delete { study, now_ms, reply };
+        while !self.committed(delete).await? {}
+        Ok(())
+    }
+
     /// Sends a write and waits for what it replies once it is committed.
     async fn committed<T>(&self, write: impl FnOnce(oneshot::Sender<T>) -> Write) -> Result<T, StoreError> {
         let (reply, answer) = oneshot::channel();
@@ -278,6 +336,7 @@ async fn run(
     mut connection: SqliteConnection,
     mut receiver: mpsc::UnboundedReceiver<Write>,
     committed: &watch::Sender<u64>,
+    states: &broadcast::Sender<StateChange>,
     health: &StoreHealth,
     waiting: &Waiting,
 ) -> Result<(), sqlx::Error> {
@@ -293,12 +352,19 @@ async fn run(
         }
         closing = group.iter().any(|w| matches!(w, Write::Close));
         let began = std::time::Instant::now();
-        let mut transaction = connection.begin_with("BEGIN IMMEDIATE").await?;
+        let mut transaction = loop {
+            match connection.begin_with("BEGIN IMMEDIATE").await {
+                Ok(transaction) => break transaction,
+                Err(error) if is_locked(&error) => health.wait_for_lock(began.elapsed()),
+                Err(error) => return Err(error),
+            }
+        };
+        health.is_locked.store(false, Ordering::Relaxed);
         let mut replies = Replies::default();
         let facts = write_group(&mut transaction, group.drain(..), &mut replies, health).await?;
         transaction.commit().await?;
         number += facts;
-        replies.send();
+        replies.send(states);
         health.commits.fetch_add(1, Ordering::Relaxed);
         health.facts.fetch_add(facts, Ordering::Relaxed);
         health.busy_us.fetch_add(
@@ -315,11 +381,13 @@ async fn run(
 struct Replies {
     ids: Vec<(oneshot::Sender<i64>, i64)>,
     studies: Vec<(oneshot::Sender<StudyIds>, StudyIds)>,
-    results: Vec<oneshot::Sender<()>>,
+    done: Vec<oneshot::Sender<()>>,
+    deleted: Vec<(oneshot::Sender<bool>, bool)>,
+    states: Vec<StateChange>,
 }
 
 impl Replies {
-    fn send(self) {
+    fn send(self, states: &broadcast::Sender<StateChange>) {
         // An asker that has gone away finds what it stored in the list.
         for (reply, id) in self.ids {
             let _ = reply.send(id);
@@ -327,8 +395,15 @@ impl Replies {
         for (reply, ids) in self.studies {
             let _ = reply.send(ids);
         }
-        for reply in self.results {
+        for reply in self.done {
             let _ = reply.send(());
+        }
+        for (reply, is_gone) in self.deleted {
+            let _ = reply.send(is_gone);
+        }
+        for change in self.states {
+            // Nobody may want to know.
+            let _ = states.send(change);
         }
     }
 }
@@ -349,6 +424,7 @@ async fn write_group(
                     Fact::Evaluated { calibration, row } => rows.push((calibration, row)),
                     other => {
                         insert_evaluations(connection, &mut rows).await?;
+                        replies.states.extend(state_change(&other));
                         super::facts::write(connection, other, health).await?;
                     }
                 }
@@ -356,17 +432,20 @@ async fn write_group(
             Write::Close => {}
             Write::Results { results, reply } => {
                 super::results::write(connection, results).await?;
-                replies.results.push(reply);
+                replies.done.push(reply);
+            }
+            Write::Archive { study, at_ms, reply } => {
+                super::removal::archive(connection, study, at_ms).await?;
+                replies.done.push(reply);
+            }
+            Write::Delete { study, now_ms, reply } => {
+                // What was told of its calibrations before goes with them.
+                insert_evaluations(connection, &mut rows).await?;
+                let is_gone = super::removal::delete_part(connection, study, now_ms).await?;
+                replies.deleted.push((reply, is_gone));
             }
             Write::Experiment { files, now_ms, reply } => {
-                let id = sqlx::query_scalar(
-                    "INSERT INTO experiments (toml, files, created_at_ms) VALUES (?, ?, ?) RETURNING id",
-                )
-                .bind(files.toml)
-                .bind(json(&files.files))
-                .bind(now_ms)
-                .fetch_one(&mut *connection)
-                .await?;
+                let id = insert_experiment(connection, files, now_ms).await?;
                 replies.ids.push((reply, id));
             }
             Write::Study { new, reply } => replies
@@ -388,76 +467,20 @@ async fn write_group(
     Ok(facts)
 }
 
-async fn insert_study(connection: &mut SqliteConnection, new: NewStudy) -> Result<StudyIds, sqlx::Error> {
-    let study: i64 = sqlx::query_scalar("INSERT INTO studies (experiment) VALUES (?) RETURNING id")
-        .bind(new.experiment)
-        .fetch_one(&mut *connection)
-        .await?;
-    let mut calibrations = Vec::new();
-    for row in new.calibrations {
-        let id = insert_calibration(connection, study, None, row, new.now_ms).await?;
-        calibrations.push(id);
-    }
-    Ok(StudyIds { study, calibrations })
-}
-
-/// Inserts a calibration, on the experiment of its study where none is named.
-async fn insert_calibration(
-    connection: &mut SqliteConnection,
-    study: i64,
-    experiment: Option<i64>,
-    row: NewCalibrationRow,
-    now_ms: i64,
-) -> Result<i64, sqlx::Error> {
-    sqlx::query_scalar(
-        "INSERT INTO calibrations (study, experiment, name, toml, files, state, created_at_ms, seal_key)
-         VALUES (?1, nullif(?2, (SELECT experiment FROM studies WHERE id = ?1)), ?3, ?4, ?5, 'queued', ?6, randomblob(16))
-         RETURNING id",
-    )
-    .bind(study)
-    .bind(experiment)
-    .bind(row.name)
-    .bind(row.job.toml)
-    .bind(json(&row.job.files))
-    .bind(now_ms)
-    .fetch_one(connection)
-    .await
-}
-
-/// Inserts evaluations, many rows to a statement: SQLite through sqlx costs by the statement.
-async fn insert_evaluations(
-    connection: &mut SqliteConnection,
-    rows: &mut Vec<(i64, EvaluationRow)>,
-) -> Result<(), sqlx::Error> {
-    // By their numbers: pages are filled one after the other.
-    rows.sort_by_key(|(calibration, row)| (*calibration, row.evaluation));
-    while !rows.is_empty() {
-        let part = rows.drain(..rows.len().min(ROWS));
-        let mut query: QueryBuilder<Sqlite> = QueryBuilder::new(
-            "INSERT OR IGNORE INTO evaluations
-             (calibration, evaluation, theta, log_likelihood, rejection, fitted, observables, fingerprint, worker, subchain, coarse) ",
-        );
-        query.push_values(part, |mut values, (calibration, row)| {
-            let (rejection, fitted, observables) = match row.kept {
-                Kept::Rejected(rejection) => (Some(rejection), None, None),
-                Kept::Scored => (None, Some(Vec::new()), None),
-                Kept::Fitted(values) => (None, Some(blob::encode(&values)), None),
-                Kept::Whole(observables) => (None, None, Some(blob::encode_whole(&observables))),
-            };
-            values
-                .push_bind(calibration)
-                .push_bind(row.evaluation as i64)
-                .push_bind(blob::encode(&row.theta))
-                .push_bind(row.log_likelihood)
-                .push_bind(rejection)
-                .push_bind(fitted)
-                .push_bind(observables)
-                .push_bind(row.fingerprint.0)
-                .push_bind(row.worker)
-                .push_bind(row.end.as_ref().map(json))
-                .push_bind(row.coarse.as_deref().map(blob::encode));
-        });
-        query.build().persistent(false).execute(&mut *connection).await?;
-    }
-    Ok(())
+/// The change of state that a fact is.
+fn state_change(fact: &Fact) -> Option<StateChange> {
+    let Fact::State {
+        calibration,
+        state,
+        message,
+        ..
+    } = fact
+    else {
+        return None;
+    };
+    Some(StateChange {
+        calibration: *calibration,
+        state: *state,
+        message: message.clone(),
+    })
 }

@@ -278,7 +278,11 @@ fn axum_sql_and_http_clients_stay_in_their_rooms() {
     nowhere(
         &["coordinator/src", "worker/src"],
         &["reqwest::"],
-        &["worker/src/client.rs", "coordinator/src/command/source.rs"],
+        &[
+            "worker/src/client.rs",
+            "coordinator/src/command/source.rs",
+            "coordinator/src/webhook.rs",
+        ],
     );
     nowhere(
         &["coordinator/src", "worker/src"],

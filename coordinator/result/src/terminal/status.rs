@@ -9,15 +9,16 @@ use super::column::cell;
 /// The states of calibrations, a line each.
 pub fn status_table(statuses: &[CalibrationStatus]) -> String {
     let mut text = format!(
-        "{:>4} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}\n",
-        "id", "name", "state", "stage", "exponent", "evaluations", "per s", "to go s"
+        "{:>4} {:>5} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}\n",
+        "id", "study", "name", "state", "stage", "exponent", "evaluations", "per s", "to go s"
     );
     for s in statuses {
         let p = s.progress.as_ref();
         let _ = writeln!(
             text,
-            "{:>4} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}",
+            "{:>4} {:>5} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}",
             s.id,
+            s.study,
             printable(&s.name),
             s.state.name(),
             cell(p, |p| p.stage.to_string()),

@@ -1,0 +1,19 @@
+//! `coordinator backup`: a copy of a store.
+
+use super::output::say;
+use crate::config::BackupArguments;
+use crate::store::Reader;
+
+pub(super) async fn backup(config: &BackupArguments) -> anyhow::Result<()> {
+    let reader = Reader::open(&config.store.store).await?;
+    let bytes = reader.back_up(&config.file).await?;
+    let copy = Reader::open(&config.file.display().to_string()).await?;
+    let (studies, calibrations) = (copy.studies().await?, copy.calibrations().await?);
+    Ok(say(&format!(
+        "{}: {:.1} MB, studies: {}, calibrations: {}\n",
+        config.file.display(),
+        bytes as f64 / 1e6,
+        studies.len(),
+        calibrations.len(),
+    ))?)
+}

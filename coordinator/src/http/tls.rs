@@ -1,0 +1,60 @@
+//! The certificate of a service that speaks TLS itself.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use rustls::ServerConfig;
+use rustls::crypto::ring;
+use rustls::pki_types::pem::PemObject;
+use rustls::pki_types::{CertificateDer, PrivateKeyDer};
+use tokio_rustls::TlsAcceptor;
+
+/// Why a certificate or its key cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum TlsError {
+    /// The file cannot be read, or is no PEM of its kind.
+    #[error("{file}: no {what} in PEM form: {source}")]
+    File {
+        /// The file.
+        file: String,
+        /// What it should have.
+        what: &'static str,
+        /// What is wrong with it.
+        source: rustls::pki_types::pem::Error,
+    },
+    /// They do not belong together, or cannot be used.
+    #[error("certificate {certificate} with key {key}: {source}")]
+    Pair {
+        /// The file of the certificate.
+        certificate: String,
+        /// The file of the key.
+        key: String,
+        /// What is wrong with them.
+        source: rustls::Error,
+    },
+}
+
+/// Takes connections under a certificate, with those of its authorities behind it in the same file, and its private key.
+///
+/// # Errors
+/// [`TlsError`] with the file.
+pub fn tls_acceptor(certificate: &Path, key: &Path) -> Result<TlsAcceptor, TlsError> {
+    let failed = |path: &Path, what| {
+        let file = path.display().to_string();
+        move |source| TlsError::File { file, what, source }
+    };
+    let chain = CertificateDer::pem_file_iter(certificate)
+        .and_then(Iterator::collect::<Result<Vec<_>, _>>)
+        .map_err(failed(certificate, "certificate"))?;
+    let private = PrivateKeyDer::from_pem_file(key).map_err(failed(key, "private key"))?;
+    let config = ServerConfig::builder_with_provider(Arc::new(ring::default_provider()))
+        .with_safe_default_protocol_versions()
+        .and_then(|builder| builder.with_no_client_auth().with_single_cert(chain, private));
+    let mut config = config.map_err(|source| TlsError::Pair {
+        certificate: certificate.display().to_string(),
+        key: key.display().to_string(),
+        source,
+    })?;
+    config.alpn_protocols = vec![b"http/1.1".to_vec()];
+    Ok(TlsAcceptor::from(Arc::new(config)))
+}

@@ -1,0 +1,113 @@
+//! Studies that are archived, taken back or deleted, and how long archived ones are kept.
+
+use std::time::Duration;
+
+use super::clock::now_ms;
+use super::error::ServiceError;
+use super::handle::Service;
+
+/// Interval between checks for archived studies whose time is up.
+const LOOK: Duration = Duration::from_secs(600);
+/// Milliseconds of a day.
+const DAY_MS: i64 = 86_400_000;
+
+impl Service {
+    /// Deletes a study with its calibrations, and with its experiments where no other study has them; the calibrations.
+    ///
+    /// # Errors
+    /// [`ServiceError::InProgress`] where one of its calibrations is not over.
+    pub async fn delete_study(&self, study: i64) -> Result<Vec<i64>, ServiceError> {
+        let calibrations = self.at_rest(study, "deleted").await?;
+        // Archived first, so that nothing is added to it while it goes.
+        self.archive_study(study).await?;
+        self.store().writer().delete_study(study, now_ms()).await?;
+        Ok(calibrations)
+    }
+
+    /// Takes a study out of the lists; it no longer grows. Its results stay.
+    ///
+    /// # Errors
+    /// As those of [`Service::delete_study`].
+    pub async fn archive_study(&self, study: i64) -> Result<(), ServiceError> {
+        let _growing = self.growing.lock().await;
+        self.at_rest(study, "archived").await?;
+        Ok(self.store().writer().archive_study(study, Some(now_ms())).await?)
+    }
+
+    /// Takes an archived study back into the lists.
+    ///
+    /// # Errors
+    /// As those of [`Service::delete_study`].
+    pub async fn restore_study(&self, study: i64) -> Result<(), ServiceError> {
+        let _growing = self.growing.lock().await;
+        self.at_rest(study, "restored").await?;
+        if self.store().reader().half_deleted().await?.contains(&study) {
+            return Err(ServiceError::not_found("study", study));
+        }
+        Ok(self.store().writer().archive_study(study, None).await?)
+    }
+
+    /// The calibrations of a study that the farm holds none of.
+    async fn at_rest(&self, study: i64, verb: &'static str) -> Result<Vec<i64>, ServiceError> {
+        let studies = self.store().reader().studies().await?;
+        let found = studies.into_iter().find(|found| found.id == study);
+        let calibrations = found
+            .ok_or_else(|| ServiceError::not_found("study", study))?
+            .calibrations;
+        let in_hand = self.dispatcher().statuses().await?;
+        match calibrations.iter().find_map(|id| in_hand.get(id)) {
+            None => Ok(calibrations),
+            Some(status) => Err(ServiceError::InProgress {
+                study,
+                calibration: status.id,
+                state: status.state,
+                verb,
+            }),
+        }
+    }
+
+    /// Refuses an archived study, which does not grow.
+    pub(super) async fn check_not_archived(&self, study: i64) -> Result<(), ServiceError> {
+        let archived = self.store().reader().archived().await?;
+        match archived.iter().any(|&(id, _)| id == study) {
+            true => Err(ServiceError::Archived(study)),
+            false => Ok(()),
+        }
+    }
+
+    /// Finishes deletions that an end of the service has cut short; then deletes studies that were archived so many days ago,
+    /// where a number is given, until the service ends.
+    pub async fn keep_tidy(&self, days: Option<u32>) {
+        match self.store().reader().half_deleted().await {
+            Ok(studies) => {
+                for study in studies {
+                    self.delete_and_log(study, "its deletion was cut short").await;
+                }
+            }
+            Err(error) => tracing::error!(%error, "failed to read the deletions"),
+        }
+        loop {
+            let Some(days) = days else {
+                return std::future::pending().await;
+            };
+            let until_ms = now_ms() - i64::from(days) * DAY_MS;
+            let archived = self.store().reader().archived().await;
+            let archived = archived.unwrap_or_else(|error| {
+                tracing::error!(%error, "failed to read the archived studies");
+                Vec::new()
+            });
+            for (study, _) in archived.into_iter().filter(|&(_, at_ms)| at_ms <= until_ms) {
+                self.delete_and_log(study, &format!("archived {days} days ago"))
+                    .await;
+            }
+            tokio::time::sleep(LOOK).await;
+        }
+    }
+
+    async fn delete_and_log(&self, study: i64, reason: &str) {
+        match self.delete_study(study).await {
+            Ok(calibrations) => tracing::info!(study, ?calibrations, reason, "deleted"),
+            Err(error) => tracing::error!(study, %error, reason, "failed to delete a study"),
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Damage of the file, looked for at the start.
+
+use std::time::{Duration, Instant};
+
+use sqlx::{AssertSqlSafe, SqliteConnection};
+
+use super::error::{StoreError, primary_code};
+use super::file::file_of;
+
+/// The start waits so long for the check; what it has not reached by then is unchecked.
+const BUDGET: Duration = Duration::from_secs(3);
+/// Steps of SQLite between two looks at the clock.
+const STEPS: i32 = 10_000;
+/// SQLite's code where the clock has stopped it.
+const INTERRUPTED: u32 = 9;
+
+/// Checks the pages and rows of every table, the large ones last, for as long as [`BUDGET`] lasts.
+///
+/// # Errors
+/// [`StoreError::Damaged`] with the first damaged table.
+pub(super) async fn check(connection: &mut SqliteConnection, path: &str) -> Result<(), StoreError> {
+    let wrap = |source| StoreError::of(path, source);
+    let tables = "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%'
+                  ORDER BY name = 'evaluations', name = 'samples', name";
+    let tables: Vec<String> = sqlx::query_scalar(tables)
+        .fetch_all(&mut *connection)
+        .await
+        .map_err(wrap)?;
+    let until = Instant::now() + BUDGET;
+    let mut handle = connection.lock_handle().await.map_err(wrap)?;
+    handle.set_progress_handler(STEPS, move || Instant::now() < until);
+    drop(handle);
+    let mut checked = Ok(());
+    for table in tables {
+        checked = check_table(connection, path, table).await;
+        if checked.is_err() || Instant::now() >= until {
+            break;
+        }
+    }
+    connection
+        .lock_handle()
+        .await
+        .map_err(wrap)?
+        .remove_progress_handler();
+    checked
+}
+
+async fn check_table(connection: &mut SqliteConnection, path: &str, table: String) -> Result<(), StoreError> {
+    let query = AssertSqlSafe(format!("PRAGMA quick_check(\"{table}\")"));
+    let said = sqlx::query_scalar::<_, String>(query).fetch_all(connection).await;
+    let what = match said {
+        Ok(said) => match said.into_iter().find(|line| line != "ok") {
+            None => return Ok(()),
+            Some(first) => first,
+        },
+        Err(error) if primary_code(&error) == Some(INTERRUPTED) => {
+            let seconds = BUDGET.as_secs();
+            tracing::info!(
+                store = path,
+                table,
+                seconds,
+                "not checked for damage to its end: the time is up"
+            );
+            return Ok(());
+        }
+        Err(error) => error.to_string(),
+    };
+    Err(StoreError::Damaged {
+        path: file_of(path).into(),
+        table,
+        what,
+    })
+}

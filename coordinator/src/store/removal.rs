@@ -1,0 +1,118 @@
+//! Studies that are archived or deleted.
+
+use sqlx::{AssertSqlSafe, SqliteConnection};
+
+use super::error::StoreError;
+use super::reader::Reader;
+
+/// Tables that have many rows of a calibration, with their keys.
+const LARGE: [(&str, &str); 2] = [
+    ("evaluations", "calibration, evaluation"),
+    ("samples", "calibration, stage, particle"),
+];
+/// Rows of these that one commit deletes: results of workers wait no longer than for them.
+const PART: u64 = 1000;
+/// Tables that have few.
+const SMALL: [&str; 5] = ["stages", "estimates", "discoveries", "faults", "disputes"];
+
+/// Deletes a part of what belongs to a study alone, and the study itself at last; whether nothing is left.
+pub(super) async fn delete_part(
+    connection: &mut SqliteConnection,
+    study: i64,
+    now_ms: i64,
+) -> Result<bool, sqlx::Error> {
+    let experiments: Vec<i64> = sqlx::query_scalar(
+        "SELECT experiment FROM studies WHERE id = ?1
+         UNION SELECT experiment FROM calibrations WHERE study = ?1 AND experiment IS NOT NULL",
+    )
+    .bind(study)
+    .fetch_all(&mut *connection)
+    .await?;
+    // From the first part on it is archived and its files are gone; a restart finds here what to go on with.
+    sqlx::query(
+        "INSERT OR IGNORE INTO deletions (study, last_calibration, last_experiment, deleted_at_ms)
+         SELECT id, (SELECT coalesce(max(id), 0) FROM calibrations WHERE study = ?1), ?2, ?3 FROM studies WHERE id = ?1",
+    )
+    .bind(study)
+    .bind(experiments.iter().max())
+    .bind(now_ms)
+    .execute(&mut *connection)
+    .await?;
+    sqlx::query("UPDATE studies SET archived_at_ms = coalesce(archived_at_ms, ?2) WHERE id = ?1")
+        .bind(study)
+        .bind(now_ms)
+        .execute(&mut *connection)
+        .await?;
+    let mut delete = async |rows: String| {
+        let deleted = sqlx::query(AssertSqlSafe(format!("DELETE FROM {rows}")));
+        let deleted = deleted.bind(study).execute(&mut *connection).await?;
+        Ok::<_, sqlx::Error>(deleted.rows_affected())
+    };
+    let of_study = "calibration IN (SELECT id FROM calibrations WHERE study = ?)";
+    delete("results WHERE study = ?".into()).await?;
+    for (table, key) in LARGE {
+        let part = format!("SELECT {key} FROM {table} WHERE {of_study} LIMIT {PART}");
+        if delete(format!("{table} WHERE ({key}) IN ({part})")).await? > 0 {
+            return Ok(false);
+        }
+    }
+    for table in SMALL {
+        delete(format!("{table} WHERE {of_study}")).await?;
+    }
+    delete("calibrations WHERE study = ?".into()).await?;
+    delete("studies WHERE id = ?".into()).await?;
+    for experiment in experiments {
+        sqlx::query(
+            "DELETE FROM experiments WHERE id = ?1 AND NOT EXISTS (SELECT 1 FROM studies WHERE experiment = ?1)
+             AND NOT EXISTS (SELECT 1 FROM calibrations WHERE experiment = ?1)",
+        )
+        .bind(experiment)
+        .execute(&mut *connection)
+        .await?;
+    }
+    Ok(true)
+}
+
+/// Archives a study at a time, or takes it back where none is given.
+pub(super) async fn archive(
+    connection: &mut SqliteConnection,
+    study: i64,
+    at_ms: Option<i64>,
+) -> Result<(), sqlx::Error> {
+    sqlx::query("UPDATE studies SET archived_at_ms = ? WHERE id = ?")
+        .bind(at_ms)
+        .bind(study)
+        .execute(connection)
+        .await
+        .map(drop)
+}
+
+impl Reader {
+    /// Studies of which a part has been deleted.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn half_deleted(&self) -> Result<Vec<i64>, StoreError> {
+        let studies =
+            sqlx::query_scalar("SELECT study FROM deletions WHERE study IN (SELECT id FROM studies)");
+        Ok(studies.fetch_all(&self.pool).await?)
+    }
+
+    /// Archived studies with the times at which they were archived `[ms since 1970]`. A store of before migration 15, which only
+    /// reading leaves as it is, has none.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn archived(&self) -> Result<Vec<(i64, i64)>, StoreError> {
+        let column = "SELECT count(*) FROM pragma_table_info('studies') WHERE name = 'archived_at_ms'";
+        let there: i64 = sqlx::query_scalar(column).fetch_one(&self.pool).await?;
+        if there == 0 {
+            return Ok(Vec::new());
+        }
+        let archived =
+            sqlx::query_as("SELECT id, archived_at_ms FROM studies WHERE archived_at_ms IS NOT NULL")
+                .fetch_all(&self.pool)
+                .await?;
+        Ok(archived)
+    }
+}

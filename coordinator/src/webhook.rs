@@ -1,0 +1,132 @@
+//! Web hooks: the pause or end of a calibration, posted to a URL that its job was submitted with.
+//!
+//! Only to hosts that the operator lists, without following redirects: nobody can make the coordinator ask other machines
+//! of its network.
+
+use std::time::Duration;
+
+use reqwest::redirect::Policy;
+use reqwest::{Client, Url};
+use serde::Serialize;
+use shared::api::CalibrationState;
+
+/// Pauses before the attempts to deliver.
+const PAUSES: [Duration; 3] = [Duration::ZERO, Duration::from_secs(2), Duration::from_secs(20)];
+/// An attempt lasts so long at most.
+const TIMEOUT: Duration = Duration::from_secs(10);
+/// Longest URL `[bytes]`.
+const LONGEST: usize = 2000;
+
+/// Why nothing is posted to a URL.
+#[derive(Debug, thiserror::Error)]
+pub enum WebhookError {
+    /// The URL has no form.
+    #[error("webhook {0}: {1}")]
+    Url(String, String),
+    /// The operator does not list its host.
+    #[error("webhook {0}: the service posts to hosts of its --webhook-host alone")]
+    Host(String),
+    /// It was not taken.
+    #[error("webhook {0}: {1}")]
+    Refused(String, String),
+}
+
+/// What is posted, as JSON.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Announcement {
+    /// The study.
+    pub study: i64,
+    /// Its calibration.
+    pub calibration: i64,
+    /// Name of the calibration.
+    pub name: String,
+    /// Its new state: paused, finished, failed or cancelled.
+    pub state: CalibrationState,
+    /// Why paused or failed.
+    pub message: Option<String>,
+}
+
+/// Hosts that may be posted to.
+#[derive(Debug, Clone, Default)]
+pub struct WebhookHosts(pub Vec<String>);
+
+impl WebhookHosts {
+    /// The URL of a text, if it may be posted to.
+    ///
+    /// # Errors
+    /// [`WebhookError::Url`] and [`WebhookError::Host`].
+    pub fn check(&self, url: &str) -> Result<Url, WebhookError> {
+        let wrong = |what: String| WebhookError::Url(url.chars().take(200).collect(), what);
+        if url.len() > LONGEST {
+            return Err(wrong(format!(
+                "{} bytes must be at most {LONGEST} bytes",
+                url.len()
+            )));
+        }
+        let parsed = Url::parse(url).map_err(|e| wrong(e.to_string()))?;
+        if !["http", "https"].contains(&parsed.scheme()) {
+            return Err(wrong(format!(
+                "scheme {} is neither http nor https",
+                parsed.scheme()
+            )));
+        }
+        let host = parsed.host_str().unwrap_or_default();
+        match self.0.iter().any(|listed| listed.eq_ignore_ascii_case(host)) {
+            true => Ok(parsed),
+            false => Err(WebhookError::Host(url.to_owned())),
+        }
+    }
+
+    /// Posts an announcement, again after a while where it is not taken.
+    ///
+    /// # Errors
+    /// [`WebhookError`] of the last attempt.
+    pub async fn post(&self, url: &str, announcement: &Announcement) -> Result<(), WebhookError> {
+        let target = self.check(url)?;
+        let refused = |what: String| WebhookError::Refused(url.to_owned(), what);
+        let client = Client::builder().redirect(Policy::none()).timeout(TIMEOUT);
+        let client = match target.scheme() {
+            // Without TLS no certificate is read: a machine may have none.
+            "http" => client.tls_certs_only([]),
+            _ => client,
+        };
+        let client = client.build().map_err(|e| refused(e.to_string()))?;
+        let mut last = String::new();
+        for pause in PAUSES {
+            tokio::time::sleep(pause).await;
+            match client.post(target.clone()).json(announcement).send().await {
+                Ok(answer) if answer.status().is_success() => return Ok(()),
+                Ok(answer) => last = format!("status {}", answer.status()),
+                Err(error) => last = error.without_url().to_string(),
+            }
+        }
+        Err(refused(last))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_listed_host_is_posted_to_and_no_other() {
+        let hosts = WebhookHosts(vec!["hooks.example".into()]);
+        for url in [
+            "https://hooks.example/grouser",
+            "http://HOOKS.example:8080/?key=1",
+        ] {
+            assert!(hosts.check(url).is_ok(), "{url}");
+        }
+        for url in [
+            "https://hooks.example.evil.example/",
+            "https://hooks.example@evil.example/",
+            "http://169.254.169.254/",
+            "file:///etc/passwd",
+            "hooks.example",
+            "",
+        ] {
+            assert!(hosts.check(url).is_err(), "{url}");
+        }
+        assert!(WebhookHosts::default().check("http://127.0.0.1/").is_err());
+    }
+}

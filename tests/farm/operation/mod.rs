@@ -1,0 +1,5 @@
+//! The service as its operator sees it: figures, alerts, web hooks, encryption.
+
+mod figures;
+mod tls;
+mod webhook;

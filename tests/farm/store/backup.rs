@@ -1,0 +1,69 @@
+//! `coordinator backup` of a store that is being written.
+
+use std::path::{Path, PathBuf};
+
+use farm_tests::job::Job;
+use farm_tests::programs::{Ended, coordinator, run};
+use farm_tests::service::Service;
+use farm_tests::text::same;
+use farm_tests::wait::until;
+
+fn back_up(service: &Service, to: &Path) -> Ended {
+    let store = format!("sqlite://{}", service.store().display());
+    run(coordinator([
+        "backup",
+        &to.display().to_string(),
+        "--store",
+        &store,
+    ]))
+}
+
+/// The names in a folder.
+fn names(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    entries.map(|entry| entry.expect("an entry").path()).collect()
+}
+
+#[test]
+fn a_backup_under_work_is_one_moment_of_the_store_and_goes_on_to_the_same_bits() {
+    let mut service = Service::start(&[]);
+    let id = service.submit(&Job::small());
+    let worker = service.worker("worker", 2);
+    until("some evaluations", || {
+        service
+            .evaluations(id)
+            .is_some_and(|done| done >= 60)
+            .then_some(())
+    });
+    let folder = tempfile::tempdir().expect("a folder");
+    let copy = folder.path().join("grouser.db");
+    let said = back_up(&service, &copy).success();
+    assert!(said.contains("MB, studies: 1, calibrations: 1"), "{said}");
+    assert_eq!(names(folder.path()), std::slice::from_ref(&copy));
+    service.wait_for(id, "finished");
+    drop(worker);
+    let posterior = |service: &Service| service.client.get("/v1/calibrations/1/posterior").body;
+    let expected = posterior(&service);
+
+    service.terminate();
+    std::fs::copy(&copy, service.store()).expect("the backup is put back");
+    service.restart();
+    let worker = service.worker("again", 2);
+    service.wait_for(id, "finished");
+    drop(worker);
+    same(&posterior(&service), &expected);
+}
+
+#[test]
+fn nothing_is_overwritten_and_a_failed_backup_leaves_nothing() {
+    let service = Service::start(&[]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let taken = folder.path().join("taken.db");
+    std::fs::write(&taken, "mine").expect("a file");
+    let message = back_up(&service, &taken).refusal();
+    assert!(message.contains("taken.db: File exists"), "{message}");
+    assert_eq!(std::fs::read_to_string(&taken).expect("a file"), "mine");
+    let nowhere = folder.path().join("missing").join("copy.db");
+    assert!(back_up(&service, &nowhere).refusal().contains("No such file"));
+    assert_eq!(names(folder.path()), [taken]);
+}

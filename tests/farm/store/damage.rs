@@ -1,0 +1,63 @@
+//! Damage and other versions are found at the start, and named.
+
+use std::fs::File;
+use std::os::unix::fs::FileExt;
+use std::path::Path;
+
+use farm_tests::database::Database;
+use farm_tests::job::Job;
+use farm_tests::programs::{Ended, coordinator, run};
+use farm_tests::service::{Service, free_address};
+
+fn serve(store: &Path) -> Ended {
+    let store = format!("sqlite://{}", store.display());
+    run(coordinator([
+        "serve",
+        "--listen",
+        &free_address(),
+        "--store",
+        &store,
+    ]))
+}
+
+#[test]
+fn a_damaged_page_is_found_at_the_start_and_its_table_named() {
+    let mut service = Service::start(&["--local-workers", "2"]);
+    let id = service.submit(&Job::small());
+    service.wait_for(id, "finished");
+    service.terminate();
+    let mut database = Database::open(&service.store());
+    let page_size = database.number("PRAGMA page_size");
+    let root = database.number("SELECT rootpage FROM sqlite_schema WHERE name = 'evaluations'");
+    drop(database);
+    let file = File::options()
+        .write(true)
+        .open(service.store())
+        .expect("the store");
+    let at = (root - 1) * page_size;
+    file.write_all_at(&[0xa5; 64], at.unsigned_abs() + 8)
+        .expect("damage");
+    let message = serve(&service.store()).refusal();
+    assert!(message.contains("grouser.db"), "{message}");
+    assert!(message.contains("damaged: table evaluations: "), "{message}");
+    assert!(message.contains("--read-only"), "{message}");
+}
+
+#[test]
+fn a_store_of_a_newer_version_says_so_by_numbers() {
+    let mut service = Service::start(&[]);
+    service.terminate();
+    let mut database = Database::open(&service.store());
+    let known = database.number("SELECT max(version) FROM _sqlx_migrations");
+    database.execute(
+        "INSERT INTO _sqlx_migrations (version, description, success, checksum, execution_time)
+         VALUES (900, 'later', 1, x'00', 0)",
+    );
+    drop(database);
+    let newer = format!("version 900, this program knows versions up to {known}");
+    let message = serve(&service.store()).refusal();
+    assert!(message.contains(&newer), "{message}");
+    let folder = service.folder().display().to_string();
+    let message = run(coordinator(["list", "--out", &folder])).refusal();
+    assert!(message.contains(&newer), "{message}");
+}

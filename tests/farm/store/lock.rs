@@ -1,0 +1,82 @@
+//! One coordinator to a file, whatever it is called; what others lock is waited for.
+
+use std::os::unix::fs::symlink;
+use std::path::Path;
+use std::time::Duration;
+
+use farm_tests::database::Database;
+use farm_tests::job::Job;
+use farm_tests::programs::{Ended, coordinator, run};
+use farm_tests::service::{Service, free_address};
+use farm_tests::wait::until;
+
+fn serve(store: &Path) -> Ended {
+    let store = format!("sqlite://{}", store.display());
+    run(coordinator([
+        "serve",
+        "--listen",
+        &free_address(),
+        "--store",
+        &store,
+    ]))
+}
+
+#[test]
+fn a_symlink_to_a_store_in_use_starts_no_second_coordinator() {
+    let service = Service::start(&[]);
+    let other = tempfile::tempdir().expect("a folder");
+    let link = other.path().join("link.db");
+    symlink(service.store(), &link).expect("a symlink");
+    let folder = other.path().join("folder");
+    symlink(service.folder(), &folder).expect("a symlink");
+    for name in [link, folder.join("grouser.db")] {
+        let message = serve(&name).refusal();
+        assert!(
+            message.contains("another coordinator is using this file"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn a_store_with_two_names_is_refused_before_it_loses_its_write_ahead_log() {
+    let service = Service::start(&[]);
+    service.submit(&Job::small());
+    let link = service.folder().join("hard.db");
+    std::fs::hard_link(service.store(), &link).expect("a hard link");
+    let message = serve(&link).refusal();
+    assert!(message.contains("hard.db: the file has 2 names"), "{message}");
+    assert!(!service.folder().join("hard.db-wal").exists());
+}
+
+#[test]
+fn a_foreign_lock_is_waited_for_and_nothing_is_lost() {
+    let mut service = Service::start(&[]);
+    let mut foreign = Database::open(&service.store());
+    foreign.execute("BEGIN IMMEDIATE");
+    std::thread::scope(|scope| {
+        let submitted = scope.spawn(|| service.submit(&Job::small()));
+        until("a word about the lock", || {
+            service
+                .log()
+                .contains("another program holds a lock")
+                .then_some(())
+        });
+        assert_eq!(service.client.get("/health").status, 200);
+        foreign.execute("COMMIT");
+        assert_eq!(submitted.join().expect("an answer"), 1);
+    });
+    // While it is locked, a stop is still obeyed, and the next start says what it waits for.
+    foreign.execute("BEGIN IMMEDIATE");
+    assert!(service.terminate());
+    let message = serve(&service.store()).refusal();
+    assert!(message.contains("another program holds a lock"), "{message}");
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            std::thread::sleep(Duration::from_secs(1));
+            foreign.execute("COMMIT");
+        });
+        service.restart();
+    });
+    assert_eq!(service.status(1)["state"], "queued");
+}
