@@ -29,7 +29,7 @@ pub(super) fn positions(fit: &[f64]) -> Vec<Vec<f64>> {
 ///
 /// # Source
 /// Moré & Wild 2011, "Estimating computational noise", SIAM Journal on Scientific Computing 33, doi:10.1137/100786125, Algorithm
-/// ECnoise at one order. Checked by `tests`.
+/// `ECnoise` at one order. Checked by `tests`.
 pub(super) fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<f64>> {
     let data = likelihood.data();
     let channels = data.iter().map(|datum| datum.channel + 1).max()?;
