@@ -78,7 +78,7 @@ mod tests {
             let mut scattered = Stream::new(1, 0, t[0].to_bits(), 0).normals(RUNS).into_iter();
             let value = |i: usize| {
                 let smooth = (i as f64) * (3.0 * t[0] + t[0] * t[0] - 2.0 * t[0].powi(3));
-                let rough = if i % 2 == 0 {
+                let rough = if i.is_multiple_of(2) {
                     scattered.next().unwrap()
                 } else {
                     0.0
