@@ -50,9 +50,10 @@ fn every_figure_of_the_dashboard_and_of_the_alerts_exists() {
 fn queue_states_store_and_requests_are_counted() {
     let service = Service::start(&[]);
     service.submit(&Job::small());
-    let second = service.submit(&Job::small());
     let worker = FakeWorker::new(&service.client, "worker");
+    // Of two calibrations each would have one lease.
     assert_eq!(worker.take(2).len(), 2);
+    let second = service.submit(&Job::small());
     service
         .client
         .post(&format!("/v1/calibrations/{second}/cancel"), &json!({}));
