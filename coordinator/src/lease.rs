@@ -403,7 +403,7 @@ impl LeaseQueue {
                 if let Some(entry) = self.entries.get_mut(&evaluation) {
                     entry.suspect = true;
                     entry.unstarted += 1;
-                    if entry.unstarted == MAX_UNSTARTED {
+                    if entry.unstarted.is_multiple_of(MAX_UNSTARTED) {
                         expired.never_begun.push(evaluation);
                     }
                 }

@@ -16,6 +16,8 @@ const PAUSES: [Duration; 3] = [Duration::ZERO, Duration::from_secs(2), Duration:
 const TIMEOUT: Duration = Duration::from_secs(10);
 /// Longest URL `[bytes]`.
 const LONGEST: usize = 2000;
+/// So much of a wrong URL or of an unknown host is shown \[characters\].
+const SHOWN: usize = 200;
 
 /// Why nothing is posted to a URL.
 #[derive(Debug, thiserror::Error)]
@@ -24,10 +26,10 @@ pub enum WebhookError {
     #[error("webhook {0}: {1}")]
     Url(String, String),
     /// The operator does not list its host.
-    #[error("webhook {0}: the service posts to hosts of its --webhook-host alone")]
+    #[error("webhook host {0}: the service posts to hosts of its --webhook-host alone")]
     Host(String),
     /// It was not taken.
-    #[error("webhook {0}: {1}")]
+    #[error("webhook host {0}: {1}")]
     Refused(String, String),
 }
 
@@ -56,7 +58,7 @@ impl WebhookHosts {
     /// # Errors
     /// [`WebhookError::Url`] and [`WebhookError::Host`].
     pub fn check(&self, url: &str) -> Result<Url, WebhookError> {
-        let wrong = |what: String| WebhookError::Url(url.chars().take(200).collect(), what);
+        let wrong = |what: String| WebhookError::Url(url.chars().take(SHOWN).collect(), what);
         if url.len() > LONGEST {
             return Err(wrong(format!(
                 "{} bytes must be at most {LONGEST} bytes",
@@ -73,7 +75,7 @@ impl WebhookHosts {
         let host = parsed.host_str().unwrap_or_default();
         match self.0.iter().any(|listed| listed.eq_ignore_ascii_case(host)) {
             true => Ok(parsed),
-            false => Err(WebhookError::Host(url.to_owned())),
+            false => Err(WebhookError::Host(host.chars().take(SHOWN).collect())),
         }
     }
 
@@ -83,7 +85,9 @@ impl WebhookHosts {
     /// [`WebhookError`] of the last attempt.
     pub async fn post(&self, url: &str, announcement: &Announcement) -> Result<(), WebhookError> {
         let target = self.check(url)?;
-        let refused = |what: String| WebhookError::Refused(url.to_owned(), what);
+        // Its path and its query may hold a key, which is no log's business.
+        let host = target.host_str().unwrap_or_default().to_owned();
+        let refused = |what: String| WebhookError::Refused(host.clone(), what);
         let client = Client::builder().redirect(Policy::none()).timeout(TIMEOUT);
         let client = match target.scheme() {
             // Without TLS no certificate is read: a machine may have none.
@@ -127,6 +131,10 @@ mod tests {
         ] {
             assert!(hosts.check(url).is_err(), "{url}");
         }
-        assert!(WebhookHosts::default().check("http://127.0.0.1/").is_err());
+        let error = WebhookHosts::default()
+            .check("http://127.0.0.1/?key=secret")
+            .unwrap_err();
+        assert!(error.to_string().contains("127.0.0.1"), "{error}");
+        assert!(!error.to_string().contains("secret"), "{error}");
     }
 }

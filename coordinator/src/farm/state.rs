@@ -302,6 +302,10 @@ impl Farm {
         if holds == 0 {
             let suspected = |id: &i64| self.calibrations[id].calibration.queue.suspects() > 0;
             turns.sort_by_key(|(id, _)| !suspected(id));
+            // A suspect goes to empty hands, however many leases of its calibration are out.
+            if let Some((_, most)) = turns.first_mut().filter(|(id, _)| suspected(id)) {
+                *most = (*most).max(1);
+            }
         }
         turns.extend(ids.map(|id| (id, want)));
         turns

@@ -17,11 +17,31 @@ impl Service {
     /// # Errors
     /// [`ServiceError::InProgress`] where one of its calibrations is not over.
     pub async fn delete_study(&self, study: i64) -> Result<Vec<i64>, ServiceError> {
+        let _growing = self.growing.lock().await;
+        self.delete_at_rest(study).await
+    }
+
+    /// Deletes a study while nothing can be added to it: the caller keeps studies from growing.
+    async fn delete_at_rest(&self, study: i64) -> Result<Vec<i64>, ServiceError> {
         let calibrations = self.at_rest(study, "deleted").await?;
-        // Archived first, so that nothing is added to it while it goes.
-        self.archive_study(study).await?;
-        self.store().writer().delete_study(study, now_ms()).await?;
+        let writer = self.store().writer();
+        // A deletion that is cut short leaves an archived study, which does not grow after a restart either.
+        writer.archive_study(study, Some(now_ms())).await?;
+        writer.delete_study(study, now_ms()).await?;
         Ok(calibrations)
+    }
+
+    /// Deletes a study if it is still archived, and was so at a time; `None` where it is not.
+    async fn delete_archived(&self, study: i64, until_ms: i64) -> Result<Option<Vec<i64>>, ServiceError> {
+        let _growing = self.growing.lock().await;
+        let archived = self.store().reader().archived().await?;
+        match archived
+            .iter()
+            .any(|&(id, at_ms)| id == study && at_ms <= until_ms)
+        {
+            true => self.delete_at_rest(study).await.map(Some),
+            false => Ok(None),
+        }
     }
 
     /// Takes a study out of the lists; it no longer grows. Its results stay.
@@ -81,7 +101,8 @@ impl Service {
         match self.store().reader().half_deleted().await {
             Ok(studies) => {
                 for study in studies {
-                    self.delete_and_log(study, "its deletion was cut short").await;
+                    let deleted = self.delete_study(study).await.map(Some);
+                    log_deletion(study, deleted, "its deletion was cut short");
                 }
             }
             Err(error) => tracing::error!(%error, "failed to read the deletions"),
@@ -97,17 +118,18 @@ impl Service {
                 Vec::new()
             });
             for (study, _) in archived.into_iter().filter(|&(_, at_ms)| at_ms <= until_ms) {
-                self.delete_and_log(study, &format!("archived {days} days ago"))
-                    .await;
+                let deleted = self.delete_archived(study, until_ms).await;
+                log_deletion(study, deleted, &format!("archived {days} days ago"));
             }
             tokio::time::sleep(LOOK).await;
         }
     }
+}
 
-    async fn delete_and_log(&self, study: i64, reason: &str) {
-        match self.delete_study(study).await {
-            Ok(calibrations) => tracing::info!(study, ?calibrations, reason, "deleted"),
-            Err(error) => tracing::error!(study, %error, reason, "failed to delete a study"),
-        }
+fn log_deletion(study: i64, deleted: Result<Option<Vec<i64>>, ServiceError>, reason: &str) {
+    match deleted {
+        Ok(Some(calibrations)) => tracing::info!(study, ?calibrations, reason, "deleted"),
+        Ok(None) => tracing::info!(study, "restored before it was deleted"),
+        Err(error) => tracing::error!(study, %error, reason, "failed to delete a study"),
     }
 }

@@ -42,8 +42,11 @@ impl Reader {
             options.write(true).create_new(true).open(path)
         };
         make(to).map_err(failed(to))?;
+        if let Err(source) = make(&partial) {
+            let _ = std::fs::remove_file(to);
+            return Err(failed(&partial)(source));
+        }
         let copied = async {
-            make(&partial).map_err(failed(&partial))?;
             self.copy_to(&partial).await?;
             let file = File::open(&partial).map_err(failed(&partial))?;
             file.sync_all().map_err(failed(&partial))?;

@@ -109,8 +109,9 @@ pub(super) fn lock(path: &str) -> Result<Option<std::fs::File>, StoreError> {
         source: sqlx::Error::Io(e),
     };
     let make = |name: &str| std::fs::OpenOptions::new().create(true).append(true).open(name);
-    // A link may lead to a file that is not there yet.
-    let names = make(file).and_then(|made| made.metadata()).map_err(io)?.nlink();
+    // A link may lead to a file that is not there yet. One that is there is not opened: closing it would end locks of this process.
+    let found = std::fs::metadata(file).or_else(|_| make(file).and_then(|made| made.metadata()));
+    let names = found.map_err(io)?.nlink();
     if names > 1 {
         return Err(StoreError::Unfit {
             path: file.into(),

@@ -18,10 +18,12 @@ fn back_up(service: &Service, to: &Path) -> Ended {
     ]))
 }
 
-/// The names in a folder.
+/// The names in a folder, in order.
 fn names(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).expect("a folder");
-    entries.map(|entry| entry.expect("an entry").path()).collect()
+    let mut names: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    names.sort();
+    names
 }
 
 #[test]
@@ -65,5 +67,13 @@ fn nothing_is_overwritten_and_a_failed_backup_leaves_nothing() {
     assert_eq!(std::fs::read_to_string(&taken).expect("a file"), "mine");
     let nowhere = folder.path().join("missing").join("copy.db");
     assert!(back_up(&service, &nowhere).refusal().contains("No such file"));
-    assert_eq!(names(folder.path()), [taken]);
+    let (half, other) = (
+        folder.path().join("other.db.part"),
+        folder.path().join("other.db"),
+    );
+    std::fs::write(&half, "mine").expect("a file");
+    let message = back_up(&service, &other).refusal();
+    assert!(message.contains("other.db.part: File exists"), "{message}");
+    assert_eq!(std::fs::read_to_string(&half).expect("a file"), "mine");
+    assert_eq!(names(folder.path()), [half, taken]);
 }

@@ -7,22 +7,38 @@ use statistics::likelihood::{ErrorSd, Likelihood};
 
 /// Positions on the line, and the distance of neighbours along every coordinate, in standard deviations of the prior.
 const POINTS: usize = 9;
-const SPACING: f64 = 0.1;
+pub(super) const SPACING: f64 = 0.1;
+/// Shortest distance: where the model rejects too many positions, a quarter of the last distance is tried.
+const LEAST_SPACING: f64 = 0.005;
+const SHORTER: f64 = 0.25;
 /// Coefficients of the fourth difference, in which the smooth part of the predictions vanishes; their squares sum to 70.
 const FOURTH_DIFFERENCE: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
 const SUM_OF_SQUARES: f64 = 70.0;
 /// A scatter below this share of a channel's declared noise is neglected.
 const NEGLIGIBLE: f64 = 0.1;
 
+/// The distances of neighbours to be tried, in standard deviations of the prior.
+pub(super) fn spacings() -> impl Iterator<Item = f64> {
+    let shorter = |spacing: &f64| Some(SHORTER * spacing).filter(|s| *s > LEAST_SPACING);
+    std::iter::successors(Some(SPACING), shorter)
+}
+
 /// The positions to evaluate: evenly on a line through the fit, which moves all parameters at once.
-pub(super) fn positions(fit: &[f64]) -> Vec<Vec<f64>> {
-    let offset = |i: usize| SPACING * (i as f64 - (POINTS / 2) as f64);
+pub(super) fn positions(fit: &[f64], spacing: f64) -> Vec<Vec<f64>> {
+    let offset = |i: usize| spacing * (i as f64 - (POINTS / 2) as f64);
     let moved = |i| fit.iter().map(|t| t + offset(i)).collect();
     (0..POINTS).map(moved).collect()
 }
 
+/// Whether the model took enough positions in a row for a difference.
+pub(super) fn are_enough(answers: &[Option<Vec<f64>>]) -> bool {
+    let mut windows = answers.windows(FOURTH_DIFFERENCE.len());
+    windows.any(|window| window.iter().all(Option::is_some))
+}
+
 /// The scatter of each channel by its index, in its unit: the root mean square of the fourth differences over the root of 70, over all
-/// data of the channel. `None` where all are negligible beside the declared noise, or inferred with it.
+/// data of the channel, and 0 where all noise of the channel is inferred, which holds the scatter already. `None` where all are negligible
+/// beside the declared noise.
 ///
 /// # Arguments
 /// - `answers`: the values at [`positions`]; a difference with a rejected position is left out.
@@ -32,6 +48,10 @@ pub(super) fn positions(fit: &[f64]) -> Vec<Vec<f64>> {
 /// `ECnoise` at one order. Checked by `tests`.
 pub(super) fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<f64>> {
     let data = likelihood.data();
+    let is_declared = |channel: usize| {
+        let mut own = data.iter().filter(|datum| datum.channel == channel);
+        own.any(|datum| matches!(datum.sd, ErrorSd::Known(_)))
+    };
     let channels = data.iter().map(|datum| datum.channel + 1).max()?;
     let mut squares = vec![(0.0, 0_usize); channels];
     for window in answers.windows(FOURTH_DIFFERENCE.len()) {
@@ -49,6 +69,8 @@ pub(super) fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Opti
     let sds: Vec<f64> = squares
         .into_iter()
         .map(|(sum, count)| (sum / count.max(1) as f64).sqrt())
+        .enumerate()
+        .map(|(channel, sd)| if is_declared(channel) { sd } else { 0.0 })
         .collect();
     let matters = data.iter().any(|datum| match datum.sd {
         ErrorSd::Known(sd) => sds[datum.channel] > NEGLIGIBLE * sd,
@@ -87,7 +109,10 @@ mod tests {
             };
             Some((0..2 * RUNS).map(value).collect())
         };
-        (likelihood, positions(&[0.3, -1.0]).iter().map(values).collect())
+        (
+            likelihood,
+            positions(&[0.3, -1.0], SPACING).iter().map(values).collect(),
+        )
     }
 
     #[test]
@@ -96,10 +121,30 @@ mod tests {
         let found = sds(&likelihood, &answers).unwrap();
         assert!((0.4..0.6).contains(&found[0]), "{found:?}");
         assert!(found[1] < 1e-9, "{found:?}");
+        assert!(are_enough(&answers));
         // Four differences of five are left.
         answers[0] = None;
         let found = sds(&likelihood, &answers).unwrap();
         assert!((0.4..0.6).contains(&found[0]), "{found:?}");
+    }
+
+    #[test]
+    fn a_rejected_middle_leaves_no_difference_and_shorter_lines_are_tried() {
+        let (_, mut answers) = answers(0.5);
+        answers[POINTS / 2] = None;
+        assert!(!are_enough(&answers));
+        let tried: Vec<f64> = spacings().collect();
+        assert_eq!(tried, [0.1, 0.025, 0.00625]);
+    }
+
+    #[test]
+    fn inferred_noise_holds_the_scatter() {
+        let (likelihood, answers) = answers(0.5);
+        let mut data = likelihood.data().to_vec();
+        for datum in data.iter_mut().filter(|datum| datum.channel == 0) {
+            datum.sd = ErrorSd::Inferred { parameter: 0 };
+        }
+        assert_eq!(sds(&Likelihood::new(data).unwrap(), &answers), None);
     }
 
     #[test]

@@ -32,7 +32,7 @@ impl EffectSearch {
                 batch.tell(&self.likelihood, answers);
                 self.fit_base(batch);
             }
-            Phase::NumericalNoise(batch) => self.after_numerical_noise(batch, &answers),
+            Phase::NumericalNoise(batch, spacing) => self.after_numerical_noise(batch, spacing, &answers),
             Phase::Screen(level) => self.after_screen(level, answers),
             Phase::Extensions(mut batch) => {
                 batch.tell(&self.likelihood, answers);
@@ -72,7 +72,7 @@ impl EffectSearch {
             return;
         };
         if std::mem::take(&mut self.measures_noise) {
-            return self.measure_noise(batch);
+            return self.measure_noise(batch, numerical_noise::SPACING);
         }
         self.evaluations.base += batch.evaluations();
         self.base = batch.best().cloned().and_then(|fit| {
@@ -85,43 +85,35 @@ impl EffectSearch {
     }
 
     /// Evaluates the base along a line through its best fit.
-    fn measure_noise(&mut self, batch: FitBatch) {
+    fn measure_noise(&mut self, batch: FitBatch, spacing: f64) {
         let Some(best) = batch.best() else { return };
-        let asked = numerical_noise::positions(&best.point.position);
+        let asked = numerical_noise::positions(&best.point.position, spacing);
         self.ask(asked.into_iter().map(|position| (None, position)).collect());
-        self.phase = Phase::NumericalNoise(batch);
+        self.phase = Phase::NumericalNoise(batch, spacing);
     }
 
     /// Adds what the predictions scatter to the noise, and fits the base again where that matters.
-    fn after_numerical_noise(&mut self, batch: FitBatch, answers: &[Option<Vec<f64>>]) {
-        self.evaluations.base += batch.evaluations() + answers.len();
-        let sds = numerical_noise::sds(&self.likelihood, answers);
-        let mut again = FitBatch::new(Vec::new());
-        if let Some((sds, likelihood)) = sds.and_then(|sds| {
-            let likelihood = self.likelihood.with_numerical_noise(&sds).ok()?;
-            Some((sds, likelihood))
-        }) {
+    fn after_numerical_noise(&mut self, batch: FitBatch, spacing: f64, answers: &[Option<Vec<f64>>]) {
+        self.evaluations.base += answers.len();
+        let shorter = numerical_noise::spacings().find(|other| *other < spacing);
+        if let Some(shorter) = shorter.filter(|_| !numerical_noise::are_enough(answers)) {
+            return self.measure_noise(batch, shorter);
+        }
+        self.evaluations.base += batch.evaluations();
+        let mut plan: &[FitStep] = &[];
+        if let Some(sds) = numerical_noise::sds(&self.likelihood, answers)
+            && let Ok(likelihood) = self.likelihood.with_numerical_noise(&sds)
+        {
             self.numerical_noise_sds = sds;
             self.likelihood = likelihood;
+            plan = &base::PLAN;
         }
-        for (_, fit) in batch.fits {
-            let LaplaceFit {
-                frame,
-                point,
-                columns,
-                ..
-            } = fit;
-            if let Some(point) = FitPoint::new(&frame, &self.likelihood, point.position, point.values) {
-                let plan: &[FitStep] = if self.numerical_noise_sds.is_empty() {
-                    &[]
-                } else {
-                    &base::PLAN
-                };
-                again
-                    .fits
-                    .push((None, LaplaceFit::new(frame, point, columns, plan)));
-            }
-        }
+        let again = batch.fits.into_iter().filter_map(|(_, fit)| {
+            let FitPoint { position, values, .. } = fit.point;
+            let point = FitPoint::new(&fit.frame, &self.likelihood, position, values)?;
+            Some((None, LaplaceFit::new(fit.frame, point, fit.columns, plan)))
+        });
+        let again = FitBatch::new(again.collect());
         self.fit_base(again);
     }
 

@@ -64,8 +64,8 @@ pub(super) struct EvidenceEstimate {
 pub(super) enum Phase {
     Starts,
     Base(FitBatch),
-    /// Of the base, with its fits.
-    NumericalNoise(FitBatch),
+    /// Of the base, with its fits, and the distance of neighbours on the line.
+    NumericalNoise(FitBatch, f64),
     /// Index of the strength that the screen tries.
     Screen(usize),
     Extensions(FitBatch),
