@@ -164,6 +164,10 @@ pub struct ServeArguments {
     /// Duration of a lease without renewal `[ms]`.
     #[arg(long, env = "GROUSER_LEASE_MS", default_value_t = crate::service::LEASE_MS)]
     pub lease_ms: u64,
+    /// Lets a second worker compute this share of the evaluations, and the first results of every new worker, and compares the
+    /// answers; 0 compares nothing `[%]`.
+    #[arg(long, env = "GROUSER_VERIFY_PERCENT", value_name = "PERCENT", default_value_t = crate::service::VERIFIED_PERCENT)]
+    pub verify_percent: f64,
     /// Shows what the store holds and changes nothing: takes no jobs and no results, and starts no threads. Works beside a
     /// service that uses the store, and where nothing can be written.
     #[arg(long)]

@@ -44,7 +44,7 @@ fn reference() -> &'static (String, u64, usize) {
 #[test]
 fn three_workers_of_two_threads_give_the_bytes_of_one_worker_of_one_thread() {
     let (expected, ..) = reference();
-    let service = Service::start(&[]);
+    let service = Service::start(&["--verify-percent", "10"]);
     let id = service.submit(&job());
     let _workers = ["a", "b", "c"].map(|name| service.worker(name, 2));
     service.wait_for(id, "finished");
@@ -71,7 +71,7 @@ enum Victim {
 #[test]
 fn killing_coordinator_and_workers_at_random_moments_changes_no_byte() {
     let (expected, total, stages) = reference();
-    let mut service = Service::start(&["--lease-ms", "500"]);
+    let mut service = Service::start(&["--lease-ms", "500", "--verify-percent", "10"]);
     let id = service.submit(&job());
     let mut workers: Vec<Process> = (0..2)
         .map(|k| service.worker(&format!("worker-{k}"), 1))

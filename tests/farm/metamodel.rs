@@ -43,7 +43,7 @@ fn subchains_give_the_same_bytes_on_any_worker_and_over_a_restart() {
         "{evaluations}"
     );
 
-    let mut service = Service::start(&["--lease-ms", "500"]);
+    let mut service = Service::start(&["--lease-ms", "500", "--verify-percent", "20"]);
     let id = service.submit(&job());
     let _workers = ["a", "b"].map(|name| service.worker(name, 2));
     for evaluations in [60, 100, 170] {

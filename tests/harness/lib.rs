@@ -6,6 +6,7 @@
 //! - [`service`]: `coordinator serve` on a port and a store that outlive its process.
 //! - [`http`]: a small blocking client.
 //! - [`fake_worker`]: a worker that a test plays by hand.
+//! - [`lying_proxy`]: makes a liar of an honest worker.
 //! - [`cylinder`]: the surface of a wheel as a mesh file.
 //! - [`job`]: the files of a small job, and ways to change them.
 //! - [`workspace`]: the workspace's own files.
@@ -19,6 +20,7 @@ pub mod database;
 pub mod fake_worker;
 pub mod http;
 pub mod job;
+pub mod lying_proxy;
 pub mod process;
 pub mod programs;
 pub mod random;

@@ -94,6 +94,7 @@ fn command<S: AsRef<std::ffi::OsStr>>(name: &str, arguments: impl IntoIterator<I
         "GROUSER_KEEP_DAYS",
         "GROUSER_TLS_CERTIFICATE",
         "GROUSER_TLS_KEY",
+        "GROUSER_VERIFY_PERCENT",
         "GROUSER_WEBHOOK_HOST",
         "RUST_LOG",
     ] {

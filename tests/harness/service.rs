@@ -24,7 +24,8 @@ pub struct Service {
 }
 
 impl Service {
-    /// Starts a service on an empty store; `more` are arguments such as `--lease-ms`.
+    /// Starts a service on an empty store; `more` are arguments such as `--lease-ms`. It verifies nothing unless `--verify-percent` is
+    /// among them: what workers played by hand answer is nothing that a second one would.
     pub fn start(more: &[&str]) -> Service {
         Service::start_at(free_address(), more)
     }
@@ -39,6 +40,9 @@ impl Service {
         let mut arguments: Vec<String> = vec!["serve".into(), "--listen".into(), address.clone()];
         arguments.extend(["--store".into(), store]);
         arguments.extend(more.iter().map(|&a| a.to_owned()));
+        if !more.contains(&"--verify-percent") {
+            arguments.extend(["--verify-percent", "0"].map(str::to_owned));
+        }
         let mut service = Service {
             client: Client(address),
             folder,
@@ -119,7 +123,12 @@ impl Service {
 
     /// Starts a worker of one thread that says JSON.
     pub fn json_worker(&self, name: &str) -> Process {
-        let mut command = crate::programs::worker(["--coordinator", &self.url(), "--threads", "1"]);
+        self.json_worker_at(&self.url(), name)
+    }
+
+    /// The same, talking to whatever stands between it and the service.
+    pub fn json_worker_at(&self, url: &str, name: &str) -> Process {
+        let mut command = crate::programs::worker(["--coordinator", url, "--threads", "1"]);
         command.env("GROUSER_WIRE", "json");
         Process::start(command, &self.folder.path().join(format!("{name}.log")))
     }

@@ -70,6 +70,33 @@ pub enum Fact {
         /// Wall time spent on the calibration so far `[ms]`.
         busy_ms: u64,
     },
+    /// A second worker has reproduced a stored result.
+    Confirmed {
+        /// The calibration.
+        calibration: i64,
+        /// The evaluation.
+        evaluation: u64,
+        /// The second worker.
+        worker: String,
+    },
+    /// A worker computes wrongly: it gets no leases, and nothing that it says counts.
+    Quarantined {
+        /// The worker.
+        worker: String,
+        /// The calibration that shows it.
+        calibration: i64,
+        /// The evaluation that shows it.
+        evaluation: u64,
+    },
+    /// The unconfirmed results of a worker that computes wrongly are dropped, and what followed from them.
+    Rewound {
+        /// The calibration.
+        calibration: i64,
+        /// The worker.
+        worker: String,
+        /// Evaluations of a round.
+        width: usize,
+    },
     /// The first result pinned the version of the equations, and of the effects.
     ModelVersion {
         /// The calibration.

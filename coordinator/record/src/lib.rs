@@ -5,6 +5,7 @@
 //! - `evaluation_key`: the permanent number of an evaluation.
 //! - `calibration`, `sample`, `estimate`: stored rows.
 //! - `replay`: rows that a restart reads back.
+//! - `verification`: how far the answers of workers are verified.
 //! - `discovery`: the record of a search for a missing effect.
 
 mod calibration;
@@ -14,6 +15,7 @@ mod evaluation_key;
 pub mod fact;
 mod replay;
 mod sample;
+mod verification;
 
 pub use calibration::{CalibrationRow, ExperimentRow, SealKey};
 pub use discovery::{
@@ -25,3 +27,4 @@ pub use evaluation_key::{EvaluationKey, LIKELIEST, PREDICTIONS_FROM};
 pub use fact::{Dispute, EvaluationRow, Fact, Fingerprint, Kept};
 pub use replay::{Stored, StoredEvaluation};
 pub use sample::{Prediction, PriorDraw, RejectionReason, Sample, StageRow, Subchains};
+pub use verification::{Quarantine, Verified};

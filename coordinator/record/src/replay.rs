@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use shared::api::CalibrationState;
 use statistics::SubchainEnd;
 
+use crate::fact::Fingerprint;
+
 /// Stored state of an unfinished calibration.
 #[derive(Debug, Default)]
 pub struct Stored {
@@ -31,8 +33,12 @@ pub struct StoredEvaluation {
     pub log_likelihood: Option<f64>,
     /// Whether the model rejected.
     pub rejected: bool,
-    /// Whether it was given up after faults: nobody computed it.
-    pub given_up: bool,
+    /// Who computed it; empty where it was given up after faults.
+    pub worker: String,
+    /// Fingerprint that a second computation must reproduce.
+    pub fingerprint: Fingerprint,
+    /// Whether another worker has reproduced it.
+    pub is_confirmed: bool,
     /// The model's values of the fitted measurements; read back for a fit and with a metamodel, which need
     /// them.
     pub fitted: Option<Vec<f64>>,

@@ -41,6 +41,7 @@ impl FinishedCalibration {
             conflict,
             directions,
             rejections,
+            verification: (&self.verified).into(),
             findings,
             flags: Vec::new(),
         };

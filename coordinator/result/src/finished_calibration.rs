@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use job::Spec;
-use record::{CalibrationRow, Dispute, EstimateRow, Prediction, PriorDraw, Sample, StageRow, Subchains};
+use record::{
+    CalibrationRow, Dispute, EstimateRow, Prediction, PriorDraw, Sample, StageRow, Subchains, Verified,
+};
 use shared::outcome::SimulatedHistory;
 use statistics::Marginal;
 
@@ -44,6 +46,8 @@ pub struct FinishedCalibration {
     pub given_up: u64,
     /// Evaluations that were answered in two ways.
     pub disputes: Vec<Dispute>,
+    /// How far the results are verified by second workers.
+    pub verified: Verified,
 }
 
 impl FinishedCalibration {

@@ -6,7 +6,7 @@ use inference::evolution::{EvolutionSettings, GaSettings};
 use inference::point_estimate::{Generation, StopReason};
 use job::{AlgorithmSettings, Spec};
 use record::{
-    CalibrationRow, EstimateRow, Outside, Prediction, PriorDraw, RejectionReason, Sample, StageRow,
+    CalibrationRow, EstimateRow, Outside, Prediction, PriorDraw, RejectionReason, Sample, StageRow, Verified,
 };
 use shared::api::CalibrationState;
 use shared::file::FileSet;
@@ -287,6 +287,7 @@ fn build(runs: &str) -> FinishedCalibration {
         faults: BTreeMap::from([("the lease expired".into(), 1)]),
         given_up: 0,
         disputes: Vec::new(),
+        verified: Verified::default(),
         spec,
     }
 }

@@ -9,6 +9,7 @@ use super::engine::{CalibrationResult, EvaluationScore};
 use super::faults::NOBODY;
 use super::final_draws::{FinalDraws, final_draws};
 use super::process::Calibration;
+use super::second_answer::{Answer, SecondAnswers};
 use super::simulation_result::SimulationResult;
 use crate::lease::{Completion, LeaseQueue};
 use job::AlgorithmSettings;
@@ -48,27 +49,21 @@ impl Calibration {
     ) -> Result<(Vec<Fact>, bool), ResultError> {
         let computed = computed.into();
         self.check_shape(evaluation, &computed)?;
+        let answer = Answer {
+            worker: worker.to_owned(),
+            fingerprint: computed.fingerprint(),
+        };
         match self.queue.complete(evaluation) {
             Completion::First => {}
             Completion::Duplicate | Completion::Unknown => {
-                let fingerprint = computed.fingerprint();
-                let (calibration, worker) = (self.identity.id, worker.to_owned());
-                return Ok((
-                    vec![Fact::Duplicate {
-                        calibration,
-                        evaluation,
-                        fingerprint,
-                        worker,
-                    }],
-                    false,
-                ));
+                return Ok((self.compare(evaluation, answer), false));
             }
         }
         let asked = self
             .theta(evaluation)
             .expect("the queue holds only evaluations asked for");
         let theta = computed.end.as_ref().map_or(asked, |end| &end.theta).to_vec();
-        let fingerprint = computed.fingerprint();
+        let fingerprint = answer.fingerprint;
         let rejected = computed.is_refused();
         let SimulationResult { end, outcome } = computed;
         let scored = if self.draws.is_some() || self.engine.discovery().is_some() {
@@ -102,6 +97,8 @@ impl Calibration {
         });
         let mut consequences = Vec::new();
         self.given_up += usize::from(worker == NOBODY);
+        self.answered_first(evaluation, &answer);
+        self.done.insert(evaluation, answer);
         self.record(evaluation, rejected, scored, &mut consequences);
         let row = EvaluationRow {
             evaluation,
@@ -181,10 +178,9 @@ impl Calibration {
         let stayed = scored.is_some_and(|s| s.end.is_some_and(|end| end.accepted == 0));
         self.evaluations += u64::from(!stayed);
         self.rejected += u64::from(rejected);
-        self.done.insert(evaluation);
         let Some(scored) = scored else {
             if self.done.len() == self.queue.len() {
-                self.finish(CalibrationState::Finished, None, facts);
+                self.conclude(facts);
             }
             return;
         };
@@ -228,7 +224,7 @@ impl Calibration {
                     }
                     Some(CalibrationResult::Discovery(record)) => {
                         facts.push(Fact::Discovery { calibration, record });
-                        return self.finish(CalibrationState::Finished, None, facts);
+                        return self.conclude(facts);
                     }
                     None => {}
                 }
@@ -241,8 +237,9 @@ impl Calibration {
         }
     }
 
-    fn finish(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
+    pub(super) fn finish(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
         self.queue = LeaseQueue::default();
+        self.second = SecondAnswers::default();
         self.change_state(state, message, facts);
     }
 

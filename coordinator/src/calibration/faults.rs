@@ -80,7 +80,7 @@ impl Calibration {
         let exhausted = failed
             .iter()
             .filter(|(evaluation, workers)| {
-                let open = !self.done.contains(evaluation) && self.theta(**evaluation).is_some();
+                let open = !self.done.contains_key(evaluation) && self.theta(**evaluation).is_some();
                 skip_faults && open && workers.len() >= MAX_ATTEMPTS as usize
             })
             .map(|(&evaluation, _)| evaluation)
@@ -95,7 +95,7 @@ impl Calibration {
         }));
         let (done, given_up) = (std::mem::take(&mut self.done), self.given_up);
         self.ask();
-        for &evaluation in &done {
+        for &evaluation in done.keys() {
             self.queue.complete(evaluation);
         }
         (self.done, self.given_up) = (done, given_up);

@@ -1,6 +1,6 @@
 //! A calibration in progress: its state, and what it asks for.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use inference::Proposal;
@@ -11,6 +11,8 @@ use statistics::{Metamodel, Subchain};
 
 use super::engine::{BeginError, CalibrationEngine};
 use super::final_draws::FinalDraws;
+use super::second_answer::{Answer, SecondAnswers};
+use super::verification::Verification;
 use crate::lease::LeaseQueue;
 use crate::missing_effect::{DiscoveryError, SearchModels};
 use job::{AlgorithmSettings, Spec};
@@ -64,12 +66,24 @@ pub struct Calibration {
     pub(super) histories: Option<(String, ModelVariant)>,
     /// What the calibration ends with; `None` while sampling.
     pub(super) draws: Option<FinalDraws>,
-    /// Evaluations of the present round that are done.
-    pub(super) done: BTreeSet<u64>,
+    /// Answers of the present round.
+    pub(super) done: BTreeMap<u64, Answer>,
     /// Evaluations of the present round that were given up after faults.
     pub(super) given_up: usize,
     /// The workers of failed leases by evaluation, kept over a restart.
     pub(super) failed: BTreeMap<u64, Vec<String>>,
+    /// Which evaluations a second worker computes as well.
+    pub verification: Verification,
+    /// Evaluations that a second worker is asked for.
+    pub second: SecondAnswers,
+    /// Stored answers by worker that no other worker has confirmed.
+    pub(super) unconfirmed: BTreeMap<String, u64>,
+    /// Stored answers that another worker has confirmed.
+    pub confirmed: u64,
+    /// Whether nothing is left but to compare answers.
+    pub(super) is_concluded: bool,
+    /// Workers found to compute wrongly, with the evaluation, since they were last asked for.
+    pub(super) convicted: Vec<(String, u64)>,
 }
 
 /// What an evaluation is leased with.
@@ -135,9 +149,15 @@ impl Calibration {
             engine,
             stage_variant: None,
             draws: None,
-            done: BTreeSet::new(),
+            done: BTreeMap::new(),
             given_up: 0,
             failed: BTreeMap::new(),
+            verification: Verification::OFF,
+            second: SecondAnswers::default(),
+            unconfirmed: BTreeMap::new(),
+            confirmed: 0,
+            is_concluded: false,
+            convicted: Vec::new(),
         };
         calibration.ask();
         Ok(calibration)
@@ -184,6 +204,26 @@ impl Calibration {
         })
     }
 
+    /// Asks a second worker for an evaluation that is asked for at present: of one that is not, nothing is known any more.
+    ///
+    /// # Arguments
+    /// - `is_compared`: whether the answers are compared; else the first one is enough.
+    /// - `holder`: who is asked already.
+    pub fn ask_second(&mut self, evaluation: u64, is_compared: bool, holder: Option<&str>) {
+        let Some(question) = self.question(evaluation) else {
+            return;
+        };
+        let (hash, theta) = (question.variant.to_owned(), question.theta.to_vec());
+        let question = Question {
+            variant: &hash,
+            theta: &theta,
+            subchain: question.subchain,
+        };
+        let variant = self.variant(&hash).cloned();
+        self.second
+            .ask(evaluation, question, variant, is_compared, holder);
+    }
+
     /// What an evaluation of a search is leased with; `None` of anything else.
     pub(super) fn searched(&self, evaluation: u64) -> Option<(&str, &[f64])> {
         let particle = self.proposal(evaluation)?.particle;
@@ -209,6 +249,7 @@ impl Calibration {
                     .find(|(own, _)| own == h)
                     .map(|(_, variant)| variant)
                     .or_else(searched)
+                    .or_else(|| self.second.variant(h))
             }
         }
     }

@@ -4,7 +4,9 @@ use shared::api::CalibrationState;
 use statistics::LogLikelihood;
 
 use super::engine::EvaluationScore;
+use super::faults::NOBODY;
 use super::process::Calibration;
+use super::second_answer::Answer;
 use job::EffectsChanged;
 use record::{Fact, Stored, StoredEvaluation};
 
@@ -99,8 +101,14 @@ impl Calibration {
                 Some(LogLikelihood::new(value).map_err(|_| ReplayError::NotANumber { evaluation })?)
             }
         };
+        let answer = Answer {
+            worker: stored.worker.clone(),
+            fingerprint: stored.fingerprint,
+        };
         self.queue.complete(evaluation);
-        self.given_up += usize::from(stored.given_up);
+        self.replay_confirmation(evaluation, &answer, stored.is_confirmed);
+        self.done.insert(evaluation, answer);
+        self.given_up += usize::from(stored.worker == NOBODY);
         let scored = scored.map(|log_likelihood| EvaluationScore {
             log_likelihood,
             fitted: stored.fitted.as_deref(),
@@ -265,7 +273,9 @@ mod tests {
                     theta: row.theta.clone(),
                     log_likelihood: row.log_likelihood,
                     rejected: matches!(row.kept, Kept::Rejected(_)),
-                    given_up: row.worker.is_empty(),
+                    worker: row.worker.clone(),
+                    fingerprint: row.fingerprint,
+                    is_confirmed: false,
                     fitted: match &row.kept {
                         Kept::Fitted(values) => Some(values.clone()),
                         _ => None,

@@ -16,7 +16,7 @@ use crate::config::ExposureArguments;
 use crate::embedded::{LocalWorkers, model_version};
 use crate::farm::Control;
 use crate::http::Exposure;
-use crate::service::{LEASE_MS, Service, next_step_of, search_rounds};
+use crate::service::{FarmSettings, Service, next_step_of, search_rounds};
 use record::CalibrationRow;
 use result::discovery::effect_file;
 use result::terminal::discovery;
@@ -49,7 +49,7 @@ impl Folder {
         listener: Option<(TcpListener, &ExposureArguments)>,
     ) -> anyhow::Result<Folder> {
         let store = out.join("grouser.db").display().to_string();
-        let service = Service::open(&store, LEASE_MS).await?;
+        let service = Service::open(&store, FarmSettings::default()).await?;
         let server = match listener {
             Some((listener, config)) => {
                 let reader = service.store().reader();

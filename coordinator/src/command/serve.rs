@@ -9,7 +9,7 @@ use super::exposure::exposure;
 use super::shutdown::{Shutdown, stop_signal};
 use crate::config::ServeArguments;
 use crate::embedded::LocalWorkers;
-use crate::service::Service;
+use crate::service::{FarmSettings, Service};
 
 /// Durations that a lease may have `[ms]`: what a network may take, to a day.
 const LEASE_MS: RangeInclusive<u64> = 100..=86_400_000;
@@ -22,13 +22,23 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
             config.lease_ms
         );
     }
+    if !(0.0..=100.0).contains(&config.verify_percent) {
+        bail!(
+            "--verify-percent {} must lie in [0, 100] %",
+            config.verify_percent
+        );
+    }
     let listener = TcpListener::bind(config.listen)
         .await
         .with_context(|| format!("--listen {}", config.listen))?;
     let store = &config.store.store;
+    let settings = FarmSettings {
+        lease_ms: config.lease_ms,
+        verified_share: config.verify_percent / 100.0,
+    };
     let service = match config.read_only {
         true => Service::open_read_only(store).await?,
-        false => Service::open(store, config.lease_ms).await?,
+        false => Service::open(store, settings).await?,
     };
     let service = service.with_webhook_hosts(config.webhook_host);
     let address = listener.local_addr()?;

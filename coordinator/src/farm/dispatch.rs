@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use shared::api::{CalibrationState, CalibrationStatus};
 use shared::exchange::{ExchangeRequest, ExchangeResponse};
 use shared::model::ModelVariant;
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::sync::oneshot;
 
 use super::control::{Control, ControlError};
@@ -27,6 +28,8 @@ const TICK: Duration = Duration::from_millis(250);
 /// An answer together with the number of the fact that must be stored before it may be given.
 pub type Durable<T> = (T, u64);
 
+/// Calibrations to replay from the store, as soon as their facts are stored: results of theirs were dropped.
+pub type Rewinds = UnboundedReceiver<Durable<i64>>;
 /// Where an exchange is answered.
 type ExchangeReply = oneshot::Sender<Durable<ExchangeResponse>>;
 /// A question to the farm at a time `[ms]`.
@@ -50,6 +53,10 @@ enum Message {
         control: Control,
         reply: oneshot::Sender<Controlled>,
     },
+    RewindFailed {
+        id: i64,
+        reason: String,
+    },
     Look {
         look: Look,
     },
@@ -68,22 +75,25 @@ pub struct Dispatcher {
 pub struct Stopped;
 
 impl Dispatcher {
-    /// Starts the farm's thread. Facts go to `sink`; when the store fails, the thread ends.
+    /// Starts the farm's thread. Facts go to `sink`; when the store fails, the thread ends. Whoever holds the store replays what the
+    /// other end of the pair asks for, and gives it back by [`Dispatcher::add`].
     ///
     /// # Errors
     /// The operating system refuses a thread.
-    pub fn start(farm: Farm, sink: FactSink) -> std::io::Result<Dispatcher> {
+    pub fn start(farm: Farm, sink: FactSink) -> std::io::Result<(Dispatcher, Rewinds)> {
         let (sender, receiver) = mpsc::channel();
+        let (rewinds, asked) = unbounded_channel();
         std::thread::Builder::new().name("farm".into()).spawn(move || {
             Thread {
                 farm,
                 sink,
+                rewinds,
                 parked: VecDeque::new(),
                 began: Instant::now(),
             }
             .run(&receiver)
         })?;
-        Ok(Dispatcher { sender })
+        Ok((Dispatcher { sender }, asked))
     }
 
     fn send(&self, message: Message) -> Result<(), Stopped> {
@@ -118,6 +128,14 @@ impl Dispatcher {
             reply,
         };
         self.reply(add).await
+    }
+
+    /// Says that a replay which was asked for failed.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn rewind_failed(&self, id: i64, reason: String) -> Result<(), Stopped> {
+        self.send(Message::RewindFailed { id, reason })
     }
 
     /// A user's command on a calibration.
@@ -204,6 +222,7 @@ struct Parked {
 struct Thread {
     farm: Farm,
     sink: FactSink,
+    rewinds: UnboundedSender<Durable<i64>>,
     parked: VecDeque<Parked>,
     began: Instant,
 }
@@ -247,7 +266,12 @@ impl Thread {
 
     /// Hands the new facts to the store; the number of the last fact so far.
     fn flush(&mut self) -> Option<u64> {
-        self.sink.send(self.farm.take_facts())
+        let fact = self.sink.send(self.farm.take_facts())?;
+        for id in self.farm.take_rewinds() {
+            // Without a listener the coordinator is going down: the next start replays it.
+            let _ = self.rewinds.send((id, fact));
+        }
+        Some(fact)
     }
 
     fn handle(&mut self, message: Message, now_ms: u64) {
@@ -267,6 +291,7 @@ impl Thread {
                 let Some(fact) = self.flush() else { return };
                 let _ = reply.send(result.map(|state| (state, fact)));
             }
+            Message::RewindFailed { id, reason } => self.farm.rewind_failed(id, &reason),
             Message::Look { look } => look(&self.farm, now_ms),
             Message::Stop => {}
         }

@@ -13,6 +13,10 @@ pub struct FarmCounters {
     pub leased: u64,
     /// Leases that never reached their worker.
     pub lost: u64,
+    /// Results that a second worker has confirmed.
+    pub confirmed: u64,
+    /// Results that nobody was there to confirm.
+    pub unanswered: u64,
     /// Leases that expired or ended in a fault.
     pub failed_leases: u64,
 }
@@ -30,4 +34,8 @@ pub struct FarmMetrics {
     pub calibrations: usize,
     /// Known workers.
     pub workers: usize,
+    /// Results that wait for a second answer.
+    pub unconfirmed: usize,
+    /// Workers that compute wrongly.
+    pub quarantined: usize,
 }

@@ -2,6 +2,8 @@
 //!
 //! # Layout
 //! - `state`: [`Farm`]. Pure: the clock comes as an argument and facts go out as a list.
+//! - `leasing`: what a worker is given.
+//! - `verification`: what follows where workers disagree, and who is asked beside a slow one.
 //! - [`dispatch`]: gives it a thread.
 //! - `control`: the commands of a user on a calibration.
 //! - `lease_numbers`: numbers of leases.
@@ -13,11 +15,13 @@
 mod control;
 pub mod dispatch;
 mod lease_numbers;
+mod leasing;
 mod metrics;
 mod progress;
 mod seal;
 mod share;
 mod state;
+mod verification;
 mod worker_record;
 
 pub use control::{Control, ControlError};

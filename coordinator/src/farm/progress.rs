@@ -14,12 +14,18 @@ const WINDOW_MS: u64 = 10_000;
 pub(super) struct Pace {
     /// (time, evaluations by then), a few a second; never empty.
     marks: VecDeque<(u64, u64)>,
+    /// Mean duration of leases that ended in a result, the late ones counting more `[ms]`.
+    mean_lease_ms: Option<u64>,
 }
+
+/// A lease changes the mean duration of leases by this part of its difference.
+const LEASE_MEMORY: u64 = 16;
 
 impl Pace {
     pub(super) fn new(evaluations: u64, now_ms: u64) -> Self {
         Pace {
             marks: VecDeque::from([(now_ms, evaluations)]),
+            mean_lease_ms: None,
         }
     }
 
@@ -31,6 +37,17 @@ impl Pace {
         while self.marks.len() > 2 && self.marks[1].0 + WINDOW_MS < now_ms {
             self.marks.pop_front();
         }
+    }
+
+    /// Notes for how long a lease was out `[ms]`.
+    pub(super) fn count_lease(&mut self, age_ms: u64) {
+        let mean_ms = self.mean_lease_ms.unwrap_or(age_ms);
+        self.mean_lease_ms = Some((mean_ms * (LEASE_MEMORY - 1) + age_ms).div_ceil(LEASE_MEMORY));
+    }
+
+    /// How long leases are out in the mean `[ms]`; `None` before the first result.
+    pub(super) fn mean_lease_ms(&self) -> Option<u64> {
+        self.mean_lease_ms
     }
 
     fn per_second(&self, evaluations: u64, now_ms: u64) -> f64 {
@@ -60,7 +77,7 @@ pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> Cal
         study: identity.study,
         experiment: identity.experiment,
         state: calibration.state,
-        message: calibration.message.clone(),
+        message: calibration.message.clone().or_else(|| waits(calibration)),
         model_kind: Some(calibration.spec.model.kind.name().to_owned()),
         model_version: calibration.model_version.clone(),
         progress: Some(Progress {
@@ -77,6 +94,13 @@ pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> Cal
             remaining_s: remaining_s(calibration, per_second),
         }),
     }
+}
+
+/// What a calibration waits for that has nothing left to evaluate.
+fn waits(calibration: &Calibration) -> Option<String> {
+    let waiting = calibration.second.waiting();
+    let message = || format!("all is evaluated; {waiting} answers wait for that of a second worker");
+    calibration.is_concluded().then(message)
 }
 
 /// Rough time to go: exponents grow by about a constant factor a stage, so the stages to come follow from the

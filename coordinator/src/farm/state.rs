@@ -4,43 +4,59 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use shared::api::{CalibrationState, CalibrationStatus};
-use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
+use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
 use shared::model::{ModelVariant, equations_of};
 
 use super::control::{Control, ControlError};
 use super::lease_numbers::LeaseNumbers;
 use super::metrics::{FarmCounters, FarmMetrics};
 use super::progress::{self, Pace};
-use super::seal::{LeaseTerms, proves, seal};
-use super::share::deal;
+use super::seal::{LeaseTerms, proves};
 use super::worker_record::WorkerRecord;
 use crate::calibration::{Calibration, SimulationResult};
+use crate::lease::{LeaseFailure, LeaseQueue};
 use record::SealKey;
 use record::fact::Fact;
 
 /// A worker is counted as connected for so long after its last message `[ms]`.
 const WORKER_SILENCE_MS: u64 = 60_000;
 
+/// So many results of a worker that nobody has heard of before are all compared with those of another.
+const NEW_WORKER_RESULTS: u64 = 5;
+
 /// All calibrations in progress and all known workers.
 #[derive(Debug)]
 pub struct Farm {
-    calibrations: BTreeMap<i64, Entry>,
+    pub(super) calibrations: BTreeMap<i64, Entry>,
     /// Calibrations that ended since the start: their late results are compared.
     ended: BTreeMap<i64, Ended>,
-    workers: BTreeMap<String, WorkerRecord>,
-    counters: FarmCounters,
-    facts: Vec<Fact>,
-    lease_numbers: LeaseNumbers,
-    lease_ms: u64,
+    pub(super) workers: BTreeMap<String, WorkerRecord>,
+    /// Workers that compute wrongly, with the reason.
+    pub(super) quarantine: BTreeMap<String, String>,
+    /// Calibrations to replay without the results of such workers, since they were last asked for.
+    pub(super) rewinds: Vec<i64>,
+    pub(super) counters: FarmCounters,
+    pub(super) facts: Vec<Fact>,
+    pub(super) lease_numbers: LeaseNumbers,
+    pub(super) lease_ms: u64,
 }
 
 #[derive(Debug)]
-struct Entry {
-    calibration: Calibration,
-    key: SealKey,
-    pace: Pace,
+pub(super) struct Entry {
+    pub(super) calibration: Calibration,
+    pub(super) key: SealKey,
+    pub(super) pace: Pace,
+    /// Whether it waits for its replay, and neither leases nor takes anything.
+    pub(super) is_rewinding: bool,
     /// When busy time was last added up `[ms]`.
     counted_ms: u64,
+}
+
+impl Entry {
+    fn queues(&mut self) -> [&mut LeaseQueue; 2] {
+        let Calibration { queue, second, .. } = &mut self.calibration;
+        [queue, &mut second.queue]
+    }
 }
 
 /// What the late results of a calibration that ended are checked by.
@@ -67,6 +83,8 @@ impl Farm {
             calibrations: BTreeMap::new(),
             ended: BTreeMap::new(),
             workers: BTreeMap::new(),
+            quarantine: BTreeMap::new(),
+            rewinds: Vec::new(),
             counters: FarmCounters::default(),
             facts: Vec::new(),
             lease_numbers: LeaseNumbers::new(epoch),
@@ -74,14 +92,29 @@ impl Farm {
         }
     }
 
-    /// Adds a calibration, with facts of its replay that may have been lost.
-    pub fn add(&mut self, calibration: Calibration, key: SealKey, facts: Vec<Fact>, now_ms: u64) {
+    /// Adds a calibration, with facts of its replay that may have been lost. One that was replayed because of a worker that computes
+    /// wrongly takes the place of itself.
+    pub fn add(&mut self, mut calibration: Calibration, key: SealKey, facts: Vec<Fact>, now_ms: u64) {
+        let id = calibration.identity.id;
+        if self.ended.contains_key(&id) {
+            // Cancelled while it was replayed.
+            return;
+        }
+        if let Some(before) = self.calibrations.get(&id) {
+            // What a user has said meanwhile holds.
+            if before.calibration.state == CalibrationState::Paused && !calibration.state.is_final() {
+                calibration.state = CalibrationState::Paused;
+                calibration.message.clone_from(&before.calibration.message);
+            }
+            calibration.busy_ms = before.calibration.busy_ms;
+        }
         self.facts.extend(facts);
         let pace = Pace::new(calibration.evaluations, now_ms);
         let entry = Entry {
             calibration,
             key,
             pace,
+            is_rewinding: false,
             counted_ms: now_ms,
         };
         self.calibrations.insert(entry.calibration.identity.id, entry);
@@ -96,19 +129,23 @@ impl Farm {
 
     /// Numbers for the metrics page.
     pub fn metrics(&self) -> FarmMetrics {
-        let leased = |e: &Entry| e.calibration.queue.leased();
+        let leased = |e: &Entry| e.calibration.queue.leased() + e.calibration.second.queue.leased();
+        let waiting = |e: &Entry| e.calibration.second.waiting();
         FarmMetrics {
             counters: self.counters.clone(),
             queued: self.remaining(),
             leased: self.calibrations.values().map(leased).sum(),
             calibrations: self.calibrations.len(),
             workers: self.workers.len(),
+            unconfirmed: self.calibrations.values().map(waiting).sum(),
+            quarantined: self.quarantine.len(),
         }
     }
 
     /// Whether an exchange would give a lease to somebody.
     pub fn has_work(&self) -> bool {
-        self.remaining() > 0
+        let second = |e: &Entry| e.calibration.is_open() && e.calibration.second.queue.unleased() > 0;
+        self.remaining() > 0 || self.calibrations.values().any(second)
     }
 
     fn remaining(&self) -> u64 {
@@ -130,6 +167,7 @@ impl Farm {
                 silent_ms: 0,
                 last_seen_ms: now_ms,
                 given: 0,
+                quarantined: None,
             });
         record.last_seen_ms = now_ms;
         // The last message tells: what waits for a worker of its version must not wait for one that has become another.
@@ -138,8 +176,13 @@ impl Farm {
         let lost = request.received < record.given;
         record.given = record.given.min(request.received);
         let (mut duplicates, mut refused_leases) = (0, Vec::new());
+        let quarantine = self.quarantine.get(&worker).cloned();
         for result in request.results {
             let lease = result.lease;
+            if quarantine.is_some() {
+                refused_leases.push(lease);
+                continue;
+            }
             match self.take_result(&worker, &request.model_version, result, now_ms) {
                 Taken::New => {}
                 Taken::Duplicate => duplicates += 1,
@@ -152,34 +195,33 @@ impl Farm {
                 worker,
                 lease,
                 results,
-                "results refused: their seals do not prove that they answer leases of this worker; the first lease is named"
+                quarantined = quarantine.is_some(),
+                "results refused: their seals do not prove that they answer leases of this worker, or it computes wrongly; the first lease is named"
             );
             self.counters.refused += results as u64;
         }
         self.counters.duplicates += u64::from(duplicates);
         for lease in request.holding {
             let until = now_ms + self.lease_ms;
-            self.calibrations
-                .values_mut()
-                .any(|e| e.calibration.queue.renew(lease, &worker, until));
+            self.queues().any(|queue| queue.renew(lease, &worker, until));
         }
         for lease in request.started {
             let until = now_ms + self.lease_ms;
-            self.calibrations
-                .values_mut()
-                .any(|e| e.calibration.queue.start(lease, &worker, until));
+            self.queues().any(|queue| queue.start(lease, &worker, until));
         }
         if lost {
-            let queues = self.calibrations.values_mut().map(|e| &mut e.calibration.queue);
-            self.counters.lost += queues
-                .map(|q| q.take_back_above(request.received, &worker))
-                .sum::<u64>();
+            let take_back = |q: &mut LeaseQueue| q.take_back_above(request.received, &worker);
+            self.counters.lost += self.queues().map(take_back).sum::<u64>();
         }
         for lease in request.returned {
             self.give_back(lease, &worker);
         }
         self.account(now_ms);
-        let (leases, refused) = self.lease(&worker, &request.model_version, request.want as usize, now_ms);
+        // It may have been quarantined for what it has just said.
+        let (leases, refused) = match self.quarantine.get(&worker) {
+            Some(reason) => (Vec::new(), Some(reason.clone())),
+            None => self.lease(&worker, &request.model_version, request.want as usize, now_ms),
+        };
         ExchangeResponse {
             leases,
             lease_ms: self.lease_ms,
@@ -217,9 +259,14 @@ impl Farm {
             }
             return Taken::Duplicate;
         };
+        if entry.is_rewinding {
+            // It is asked for again where it still counts.
+            return Taken::Duplicate;
+        }
         let calibration = &mut entry.calibration;
         let model_version = model_version(calibration, version);
         let question = calibration.question(evaluation);
+        let question = question.or_else(|| calibration.second.question(evaluation));
         if !proves(&result.seal, entry.key, terms(&model_version), question) {
             return Taken::Refused;
         }
@@ -227,6 +274,16 @@ impl Farm {
             .model_version
             .is_none()
             .then(|| model_version.into_owned());
+        let is_new = self
+            .workers
+            .get(worker)
+            .is_none_or(|w| w.completed < NEW_WORKER_RESULTS);
+        if is_new && calibration.verification.is_on() && calibration.queue.is_asked(evaluation) {
+            calibration.ask_second(evaluation, true, None);
+        }
+        if let Some(age_ms) = calibration.queue.age_ms(lease, worker, now_ms) {
+            entry.pace.count_lease(age_ms);
+        }
         let taken = match SimulationResult::of(result) {
             Ok(computed) => match calibration.complete(evaluation, computed, worker) {
                 Ok((facts, counted)) => {
@@ -240,6 +297,8 @@ impl Farm {
                         let calibration = id;
                         self.facts.push(Fact::ModelVersion { calibration, version });
                     }
+                    let is_confirmation = |fact: &&Fact| matches!(fact, Fact::Confirmed { .. });
+                    self.counters.confirmed += facts.iter().filter(is_confirmation).count() as u64;
                     self.facts.extend(facts);
                     entry.pace.count(calibration.evaluations, now_ms);
                     Ok(counted)
@@ -248,11 +307,12 @@ impl Farm {
             },
             Err(fault) => Err(fault),
         };
+        let convicted = calibration.take_convicted();
         let record = self
             .workers
             .get_mut(worker)
             .expect("the worker of an exchange is on record");
-        match taken {
+        let taken = match taken {
             Ok(true) => {
                 record.completed += 1;
                 self.counters.completed += 1;
@@ -264,137 +324,53 @@ impl Farm {
                 self.counters.failed_leases += 1;
                 if let Some(failure) = calibration.queue.fail(lease) {
                     self.facts.extend(calibration.lease_failed(&failure, &message));
+                } else if let Some(failure) = calibration
+                    .second
+                    .queue
+                    .fail(lease)
+                    .filter(LeaseFailure::exhausted)
+                {
+                    calibration.second.drop(failure.evaluation);
                 }
                 Taken::New
             }
+        };
+        for (worker, evaluation) in convicted {
+            self.convict(&worker, id, evaluation);
         }
+        self.settle(id, now_ms);
+        taken
     }
 
     pub(super) fn give_back(&mut self, lease: u64, worker: &str) {
-        self.calibrations
-            .values_mut()
-            .any(|e| e.calibration.queue.give_back(lease, worker));
+        self.queues().any(|queue| queue.give_back(lease, worker));
     }
 
-    fn held_by(&self, worker: &str) -> usize {
-        self.calibrations
-            .values()
-            .map(|e| e.calibration.queue.held_by(worker))
-            .sum()
+    /// The queues of all calibrations.
+    fn queues(&mut self) -> impl Iterator<Item = &mut LeaseQueue> {
+        self.calibrations.values_mut().flat_map(Entry::queues)
     }
 
-    /// The calibrations that may lease to a worker that holds so many leases, in turn, with the most that each may give: first
-    /// those with suspects where its hands are empty, then the oldest; first its share of each, then what is left.
-    fn turns(&self, want: usize, holds: usize) -> Vec<(i64, usize)> {
-        let waits = |e: &&Entry| e.calibration.is_open() && e.calibration.queue.unleased() > 0;
-        let waiting: Vec<&Calibration> = self
-            .calibrations
-            .values()
-            .filter(waits)
-            .map(|e| &e.calibration)
-            .collect();
-        let queues: Vec<(usize, usize)> = waiting
-            .iter()
-            .map(|c| (c.queue.leased(), c.queue.unleased()))
-            .collect();
-        let ids = waiting.iter().map(|c| c.identity.id);
-        let mut turns: Vec<(i64, usize)> = ids.clone().zip(deal(&queues, want)).collect();
-        if holds == 0 {
-            let suspected = |id: &i64| self.calibrations[id].calibration.queue.suspects() > 0;
-            turns.sort_by_key(|(id, _)| !suspected(id));
-            // A suspect goes to empty hands, however many leases of its calibration are out.
-            if let Some((_, most)) = turns.first_mut().filter(|(id, _)| suspected(id)) {
-                *most = (*most).max(1);
-            }
-        }
-        turns.extend(ids.map(|id| (id, want)));
-        turns
-    }
-
-    /// Leases up to `want` evaluations.
-    fn lease(
-        &mut self,
-        worker: &str,
-        version: &str,
-        want: usize,
-        now_ms: u64,
-    ) -> (Vec<Lease>, Option<String>) {
-        let mut leases = Vec::new();
-        let mut refused = None;
-        let expires_ms = now_ms + self.lease_ms;
-        let mut holds = self.held_by(worker);
-        let holds_suspect = |e: &Entry| e.calibration.queue.holds_suspect(worker);
-        if want == 0 || (holds > 0 && self.calibrations.values().any(holds_suspect)) {
-            return (leases, refused);
-        }
-        for (id, most) in self.turns(want, holds) {
-            let Some(entry) = self.calibrations.get_mut(&id) else {
-                continue;
-            };
-            let calibration = &mut entry.calibration;
-            // The files of effects travel with the variant: a worker need not know them.
-            let pinned = calibration.model_version.as_deref().map(equations_of);
-            if let Some(pinned) = pinned.filter(|pinned| *pinned != equations_of(version)) {
-                refused = Some(format!(
-                    "calibration {id} was begun with model version {pinned}, worker {worker} computes {version}"
-                ));
-                continue;
-            }
-            let lease_numbers = &mut self.lease_numbers;
-            let next_lease = || lease_numbers.next_number();
-            let workers = &self.workers;
-            let has_other = |failed: &[String]| {
-                workers.iter().any(|(name, other)| {
-                    let is_able = equations_of(&other.model_version) == equations_of(version);
-                    is_able && !failed.contains(name)
-                })
-            };
-            let wanted = most.min(want - leases.len());
-            let claims = calibration
-                .queue
-                .claim(worker, wanted, holds, expires_ms, has_other, next_lease);
-            holds += claims.len();
-            self.counters.leased += claims.len() as u64;
-            if !claims.is_empty() && calibration.state == CalibrationState::Queued {
-                calibration.change_state(CalibrationState::Running, None, &mut self.facts);
-            }
-            let is_alone = claims.iter().any(|claim| claim.suspect);
-            for claim in claims {
-                let (lease, evaluation) = (claim.lease, claim.evaluation);
-                let question = calibration
-                    .question(evaluation)
-                    .expect("a claimed evaluation is asked for at present");
-                let terms = LeaseTerms {
-                    lease,
-                    worker,
-                    calibration: id,
-                    evaluation,
-                    model_version: &model_version(calibration, version),
-                };
-                leases.push(Lease {
-                    lease,
-                    calibration: id,
-                    evaluation,
-                    seal: seal(entry.key, terms, question),
-                    variant: question.variant.to_owned(),
-                    theta: question.theta.to_vec(),
-                    announce: claim.suspect,
-                    subchain: question.subchain,
-                });
-            }
-            if is_alone {
-                break;
-            }
-        }
-        if let (Some(record), Some(last)) = (self.workers.get_mut(worker), leases.last()) {
-            record.given = last.lease;
-        }
-        (leases, refused)
+    pub(super) fn held_by(&self, worker: &str) -> usize {
+        let held =
+            |e: &Entry| e.calibration.queue.held_by(worker) + e.calibration.second.queue.held_by(worker);
+        self.calibrations.values().map(held).sum()
     }
 
     /// Advances the clock: expires leases, removes silent workers, adds up busy time.
     pub fn tick(&mut self, now_ms: u64) {
         for entry in self.calibrations.values_mut() {
+            let second = &mut entry.calibration.second;
+            let expired = second.queue.expire(now_ms);
+            self.counters.failed_leases += expired.unstarted + expired.failures.len() as u64;
+            // There is an answer: another one need not be had at any price.
+            let exhausted = expired.failures.iter().filter(|failure| failure.exhausted());
+            let lost = exhausted
+                .map(|failure| failure.evaluation)
+                .chain(expired.never_begun);
+            lost.collect::<Vec<u64>>()
+                .into_iter()
+                .for_each(|evaluation| second.drop(evaluation));
             let expired = entry.calibration.queue.expire(now_ms);
             self.counters.failed_leases += expired.unstarted;
             for failure in expired.failures {
@@ -410,8 +386,13 @@ impl Farm {
                 self.facts.extend(entry.calibration.never_begun(evaluation));
             }
         }
-        self.workers
-            .retain(|_, w| now_ms.saturating_sub(w.last_seen_ms) < WORKER_SILENCE_MS);
+        self.workers.retain(|name, w| {
+            now_ms.saturating_sub(w.last_seen_ms) < WORKER_SILENCE_MS || self.quarantine.contains_key(name)
+        });
+        self.ask_beside_slow_workers(now_ms);
+        for id in self.ids() {
+            self.settle(id, now_ms);
+        }
         self.account(now_ms);
     }
 
@@ -500,6 +481,7 @@ impl Farm {
         for (name, record) in &mut workers {
             record.holds = self.held_by(name) as u64;
             record.silent_ms = now_ms.saturating_sub(record.last_seen_ms);
+            record.quarantined = self.quarantine.get(name).cloned();
         }
         workers
     }
@@ -514,7 +496,7 @@ impl Farm {
 }
 
 /// The version that a calibration is pinned to; before its first result, what it would be pinned to by a worker's.
-fn model_version<'a>(calibration: &'a Calibration, version: &str) -> Cow<'a, str> {
+pub(super) fn model_version<'a>(calibration: &'a Calibration, version: &str) -> Cow<'a, str> {
     match &calibration.model_version {
         Some(pinned) => Cow::Borrowed(pinned),
         None => Cow::Owned(calibration.spec.fit_variant.model_version(equations_of(version))),

@@ -14,6 +14,8 @@ pub struct WorkerRecord {
     pub completed: u64,
     /// Faults that it reported or was blamed for.
     pub faults: u64,
+    /// Why it is quarantined, if it is: it computes wrongly.
+    pub quarantined: Option<String>,
     /// Milliseconds since its last message, when asked.
     pub silent_ms: u64,
     #[serde(skip)]

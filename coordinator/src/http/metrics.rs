@@ -94,6 +94,30 @@ async fn metrics(
         "Leases that expired or ended in a fault",
         metrics.counters.failed_leases,
     );
+    counter(
+        r,
+        "evaluations_confirmed",
+        "Results that a second worker has computed with the same bits",
+        metrics.counters.confirmed,
+    );
+    counter(
+        r,
+        "evaluations_unconfirmed",
+        "Results that were to be verified when no second worker was there",
+        metrics.counters.unanswered,
+    );
+    gauge(
+        r,
+        "verifications_waiting",
+        "Results that wait for the answer of a second worker",
+        metrics.unconfirmed,
+    );
+    gauge(
+        r,
+        "workers_quarantined",
+        "Workers that compute wrongly and get no leases",
+        metrics.quarantined,
+    );
     gauge(
         r,
         "evaluations_queued",

@@ -88,6 +88,7 @@ pub async fn finished_calibration(
         faults: reader.faults(row.id).await?,
         given_up: reader.given_up(row.id).await?,
         disputes: reader.disputes(row.id).await?,
+        verified: reader.verified(row.id).await?,
         stages,
         row: row.clone(),
     })

@@ -9,10 +9,10 @@ use shared::file::FileSet;
 
 use super::clock::now_ms;
 use super::error::ServiceError;
-use super::recovery::recover;
+use super::recovery::{recover, rewind};
 use super::stored_calibration;
 use super::study_results;
-use crate::calibration::Calibration;
+use crate::calibration::{Calibration, Verification};
 use crate::farm::dispatch::Dispatcher;
 use crate::farm::{Control, ControlError, Farm};
 use crate::store::{Store, StoreError, Writer};
@@ -23,6 +23,26 @@ use result::{Diagnostics, StudyFile};
 
 /// A lease lasts so long without renewal `[ms]`.
 pub const LEASE_MS: u64 = 15_000;
+/// So many of the evaluations are computed by a second worker `[%]`.
+pub const VERIFIED_PERCENT: f64 = 1.0;
+
+/// How the farm leases and verifies.
+#[derive(Debug, Clone, Copy)]
+pub struct FarmSettings {
+    /// A lease lasts so long without renewal `[ms]`.
+    pub lease_ms: u64,
+    /// Share of the evaluations that a second worker computes, in [0, 1]; with 0 nothing is verified.
+    pub verified_share: f64,
+}
+
+impl Default for FarmSettings {
+    fn default() -> Self {
+        FarmSettings {
+            lease_ms: LEASE_MS,
+            verified_share: VERIFIED_PERCENT / 100.0,
+        }
+    }
+}
 /// So many facts may wait for the store before the service asks for patience.
 const BACKLOG: u64 = 200_000;
 
@@ -31,6 +51,7 @@ const BACKLOG: u64 = 200_000;
 pub struct Service {
     store: Store,
     dispatcher: Dispatcher,
+    verified_share: f64,
     left_alone: Arc<BTreeMap<i64, String>>,
     pub(super) webhook_hosts: WebhookHosts,
     /// Held by whoever adds to a study: each sees what the one before has added.
@@ -42,14 +63,24 @@ impl Service {
     ///
     /// # Errors
     /// [`ServiceError`].
-    pub async fn open(path: &str, lease_ms: u64) -> Result<Service, ServiceError> {
+    pub async fn open(path: &str, settings: FarmSettings) -> Result<Service, ServiceError> {
         let store = Store::open(path, now_ms()).await?;
-        let farm = Farm::new(store.epoch(), lease_ms);
-        let dispatcher = Dispatcher::start(farm, store.writer().sink()).map_err(ServiceError::Thread)?;
-        let left_alone = Arc::new(recover(&store, &dispatcher).await?);
+        let farm = Farm::new(store.epoch(), settings.lease_ms);
+        let farm = farm.with_quarantine(store.reader().quarantine().await?);
+        let (dispatcher, rewinds) =
+            Dispatcher::start(farm, store.writer().sink()).map_err(ServiceError::Thread)?;
+        let left_alone = Arc::new(recover(&store, &dispatcher, settings.verified_share).await?);
+        let rewind = rewind(
+            store.clone(),
+            dispatcher.clone(),
+            rewinds,
+            settings.verified_share,
+        );
+        tokio::spawn(rewind);
         Ok(Service {
             store,
             dispatcher,
+            verified_share: settings.verified_share,
             left_alone,
             webhook_hosts: WebhookHosts::default(),
             growing: Arc::default(),
@@ -72,10 +103,11 @@ impl Service {
     pub async fn open_read_only(path: &str) -> Result<Service, ServiceError> {
         let store = Store::open_read_only(path).await?;
         let farm = Farm::new(store.epoch(), LEASE_MS);
-        let dispatcher = Dispatcher::start(farm, store.writer().sink()).map_err(ServiceError::Thread)?;
+        let (dispatcher, _) = Dispatcher::start(farm, store.writer().sink()).map_err(ServiceError::Thread)?;
         Ok(Service {
             store,
             dispatcher,
+            verified_share: 0.0,
             left_alone: Arc::default(),
             webhook_hosts: WebhookHosts::default(),
             growing: Arc::default(),
@@ -109,8 +141,12 @@ impl Service {
     }
 
     /// Gives a stored calibration to the farm.
-    pub(super) async fn take_in_hand(&self, calibration: Calibration) -> Result<(), ServiceError> {
+    pub(super) async fn take_in_hand(&self, mut calibration: Calibration) -> Result<(), ServiceError> {
         let key = self.store.reader().seal_key(calibration.identity.id).await?;
+        calibration.verification = Verification {
+            share: self.verified_share,
+            key,
+        };
         Ok(self.dispatcher.add(calibration, key, Vec::new()).await?)
     }
 

@@ -25,7 +25,7 @@ mod submission;
 
 pub use error::ServiceError;
 pub use finished_study::{finished_calibration, finished_study, search_rounds};
-pub use handle::{LEASE_MS, Service};
+pub use handle::{FarmSettings, LEASE_MS, Service, VERIFIED_PERCENT};
 pub use stored_calibration::{calibration_row, leave_out_archived, stored_status};
 pub use study_results::{diagnostics, study_file};
 pub use study_step::{finished_search, next_step_of};

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::error::ServiceError;
 use super::stored_calibration::{calibration_row, experiment_files, spec_of};
-use crate::calibration::{Calibration, CalibrationIdentity};
-use crate::farm::dispatch::{Dispatcher, Stopped};
+use crate::calibration::{Calibration, CalibrationIdentity, Verification};
+use crate::farm::dispatch::{Dispatcher, Rewinds, Stopped};
 use crate::store::{Reader, Store};
 
 /// Takes up what is not over; returns what cannot be taken up, with the reason. Nothing is written of those: another
@@ -14,11 +14,12 @@ use crate::store::{Reader, Store};
 pub(super) async fn recover(
     store: &Store,
     dispatcher: &Dispatcher,
+    verified_share: f64,
 ) -> Result<BTreeMap<i64, String>, ServiceError> {
     let mut left_alone = BTreeMap::new();
     let reader = store.reader();
     for id in reader.unfinished().await? {
-        match take_up(&reader, dispatcher, id).await {
+        match take_up(&reader, dispatcher, id, verified_share).await {
             Ok(()) => {}
             Err(ServiceError::Stopped(stopped)) => return Err(stopped.into()),
             // One calibration that cannot be taken up must not keep the others waiting.
@@ -31,8 +32,28 @@ pub(super) async fn recover(
     Ok(left_alone)
 }
 
+/// Replays calibrations whose results were dropped in part, for as long as there is a farm.
+pub(super) async fn rewind(store: Store, dispatcher: Dispatcher, mut rewinds: Rewinds, verified_share: f64) {
+    while let Some((id, fact)) = rewinds.recv().await {
+        if store.writer().durable(fact).await.is_err() {
+            return;
+        }
+        let replayed = take_up(&store.reader(), &dispatcher, id, verified_share).await;
+        if let Err(error) = replayed {
+            tracing::error!(id, reason = %error, "not replayed");
+            // A farm that has ended needs no news.
+            let _ = dispatcher.rewind_failed(id, error.to_string());
+        }
+    }
+}
+
 /// Replays a calibration and gives it to the farm.
-async fn take_up(reader: &Reader, dispatcher: &Dispatcher, id: i64) -> Result<(), ServiceError> {
+async fn take_up(
+    reader: &Reader,
+    dispatcher: &Dispatcher,
+    id: i64,
+    verified_share: f64,
+) -> Result<(), ServiceError> {
     let row = calibration_row(reader, id).await?;
     let spec = Arc::new(spec_of(reader, &row).await?);
     let stored = reader.stored(id, spec.algorithm.is_told_values()).await?;
@@ -48,6 +69,10 @@ async fn take_up(reader: &Reader, dispatcher: &Dispatcher, id: i64) -> Result<()
     // Replaying is seconds of CPU for a long calibration: not on the async runtime.
     let replayed = tokio::task::spawn_blocking(move || {
         let mut calibration = Calibration::of(identity, spec, &row.job, &experiment)?;
+        calibration.verification = Verification {
+            share: verified_share,
+            key,
+        };
         let facts = calibration.replay(stored)?;
         Ok::<_, ServiceError>((calibration, facts))
     });

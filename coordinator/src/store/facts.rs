@@ -9,6 +9,7 @@ use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 use super::blob;
 use super::health::StoreHealth;
 use super::json::json;
+use super::verification;
 use record::fact::{Fact, Fingerprint};
 
 /// Most samples in one statement.
@@ -81,6 +82,21 @@ pub(super) async fn write(
             tracing::info!(target: "journal", calibration, name, reason = message, "{}", state.name());
             busy(connection, calibration, busy_ms).await
         }
+        Fact::Confirmed {
+            calibration,
+            evaluation,
+            worker,
+        } => verification::confirm(connection, calibration, evaluation, &worker).await,
+        Fact::Quarantined {
+            worker,
+            calibration,
+            evaluation,
+        } => verification::quarantine(connection, &worker, calibration, evaluation).await,
+        Fact::Rewound {
+            calibration,
+            worker,
+            width,
+        } => verification::rewind(connection, calibration, &worker, width).await,
         Fact::ModelVersion { calibration, version } => {
             sqlx::query("UPDATE calibrations SET model_version = ? WHERE id = ?")
                 .bind(version)

@@ -23,6 +23,7 @@ mod removal;
 mod results;
 mod theta;
 mod tokens;
+mod verification;
 mod writer;
 
 use std::path::PathBuf;

@@ -11,7 +11,7 @@ use super::blob;
 use super::error::StoreError;
 use super::reader::Reader;
 use super::theta::theta;
-use record::{SealKey, Stored, StoredEvaluation};
+use record::{Fingerprint, SealKey, Stored, StoredEvaluation};
 
 /// Most evaluations that one statement reads: a long calibration has hundreds of thousands.
 const PAGE: usize = 2_000;
@@ -64,7 +64,8 @@ impl Reader {
                 .last_key_value()
                 .map_or(-1, |(&number, _)| number as i64);
             let rows = sqlx::query(
-                "SELECT evaluation, theta, log_likelihood, rejection IS NOT NULL AS rejected, worker = '' AS given_up,
+                "SELECT evaluation, theta, log_likelihood, rejection IS NOT NULL AS rejected, worker, fingerprint,
+                 confirmed_by IS NOT NULL AS is_confirmed,
                  CASE WHEN ?2 THEN fitted END AS fitted, CASE WHEN ?2 THEN coarse END AS coarse, subchain
                  FROM evaluations WHERE calibration = ?1 AND evaluation > ?3 ORDER BY evaluation LIMIT ?4",
             )
@@ -123,7 +124,9 @@ fn stored_evaluation(row: &SqliteRow) -> Result<StoredEvaluation, StoreError> {
         theta: theta(row)?,
         log_likelihood: row.try_get("log_likelihood")?,
         rejected: row.try_get("rejected")?,
-        given_up: row.try_get("given_up")?,
+        worker: row.try_get("worker")?,
+        fingerprint: Fingerprint(row.try_get("fingerprint")?),
+        is_confirmed: row.try_get("is_confirmed")?,
         fitted: values("fitted")?,
         coarse: values("coarse")?,
         end: end.map(subchain_end).transpose()?,
@@ -136,7 +139,7 @@ fn subchain_end(json: &str) -> Result<SubchainEnd, StoreError> {
 
 #[cfg(test)]
 mod tests {
-    use record::{EvaluationRow, Fact, Fingerprint, Kept};
+    use record::{EvaluationRow, Fact, Kept};
 
     use super::*;
     use crate::store::fixture;

@@ -13,7 +13,14 @@ const LARGE: [(&str, &str); 2] = [
 /// Rows of these that one commit deletes: results of workers wait no longer than for them.
 const PART: u64 = 1000;
 /// Tables that have few.
-const SMALL: [&str; 5] = ["stages", "estimates", "discoveries", "faults", "disputes"];
+const SMALL: [&str; 6] = [
+    "stages",
+    "estimates",
+    "discoveries",
+    "faults",
+    "disputes",
+    "rewinds",
+];
 
 /// Deletes a part of what belongs to a study alone, and the study itself at last; whether nothing is left.
 pub(super) async fn delete_part(

@@ -6,17 +6,7 @@ use farm_tests::service::Service;
 use farm_tests::wait::until;
 use serde_json::Value;
 
-use super::rejected;
-
-/// The texts of the flags of kind `worker` in the summary of a finished calibration.
-fn worker_flags(service: &Service, id: i64) -> Vec<String> {
-    let summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
-    let flags = summary["flags"].as_array().expect("flags").iter();
-    flags
-        .filter(|flag| flag["kind"] == "worker")
-        .map(|flag| flag["text"].as_str().expect("a text").to_owned())
-        .collect()
-}
+use super::{rejected, worker_flags};
 
 #[test]
 fn an_answer_that_differs_leaves_a_flag_before_and_after_the_end_and_over_restarts() {

@@ -95,7 +95,11 @@ impl<'a> Table<'a> {
             Fact::Estimate { estimate, .. } => {
                 self.result = Some(CaseResult::Estimate(format!("{estimate:?}")));
             }
-            Fact::Discovery { .. } => {}
+            // Schedules without verification have none of these.
+            Fact::Discovery { .. }
+            | Fact::Confirmed { .. }
+            | Fact::Quarantined { .. }
+            | Fact::Rewound { .. } => {}
             Fact::State {
                 state,
                 message,
@@ -143,7 +147,9 @@ impl<'a> Table<'a> {
             theta: row.theta.clone(),
             log_likelihood: row.log_likelihood,
             rejected: matches!(row.kept, Kept::Rejected(_)),
-            given_up: row.worker.is_empty(),
+            worker: row.worker.clone(),
+            fingerprint: row.fingerprint,
+            is_confirmed: false,
             fitted: match &row.kept {
                 Kept::Fitted(values) if told_values => Some(values.clone()),
                 Kept::Scored if told_values => Some(Vec::new()),
@@ -177,6 +183,9 @@ pub(crate) fn calibration_of(fact: &Fact) -> i64 {
         | Fact::Discovery { calibration, .. }
         | Fact::State { calibration, .. }
         | Fact::ModelVersion { calibration, .. }
+        | Fact::Confirmed { calibration, .. }
+        | Fact::Quarantined { calibration, .. }
+        | Fact::Rewound { calibration, .. }
         | Fact::Fault { calibration, .. } => *calibration,
     }
 }

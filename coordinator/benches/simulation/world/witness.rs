@@ -146,7 +146,10 @@ impl<'a> Witness<'a> {
                     },
                 )
             }
-            Fact::Discovery { .. } => Ok(()),
+            Fact::Discovery { .. }
+            | Fact::Confirmed { .. }
+            | Fact::Quarantined { .. }
+            | Fact::Rewound { .. } => Ok(()),
             Fact::Stage { record, .. } => {
                 let same = table.case.stages.get(record.stage - 1) == Some(&stage_bits(record));
                 demand(same, Promise::Result, || {

@@ -7,6 +7,7 @@ use super::rejections::RejectionDiagnostics;
 use super::residuals::ResidualDiagnostics;
 use super::sampler::SamplerDiagnostics;
 use super::trends::TrendDiagnostics;
+use super::verification::VerificationDiagnostics;
 use crate::flag::kind::Flag;
 
 /// How far a calibration can be trusted, and where its model fails. What a fit or a search cannot determine is null or empty.
@@ -30,6 +31,8 @@ pub struct Diagnostics {
     pub directions: Vec<DirectionDiagnostics>,
     /// Refusals and faults by region of the prior.
     pub rejections: RejectionDiagnostics,
+    /// How many results a second worker has computed as well.
+    pub verification: VerificationDiagnostics,
     /// The findings in plain words.
     pub findings: Vec<String>,
     /// The flags.

@@ -8,6 +8,7 @@
 //! - `parameters`: contraction, bounds, conflict with the prior. `directions`: combinations of parameters;
 //!   `correlated_pair`: strongly correlated pairs.
 //! - `rejections`: rejections and faults by region of the prior.
+//! - `verification`: how many results a second worker has computed as well.
 //! - `data_channel`: channels and runs of the fitted data.
 //!
 //! The statistics are [`inference::diagnostics`]'s. Nothing here but the coverage of holdout rows, which decides nothing,
@@ -23,6 +24,7 @@ pub(crate) mod rejections;
 pub(crate) mod residuals;
 pub(crate) mod sampler;
 pub(crate) mod trends;
+pub(crate) mod verification;
 
 pub use calibration::Diagnostics;
 pub use channels::{ChannelDiagnostics, ChiSquareTest, CoverageCount};
@@ -32,3 +34,4 @@ pub use rejections::{BinnedParameter, PriorBin, PriorRegion, RegionSide, Rejecti
 pub use residuals::ResidualDiagnostics;
 pub use sampler::SamplerDiagnostics;
 pub use trends::{TrendDiagnostics, TrendVariable};
+pub use verification::VerificationDiagnostics;

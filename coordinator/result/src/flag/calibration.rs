@@ -22,7 +22,12 @@ const MANY_REJECTED: f64 = 0.5;
 impl FinishedCalibration {
     /// All flags; a flag that casts doubt on the others comes first.
     pub(crate) fn flags(&self, diagnostics: &Diagnostics) -> Vec<Flag> {
-        let mut flags: Vec<Flag> = self.disputed().into_iter().chain(self.unbalanced()).collect();
+        let mut flags: Vec<Flag> = self
+            .disputed()
+            .into_iter()
+            .chain(self.quarantined())
+            .chain(self.unbalanced())
+            .collect();
         flags.extend(findings_that_alarm(diagnostics));
         flags.extend(self.confounded());
         let mut flag = |kind: FlagKind, text: String| flags.push(Flag::plain(kind, text));

@@ -24,6 +24,31 @@ impl FinishedCalibration {
         Some(Flag::plain(FlagKind::Worker, text))
     }
 
+    /// Workers that compute wrongly: whether results of theirs still count, or were computed again.
+    pub(super) fn quarantined(&self) -> Vec<Flag> {
+        let results = |n: u64| number::count(usize::try_from(n).unwrap_or(usize::MAX), "result");
+        let resting = self.verified.resting_on.iter().map(|(worker, &n)| {
+            format!(
+                "{} of worker {worker}, which was found to compute wrongly after the end, count: no number of this calibration can be trusted; repeat it without that machine",
+                results(n)
+            )
+        });
+        let repeated = self.verified.computed_again.iter().map(|(worker, &n)| {
+            let what = match n {
+                0 => "none of its results counted".to_owned(),
+                n => format!(
+                    "{} of it, and what followed from them, were computed again by others",
+                    results(n)
+                ),
+            };
+            format!("worker {worker} computes wrongly and was quarantined; {what}")
+        });
+        resting
+            .chain(repeated)
+            .map(|text| Flag::plain(FlagKind::Worker, text))
+            .collect()
+    }
+
     /// Evaluations that no worker came back from.
     pub(super) fn given_up(&self) -> Option<Flag> {
         let count = number::count(usize::try_from(self.given_up).ok()?, "evaluation");
@@ -49,6 +74,28 @@ mod tests {
         let flag = calibration.given_up().unwrap();
         assert_eq!(flag.kind, FlagKind::Worker);
         assert!(flag.text.starts_with("2 evaluations failed"), "{}", flag.text);
+    }
+
+    #[test]
+    fn a_quarantined_worker_is_named_with_what_became_of_its_results() {
+        let mut calibration = fixture::calibration();
+        assert!(calibration.quarantined().is_empty());
+        calibration.verified.resting_on = [("late".into(), 1)].into();
+        calibration.verified.computed_again = [("bad".into(), 40), ("idle".into(), 0)].into();
+        let texts: Vec<String> = calibration
+            .quarantined()
+            .into_iter()
+            .map(|flag| flag.text)
+            .collect();
+        assert!(
+            texts[0].starts_with("1 result of worker late, which"),
+            "{texts:?}"
+        );
+        assert!(
+            texts[1]
+                .ends_with("40 results of it, and what followed from them, were computed again by others")
+        );
+        assert!(texts[2].ends_with("none of its results counted"));
     }
 
     #[test]

@@ -30,6 +30,7 @@ pub fn diagnostics(diagnostics: &Diagnostics) -> String {
         parts.push(directions(&diagnostics.directions));
     }
     parts.push(rejections(&diagnostics.rejections));
+    parts.push(format!("{}\n", diagnostics.verification.words()));
     parts.push(findings(diagnostics));
     parts.push(flags(diagnostics));
     parts.retain(|part| !part.is_empty());

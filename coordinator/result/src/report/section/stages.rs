@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 use record::StageRow;
 
+use crate::diagnostics::VerificationDiagnostics;
 use crate::finished_calibration::FinishedCalibration;
 use crate::report::chart::{self, Marker, glyph};
 use crate::words::number;
@@ -65,6 +66,7 @@ pub(super) fn cost(calibration: &FinishedCalibration) -> Markup {
             @if let Some(n) = row.evaluations.filter(|n| *n > 0) { " (" (number::significant(100.0 * refused as f64 / n as f64, 2)) " %)" }
             @if !kinds.is_empty() { ": " (kinds.join(", ")) }
         }
+        dt { "verified" } dd { (VerificationDiagnostics::from(&calibration.verified).words()) }
         dt { "wall time" } dd { (number::duration(row.busy_ms as f64 / 1000.0)) }
     }
 }

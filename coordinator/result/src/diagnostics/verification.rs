@@ -1,0 +1,64 @@
+//! How many results a second worker has computed as well.
+
+use record::Verified;
+
+use crate::words::number;
+
+/// How many results a second worker has computed as well, with the same bits.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct VerificationDiagnostics {
+    /// Results.
+    pub results: u64,
+    /// Of these, confirmed by a second worker.
+    pub confirmed: u64,
+    /// Workers that computed the results.
+    pub workers: u64,
+}
+
+impl From<&Verified> for VerificationDiagnostics {
+    fn from(verified: &Verified) -> Self {
+        VerificationDiagnostics {
+            results: verified.results,
+            confirmed: verified.confirmed,
+            workers: verified.workers,
+        }
+    }
+}
+
+impl VerificationDiagnostics {
+    /// In words.
+    pub(crate) fn words(&self) -> String {
+        match (self.confirmed, self.workers) {
+            (0, 0 | 1) => "no result was verified: there was one worker".into(),
+            (0, _) => "no result was verified by a second worker".into(),
+            (confirmed, _) => format!(
+                "{confirmed} of {} verified: a second worker gave the same bits",
+                number::count(usize::try_from(self.results).unwrap_or(usize::MAX), "result")
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_verified_is_said() {
+        let words = |confirmed, workers| {
+            let results = 3641;
+            VerificationDiagnostics {
+                results,
+                confirmed,
+                workers,
+            }
+            .words()
+        };
+        assert_eq!(words(0, 1), "no result was verified: there was one worker");
+        assert_eq!(words(0, 2), "no result was verified by a second worker");
+        assert_eq!(
+            words(41, 2),
+            "41 of 3641 results verified: a second worker gave the same bits"
+        );
+    }
+}

@@ -1,0 +1,107 @@
+//! Answers that two workers give: what follows when they agree, and when they do not.
+
+use shared::api::CalibrationState;
+
+use super::faults::NOBODY;
+use super::process::Calibration;
+use super::second_answer::{Answer, Verdict};
+use record::Fact;
+
+impl Calibration {
+    /// Counts the answer that is stored; its evaluation may be asked for twice.
+    pub(super) fn answered_first(&mut self, evaluation: u64, answer: &Answer) {
+        if answer.worker == NOBODY {
+            self.second.drop(evaluation);
+            return;
+        }
+        if self.verification.selects(evaluation) {
+            self.ask_second(evaluation, true, None);
+        }
+        *self.unconfirmed.entry(answer.worker.clone()).or_default() += 1;
+        self.second.answered(evaluation, answer.clone());
+    }
+
+    /// The same of an answer that was stored before a restart. The round of its evaluation is the present one.
+    pub(super) fn replay_confirmation(&mut self, evaluation: u64, answer: &Answer, is_confirmed: bool) {
+        if is_confirmed {
+            self.confirmed += 1;
+        } else {
+            self.answered_first(evaluation, answer);
+        }
+    }
+
+    /// Takes an answer to an evaluation that has one already. The facts to store.
+    pub(super) fn compare(&mut self, evaluation: u64, answer: Answer) -> Vec<Fact> {
+        let (calibration, worker) = (self.identity.id, answer.worker.clone());
+        let fingerprint = answer.fingerprint;
+        let duplicate = Fact::Duplicate {
+            calibration,
+            evaluation,
+            fingerprint,
+            worker: worker.clone(),
+        };
+        if !self.verification.is_on() {
+            return vec![duplicate];
+        }
+        if !self.second.contains(evaluation)
+            && let Some(first) = self.done.get(&evaluation).filter(|first| first.worker != NOBODY)
+        {
+            // An answer that nobody asked for confirms as well as one that was, or brings a dispute that others settle.
+            let first = first.clone();
+            self.ask_second(evaluation, true, None);
+            self.second.answered(evaluation, first);
+        }
+        match self.second.answered(evaluation, answer) {
+            Verdict::NotAsked | Verdict::Differ => vec![duplicate],
+            Verdict::Open => Vec::new(),
+            Verdict::Contradiction => {
+                self.convicted.push((worker, evaluation));
+                vec![duplicate]
+            }
+            Verdict::Settled { wrong, first } => {
+                self.convicted
+                    .extend(wrong.iter().map(|name| (name.clone(), evaluation)));
+                if wrong.contains(&first) {
+                    return vec![duplicate];
+                }
+                self.confirmed += 1;
+                if let Some(count) = self.unconfirmed.get_mut(&first) {
+                    *count -= 1;
+                }
+                vec![Fact::Confirmed {
+                    calibration,
+                    evaluation,
+                    worker,
+                }]
+            }
+        }
+    }
+
+    /// The workers found to compute wrongly since the last call, each with the evaluation that shows it.
+    pub fn take_convicted(&mut self) -> Vec<(String, u64)> {
+        std::mem::take(&mut self.convicted)
+    }
+
+    /// Whether answers of a worker are stored that nobody has confirmed.
+    pub fn rests_on(&self, worker: &str) -> bool {
+        self.unconfirmed.get(worker).is_some_and(|&count| count > 0)
+    }
+
+    /// Ends the calibration as soon as no answer waits to be compared.
+    pub(super) fn conclude(&mut self, facts: &mut Vec<Fact>) {
+        self.is_concluded = true;
+        self.settle(facts);
+    }
+
+    /// Whether nothing is left but to compare answers.
+    pub fn is_concluded(&self) -> bool {
+        self.is_concluded && !self.state.is_final()
+    }
+
+    /// Ends a calibration that has nothing left to do, not even to compare.
+    pub fn settle(&mut self, facts: &mut Vec<Fact>) {
+        if self.is_concluded() && self.second.waiting() == 0 {
+            self.finish(CalibrationState::Finished, None, facts);
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! Evaluations that a second worker is asked for as well: to compare the answers, or because the first worker is slow.
+//!
+//! A question is kept with everything that a lease of it needs, because its round may be over by the time of the second answer.
+//! Two equal answers of different workers settle an evaluation; whoever answered otherwise computes wrongly. While all answers
+//! differ, another worker is asked.
+
+use std::collections::BTreeMap;
+
+use record::Fingerprint;
+use shared::model::ModelVariant;
+use statistics::Subchain;
+
+use super::process::Question;
+use crate::lease::LeaseQueue;
+
+/// Who answered, and what.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Answer {
+    /// The worker.
+    pub worker: String,
+    /// Of its result.
+    pub fingerprint: Fingerprint,
+}
+
+/// What is known after an answer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nobody was asked twice.
+    NotAsked,
+    /// There are not two equal answers, and none that differ.
+    Open,
+    /// Answers differ, and no two are equal.
+    Differ,
+    /// Two workers agree.
+    Settled {
+        /// Who answered first: its answer is stored.
+        first: String,
+        /// Who answered otherwise.
+        wrong: Vec<String>,
+    },
+    /// A worker has answered in two ways.
+    Contradiction,
+}
+
+#[derive(Debug)]
+struct Repeated {
+    variant: String,
+    theta: Vec<f64>,
+    subchain: Option<Subchain>,
+    /// Whether answers are compared; else the first one is enough.
+    is_compared: bool,
+    answers: Vec<Answer>,
+}
+
+/// The evaluations of a calibration that a second worker is asked for.
+#[derive(Debug, Default)]
+pub struct SecondAnswers {
+    /// Who holds them.
+    pub queue: LeaseQueue,
+    repeated: BTreeMap<u64, Repeated>,
+    /// What they evaluate, where the calibration may forget it.
+    variants: BTreeMap<String, ModelVariant>,
+}
+
+impl SecondAnswers {
+    /// Asks for a second answer; where that is done already, it is compared from now on if one of the two says so.
+    ///
+    /// # Arguments
+    /// - `question`: what is asked.
+    /// - `variant`: the variant of its hash.
+    /// - `is_compared`: whether the answers are compared; else the first one is enough.
+    /// - `holder`: who is asked already.
+    pub fn ask(
+        &mut self,
+        evaluation: u64,
+        question: Question,
+        variant: Option<ModelVariant>,
+        is_compared: bool,
+        holder: Option<&str>,
+    ) {
+        if let Some(repeated) = self.repeated.get_mut(&evaluation) {
+            repeated.is_compared |= is_compared;
+            return;
+        }
+        if let Some(variant) = variant.filter(|_| !self.variants.contains_key(question.variant)) {
+            self.variants.insert(question.variant.to_owned(), variant);
+        }
+        let repeated = Repeated {
+            variant: question.variant.to_owned(),
+            theta: question.theta.to_vec(),
+            subchain: question.subchain,
+            is_compared,
+            answers: Vec::new(),
+        };
+        self.repeated.insert(evaluation, repeated);
+        self.queue
+            .add(evaluation, holder.map(str::to_owned).into_iter().collect());
+    }
+
+    /// Whether an evaluation is asked for twice.
+    pub fn contains(&self, evaluation: u64) -> bool {
+        self.repeated.contains_key(&evaluation)
+    }
+
+    /// What an evaluation is leased with.
+    pub fn question(&self, evaluation: u64) -> Option<Question<'_>> {
+        self.repeated.get(&evaluation).map(|repeated| Question {
+            variant: &repeated.variant,
+            theta: &repeated.theta,
+            subchain: repeated.subchain,
+        })
+    }
+
+    /// The variant of a hash, if something here evaluates it.
+    pub fn variant(&self, hash: &str) -> Option<&ModelVariant> {
+        self.variants.get(hash)
+    }
+
+    /// Takes an answer.
+    pub fn answered(&mut self, evaluation: u64, answer: Answer) -> Verdict {
+        let Some(repeated) = self.repeated.get_mut(&evaluation) else {
+            return Verdict::NotAsked;
+        };
+        if !repeated.is_compared {
+            self.drop(evaluation);
+            return Verdict::NotAsked;
+        }
+        if let Some(before) = repeated.answers.iter().find(|a| a.worker == answer.worker) {
+            return match before.fingerprint == answer.fingerprint {
+                true => Verdict::Open,
+                false => Verdict::Contradiction,
+            };
+        }
+        self.queue.bar(evaluation, &answer.worker);
+        let fingerprint = answer.fingerprint;
+        repeated.answers.push(answer);
+        let (same, other): (Vec<&Answer>, Vec<&Answer>) = repeated
+            .answers
+            .iter()
+            .partition(|a| a.fingerprint == fingerprint);
+        if same.len() >= 2 {
+            let wrong = other.iter().map(|a| a.worker.clone()).collect();
+            let first = repeated.answers[0].worker.clone();
+            self.drop(evaluation);
+            return Verdict::Settled { first, wrong };
+        }
+        match other.is_empty() {
+            true => Verdict::Open,
+            false => Verdict::Differ,
+        }
+    }
+
+    /// Asks for an evaluation no more.
+    pub fn drop(&mut self, evaluation: u64) {
+        self.repeated.remove(&evaluation);
+        self.queue.remove(evaluation);
+        if self.repeated.is_empty() {
+            self.variants.clear();
+        }
+    }
+
+    /// Drops all answers of a worker that computes wrongly, and its leases.
+    pub fn forget(&mut self, worker: &str) {
+        for repeated in self.repeated.values_mut() {
+            repeated.answers.retain(|answer| answer.worker != worker);
+        }
+        self.queue.take_back_of(|name| name == worker);
+    }
+
+    /// Drops what nobody can answer: `can_answer` tells whether there is a worker besides some. How many.
+    pub fn drop_hopeless(&mut self, can_answer: impl Fn(&[Answer]) -> bool) -> u64 {
+        let is_hopeless = |(&evaluation, repeated): (&u64, &Repeated)| {
+            let is_out = self.queue.is_leased(evaluation);
+            (!is_out && !can_answer(&repeated.answers)).then_some(evaluation)
+        };
+        let hopeless: Vec<u64> = self.repeated.iter().filter_map(is_hopeless).collect();
+        hopeless.iter().for_each(|&evaluation| self.drop(evaluation));
+        hopeless.len() as u64
+    }
+
+    /// Number of evaluations whose answers wait to be compared.
+    pub fn waiting(&self) -> usize {
+        self.repeated.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn asked(is_compared: bool) -> SecondAnswers {
+        let mut second = SecondAnswers::default();
+        let question = Question {
+            variant: "00ff",
+            theta: &[1.5],
+            subchain: None,
+        };
+        second.ask(3, question, None, is_compared, None);
+        second
+    }
+
+    fn answer(second: &mut SecondAnswers, worker: &str, fingerprint: i64) -> Verdict {
+        let (worker, fingerprint) = (worker.to_owned(), Fingerprint(fingerprint));
+        second.answered(3, Answer { worker, fingerprint })
+    }
+
+    fn settled(first: &str, wrong: &[&str]) -> Verdict {
+        Verdict::Settled {
+            first: first.to_owned(),
+            wrong: wrong.iter().map(|w| (*w).to_owned()).collect(),
+        }
+    }
+
+    #[test]
+    fn two_equal_answers_settle_and_a_third_finds_who_is_wrong() {
+        let mut second = asked(true);
+        assert_eq!(answer(&mut second, "a", 1), Verdict::Open);
+        assert_eq!(answer(&mut second, "a", 1), Verdict::Open, "said twice");
+        assert_eq!(answer(&mut second, "b", 1), settled("a", &[]));
+        assert_eq!(answer(&mut second, "c", 1), Verdict::NotAsked);
+
+        let mut second = asked(true);
+        answer(&mut second, "liar", 9);
+        assert_eq!(answer(&mut second, "a", 1), Verdict::Differ);
+        assert_eq!(answer(&mut second, "fool", 8), Verdict::Differ);
+        assert_eq!(answer(&mut second, "b", 1), settled("liar", &["liar", "fool"]));
+    }
+
+    #[test]
+    fn a_worker_that_answers_in_two_ways_contradicts_itself() {
+        let mut second = asked(true);
+        answer(&mut second, "a", 1);
+        assert_eq!(answer(&mut second, "a", 2), Verdict::Contradiction);
+        second.forget("a");
+        assert_eq!(
+            answer(&mut second, "b", 1),
+            Verdict::Open,
+            "it is as if it had not answered"
+        );
+    }
+
+    #[test]
+    fn a_slow_worker_s_evaluation_needs_one_answer() {
+        let mut second = asked(false);
+        assert_eq!((second.waiting(), second.queue.unleased()), (1, 1));
+        assert_eq!(answer(&mut second, "b", 1), Verdict::NotAsked);
+        assert_eq!((second.waiting(), second.queue.len()), (0, 0));
+    }
+
+    #[test]
+    fn what_nobody_can_answer_is_dropped() {
+        let mut second = asked(true);
+        answer(&mut second, "a", 1);
+        let others = |names: &'static [&'static str]| {
+            move |answers: &[Answer]| names.iter().any(|n| !answers.iter().any(|a| a.worker == *n))
+        };
+        assert_eq!(second.drop_hopeless(others(&["a", "b"])), 0);
+        assert_eq!(second.drop_hopeless(others(&["a"])), 1);
+        assert_eq!(second.waiting(), 0);
+    }
+}

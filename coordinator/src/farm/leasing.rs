@@ -1,0 +1,160 @@
+//! What a worker is given.
+
+use shared::api::CalibrationState;
+use shared::exchange::Lease;
+use shared::model::equations_of;
+
+use super::seal::{LeaseTerms, seal};
+use super::share::deal;
+use super::state::{Entry, Farm, model_version};
+use crate::calibration::Calibration;
+use crate::lease::Claimant;
+
+/// A calibration that may lease to a worker.
+#[derive(Debug, Clone, Copy)]
+struct Turn {
+    id: i64,
+    /// Whether it leases what is asked for twice.
+    is_second: bool,
+    /// The most leases.
+    most: usize,
+}
+
+impl Farm {
+    /// The calibrations that may lease to a worker that holds so many leases, in turn: first those with suspects where its hands
+    /// are empty, then what is asked for twice, then the oldest; first its share of each, then what is left.
+    fn turns(&self, want: usize, holds: usize) -> Vec<Turn> {
+        let waits = |e: &&Entry| e.calibration.is_open() && e.calibration.queue.unleased() > 0;
+        let waiting: Vec<&Calibration> = self
+            .calibrations
+            .values()
+            .filter(waits)
+            .map(|e| &e.calibration)
+            .collect();
+        let queues: Vec<(usize, usize)> = waiting
+            .iter()
+            .map(|c| (c.queue.leased(), c.queue.unleased()))
+            .collect();
+        let ids = waiting.iter().map(|c| c.identity.id);
+        let first = |(id, most)| Turn {
+            id,
+            is_second: false,
+            most,
+        };
+        let mut turns: Vec<Turn> = ids.clone().zip(deal(&queues, want)).map(first).collect();
+        let mut suspected = 0;
+        if holds == 0 {
+            let is_suspected = |turn: &Turn| self.calibrations[&turn.id].calibration.queue.suspects() > 0;
+            turns.sort_by_key(|turn| !is_suspected(turn));
+            suspected = turns.iter().filter(|turn| is_suspected(turn)).count();
+            // A suspect goes to empty hands, however many leases of its calibration are out.
+            if let Some(turn) = turns.first_mut().filter(|_| suspected > 0) {
+                turn.most = turn.most.max(1);
+            }
+        }
+        let asks_twice = |e: &&Entry| e.calibration.is_open() && e.calibration.second.queue.unleased() > 0;
+        let twice = self.calibrations.values().filter(asks_twice).map(|e| Turn {
+            id: e.calibration.identity.id,
+            is_second: true,
+            most: want,
+        });
+        turns.splice(suspected..suspected, twice);
+        turns.extend(ids.map(|id| first((id, want))));
+        turns
+    }
+
+    /// Leases up to `want` evaluations.
+    pub(super) fn lease(
+        &mut self,
+        worker: &str,
+        version: &str,
+        want: usize,
+        now_ms: u64,
+    ) -> (Vec<Lease>, Option<String>) {
+        let mut leases = Vec::new();
+        let mut refused = None;
+        let expires_ms = now_ms + self.lease_ms;
+        let mut holds = self.held_by(worker);
+        let holds_suspect = |e: &Entry| {
+            let second = &e.calibration.second.queue;
+            e.calibration.queue.holds_suspect(worker) || second.holds_suspect(worker)
+        };
+        if want == 0 || (holds > 0 && self.calibrations.values().any(holds_suspect)) {
+            return (leases, refused);
+        }
+        for turn in self.turns(want, holds) {
+            let id = turn.id;
+            let Some(entry) = self.calibrations.get_mut(&id) else {
+                continue;
+            };
+            let calibration = &mut entry.calibration;
+            // The files of effects travel with the variant: a worker need not know them.
+            let pinned = calibration.model_version.as_deref().map(equations_of);
+            if let Some(pinned) = pinned.filter(|pinned| *pinned != equations_of(version)) {
+                refused = Some(format!(
+                    "calibration {id} was begun with model version {pinned}, worker {worker} computes {version}"
+                ));
+                continue;
+            }
+            let lease_numbers = &mut self.lease_numbers;
+            let next_lease = || lease_numbers.next_number();
+            let workers = &self.workers;
+            let has_other = |failed: &[String]| {
+                workers.iter().any(|(name, other)| {
+                    let is_able = equations_of(&other.model_version) == equations_of(version);
+                    is_able && !failed.contains(name)
+                })
+            };
+            let claimant = Claimant {
+                worker,
+                holds,
+                now_ms,
+                expires_ms,
+            };
+            let wanted = turn.most.min(want - leases.len());
+            let queue = match turn.is_second {
+                true => &mut calibration.second.queue,
+                false => &mut calibration.queue,
+            };
+            let claims = queue.claim(claimant, wanted, has_other, next_lease);
+            holds += claims.len();
+            self.counters.leased += claims.len() as u64;
+            if !claims.is_empty() && calibration.state == CalibrationState::Queued {
+                calibration.change_state(CalibrationState::Running, None, &mut self.facts);
+            }
+            let is_alone = claims.iter().any(|claim| claim.suspect);
+            for claim in claims {
+                let (lease, evaluation) = (claim.lease, claim.evaluation);
+                let question = match turn.is_second {
+                    true => calibration.second.question(evaluation),
+                    false => calibration.question(evaluation),
+                };
+                let question = question.expect("a claimed evaluation is asked for at present");
+                let terms = LeaseTerms {
+                    lease,
+                    worker,
+                    calibration: id,
+                    evaluation,
+                    model_version: &model_version(calibration, version),
+                };
+                leases.push(Lease {
+                    lease,
+                    calibration: id,
+                    evaluation,
+                    seal: seal(entry.key, terms, question),
+                    variant: question.variant.to_owned(),
+                    theta: question.theta.to_vec(),
+                    announce: claim.suspect,
+                    subchain: question.subchain,
+                });
+            }
+            if is_alone {
+                break;
+            }
+        }
+        if let (Some(record), Some(last)) = (self.workers.get_mut(worker), leases.last()) {
+            record.given = last.lease;
+        }
+        (leases, refused)
+    }
+}

@@ -1,0 +1,131 @@
+//! What follows where workers disagree, and who is asked beside a slow one.
+
+use shared::model::equations_of;
+
+use super::state::{Entry, Farm};
+use crate::calibration::Answer;
+use record::Quarantine;
+use record::fact::Fact;
+
+/// A lease is slow that is out for so many times as long as leases of its calibration are in the mean, and
+const SLOW_TIMES: u64 = 3;
+/// so much longer `[ms]`.
+const SLOW_MS: u64 = 1_000;
+
+impl Farm {
+    /// The same, with workers that were found to compute wrongly before.
+    #[must_use]
+    pub fn with_quarantine(mut self, quarantine: Vec<Quarantine>) -> Self {
+        let reason = |q: &Quarantine| reason(&q.worker, q.calibration, q.evaluation);
+        self.quarantine
+            .extend(quarantine.iter().map(|q| (q.worker.clone(), reason(q))));
+        self
+    }
+
+    /// The calibrations to replay from the store, since the last call: it has dropped results of theirs.
+    pub fn take_rewinds(&mut self) -> Vec<i64> {
+        std::mem::take(&mut self.rewinds)
+    }
+
+    /// A replay failed: the calibration waits for a user.
+    pub fn rewind_failed(&mut self, id: i64, reason: &str) {
+        let Some(entry) = self.calibrations.get_mut(&id) else {
+            return;
+        };
+        let message = format!(
+            "results of a worker that computes wrongly were dropped, but the rest cannot be replayed: {reason}"
+        );
+        let paused = shared::api::CalibrationState::Paused;
+        entry
+            .calibration
+            .change_state(paused, Some(message), &mut self.facts);
+    }
+
+    /// Quarantines a worker that computes wrongly: its leases come back, and no calibration in progress rests on results of its
+    /// that nobody has confirmed.
+    pub(super) fn convict(&mut self, worker: &str, calibration: i64, evaluation: u64) {
+        if self.quarantine.contains_key(worker) {
+            return;
+        }
+        self.quarantine
+            .insert(worker.to_owned(), reason(worker, calibration, evaluation));
+        self.facts.push(Fact::Quarantined {
+            worker: worker.to_owned(),
+            calibration,
+            evaluation,
+        });
+        for (&id, entry) in &mut self.calibrations {
+            let rests = entry.calibration.rests_on(worker);
+            if !rests {
+                entry.calibration.queue.take_back_of(|name| name == worker);
+                entry.calibration.second.forget(worker);
+            }
+            if rests || id == calibration {
+                self.facts.push(Fact::Rewound {
+                    calibration: id,
+                    worker: worker.to_owned(),
+                    width: entry.calibration.spec.algorithm.width(),
+                });
+            }
+            if rests {
+                entry.calibration.queue = Default::default();
+                entry.calibration.second = Default::default();
+                if !std::mem::replace(&mut entry.is_rewinding, true) {
+                    self.rewinds.push(id);
+                }
+            }
+        }
+    }
+
+    /// Ends a calibration that has nothing left but to compare answers, once they are compared or nobody is there to give them.
+    pub(super) fn settle(&mut self, id: i64, now_ms: u64) {
+        let Some(entry) = self.calibrations.get_mut(&id) else {
+            return;
+        };
+        if entry.is_rewinding || !entry.calibration.is_concluded() {
+            return;
+        }
+        let version = entry.calibration.model_version.as_deref().map(equations_of);
+        let (workers, quarantine, patience_ms) = (&self.workers, &self.quarantine, self.lease_ms);
+        let can_answer = |answers: &[Answer]| {
+            workers.iter().any(|(name, worker)| {
+                let is_able = version == Some(equations_of(&worker.model_version));
+                let is_there = now_ms.saturating_sub(worker.last_seen_ms) < patience_ms;
+                let has_answered = answers.iter().any(|answer| answer.worker == *name);
+                is_able && is_there && !has_answered && !quarantine.contains_key(name)
+            })
+        };
+        self.counters.unanswered += entry.calibration.second.drop_hopeless(can_answer);
+        entry.calibration.settle(&mut self.facts);
+    }
+
+    /// Asks another worker for what a slow one holds, where nothing else waits: the first answer counts.
+    pub(super) fn ask_beside_slow_workers(&mut self, now_ms: u64) {
+        for entry in self.calibrations.values_mut() {
+            let Entry {
+                calibration, pace, ..
+            } = entry;
+            if !calibration.is_open() || calibration.queue.unleased() > 0 || calibration.queue.leased() == 0 {
+                continue;
+            }
+            let Some(mean_ms) = pace.mean_lease_ms() else {
+                continue;
+            };
+            let slow: Vec<(u64, String)> = calibration
+                .queue
+                .older_than(SLOW_TIMES * mean_ms + SLOW_MS, now_ms)
+                .filter(|(evaluation, _)| !calibration.second.contains(*evaluation))
+                .map(|(evaluation, worker)| (evaluation, worker.to_owned()))
+                .collect();
+            for (evaluation, holder) in slow {
+                calibration.ask_second(evaluation, false, Some(&holder));
+            }
+        }
+    }
+}
+
+fn reason(worker: &str, calibration: i64, evaluation: u64) -> String {
+    format!(
+        "worker {worker} computes wrongly and is quarantined: its answer to evaluation {evaluation} of calibration {calibration} is contradicted; find out why, then start it anew"
+    )
+}

@@ -1,0 +1,176 @@
+//! What follows where a worker's answers are compared with those of another.
+
+use sqlx::SqliteConnection;
+
+use super::error::StoreError;
+use super::reader::Reader;
+use record::{PREDICTIONS_FROM, Quarantine, Verified};
+
+/// Notes that a second worker has reproduced a result.
+pub(super) async fn confirm(
+    connection: &mut SqliteConnection,
+    calibration: i64,
+    evaluation: u64,
+    worker: &str,
+) -> Result<(), sqlx::Error> {
+    sqlx::query("UPDATE evaluations SET confirmed_by = ? WHERE calibration = ? AND evaluation = ?")
+        .bind(worker)
+        .bind(calibration)
+        .bind(evaluation as i64)
+        .execute(connection)
+        .await
+        .map(drop)
+}
+
+/// Notes that a worker computes wrongly. What finished studies that rest on it ended with says nothing of it yet.
+pub(super) async fn quarantine(
+    connection: &mut SqliteConnection,
+    worker: &str,
+    calibration: i64,
+    evaluation: u64,
+) -> Result<(), sqlx::Error> {
+    tracing::error!(
+        target: "journal",
+        worker,
+        calibration,
+        evaluation,
+        "quarantined: it computes wrongly"
+    );
+    sqlx::query(
+        "INSERT OR IGNORE INTO quarantine (worker, calibration, evaluation, at_ms)
+         VALUES (?, ?, ?, unixepoch('subsec') * 1000)",
+    )
+    .bind(worker)
+    .bind(calibration)
+    .bind(evaluation as i64)
+    .execute(&mut *connection)
+    .await?;
+    sqlx::query(
+        "DELETE FROM results WHERE study IN (SELECT c.study FROM calibrations c WHERE EXISTS
+         (SELECT 1 FROM evaluations e WHERE e.calibration = c.id AND e.worker = ?))",
+    )
+    .bind(worker)
+    .execute(connection)
+    .await
+    .map(drop)
+}
+
+/// Drops the unconfirmed results of a worker, and all results of later rounds: they were asked for because of them.
+pub(super) async fn rewind(
+    connection: &mut SqliteConnection,
+    calibration: i64,
+    worker: &str,
+    width: usize,
+) -> Result<(), sqlx::Error> {
+    let (first, results): (Option<i64>, i64) = sqlx::query_as(
+        "SELECT min(evaluation), count(*) FROM evaluations
+         WHERE calibration = ? AND worker = ? AND confirmed_by IS NULL",
+    )
+    .bind(calibration)
+    .bind(worker)
+    .fetch_one(&mut *connection)
+    .await?;
+    tracing::warn!(target: "journal", calibration, worker, results, "results are computed again");
+    sqlx::query(
+        "INSERT INTO rewinds (calibration, worker, results, at_ms) VALUES (?, ?, ?, unixepoch('subsec') * 1000)
+         ON CONFLICT DO UPDATE SET results = results + excluded.results",
+    )
+    .bind(calibration)
+    .bind(worker)
+    .bind(results)
+    .execute(&mut *connection)
+    .await?;
+    // An answer of this worker disputes nothing any more.
+    sqlx::query("DELETE FROM disputes WHERE calibration = ?1 AND ?2 IN (first, second)")
+        .bind(calibration)
+        .bind(worker)
+        .execute(&mut *connection)
+        .await?;
+    let Some(first) = first else { return Ok(()) };
+    let round_end = match first >= PREDICTIONS_FROM as i64 {
+        true => i64::MAX,
+        false => (first / width as i64 + 1) * width as i64,
+    };
+    sqlx::query(
+        "DELETE FROM evaluations WHERE calibration = ?1
+         AND (evaluation >= ?2 OR worker = ?3 AND confirmed_by IS NULL)",
+    )
+    .bind(calibration)
+    .bind(round_end)
+    .bind(worker)
+    .execute(&mut *connection)
+    .await?;
+    // What still holds of these is told again by the replay.
+    for table in ["stages", "samples", "estimates", "discoveries"] {
+        let query = format!("DELETE FROM {table} WHERE calibration = ?");
+        sqlx::query(sqlx::AssertSqlSafe(query))
+            .bind(calibration)
+            .execute(&mut *connection)
+            .await?;
+    }
+    sqlx::query(
+        "UPDATE calibrations SET log_evidence = NULL, log_evidence_se = NULL, equilibrated = NULL,
+         evaluations = NULL, rejected = NULL WHERE id = ?",
+    )
+    .bind(calibration)
+    .execute(connection)
+    .await
+    .map(drop)
+}
+
+impl Reader {
+    /// The workers that compute wrongly.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn quarantine(&self) -> Result<Vec<Quarantine>, StoreError> {
+        let rows: Vec<(String, i64, i64)> =
+            sqlx::query_as("SELECT worker, calibration, evaluation FROM quarantine ORDER BY worker")
+                .fetch_all(&self.pool)
+                .await?;
+        let quarantine = |(worker, calibration, evaluation): (String, i64, i64)| Quarantine {
+            worker,
+            calibration,
+            evaluation: evaluation.unsigned_abs(),
+        };
+        Ok(rows.into_iter().map(quarantine).collect())
+    }
+
+    /// How far the results of a calibration are verified. Of a store of before migration 18, which only reading leaves as it is,
+    /// nothing is known.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn verified(&self, calibration: i64) -> Result<Verified, StoreError> {
+        let table: i64 = sqlx::query_scalar("SELECT count(*) FROM sqlite_schema WHERE name = 'quarantine'")
+            .fetch_one(&self.pool)
+            .await?;
+        if table == 0 {
+            return Ok(Verified::default());
+        }
+        let (results, confirmed, workers): (i64, i64, i64) = sqlx::query_as(
+            "SELECT count(*), count(confirmed_by), count(DISTINCT worker) FROM evaluations
+             WHERE calibration = ? AND worker <> ''",
+        )
+        .bind(calibration)
+        .fetch_one(&self.pool)
+        .await?;
+        let resting = sqlx::query_as(
+            "SELECT q.worker, count(*) FROM quarantine q JOIN evaluations e ON e.worker = q.worker
+             WHERE e.calibration = ? AND e.confirmed_by IS NULL GROUP BY q.worker ORDER BY q.worker",
+        );
+        let rewound =
+            sqlx::query_as("SELECT worker, results FROM rewinds WHERE calibration = ? ORDER BY worker");
+        let resting: Vec<(String, i64)> = resting.bind(calibration).fetch_all(&self.pool).await?;
+        let rewound: Vec<(String, i64)> = rewound.bind(calibration).fetch_all(&self.pool).await?;
+        let counts =
+            |rows: Vec<(String, i64)>| rows.into_iter().map(|(worker, n)| (worker, n.unsigned_abs()));
+        Ok(Verified {
+            results: results.unsigned_abs(),
+            confirmed: confirmed.unsigned_abs(),
+            workers: workers.unsigned_abs(),
+            resting_on: counts(resting).collect(),
+            computed_again: counts(rewound).collect(),
+        })
+    }
+}
