@@ -9,7 +9,7 @@ use super::engine::{CalibrationResult, EvaluationScore};
 use super::faults::NOBODY;
 use super::final_draws::{FinalDraws, final_draws};
 use super::process::Calibration;
-use super::second_answer::{Answer, SecondAnswers};
+use super::second_answer::{Answer, SecondAnswers, StoredAnswer};
 use super::simulation_result::SimulationResult;
 use crate::lease::{Completion, LeaseQueue};
 use job::AlgorithmSettings;
@@ -48,7 +48,10 @@ impl Calibration {
         worker: &str,
     ) -> Result<(Vec<Fact>, bool), ResultError> {
         let computed = computed.into();
-        self.check_shape(evaluation, &computed)?;
+        if let Err(error) = self.check_shape(evaluation, &computed) {
+            self.second.drop_idle(|asked| asked == evaluation);
+            return Err(error);
+        }
         let answer = Answer {
             worker: worker.to_owned(),
             fingerprint: computed.fingerprint(),
@@ -98,7 +101,9 @@ impl Calibration {
         let mut consequences = Vec::new();
         self.given_up += usize::from(worker == NOBODY);
         self.answered_first(evaluation, &answer);
-        self.done.insert(evaluation, answer);
+        let is_confirmed = false;
+        self.done
+            .insert(evaluation, StoredAnswer { answer, is_confirmed });
         self.record(evaluation, rejected, scored, &mut consequences);
         let row = EvaluationRow {
             evaluation,

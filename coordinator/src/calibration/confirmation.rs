@@ -8,6 +8,13 @@ use super::second_answer::{Answer, Verdict};
 use record::Fact;
 
 impl Calibration {
+    /// Lets the answer to an evaluation, which is about to come, be compared with that of a second worker.
+    pub fn verify(&mut self, evaluation: u64) {
+        if self.verification.is_on() && self.queue.is_asked(evaluation) {
+            self.ask_second(evaluation, true, None);
+        }
+    }
+
     /// Counts the answer that is stored; its evaluation may be asked for twice.
     pub(super) fn answered_first(&mut self, evaluation: u64, answer: &Answer) {
         if answer.worker == NOBODY {
@@ -44,12 +51,23 @@ impl Calibration {
             return vec![duplicate];
         }
         if !self.second.contains(evaluation)
-            && let Some(first) = self.done.get(&evaluation).filter(|first| first.worker != NOBODY)
+            && let Some(stored) = self.done.get(&evaluation)
+            && stored.answer.worker != NOBODY
         {
-            // An answer that nobody asked for confirms as well as one that was, or brings a dispute that others settle.
-            let first = first.clone();
-            self.ask_second(evaluation, true, None);
-            self.second.answered(evaluation, first);
+            match (stored.answer.fingerprint == fingerprint, stored.is_confirmed) {
+                (true, true) => return Vec::new(),
+                (false, true) => {
+                    self.convicted.push((worker, evaluation));
+                    return vec![duplicate];
+                }
+                (true, false) if stored.answer.worker == worker => return Vec::new(),
+                // An answer that nobody asked for confirms as well as one that was, or brings a dispute that others settle.
+                (_, false) => {
+                    let first = stored.answer.clone();
+                    self.ask_second(evaluation, true, None);
+                    self.second.answered(evaluation, first);
+                }
+            }
         }
         match self.second.answered(evaluation, answer) {
             Verdict::NotAsked | Verdict::Differ => vec![duplicate],
@@ -65,6 +83,9 @@ impl Calibration {
                     return vec![duplicate];
                 }
                 self.confirmed += 1;
+                if let Some(stored) = self.done.get_mut(&evaluation) {
+                    stored.is_confirmed = true;
+                }
                 if let Some(count) = self.unconfirmed.get_mut(&first) {
                     *count -= 1;
                 }
@@ -75,6 +96,13 @@ impl Calibration {
                 }]
             }
         }
+    }
+
+    /// Asks nobody beside a holder that is none any more, or that of a suspect, which is alone wherever it is.
+    pub fn drop_idle_seconds(&mut self) {
+        let queue = &self.queue;
+        self.second
+            .drop_idle(|evaluation| !queue.is_leased(evaluation) || queue.is_suspect(evaluation));
     }
 
     /// The workers found to compute wrongly since the last call, each with the evaluation that shows it.

@@ -11,7 +11,7 @@ use statistics::{Metamodel, Subchain};
 
 use super::engine::{BeginError, CalibrationEngine};
 use super::final_draws::FinalDraws;
-use super::second_answer::{Answer, SecondAnswers};
+use super::second_answer::{SecondAnswers, StoredAnswer};
 use super::verification::Verification;
 use crate::lease::LeaseQueue;
 use crate::missing_effect::{DiscoveryError, SearchModels};
@@ -67,7 +67,7 @@ pub struct Calibration {
     /// What the calibration ends with; `None` while sampling.
     pub(super) draws: Option<FinalDraws>,
     /// Answers of the present round.
-    pub(super) done: BTreeMap<u64, Answer>,
+    pub(super) done: BTreeMap<u64, StoredAnswer>,
     /// Evaluations of the present round that were given up after faults.
     pub(super) given_up: usize,
     /// The workers of failed leases by evaluation, kept over a restart.

@@ -6,7 +6,7 @@ use statistics::LogLikelihood;
 use super::engine::EvaluationScore;
 use super::faults::NOBODY;
 use super::process::Calibration;
-use super::second_answer::Answer;
+use super::second_answer::{Answer, StoredAnswer};
 use job::EffectsChanged;
 use record::{Fact, Stored, StoredEvaluation};
 
@@ -107,7 +107,9 @@ impl Calibration {
         };
         self.queue.complete(evaluation);
         self.replay_confirmation(evaluation, &answer, stored.is_confirmed);
-        self.done.insert(evaluation, answer);
+        let is_confirmed = stored.is_confirmed;
+        self.done
+            .insert(evaluation, StoredAnswer { answer, is_confirmed });
         self.given_up += usize::from(stored.worker == NOBODY);
         let scored = scored.map(|log_likelihood| EvaluationScore {
             log_likelihood,

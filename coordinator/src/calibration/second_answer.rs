@@ -22,6 +22,15 @@ pub struct Answer {
     pub fingerprint: Fingerprint,
 }
 
+/// An answer that is stored.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct StoredAnswer {
+    /// The answer.
+    pub answer: Answer,
+    /// Whether another worker has given the same.
+    pub is_confirmed: bool,
+}
+
 /// What is known after an answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
@@ -159,12 +168,39 @@ impl SecondAnswers {
         }
     }
 
+    /// Drops what nobody has answered and nobody holds, as far as that is wanted.
+    pub fn drop_idle(&mut self, is_wanted: impl Fn(u64) -> bool) {
+        let is_dropped = |(&evaluation, repeated): (&u64, &Repeated)| {
+            let is_idle = repeated.answers.is_empty() && !self.queue.is_leased(evaluation);
+            (is_idle && is_wanted(evaluation)).then_some(evaluation)
+        };
+        let unanswered: Vec<u64> = self.repeated.iter().filter_map(is_dropped).collect();
+        for evaluation in unanswered {
+            self.drop(evaluation);
+        }
+    }
+
     /// Drops all answers of a worker that computes wrongly, and its leases.
     pub fn forget(&mut self, worker: &str) {
         for repeated in self.repeated.values_mut() {
             repeated.answers.retain(|answer| answer.worker != worker);
         }
         self.queue.take_back_of(|name| name == worker);
+    }
+
+    /// Ends the leases whose time has come; how many. What its workers fail at again and again is asked for no more: there is an
+    /// answer, and another one need not be had at any price.
+    pub fn expire(&mut self, now_ms: u64) -> u64 {
+        let expired = self.queue.expire(now_ms);
+        let exhausted = expired.failures.iter().filter(|failure| failure.exhausted());
+        let lost: Vec<u64> = exhausted
+            .map(|failure| failure.evaluation)
+            .chain(expired.never_begun)
+            .collect();
+        for evaluation in lost {
+            self.drop(evaluation);
+        }
+        expired.unstarted + expired.failures.len() as u64
     }
 
     /// Drops what nobody can answer: `can_answer` tells whether there is a worker besides some. How many.

@@ -98,11 +98,11 @@ impl Farm {
             }
             let lease_numbers = &mut self.lease_numbers;
             let next_lease = || lease_numbers.next_number();
-            let workers = &self.workers;
+            let (workers, quarantine) = (&self.workers, &self.quarantine);
             let has_other = |failed: &[String]| {
                 workers.iter().any(|(name, other)| {
                     let is_able = equations_of(&other.model_version) == equations_of(version);
-                    is_able && !failed.contains(name)
+                    is_able && !failed.contains(name) && !quarantine.contains_key(name)
                 })
             };
             let claimant = Claimant {

@@ -102,8 +102,8 @@ impl Farm {
         }
         if let Some(before) = self.calibrations.get(&id) {
             // What a user has said meanwhile holds.
-            if before.calibration.state == CalibrationState::Paused && !calibration.state.is_final() {
-                calibration.state = CalibrationState::Paused;
+            if !calibration.state.is_final() {
+                calibration.state = before.calibration.state;
                 calibration.message.clone_from(&before.calibration.message);
             }
             calibration.busy_ms = before.calibration.busy_ms;
@@ -216,6 +216,9 @@ impl Farm {
         for lease in request.returned {
             self.give_back(lease, &worker);
         }
+        for entry in self.calibrations.values_mut() {
+            entry.calibration.drop_idle_seconds();
+        }
         self.account(now_ms);
         // It may have been quarantined for what it has just said.
         let (leases, refused) = match self.quarantine.get(&worker) {
@@ -235,6 +238,9 @@ impl Farm {
     /// Takes a result from a worker that computes a version of the equations. The first that counts pins its calibration to it.
     fn take_result(&mut self, worker: &str, version: &str, result: WorkResult, now_ms: u64) -> Taken {
         let (id, lease, evaluation) = (result.calibration, result.lease, result.evaluation);
+        if let Some((key, pinned)) = self.closed(id) {
+            return self.compare_late(worker, result, key, &pinned);
+        }
         let terms = |model_version| LeaseTerms {
             lease,
             worker,
@@ -243,26 +249,8 @@ impl Farm {
             model_version,
         };
         let Some(entry) = self.calibrations.get_mut(&id) else {
-            let Some(ended) = self.ended.get(&id) else {
-                return Taken::Duplicate;
-            };
-            if !proves(&result.seal, ended.key, terms(&ended.model_version), None) {
-                return Taken::Refused;
-            }
-            if let Ok(computed) = SimulationResult::of(result) {
-                self.facts.push(Fact::Duplicate {
-                    calibration: id,
-                    evaluation,
-                    fingerprint: computed.fingerprint(),
-                    worker: worker.to_owned(),
-                });
-            }
             return Taken::Duplicate;
         };
-        if entry.is_rewinding {
-            // It is asked for again where it still counts.
-            return Taken::Duplicate;
-        }
         let calibration = &mut entry.calibration;
         let model_version = model_version(calibration, version);
         let question = calibration.question(evaluation);
@@ -278,35 +266,33 @@ impl Farm {
             .workers
             .get(worker)
             .is_none_or(|w| w.completed < NEW_WORKER_RESULTS);
-        if is_new && calibration.verification.is_on() && calibration.queue.is_asked(evaluation) {
-            calibration.ask_second(evaluation, true, None);
-        }
         if let Some(age_ms) = calibration.queue.age_ms(lease, worker, now_ms) {
             entry.pace.count_lease(age_ms);
         }
-        let taken = match SimulationResult::of(result) {
-            Ok(computed) => match calibration.complete(evaluation, computed, worker) {
-                Ok((facts, counted)) => {
-                    if let Some(version) = pin.filter(|_| counted) {
-                        let is_other = |name: &str| {
-                            let other = self.workers.get(name);
-                            other.is_none_or(|o| equations_of(&o.model_version) != equations_of(&version))
-                        };
-                        calibration.queue.take_back_of(is_other);
-                        calibration.model_version = Some(version.clone());
-                        let calibration = id;
-                        self.facts.push(Fact::ModelVersion { calibration, version });
-                    }
-                    let is_confirmation = |fact: &&Fact| matches!(fact, Fact::Confirmed { .. });
-                    self.counters.confirmed += facts.iter().filter(is_confirmation).count() as u64;
-                    self.facts.extend(facts);
-                    entry.pace.count(calibration.evaluations, now_ms);
-                    Ok(counted)
-                }
-                Err(error) => Err(error.to_string()),
-            },
-            Err(fault) => Err(fault),
-        };
+        let completed = SimulationResult::of(result).and_then(|computed| {
+            if is_new {
+                calibration.verify(evaluation);
+            }
+            let completed = calibration.complete(evaluation, computed, worker);
+            completed.map_err(|error| error.to_string())
+        });
+        let taken = completed.map(|(facts, counted)| {
+            if let Some(version) = pin.filter(|_| counted) {
+                let is_other = |name: &str| {
+                    let other = self.workers.get(name);
+                    other.is_none_or(|o| equations_of(&o.model_version) != equations_of(&version))
+                };
+                calibration.queue.take_back_of(is_other);
+                calibration.model_version = Some(version.clone());
+                let calibration = id;
+                self.facts.push(Fact::ModelVersion { calibration, version });
+            }
+            let is_confirmation = |fact: &&Fact| matches!(fact, Fact::Confirmed { .. });
+            self.counters.confirmed += facts.iter().filter(is_confirmation).count() as u64;
+            self.facts.extend(facts);
+            entry.pace.count(calibration.evaluations, now_ms);
+            counted
+        });
         let convicted = calibration.take_convicted();
         let record = self
             .workers
@@ -323,6 +309,7 @@ impl Farm {
                 record.faults += 1;
                 self.counters.failed_leases += 1;
                 if let Some(failure) = calibration.queue.fail(lease) {
+                    calibration.drop_idle_seconds();
                     self.facts.extend(calibration.lease_failed(&failure, &message));
                 } else if let Some(failure) = calibration
                     .second
@@ -340,6 +327,45 @@ impl Farm {
         }
         self.settle(id, now_ms);
         taken
+    }
+
+    /// Key and model version of a calibration that takes no results: it has ended, or waits for its replay, after which a result
+    /// counts where it is asked for again.
+    fn closed(&self, id: i64) -> Option<(SealKey, String)> {
+        match self.calibrations.get(&id) {
+            None => {
+                let ended = self.ended.get(&id)?;
+                Some((ended.key, ended.model_version.clone()))
+            }
+            Some(entry) => {
+                let version = entry.calibration.model_version.clone().unwrap_or_default();
+                entry.is_rewinding.then_some((entry.key, version))
+            }
+        }
+    }
+
+    /// Lets the store compare a result that does not count.
+    fn compare_late(&mut self, worker: &str, result: WorkResult, key: SealKey, model_version: &str) -> Taken {
+        let (calibration, evaluation) = (result.calibration, result.evaluation);
+        let terms = LeaseTerms {
+            lease: result.lease,
+            worker,
+            calibration,
+            evaluation,
+            model_version,
+        };
+        if !proves(&result.seal, key, terms, None) {
+            return Taken::Refused;
+        }
+        if let Ok(computed) = SimulationResult::of(result) {
+            self.facts.push(Fact::Duplicate {
+                calibration,
+                evaluation,
+                fingerprint: computed.fingerprint(),
+                worker: worker.to_owned(),
+            });
+        }
+        Taken::Duplicate
     }
 
     pub(super) fn give_back(&mut self, lease: u64, worker: &str) {
@@ -360,18 +386,9 @@ impl Farm {
     /// Advances the clock: expires leases, removes silent workers, adds up busy time.
     pub fn tick(&mut self, now_ms: u64) {
         for entry in self.calibrations.values_mut() {
-            let second = &mut entry.calibration.second;
-            let expired = second.queue.expire(now_ms);
-            self.counters.failed_leases += expired.unstarted + expired.failures.len() as u64;
-            // There is an answer: another one need not be had at any price.
-            let exhausted = expired.failures.iter().filter(|failure| failure.exhausted());
-            let lost = exhausted
-                .map(|failure| failure.evaluation)
-                .chain(expired.never_begun);
-            lost.collect::<Vec<u64>>()
-                .into_iter()
-                .for_each(|evaluation| second.drop(evaluation));
+            self.counters.failed_leases += entry.calibration.second.expire(now_ms);
             let expired = entry.calibration.queue.expire(now_ms);
+            entry.calibration.drop_idle_seconds();
             self.counters.failed_leases += expired.unstarted;
             for failure in expired.failures {
                 self.counters.failed_leases += 1;
@@ -439,6 +456,10 @@ impl Farm {
             (Control::Pause, CalibrationState::Queued | CalibrationState::Running) => {
                 let message = Some("paused by a user".to_owned());
                 calibration.change_state(CalibrationState::Paused, message, &mut self.facts);
+            }
+            // Its replay asks for what is to be evaluated.
+            (Control::Resume { .. }, CalibrationState::Paused) if entry.is_rewinding => {
+                calibration.change_state(CalibrationState::Running, None, &mut self.facts);
             }
             (Control::Resume { skip_faults }, CalibrationState::Paused) => {
                 calibration.resume(skip_faults, &mut self.facts);

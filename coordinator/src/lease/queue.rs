@@ -146,6 +146,11 @@ impl LeaseQueue {
         })
     }
 
+    /// Whether an evaluation is a suspect.
+    pub fn is_suspect(&self, evaluation: u64) -> bool {
+        self.entries.get(&evaluation).is_some_and(|entry| entry.suspect)
+    }
+
     /// Suspects that nobody holds.
     pub fn suspects(&self) -> usize {
         self.suspects.len()

@@ -5,8 +5,9 @@
 
 use std::collections::VecDeque;
 
+use coordinator::calibration::Verification;
 use coordinator::farm::{Control, Farm};
-use record::SealKey;
+use record::{Fact, SealKey};
 use shared::api::CalibrationState;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
 
@@ -60,18 +61,24 @@ pub(crate) struct Coordinator<'a> {
     pub(crate) ledger: Ledger<'a>,
     pub(crate) witness: Witness<'a>,
     plant: Option<Plant>,
+    /// Share of the evaluations that a second worker computes.
+    verified_share: f64,
+    /// Calibrations to replay, each as soon as so many facts are on disk.
+    rewinds: Vec<(usize, i64)>,
 }
 
 impl<'a> Coordinator<'a> {
-    pub(crate) fn new(plant: Option<Plant>) -> Self {
+    pub(crate) fn new(plant: Option<Plant>, verified_share: f64) -> Self {
         Coordinator {
             farm: Some(Farm::new(1, LEASE_MS)),
             epoch: 1,
             held: Vec::new(),
             parked: VecDeque::new(),
             ledger: Ledger::default(),
-            witness: Witness::new(LEASE_MS),
+            witness: Witness::new(LEASE_MS, verified_share > 0.0),
             plant,
+            verified_share,
+            rewinds: Vec::new(),
         }
     }
 
@@ -100,7 +107,11 @@ impl<'a> Coordinator<'a> {
         let Some(farm) = &mut self.farm else { return Ok(()) };
         self.ledger.push(Entry::Submitted { id, case, key });
         self.ledger.commit(usize::MAX);
-        let calibration = case.begin(id).map_err(|e| Broken::new(Promise::Replay, e))?;
+        let mut calibration = case.begin(id).map_err(|e| Broken::new(Promise::Replay, e))?;
+        calibration.verification = Verification {
+            share: self.verified_share,
+            key,
+        };
         farm.add(calibration, key, Vec::new(), now_ms);
         self.witness.began(id);
         self.take_facts(Source::Restart)
@@ -116,8 +127,18 @@ impl<'a> Coordinator<'a> {
         };
         for fact in facts {
             self.witness.fact(&fact, source, &self.ledger)?;
+            let rewound = match &fact {
+                Fact::Rewound { calibration, .. } => Some(*calibration),
+                _ => None,
+            };
             self.ledger.push(Entry::Fact(fact));
+            if let Some(id) = rewound {
+                self.witness.rewound(id, &self.ledger);
+            }
         }
+        let stored = self.ledger.len();
+        let rewinds = self.farm.iter_mut().flat_map(Farm::take_rewinds);
+        self.rewinds.extend(rewinds.map(|id| (stored, id)));
         Ok(())
     }
 
@@ -211,8 +232,20 @@ impl<'a> Coordinator<'a> {
     }
 
     /// More facts come to disk; the answers that may leave.
-    pub(crate) fn commit(&mut self, facts: usize) -> Result<Vec<(Return, ExchangeResponse)>, Broken> {
+    pub(crate) fn commit(
+        &mut self,
+        facts: usize,
+        now_ms: u64,
+    ) -> Result<Vec<(Return, ExchangeResponse)>, Broken> {
         self.ledger.commit(facts);
+        let stored = self.ledger.durable();
+        let rewinds: Vec<(usize, i64)> = self
+            .rewinds
+            .extract_if(.., |(facts, _)| *facts <= stored)
+            .collect();
+        for (_, id) in rewinds {
+            self.take_up(id, now_ms)?;
+        }
         let early = self.has(Plant::AnswerBeforeDisk);
         let durable = self.ledger.durable();
         let leaving: Vec<Held> = self
@@ -255,6 +288,7 @@ impl<'a> Coordinator<'a> {
         self.farm = None;
         self.held.clear();
         self.parked.clear();
+        self.rewinds.clear();
         let durable = self.ledger.durable();
         if self.has(Plant::HoleInFacts) && durable + 1 < self.ledger.len() {
             self.ledger.lose(durable);
@@ -268,23 +302,34 @@ impl<'a> Coordinator<'a> {
         if !self.has(Plant::FenceRepeats) {
             self.epoch += 1;
         }
-        self.farm = Some(Farm::new(self.epoch, LEASE_MS));
+        let quarantine = match self.has(Plant::QuarantineForgotten) {
+            true => Vec::new(),
+            false => self.ledger.quarantine().values().cloned().collect(),
+        };
+        self.farm = Some(Farm::new(self.epoch, LEASE_MS).with_quarantine(quarantine));
         let open = self
             .ledger
             .tables()
             .iter()
             .filter(|(_, table)| !table.state.is_final());
         let open: Vec<i64> = open.map(|(&id, _)| id).collect();
-        for id in open {
-            let Some(table) = self.ledger.table(id) else {
-                continue;
-            };
+        open.into_iter().try_for_each(|id| self.take_up(id, now_ms))
+    }
+
+    /// Replays a calibration and gives it to the farm.
+    fn take_up(&mut self, id: i64, now_ms: u64) -> Result<(), Broken> {
+        let Some(table) = self.ledger.table(id) else {
+            return Ok(());
+        };
+        {
             let stored = match self.plant {
                 Some(plant) => plant.replayed(table.stored()),
                 None => table.stored(),
             };
             let key = table.key;
+            let share = self.verified_share;
             let replayed = table.case.begin(id).and_then(|mut calibration| {
+                calibration.verification = Verification { share, key };
                 let facts = calibration.replay(stored).map_err(|e| e.to_string())?;
                 Ok((calibration, facts))
             });
@@ -293,9 +338,8 @@ impl<'a> Coordinator<'a> {
             if let Some(farm) = &mut self.farm {
                 farm.add(calibration, key, facts, now_ms);
             }
-            self.take_facts(Source::Restart)?;
+            self.take_facts(Source::Restart)
         }
-        Ok(())
     }
 }
 

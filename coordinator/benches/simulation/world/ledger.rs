@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use record::{EvaluationRow, Fact, Kept, SealKey, Stored, StoredEvaluation};
+use record::{EvaluationRow, Fact, Kept, PREDICTIONS_FROM, Quarantine, SealKey, Stored, StoredEvaluation};
 use shared::api::CalibrationState;
 
 use super::case::{Case, CaseResult, posterior_bits};
@@ -34,6 +34,10 @@ pub(crate) struct Table<'a> {
     /// The workers of failed attempts since a user granted new ones, by evaluation.
     pub(crate) failed: BTreeMap<u64, Vec<String>>,
     pub(crate) disputes: BTreeSet<u64>,
+    /// Evaluations that a second worker has confirmed.
+    pub(crate) confirmed: BTreeSet<u64>,
+    /// Whether rows were dropped because their worker computes wrongly: their results are acknowledged, and asked for again.
+    pub(crate) is_rewound: bool,
     /// How many stages are stored.
     pub(crate) stages: usize,
     pub(crate) result: Option<CaseResult>,
@@ -46,6 +50,8 @@ pub(crate) struct Ledger<'a> {
     /// So many of them are on disk.
     durable: usize,
     tables: BTreeMap<i64, Table<'a>>,
+    /// Workers that were found to compute wrongly.
+    quarantine: BTreeMap<String, Quarantine>,
 }
 
 impl<'a> Table<'a> {
@@ -60,6 +66,8 @@ impl<'a> Table<'a> {
             rows: BTreeMap::new(),
             failed: BTreeMap::new(),
             disputes: BTreeSet::new(),
+            confirmed: BTreeSet::new(),
+            is_rewound: false,
             stages: 0,
             result: None,
         }
@@ -95,11 +103,11 @@ impl<'a> Table<'a> {
             Fact::Estimate { estimate, .. } => {
                 self.result = Some(CaseResult::Estimate(format!("{estimate:?}")));
             }
-            // Schedules without verification have none of these.
-            Fact::Discovery { .. }
-            | Fact::Confirmed { .. }
-            | Fact::Quarantined { .. }
-            | Fact::Rewound { .. } => {}
+            Fact::Confirmed { evaluation, .. } => {
+                self.confirmed.insert(*evaluation);
+            }
+            Fact::Rewound { worker, width, .. } => self.rewind(worker, *width as u64),
+            Fact::Discovery { .. } | Fact::Quarantined { .. } => {}
             Fact::State {
                 state,
                 message,
@@ -122,6 +130,40 @@ impl<'a> Table<'a> {
                 evaluation, worker, ..
             } => self.failed.entry(*evaluation).or_default().push(worker.clone()),
         }
+    }
+
+    /// Whether a row is that of a worker and nobody has confirmed it.
+    fn rests_on(&self, worker: &str, row: &EvaluationRow) -> bool {
+        row.worker == worker && !self.confirmed.contains(&row.evaluation)
+    }
+
+    /// Whether anything rests on a worker alone.
+    pub(super) fn has_unconfirmed_of(&self, worker: &str) -> bool {
+        self.rows.values().any(|(_, row)| self.rests_on(worker, row))
+    }
+
+    /// Drops what rests on a worker alone, and all later rounds.
+    fn rewind(&mut self, worker: &str, width: u64) {
+        let mut rests = self.rows.values().filter(|(_, row)| self.rests_on(worker, row));
+        let Some((_, first)) = rests.next() else { return };
+        let end = match first.evaluation >= PREDICTIONS_FROM {
+            true => u64::MAX,
+            false => (first.evaluation / width + 1) * width,
+        };
+        let (rows, confirmed) = (
+            std::mem::take(&mut self.rows),
+            std::mem::take(&mut self.confirmed),
+        );
+        let stays = |evaluation: u64, row: &EvaluationRow| {
+            evaluation < end && (row.worker != worker || confirmed.contains(&evaluation))
+        };
+        self.rows = rows.into_iter().filter(|(e, (_, row))| stays(*e, row)).collect();
+        self.confirmed = confirmed
+            .into_iter()
+            .filter(|e| self.rows.contains_key(e))
+            .collect();
+        (self.stages, self.result) = (0, None);
+        self.is_rewound = true;
     }
 
     /// Whether it has all its rows, its stages and its result, as a finished calibration must.
@@ -149,7 +191,7 @@ impl<'a> Table<'a> {
             rejected: matches!(row.kept, Kept::Rejected(_)),
             worker: row.worker.clone(),
             fingerprint: row.fingerprint,
-            is_confirmed: false,
+            is_confirmed: self.confirmed.contains(&row.evaluation),
             fitted: match &row.kept {
                 Kept::Fitted(values) if told_values => Some(values.clone()),
                 Kept::Scored if told_values => Some(Vec::new()),
@@ -203,6 +245,19 @@ impl<'a> Ledger<'a> {
                 self.tables.insert(*id, Table::new(case, *key));
             }
             Entry::Fact(fact) => {
+                if let Fact::Quarantined {
+                    worker,
+                    calibration,
+                    evaluation,
+                } = fact
+                {
+                    let quarantine = Quarantine {
+                        worker: worker.clone(),
+                        calibration: *calibration,
+                        evaluation: *evaluation,
+                    };
+                    self.quarantine.insert(worker.clone(), quarantine);
+                }
                 if let Some(table) = self.tables.get_mut(&calibration_of(fact)) {
                     table.apply(fact, place);
                 }
@@ -230,6 +285,7 @@ impl<'a> Ledger<'a> {
         self.entries.truncate(place);
         self.durable = self.entries.len();
         self.tables.clear();
+        self.quarantine.clear();
         for place in 0..self.entries.len() {
             self.apply(place);
         }
@@ -244,6 +300,11 @@ impl<'a> Ledger<'a> {
     /// What all facts make, on disk or not, by calibration.
     pub(crate) fn tables(&self) -> &BTreeMap<i64, Table<'a>> {
         &self.tables
+    }
+
+    /// The workers that were found to compute wrongly.
+    pub(crate) fn quarantine(&self) -> &BTreeMap<String, Quarantine> {
+        &self.quarantine
     }
 
     /// What all facts make of a calibration.

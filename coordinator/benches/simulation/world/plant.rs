@@ -67,10 +67,12 @@ pub(crate) enum Plant {
     PauseLost,
     /// A command is acknowledged before it is on disk.
     CommandBeforeDisk,
+    /// A restart forgets who computes wrongly.
+    QuarantineForgotten,
 }
 
 impl Plant {
-    pub(crate) const ALL: [Plant; 28] = [
+    pub(crate) const ALL: [Plant; 29] = [
         Plant::AnswerBeforeDisk,
         Plant::RowLost,
         Plant::RowUnderOtherNumber,
@@ -99,6 +101,7 @@ impl Plant {
         Plant::KeyAgain,
         Plant::PauseLost,
         Plant::CommandBeforeDisk,
+        Plant::QuarantineForgotten,
     ];
 
     /// What is written of the farm's facts.

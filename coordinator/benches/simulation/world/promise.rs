@@ -33,6 +33,8 @@ pub(crate) enum Promise {
     Acknowledged,
     /// Two different answers to one evaluation are a dispute.
     Dispute,
+    /// Whoever computes wrongly gets no lease, and nobody else is said to.
+    Quarantine,
     /// Stages, draws, evidence and estimate have the bits of the run without faults.
     Result,
     /// A finished calibration has all its rows and its result.

@@ -63,6 +63,8 @@ struct Schedule<'a> {
     backup: Option<usize>,
     /// How many calibrations users submit.
     calibrations: i64,
+    /// Whether every evaluation is verified.
+    verifies: bool,
     is_calm: bool,
     tally: Tally,
 }
@@ -79,18 +81,21 @@ pub(crate) fn run(
 ) -> Result<Tally, Broken> {
     let mut stream = Stream::new(seed, STAGE, 0, 0);
     let weather = Weather::draw(&mut stream);
+    // Every evaluation is verified, or none.
+    let verified_share = f64::from(u8::from(chance(&mut stream, 0.5)));
     journal.note(0, || format!("schedule {seed}: {weather:?}"));
     let mut schedule = Schedule {
         cases,
         weather,
         journal,
-        coordinator: Coordinator::new(plant),
+        coordinator: Coordinator::new(plant, verified_share),
         workers: Vec::new(),
         births: 0,
         network: Vec::new(),
         now_ms: 0,
         backup: None,
         calibrations: 1 + i64::from(chance(&mut stream, 0.3)),
+        verifies: verified_share > 0.0,
         is_calm: false,
         tally: Tally::default(),
         stream,
@@ -143,6 +148,8 @@ impl Schedule<'_> {
         self.tally.cancelled = in_state(CalibrationState::Cancelled);
         self.tally.rows = tables.values().map(|t| t.rows.len() as u64).sum();
         self.tally.disputes = tables.values().map(|t| t.disputes.len() as u64).sum();
+        self.tally.confirmed = tables.values().map(|t| t.confirmed.len() as u64).sum();
+        self.tally.quarantined = self.coordinator.ledger.quarantine().len() as u64;
         self.tally.leases = self.coordinator.witness.issued.len() as u64;
         Ok(())
     }
@@ -292,7 +299,7 @@ impl Schedule<'_> {
     }
 
     fn commit(&mut self, facts: usize) -> Result<(), Broken> {
-        for (to, response) in self.coordinator.commit(facts)? {
+        for (to, response) in self.coordinator.commit(facts, self.now_ms)? {
             self.send(Message::Answer(response, to));
         }
         Ok(())
@@ -407,10 +414,19 @@ impl Schedule<'_> {
 
     /// A worker sends a result again that was acknowledged, with other values.
     fn lie(&mut self, place: usize) {
+        // After a rewind the lie of another might be a first answer, which leads to questions that the run without faults never asks.
+        let liars = &self.coordinator.witness.liars;
+        if self.verifies && !liars.is_empty() && !liars.contains(&self.workers[place].name) {
+            return;
+        }
         let Some(again) = self.workers[place].sent.as_ref().and_then(lie) else {
             return;
         };
         self.tally.lies += 1;
+        self.coordinator
+            .witness
+            .liars
+            .insert(self.workers[place].name.clone());
         let request = bare(self.workers[place].name.clone(), self.workers[place].version);
         self.inject(ExchangeRequest {
             results: vec![again],

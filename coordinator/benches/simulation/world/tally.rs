@@ -22,13 +22,15 @@ pub(crate) struct Tally {
     pub(crate) lies: u64,
     pub(crate) commands: u64,
     pub(crate) disputes: u64,
+    pub(crate) confirmed: u64,
+    pub(crate) quarantined: u64,
     pub(crate) finished: u64,
     pub(crate) cancelled: u64,
     pub(crate) given_up: u64,
 }
 
 impl Tally {
-    fn counts(&self) -> [(&'static str, u64); 19] {
+    fn counts(&self) -> [(&'static str, u64); 21] {
         [
             ("schedules", self.schedules),
             ("steps", self.steps),
@@ -46,6 +48,8 @@ impl Tally {
             ("second, other answers", self.lies),
             ("commands of users", self.commands),
             ("disputes", self.disputes),
+            ("rows confirmed by a second worker", self.confirmed),
+            ("workers quarantined", self.quarantined),
             ("calibrations finished with the same bits", self.finished),
             ("calibrations cancelled", self.cancelled),
             (
@@ -74,6 +78,8 @@ impl AddAssign for Tally {
         self.lies += other.lies;
         self.commands += other.commands;
         self.disputes += other.disputes;
+        self.confirmed += other.confirmed;
+        self.quarantined += other.quarantined;
         self.finished += other.finished;
         self.cancelled += other.cancelled;
         self.given_up += other.given_up;

@@ -16,6 +16,8 @@ use super::promise::{Broken, Promise, demand};
 
 /// Attempts that may fail before a calibration pauses.
 const ATTEMPTS: usize = 3;
+/// A lease that is out for less is not slow `[ms]`.
+const SLOW_MS: u64 = 1_000;
 /// Leases that may expire in a row before they are begun.
 const UNSTARTED: u32 = 20;
 
@@ -26,6 +28,7 @@ struct Live {
     worker: String,
     /// The worker's version of the equations.
     version: String,
+    since_ms: u64,
     until_ms: u64,
     started: bool,
     is_suspect: bool,
@@ -49,10 +52,14 @@ pub(crate) enum Source<'b> {
 pub(crate) struct Witness<'a> {
     /// Every lease that was ever given, by number.
     pub(crate) issued: BTreeMap<u64, Issued<'a>>,
-    /// The leases that are out, by calibration and evaluation.
-    live: BTreeMap<(i64, u64), Live>,
+    /// The leases that are out, by calibration, evaluation and whether it is a second one.
+    live: BTreeMap<(i64, u64, bool), Live>,
     /// Leases that time has ended since the last fact of a tick.
-    expired: Vec<((i64, u64), Live)>,
+    expired: Vec<((i64, u64, bool), Live)>,
+    /// Workers that have answered in two ways.
+    pub(crate) liars: BTreeSet<String>,
+    /// Whether second workers verify.
+    verifies: bool,
     /// How many leases of an evaluation expired in a row before they were begun.
     unstarted: BTreeMap<(i64, u64), u32>,
     /// Results acknowledged since the last restored backup.
@@ -66,11 +73,13 @@ pub(crate) struct Witness<'a> {
 }
 
 impl<'a> Witness<'a> {
-    pub(crate) fn new(lease_ms: u64) -> Self {
+    pub(crate) fn new(lease_ms: u64, verifies: bool) -> Self {
         Witness {
             issued: BTreeMap::new(),
             live: BTreeMap::new(),
             expired: Vec::new(),
+            liars: BTreeSet::new(),
+            verifies,
             unstarted: BTreeMap::new(),
             acknowledged: BTreeSet::new(),
             known: BTreeSet::new(),
@@ -146,10 +155,24 @@ impl<'a> Witness<'a> {
                     },
                 )
             }
-            Fact::Discovery { .. }
-            | Fact::Confirmed { .. }
-            | Fact::Quarantined { .. }
-            | Fact::Rewound { .. } => Ok(()),
+            Fact::Discovery { .. } => Ok(()),
+            Fact::Confirmed { evaluation, .. } => {
+                self.live.remove(&(id, *evaluation, true));
+                Ok(())
+            }
+            Fact::Quarantined { worker, .. } => {
+                self.live.retain(|_, live| live.worker != *worker);
+                demand(self.liars.contains(worker), Promise::Quarantine, || {
+                    format!("{worker}, which is honest, is quarantined")
+                })
+            }
+            Fact::Rewound { worker, .. } => {
+                if table.has_unconfirmed_of(worker) {
+                    self.live.retain(|(of, ..), _| *of != id);
+                    self.unstarted.retain(|(of, _), _| *of != id);
+                }
+                Ok(())
+            }
             Fact::Stage { record, .. } => {
                 let same = table.case.stages.get(record.stage - 1) == Some(&stage_bits(record));
                 demand(same, Promise::Result, || {
@@ -172,7 +195,7 @@ impl<'a> Witness<'a> {
             Fact::ModelVersion { version, .. } => {
                 let equations = equations_of(version);
                 self.live
-                    .retain(|(of, _), live| *of != id || live.version == equations);
+                    .retain(|(of, ..), live| *of != id || live.version == equations);
                 let by_result = matches!(source, Source::Exchange(r) if r.model_version == equations && !r.results.is_empty());
                 demand(
                     table.model_version.is_none() && by_result,
@@ -205,7 +228,11 @@ impl<'a> Witness<'a> {
                 table.state.name()
             )
         })?;
-        self.live.remove(&(id, evaluation));
+        self.live.remove(&(id, evaluation, false));
+        let second = self.live.get(&(id, evaluation, true));
+        if second.is_some_and(|live| live.worker == row.worker || row.worker.is_empty() || !self.verifies) {
+            self.live.remove(&(id, evaluation, true));
+        }
         if row.worker.is_empty() {
             let failed = table.failed.get(&evaluation);
             let workers: BTreeSet<&String> = failed.into_iter().flatten().collect();
@@ -238,7 +265,7 @@ impl<'a> Witness<'a> {
         let is_resumed = state == CalibrationState::Running && matches!(source, Source::Command);
         if state.is_final() || is_resumed {
             // Leases from before are forgotten; what was resumed is asked anew.
-            self.live.retain(|(of, _), _| *of != id);
+            self.live.retain(|(of, ..), _| *of != id);
             self.unstarted.retain(|(of, _), _| *of != id);
         }
         match state {
@@ -281,7 +308,7 @@ impl<'a> Witness<'a> {
         })?;
         let is_its_own = match source {
             Source::Exchange(request) => {
-                self.live.remove(&(id, evaluation));
+                self.live.remove(&(id, evaluation, false));
                 let of_it = |r: &&WorkResult| (r.calibration, r.evaluation) == (id, evaluation);
                 request.worker == worker
                     && request.results.iter().filter(of_it).any(|r| {
@@ -291,7 +318,7 @@ impl<'a> Witness<'a> {
             Source::Tick => self
                 .expired
                 .iter()
-                .any(|(of, live)| *of == (id, evaluation) && live.worker == worker && live.started),
+                .any(|(of, live)| *of == (id, evaluation, false) && live.worker == worker && live.started),
             Source::Command | Source::Restart => false,
         };
         demand(is_its_own, Promise::Attempt, || {
@@ -307,8 +334,12 @@ impl<'a> Witness<'a> {
             .live
             .extract_if(.., |_, live| live.until_ms <= now_ms)
             .collect();
-        for (of, _) in self.expired.iter().filter(|(_, live)| !live.started) {
-            *self.unstarted.entry(*of).or_default() += 1;
+        let unstarted = self
+            .expired
+            .iter()
+            .filter(|((.., is_second), live)| !live.started && !is_second);
+        for ((id, evaluation, _), _) in unstarted {
+            *self.unstarted.entry((*id, *evaluation)).or_default() += 1;
         }
     }
 
@@ -321,6 +352,7 @@ impl<'a> Witness<'a> {
         now_ms: u64,
     ) -> Result<(), Broken> {
         self.disputed(request, ledger)?;
+        self.second_answers(request, ledger);
         for (of, live) in self
             .live
             .iter_mut()
@@ -332,7 +364,7 @@ impl<'a> Witness<'a> {
             }
             if started {
                 live.started = true;
-                self.unstarted.remove(of);
+                self.unstarted.remove(&(of.0, of.1));
             }
         }
         self.live.retain(|_, live| {
@@ -375,9 +407,29 @@ impl<'a> Witness<'a> {
                 format!("lease {number} of evaluation {evaluation} of calibration {id} asks something else");
             return Err(Broken::new(Promise::Question, how));
         };
-        demand(!table.rows.contains_key(&evaluation), Promise::NotAgain, || {
+        demand(
+            !ledger.quarantine().contains_key(&request.worker),
+            Promise::Quarantine,
+            || {
+                format!(
+                    "lease {number} goes to {}, which computes wrongly",
+                    request.worker
+                )
+            },
+        )?;
+        let row = table.rows.get(&evaluation).map(|(_, row)| row);
+        let is_open = |row: &EvaluationRow| {
+            self.verifies && row.worker != request.worker && !table.confirmed.contains(&evaluation)
+        };
+        demand(row.is_none_or(is_open), Promise::NotAgain, || {
             format!("lease {number} is of evaluation {evaluation}, which has its row")
         })?;
+        let first = self.live.get(&(id, evaluation, false));
+        let is_slow = |first: &Live| first.worker != request.worker && now_ms >= first.since_ms + SLOW_MS;
+        demand(first.is_none_or(is_slow), Promise::OneHolder, || {
+            format!("lease {number} is of evaluation {evaluation}, which {first:?} holds")
+        })?;
+        let is_second = row.is_some() || first.is_some();
         let open = matches!(table.state, CalibrationState::Queued | CalibrationState::Running);
         demand(open, Promise::Open, || {
             format!(
@@ -400,11 +452,12 @@ impl<'a> Witness<'a> {
             lease: number,
             worker: request.worker.clone(),
             version: request.model_version.clone(),
+            since_ms: now_ms,
             until_ms: now_ms + self.lease_ms,
             started: false,
             is_suspect: lease.announce,
         };
-        if let Some(other) = self.live.insert((id, evaluation), live) {
+        if let Some(other) = self.live.insert((id, evaluation, is_second), live) {
             let how = format!(
                 "lease {number} is of evaluation {evaluation}, which {} holds by {}",
                 other.worker, other.lease
@@ -435,6 +488,31 @@ impl<'a> Witness<'a> {
         Ok(())
     }
 
+    /// Ends the second leases that are answered, or failed.
+    fn second_answers(&mut self, request: &ExchangeRequest, ledger: &Ledger<'a>) {
+        for result in &request.results {
+            let (id, evaluation) = (result.calibration, result.evaluation);
+            let issued = self.lease_of(result, &request.worker);
+            let is_its_own = ledger
+                .table(id)
+                .is_some_and(|table| issued.is_some_and(|i| i.is_of(table)));
+            let second = self.live.get(&(id, evaluation, true));
+            if is_its_own
+                && second.is_some_and(|live| live.lease == result.lease || live.worker == request.worker)
+            {
+                self.live.remove(&(id, evaluation, true));
+            }
+        }
+    }
+
+    /// Sees the results that were dropped.
+    pub(crate) fn rewound(&mut self, id: i64, ledger: &Ledger) {
+        if let Some(table) = ledger.table(id) {
+            self.acknowledged
+                .retain(|(of, evaluation)| *of != id || table.rows.contains_key(evaluation));
+        }
+    }
+
     /// Where an answer differs from the row of its evaluation, there is a dispute.
     fn disputed(&self, request: &ExchangeRequest, ledger: &Ledger) -> Result<(), Broken> {
         for result in &request.results {
@@ -456,7 +534,9 @@ impl<'a> Witness<'a> {
             let differs =
                 SimulationResult::of(result.clone()).is_ok_and(|c| c.fingerprint() != row.fingerprint);
             demand(
-                !differs || table.disputes.contains(&evaluation),
+                !differs
+                    || table.disputes.contains(&evaluation)
+                    || ledger.quarantine().contains_key(&request.worker),
                 Promise::Dispute,
                 || {
                     format!(
@@ -491,11 +571,16 @@ impl<'a> Witness<'a> {
                 .get(&evaluation)
                 .is_some_and(|(place, _)| *place < ledger.durable());
             let is_cancelled = table.state == CalibrationState::Cancelled;
-            demand(on_disk || is_cancelled, Promise::Acknowledged, || {
-                format!(
-                    "the answer to {worker} acknowledges evaluation {evaluation} of calibration {id}, which is not on disk"
-                )
-            })?;
+            let is_refused = ledger.quarantine().contains_key(worker);
+            demand(
+                on_disk || is_cancelled || is_refused || table.is_rewound,
+                Promise::Acknowledged,
+                || {
+                    format!(
+                        "the answer to {worker} acknowledges evaluation {evaluation} of calibration {id}, which is not on disk"
+                    )
+                },
+            )?;
             if on_disk {
                 self.acknowledged.insert((id, evaluation));
             }
