@@ -26,14 +26,6 @@ impl HttpError {
         }
     }
 
-    /// What a later version brings.
-    pub fn not_available(what: &str) -> Self {
-        HttpError::new(
-            ErrorKind::NotAvailable,
-            format!("{what} is not available in this version"),
-        )
-    }
-
     fn status(&self) -> StatusCode {
         match self.kind {
             ErrorKind::InvalidBody => StatusCode::BAD_REQUEST,
@@ -47,7 +39,6 @@ impl HttpError {
             ErrorKind::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             ErrorKind::ProtocolMismatch => StatusCode::UPGRADE_REQUIRED,
             ErrorKind::Busy => StatusCode::TOO_MANY_REQUESTS,
-            ErrorKind::NotAvailable => StatusCode::NOT_IMPLEMENTED,
             ErrorKind::Internal => StatusCode::INTERNAL_SERVER_ERROR,
         }
     }
@@ -80,9 +71,10 @@ impl From<ServiceError> for HttpError {
             ServiceError::File(_) | ServiceError::Begin(_) | ServiceError::Webhook(_) => {
                 ErrorKind::InvalidFile
             }
-            ServiceError::NotFound { .. } => ErrorKind::NotFound,
+            ServiceError::NotFound { .. } | ServiceError::NoVersion { .. } => ErrorKind::NotFound,
             ServiceError::Control(_)
             | ServiceError::Effects(_)
+            | ServiceError::OfLibrary(_)
             | ServiceError::Search(_)
             | ServiceError::LeftAlone { .. }
             | ServiceError::InProgress { .. }

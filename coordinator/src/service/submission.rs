@@ -49,6 +49,7 @@ impl Service {
             toml: new.toml,
             files: new.files,
         };
+        let job = self.with_own_effects(job).await?;
         // The samplers are built once before anything is stored: what they refuse leaves nothing half-written.
         let trial = CalibrationIdentity {
             id: 0,
