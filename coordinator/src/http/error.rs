@@ -6,6 +6,7 @@ use axum::extract::rejection::{BytesRejection, JsonRejection, PathRejection, Que
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use shared::api::{ErrorBody, ErrorDetail, ErrorKind};
+use shared::sentence::one_line;
 
 use crate::service::ServiceError;
 use crate::store::StoreError;
@@ -22,7 +23,8 @@ impl HttpError {
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         HttpError {
             kind,
-            message: message.into(),
+            // It may repeat what a client has sent.
+            message: one_line(&message.into()).into_owned(),
         }
     }
 
