@@ -111,6 +111,18 @@ fn a_study_keeps_the_version_that_it_began_with() {
     };
     assert_eq!(effects(old), json!(["torque_gain", "my_gain"]));
     assert_eq!(effects(new), json!(["my_gain"]));
+    // A job on disk is submitted with the effect that it names, which the program itself does not know.
+    let folder = service.folder().join("job");
+    let path = job("[\"my_gain@1\"]").write(&folder).display().to_string();
+    let submit = || programs::run(programs::coordinator(["submit", &path, "--url", &service.url()]));
+    assert_eq!(submit().success(), "calibration 4 of study 4\n");
+    assert_eq!(stored(&service, 4, "my_gain@1.toml"), GAIN);
+    job("[\"my_gian\"]").write(&folder);
+    let refusal = submit().refusal();
+    assert!(
+        refusal.contains("job.toml: [model] effects: unknown effect \"my_gian\""),
+        "{refusal}"
+    );
     // The same job with the file beside it: the same bits.
     let beside = job("[]")
         .in_job("effects = []", "effect_files = [\"gain.toml\"]")
@@ -195,9 +207,24 @@ fn what_is_no_effect_of_one_s_own_is_refused_with_the_reason() {
         let new = json!({"experiment": experiment.json()["id"], "toml": job(effects).job});
         service.client.post("/v1/calibrations", &new)
     };
+    // The line of a mistake is that of the text that was sent.
+    let mut wrong = job("[\"my_gain\"]");
+    wrong.job = wrong.job.replace("kappa = 0.0", "kapa = 0.0");
+    let line = wrong
+        .job
+        .lines()
+        .position(|line| line.starts_with("kapa"))
+        .expect("a line")
+        + 1;
+    let new = json!({"experiment": experiment.json()["id"], "toml": wrong.job});
+    let refused = service.client.post("/v1/calibrations", &new).body;
+    assert!(
+        refused.contains(&format!("job.toml line {line}: unknown")),
+        "{refused}"
+    );
     let message = "job.toml: effect my_gain has no version \"2\"; the last one is 1";
     says(&submit("[\"my_gain@2\"]"), 422, "invalid_file", message);
-    let message = "job.toml: file \"my_gain@1.toml\" exists already";
+    let message = "job.toml: effect_files: \"my_gain@1.toml\" appears twice";
     says(
         &submit("[\"my_gain\", \"my_gain@1\"]"),
         422,

@@ -11,7 +11,7 @@ use super::error::ServiceError;
 use super::handle::Service;
 use crate::farm::dispatch::Stopped;
 use crate::store::{AddedEffect, NewEffect, StoredEffect};
-use job::{ModelSwitch, OwnEffect, PlainParameter, check_own, foreign_effects, with_own_effects};
+use job::{ModelSwitch, OwnEffect, PlainParameter, check_own, foreign_effects};
 use record::Extension;
 
 /// How an effect file and a job are called in messages.
@@ -77,18 +77,18 @@ impl Service {
         Ok(Some((versions, meant)))
     }
 
-    /// The job with those effects as files that users have added and that it lists.
+    /// The effects that a job lists and that users have added.
     ///
     /// # Errors
-    /// [`ServiceError`].
-    pub(super) async fn with_own_effects(&self, job: FileSet) -> Result<FileSet, ServiceError> {
-        let listed = tokio::task::spawn_blocking(move || (foreign_effects(&job.toml), job));
-        let (listed, job) = listed.await.map_err(|_| Stopped)?;
+    /// [`ServiceError`]: an effect has no such version.
+    pub(super) async fn listed_own_effects(&self, job: &FileSet) -> Result<Vec<OwnEffect>, ServiceError> {
+        let toml = job.toml.clone();
+        let listed = tokio::task::spawn_blocking(move || foreign_effects(&toml));
         let mut own = Vec::new();
-        for named in listed {
+        for named in listed.await.map_err(|_| Stopped)? {
             own.extend(self.as_file(&named).await?);
         }
-        Ok(with_own_effects(JOB, job, &own)?)
+        Ok(own)
     }
 
     /// The extension with the file of the effect that it names, where a user has added that.
@@ -118,10 +118,14 @@ impl Service {
             missing @ ServiceError::NoVersion { .. } => FileError::whole(JOB, missing.to_string()).into(),
             error => error,
         })?;
-        Ok(stored.map(|(_, effect)| OwnEffect {
-            named: named.to_owned(),
-            file: format!("{}@{}.toml", effect.name, effect.version.version),
-            text: effect.text,
-        }))
+        let own = |effect: StoredEffect| {
+            OwnEffect::new(
+                named.to_owned(),
+                &effect.name,
+                effect.version.version,
+                effect.text,
+            )
+        };
+        Ok(stored.map(|(_, effect)| own(effect)))
     }
 }

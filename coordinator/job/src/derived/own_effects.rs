@@ -21,6 +21,14 @@ pub struct OwnEffect {
     pub text: String,
 }
 
+impl OwnEffect {
+    /// A version of an effect, as a job names it.
+    pub fn new(named: String, name: &str, version: i64, text: String) -> OwnEffect {
+        let file = format!("{name}@{version}.toml");
+        OwnEffect { named, file, text }
+    }
+}
+
 #[derive(Default, Deserialize)]
 struct Listed {
     #[serde(default)]
@@ -41,14 +49,29 @@ pub fn foreign_effects(toml: &str) -> BTreeSet<String> {
     listed.filter(|name| find(name).is_none()).collect()
 }
 
+/// The text of a job that does not list effects of a service's catalogue; a line that is wrong keeps its number.
+///
+/// # Errors
+/// [`FileError`] where the text is no TOML.
+pub fn without_own_effects(name: &str, toml: &str, own: &[OwnEffect]) -> Result<String, FileError> {
+    if own.is_empty() {
+        return Ok(toml.to_owned());
+    }
+    edited(name, toml, |document| {
+        if let Some(model) = table(document, "model") {
+            keep(model, "effects", |effect| {
+                own.iter().all(|own| own.named != effect)
+            });
+        }
+        Ok(())
+    })
+}
+
 /// The job with effects of a service's catalogue as files of its own, so that no later version changes what it means.
 ///
 /// # Errors
 /// [`FileError`] where the job has another file of that name.
 pub fn with_own_effects(name: &str, job: FileSet, own: &[OwnEffect]) -> Result<FileSet, FileError> {
-    if own.is_empty() {
-        return Ok(job);
-    }
     let mut files = job.files;
     for effect in own {
         if files.insert(effect.file.clone(), effect.text.clone()).is_some() {
@@ -56,14 +79,7 @@ pub fn with_own_effects(name: &str, job: FileSet, own: &[OwnEffect]) -> Result<F
             return Err(FileError::whole(name, message));
         }
     }
-    let toml = edited(name, &job.toml, |document| {
-        if let Some(model) = table(document, "model") {
-            keep(model, "effects", |effect| {
-                own.iter().all(|own| own.named != effect)
-            });
-        }
-        Ok(())
-    })?;
+    let toml = without_own_effects(name, &job.toml, own)?;
     let names: Vec<String> = own.iter().map(|own| own.file.clone()).collect();
     let toml = extended_job(name, &toml, &[], &names, &[])?;
     Ok(FileSet { toml, files })
@@ -75,10 +91,8 @@ mod tests {
 
     const JOB: &str = "[model]\nkind = \"scm\"\neffects = [\"mine@2\", \"adhesion\", \"yours\"] # why\n";
 
-    fn own(named: &str, file: &str) -> OwnEffect {
-        let [named, file] = [named, file].map(str::to_owned);
-        let text = file.clone();
-        OwnEffect { named, file, text }
+    fn own(named: &str, name: &str, version: i64) -> OwnEffect {
+        OwnEffect::new(named.to_owned(), name, version, format!("text of {name}"))
     }
 
     #[test]
@@ -89,11 +103,13 @@ mod tests {
             toml: JOB.to_owned(),
             ..FileSet::default()
         };
-        let own = [own("mine@2", "mine@2.toml"), own("yours", "yours@7.toml")];
+        let own = [own("mine@2", "mine", 2), own("yours", "yours", 7)];
         let with = with_own_effects("job.toml", job.clone(), &own).unwrap();
         let expected = "[model]\nkind = \"scm\"\neffects = [ \"adhesion\"] # why\neffect_files = [\"mine@2.toml\", \"yours@7.toml\"]\n";
         assert_eq!(with.toml, expected);
-        assert_eq!(with.files["yours@7.toml"], "yours@7.toml");
+        assert_eq!(with.files["yours@7.toml"], "text of yours");
+        let without = without_own_effects("job.toml", JOB, &own).unwrap();
+        assert_eq!(without.lines().count(), JOB.lines().count());
         assert_eq!(with_own_effects("job.toml", job, &[]).unwrap().toml, JOB);
         let again = with_own_effects("job.toml", with, &own[..1]).unwrap_err();
         assert_eq!(again.to_string(), "job.toml: file \"mine@2.toml\" exists already");
