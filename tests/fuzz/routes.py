@@ -86,7 +86,7 @@ def main():
             command += ["--seed", str(asked.seed), "-n", str(asked.examples), "--continue-on-failure", "--no-shrink"]
             command += ["--request-timeout", "40", "--warnings", "off", "--suppress-health-check", "all"]
             command += ["--max-time", str(asked.seconds)] if asked.seconds else []
-            environment = os.environ | {"SCHEMATHESIS_HOOKS": "hooks", "PYTHONPATH": str(HERE)}
+            environment = os.environ | {"SCHEMATHESIS_HOOKS": "hooks", "PYTHONPATH": str(HERE), "PYTHONDONTWRITEBYTECODE": "1"}
             refused = subprocess.run(command, cwd=folder, env=environment).returncode
             if service.poll() is not None:
                 sys.exit("the service has ended")
