@@ -93,11 +93,11 @@ def main():
             sent = requests(url)
             time.sleep(1)
             after = resident_mib(service.pid), descriptors(service.pid)
+            log = pathlib.Path(folder, "log").read_text()
         finally:
             for process in (worker, service):
                 process.terminate()
                 process.wait(30)
-            log = pathlib.Path(folder, "log").read_text()
     print(f"{sent} requests; memory {before[0]:.1f} MiB before, {after[0]:.1f} MiB after; {after[1]} descriptors, {before[1]} before")
     faults = [line for line in log.splitlines() if "panicked" in line or "internal error" in line]
     if refused or faults or after[0] - before[0] > GROWTH_MIB or after[1] > before[1] + 8:
