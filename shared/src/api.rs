@@ -69,6 +69,19 @@ pub struct NewExtension {
     pub effect_file: Option<NamedText>,
 }
 
+/// `POST /v1/effects`: an effect file, or the same as JSON.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewEffect {
+    /// The text of the file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub text: Option<String>,
+    /// The keys of the file as an object; parameters count in the order of their names.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<Object>)]
+    pub effect: Option<toml::Table>,
+}
+
 /// A file with its name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -271,8 +284,6 @@ pub enum ErrorKind {
     ProtocolMismatch,
     /// The service has more work than it can store; try again later.
     Busy,
-    /// Not available in this version.
-    NotAvailable,
     /// Something failed inside; the log says what.
     Internal,
 }

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 pub use formula::word::unknown_word;
 
+use crate::sentence::one_line;
+
 /// A TOML file and the files it names, as text. The same value comes from disk and over REST.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct FileSet {
@@ -27,7 +29,7 @@ impl FileSet {
 
 /// Why a file cannot be used: which file, which line, what is wrong.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{file}{}: {message}", place(*line, *column))]
+#[error("{}", one_line(&format!("{file}{}: {message}", place(*line, *column))))]
 pub struct FileError {
     /// Name of the file as the user wrote it.
     pub file: String,
@@ -135,7 +137,7 @@ fn with_nearest_key(message: &str) -> String {
     let mut quoted = message.split('`').skip(1).step_by(2);
     match (message.starts_with("unknown field"), quoted.next()) {
         (true, Some(unknown)) => unknown_word("key", unknown, quoted),
-        _ => message.trim_end().to_owned(),
+        _ => message.trim_end().replace('\n', " "),
     }
 }
 

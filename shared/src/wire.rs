@@ -10,6 +10,7 @@ use serde::de::DeserializeOwned;
 
 use crate::exchange::{ExchangeRequest, ExchangeResponse};
 use crate::outcome::Outcome;
+use crate::sentence::one_line;
 
 /// A form of the messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,7 +86,7 @@ impl WireForm {
     fn malformed(self, reason: impl fmt::Display) -> WireError {
         WireError::Malformed {
             form: self,
-            reason: reason.to_string(),
+            reason: one_line(&reason.to_string()).into_owned(),
         }
     }
 }

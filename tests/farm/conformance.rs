@@ -365,7 +365,6 @@ fn errors_are_a_closed_list() {
         (ErrorKind::TooLarge, "too_large"),
         (ErrorKind::ProtocolMismatch, "protocol_mismatch"),
         (ErrorKind::Busy, "busy"),
-        (ErrorKind::NotAvailable, "not_available"),
         (ErrorKind::Internal, "internal"),
     ] {
         let body = ErrorBody {
@@ -469,7 +468,6 @@ fn every_error_type_has_its_status() {
         (404, "not_found", client.get("/v1/calibrations/5")),
         (409, "conflict", client.post("/v1/calibrations/1/resume", &none)),
         (426, "protocol_mismatch", client.post("/v1/work/exchange", &old)),
-        (501, "not_available", client.post("/v1/effects", &none)),
     ] {
         assert_eq!(response.status, status, "{}", response.body);
         let body: ErrorBody = serde_json::from_str(&response.body).expect("the form of every error");

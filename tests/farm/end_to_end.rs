@@ -281,6 +281,7 @@ fn the_openapi_document_lists_every_route_of_the_contract() {
         ("post", "/v1/studies/{id}/runs".into()),
         ("get", "/v1/effects".into()),
         ("post", "/v1/effects".into()),
+        ("get", "/v1/effects/{name}".into()),
         ("post", "/v1/work/exchange".into()),
         ("get", "/v1/work/variants/{hash}".into()),
         ("get", "/v1/workers".into()),

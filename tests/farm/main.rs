@@ -19,6 +19,7 @@ mod metamodel;
 mod not_tried;
 mod older_store;
 mod operation;
+mod own_effects;
 mod point_fit;
 mod posterior_prior;
 mod reference;

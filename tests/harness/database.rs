@@ -54,4 +54,15 @@ impl Database {
             .block_on(sqlx::query_scalar(sql).fetch_one(&mut self.connection));
         number.unwrap_or_else(|e| panic!("{sql}: {e}"))
     }
+
+    /// The text that a query about a row gives.
+    ///
+    /// # Panics
+    /// SQLite refuses, or there is none.
+    #[track_caller]
+    pub fn text(&mut self, sql: &'static str, id: i64) -> String {
+        let text = sqlx::query_scalar(sql).bind(id);
+        let text = self.runtime.block_on(text.fetch_one(&mut self.connection));
+        text.unwrap_or_else(|e| panic!("{sql}: {e}"))
+    }
 }

@@ -19,7 +19,7 @@ const PILOT_PARTICLES: usize = 300;
 const PILOT_S: f64 = 30.0;
 
 pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
-    let job = job_on_disk::read(file)?;
+    let job = job_on_disk::read(file, &[])?;
     let mut text = terminal::specification(&job.spec);
     for note in model_limits(&job.spec) {
         text += &format!("note: {note}\n");

@@ -7,7 +7,7 @@ use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet, read_beside, read_text, sibling};
 
 use crate::config::JobArguments;
-use job::{JobFile, Spec, extended_job};
+use job::{JobFile, OwnEffect, Spec, extended_job, with_own_effects, without_own_effects};
 
 /// A job with everything it names, read and validated.
 pub(super) struct JobOnDisk {
@@ -21,12 +21,12 @@ pub(super) struct JobOnDisk {
     pub(super) spec: Spec,
 }
 
-/// Reads and validates a job and its experiment.
-pub(super) fn read(file: &JobArguments) -> Result<JobOnDisk, FileError> {
+/// Reads and validates a job and its experiment. Of the effects that it lists, `own` are in the catalogue of a service.
+pub(super) fn read(file: &JobArguments, own: &[OwnEffect]) -> Result<JobOnDisk, FileError> {
     let path = &file.job;
     let job_name = path.display().to_string();
     let toml = read_text(path)?;
-    let mut job = JobFile::parse(&job_name, &toml)?;
+    let mut job = JobFile::parse(&job_name, &without_own_effects(&job_name, &toml, own)?)?;
     let named = job.experiment.as_deref();
     let named =
         named.ok_or_else(|| FileError::whole(&job_name, "experiment = \"experiment.toml\" is missing"))?;
@@ -36,13 +36,16 @@ pub(super) fn read(file: &JobArguments) -> Result<JobOnDisk, FileError> {
     let mut files = read_beside(path, &job.named_files())?;
     let added = added_files(&file.effect_file)?;
     let names: Vec<String> = added.keys().cloned().collect();
-    job.model
-        .add_effects(&file.effect, &names)
-        .map_err(|e| FileError::whole(&job_name, e))?;
+    let of_service: Vec<String> = own.iter().map(|own| own.file.clone()).collect();
+    for (effects, files) in [(&file.effect[..], &names), (&[], &of_service)] {
+        let added = job.model.add_effects(effects, files);
+        added.map_err(|e| FileError::whole(&job_name, e))?;
+    }
     files.extend(added);
     // Messages name the lines of the file as it is; what is kept has the additions.
-    let spec = Spec::of(&job_name, job, &files, &experiment_name, &experiment)?;
     let toml = extended_job(&job_name, &toml, &file.effect, &names, &[])?;
+    let kept = with_own_effects(&job_name, FileSet { toml, files }, own)?;
+    let spec = Spec::of(&job_name, job, &kept.files, &experiment_name, &experiment)?;
     // An extension has a folder of its own beside its base's.
     let mut name = name(path);
     for more in file
@@ -55,7 +58,7 @@ pub(super) fn read(file: &JobArguments) -> Result<JobOnDisk, FileError> {
     }
     Ok(JobOnDisk {
         name,
-        job: FileSet { toml, files },
+        job: kept,
         experiment,
         spec,
     })

@@ -13,7 +13,7 @@ use crate::config::RunArguments;
 use result::model_limits;
 
 pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
-    let job = job_on_disk::read(&config.file)?;
+    let job = job_on_disk::read(&config.file, &[])?;
     for text in model_limits(&job.spec) {
         note(&format!("note: {text}"));
     }

@@ -3,10 +3,12 @@
 use std::path::Path;
 
 use anyhow::{Context, bail};
+use serde::Deserialize;
 use serde_json::json;
 use shared::api::{
     CalibrationCreated, ExperimentCreated, NewCalibration, NewExperiment, StudyArchived, StudyDeleted,
 };
+use shared::file::read_text;
 
 use super::job_on_disk;
 use super::output::say;
@@ -15,11 +17,14 @@ use crate::config::{
     ExportArguments, ExportFormat, ListArguments, ReportArguments, ResumeArguments, StudyArguments,
     SubmitArguments, TargetArguments,
 };
+use crate::effect::EffectCard;
+use job::{OwnEffect, foreign_effects};
 use result::{self, terminal};
 
 pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
-    let job = job_on_disk::read(&config.file)?;
     let client = ServiceClient::new(&config.url, &config.client)?;
+    let own = own_effects(config, &client).await?;
+    let job = job_on_disk::read(&config.file, &own)?;
     let experiment = NewExperiment {
         toml: job.experiment.toml,
         files: job.experiment.files,
@@ -38,6 +43,36 @@ pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
         text += &format!("calibration {id} beside it\n");
     }
     Ok(say(&text)?)
+}
+
+/// The effects that a job lists and that the service has in its catalogue, where the library lacks them.
+async fn own_effects(config: &SubmitArguments, client: &ServiceClient) -> anyhow::Result<Vec<OwnEffect>> {
+    /// What is needed of `GET /v1/effects/NAME`.
+    #[derive(Deserialize)]
+    struct Page {
+        effect: EffectCard,
+        text: String,
+    }
+    let toml = read_text(&config.file.job)?;
+    let mut own = Vec::new();
+    for named in foreign_effects(&toml) {
+        let is_name = |c: char| c.is_ascii_alphanumeric() || "_@".contains(c);
+        if !named.chars().all(is_name) {
+            // Refused where the job is read.
+            continue;
+        }
+        let page: Page = client
+            .get(&format!("/v1/effects/{named}"))
+            .await
+            .with_context(|| format!("{}: [model] effects", config.file.job.display()))?;
+        own.push(OwnEffect::new(
+            named,
+            &page.effect.name,
+            page.effect.version.unwrap_or_default(),
+            page.text,
+        ));
+    }
+    Ok(own)
 }
 
 pub(super) async fn list(config: &ListArguments) -> anyhow::Result<()> {

@@ -17,6 +17,10 @@ use utoipa::ToSchema;
 pub struct EffectCard {
     /// Name in jobs and results.
     pub name: String,
+    /// Where its file is.
+    pub origin: Origin,
+    /// Version of the file, from 1; null of the library's, which come with the program.
+    pub version: Option<i64>,
     /// What it is, in a line.
     pub summary: String,
     /// Where it comes from.
@@ -31,6 +35,16 @@ pub struct EffectCard {
     pub parameters: Vec<ParameterCard>,
 }
 
+/// Where the file of an effect is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Origin {
+    /// In the library that comes with the program.
+    Library,
+    /// In the store of a service: a user has added it.
+    Own,
+}
+
 /// A parameter of an effect.
 #[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
 pub struct ParameterCard {
@@ -43,7 +57,7 @@ pub struct ParameterCard {
     /// The value at which tables show the effect; null for a shape.
     pub typical: Option<f64>,
     /// A number, which fixes it, or a distribution, as in `[priors]`.
-    #[schema(value_type = Object)]
+    #[schema(value_type = Value)]
     pub prior: serde_json::Value,
 }
 
@@ -97,16 +111,27 @@ impl Group {
 }
 
 impl EffectCard {
-    /// The card of an effect.
+    /// The card of an effect of the library.
     pub fn of(effect: &Effect) -> Self {
         EffectCard {
             name: effect.name.clone(),
+            origin: Origin::Library,
+            version: None,
             summary: effect.summary.clone(),
             source: effect.source.clone(),
             group: Group::of(effect),
             hooks: effect.hooks().map(|hook| hook.name().to_owned()).collect(),
             mechanism: effect.mechanism.map(|m| m.name().to_owned()),
             parameters: effect.parameters.iter().map(ParameterCard::of).collect(),
+        }
+    }
+
+    /// The card of a version of an effect that a user has added.
+    pub fn own(effect: &Effect, version: i64) -> Self {
+        EffectCard {
+            origin: Origin::Own,
+            version: Some(version),
+            ..EffectCard::of(effect)
         }
     }
 

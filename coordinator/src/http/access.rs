@@ -27,10 +27,17 @@ pub enum TokenRule {
     Never,
 }
 
-/// Who sends a request, for the log.
+/// Who sends a request, for log and store.
 #[derive(Debug, Clone, FromRequestParts)]
 #[from_request(via(axum::Extension))]
 pub(super) struct Caller(Option<String>);
+
+impl Caller {
+    /// The name of the token, where one is asked for.
+    pub(super) fn into_name(self) -> Option<String> {
+        self.0
+    }
+}
 
 impl fmt::Display for Caller {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,8 +1,9 @@
 //! The OpenAPI document: what the handlers state, and what the gate answers besides.
 
 use utoipa::OpenApi;
+use utoipa::openapi::path::{Parameter, ParameterIn};
 use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityScheme};
-use utoipa::openapi::{Content, Ref, ResponseBuilder};
+use utoipa::openapi::{Content, Ref, RefOr, ResponseBuilder};
 
 /// The document that the handlers complete.
 #[derive(OpenApi)]
@@ -35,7 +36,11 @@ pub(super) fn base() -> utoipa::openapi::OpenApi {
     document
 }
 
-/// The document of all handlers, with the answers of the gate where a handler states none of that status.
+/// Answer of a handler to a body or a query that it cannot read.
+const UNREADABLE: (&str, &str) = ("400", "a body or query that is not of the form described");
+
+/// The document of all handlers, with the answers of the gate, and to what cannot be read, where a handler states none of that
+/// status.
 pub(super) fn complete(mut document: utoipa::openapi::OpenApi) -> utoipa::openapi::OpenApi {
     for item in document.paths.paths.values_mut() {
         for (operation, refusals) in [
@@ -44,7 +49,10 @@ pub(super) fn complete(mut document: utoipa::openapi::OpenApi) -> utoipa::openap
             (&mut item.post, &REFUSALS[..]),
         ] {
             let Some(operation) = operation else { continue };
-            for &(status, description) in refusals {
+            let is_query = |own: &RefOr<Parameter>| matches!(own, RefOr::T(own) if own.parameter_in == ParameterIn::Query);
+            let has_query = operation.parameters.iter().flatten().any(is_query);
+            let is_read = operation.request_body.is_some() || has_query;
+            for &(status, description) in refusals.iter().chain(is_read.then_some(&UNREADABLE)) {
                 let body = Content::new(Some(Ref::from_schema_name("ErrorBody")));
                 let refusal = ResponseBuilder::new()
                     .description(description)

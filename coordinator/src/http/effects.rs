@@ -1,19 +1,24 @@
-//! `/v1/effects`: the catalogue.
+//! `/v1/effects`: the catalogue, the library's effects and those that users add.
 
 use axum::Json;
-use axum::extract::Path;
+use axum::extract::{Path, State};
+use axum::http::StatusCode;
+use formula::Effect;
 use formula::catalogue::{catalogue, find};
 use serde::Serialize;
-use shared::api::{ErrorBody, ErrorKind};
+use shared::api::{ErrorBody, ErrorKind, NewEffect};
 use shared::model::ModelKind;
 use shared::model::settings::unknown_effect;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::error::HttpError;
+use super::access::Caller;
+use super::error::{Body, HttpError};
 use crate::effect::EffectCard;
 use crate::effect::signature::{Signature, signature};
+use crate::farm::dispatch::Stopped;
 use crate::service::Service;
+use crate::store::{EffectVersion, StoreError, StoredEffect};
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new()
@@ -26,32 +31,123 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
 struct EffectPage {
     effect: EffectCard,
     text: String,
-    signature: Signature,
+    /// What it does in the quasi-static model; null where that cannot express it.
+    signature: Option<Signature>,
+    /// Why there is no signature.
+    no_signature: Option<String>,
+    /// Every version, the first one first; none of the library's.
+    versions: Vec<EffectVersion>,
 }
 
-/// Every effect of the catalogue, in the order of evaluation.
+/// An effect that was added.
+#[derive(Debug, Serialize, utoipa::ToSchema)]
+struct EffectAdded {
+    name: String,
+    version: EffectVersion,
+}
+
+/// Every effect of the catalogue: the library's in the order of evaluation, then the last versions of those that users have added, by
+/// name.
 #[utoipa::path(get, path = "/effects", responses((status = 200, body = Vec<EffectCard>)))]
-async fn list() -> Json<Vec<EffectCard>> {
-    Json(catalogue().iter().map(EffectCard::of).collect())
+async fn list(State(service): State<Service>) -> Result<Json<Vec<EffectCard>>, HttpError> {
+    let own = service.store().reader().own_effects().await?;
+    let cards = tokio::task::spawn_blocking(move || {
+        let library = catalogue().iter().map(|effect| Ok(EffectCard::of(effect)));
+        let own = own
+            .iter()
+            .map(|stored| Ok(EffectCard::own(&read(stored)?, stored.version.version)));
+        library.chain(own).collect::<Result<_, HttpError>>()
+    });
+    Ok(Json(cards.await.map_err(|_| Stopped)??))
 }
 
 /// An effect of the catalogue: its file, and what it does in the quasi-static model.
-#[utoipa::path(get, path = "/effects/{name}", params(("name" = String, Path)), responses(
-    (status = 200, body = EffectPage), (status = 404, body = ErrorBody)))]
-async fn show(Path(name): Path<String>) -> Result<Json<EffectPage>, HttpError> {
-    let effect = find(&name).ok_or_else(|| HttpError::new(ErrorKind::NotFound, unknown_effect(&name)))?;
-    let computed = tokio::task::spawn_blocking(|| signature(effect, ModelKind::QuasiStatic)).await;
-    let internal = |e: String| HttpError::new(ErrorKind::Internal, e);
-    let signature = computed.map_err(|e| internal(e.to_string()))?.map_err(internal)?;
+#[utoipa::path(get, path = "/effects/{name}",
+    params(("name" = String, Path, description = "`NAME`; of one that a user has added also `NAME@VERSION`")),
+    responses((status = 200, body = EffectPage), (status = 404, body = ErrorBody)))]
+async fn show(
+    State(service): State<Service>,
+    Path(name): Path<String>,
+) -> Result<Json<EffectPage>, HttpError> {
+    let (effect, card, versions) = match find(&name) {
+        Some(effect) => (effect.clone(), EffectCard::of(effect), Vec::new()),
+        None => {
+            let stored = service.own_effect(&name).await?;
+            let (versions, meant) =
+                stored.ok_or_else(|| HttpError::new(ErrorKind::NotFound, unknown_effect(&name)))?;
+            let effect = read(&meant)?;
+            let card = EffectCard::own(&effect, meant.version.version);
+            (
+                effect,
+                card,
+                versions.into_iter().map(|stored| stored.version).collect(),
+            )
+        }
+    };
+    let text = effect.text.clone();
+    let computed = tokio::task::spawn_blocking(move || signature(&effect, ModelKind::QuasiStatic));
+    let (signature, no_signature) = match computed.await.map_err(|_| Stopped)? {
+        Ok(signature) => (Some(signature), None),
+        Err(reason) => (None, Some(reason)),
+    };
     Ok(Json(EffectPage {
-        effect: EffectCard::of(effect),
-        text: effect.text.clone(),
+        effect: card,
+        text,
         signature,
+        no_signature,
+        versions,
     }))
 }
 
-/// Adds an effect to the catalogue. Not available in this version.
-#[utoipa::path(post, path = "/effects", responses((status = 501, body = ErrorBody)))]
-async fn add() -> HttpError {
-    HttpError::not_available("adding an effect to the catalogue")
+/// The effect of a stored file, which was read when it was added.
+fn read(stored: &StoredEffect) -> Result<Effect, HttpError> {
+    let corrupt = |error| {
+        let version = stored.version.version;
+        StoreError::Corrupt(format!("effect {} version {version}: {error}", stored.name))
+    };
+    Ok(Effect::read(&stored.text).map_err(corrupt)?)
+}
+
+/// Adds an effect to the catalogue, as the next version of its name. Jobs name it as they name the library's; a study keeps the
+/// version that it began with.
+#[utoipa::path(post, path = "/effects", request_body = NewEffect, responses(
+    (status = 201, body = EffectAdded, description = "a new version"),
+    (status = 200, body = EffectAdded, description = "a version has this text already"),
+    (status = 409, body = ErrorBody, description = "the name belongs to the library"),
+    (status = 422, body = ErrorBody, description = "the file is malformed"),
+))]
+async fn add(
+    State(service): State<Service>,
+    by: Caller,
+    Body(new): Body<NewEffect>,
+) -> Result<(StatusCode, Json<EffectAdded>), HttpError> {
+    let text = match (new.text, new.effect) {
+        (Some(text), None) => text,
+        (None, Some(effect)) => effect.to_string(),
+        _ => {
+            let message = "an effect is {\"text\": TEXT}, the text of its file, or {\"effect\": {...}}, the keys of its file";
+            return Err(HttpError::new(ErrorKind::InvalidBody, message));
+        }
+    };
+    let log_name = by.to_string();
+    let added = service.add_effect(text, by.into_name()).await?;
+    let status = if added.is_new {
+        StatusCode::CREATED
+    } else {
+        StatusCode::OK
+    };
+    tracing::info!(
+        effect = added.name,
+        version = added.version.version,
+        is_new = added.is_new,
+        by = log_name,
+        "effect added"
+    );
+    Ok((
+        status,
+        Json(EffectAdded {
+            name: added.name,
+            version: added.version,
+        }),
+    ))
 }

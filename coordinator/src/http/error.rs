@@ -6,6 +6,7 @@ use axum::extract::rejection::{BytesRejection, JsonRejection, PathRejection, Que
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use shared::api::{ErrorBody, ErrorDetail, ErrorKind};
+use shared::sentence::one_line;
 
 use crate::service::ServiceError;
 use crate::store::StoreError;
@@ -22,16 +23,9 @@ impl HttpError {
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         HttpError {
             kind,
-            message: message.into(),
+            // It may repeat what a client has sent.
+            message: one_line(&message.into()).into_owned(),
         }
-    }
-
-    /// What a later version brings.
-    pub fn not_available(what: &str) -> Self {
-        HttpError::new(
-            ErrorKind::NotAvailable,
-            format!("{what} is not available in this version"),
-        )
     }
 
     fn status(&self) -> StatusCode {
@@ -47,7 +41,6 @@ impl HttpError {
             ErrorKind::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             ErrorKind::ProtocolMismatch => StatusCode::UPGRADE_REQUIRED,
             ErrorKind::Busy => StatusCode::TOO_MANY_REQUESTS,
-            ErrorKind::NotAvailable => StatusCode::NOT_IMPLEMENTED,
             ErrorKind::Internal => StatusCode::INTERNAL_SERVER_ERROR,
         }
     }
@@ -80,9 +73,10 @@ impl From<ServiceError> for HttpError {
             ServiceError::File(_) | ServiceError::Begin(_) | ServiceError::Webhook(_) => {
                 ErrorKind::InvalidFile
             }
-            ServiceError::NotFound { .. } => ErrorKind::NotFound,
+            ServiceError::NotFound { .. } | ServiceError::NoVersion { .. } => ErrorKind::NotFound,
             ServiceError::Control(_)
             | ServiceError::Effects(_)
+            | ServiceError::OfLibrary(_)
             | ServiceError::Search(_)
             | ServiceError::LeftAlone { .. }
             | ServiceError::InProgress { .. }

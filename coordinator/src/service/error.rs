@@ -31,6 +31,19 @@ pub enum ServiceError {
         /// Why.
         reason: String,
     },
+    /// The name of an effect to add is taken.
+    #[error("the effect {0} belongs to the library: give yours another name")]
+    OfLibrary(String),
+    /// An effect has fewer versions.
+    #[error("effect {name} has no version {version:?}; the last one is {last}")]
+    NoVersion {
+        /// The effect.
+        name: String,
+        /// What was asked for.
+        version: String,
+        /// Its last version.
+        last: i64,
+    },
     /// Nothing can be posted to a URL.
     #[error(transparent)]
     Webhook(#[from] WebhookError),

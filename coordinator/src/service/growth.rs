@@ -35,6 +35,7 @@ impl Service {
     /// [`ServiceError`]: the effect is unknown, or stands there already.
     pub async fn extend(&self, id: i64, extension: Extension) -> Result<CalibrationCreated, ServiceError> {
         let _growing = self.growing.lock().await;
+        let extension = self.of_own_effect(extension).await?;
         self.extended(id, &extension).await
     }
 

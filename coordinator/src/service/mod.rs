@@ -4,6 +4,7 @@
 //! - `handle`: [`Service`], which everybody holds.
 //! - `recovery`: what a start takes up again.
 //! - `submission`: new experiments and calibrations.
+//! - `effects`: what users add to the catalogue, and jobs that name it.
 //! - `removal`: what is archived or deleted.
 //! - `announcement`: what web hooks are told.
 //! - `growth`: what is added to a study that is there.
@@ -12,6 +13,7 @@
 
 mod announcement;
 mod clock;
+mod effects;
 mod error;
 mod finished_study;
 mod growth;

@@ -12,7 +12,7 @@ use super::handle::Service;
 use crate::calibration::{Calibration, CalibrationIdentity};
 use crate::farm::dispatch::Stopped;
 use crate::store::{NewCalibrationRow, NewStudy, StudyIds};
-use job::{AlgorithmSettings, JobFile, Spec, point_job};
+use job::{AlgorithmSettings, JobFile, OwnEffect, Spec, point_job, with_own_effects, without_own_effects};
 
 /// Longest name of a calibration `[bytes]`.
 const LONGEST_NAME: usize = 200;
@@ -49,6 +49,7 @@ impl Service {
             toml: new.toml,
             files: new.files,
         };
+        let own = self.listed_own_effects(&job).await?;
         // The samplers are built once before anything is stored: what they refuse leaves nothing half-written.
         let trial = CalibrationIdentity {
             id: 0,
@@ -58,7 +59,7 @@ impl Service {
         };
         // Reading a stranger's files and drawing a large population from the prior is CPU work: not on the async
         // runtime.
-        let members = tokio::task::spawn_blocking(move || members(&trial, &job, &experiment));
+        let members = tokio::task::spawn_blocking(move || members(&trial, job, &own, &experiment));
         let members = members.await.map_err(|_| Stopped)??;
         let row = |(calibration, job): &(Calibration, FileSet)| NewCalibrationRow {
             name: calibration.identity.name.clone(),
@@ -85,15 +86,21 @@ impl Service {
 }
 
 /// The calibrations that a job begins its study with, each with its own job: the job itself, then the point estimates
-/// that it asks for.
+/// that it asks for. Effects of the service's catalogue that the job lists become files of it.
 fn members(
     identity: &CalibrationIdentity,
-    job: &FileSet,
+    job: FileSet,
+    own: &[OwnEffect],
     experiment: &FileSet,
 ) -> Result<Vec<(Calibration, FileSet)>, ServiceError> {
     let file = "job.toml";
-    let parsed = JobFile::parse(file, &job.toml)?;
+    // Messages name the lines of the file as it is; what is kept has the files of own effects.
+    let mut parsed = JobFile::parse(file, &without_own_effects(file, &job.toml, own)?)?;
     parsed.check_files(file, &job.files)?;
+    let names: Vec<String> = own.iter().map(|own| own.file.clone()).collect();
+    let added = parsed.model.add_effects(&[], &names);
+    added.map_err(|e| FileError::whole(file, e))?;
+    let job = with_own_effects(file, job, own)?;
     let spec = Spec::of(file, parsed, &job.files, "experiment.toml", experiment)?;
     if matches!(spec.algorithm, AlgorithmSettings::Discover { .. }) {
         let message = "[sampler] algorithm = \"discovery\" is a search that a study starts by itself: set apply = \"ask\" or \"auto\" under [discovery]";

@@ -6,7 +6,7 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 /// Number, name and text of each file of `migrations/`.
 ///
 /// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
-const FILES: [(i64, &str, &str); 17] = [
+const FILES: [(i64, &str, &str); 18] = [
     (
         1,
         "experiments",
@@ -82,6 +82,11 @@ const FILES: [(i64, &str, &str); 17] = [
         16,
         "webhooks",
         include_str!("../../../migrations/0016_webhooks.sql"),
+    ),
+    (
+        17,
+        "effects",
+        include_str!("../../../migrations/0017_effects.sql"),
     ),
     (
         18,

@@ -6,6 +6,7 @@
 mod backup;
 mod blob;
 mod damage;
+mod effects;
 mod error;
 mod facts;
 mod file;
@@ -32,6 +33,7 @@ use sqlx::sqlite::{SqliteJournalMode, SqliteSynchronous};
 use sqlx::{Connection, SqliteConnection, SqlitePool};
 
 pub use backup::BackupError;
+pub use effects::{AddedEffect, EffectVersion, NewEffect, StoredEffect};
 pub use error::StoreError;
 use file::{examine, file_of, lock, options, pool, recognise};
 pub use health::StoreHealth;

@@ -74,16 +74,12 @@ impl Reader {
         Ok(count.unsigned_abs())
     }
 
-    /// Evaluations that were answered in two ways, in order. A store of before migration 12, which only reading leaves as it is,
-    /// has none.
+    /// Evaluations that were answered in two ways, in order. A store of before migration 12 has none.
     ///
     /// # Errors
     /// [`StoreError`].
     pub async fn disputes(&self, calibration: i64) -> Result<Vec<Dispute>, StoreError> {
-        let table: i64 = sqlx::query_scalar("SELECT count(*) FROM sqlite_schema WHERE name = 'disputes'")
-            .fetch_one(&self.pool)
-            .await?;
-        if table == 0 {
+        if !self.has_table("disputes").await? {
             return Ok(Vec::new());
         }
         let rows = sqlx::query(

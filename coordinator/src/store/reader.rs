@@ -55,6 +55,16 @@ impl Reader {
         self.pool.is_closed()
     }
 
+    /// Whether the store has a table: one of an earlier version, which only reading leaves as it is, may lack it.
+    pub(super) async fn has_table(&self, name: &str) -> Result<bool, StoreError> {
+        let tables: i64 =
+            sqlx::query_scalar("SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = ?")
+                .bind(name)
+                .fetch_one(&self.pool)
+                .await?;
+        Ok(tables > 0)
+    }
+
     async fn with(options: SqliteConnectOptions, path: &str) -> Result<Reader, StoreError> {
         let wrap = |source| StoreError::of(path, source);
         let pool = pool(options).await.map_err(wrap)?;

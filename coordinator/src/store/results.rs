@@ -45,10 +45,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn result(&self, study: i64, name: &str, stamp: &str) -> Result<Option<String>, StoreError> {
-        let there: i64 = sqlx::query_scalar("SELECT count(*) FROM sqlite_schema WHERE name = 'results'")
-            .fetch_one(&self.pool)
-            .await?;
-        if there == 0 {
+        if !self.has_table("results").await? {
             return Ok(None);
         }
         let body = sqlx::query_scalar("SELECT body FROM results WHERE study = ? AND name = ? AND stamp = ?")

@@ -12,15 +12,12 @@ use crate::token::{Role, Token, TokenHash};
 const TOKENS: &str = "SELECT name, role, hash, created_at_ms, revoked_at_ms FROM tokens ORDER BY id";
 
 impl Reader {
-    /// Every token that was ever made, oldest first. A store of before migration 14, which only reading leaves as it is, has none.
+    /// Every token that was ever made, oldest first. A store of before migration 14 has none.
     ///
     /// # Errors
     /// [`StoreError`].
     pub async fn tokens(&self) -> Result<Vec<Token>, StoreError> {
-        let table: i64 = sqlx::query_scalar("SELECT count(*) FROM sqlite_schema WHERE name = 'tokens'")
-            .fetch_one(&self.pool)
-            .await?;
-        if table == 0 {
+        if !self.has_table("tokens").await? {
             return Ok(Vec::new());
         }
         let rows = sqlx::query(TOKENS).fetch_all(&self.pool).await?;

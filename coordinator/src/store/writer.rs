@@ -12,6 +12,7 @@ use shared::file::FileSet;
 use sqlx::{Connection, SqliteConnection};
 use tokio::sync::{Notify, broadcast, mpsc, oneshot, watch};
 
+use super::effects::{AddedEffect, NewEffect, insert_effect};
 use super::error::{StoreError, is_locked};
 use super::health::StoreHealth;
 use super::insert::{
@@ -45,6 +46,10 @@ enum Write {
         row: NewCalibrationRow,
         now_ms: i64,
         reply: oneshot::Sender<i64>,
+    },
+    Effect {
+        new: NewEffect,
+        reply: oneshot::Sender<AddedEffect>,
     },
     Results {
         results: StudyResults,
@@ -296,6 +301,14 @@ impl Writer {
         self.committed(write).await
     }
 
+    /// Stores a version of an effect, unless its text is one already.
+    ///
+    /// # Errors
+    /// [`StoreError::Stopped`].
+    pub async fn add_effect(&self, new: NewEffect) -> Result<AddedEffect, StoreError> {
+        self.committed(|reply| Write::Effect { new, reply }).await
+    }
+
     /// Stores the files of a study in place of those that were there.
     ///
     /// # Errors
@@ -381,6 +394,7 @@ async fn run(
 struct Replies {
     ids: Vec<(oneshot::Sender<i64>, i64)>,
     studies: Vec<(oneshot::Sender<StudyIds>, StudyIds)>,
+    effects: Vec<(oneshot::Sender<AddedEffect>, AddedEffect)>,
     done: Vec<oneshot::Sender<()>>,
     deleted: Vec<(oneshot::Sender<bool>, bool)>,
     states: Vec<StateChange>,
@@ -394,6 +408,9 @@ impl Replies {
         }
         for (reply, ids) in self.studies {
             let _ = reply.send(ids);
+        }
+        for (reply, effect) in self.effects {
+            let _ = reply.send(effect);
         }
         for reply in self.done {
             let _ = reply.send(());
@@ -430,6 +447,9 @@ async fn write_group(
                 }
             }
             Write::Close => {}
+            Write::Effect { new, reply } => replies
+                .effects
+                .push((reply, insert_effect(connection, new).await?)),
             Write::Results { results, reply } => {
                 super::results::write(connection, results).await?;
                 replies.done.push(reply);

@@ -212,11 +212,3 @@ fn what_is_not_there_is_404_and_what_does_not_fit_is_409() {
     let stage = client.get(&format!("/v1/calibrations/{id}/samples?stage=first"));
     assert_eq!(error(&stage).0, 400, "{stage:?}");
 }
-
-#[test]
-fn a_route_of_a_later_version_is_501() {
-    let service = Service::start(&[]);
-    let response = service.client.post("/v1/effects", &json!({}));
-    assert_eq!(error(&response).0, 501, "{response:?}");
-    assert_eq!(response.json()["error"]["type"], "not_available");
-}

@@ -122,7 +122,12 @@ fn a_reading_service_shows_what_another_writes_and_takes_nothing() {
     assert_eq!(client.json(summary), service.client.json(summary));
     let second = service.submit(&Job::small());
     assert_eq!(client.json("/v1/calibrations").as_array().map(Vec::len), Some(2));
-    for path in ["/v1/experiments", "/v1/calibrations/2/pause", "/v1/work/exchange"] {
+    for path in [
+        "/v1/experiments",
+        "/v1/effects",
+        "/v1/calibrations/2/pause",
+        "/v1/work/exchange",
+    ] {
         let refused = client.post(path, &json!({}));
         assert_eq!(refused.status, 403, "{path}");
         assert!(refused.body.contains("--read-only"), "{}", refused.body);

@@ -88,12 +88,12 @@ pub fn effect_name(text: &str) -> Option<String> {
     Some(file.get("name")?.as_str()?.to_owned())
 }
 
-fn table<'a>(document: &'a mut DocumentMut, name: &str) -> Option<&'a mut dyn TableLike> {
+pub(super) fn table<'a>(document: &'a mut DocumentMut, name: &str) -> Option<&'a mut dyn TableLike> {
     document.get_mut(name).and_then(Item::as_table_like_mut)
 }
 
 /// Keeps the words of a list that satisfy a condition.
-fn keep(table: &mut dyn TableLike, list: &str, condition: impl Fn(&str) -> bool) {
+pub(super) fn keep(table: &mut dyn TableLike, list: &str, condition: impl Fn(&str) -> bool) {
     if let Some(words) = table.get_mut(list).and_then(Item::as_array_mut) {
         words.retain(|word| word.as_str().is_none_or(&condition));
     }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use shared::api::CalibrationStatus;
+use shared::sentence::one_line;
 
 use super::column::cell;
 
@@ -19,7 +20,7 @@ pub fn status_table(statuses: &[CalibrationStatus]) -> String {
             "{:>4} {:>5} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}",
             s.id,
             s.study,
-            printable(&s.name),
+            one_line(&s.name),
             s.state.name(),
             cell(p, |p| p.stage.to_string()),
             cell(p, |p| format!("{:.3e}", p.tempering_exponent)),
@@ -28,27 +29,8 @@ pub fn status_table(statuses: &[CalibrationStatus]) -> String {
             cell(p.and_then(|p| p.remaining_s), |s| format!("{s:.0}"))
         );
         if let Some(message) = &s.message {
-            let _ = writeln!(text, "     {}", printable(message));
+            let _ = writeln!(text, "     {}", one_line(message));
         }
     }
     text
-}
-
-/// A stranger's text with its control characters as escapes: it moves no cursor and sets no colour.
-fn printable(text: &str) -> String {
-    let shown = |c: char| match c.is_control() {
-        true => c.escape_default().to_string(),
-        false => c.to_string(),
-    };
-    text.chars().map(shown).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn control_characters_are_escaped_and_letters_are_not() {
-        assert_eq!(printable("süß \u{1b}[2J\n\u{9b}"), "süß \\u{1b}[2J\\n\\u{9b}");
-    }
 }

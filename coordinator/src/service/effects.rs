@@ -1,0 +1,131 @@
+//! What users add to the catalogue of effects, and the jobs that name it.
+
+use formula::Effect;
+use formula::catalogue::find;
+use sha2::{Digest, Sha256};
+use shared::file::{FileError, FileSet};
+use shared::model::effects::own;
+
+use super::clock::now_ms;
+use super::error::ServiceError;
+use super::handle::Service;
+use crate::farm::dispatch::Stopped;
+use crate::store::{AddedEffect, NewEffect, StoredEffect};
+use job::{ModelSwitch, OwnEffect, PlainParameter, check_own, foreign_effects};
+use record::Extension;
+
+/// How an effect file and a job are called in messages.
+const EFFECT: &str = "effect.toml";
+const JOB: &str = "job.toml";
+
+impl Service {
+    /// Stores an effect file as the next version of its effect, unless a version has the same text.
+    ///
+    /// # Errors
+    /// [`ServiceError`]: the file is malformed, or the name belongs to the library.
+    pub async fn add_effect(&self, text: String, by: Option<String>) -> Result<AddedEffect, ServiceError> {
+        let read = tokio::task::spawn_blocking(move || {
+            if let Ok(effect) = Effect::read(&text)
+                && find(&effect.name).is_some()
+            {
+                return Err(ServiceError::OfLibrary(effect.name));
+            }
+            let effect = own(EFFECT, &text)?;
+            check_own(EFFECT, &effect)?;
+            Ok(effect)
+        });
+        let effect = read.await.map_err(|_| Stopped)??;
+        let digest = Sha256::digest(effect.text.as_bytes());
+        let new = NewEffect {
+            name: effect.name,
+            digest: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
+            text: effect.text,
+            created_by: by,
+            now_ms: now_ms(),
+        };
+        Ok(self.store().writer().add_effect(new).await?)
+    }
+
+    /// The effect of `NAME`, its last version, or of `NAME@VERSION`, behind all versions of it; none where no user has added it.
+    ///
+    /// # Errors
+    /// [`ServiceError`]: the effect has no such version.
+    pub async fn own_effect(
+        &self,
+        named: &str,
+    ) -> Result<Option<(Vec<StoredEffect>, StoredEffect)>, ServiceError> {
+        let (name, version) = match named.split_once('@') {
+            Some((name, version)) => (name, Some(version)),
+            None => (named, None),
+        };
+        let versions = self.store().reader().effect_versions(name).await?;
+        let Some(last) = versions.last() else {
+            return Ok(None);
+        };
+        let Some(version) = version else {
+            let last = last.clone();
+            return Ok(Some((versions, last)));
+        };
+        let is_meant = |stored: &&StoredEffect| stored.version.version.to_string() == version;
+        let meant = versions.iter().find(is_meant).cloned();
+        let missing = || ServiceError::NoVersion {
+            name: name.to_owned(),
+            version: version.to_owned(),
+            last: last.version.version,
+        };
+        let meant = meant.ok_or_else(missing)?;
+        Ok(Some((versions, meant)))
+    }
+
+    /// The effects that a job lists and that users have added.
+    ///
+    /// # Errors
+    /// [`ServiceError`]: an effect has no such version.
+    pub(super) async fn listed_own_effects(&self, job: &FileSet) -> Result<Vec<OwnEffect>, ServiceError> {
+        let toml = job.toml.clone();
+        let listed = tokio::task::spawn_blocking(move || foreign_effects(&toml));
+        let mut own = Vec::new();
+        for named in listed.await.map_err(|_| Stopped)? {
+            own.extend(self.as_file(&named).await?);
+        }
+        Ok(own)
+    }
+
+    /// The extension with the file of the effect that it names, where a user has added that.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub(super) async fn of_own_effect(&self, extension: Extension) -> Result<Extension, ServiceError> {
+        let Extension::Effect(named) = &extension else {
+            return Ok(extension);
+        };
+        let is_ours = find(named).is_some()
+            || PlainParameter::find(named).is_some()
+            || ModelSwitch::find(named).is_some();
+        let own = if is_ours { None } else { self.as_file(named).await? };
+        Ok(match own {
+            Some(own) => Extension::File {
+                name: own.file,
+                text: own.text,
+            },
+            None => extension,
+        })
+    }
+
+    /// An effect that users have added, as a file that states its version.
+    async fn as_file(&self, named: &str) -> Result<Option<OwnEffect>, ServiceError> {
+        let stored = self.own_effect(named).await.map_err(|error| match error {
+            missing @ ServiceError::NoVersion { .. } => FileError::whole(JOB, missing.to_string()).into(),
+            error => error,
+        })?;
+        let own = |effect: StoredEffect| {
+            OwnEffect::new(
+                named.to_owned(),
+                &effect.name,
+                effect.version.version,
+                effect.text,
+            )
+        };
+        Ok(stored.map(|(_, effect)| own(effect)))
+    }
+}

@@ -1,0 +1,134 @@
+//! Effects that users have added to the catalogue, by name and version.
+
+use serde::Serialize;
+use sqlx::sqlite::SqliteRow;
+use sqlx::{Row, SqliteConnection};
+use utoipa::ToSchema;
+
+use super::error::StoreError;
+use super::reader::Reader;
+
+/// An effect to store.
+#[derive(Debug, Clone)]
+pub struct NewEffect {
+    /// Its name.
+    pub name: String,
+    /// Its file.
+    pub text: String,
+    /// SHA-256 of the file, in hexadecimal digits.
+    pub digest: String,
+    /// The name of the token that it came with.
+    pub created_by: Option<String>,
+    /// Now.
+    pub now_ms: i64,
+}
+
+/// A version of an effect that a user has added.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct EffectVersion {
+    /// Its number, from 1.
+    pub version: i64,
+    /// SHA-256 of its file, in hexadecimal digits.
+    pub digest: String,
+    /// When it was added, in milliseconds since 1970.
+    pub created_at_ms: i64,
+    /// The name of the token that it came with; null where none was asked for.
+    pub created_by: Option<String>,
+}
+
+/// A version of an effect with its file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StoredEffect {
+    /// Name of the effect.
+    pub name: String,
+    /// Its file.
+    pub text: String,
+    /// Which version that is.
+    pub version: EffectVersion,
+}
+
+/// What became of an effect to store.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AddedEffect {
+    /// Name of the effect.
+    pub name: String,
+    /// The version that has its text.
+    pub version: EffectVersion,
+    /// Whether the text is new.
+    pub is_new: bool,
+}
+
+/// Inserts the next version of an effect, unless one has the same text.
+pub(super) async fn insert_effect(
+    connection: &mut SqliteConnection,
+    new: NewEffect,
+) -> Result<AddedEffect, sqlx::Error> {
+    let inserted = sqlx::query(
+        "INSERT INTO effects (name, version, text, digest, created_at_ms, created_by)
+         VALUES (?1, 1 + (SELECT coalesce(max(version), 0) FROM effects WHERE name = ?1), ?2, ?3, ?4, ?5)
+         ON CONFLICT (name, digest) DO NOTHING",
+    )
+    .bind(&new.name)
+    .bind(new.text)
+    .bind(&new.digest)
+    .bind(new.now_ms)
+    .bind(new.created_by)
+    .execute(&mut *connection)
+    .await?;
+    let row = sqlx::query("SELECT * FROM effects WHERE name = ? AND digest = ?")
+        .bind(&new.name)
+        .bind(&new.digest)
+        .fetch_one(connection)
+        .await?;
+    Ok(AddedEffect {
+        version: version(&row),
+        name: new.name,
+        is_new: inserted.rows_affected() == 1,
+    })
+}
+
+impl Reader {
+    /// The last version of every effect that users have added, by name. A store of before migration 17 has none.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn own_effects(&self) -> Result<Vec<StoredEffect>, StoreError> {
+        if !self.has_table("effects").await? {
+            return Ok(Vec::new());
+        }
+        let last = "SELECT * FROM effects AS own
+                    WHERE version = (SELECT max(version) FROM effects WHERE name = own.name) ORDER BY name";
+        let rows = sqlx::query(last).fetch_all(&self.pool).await?;
+        Ok(rows.iter().map(stored).collect())
+    }
+
+    /// Every version of an effect that users have added, the first one first.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn effect_versions(&self, name: &str) -> Result<Vec<StoredEffect>, StoreError> {
+        if !self.has_table("effects").await? {
+            return Ok(Vec::new());
+        }
+        let all = sqlx::query("SELECT * FROM effects WHERE name = ? ORDER BY version");
+        let rows = all.bind(name).fetch_all(&self.pool).await?;
+        Ok(rows.iter().map(stored).collect())
+    }
+}
+
+fn stored(row: &SqliteRow) -> StoredEffect {
+    StoredEffect {
+        name: row.get("name"),
+        text: row.get("text"),
+        version: version(row),
+    }
+}
+
+fn version(row: &SqliteRow) -> EffectVersion {
+    EffectVersion {
+        version: row.get("version"),
+        digest: row.get("digest"),
+        created_at_ms: row.get("created_at_ms"),
+        created_by: row.get("created_by"),
+    }
+}
