@@ -7,13 +7,14 @@
 //! - `worker`: a worker that keeps to the protocol and breaks down.
 //! - `coordinator`: the real farm, called as the farm's thread and the store's writer call it.
 //! - `ledger`: the simulated store; `issued`: the leases that were given.
-//! - `witness`, [`promise`]: what must hold, and who checks it.
+//! - `witness`, `leasing`, [`promise`]: what must hold, and who checks it.
 //! - [`plant`]: the planted bugs.
 //! - [`search`], `tally`: many schedules, and what happened in them.
 
 pub(crate) mod case;
 mod coordinator;
 mod issued;
+mod leasing;
 mod ledger;
 pub(crate) mod plant;
 pub(crate) mod promise;

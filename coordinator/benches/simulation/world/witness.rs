@@ -5,34 +5,20 @@ use std::collections::{BTreeMap, BTreeSet};
 use coordinator::calibration::SimulationResult;
 use record::{EvaluationRow, Fact};
 use shared::api::CalibrationState;
-use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
+use shared::exchange::{ExchangeRequest, WorkResult};
 use shared::model::equations_of;
 use shared::outcome::Outcome;
 
 use super::case::{CaseResult, posterior_bits, same_row, stage_bits};
 use super::issued::Issued;
+use super::leasing::Live;
 use super::ledger::{Ledger, Table, calibration_of};
 use super::promise::{Broken, Promise, demand};
 
 /// Attempts that may fail before a calibration pauses.
 const ATTEMPTS: usize = 3;
-/// A lease that is out for less is not slow `[ms]`.
-const SLOW_MS: u64 = 1_000;
 /// Leases that may expire in a row before they are begun.
 const UNSTARTED: u32 = 20;
-
-/// A lease that is out.
-#[derive(Debug, Clone)]
-struct Live {
-    lease: u64,
-    worker: String,
-    /// The worker's version of the equations.
-    version: String,
-    since_ms: u64,
-    until_ms: u64,
-    started: bool,
-    is_suspect: bool,
-}
 
 /// Where a fact comes from.
 #[derive(Debug, Clone, Copy)]
@@ -53,21 +39,21 @@ pub(crate) struct Witness<'a> {
     /// Every lease that was ever given, by number.
     pub(crate) issued: BTreeMap<u64, Issued<'a>>,
     /// The leases that are out, by calibration, evaluation and whether it is a second one.
-    live: BTreeMap<(i64, u64, bool), Live>,
+    pub(super) live: BTreeMap<(i64, u64, bool), Live>,
     /// Leases that time has ended since the last fact of a tick.
-    expired: Vec<((i64, u64, bool), Live)>,
+    pub(super) expired: Vec<((i64, u64, bool), Live)>,
     /// Workers that have answered in two ways.
     pub(crate) liars: BTreeSet<String>,
     /// Whether second workers verify.
-    verifies: bool,
+    pub(super) verifies: bool,
     /// How many leases of an evaluation expired in a row before they were begun.
-    unstarted: BTreeMap<(i64, u64), u32>,
+    pub(super) unstarted: BTreeMap<(i64, u64), u32>,
     /// Results acknowledged since the last restored backup.
     acknowledged: BTreeSet<(i64, u64)>,
     /// Calibrations that this start of the farm knows.
     known: BTreeSet<i64>,
-    lease_ms: u64,
-    history: u32,
+    pub(super) lease_ms: u64,
+    pub(super) history: u32,
     /// An evaluation was given up after honest failures on three workers: as promised, but what follows has other bits.
     pub(crate) is_given_up: bool,
 }
@@ -95,7 +81,7 @@ impl<'a> Witness<'a> {
     }
 
     /// The lease that a result carries with its seal, where its own worker sends it.
-    fn lease_of(&self, result: &WorkResult, worker: &str) -> Option<&Issued<'a>> {
+    pub(super) fn lease_of(&self, result: &WorkResult, worker: &str) -> Option<&Issued<'a>> {
         self.issued.get(&result.lease).filter(|issued| {
             let lease = &issued.lease;
             let same = (lease.calibration, lease.evaluation) == (result.calibration, result.evaluation);
@@ -328,183 +314,6 @@ impl<'a> Witness<'a> {
         })
     }
 
-    /// Lets time pass for leases, before the facts of the tick.
-    pub(crate) fn tick(&mut self, now_ms: u64) {
-        self.expired = self
-            .live
-            .extract_if(.., |_, live| live.until_ms <= now_ms)
-            .collect();
-        let unstarted = self
-            .expired
-            .iter()
-            .filter(|((.., is_second), live)| !live.started && !is_second);
-        for ((id, evaluation, _), _) in unstarted {
-            *self.unstarted.entry((*id, *evaluation)).or_default() += 1;
-        }
-    }
-
-    /// Sees an exchange once its facts are in the ledger.
-    pub(crate) fn exchanged(
-        &mut self,
-        request: &ExchangeRequest,
-        response: &ExchangeResponse,
-        ledger: &Ledger<'a>,
-        now_ms: u64,
-    ) -> Result<(), Broken> {
-        self.disputed(request, ledger)?;
-        self.second_answers(request, ledger);
-        for (of, live) in self
-            .live
-            .iter_mut()
-            .filter(|(_, live)| live.worker == request.worker)
-        {
-            let started = request.started.contains(&live.lease);
-            if started || request.holding.contains(&live.lease) {
-                live.until_ms = now_ms + self.lease_ms;
-            }
-            if started {
-                live.started = true;
-                self.unstarted.remove(&(of.0, of.1));
-            }
-        }
-        self.live.retain(|_, live| {
-            let is_lost = live.lease > request.received || request.returned.contains(&live.lease);
-            live.worker != request.worker || !is_lost
-        });
-        response
-            .leases
-            .iter()
-            .try_for_each(|lease| self.leased(request, lease, ledger, now_ms))
-    }
-
-    fn leased(
-        &mut self,
-        request: &ExchangeRequest,
-        lease: &Lease,
-        ledger: &Ledger<'a>,
-        now_ms: u64,
-    ) -> Result<(), Broken> {
-        if self.is_given_up {
-            return Ok(());
-        }
-        let (number, id, evaluation) = (lease.lease, lease.calibration, lease.evaluation);
-        let Some(table) = ledger.table(id) else {
-            return Err(Broken::new(
-                Promise::Question,
-                format!("lease {number} is of no calibration"),
-            ));
-        };
-        let last = self.issued.keys().next_back().copied().unwrap_or_default();
-        demand(number > last, Promise::Fence, || {
-            format!("lease {number} follows lease {last}")
-        })?;
-        let answered = table.case.answers.get(&evaluation).filter(|a| {
-            let bits = |theta: &[f64]| theta.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-            a.variant == lease.variant && bits(&a.theta) == bits(&lease.theta) && a.subchain == lease.subchain
-        });
-        let Some(answered) = answered else {
-            let how =
-                format!("lease {number} of evaluation {evaluation} of calibration {id} asks something else");
-            return Err(Broken::new(Promise::Question, how));
-        };
-        demand(
-            !ledger.quarantine().contains_key(&request.worker),
-            Promise::Quarantine,
-            || {
-                format!(
-                    "lease {number} goes to {}, which computes wrongly",
-                    request.worker
-                )
-            },
-        )?;
-        let row = table.rows.get(&evaluation).map(|(_, row)| row);
-        let is_open = |row: &EvaluationRow| {
-            self.verifies && row.worker != request.worker && !table.confirmed.contains(&evaluation)
-        };
-        demand(row.is_none_or(is_open), Promise::NotAgain, || {
-            format!("lease {number} is of evaluation {evaluation}, which has its row")
-        })?;
-        let first = self.live.get(&(id, evaluation, false));
-        let is_slow = |first: &Live| first.worker != request.worker && now_ms >= first.since_ms + SLOW_MS;
-        demand(first.is_none_or(is_slow), Promise::OneHolder, || {
-            format!("lease {number} is of evaluation {evaluation}, which {first:?} holds")
-        })?;
-        let is_second = row.is_some() || first.is_some();
-        let open = matches!(table.state, CalibrationState::Queued | CalibrationState::Running);
-        demand(open, Promise::Open, || {
-            format!(
-                "lease {number} is of calibration {id}, which is {}",
-                table.state.name()
-            )
-        })?;
-        let pinned = table.model_version.as_deref().map(equations_of);
-        demand(
-            pinned.is_none_or(|pinned| pinned == request.model_version),
-            Promise::Version,
-            || {
-                format!(
-                    "lease {number} goes to {}, calibration {id} is pinned to {pinned:?}",
-                    request.model_version
-                )
-            },
-        )?;
-        let live = Live {
-            lease: number,
-            worker: request.worker.clone(),
-            version: request.model_version.clone(),
-            since_ms: now_ms,
-            until_ms: now_ms + self.lease_ms,
-            started: false,
-            is_suspect: lease.announce,
-        };
-        if let Some(other) = self.live.insert((id, evaluation, is_second), live) {
-            let how = format!(
-                "lease {number} is of evaluation {evaluation}, which {} holds by {}",
-                other.worker, other.lease
-            );
-            return Err(Broken::new(Promise::OneHolder, how));
-        }
-        let mut others = self
-            .live
-            .values()
-            .filter(|live| live.worker == request.worker && live.lease != number);
-        let is_alone = others.all(|live| !lease.announce && !live.is_suspect);
-        demand(is_alone, Promise::Alone, || {
-            format!(
-                "lease {number} makes {} hold a suspect and something else",
-                request.worker
-            )
-        })?;
-        let issued = Issued {
-            worker: request.worker.clone(),
-            lease: lease.clone(),
-            case: table.case,
-            answered,
-            poison: table.case.poison == Some(evaluation),
-            version: request.model_version.clone(),
-            history: self.history,
-        };
-        self.issued.insert(number, issued);
-        Ok(())
-    }
-
-    /// Ends the second leases that are answered, or failed.
-    fn second_answers(&mut self, request: &ExchangeRequest, ledger: &Ledger<'a>) {
-        for result in &request.results {
-            let (id, evaluation) = (result.calibration, result.evaluation);
-            let issued = self.lease_of(result, &request.worker);
-            let is_its_own = ledger
-                .table(id)
-                .is_some_and(|table| issued.is_some_and(|i| i.is_of(table)));
-            let second = self.live.get(&(id, evaluation, true));
-            if is_its_own
-                && second.is_some_and(|live| live.lease == result.lease || live.worker == request.worker)
-            {
-                self.live.remove(&(id, evaluation, true));
-            }
-        }
-    }
-
     /// Sees the results that were dropped.
     pub(crate) fn rewound(&mut self, id: i64, ledger: &Ledger) {
         if let Some(table) = ledger.table(id) {
@@ -514,7 +323,7 @@ impl<'a> Witness<'a> {
     }
 
     /// Where an answer differs from the row of its evaluation, there is a dispute.
-    fn disputed(&self, request: &ExchangeRequest, ledger: &Ledger) -> Result<(), Broken> {
+    pub(super) fn disputed(&self, request: &ExchangeRequest, ledger: &Ledger) -> Result<(), Broken> {
         for result in &request.results {
             let (id, evaluation) = (result.calibration, result.evaluation);
             let Some(table) = ledger.table(id).filter(|_| self.known.contains(&id)) else {

@@ -248,12 +248,11 @@ impl LeaseQueue {
     /// The leases that have been out for so long `[ms]`, the longest first: evaluation and worker. None of a suspect, which waits
     /// for its own worker.
     pub fn older_than(&self, age_ms: u64, now_ms: u64) -> impl Iterator<Item = (u64, &str)> {
-        let old = self.leased.iter().filter_map(move |(lease, &evaluation)| {
+        self.leased.iter().filter_map(move |(lease, &evaluation)| {
             let claim = self.claim_of(*lease)?;
             let is_old = now_ms.saturating_sub(claim.since_ms) >= age_ms;
             (is_old && !self.entries[&evaluation].suspect).then_some((evaluation, claim.worker.as_str()))
-        });
-        old
+        })
     }
 
     fn claim_of(&self, lease: u64) -> Option<&Claim> {
