@@ -1,12 +1,10 @@
 //! Two different answers to one evaluation.
 
-use farm_tests::fake_worker::{FakeWorker, evaluated};
+use farm_tests::fake_worker::{FakeWorker, evaluated, rejected};
 use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::service::Service;
 use farm_tests::wait::until;
 use serde_json::Value;
-
-use super::rejected;
 
 /// The texts of the flags of kind `worker` in the summary of a finished calibration.
 fn worker_flags(service: &Service, id: i64) -> Vec<String> {
