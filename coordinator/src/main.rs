@@ -1,5 +1,7 @@
 //! The program `coordinator`: parses the command line, executes the command, reports errors.
 
+use std::io::Write as _;
+
 use clap::Parser;
 use coordinator::config::CoordinatorConfig;
 use shared::sentence::of_causes;
@@ -11,8 +13,7 @@ fn main() -> std::process::ExitCode {
     // The cryptography of every connection; only a second call would fail.
     let _ = rustls::crypto::ring::default_provider().install_default();
     if let Err(error) = coordinator::embedded::check_processor() {
-        eprintln!("error: {error}");
-        return std::process::ExitCode::FAILURE;
+        return refuse(error);
     }
     run()
 }
@@ -28,9 +29,12 @@ async fn run() -> std::process::ExitCode {
         .init();
     match coordinator::command::execute(config.command).await {
         Ok(()) => std::process::ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {}", of_causes(error.chain()));
-            std::process::ExitCode::FAILURE
-        }
+        Err(error) => refuse(of_causes(error.chain())),
     }
+}
+
+/// Says why the program ends; where nothing can be written, as on a full disk, it ends all the same.
+fn refuse(error: impl std::fmt::Display) -> std::process::ExitCode {
+    let _ = writeln!(std::io::stderr(), "error: {error}");
+    std::process::ExitCode::FAILURE
 }

@@ -290,15 +290,9 @@ fn a_folder_grows_and_its_run_knows_it_again() {
     );
 }
 
-/// Runs whose soil yields only after some shear displacement, to be searched and extended by itself.
+/// A study that finds something and goes on by itself.
 fn hidden() -> Job {
-    let job = Job {
-        runs: include_str!("../data/shear-mobilisation/runs.csv").into(),
-        ..Job::small()
-    };
-    job.in_job("normal = [30.0, 5.7]", "normal = [30.0, 1.5]")
-        .in_job("[sampler]", "[discovery]\napply = \"auto\"\n[sampler]")
-        .sampler(120, [2, 6], 1)
+    Job::hidden_shear().sampler(120, [2, 6], 1)
 }
 
 /// The calibrations of the service that are in progress: id, name, evaluations.

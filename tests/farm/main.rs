@@ -5,6 +5,7 @@ mod architecture;
 mod bad_input;
 mod bevameter;
 mod bit_identity;
+mod chaos;
 mod conformance;
 mod diagnostics;
 mod discovery;

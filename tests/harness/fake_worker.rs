@@ -123,3 +123,8 @@ pub fn evaluated(lease: &Value, runs: usize) -> Value {
         "residual_load_n": vector(0.0), "nodes_in_contact": vec![16; runs], "simulated_travel_m": vector(0.0),
     }})
 }
+
+/// The model's rejection of a parameter vector.
+pub fn rejected() -> Value {
+    json!({"rejected": {"kind": "no_support", "condition": 3, "message": "sinkage 0.2 m exceeds the radius 0.1 m"}})
+}

@@ -47,6 +47,16 @@ impl Job {
         )
     }
 
+    /// Runs whose soil yields only after some shear displacement, to be searched and extended by itself.
+    pub fn hidden_shear() -> Job {
+        let job = Job {
+            runs: include_str!("../data/shear-mobilisation/runs.csv").into(),
+            ..Job::small()
+        };
+        job.in_job("normal = [30.0, 5.7]", "normal = [30.0, 1.5]")
+            .in_job("[sampler]", "[discovery]\napply = \"auto\"\n[sampler]")
+    }
+
     /// The same job with other settings of the sampler.
     pub fn sampler(self, particles: usize, moves: [usize; 2], seed: u64) -> Job {
         let sampler = format!("particles = {particles}\nmoves = {moves:?}\nseed = {seed}");

@@ -14,7 +14,9 @@
 //! - [`text`]: comparing long texts.
 //! - [`wait`]: waiting with a deadline.
 //! - [`random`]: seeded numbers.
+//! - [`chaos`]: a farm to which everything happens that may.
 
+pub mod chaos;
 pub mod cylinder;
 pub mod database;
 pub mod fake_worker;

@@ -52,6 +52,11 @@ impl Process {
         Process::start(command, log)
     }
 
+    /// Its number.
+    pub fn id(&self) -> u32 {
+        self.child.id()
+    }
+
     /// Sends a signal.
     ///
     /// # Panics
@@ -73,16 +78,12 @@ impl Process {
         assert!(sent.success(), "{line}");
     }
 
-    /// Memory that it holds `[kB]`.
-    ///
-    /// # Panics
-    /// It has ended.
-    pub fn resident_kb(&self) -> u64 {
+    /// Memory that it holds `[kB]`; `None` where it has ended.
+    pub fn resident_kb(&self) -> Option<u64> {
         let path = format!("/proc/{}/status", self.child.id());
-        let status = std::fs::read_to_string(path).expect("a running process");
-        let value = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
-        let value = value.and_then(|v| v.trim_end_matches("kB").trim().parse().ok());
-        value.expect("a size of the resident set")
+        let status = std::fs::read_to_string(path).ok()?;
+        let value = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+        value.trim_end_matches("kB").trim().parse().ok()
     }
 
     /// Whether it has not ended.

@@ -100,6 +100,7 @@ impl Service {
             .as_ref()
             .expect("the service is running")
             .resident_kb()
+            .expect("the service is running")
     }
 
     /// The file of its store.

@@ -1,5 +1,6 @@
 //! The program `worker`: parse, connect, run.
 
+use std::io::Write as _;
 use std::sync::Arc;
 
 use anyhow::Context;
@@ -17,8 +18,7 @@ fn main() -> std::process::ExitCode {
     // The cryptography of every connection; only a second call would fail.
     let _ = rustls::crypto::ring::default_provider().install_default();
     if let Err(error) = worker::processor::check() {
-        eprintln!("error: {error}");
-        return std::process::ExitCode::FAILURE;
+        return refuse(error);
     }
     let log = tracing_subscriber::fmt::layer()
         .with_writer(std::io::stderr)
@@ -36,11 +36,14 @@ fn main() -> std::process::ExitCode {
     };
     match done {
         Ok(()) => std::process::ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {}", of_causes(error.chain()));
-            std::process::ExitCode::FAILURE
-        }
+        Err(error) => refuse(of_causes(error.chain())),
     }
+}
+
+/// Says why the program ends; where nothing can be written, as on a full disk, it ends all the same.
+fn refuse(error: impl std::fmt::Display) -> std::process::ExitCode {
+    let _ = writeln!(std::io::stderr(), "error: {error}");
+    std::process::ExitCode::FAILURE
 }
 
 #[tokio::main]

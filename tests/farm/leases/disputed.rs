@@ -1,12 +1,12 @@
 //! Two different answers to one evaluation.
 
-use farm_tests::fake_worker::{FakeWorker, evaluated};
+use farm_tests::fake_worker::{FakeWorker, evaluated, rejected};
 use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::service::Service;
 use farm_tests::wait::until;
 use serde_json::Value;
 
-use super::{rejected, worker_flags};
+use super::worker_flags;
 
 #[test]
 fn an_answer_that_differs_leaves_a_flag_before_and_after_the_end_and_over_restarts() {

@@ -1,11 +1,9 @@
 //! Acknowledged means durable: what was answered outlives a kill at once after the answer.
 
-use farm_tests::fake_worker::{FakeWorker, evaluated};
+use farm_tests::fake_worker::{FakeWorker, evaluated, rejected};
 use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::service::Service;
 use serde_json::json;
-
-use super::rejected;
 
 #[test]
 fn acknowledged_results_outlive_a_kill() {

@@ -1,13 +1,13 @@
 //! Evaluations that fail: whose fault it is and how often they are tried.
 
-use farm_tests::fake_worker::{FakeWorker, evaluated};
+use farm_tests::fake_worker::{FakeWorker, evaluated, rejected};
 use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::wait::until;
 use serde_json::{Value, json};
 
-use super::{fault, numbers, rejected};
+use super::{fault, numbers};
 
 #[test]
 fn a_poisonous_evaluation_is_given_up_and_an_innocent_one_is_not_blamed() {

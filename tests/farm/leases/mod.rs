@@ -13,10 +13,6 @@ mod workers;
 use farm_tests::service::Service;
 use serde_json::{Value, json};
 
-fn rejected() -> Value {
-    json!({"rejected": {"kind": "no_support", "condition": 3, "message": "sinkage 0.2 m exceeds the radius 0.1 m"}})
-}
-
 fn fault() -> Value {
     json!({"fault": {"message": "the disk is full"}})
 }

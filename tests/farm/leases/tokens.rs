@@ -2,12 +2,12 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use farm_tests::fake_worker::{FakeWorker, evaluated};
+use farm_tests::fake_worker::{FakeWorker, evaluated, rejected};
 use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::service::{Service, free_address};
 use farm_tests::wait::until;
 
-use super::{numbers, rejected};
+use super::numbers;
 
 #[test]
 fn fencing_tokens_never_repeat_across_restarts() {

@@ -1,6 +1,6 @@
 //! Results that a second worker computes as well.
 
-use farm_tests::fake_worker::{FakeWorker, evaluated};
+use farm_tests::fake_worker::{FakeWorker, evaluated, rejected};
 use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::lying_proxy::LyingProxy;
 use farm_tests::service::Service;
@@ -107,7 +107,7 @@ fn a_worker_that_contradicts_itself_needs_no_third() {
     let liar = FakeWorker::new(&service.client, "liar").computing(&version);
     let leases = liar.take(2);
     liar.answer(&leases, |lease| evaluated(lease, FIT_RUNS));
-    liar.answer(&leases[..1], |_| super::rejected());
+    liar.answer(&leases[..1], |_| rejected());
     assert!(liar.take(1).is_empty(), "quarantined");
     let _real = service.worker("real", 2);
     service.wait_for(id, "finished");

@@ -2,23 +2,13 @@
 
 use std::fs::File;
 use std::os::unix::fs::FileExt;
-use std::path::Path;
 
 use farm_tests::database::Database;
 use farm_tests::job::Job;
-use farm_tests::programs::{Ended, coordinator, run};
-use farm_tests::service::{Service, free_address};
+use farm_tests::programs::{coordinator, run};
+use farm_tests::service::Service;
 
-fn serve(store: &Path) -> Ended {
-    let store = format!("sqlite://{}", store.display());
-    run(coordinator([
-        "serve",
-        "--listen",
-        &free_address(),
-        "--store",
-        &store,
-    ]))
-}
+use super::serve;
 
 #[test]
 fn a_damaged_page_is_found_at_the_start_and_its_table_named() {

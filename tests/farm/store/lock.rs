@@ -1,25 +1,14 @@
 //! One coordinator to a file, whatever it is called; what others lock is waited for.
 
 use std::os::unix::fs::symlink;
-use std::path::Path;
 use std::time::Duration;
 
 use farm_tests::database::Database;
 use farm_tests::job::Job;
-use farm_tests::programs::{Ended, coordinator, run};
-use farm_tests::service::{Service, free_address};
+use farm_tests::service::Service;
 use farm_tests::wait::until;
 
-fn serve(store: &Path) -> Ended {
-    let store = format!("sqlite://{}", store.display());
-    run(coordinator([
-        "serve",
-        "--listen",
-        &free_address(),
-        "--store",
-        &store,
-    ]))
-}
+use super::serve;
 
 #[test]
 fn a_symlink_to_a_store_in_use_starts_no_second_coordinator() {

@@ -8,8 +8,19 @@ mod lock;
 mod read_only;
 mod removal;
 
-use serde_json::{Value, json};
+use std::path::Path;
 
-fn rejected() -> Value {
-    json!({"rejected": {"kind": "no_support", "condition": 3, "message": "sinkage 0.2 m exceeds the radius 0.1 m"}})
+use farm_tests::programs::{Ended, coordinator, run};
+use farm_tests::service::free_address;
+
+/// What a service says that is refused a store.
+fn serve(store: &Path) -> Ended {
+    let store = format!("sqlite://{}", store.display());
+    run(coordinator([
+        "serve",
+        "--listen",
+        &free_address(),
+        "--store",
+        &store,
+    ]))
 }

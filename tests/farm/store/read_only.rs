@@ -1,6 +1,6 @@
 //! Reading works where nothing can be written.
 
-use std::fs::Permissions;
+use std::fs::{File, Permissions};
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::Path;
 use std::process::Command;
@@ -8,7 +8,7 @@ use std::process::Command;
 use farm_tests::http::Client;
 use farm_tests::job::Job;
 use farm_tests::process::Process;
-use farm_tests::programs::{coordinator, run};
+use farm_tests::programs::{coordinator, run, worker};
 use farm_tests::service::{Service, free_address};
 use farm_tests::wait::until;
 use serde_json::json;
@@ -142,4 +142,16 @@ fn a_reading_service_shows_what_another_writes_and_takes_nothing() {
     service.wait_for(second, "finished");
     assert_eq!(client.json("/v1/calibrations/2")["state"], "finished");
     drop(process);
+}
+
+#[test]
+fn an_error_that_nobody_can_be_told_is_no_panic() {
+    for mut command in [
+        coordinator(["check", "there-is-no-job.toml"]),
+        worker(["--coordinator", "there is no such URL"]),
+    ] {
+        let full = File::options().write(true).open("/dev/full");
+        let ended = command.stderr(full.expect("a disk that is always full")).status();
+        assert_eq!(ended.expect("the program starts").code(), Some(1), "{command:?}");
+    }
 }

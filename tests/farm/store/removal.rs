@@ -1,7 +1,7 @@
 //! Studies that are archived, restored, deleted, and deleted by age.
 
 use farm_tests::database::Database;
-use farm_tests::fake_worker::FakeWorker;
+use farm_tests::fake_worker::{FakeWorker, rejected};
 use farm_tests::job::Job;
 use farm_tests::programs::{Ended, coordinator, run};
 use farm_tests::service::Service;
@@ -92,7 +92,7 @@ fn a_study_in_progress_is_neither_deleted_nor_archived_and_late_results_of_a_del
     );
     service.client.post("/v1/calibrations/1/cancel", &json!({}));
     verb(&service, "delete", "1").success();
-    worker.answer(&leases, |_| super::rejected());
+    worker.answer(&leases, |_| rejected());
     assert_eq!(service.submit(&Job::small()), 2);
     assert_eq!(service.client.get("/health").status, 200);
 }
