@@ -1,7 +1,8 @@
 //! Leased and durably completed evaluations per second, through real HTTP, with a model that costs nothing.
 //!
 //! `cargo bench -p coordinator --bench throughput`. A real `coordinator serve` on a real file; 32 connected
-//! workers in this process, each of which exchanges the results of its last batch for the next one.
+//! workers in this process, each of which exchanges the results of its last batch for the next one; with and without
+//! verification on a second worker, by turns. At the end a swarm of a thousand workers.
 
 use std::error::Error;
 use std::process::{Child, Command, Stdio};
@@ -17,6 +18,7 @@ use shared::outcome::{Observables, Outcome};
 type Anyhow<T> = Result<T, Box<dyn Error + Send + Sync>>;
 
 const WORKERS: usize = 32;
+const SWARM: usize = 1_000;
 const SECONDS: u64 = 8;
 /// The first round alone lasts longer than the measurement, so that no sampler's step is measured.
 const PARTICLES: usize = 50_000;
@@ -27,6 +29,14 @@ const CALIBRATIONS: usize = 16;
 const BATCHES: [(u32, f64); 3] = [(1, 2_000.0), (16, 20_000.0), (64, 20_000.0)];
 const GOAL_P99_MS: f64 = 50.0;
 const GOAL_CPU_US: f64 = 40.0;
+const GOAL_SWARM_CPU_US: f64 = 60.0;
+const GOAL_SWARM_MB: f64 = 150.0;
+/// Verification costs at most so much of the throughput at batch 16 `[%]`.
+const GOAL_VERIFICATION_PERCENT: f64 = 5.0;
+/// Shares of the evaluations that are verified `[%]`: none, and the default.
+const VERIFIED_PERCENT: [&str; 2] = ["0", "1"];
+/// So often each is measured, by turns.
+const TURNS: usize = 3;
 
 const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 1.0\n";
 const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n\na,w,s,0.2,100,0.008,30\n";
@@ -54,6 +64,16 @@ impl Server {
         let ticks: f64 = fields[11].parse::<f64>()? + fields[12].parse::<f64>()?;
         Ok(ticks / 100.0)
     }
+
+    /// Most memory that the process has held so far `[MB]`.
+    fn most_resident_mb(&self) -> Anyhow<f64> {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.0.id()))?;
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let kb = line
+            .and_then(|line| line.split_whitespace().next())
+            .ok_or("no VmHWM")?;
+        Ok(kb.parse::<f64>()? / 1000.0)
+    }
 }
 
 #[tokio::main]
@@ -66,12 +86,29 @@ async fn main() -> Anyhow<()> {
         "batch", "evaluations/s", "goal", "p50 ms", "p99 ms", "goal", "coordinator us"
     );
     for (batch, goal) in BATCHES {
-        let m = measure(batch).await?;
+        let m = measure(WORKERS, batch, "1").await?;
         println!(
             "{batch:>6} {:>14.0} {goal:>9.0} {:>8.2} {:>8.2} {GOAL_P99_MS:>8.0} {:>8.1} of {GOAL_CPU_US:.0}",
             m.per_second, m.p50_ms, m.p99_ms, m.cpu_us
         );
     }
+    let mut rates = [0.0; 2];
+    for _ in 0..TURNS {
+        for (rate, percent) in rates.iter_mut().zip(VERIFIED_PERCENT) {
+            *rate += measure(WORKERS, 16, percent).await?.per_second / TURNS as f64;
+        }
+    }
+    println!(
+        "\nverification of 1 % at batch 16: {:.0} evaluations/s, without {:.0}: {:.1} % less (at most {GOAL_VERIFICATION_PERCENT} %)",
+        rates[1],
+        rates[0],
+        100.0 * (1.0 - rates[1] / rates[0])
+    );
+    let m = measure(SWARM, 16, "1").await?;
+    println!(
+        "{SWARM} workers at batch 16: {:.0} evaluations/s, p99 {:.0} ms, {:.1} us of the coordinator (at most {GOAL_SWARM_CPU_US}), {:.0} MB (at most {GOAL_SWARM_MB})",
+        m.per_second, m.p99_ms, m.cpu_us, m.resident_mb
+    );
     Ok(())
 }
 
@@ -80,9 +117,11 @@ struct Measured {
     p50_ms: f64,
     p99_ms: f64,
     cpu_us: f64,
+    /// Most memory that the coordinator held.
+    resident_mb: f64,
 }
 
-async fn measure(batch: u32) -> Anyhow<Measured> {
+async fn measure(connected: usize, batch: u32, verify_percent: &str) -> Anyhow<Measured> {
     let folder = tempfile::tempdir()?;
     let port = std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
     let url = format!("http://127.0.0.1:{port}");
@@ -95,6 +134,8 @@ async fn measure(batch: u32) -> Anyhow<Measured> {
                 &format!("127.0.0.1:{port}"),
                 "--store",
                 &store,
+                "--verify-percent",
+                verify_percent,
             ])
             .stderr(Stdio::null())
             .spawn()?,
@@ -124,7 +165,7 @@ async fn measure(batch: u32) -> Anyhow<Measured> {
     let cpu_before = server.cpu_s()?;
     let began = Instant::now();
     let until = began + Duration::from_secs(SECONDS);
-    let workers: Vec<_> = (0..WORKERS)
+    let workers: Vec<_> = (0..connected)
         .map(|k| {
             tokio::spawn(work(
                 Client::new(),
@@ -140,7 +181,7 @@ async fn measure(batch: u32) -> Anyhow<Measured> {
     for worker in workers {
         latencies_ms.extend(worker.await??);
     }
-    if latencies_ms.iter().any(|&ms| ms > 900.0) {
+    if connected <= WORKERS && latencies_ms.iter().any(|&ms| ms > 900.0) {
         return Err("a worker waited for work: the figures would be of an idle farm".into());
     }
     let seconds = began.elapsed().as_secs_f64();
@@ -152,6 +193,7 @@ async fn measure(batch: u32) -> Anyhow<Measured> {
         p50_ms: quantile(0.5),
         p99_ms: quantile(0.99),
         cpu_us: 1e6 * (server.cpu_s()? - cpu_before) / evaluations,
+        resident_mb: server.most_resident_mb()?,
     })
 }
 

@@ -446,7 +446,7 @@ fn a_living_coordinator_speaks_these_forms() {
     let workers = service.client.json("/v1/workers");
     assert_eq!(
         shape(&workers),
-        json!({"any": {"model_version": "text", "holds": "whole", "completed": "whole", "faults": "whole", "silent_ms": "whole"}})
+        json!({"any": {"model_version": "text", "holds": "whole", "completed": "whole", "faults": "whole", "quarantined": null, "silent_ms": "whole"}})
     );
 }
 

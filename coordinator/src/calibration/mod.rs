@@ -9,6 +9,7 @@ mod engine;
 mod faults;
 mod final_draws;
 mod process;
+mod question;
 mod replay;
 mod second_answer;
 mod simulation_result;
@@ -16,7 +17,8 @@ mod verification;
 
 pub use completion::ResultError;
 pub use engine::{BeginError, CalibrationEngine, CalibrationResult};
-pub use process::{Calibration, CalibrationIdentity, Question};
+pub use process::{Calibration, CalibrationIdentity};
+pub use question::Question;
 pub use replay::ReplayError;
 pub use second_answer::{Answer, SecondAnswers, Verdict};
 pub use simulation_result::{SimulationResult, result_of};

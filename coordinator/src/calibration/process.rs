@@ -11,6 +11,7 @@ use statistics::{Metamodel, Subchain};
 
 use super::engine::{BeginError, CalibrationEngine};
 use super::final_draws::FinalDraws;
+use super::question::Question;
 use super::second_answer::{SecondAnswers, StoredAnswer};
 use super::verification::Verification;
 use crate::lease::LeaseQueue;
@@ -84,17 +85,6 @@ pub struct Calibration {
     pub(super) is_concluded: bool,
     /// Workers found to compute wrongly, with the evaluation, since they were last asked for.
     pub(super) convicted: Vec<(String, u64)>,
-}
-
-/// What an evaluation is leased with.
-#[derive(Debug, Clone, Copy)]
-pub struct Question<'a> {
-    /// Hash of the variant.
-    pub variant: &'a str,
-    /// The parameters: those of the model, of a subchain all.
-    pub theta: &'a [f64],
-    /// The subchain that starts there.
-    pub subchain: Option<Subchain>,
 }
 
 impl Calibration {

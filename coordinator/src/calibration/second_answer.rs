@@ -10,7 +10,7 @@ use record::Fingerprint;
 use shared::model::ModelVariant;
 use statistics::Subchain;
 
-use super::process::Question;
+use super::question::Question;
 use crate::lease::LeaseQueue;
 
 /// Who answered, and what.

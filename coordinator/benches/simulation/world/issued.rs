@@ -1,4 +1,4 @@
-//! A lease that was given, and the honest answer to it.
+//! A lease that was given, the honest answer to it, and who holds it.
 
 use shared::exchange::{Lease, WorkResult};
 use shared::model::equations_of;
@@ -39,4 +39,17 @@ impl Issued<'_> {
             outcome: self.answered.outcome.clone(),
         }
     }
+}
+
+/// A lease that is out.
+#[derive(Debug, Clone)]
+pub(super) struct Live {
+    pub(super) lease: u64,
+    pub(super) worker: String,
+    /// The worker's version of the equations.
+    pub(super) version: String,
+    pub(super) since_ms: u64,
+    pub(super) until_ms: u64,
+    pub(super) started: bool,
+    pub(super) is_suspect: bool,
 }

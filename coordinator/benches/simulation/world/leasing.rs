@@ -4,7 +4,7 @@ use shared::api::CalibrationState;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease};
 use shared::model::equations_of;
 
-use super::issued::Issued;
+use super::issued::{Issued, Live};
 use super::ledger::Ledger;
 use super::promise::{Broken, Promise, demand};
 use super::witness::Witness;
@@ -12,19 +12,6 @@ use record::EvaluationRow;
 
 /// A lease that is out for less is not slow `[ms]`.
 const SLOW_MS: u64 = 1_000;
-
-/// A lease that is out.
-#[derive(Debug, Clone)]
-pub(super) struct Live {
-    pub(super) lease: u64,
-    pub(super) worker: String,
-    /// The worker's version of the equations.
-    pub(super) version: String,
-    pub(super) since_ms: u64,
-    pub(super) until_ms: u64,
-    pub(super) started: bool,
-    pub(super) is_suspect: bool,
-}
 
 impl<'a> Witness<'a> {
     /// Lets time pass for leases, before the facts of the tick.

@@ -10,8 +10,7 @@ use shared::model::equations_of;
 use shared::outcome::Outcome;
 
 use super::case::{CaseResult, posterior_bits, same_row, stage_bits};
-use super::issued::Issued;
-use super::leasing::Live;
+use super::issued::{Issued, Live};
 use super::ledger::{Ledger, Table, calibration_of};
 use super::promise::{Broken, Promise, demand};
 
