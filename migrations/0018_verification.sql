@@ -1,5 +1,7 @@
 -- The second worker that has reproduced the result; NULL: nobody has.
 ALTER TABLE evaluations ADD COLUMN confirmed_by TEXT;
+-- The fingerprint of a subchain's end covers more from here on: earlier ones cannot be compared.
+UPDATE evaluations SET confirmed_by = '' WHERE subchain IS NOT NULL;
 
 -- Workers that compute wrongly: two others agree on another answer, or the worker has answered in two ways.
 CREATE TABLE quarantine (

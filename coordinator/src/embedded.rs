@@ -61,6 +61,16 @@ pub fn model_version() -> &'static str {
     worker::model_version()
 }
 
+/// Process and time: fresh for every process, also where each is the first of its container.
+fn local_name() -> String {
+    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    format!(
+        "local-{}-{:x}",
+        std::process::id(),
+        since.map_or(0, |d| d.as_millis())
+    )
+}
+
 impl LocalWorkers {
     /// Starts so many threads; they stop when `shutdown` is ready.
     pub fn start(
@@ -70,7 +80,7 @@ impl LocalWorkers {
     ) -> Self {
         let clock = Arc::new(SimulationClock::default());
         let settings = PullSettings {
-            name: format!("local-{}", std::process::id()),
+            name: local_name(),
             threads,
         };
         let work = run(Arc::new(InProcess(dispatcher)), settings, clock.clone(), shutdown);

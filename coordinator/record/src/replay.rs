@@ -20,6 +20,8 @@ pub struct Stored {
     pub busy_ms: u64,
     /// Its evaluations by number: parameter vector, log-likelihood, whether the model rejected.
     pub evaluations: BTreeMap<u64, StoredEvaluation>,
+    /// Whether results of it were dropped.
+    pub is_rewound: bool,
     /// The workers of failed leases, by evaluation.
     pub failed: BTreeMap<u64, Vec<String>>,
 }

@@ -49,7 +49,7 @@ impl Calibration {
     ) -> Result<(Vec<Fact>, bool), ResultError> {
         let computed = computed.into();
         if let Err(error) = self.check_shape(evaluation, &computed) {
-            self.second.drop_idle(|asked| asked == evaluation);
+            self.forget_verification(evaluation);
             return Err(error);
         }
         let answer = Answer {

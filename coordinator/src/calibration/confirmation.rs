@@ -15,6 +15,13 @@ impl Calibration {
         }
     }
 
+    /// The answer did not come: nothing is compared so far.
+    pub(super) fn forget_verification(&mut self, evaluation: u64) {
+        if self.second.is_unanswered(evaluation) {
+            self.second.drop(evaluation);
+        }
+    }
+
     /// Counts the answer that is stored; its evaluation may be asked for twice.
     pub(super) fn answered_first(&mut self, evaluation: u64, answer: &Answer) {
         if answer.worker == NOBODY {
@@ -69,7 +76,10 @@ impl Calibration {
                 }
             }
         }
+        let is_known = self.second.contains(evaluation) || self.done.contains_key(&evaluation);
         match self.second.answered(evaluation, answer) {
+            // After a rewind the same number may have asked something else before.
+            Verdict::NotAsked if self.is_rewound && !is_known => Vec::new(),
             Verdict::NotAsked | Verdict::Differ => vec![duplicate],
             Verdict::Open => Vec::new(),
             Verdict::Contradiction => {

@@ -81,6 +81,8 @@ pub struct Calibration {
     pub(super) unconfirmed: BTreeMap<String, u64>,
     /// Stored answers that another worker has confirmed.
     pub confirmed: u64,
+    /// Whether results were dropped, so that numbers of evaluations have asked something else before.
+    pub is_rewound: bool,
     /// Whether nothing is left but to compare answers.
     pub(super) is_concluded: bool,
     /// Workers found to compute wrongly, with the evaluation, since they were last asked for.
@@ -146,6 +148,7 @@ impl Calibration {
             second: SecondAnswers::default(),
             unconfirmed: BTreeMap::new(),
             confirmed: 0,
+            is_rewound: false,
             is_concluded: false,
             convicted: Vec::new(),
         };

@@ -49,6 +49,7 @@ impl Calibration {
         }
         self.model_version = stored.model_version;
         self.busy_ms = stored.busy_ms;
+        self.is_rewound = stored.is_rewound;
         self.failed = stored.failed;
         self.ask();
         let mut facts = Vec::new();

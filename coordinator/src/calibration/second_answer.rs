@@ -4,7 +4,7 @@
 //! Two equal answers of different workers settle an evaluation; whoever answered otherwise computes wrongly. While all answers
 //! differ, another worker is asked.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use record::Fingerprint;
 use shared::model::ModelVariant;
@@ -12,6 +12,9 @@ use statistics::Subchain;
 
 use super::question::Question;
 use crate::lease::LeaseQueue;
+
+/// So many evaluations wait for a second answer at most; more are not verified: a farm of one worker would gather them without end.
+const MAX_WAITING: usize = 1_000;
 
 /// Who answered, and what.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -67,12 +70,14 @@ pub struct SecondAnswers {
     /// Who holds them.
     pub queue: LeaseQueue,
     repeated: BTreeMap<u64, Repeated>,
+    /// Of these, those of which one answer is enough.
+    uncompared: BTreeSet<u64>,
     /// What they evaluate, where the calibration may forget it.
     variants: BTreeMap<String, ModelVariant>,
 }
 
 impl SecondAnswers {
-    /// Asks for a second answer; where that is done already, it is compared from now on if one of the two says so.
+    /// Asks for a second answer, unless too many wait for one; where that is done already, it is compared from now on if one of the two says so.
     ///
     /// # Arguments
     /// - `question`: what is asked.
@@ -88,8 +93,19 @@ impl SecondAnswers {
         holder: Option<&str>,
     ) {
         if let Some(repeated) = self.repeated.get_mut(&evaluation) {
-            repeated.is_compared |= is_compared;
+            if is_compared && !repeated.is_compared {
+                // Whoever is slow may answer as well; only who has answered may not once more.
+                repeated.is_compared = true;
+                self.uncompared.remove(&evaluation);
+                self.queue.unbar(evaluation);
+            }
             return;
+        }
+        if is_compared && self.repeated.len() >= MAX_WAITING {
+            return;
+        }
+        if !is_compared {
+            self.uncompared.insert(evaluation);
         }
         if let Some(variant) = variant.filter(|_| !self.variants.contains_key(question.variant)) {
             self.variants.insert(question.variant.to_owned(), variant);
@@ -109,6 +125,12 @@ impl SecondAnswers {
     /// Whether an evaluation is asked for twice.
     pub fn contains(&self, evaluation: u64) -> bool {
         self.repeated.contains_key(&evaluation)
+    }
+
+    /// Whether an evaluation is asked for twice, and nobody has answered.
+    pub fn is_unanswered(&self, evaluation: u64) -> bool {
+        let repeated = self.repeated.get(&evaluation);
+        repeated.is_some_and(|repeated| repeated.answers.is_empty())
     }
 
     /// What an evaluation is leased with.
@@ -162,20 +184,18 @@ impl SecondAnswers {
     /// Asks for an evaluation no more.
     pub fn drop(&mut self, evaluation: u64) {
         self.repeated.remove(&evaluation);
+        self.uncompared.remove(&evaluation);
         self.queue.remove(evaluation);
         if self.repeated.is_empty() {
             self.variants.clear();
         }
     }
 
-    /// Drops what nobody has answered and nobody holds, as far as that is wanted.
+    /// Drops what need not be compared and nobody holds, as far as that is wanted.
     pub fn drop_idle(&mut self, is_wanted: impl Fn(u64) -> bool) {
-        let is_dropped = |(&evaluation, repeated): (&u64, &Repeated)| {
-            let is_idle = repeated.answers.is_empty() && !self.queue.is_leased(evaluation);
-            (is_idle && is_wanted(evaluation)).then_some(evaluation)
-        };
-        let unanswered: Vec<u64> = self.repeated.iter().filter_map(is_dropped).collect();
-        for evaluation in unanswered {
+        let is_idle = |evaluation: &u64| !self.queue.is_leased(*evaluation) && is_wanted(*evaluation);
+        let idle: Vec<u64> = self.uncompared.iter().copied().filter(is_idle).collect();
+        for evaluation in idle {
             self.drop(evaluation);
         }
     }
@@ -203,11 +223,18 @@ impl SecondAnswers {
         expired.unstarted + expired.failures.len() as u64
     }
 
-    /// Drops what nobody can answer: `can_answer` tells whether there is a worker besides some. How many.
-    pub fn drop_hopeless(&mut self, can_answer: impl Fn(&[Answer]) -> bool) -> u64 {
+    /// Drops what nobody can answer: `can_answer` tells whether there is a worker besides those that have. So is a lease that has been
+    /// out for so long `[ms]`. How many.
+    pub fn drop_hopeless(
+        &mut self,
+        can_answer: impl Fn(&[Answer]) -> bool,
+        hung_ms: u64,
+        now_ms: u64,
+    ) -> u64 {
+        let hung: BTreeSet<u64> = self.queue.older_than(hung_ms, now_ms).map(|(e, _)| e).collect();
         let is_hopeless = |(&evaluation, repeated): (&u64, &Repeated)| {
-            let is_out = self.queue.is_leased(evaluation);
-            (!is_out && !can_answer(&repeated.answers)).then_some(evaluation)
+            let is_out = self.queue.is_leased(evaluation) && !hung.contains(&evaluation);
+            (!is_out && (hung.contains(&evaluation) || !can_answer(&repeated.answers))).then_some(evaluation)
         };
         let hopeless: Vec<u64> = self.repeated.iter().filter_map(is_hopeless).collect();
         hopeless.iter().for_each(|&evaluation| self.drop(evaluation));
@@ -290,8 +317,51 @@ mod tests {
         let others = |names: &'static [&'static str]| {
             move |answers: &[Answer]| names.iter().any(|n| !answers.iter().any(|a| a.worker == *n))
         };
-        assert_eq!(second.drop_hopeless(others(&["a", "b"])), 0);
-        assert_eq!(second.drop_hopeless(others(&["a"])), 1);
+        assert_eq!(second.drop_hopeless(others(&["a", "b"]), 50, 0), 0);
+        assert_eq!(second.drop_hopeless(others(&["a"]), 50, 0), 1);
         assert_eq!(second.waiting(), 0);
+    }
+
+    #[test]
+    fn a_slow_worker_may_answer_once_answers_are_compared() {
+        let mut second = SecondAnswers::default();
+        let question = Question {
+            variant: "00ff",
+            theta: &[1.5],
+            subchain: None,
+        };
+        second.ask(3, question, None, false, Some("slow"));
+        second.ask(3, question, None, true, None);
+        answer(&mut second, "quick", 1);
+        let claimant = |worker| crate::lease::Claimant {
+            worker,
+            holds: 0,
+            now_ms: 0,
+            expires_ms: 9,
+        };
+        assert!(
+            second
+                .queue
+                .claim(claimant("quick"), 1, |_| true, || 1)
+                .is_empty()
+        );
+        assert_eq!(second.queue.claim(claimant("slow"), 1, |_| true, || 2).len(), 1);
+        // It hangs: at the end nobody waits for it.
+        assert_eq!(second.drop_hopeless(|_| true, 50, 49), 0);
+        assert_eq!(second.drop_hopeless(|_| true, 50, 50), 1);
+    }
+
+    #[test]
+    fn no_more_than_a_thousand_wait() {
+        let mut second = SecondAnswers::default();
+        for evaluation in 0..2 * MAX_WAITING as u64 {
+            let question = Question {
+                variant: "00ff",
+                theta: &[],
+                subchain: None,
+            };
+            second.ask(evaluation, question, None, true, None);
+        }
+        assert_eq!(second.waiting(), MAX_WAITING);
     }
 }

@@ -63,9 +63,13 @@ impl SimulationResult {
                 .fold(7, |hash: i64, b| hash.wrapping_mul(31).wrapping_add(i64::from(b))),
         };
         let end = self.end.as_ref().into_iter();
-        let numbers = end.flat_map(|end| end.theta.iter().copied().chain([end.log_gain]));
-        Fingerprint(numbers.fold(outcome, |hash, number| {
-            hash.wrapping_mul(31).wrapping_add(number.to_bits().cast_signed())
+        let bits = end.flat_map(|end| {
+            let numbers = end.theta.iter().copied().chain([end.log_gain]).map(f64::to_bits);
+            let counts = [end.moves, end.accepted, end.scaled, end.scaled_accepted];
+            numbers.chain(counts.map(u64::from))
+        });
+        Fingerprint(bits.fold(outcome, |hash, bits| {
+            hash.wrapping_mul(31).wrapping_add(bits.cast_signed())
         }))
     }
 

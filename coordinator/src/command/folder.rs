@@ -16,7 +16,7 @@ use crate::config::ExposureArguments;
 use crate::embedded::{LocalWorkers, model_version};
 use crate::farm::Control;
 use crate::http::Exposure;
-use crate::service::{FarmSettings, Service, next_step_of, search_rounds};
+use crate::service::{FarmSettings, LEASE_MS, Service, VERIFIED_PERCENT, next_step_of, search_rounds};
 use record::CalibrationRow;
 use result::discovery::effect_file;
 use result::terminal::discovery;
@@ -49,7 +49,13 @@ impl Folder {
         listener: Option<(TcpListener, &ExposureArguments)>,
     ) -> anyhow::Result<Folder> {
         let store = out.join("grouser.db").display().to_string();
-        let service = Service::open(&store, FarmSettings::default()).await?;
+        // Without a listener there is one worker: this program.
+        let verified_share = listener.as_ref().map_or(0.0, |_| VERIFIED_PERCENT / 100.0);
+        let settings = FarmSettings {
+            lease_ms: LEASE_MS,
+            verified_share,
+        };
+        let service = Service::open(&store, settings).await?;
         let server = match listener {
             Some((listener, config)) => {
                 let reader = service.store().reader();

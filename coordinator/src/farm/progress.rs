@@ -58,7 +58,12 @@ impl Pace {
 }
 
 /// The status of a calibration.
-pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> CalibrationStatus {
+pub(super) fn status(
+    calibration: &Calibration,
+    pace: &Pace,
+    is_rewinding: bool,
+    now_ms: u64,
+) -> CalibrationStatus {
     let identity = &calibration.identity;
     let (stage, tempering_exponent, step, acceptance) = match calibration.engine() {
         CalibrationEngine::Sampler(sampler) => {
@@ -77,7 +82,12 @@ pub(super) fn status(calibration: &Calibration, pace: &Pace, now_ms: u64) -> Cal
         study: identity.study,
         experiment: identity.experiment,
         state: calibration.state,
-        message: calibration.message.clone().or_else(|| waits(calibration)),
+        message: calibration.message.clone().or_else(|| match is_rewinding {
+            true => {
+                Some("results of a worker that computes wrongly were dropped; the rest is replayed".into())
+            }
+            false => waits(calibration),
+        }),
         model_kind: Some(calibration.spec.model.kind.name().to_owned()),
         model_version: calibration.model_version.clone(),
         progress: Some(Progress {

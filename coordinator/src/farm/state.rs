@@ -46,8 +46,10 @@ pub(super) struct Entry {
     pub(super) calibration: Calibration,
     pub(super) key: SealKey,
     pub(super) pace: Pace,
-    /// Whether it waits for its replay, and neither leases nor takes anything.
-    pub(super) is_rewinding: bool,
+    /// How many replays it waits for; it neither leases nor takes anything until the last.
+    pub(super) rewinds: u32,
+    /// Whether the last of them failed, so that it has to be asked for again.
+    pub(super) is_replay_due: bool,
     /// When busy time was last added up `[ms]`.
     counted_ms: u64,
 }
@@ -59,11 +61,12 @@ impl Entry {
     }
 }
 
-/// What the late results of a calibration that ended are checked by.
-#[derive(Debug)]
+/// What the late results of a calibration that takes none are checked by.
+#[derive(Debug, Clone)]
 struct Ended {
     key: SealKey,
     model_version: String,
+    is_rewound: bool,
 }
 
 /// What becomes of a result.
@@ -100,7 +103,12 @@ impl Farm {
             // Cancelled while it was replayed.
             return;
         }
-        if let Some(before) = self.calibrations.get(&id) {
+        if let Some(before) = self.calibrations.get_mut(&id) {
+            before.rewinds = before.rewinds.saturating_sub(1);
+            if before.rewinds > 0 {
+                // It was read before more of it was dropped.
+                return;
+            }
             // What a user has said meanwhile holds.
             if !calibration.state.is_final() {
                 calibration.state = before.calibration.state;
@@ -114,7 +122,8 @@ impl Farm {
             calibration,
             key,
             pace,
-            is_rewinding: false,
+            rewinds: 0,
+            is_replay_due: false,
             counted_ms: now_ms,
         };
         self.calibrations.insert(entry.calibration.identity.id, entry);
@@ -229,7 +238,11 @@ impl Farm {
             leases,
             lease_ms: self.lease_ms,
             remaining: self.remaining(),
-            workers: self.workers.len() as u32,
+            workers: self
+                .workers
+                .keys()
+                .filter(|name| !self.quarantine.contains_key(*name))
+                .count() as u32,
             duplicates: duplicates + refused_leases.len() as u32,
             refused,
         }
@@ -238,8 +251,8 @@ impl Farm {
     /// Takes a result from a worker that computes a version of the equations. The first that counts pins its calibration to it.
     fn take_result(&mut self, worker: &str, version: &str, result: WorkResult, now_ms: u64) -> Taken {
         let (id, lease, evaluation) = (result.calibration, result.lease, result.evaluation);
-        if let Some((key, pinned)) = self.closed(id) {
-            return self.compare_late(worker, result, key, &pinned);
+        if let Some(closed) = self.closed(id) {
+            return self.compare_late(worker, result, &closed);
         }
         let terms = |model_version| LeaseTerms {
             lease,
@@ -331,33 +344,34 @@ impl Farm {
 
     /// Key and model version of a calibration that takes no results: it has ended, or waits for its replay, after which a result
     /// counts where it is asked for again.
-    fn closed(&self, id: i64) -> Option<(SealKey, String)> {
-        match self.calibrations.get(&id) {
-            None => {
-                let ended = self.ended.get(&id)?;
-                Some((ended.key, ended.model_version.clone()))
-            }
-            Some(entry) => {
-                let version = entry.calibration.model_version.clone().unwrap_or_default();
-                entry.is_rewinding.then_some((entry.key, version))
-            }
-        }
+    fn closed(&self, id: i64) -> Option<Ended> {
+        let Some(entry) = self.calibrations.get(&id) else {
+            return self.ended.get(&id).cloned();
+        };
+        let calibration = &entry.calibration;
+        let is_closed = entry.rewinds > 0 || calibration.state.is_final();
+        is_closed.then(|| Ended {
+            key: entry.key,
+            model_version: calibration.model_version.clone().unwrap_or_default(),
+            is_rewound: entry.rewinds > 0 || calibration.is_rewound,
+        })
     }
 
     /// Lets the store compare a result that does not count.
-    fn compare_late(&mut self, worker: &str, result: WorkResult, key: SealKey, model_version: &str) -> Taken {
+    fn compare_late(&mut self, worker: &str, result: WorkResult, closed: &Ended) -> Taken {
         let (calibration, evaluation) = (result.calibration, result.evaluation);
         let terms = LeaseTerms {
             lease: result.lease,
             worker,
             calibration,
             evaluation,
-            model_version,
+            model_version: &closed.model_version,
         };
-        if !proves(&result.seal, key, terms, None) {
+        if !proves(&result.seal, closed.key, terms, None) {
             return Taken::Refused;
         }
-        if let Ok(computed) = SimulationResult::of(result) {
+        // After a rewind the same number may ask something else: what it asked before is not known.
+        if let Some(computed) = SimulationResult::of(result).ok().filter(|_| !closed.is_rewound) {
             self.facts.push(Fact::Duplicate {
                 calibration,
                 evaluation,
@@ -403,9 +417,8 @@ impl Farm {
                 self.facts.extend(entry.calibration.never_begun(evaluation));
             }
         }
-        self.workers.retain(|name, w| {
-            now_ms.saturating_sub(w.last_seen_ms) < WORKER_SILENCE_MS || self.quarantine.contains_key(name)
-        });
+        self.workers
+            .retain(|_, w| now_ms.saturating_sub(w.last_seen_ms) < WORKER_SILENCE_MS);
         self.ask_beside_slow_workers(now_ms);
         for id in self.ids() {
             self.settle(id, now_ms);
@@ -429,7 +442,13 @@ impl Farm {
         self.ended.extend(ended.map(|(id, entry)| {
             let model_version = entry.calibration.model_version.unwrap_or_default();
             let key = entry.key;
-            (id, Ended { key, model_version })
+            let is_rewound = entry.calibration.is_rewound;
+            let ended = Ended {
+                key,
+                model_version,
+                is_rewound,
+            };
+            (id, ended)
         }));
     }
 
@@ -458,7 +477,10 @@ impl Farm {
                 calibration.change_state(CalibrationState::Paused, message, &mut self.facts);
             }
             // Its replay asks for what is to be evaluated.
-            (Control::Resume { .. }, CalibrationState::Paused) if entry.is_rewinding => {
+            (Control::Resume { .. }, CalibrationState::Paused) if entry.rewinds > 0 => {
+                if std::mem::take(&mut entry.is_replay_due) {
+                    self.rewinds.push(id);
+                }
                 calibration.change_state(CalibrationState::Running, None, &mut self.facts);
             }
             (Control::Resume { skip_faults }, CalibrationState::Paused) => {
@@ -488,7 +510,7 @@ impl Farm {
     pub fn status(&self, id: i64, now_ms: u64) -> Option<CalibrationStatus> {
         self.calibrations
             .get(&id)
-            .map(|e| progress::status(&e.calibration, &e.pace, now_ms))
+            .map(|e| progress::status(&e.calibration, &e.pace, e.rewinds > 0, now_ms))
     }
 
     /// Ids of the calibrations in progress.

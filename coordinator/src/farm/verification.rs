@@ -12,6 +12,9 @@ const SLOW_TIMES: u64 = 3;
 /// so much longer `[ms]`.
 const SLOW_MS: u64 = 1_000;
 
+/// At the end of a calibration a second answer is waited for as long as so many leases take, and a lease's time.
+const HUNG_TIMES: u64 = 10;
+
 impl Farm {
     /// The same, with workers that were found to compute wrongly before.
     #[must_use]
@@ -27,7 +30,7 @@ impl Farm {
         std::mem::take(&mut self.rewinds)
     }
 
-    /// A replay failed: the calibration waits for a user.
+    /// A replay failed: the calibration waits for a user, who resumes it for another try.
     pub fn rewind_failed(&mut self, id: i64, reason: &str) {
         let Some(entry) = self.calibrations.get_mut(&id) else {
             return;
@@ -35,6 +38,7 @@ impl Farm {
         let message = format!(
             "results of a worker that computes wrongly were dropped, but the rest cannot be replayed: {reason}"
         );
+        entry.is_replay_due = true;
         let paused = shared::api::CalibrationState::Paused;
         entry
             .calibration
@@ -49,12 +53,11 @@ impl Farm {
         }
         self.quarantine
             .insert(worker.to_owned(), reason(worker, calibration, evaluation));
-        self.facts.push(Fact::Quarantined {
-            worker: worker.to_owned(),
-            calibration,
-            evaluation,
-        });
-        for (&id, entry) in &mut self.calibrations {
+        let in_progress = self
+            .calibrations
+            .iter_mut()
+            .filter(|(_, entry)| !entry.calibration.state.is_final());
+        for (&id, entry) in in_progress {
             let rests = entry.calibration.rests_on(worker);
             if !rests {
                 entry.calibration.queue.take_back_of(|name| name == worker);
@@ -70,11 +73,17 @@ impl Farm {
             if rests {
                 entry.calibration.queue = Default::default();
                 entry.calibration.second = Default::default();
-                if !std::mem::replace(&mut entry.is_rewinding, true) {
-                    self.rewinds.push(id);
-                }
+                // A replay that is under way has read what is dropped now.
+                entry.rewinds += 1;
+                self.rewinds.push(id);
             }
         }
+        // Last: a crash that cuts the facts before it leaves a worker that can be found once more.
+        self.facts.push(Fact::Quarantined {
+            worker: worker.to_owned(),
+            calibration,
+            evaluation,
+        });
     }
 
     /// Ends a calibration that has nothing left but to compare answers, once they are compared or nobody is there to give them.
@@ -82,10 +91,11 @@ impl Farm {
         let Some(entry) = self.calibrations.get_mut(&id) else {
             return;
         };
-        if entry.is_rewinding || !entry.calibration.is_concluded() {
+        if entry.rewinds > 0 || !entry.calibration.is_concluded() || !entry.calibration.is_open() {
             return;
         }
-        let version = entry.calibration.model_version.as_deref().map(equations_of);
+        let calibration = &mut entry.calibration;
+        let version = calibration.model_version.as_deref().map(equations_of);
         let (workers, quarantine, patience_ms) = (&self.workers, &self.quarantine, self.lease_ms);
         let can_answer = |answers: &[Answer]| {
             workers.iter().any(|(name, worker)| {
@@ -95,8 +105,10 @@ impl Farm {
                 is_able && is_there && !has_answered && !quarantine.contains_key(name)
             })
         };
-        self.counters.unanswered += entry.calibration.second.drop_hopeless(can_answer);
-        entry.calibration.settle(&mut self.facts);
+        let mean_ms = entry.pace.mean_lease_ms().unwrap_or_default();
+        let hung_ms = HUNG_TIMES * mean_ms + self.lease_ms;
+        self.counters.unanswered += calibration.second.drop_hopeless(can_answer, hung_ms, now_ms);
+        calibration.settle(&mut self.facts);
     }
 
     /// Asks another worker for what a slow one holds, where nothing else waits: the first answer counts.
@@ -114,7 +126,7 @@ impl Farm {
             let slow: Vec<(u64, String)> = calibration
                 .queue
                 .older_than(SLOW_TIMES * mean_ms + SLOW_MS, now_ms)
-                .filter(|(evaluation, _)| !calibration.second.contains(*evaluation))
+                .filter(|(e, _)| !calibration.second.contains(*e) && !calibration.queue.is_suspect(*e))
                 .map(|(evaluation, worker)| (evaluation, worker.to_owned()))
                 .collect();
             for (evaluation, holder) in slow {

@@ -78,7 +78,7 @@ async fn metrics(
     counter(
         r,
         "evaluations_refused",
-        "Results whose seal does not prove that they answer a lease of their worker",
+        "Results whose seal does not prove that they answer a lease of their worker, or of a quarantined worker",
         metrics.counters.refused,
     );
     counter(r, "leases_given", "Leases given out", metrics.counters.leased);

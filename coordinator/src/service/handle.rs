@@ -9,6 +9,7 @@ use shared::file::FileSet;
 
 use super::clock::now_ms;
 use super::error::ServiceError;
+use super::farm_settings::{FarmSettings, LEASE_MS};
 use super::recovery::{recover, rewind};
 use super::stored_calibration;
 use super::study_results;
@@ -21,28 +22,6 @@ use job::Spec;
 use record::CalibrationRow;
 use result::{Diagnostics, StudyFile};
 
-/// A lease lasts so long without renewal `[ms]`.
-pub const LEASE_MS: u64 = 15_000;
-/// So many of the evaluations are computed by a second worker `[%]`.
-pub const VERIFIED_PERCENT: f64 = 1.0;
-
-/// How the farm leases and verifies.
-#[derive(Debug, Clone, Copy)]
-pub struct FarmSettings {
-    /// A lease lasts so long without renewal `[ms]`.
-    pub lease_ms: u64,
-    /// Share of the evaluations that a second worker computes, in [0, 1]; with 0 nothing is verified.
-    pub verified_share: f64,
-}
-
-impl Default for FarmSettings {
-    fn default() -> Self {
-        FarmSettings {
-            lease_ms: LEASE_MS,
-            verified_share: VERIFIED_PERCENT / 100.0,
-        }
-    }
-}
 /// So many facts may wait for the store before the service asks for patience.
 const BACKLOG: u64 = 200_000;
 

@@ -2,6 +2,7 @@
 //!
 //! # Layout
 //! - `handle`: [`Service`], which everybody holds.
+//! - `farm_settings`: how the farm leases and verifies.
 //! - `recovery`: what a start takes up again.
 //! - `submission`: new experiments and calibrations.
 //! - `effects`: what users add to the catalogue, and jobs that name it.
@@ -15,6 +16,7 @@ mod announcement;
 mod clock;
 mod effects;
 mod error;
+mod farm_settings;
 mod finished_study;
 mod growth;
 mod handle;
@@ -26,8 +28,9 @@ mod study_step;
 mod submission;
 
 pub use error::ServiceError;
+pub use farm_settings::{FarmSettings, LEASE_MS, VERIFIED_PERCENT};
 pub use finished_study::{finished_calibration, finished_study, search_rounds};
-pub use handle::{FarmSettings, LEASE_MS, Service, VERIFIED_PERCENT};
+pub use handle::Service;
 pub use stored_calibration::{calibration_row, leave_out_archived, stored_status};
 pub use study_results::{diagnostics, study_file};
 pub use study_step::{finished_search, next_step_of};

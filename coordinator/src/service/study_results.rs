@@ -26,8 +26,10 @@ pub async fn study_file(
     file: StudyFile,
 ) -> Result<String, ServiceError> {
     let none = || ServiceError::not_found("result of calibration", row.id);
+    // Before the rows: what is found out while they are read is in no stamp.
+    let doubts = reader.doubts().await?;
     let rows = reader.study(row.study).await?;
-    let Some(stamp) = stamp(&rows) else {
+    let Some(stamp) = stamp(&rows, doubts) else {
         return finished_study(reader, row).await?.file(file).ok_or_else(none);
     };
     if let Some(text) = reader.result(row.study, &file.name(), &stamp).await? {
@@ -59,7 +61,7 @@ pub async fn diagnostics(
     row: &CalibrationRow,
 ) -> Result<Diagnostics, ServiceError> {
     let is_diagnosed = row.state == CalibrationState::Finished && !is_discovery(&row.job.toml);
-    if !is_diagnosed || stamp(&reader.study(row.study).await?).is_none() {
+    if !is_diagnosed || stamp(&reader.study(row.study).await?, (0, 0)).is_none() {
         // Of what has no diagnostics this says why.
         let calibration = finished_calibration(reader, row).await?;
         return Ok(calibration.diagnostics(&calibration.comparison()));
@@ -70,14 +72,19 @@ pub async fn diagnostics(
 }
 
 /// What the files of a study are computed by and from; `None` while a member may change. What is stored of a calibration
-/// that is over does not change, so its number stands for it.
-fn stamp(rows: &[CalibrationRow]) -> Option<String> {
+/// that is over does not change, so its number stands for it; but workers may be found to compute wrongly later.
+fn stamp(rows: &[CalibrationRow], (disputes, quarantined): (i64, i64)) -> Option<String> {
     let is_over = rows.iter().all(|row| row.state.is_final());
     let members: Vec<String> = rows
         .iter()
         .map(|row| format!("{} {}", row.id, row.state.name()))
         .collect();
-    is_over.then(|| format!("build {BUILD}, {}", members.join(", ")))
+    is_over.then(|| {
+        format!(
+            "build {BUILD}, {}; {disputes} disputes, {quarantined} quarantined",
+            members.join(", ")
+        )
+    })
 }
 
 #[cfg(test)]
@@ -113,14 +120,18 @@ mod tests {
         use CalibrationState::{Failed, Finished, Paused, Running};
         let of = |states: &[CalibrationState]| {
             let members = (1..).zip(states).map(|(id, &state)| member(id, state));
-            stamp(&members.collect::<Vec<_>>())
+            stamp(&members.collect::<Vec<_>>(), (0, 0))
         };
         let one = of(&[Finished]).unwrap();
         assert!(one.contains(BUILD));
         assert_eq!(of(&[Finished]).unwrap(), one);
         assert!(of(&[Finished, Finished]).unwrap() != one);
         assert!(of(&[Finished, Finished]) != of(&[Finished, Failed]));
-        assert!(stamp(&[member(2, Finished)]).unwrap() != one);
+        assert!(stamp(&[member(2, Finished)], (0, 0)).unwrap() != one);
+        assert!(
+            stamp(&[member(1, Finished)], (0, 1)).unwrap() != one,
+            "a worker was found to compute wrongly"
+        );
         assert_eq!(of(&[Finished, Running]), None);
         assert_eq!(of(&[Paused]), None);
     }

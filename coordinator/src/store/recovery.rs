@@ -54,10 +54,16 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn stored(&self, calibration: i64, fitted: bool) -> Result<Stored, StoreError> {
-        let row = sqlx::query("SELECT state, message, model_version, busy_ms FROM calibrations WHERE id = ?")
-            .bind(calibration)
-            .fetch_one(&self.pool)
-            .await?;
+        // One view of the store: results may be dropped meanwhile.
+        let mut view = self.pool.begin().await?;
+        let row = sqlx::query(
+            "SELECT state, message, model_version, busy_ms,
+             EXISTS (SELECT 1 FROM rewinds WHERE calibration = ?1 AND results > 0) AS is_rewound
+             FROM calibrations WHERE id = ?1",
+        )
+        .bind(calibration)
+        .fetch_one(&mut *view)
+        .await?;
         let mut evaluations = BTreeMap::new();
         loop {
             let after = evaluations
@@ -73,7 +79,7 @@ impl Reader {
             .bind(fitted)
             .bind(after)
             .bind(PAGE as i64)
-            .fetch_all(&self.pool)
+            .fetch_all(&mut *view)
             .await?;
             for row in &rows {
                 let number = row.try_get::<i64, _>("evaluation")?.unsigned_abs();
@@ -89,7 +95,7 @@ impl Reader {
         let faults =
             sqlx::query("SELECT evaluation, attempt, worker FROM faults WHERE calibration = ? ORDER BY id")
                 .bind(calibration)
-                .fetch_all(&self.pool)
+                .fetch_all(&mut *view)
                 .await?;
         let mut failed: BTreeMap<u64, Vec<String>> = BTreeMap::new();
         for fault in &faults {
@@ -109,6 +115,7 @@ impl Reader {
             model_version: row.try_get("model_version")?,
             busy_ms: row.try_get::<i64, _>("busy_ms")?.unsigned_abs(),
             evaluations,
+            is_rewound: row.try_get("is_rewound")?,
             failed,
         })
     }

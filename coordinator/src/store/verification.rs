@@ -22,7 +22,7 @@ pub(super) async fn confirm(
         .map(drop)
 }
 
-/// Notes that a worker computes wrongly. What finished studies that rest on it ended with says nothing of it yet.
+/// Notes that a worker computes wrongly.
 pub(super) async fn quarantine(
     connection: &mut SqliteConnection,
     worker: &str,
@@ -45,9 +45,10 @@ pub(super) async fn quarantine(
     .bind(evaluation as i64)
     .execute(&mut *connection)
     .await?;
+    // An answer of this worker disputes nothing any more where the calibration goes on.
     sqlx::query(
-        "DELETE FROM results WHERE study IN (SELECT c.study FROM calibrations c WHERE EXISTS
-         (SELECT 1 FROM evaluations e WHERE e.calibration = c.id AND e.worker = ?))",
+        "DELETE FROM disputes WHERE ? IN (first, second) AND calibration IN
+         (SELECT id FROM calibrations WHERE state NOT IN ('finished', 'failed', 'cancelled'))",
     )
     .bind(worker)
     .execute(connection)
@@ -100,6 +101,16 @@ pub(super) async fn rewind(
     .bind(worker)
     .execute(&mut *connection)
     .await?;
+    // What failed then was asked something else.
+    sqlx::query(
+        "INSERT INTO faults (calibration, evaluation, attempt, worker, message, at_ms)
+         SELECT DISTINCT calibration, evaluation, 0, '', 'asked anew: earlier results were dropped', unixepoch('subsec') * 1000
+         FROM faults WHERE calibration = ? AND evaluation >= ?",
+    )
+    .bind(calibration)
+    .bind(round_end)
+    .execute(&mut *connection)
+    .await?;
     // What still holds of these is told again by the replay.
     for table in ["stages", "samples", "estimates", "discoveries"] {
         let query = format!("DELETE FROM {table} WHERE calibration = ?");
@@ -110,7 +121,9 @@ pub(super) async fn rewind(
     }
     sqlx::query(
         "UPDATE calibrations SET log_evidence = NULL, log_evidence_se = NULL, equilibrated = NULL,
-         evaluations = NULL, rejected = NULL WHERE id = ?",
+         evaluations = NULL, rejected = NULL,
+         model_version = CASE WHEN EXISTS (SELECT 1 FROM evaluations WHERE calibration = ?1) THEN model_version END
+         WHERE id = ?1",
     )
     .bind(calibration)
     .execute(connection)
@@ -136,20 +149,31 @@ impl Reader {
         Ok(rows.into_iter().map(quarantine).collect())
     }
 
+    /// How many doubts about workers the store has: disputes and quarantined workers. What was computed before a new one does not
+    /// say it.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn doubts(&self) -> Result<(i64, i64), StoreError> {
+        if !self.has_table("quarantine").await? {
+            return Ok((0, 0));
+        }
+        let counts =
+            sqlx::query_as("SELECT (SELECT count(*) FROM disputes), (SELECT count(*) FROM quarantine)");
+        Ok(counts.fetch_one(&self.pool).await?)
+    }
+
     /// How far the results of a calibration are verified. Of a store of before migration 18, which only reading leaves as it is,
     /// nothing is known.
     ///
     /// # Errors
     /// [`StoreError`].
     pub async fn verified(&self, calibration: i64) -> Result<Verified, StoreError> {
-        let table: i64 = sqlx::query_scalar("SELECT count(*) FROM sqlite_schema WHERE name = 'quarantine'")
-            .fetch_one(&self.pool)
-            .await?;
-        if table == 0 {
+        if !self.has_table("quarantine").await? {
             return Ok(Verified::default());
         }
         let (results, confirmed, workers): (i64, i64, i64) = sqlx::query_as(
-            "SELECT count(*), count(confirmed_by), count(DISTINCT worker) FROM evaluations
+            "SELECT count(*), count(nullif(confirmed_by, '')), count(DISTINCT worker) FROM evaluations
              WHERE calibration = ? AND worker <> ''",
         )
         .bind(calibration)

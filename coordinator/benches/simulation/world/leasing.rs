@@ -152,7 +152,10 @@ impl<'a> Witness<'a> {
         }
         let mut others = self
             .live
-            .values()
+            .iter()
+            // At the end of a calibration a second answer that does not come is waited for no longer.
+            .filter(|((.., is_second), live)| !is_second || now_ms < live.since_ms + self.lease_ms)
+            .map(|(_, live)| live)
             .filter(|live| live.worker == request.worker && live.lease != number);
         let is_alone = others.all(|live| !lease.announce && !live.is_suspect);
         demand(is_alone, Promise::Alone, || {

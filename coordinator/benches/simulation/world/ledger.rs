@@ -206,6 +206,7 @@ impl<'a> Table<'a> {
             message: self.message.clone(),
             model_version: self.model_version.clone(),
             busy_ms: self.busy_ms,
+            is_rewound: self.is_rewound,
             evaluations: evaluations
                 .map(|(&number, (_, row))| (number, evaluation(row)))
                 .collect(),

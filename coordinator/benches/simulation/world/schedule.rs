@@ -7,11 +7,12 @@
 use coordinator::farm::Control;
 use record::SealKey;
 use shared::api::CalibrationState;
-use shared::exchange::{ExchangeRequest, ExchangeResponse, PROTOCOL_VERSION};
+use shared::exchange::{ExchangeRequest, ExchangeResponse, PROTOCOL_VERSION, WorkResult};
 use statistics::rng::Stream;
 
 use super::case::{Case, EQUATIONS, Kind};
 use super::coordinator::{Coordinator, LEASE_MS, Return};
+use super::issued::Issued;
 use super::plant::Plant;
 use super::promise::{Broken, Promise};
 use super::tally::Tally;
@@ -287,6 +288,8 @@ impl Schedule<'_> {
             return Ok(());
         }
         match self.network.swap_remove(place).1 {
+            // A lie that would be a first answer leads to questions that the run without faults never asks.
+            Message::Request(request, _) if self.is_first_lie(&request) => Ok(()),
             Message::Request(request, to) => self.coordinator.receive(request, to, self.now_ms),
             Message::Answer(response, to) => {
                 if let Some(worker) = self.workers.get_mut(to.worker) {
@@ -296,6 +299,17 @@ impl Schedule<'_> {
                 Ok(())
             }
         }
+    }
+
+    /// Whether a request has the lie of a worker about an evaluation without a row.
+    fn is_first_lie(&self, request: &ExchangeRequest) -> bool {
+        let Coordinator { ledger, witness, .. } = &self.coordinator;
+        let is_lie = |r: &WorkResult| {
+            let honest = witness.issued.get(&r.lease).map(Issued::answer);
+            honest.is_some_and(|honest| honest.outcome != r.outcome)
+                && ledger.row(r.calibration, r.evaluation).is_none()
+        };
+        self.verifies && witness.liars.contains(&request.worker) && request.results.iter().any(is_lie)
     }
 
     fn commit(&mut self, facts: usize) -> Result<(), Broken> {
@@ -414,7 +428,7 @@ impl Schedule<'_> {
 
     /// A worker sends a result again that was acknowledged, with other values.
     fn lie(&mut self, place: usize) {
-        // After a rewind the lie of another might be a first answer, which leads to questions that the run without faults never asks.
+        // One liar to a schedule: two could agree.
         let liars = &self.coordinator.witness.liars;
         if self.verifies && !liars.is_empty() && !liars.contains(&self.workers[place].name) {
             return;

@@ -29,13 +29,13 @@ impl FinishedCalibration {
         let results = |n: u64| number::count(usize::try_from(n).unwrap_or(usize::MAX), "result");
         let resting = self.verified.resting_on.iter().map(|(worker, &n)| {
             format!(
-                "{} of worker {worker}, which was found to compute wrongly after the end, count: no number of this calibration can be trusted; repeat it without that machine",
+                "{} of worker {worker}, which was found to compute wrongly since, count: no number of this calibration can be trusted; repeat it without that machine",
                 results(n)
             )
         });
         let repeated = self.verified.computed_again.iter().map(|(worker, &n)| {
             let what = match n {
-                0 => "none of its results counted".to_owned(),
+                0 => "no result rests on it alone".to_owned(),
                 n => format!(
                     "{} of it, and what followed from them, were computed again by others",
                     results(n)
@@ -95,7 +95,7 @@ mod tests {
             texts[1]
                 .ends_with("40 results of it, and what followed from them, were computed again by others")
         );
-        assert!(texts[2].ends_with("none of its results counted"));
+        assert!(texts[2].ends_with("no result rests on it alone"));
     }
 
     #[test]

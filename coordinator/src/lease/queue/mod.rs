@@ -90,6 +90,13 @@ impl LeaseQueue {
         }
     }
 
+    /// Lets every worker claim an evaluation.
+    pub fn unbar(&mut self, evaluation: u64) {
+        if let Some(entry) = self.entries.get_mut(&evaluation) {
+            entry.barred.clear();
+        }
+    }
+
     /// Asks for an evaluation no more.
     pub fn remove(&mut self, evaluation: u64) {
         self.complete(evaluation);
@@ -193,7 +200,9 @@ impl LeaseQueue {
         let may = |evaluation: &u64| !is_one(&self.entries[evaluation].barred);
         let suits = |evaluation: &u64| {
             let failed = &self.entries[evaluation].failed;
-            may(evaluation) && (!is_one(failed) || !has_other(failed))
+            // Who may not claim it is no other.
+            let others_failed = || has_other(&[&**failed, &*self.entries[evaluation].barred].concat());
+            may(evaluation) && (!is_one(failed) || !others_failed())
         };
         let suspect = match claimant.holds {
             0 => self.suspects.iter().position(suits),
@@ -245,13 +254,12 @@ impl LeaseQueue {
         Some(now_ms.saturating_sub(claim.since_ms))
     }
 
-    /// The leases that have been out for so long `[ms]`, the longest first: evaluation and worker. None of a suspect, which waits
-    /// for its own worker.
+    /// The leases that have been out for so long `[ms]`, the longest first: evaluation and worker.
     pub fn older_than(&self, age_ms: u64, now_ms: u64) -> impl Iterator<Item = (u64, &str)> {
         self.leased.iter().filter_map(move |(lease, &evaluation)| {
             let claim = self.claim_of(*lease)?;
             let is_old = now_ms.saturating_sub(claim.since_ms) >= age_ms;
-            (is_old && !self.entries[&evaluation].suspect).then_some((evaluation, claim.worker.as_str()))
+            is_old.then_some((evaluation, claim.worker.as_str()))
         })
     }
 

@@ -194,13 +194,20 @@ fn a_barred_worker_gets_nothing_and_loses_what_it_holds() {
     queue.bar(7, "b");
     assert_eq!((queue.unleased(), queue.held_by("b")), (1, 0));
     assert_eq!(claim(&mut queue, "b", 5, 0, 20), vec![]);
+    let lease = claim(&mut queue, "c", 5, 0, 25)[0].0;
+    queue.fail(lease);
+    assert_eq!(
+        claim_beside(&mut queue, "c", 5, 0, 30, &["a", "b", "c"]),
+        vec![(31, 7)],
+        "those that may not claim it are no others"
+    );
     queue.remove(7);
     queue.remove(8);
     assert_eq!((queue.len(), queue.leased(), queue.held_by("a")), (0, 0, 0));
 }
 
 #[test]
-fn what_is_out_for_long_is_listed_the_longest_first_without_suspects() {
+fn what_is_out_for_long_is_listed_the_longest_first() {
     let mut queue = queue(3);
     let leases = claim(&mut queue, "a", 3, 0, 0);
     assert_eq!(queue.age_ms(leases[0].0, "a", 40), Some(40));
@@ -209,5 +216,5 @@ fn what_is_out_for_long_is_listed_the_longest_first_without_suspects() {
     queue.fail(leases[1].0);
     claim(&mut queue, "b", 1, 0, 10);
     let old: Vec<(u64, &str)> = queue.older_than(40, 40).collect();
-    assert_eq!(old, [(0, "a"), (2, "a")]);
+    assert_eq!(old, [(0, "a"), (2, "a"), (1, "b")]);
 }
