@@ -36,6 +36,13 @@ fn every_promise_is_kept_through_any_weather_and_the_bits_are_those_of_a_run_wit
     assert!(tally.forged > 500 && tally.disputes > 50, "{tally}");
 }
 
+/// Nobody was asked beside a lease that is out no more, and asked again when the evaluation had been leased anew.
+#[test]
+fn a_schedule_that_broke_a_promise_keeps_it() {
+    let Search { broken, .. } = search(&cases(), None, 418_118..418_119, None);
+    assert!(broken.is_none(), "{broken:?}");
+}
+
 #[test]
 fn planted_bugs_are_found() {
     let cases = cases();

@@ -11,7 +11,7 @@ impl Calibration {
     /// Lets the answer to an evaluation, which is about to come, be compared with that of a second worker.
     pub fn verify(&mut self, evaluation: u64) {
         if self.verification.is_on() && self.queue.is_asked(evaluation) {
-            self.ask_second(evaluation, true, None);
+            self.ask_second(evaluation, None);
         }
     }
 
@@ -29,7 +29,7 @@ impl Calibration {
             return;
         }
         if self.verification.selects(evaluation) {
-            self.ask_second(evaluation, true, None);
+            self.ask_second(evaluation, None);
         }
         *self.unconfirmed.entry(answer.worker.clone()).or_default() += 1;
         self.second.answered(evaluation, answer.clone());
@@ -71,7 +71,7 @@ impl Calibration {
                 // An answer that nobody asked for confirms as well as one that was, or brings a dispute that others settle.
                 (_, false) => {
                     let first = stored.answer.clone();
-                    self.ask_second(evaluation, true, None);
+                    self.ask_second(evaluation, None);
                     self.second.answered(evaluation, first);
                 }
             }
@@ -108,11 +108,13 @@ impl Calibration {
         }
     }
 
-    /// Asks nobody beside a holder that is none any more, or that of a suspect, which is alone wherever it is.
+    /// Asks nobody beside a lease that is out no more, or one of a suspect, which is alone wherever it is. An evaluation that has
+    /// been leased anew is not slow yet.
     pub fn drop_idle_seconds(&mut self) {
         let queue = &self.queue;
-        self.second
-            .drop_idle(|evaluation| !queue.is_leased(evaluation) || queue.is_suspect(evaluation));
+        self.second.drop_idle(|evaluation, slow| {
+            queue.lease_of(evaluation) == Some(slow) && !queue.is_suspect(evaluation)
+        });
     }
 
     /// The workers found to compute wrongly since the last call, each with the evaluation that shows it.

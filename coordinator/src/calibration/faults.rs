@@ -95,7 +95,7 @@ impl Calibration {
         }));
         let (done, given_up) = (std::mem::take(&mut self.done), self.given_up);
         self.ask();
-        self.second.drop_idle(|_| true);
+        self.second.drop_idle(|_, _| false);
         for &evaluation in done.keys() {
             self.queue.complete(evaluation);
         }

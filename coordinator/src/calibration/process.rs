@@ -14,7 +14,7 @@ use super::final_draws::FinalDraws;
 use super::question::Question;
 use super::second_answer::{SecondAnswers, StoredAnswer};
 use super::verification::Verification;
-use crate::lease::LeaseQueue;
+use crate::lease::{LeaseQueue, SlowLease};
 use crate::missing_effect::{DiscoveryError, SearchModels};
 use job::{AlgorithmSettings, Spec};
 use record::EvaluationKey;
@@ -200,9 +200,8 @@ impl Calibration {
     /// Asks a second worker for an evaluation that is asked for at present: of one that is not, nothing is known any more.
     ///
     /// # Arguments
-    /// - `is_compared`: whether the answers are compared; else the first one is enough.
-    /// - `holder`: who is asked already.
-    pub fn ask_second(&mut self, evaluation: u64, is_compared: bool, holder: Option<&str>) {
+    /// - `slow`: the lease that is too slow: the first answer is enough. Without one, the answers are compared.
+    pub fn ask_second(&mut self, evaluation: u64, slow: Option<&SlowLease>) {
         let Some(question) = self.question(evaluation) else {
             return;
         };
@@ -213,8 +212,7 @@ impl Calibration {
             subchain: question.subchain,
         };
         let variant = self.variant(&hash).cloned();
-        self.second
-            .ask(evaluation, question, variant, is_compared, holder);
+        self.second.ask(evaluation, question, variant, slow);
     }
 
     /// What an evaluation of a search is leased with; `None` of anything else.

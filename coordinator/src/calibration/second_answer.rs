@@ -11,7 +11,7 @@ use shared::model::ModelVariant;
 use statistics::Subchain;
 
 use super::question::Question;
-use crate::lease::LeaseQueue;
+use crate::lease::{LeaseQueue, SlowLease};
 
 /// So many evaluations wait for a second answer at most; more are not verified: a farm of one worker would gather them without end.
 const MAX_WAITING: usize = 1_000;
@@ -70,8 +70,8 @@ pub struct SecondAnswers {
     /// Who holds them.
     pub queue: LeaseQueue,
     repeated: BTreeMap<u64, Repeated>,
-    /// Of these, those of which one answer is enough.
-    uncompared: BTreeSet<u64>,
+    /// Of these, those of which one answer is enough: the slow lease that each stands beside.
+    uncompared: BTreeMap<u64, u64>,
     /// What they evaluate, where the calibration may forget it.
     variants: BTreeMap<String, ModelVariant>,
 }
@@ -82,16 +82,15 @@ impl SecondAnswers {
     /// # Arguments
     /// - `question`: what is asked.
     /// - `variant`: the variant of its hash.
-    /// - `is_compared`: whether the answers are compared; else the first one is enough.
-    /// - `holder`: who is asked already.
+    /// - `slow`: the lease that is too slow: the first answer is enough. Without one, the answers are compared.
     pub fn ask(
         &mut self,
         evaluation: u64,
         question: Question,
         variant: Option<ModelVariant>,
-        is_compared: bool,
-        holder: Option<&str>,
+        slow: Option<&SlowLease>,
     ) {
+        let is_compared = slow.is_none();
         if let Some(repeated) = self.repeated.get_mut(&evaluation) {
             if is_compared && !repeated.is_compared {
                 // Whoever is slow may answer as well; only who has answered may not once more.
@@ -104,8 +103,8 @@ impl SecondAnswers {
         if is_compared && self.repeated.len() >= MAX_WAITING {
             return;
         }
-        if !is_compared {
-            self.uncompared.insert(evaluation);
+        if let Some(slow) = slow {
+            self.uncompared.insert(evaluation, slow.lease);
         }
         if let Some(variant) = variant.filter(|_| !self.variants.contains_key(question.variant)) {
             self.variants.insert(question.variant.to_owned(), variant);
@@ -118,8 +117,10 @@ impl SecondAnswers {
             answers: Vec::new(),
         };
         self.repeated.insert(evaluation, repeated);
-        self.queue
-            .add(evaluation, holder.map(str::to_owned).into_iter().collect());
+        self.queue.add(
+            evaluation,
+            slow.map(|slow| slow.worker.clone()).into_iter().collect(),
+        );
     }
 
     /// Whether an evaluation is asked for twice.
@@ -191,11 +192,17 @@ impl SecondAnswers {
         }
     }
 
-    /// Drops what need not be compared and nobody holds, as far as that is wanted.
-    pub fn drop_idle(&mut self, is_wanted: impl Fn(u64) -> bool) {
-        let is_idle = |evaluation: &u64| !self.queue.is_leased(*evaluation) && is_wanted(*evaluation);
-        let idle: Vec<u64> = self.uncompared.iter().copied().filter(is_idle).collect();
-        for evaluation in idle {
+    /// Drops what need not be compared and nobody holds, unless it is wanted: asked of the evaluation and the slow lease.
+    pub fn drop_idle(&mut self, is_wanted: impl Fn(u64, u64) -> bool) {
+        let is_idle = |&(evaluation, lease): &(u64, u64)| {
+            !self.queue.is_leased(evaluation) && !is_wanted(evaluation, lease)
+        };
+        let pairs = self
+            .uncompared
+            .iter()
+            .map(|(&evaluation, &lease)| (evaluation, lease));
+        let idle: Vec<(u64, u64)> = pairs.filter(is_idle).collect();
+        for (evaluation, _) in idle {
             self.drop(evaluation);
         }
     }
@@ -258,7 +265,11 @@ mod tests {
             theta: &[1.5],
             subchain: None,
         };
-        second.ask(3, question, None, is_compared, None);
+        let slow = SlowLease {
+            lease: 7,
+            worker: "slow".to_owned(),
+        };
+        second.ask(3, question, None, (!is_compared).then_some(&slow));
         second
     }
 
@@ -311,6 +322,15 @@ mod tests {
     }
 
     #[test]
+    fn nobody_is_asked_beside_a_lease_that_is_out_no_more() {
+        let mut second = asked(false);
+        second.drop_idle(|_, lease| lease == 7);
+        assert_eq!(second.waiting(), 1);
+        second.drop_idle(|_, lease| lease == 8);
+        assert_eq!(second.waiting(), 0);
+    }
+
+    #[test]
     fn what_nobody_can_answer_is_dropped() {
         let mut second = asked(true);
         answer(&mut second, "a", 1);
@@ -324,14 +344,13 @@ mod tests {
 
     #[test]
     fn a_slow_worker_may_answer_once_answers_are_compared() {
-        let mut second = SecondAnswers::default();
+        let mut second = asked(false);
         let question = Question {
             variant: "00ff",
             theta: &[1.5],
             subchain: None,
         };
-        second.ask(3, question, None, false, Some("slow"));
-        second.ask(3, question, None, true, None);
+        second.ask(3, question, None, None);
         answer(&mut second, "quick", 1);
         let claimant = |worker| crate::lease::Claimant {
             worker,
@@ -360,7 +379,7 @@ mod tests {
                 theta: &[],
                 subchain: None,
             };
-            second.ask(evaluation, question, None, true, None);
+            second.ask(evaluation, question, None, None);
         }
         assert_eq!(second.waiting(), MAX_WAITING);
     }

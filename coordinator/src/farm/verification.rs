@@ -4,6 +4,7 @@ use shared::model::equations_of;
 
 use super::state::{Entry, Farm};
 use crate::calibration::Answer;
+use crate::lease::SlowLease;
 use record::Quarantine;
 use record::fact::Fact;
 
@@ -123,14 +124,13 @@ impl Farm {
             let Some(mean_ms) = pace.mean_lease_ms() else {
                 continue;
             };
-            let slow: Vec<(u64, String)> = calibration
+            let slow: Vec<(u64, SlowLease)> = calibration
                 .queue
                 .older_than(SLOW_TIMES * mean_ms + SLOW_MS, now_ms)
                 .filter(|(e, _)| !calibration.second.contains(*e) && !calibration.queue.is_suspect(*e))
-                .map(|(evaluation, worker)| (evaluation, worker.to_owned()))
                 .collect();
-            for (evaluation, holder) in slow {
-                calibration.ask_second(evaluation, false, Some(&holder));
+            for (evaluation, lease) in slow {
+                calibration.ask_second(evaluation, Some(&lease));
             }
         }
     }

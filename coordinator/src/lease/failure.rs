@@ -76,3 +76,12 @@ impl LeaseFailure {
         self.workers >= MAX_ATTEMPTS as usize
     }
 }
+
+/// A lease that has been out for long.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SlowLease {
+    /// Its number.
+    pub lease: u64,
+    /// Who holds it.
+    pub worker: String,
+}

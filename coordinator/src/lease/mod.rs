@@ -16,5 +16,7 @@
 mod failure;
 mod queue;
 
-pub use failure::{Claimant, Completion, Expired, LeaseFailure, MAX_ATTEMPTS, MAX_UNSTARTED, NewClaim};
+pub use failure::{
+    Claimant, Completion, Expired, LeaseFailure, MAX_ATTEMPTS, MAX_UNSTARTED, NewClaim, SlowLease,
+};
 pub use queue::LeaseQueue;

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-use super::failure::{Claimant, Completion, Expired, LeaseFailure, MAX_UNSTARTED, NewClaim};
+use super::failure::{Claimant, Completion, Expired, LeaseFailure, MAX_UNSTARTED, NewClaim, SlowLease};
 
 /// A time-limited claim.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -254,12 +254,29 @@ impl LeaseQueue {
         Some(now_ms.saturating_sub(claim.since_ms))
     }
 
-    /// The leases that have been out for so long `[ms]`, the longest first: evaluation and worker.
-    pub fn older_than(&self, age_ms: u64, now_ms: u64) -> impl Iterator<Item = (u64, &str)> {
+    /// The lease of an evaluation that is out.
+    pub fn lease_of(&self, evaluation: u64) -> Option<u64> {
+        match &self.entries.get(&evaluation)?.state {
+            State::Leased(claim) => Some(claim.lease),
+            State::Ready | State::Done => None,
+        }
+    }
+
+    /// The leases that have been out for so long `[ms]`, the longest first, each with its evaluation.
+    pub fn older_than(&self, age_ms: u64, now_ms: u64) -> impl Iterator<Item = (u64, SlowLease)> {
         self.leased.iter().filter_map(move |(lease, &evaluation)| {
             let claim = self.claim_of(*lease)?;
             let is_old = now_ms.saturating_sub(claim.since_ms) >= age_ms;
-            is_old.then_some((evaluation, claim.worker.as_str()))
+            is_old.then(|| {
+                let worker = claim.worker.clone();
+                (
+                    evaluation,
+                    SlowLease {
+                        lease: *lease,
+                        worker,
+                    },
+                )
+            })
         })
     }
 

@@ -215,6 +215,13 @@ fn what_is_out_for_long_is_listed_the_longest_first() {
     assert_eq!(queue.older_than(50, 40).count(), 0);
     queue.fail(leases[1].0);
     claim(&mut queue, "b", 1, 0, 10);
-    let old: Vec<(u64, &str)> = queue.older_than(40, 40).collect();
-    assert_eq!(old, [(0, "a"), (2, "a"), (1, "b")]);
+    let old: Vec<(u64, String)> = queue
+        .older_than(40, 40)
+        .map(|(e, slow)| (e, slow.worker))
+        .collect();
+    assert_eq!(
+        old,
+        [(0, "a"), (2, "a"), (1, "b")].map(|(e, w)| (e, w.to_owned()))
+    );
+    assert_eq!(queue.lease_of(0), Some(leases[0].0));
 }
