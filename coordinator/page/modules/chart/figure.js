@@ -1,0 +1,69 @@
+// A picture with its title, its legend and its downloads; it is drawn anew when its width or its numbers change.
+
+import { html, useEffect, useRef, useState } from "../html.js";
+import { light } from "../selection.js";
+import { words } from "../words/quantity.js";
+import { csv, png, save, svg } from "./download.js";
+
+/** @typedef {Record<string, string | number | boolean | null | undefined>} Row */
+
+/**
+ * @param {{
+ *   title: string, name: string, deps: unknown[],
+ *   draw: (width: number) => Element & { scale?: (name: string) => any },
+ *   rows?: () => Row[], note?: unknown, legend?: unknown, onDrawn?: (plot: any) => (() => void) | void,
+ * }} properties
+ *   title: what a reader who cannot see it is told. name: of the files. draw: the picture at a width [px].
+ *   rows: its numbers. onDrawn: adds listeners; what it returns removes them.
+ */
+export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn }) {
+  const place = useRef(/** @type {HTMLElement | null} */ (null));
+  const [width, setWidth] = useState(0);
+  const [failure, setFailure] = useState(/** @type {string | null} */ (null));
+  useEffect(() => {
+    const element = /** @type {HTMLElement} */ (place.current);
+    const observer = new ResizeObserver(([entry]) => setWidth(Math.round(entry.contentRect.width)));
+    observer.observe(element);
+    return () => observer.disconnect();
+  }, []);
+  useEffect(() => {
+    if (width === 0) return undefined;
+    let plot;
+    try {
+      plot = draw(width);
+    } catch (error) {
+      setFailure(`this picture cannot be drawn: ${/** @type {Error} */ (error).message}`);
+      return undefined;
+    }
+    setFailure(null);
+    plot.setAttribute("role", "img");
+    plot.setAttribute("aria-label", title);
+    /** @type {HTMLElement} */ (place.current).replaceChildren(plot);
+    light(plot);
+    return onDrawn?.(plot) ?? undefined;
+  }, [width, ...deps]);
+  const drawn = () => /** @type {SVGSVGElement} */ (place.current?.querySelector("svg"));
+  return html`
+    <figure data-figure=${name}>
+      <figcaption><b>${title}</b>${note ? html` <span class="note">${note}</span>` : null}</figcaption>
+      <div class="plot" ref=${place}></div>
+      ${failure && html`<p class="error">${failure}</p>`}
+      ${legend && html`<div class="legend">${legend}</div>`}
+      <div class="downloads" role="group" aria-label=${`download: ${title}`}>
+        <button type="button" onClick=${() => save(`${name}.svg`, svg(drawn()))}>SVG</button>
+        <button type="button" onClick=${async () => save(`${name}.png`, await png(drawn()))}>PNG</button>
+        ${rows && html`<button type="button" onClick=${() => save(`${name}.csv`, csv(rows()))}>CSV</button>`}
+      </div>
+    </figure>`;
+}
+
+/**
+ * An entry of a legend: a glyph in 16 by 16 pixels, and its name.
+ * @param {{ glyph: unknown, children?: unknown }} properties
+ */
+export function Entry({ glyph, children }) {
+  return html`<span><svg class="glyph" viewBox="0 0 16 16" aria-hidden="true">${glyph}</svg>${children}</span>`;
+}
+
+/** The name of a file. */
+export const fileName = (/** @type {unknown[]} */ ...parts) => parts.map((p) => words(String(p)).replace(/[^A-Za-z0-9.+-]+/g, "-")).join("-");

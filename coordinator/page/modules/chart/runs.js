@@ -1,0 +1,107 @@
+// Marks that stand for runs: they light up together in every picture, and a region of an axis chooses the runs within.
+
+import { choose, point, toggle } from "../selection.js";
+
+/** A shorter way of the pointer is a click [px]. */
+const LEAST_PX = 5;
+
+/**
+ * Options of a mark whose elements carry the run of their datum.
+ * @template {{ run: string }} D
+ * @param {D[]} data
+ * @param {any} options
+ */
+export function byRun(data, options) {
+  return {
+    ...options,
+    render(/** @type {any} */ index, /** @type {any} */ scales, /** @type {any} */ values, /** @type {any} */ dimensions, /** @type {any} */ context, /** @type {any} */ next) {
+      const group = next(index, scales, values, dimensions, context);
+      for (const element of group?.children ?? []) {
+        const datum = data[element.__data__];
+        if (datum) element.dataset.run = datum.run;
+      }
+      return group;
+    },
+  };
+}
+
+/** The run of the mark under the pointer. */
+const runAt = (/** @type {Event} */ event) => /** @type {SVGElement} */ (event.target).dataset?.run;
+
+/**
+ * Lets a picture be pointed at: a mark lights its run, a click chooses it, a drag along x chooses all runs of a region.
+ * @param {SVGSVGElement & { scale: (name: string) => any }} plot
+ * @param {{ runsIn?: (from: number, to: number) => string[], words?: (from: number, to: number) => string }} [region]
+ * @returns {() => void} removes the listeners
+ */
+export function pointable(plot, { runsIn, words } = {}) {
+  const abort = new AbortController();
+  const on = (/** @type {string} */ type, /** @type {(event: any) => void} */ listener) =>
+    plot.addEventListener(type, listener, { signal: abort.signal });
+  on("pointerover", (event) => {
+    const run = runAt(event);
+    if (run && event.buttons === 0) point([run], `run ${run}`);
+  });
+  on("pointerout", (event) => {
+    if (runAt(event)) point(null);
+  });
+  on("click", (event) => {
+    const run = runAt(event);
+    if (run) toggle(run);
+  });
+  if (runsIn && words) drag(plot, on, runsIn, words);
+  return () => abort.abort();
+}
+
+/**
+ * @param {SVGSVGElement & { scale: (name: string) => any }} plot
+ * @param {(type: string, listener: (event: any) => void) => void} on
+ * @param {(from: number, to: number) => string[]} runsIn
+ * @param {(from: number, to: number) => string} words
+ */
+function drag(plot, on, runsIn, words) {
+  const scale = plot.scale("x");
+  const [left, right] = scale.range;
+  const [top, bottom] = plot.scale("y").range.slice().sort((/** @type {number} */ a, /** @type {number} */ b) => a - b);
+  /** @type {{ from: number, band: SVGRectElement | null } | null} */
+  let begun = null;
+  const at = (/** @type {PointerEvent} */ event) => {
+    const frame = plot.getBoundingClientRect();
+    const inside = ((event.clientX - frame.left) / frame.width) * plot.viewBox.baseVal.width;
+    return Math.min(right, Math.max(left, inside));
+  };
+  const end = () => {
+    begun?.band?.remove();
+    begun = null;
+    point(null);
+  };
+  on("pointerdown", (event) => {
+    if (event.button === 0 && event.pointerType !== "touch") begun = { from: at(event), band: null };
+  });
+  on("pointermove", (event) => {
+    if (!begun) return;
+    const [from, to] = [begun.from, at(event)].sort((a, b) => a - b);
+    if (!begun.band) {
+      if (to - from < LEAST_PX) return;
+      // Only now: a captured pointer clicks on no mark.
+      plot.setPointerCapture(event.pointerId);
+      begun.band = document.createElementNS("http://www.w3.org/2000/svg", "rect");
+      begun.band.setAttribute("class", "region");
+      begun.band.setAttribute("y", String(top));
+      begun.band.setAttribute("height", String(bottom - top));
+      plot.append(begun.band);
+    }
+    begun.band.setAttribute("x", String(from));
+    begun.band.setAttribute("width", String(to - from));
+    const [low, high] = [scale.invert(from), scale.invert(to)];
+    point(runsIn(low, high), words(low, high));
+  });
+  on("pointerup", (event) => {
+    if (!begun) return;
+    const [low, high] = [begun.from, at(event)].sort((a, b) => a - b).map((end) => scale.invert(end));
+    const isRegion = begun.band !== null;
+    end();
+    if (isRegion) choose(runsIn(low, high), words(low, high));
+  });
+  on("pointercancel", end);
+}

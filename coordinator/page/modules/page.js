@@ -1,0 +1,48 @@
+// The page of a service: the home of all studies, or one study in one of its views.
+
+import { html, render, useEffect, useState } from "./html.js";
+import { Login } from "./part/login.js";
+import { token } from "./rest/token.js";
+import { useRoute } from "./route.js";
+import { Home } from "./view/home.js";
+import { NewCalibration } from "./view/new_calibration.js";
+import { StudyPage } from "./view/study.js";
+
+function Page() {
+  const route = useRoute();
+  const [isAsked, setAsked] = useState(token.isAsked());
+  useEffect(() => token.watch(() => setAsked(token.isAsked())), []);
+  const [first, id, view] = route.place;
+  useEffect(() => {
+    document.getElementById("content")?.focus({ preventScroll: true });
+    scrollTo(0, 0);
+  }, [first, id, view]);
+  return html`
+    <a class="skip" href="#content" onClick=${skip}>To the content</a>
+    <header class="top">
+      <a class="brand" href="#/">Grouser</a>
+      <nav aria-label="Pages">
+        <a href="#/" aria-current=${first === undefined ? "page" : null}>Studies</a>
+        <a href="#/new" aria-current=${first === "new" ? "page" : null}>New calibration</a>
+        <a href="/openapi.json">Interface</a>
+      </nav>
+      ${token.get() && html`<button type="button" onClick=${() => token.clear()}>Forget the token</button>`}
+    </header>
+    <main id="content" tabindex="-1">
+      ${isAsked && html`<${Login} />`}
+      ${first === undefined && html`<${Home} />`}
+      ${first === "new" && html`<${NewCalibration} query=${route.query} />`}
+      ${first === "studies" && html`<${StudyPage} key=${id} id=${Number(id)} view=${view ?? "story"} query=${route.query} />`}
+      ${!["new", "studies", undefined].includes(first) && html`<h1>There is no such page</h1><p><a href="#/">To the studies</a></p>`}
+    </main>`;
+}
+
+/** Goes to the content without changing the address, which is that of a view. */
+function skip(/** @type {Event} */ event) {
+  event.preventDefault();
+  document.getElementById("content")?.focus();
+}
+
+const place = /** @type {HTMLElement} */ (document.getElementById("page"));
+place.replaceChildren();
+render(html`<${Page} />`, place);

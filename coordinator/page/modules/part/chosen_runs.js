@@ -1,0 +1,34 @@
+// The runs that are chosen, and what can be done with them: a bar at the bottom of every view.
+
+import { html, useState } from "../html.js";
+import { isReport } from "../rest/answers.js";
+import { whatIf } from "../rest/routes.js";
+import { address } from "../route.js";
+import { choose, useChosen } from "../selection.js";
+import { Failure } from "./message.js";
+
+/** @param {{ study: any, model: any }} properties */
+export function ChosenRuns({ model }) {
+  const chosen = useChosen();
+  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  if (!chosen) return null;
+  const runs = [...chosen.runs];
+  const ask = async () => {
+    setFailure(null);
+    try {
+      const created = await whatIf(model.id, runs);
+      choose(null);
+      location.hash = address(["studies", created.study, "live"]);
+    } catch (error) {
+      setFailure(error);
+    }
+  };
+  return html`
+    <aside class="chosen-runs" aria-label="Chosen runs">
+      <p><b>${chosen.label}</b>: ${runs.length === 1 ? "1 run" : `${runs.length} runs`}
+        <span class="note">${runs.length <= 8 ? runs.join(", ") : `${runs.slice(0, 8).join(", ")} and ${runs.length - 8} more`}</span></p>
+      ${!isReport && model && html`<button class="main" type="button" onClick=${ask}>What if these runs were left out?</button>`}
+      <button type="button" onClick=${() => choose(null)}>Let them go</button>
+      <${Failure} error=${failure} />
+    </aside>`;
+}

@@ -1,0 +1,80 @@
+// The public REST interface, or, within a report, its recorded answers.
+
+import { token } from "./token.js";
+
+/** An answer that is an error: its HTTP status, its type of the closed list, its message. */
+export class AnswerError extends Error {
+  /**
+   * @param {number} status
+   * @param {string} type
+   * @param {string} message
+   */
+  constructor(status, type, message) {
+    super(message);
+    Object.assign(this, { status, type });
+    this.status = status;
+    this.type = type;
+  }
+}
+
+/** The answers that a report carries, by path; null on the page of a service. */
+const recorded = (() => {
+  const element = globalThis.document?.getElementById("answers");
+  return element ? JSON.parse(element.textContent ?? "{}") : null;
+})();
+
+/** Whether this is a report, which can ask nobody. */
+export const isReport = recorded !== null;
+
+/**
+ * Asks the service, with the token of this browser.
+ * @param {string} method
+ * @param {string} path
+ * @param {{ body?: unknown, signal?: AbortSignal }} [options]
+ */
+export async function request(method, path, { body, signal } = {}) {
+  /** @type {Record<string, string>} */
+  const headers = {};
+  if (body !== undefined) headers["content-type"] = "application/json";
+  const secret = token.get();
+  if (secret) headers.authorization = `Bearer ${secret}`;
+  let response;
+  try {
+    response = await fetch(path, { method, headers, signal, body: body === undefined ? undefined : JSON.stringify(body) });
+  } catch (error) {
+    if (signal?.aborted) throw error;
+    throw new AnswerError(0, "unreachable", "the coordinator does not answer; the page goes on as soon as it does");
+  }
+  if (response.ok) return response;
+  const text = await response.text();
+  let detail = { type: "internal", message: text || response.statusText };
+  try {
+    detail = JSON.parse(text).error;
+  } catch {
+    // A proxy in between answers in its own words.
+  }
+  if (response.status === 401) token.refused();
+  throw new AnswerError(response.status, detail.type, detail.message);
+}
+
+/**
+ * The answer to a GET request.
+ * @param {string} path
+ * @param {AbortSignal} [signal]
+ */
+export async function get(path, signal) {
+  if (recorded) {
+    if (path in recorded) return recorded[path];
+    throw new AnswerError(404, "not_found", "this report does not carry it");
+  }
+  return (await request("GET", path, { signal })).json();
+}
+
+/**
+ * The answer to a POST request.
+ * @param {string} path
+ * @param {unknown} [body]
+ */
+export async function post(path, body = {}) {
+  return (await request("POST", path, { body })).json();
+}

@@ -1,0 +1,52 @@
+// Every route that the page asks, with the type of its answer.
+
+import { get, post } from "./answers.js";
+
+/** @typedef {import("../../types/api").components["schemas"]} Schemas */
+
+const study = (/** @type {number} */ id) => `/v1/studies/${id}`;
+const calibration = (/** @type {number} */ id) => `/v1/calibrations/${id}`;
+
+export const path = {
+  studies: "/v1/studies",
+  workers: "/v1/workers",
+  examples: "/v1/examples",
+  effects: "/v1/effects",
+  study,
+  calibration,
+  comparison: (/** @type {number} */ id) => `${calibration(id)}/comparison`,
+  diagnostics: (/** @type {number} */ id) => `${calibration(id)}/diagnostics`,
+  figures: (/** @type {number} */ id) => `${calibration(id)}/figures`,
+  histories: (/** @type {number} */ id) => `${calibration(id)}/histories`,
+  discovery: (/** @type {number} */ id) => `${calibration(id)}/discovery`,
+  stages: (/** @type {number} */ id) => `${calibration(id)}/stages`,
+  events: (/** @type {number} */ id) => `${calibration(id)}/events`,
+  samples: (/** @type {number} */ id, /** @type {number} */ stage, most = 1000) =>
+    `${calibration(id)}/samples?stage=${stage}&most=${most}`,
+};
+
+export { get };
+
+/** @returns {Promise<Schemas["NewState"]>} */
+export const control = (/** @type {number} */ id, /** @type {"pause" | "resume" | "cancel"} */ verb) =>
+  post(`${calibration(id)}/${verb}`);
+
+/** @returns {Promise<Schemas["CalibrationCreated"]>} */
+export const extend = (/** @type {number} */ id, /** @type {Schemas["NewExtension"]} */ extension) =>
+  post(`${calibration(id)}/extend`, extension);
+
+/** @returns {Promise<Schemas["CalibrationCreated"]>} */
+export const discover = (/** @type {number} */ id) => post(`${calibration(id)}/discovery`);
+
+/** @returns {Promise<Schemas["CalibrationCreated"]>} */
+export const whatIf = (/** @type {number} */ id, /** @type {string[]} */ without) =>
+  post(`${calibration(id)}/what-if`, { without });
+
+/** @returns {Promise<Schemas["RunsAdded"]>} */
+export const addRuns = (/** @type {number} */ id, /** @type {string} */ runs) => post(`${study(id)}/runs`, { runs });
+
+/** @returns {Promise<Schemas["ExperimentCreated"]>} */
+export const addExperiment = (/** @type {Schemas["NewExperiment"]} */ experiment) => post("/v1/experiments", experiment);
+
+/** @returns {Promise<Schemas["CalibrationCreated"]>} */
+export const submit = (/** @type {Schemas["NewCalibration"]} */ job) => post("/v1/calibrations", job);

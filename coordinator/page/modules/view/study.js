@@ -1,0 +1,84 @@
+// A study: its views, and the model that they show.
+
+import { html } from "../html.js";
+import { ChosenRuns } from "../part/chosen_runs.js";
+import { Pending } from "../part/message.js";
+import { path } from "../rest/routes.js";
+import { useAnswer } from "../rest/use_answer.js";
+import { address, replace } from "../route.js";
+import { Compare } from "./compare.js";
+import { Errors } from "./errors.js";
+import { Failures } from "./failures.js";
+import { Live } from "./live.js";
+import { MissingEffect } from "./missing_effect.js";
+import { Posterior } from "./posterior.js";
+import { Story } from "./story.js";
+
+/** How often a study that works is looked at [ms]. */
+const LOOK_MS = 1000;
+const FINAL = ["finished", "failed", "cancelled"];
+
+/** The views in their order: what a person reads from top to bottom in a report. */
+export const VIEWS = [
+  { name: "story", title: "Story", view: Story },
+  { name: "live", title: "Live", view: Live },
+  { name: "compare", title: "Compare", view: Compare },
+  { name: "failures", title: "Where it fails", view: Failures },
+  { name: "effects", title: "Missing effect", view: MissingEffect },
+  { name: "posterior", title: "Posterior", view: Posterior },
+  { name: "errors", title: "Error falls", view: Errors },
+];
+
+/** The name of a model of a study: what it has beyond the submitted job. */
+export function modelName(/** @type {any} */ member) {
+  return member.effects.length === 0 ? "base" : `with ${member.effects.join(", ")}`;
+}
+
+/** The models of a study that have results: everything but searches. */
+export const models = (/** @type {any} */ study) => study.members.filter((/** @type {any} */ m) => m.kind !== "search");
+
+/** The model that is shown: the one that the address names, or the current one, or the first. */
+export function modelOf(/** @type {any} */ study, /** @type {number | null} */ asked) {
+  const all = models(study);
+  const finished = all.filter((/** @type {any} */ m) => m.state === "finished");
+  const named = finished.find((/** @type {any} */ m) => m.id === asked) ?? finished.find((/** @type {any} */ m) => m.id === study.current);
+  return named ?? finished[0] ?? null;
+}
+
+/** @param {{ id: number, view: string, query: Record<string, string> }} properties */
+export function StudyPage({ id, view, query }) {
+  const { answer: study, error, reload } = useAnswer(path.study(id), { everyMs: LOOK_MS });
+  if (!study) return html`<${Pending} answer=${study} error=${error} what=${`study ${id}`} />`;
+  const model = modelOf(study, query.model ? Number(query.model) : null);
+  const shown = VIEWS.find((v) => v.name === view) ?? VIEWS[0];
+  const to = (/** @type {string} */ name) => address(["studies", id, name], { model: query.model });
+  return html`
+    <div class="heading">
+      <h1>${study.name}</h1>
+      <p class="note">study ${id}, ${study.model_kind}, <span class=${`state ${study.state}`}>${study.state}</span></p>
+      ${error && html`<p class="error" role="alert">${error.message}</p>`}
+    </div>
+    <nav class="views" aria-label="Views of the study">
+      ${VIEWS.map((v) => html`<a href=${to(v.name)} aria-current=${v === shown ? "page" : null}>${v.title}</a>`)}
+    </nav>
+    ${shown.name !== "live" && shown.name !== "story" && html`<${ModelPicker} study=${study} model=${model} view=${shown.name} />`}
+    <section class=${`view ${shown.name}`} aria-label=${shown.title}>
+      <${shown.view} study=${study} model=${model} query=${query} reload=${reload} />
+    </section>
+    <${ChosenRuns} study=${study} model=${model} />`;
+}
+
+/** Which model of the study the pictures show. */
+function ModelPicker(/** @type {{ study: any, model: any, view: string }} */ { study, model, view }) {
+  const finished = models(study).filter((/** @type {any} */ m) => m.state === "finished");
+  if (finished.length < 2) return null;
+  const go = (/** @type {any} */ event) => replace(address(["studies", study.id, view], { model: event.target.value }));
+  return html`
+    <p class="picker"><label>Model
+      <select value=${model?.id} onChange=${go}>
+        ${finished.map((/** @type {any} */ m) => html`<option value=${m.id} selected=${m.id === model?.id}>${modelName(m)}${m.id === study.current ? " (current)" : ""}${m.kind === "fit" ? ` (${m.name})` : ""}</option>`)}
+      </select></label></p>`;
+}
+
+/** Whether nothing follows any more. */
+export const isOver = (/** @type {any} */ study) => FINAL.includes(study.state);

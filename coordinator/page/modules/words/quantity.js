@@ -1,0 +1,77 @@
+// Quantities as people read them: their names, units and digits.
+
+/** Lengths are shown in millimetres, everything else in SI. */
+export function shown(/** @type {string} */ unit) {
+  return unit === "m" ? { unit: "mm", scale: 1000 } : { unit, scale: 1 };
+}
+
+const SHORT = { drawbar_pull: "pull", torque: "torque", sinkage: "sinkage", lateral_force: "lateral force" };
+const UNITS = { drawbar_pull: "N", torque: "N m", sinkage: "m", lateral_force: "N" };
+
+/** The channels in their order. */
+export const CHANNELS = /** @type {const} */ (["drawbar_pull", "torque", "sinkage", "lateral_force"]);
+
+/** `drawbar_pull` as words. */
+export const words = (/** @type {string} */ name) => name.replaceAll("_", " ");
+
+/** A short name of a channel. */
+export const short = (/** @type {string} */ channel) => SHORT[/** @type {keyof typeof SHORT} */ (channel)] ?? words(channel);
+
+/** The unit of a channel in SI. */
+export const unitOf = (/** @type {string} */ channel) => UNITS[/** @type {keyof typeof UNITS} */ (channel)] ?? "1";
+
+/** `drawbar pull [N]`; a dimensionless quantity has no bracket. */
+export function titled(/** @type {string} */ name, /** @type {string} */ unit) {
+  return unit === "1" || unit === "" ? name : `${name} [${unit}]`;
+}
+
+/** A number to so many significant digits, without an exponent where it needs none. */
+export function digits(/** @type {number | null | undefined} */ value, count = 3) {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.floor(Math.log10(Math.abs(value)));
+  if (size >= 5 || size <= -4) {
+    const factor = Number((value / 10 ** size).toPrecision(Math.max(1, count - 1)));
+    return `${minus(factor)}·${power(size)}`;
+  }
+  return minus(value.toFixed(Math.max(0, count - 1 - size)));
+}
+
+/** A value of a unit in SI as people read it: `3.5 mm`. */
+export function size(/** @type {number | null | undefined} */ value, /** @type {string} */ unit, count = 3) {
+  if (value === null || value === undefined) return "–";
+  const quantity = shown(unit);
+  return `${digits(value * quantity.scale, count)}${quantity.unit === "1" ? "" : ` ${quantity.unit}`}`;
+}
+
+/** Mean and sd: both to the second digit of the sd. */
+export function meanAndSd(/** @type {number} */ mean, /** @type {number} */ sd) {
+  if (!(sd > 0)) return { mean: digits(mean, 4), sd: digits(sd, 2) };
+  const decimals = Math.max(0, 1 - Math.floor(Math.log10(sd)));
+  if (decimals > 8 || Math.abs(mean) >= 1e6) return { mean: digits(mean, 4), sd: digits(sd, 2) };
+  return { mean: minus(mean.toFixed(decimals)), sd: sd.toFixed(decimals) };
+}
+
+/** A probability: `0.97`, `> 0.999`, `< 0.001`. */
+export function probability(/** @type {number} */ p) {
+  if (p > 0.999) return "> 0.999";
+  if (p < 0.001) return "< 0.001";
+  return p.toFixed(p > 0.99 || p < 0.01 ? 3 : 2);
+}
+
+/** A duration: `12 s`, `3 min`, `2.5 h`. */
+export function duration(/** @type {number} */ seconds) {
+  if (seconds < 90) return `${Math.max(1, Math.round(seconds))} s`;
+  if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
+  return `${(seconds / 3600).toFixed(1)} h`;
+}
+
+/** With the sign that people write. */
+export const minus = (/** @type {number | string} */ value) => String(value).replace("-", "−");
+
+/** Ten to a power, raised: 10⁻³. */
+export function power(/** @type {number} */ exponent) {
+  const raised = [..."⁰¹²³⁴⁵⁶⁷⁸⁹"];
+  const figures = [...String(Math.abs(exponent))].map((figure) => raised[Number(figure)]);
+  return `10${exponent < 0 ? "⁻" : ""}${figures.join("")}`;
+}
