@@ -9,7 +9,7 @@ import { Entry, Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
 import { byRun, pointable } from "./runs.js";
 
-/** Fewer runs are drawn one by one. */
+/** Runs at fewer places are drawn one by one. */
 const LEAST_LINE = 3;
 /** More levels are not named in the legend. */
 const MOST_NAMES = 10;
@@ -104,8 +104,8 @@ function layerMarks(/** @type {Layer} */ layer, /** @type {Map<string, any>} */ 
     const stroke = layer.colour ?? colour(group.load);
     const dash = layer.isGhost ? { strokeDasharray: "4 3", strokeWidth: 2.2 } : { strokeWidth: 1.6 };
     const band = { x, y1: value("q05"), y2: value("q95") };
-    if (new Set(rows.map(x)).size >= LEAST_LINE) {
-      const means = atEqual(rows, x);
+    const means = atEqual(rows, x);
+    if (means.length >= LEAST_LINE) {
       return [
         ...(layer.isGhost ? [] : [Plot.areaY(means, { ...band, fill: stroke, fillOpacity: 0.16 })]),
         Plot.lineY(means, { x, y: value("predicted"), stroke, ...dash, className: layer.isGhost ? "ghost" : "model" }),

@@ -1,6 +1,6 @@
 // Where the model fails: residuals of every run and channel, and what orders them.
 
-import { html, useState } from "../html.js";
+import { html, useMemo, useState } from "../html.js";
 import { RESIDUAL_RANGE } from "../chart/colour.js";
 import { varying } from "../chart/condition.js";
 import { Figure, fileName } from "../chart/figure.js";
@@ -22,12 +22,13 @@ export function Failures({ study, model }) {
   const { answer: comparison, error } = useAnswer(model ? path.comparison(model.id) : null);
   const { answer: diagnostics } = useAnswer(model ? path.diagnostics(model.id) : null);
   const [order, setOrder] = useState("slip");
+  const rows = useMemo(() => withPlace(comparison?.rows ?? []), [comparison]);
+  const ofChannel = useMemo(() => CHANNELS.map((channel) => ({ channel, own: rows.filter((r) => r.channel === channel) })).filter(({ own }) => own.length > 0), [rows]);
   if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
   if (!comparison) return html`<${Pending} answer=${comparison} error=${error} what="the residuals" />`;
   const axes = varying(comparison.rows);
   const orders = [...axes.map((a) => ({ key: a.key, title: a.title })), { key: "made", title: "order of the runs" }, { key: "size", title: "size of the residual" }];
   const axis = axes.find((a) => a.key === order) ?? MADE;
-  const rows = withPlace(comparison.rows);
   const findings = diagnostics?.findings ?? [];
   return html`
     ${findings.length > 0 && html`<ul>${findings.map((/** @type {string} */ f) => html`<li>${f}</li>`)}</ul>`}
@@ -39,8 +40,8 @@ export function Failures({ study, model }) {
     <h2>Residuals against ${axis.title}</h2>
     <p class="note">Measured less computed; the grey band is one sd of the noise. The line is the trend that the diagnosis tests, where it is beyond chance (p below 0.01 among all tests).</p>
     <div class="figures">
-      ${CHANNELS.filter((c) => rows.some((r) => r.channel === c)).map((channel) => html`
-        <${ResidualChart} key=${channel} channel=${channel} rows=${rows.filter((r) => r.channel === channel)} axis=${axis} trends=${diagnostics?.trends ?? []} name=${study.name} />`)}
+      ${ofChannel.map(({ channel, own }) => html`
+        <${ResidualChart} key=${channel} channel=${channel} rows=${own} axis=${axis} trends=${diagnostics?.trends ?? []} name=${study.name} />`)}
     </div>`;
 }
 
@@ -56,10 +57,12 @@ function withPlace(/** @type {any[]} */ rows) {
 /** Runs by channels, coloured by the residual over its sd. */
 function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { rows, order, name }) {
   const judged = rows.filter((r) => r.residual_sigma !== null && r.residual_sigma !== undefined);
-  const worst = (/** @type {string} */ run) => Math.max(...judged.filter((r) => r.run === run).map((r) => Math.abs(r.residual_sigma)));
+  /** @type {Map<string, number>} */
+  const worst = new Map();
+  for (const r of judged) worst.set(r.run, Math.max(worst.get(r.run) ?? 0, Math.abs(r.residual_sigma)));
   const first = new Map(rows.map((r) => [r.run, r]));
   const runs = [...new Set(judged.map((r) => r.run))];
-  const value = (/** @type {string} */ run) => (order === "size" ? -worst(run) : order === "made" ? first.get(run).place : first.get(run)[order]);
+  const value = (/** @type {string} */ run) => (order === "size" ? -(worst.get(run) ?? 0) : order === "made" ? first.get(run).place : first.get(run)[order]);
   const values = new Map(runs.map((run) => [run, value(run)]));
   runs.sort((a, b) => values.get(a) - values.get(b) || first.get(a).place - first.get(b).place);
   const hint = (/** @type {any} */ r) => `run ${r.run}${r.use === "holdout" ? " (held out)" : ""}, ${short(r.channel)}\nslip ${digits(r.slip, 2)}, ${digits(r.wheel_load_n)} N, ${digits(1000 * r.sled_speed_m_s)} mm/s\n${minus(r.residual_sigma.toFixed(1))} sds: measured ${r.residual_sigma > 0 ? "above" : "below"} computed`;

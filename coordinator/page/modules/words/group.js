@@ -2,6 +2,8 @@
 
 /** A greater ratio of neighbouring values begins another level. */
 const GAP = 1.15;
+/** A wheel at rest has no ratio to others [m/s]. */
+const LEAST_SPEED = 1e-9;
 
 /** @typedef {{ run: string, wheel: string, slip: number, wheel_load_n: number, sled_speed_m_s: number, slip_angle_deg: number }} Condition */
 
@@ -43,19 +45,22 @@ export function levelWords(/** @type {{ low: number, high: number }} */ { low, h
  */
 
 /**
- * Groups rows by wheel load, and by rim speed and slip angle where these were set to several levels.
+ * Groups rows by wheel load, and by speed and slip angle where these were set to several levels. A rig holds the speed of the rim or
+ * that of the sled: the one with fewer levels.
  * @template {Condition} R
  * @param {R[]} rows
  * @returns {{ groups: Group<R>[], loads: string[], others: string[] }} groups by rising load, then speed, then angle, with the places of
  *   their names among the loads and the others
  */
 export function groups(rows) {
-  const speed = (/** @type {R} */ row) => Math.max(rimSpeed(row), 1e-9);
   const loads = levels(rows.map((row) => row.wheel_load_n));
-  const speeds = levels(rows.map(speed));
+  const [ofRim, ofSled] = [rimSpeed, (/** @type {Condition} */ row) => row.sled_speed_m_s].map((of) => levels(rows.map((row) => Math.max(of(row), LEAST_SPEED))));
+  const isSled = ofSled.length < ofRim.length;
+  const [speeds, held] = isSled ? [ofSled, "sled"] : [ofRim, "rim"];
+  const speed = (/** @type {R} */ row) => Math.max(isSled ? row.sled_speed_m_s : rimSpeed(row), LEAST_SPEED);
   const angles = [...new Set(rows.map((row) => row.slip_angle_deg))].sort((a, b) => a - b);
   const others = speeds.flatMap((level) => angles.map((angle) => [
-    speeds.length > 1 ? `rim ${levelWords(level, "mm/s", 1000)}` : "",
+    speeds.length > 1 ? `${held} ${levelWords(level, "mm/s", 1000)}` : "",
     angles.length > 1 ? `${angle}°` : "",
   ].filter(Boolean).join(", ")));
   /** @type {Map<string, Group<R>>} */
