@@ -134,7 +134,7 @@ fn a_run_prints_the_whole_study_and_knows_its_folder_again() {
     assert_eq!(run(go()).success(), printed, "a finished study is printed again");
     // a folder of one study needs no id
     let report = run(coordinator(["report", "--out", &out.display().to_string()])).success();
-    assert!(report.contains("id=\"beside\""));
+    assert!(report.contains("\"kind\":\"fit\""));
     let other = job().in_job(", \"cma-es\"", "");
     other.write(&folder.path().join("job"));
     let refusal = run(go()).refusal();

@@ -10,7 +10,8 @@
 //!   `diagnosis`: both, computed once.
 //! - `summary`: `summary.json`. `discovery`: its block on missing effects.
 //! - [`figure`]: the numbers of the source paper's figures.
-//! - [`report`]: the HTML page. [`terminal`]: text for a terminal.
+//! - [`report`]: one document with everything. [`terminal`]: text for a terminal.
+//! - `provenance`: how a calibration came about, and what it reached in sentences.
 //! - `words`: numbers, units and probabilities as people read them.
 
 mod diagnosis;
@@ -21,6 +22,7 @@ mod finished_calibration;
 #[cfg(test)]
 mod fixture;
 mod flag;
+mod provenance;
 pub mod report;
 mod study;
 mod study_file;
@@ -35,6 +37,7 @@ pub use figure::{ChannelHistory, MeasuredSeries, ModelSeries, StudyFigures};
 pub use finished_calibration::{FinishedCalibration, first_population, likeliest};
 pub use flag::kind::{Flag, FlagKind};
 pub use flag::model_limit::model_limits;
+pub use provenance::Provenance;
 pub use study::Study;
 pub use study_file::StudyFile;
 pub use summary::calibration::CalibrationSummary;

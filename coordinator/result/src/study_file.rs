@@ -56,7 +56,7 @@ impl Study {
         Some(match file {
             StudyFile::Summary => json(&self.summary()) + "\n",
             StudyFile::Posterior => self.current().unwrap_or(&self.lead).posterior_table().to_csv(),
-            StudyFile::Report => report::page(self),
+            StudyFile::Report => report::document(self),
             StudyFile::Text => terminal::study(self),
             StudyFile::Story => terminal::discovery::story(self),
             StudyFile::Diagnostics(id) => {

@@ -14,10 +14,11 @@ use super::error::{Body, HttpError, Id, Query};
 use super::studies::WithArchived;
 use crate::farm::Control;
 use crate::service::{Service, finished_calibration, finished_study};
+use page::report::showing;
 use record::{Sample, StageRow};
 use result::{
-    ChannelHistory, Comparison, Diagnostics, FinishedCalibration, Flag, PosteriorTable, StudyFigures,
-    StudyFile, StudySummary,
+    ChannelHistory, Comparison, Diagnostics, FinishedCalibration, Flag, PosteriorTable, Provenance,
+    StudyFigures, StudyFile, StudySummary,
 };
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -33,6 +34,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(comparison))
         .routes(routes!(diagnostics))
         .routes(routes!(histories))
+        .routes(routes!(provenance))
         .routes(routes!(flags))
         .routes(routes!(summary))
         .routes(routes!(figures))
@@ -205,6 +207,13 @@ async fn histories(
     Ok(Json(outcome(&service, id).await?.histories()))
 }
 
+/// How it came about: what it reached in sentences, its inputs and versions.
+#[utoipa::path(get, path = "/calibrations/{id}/provenance", params(("id" = i64, Path)), responses(
+    (status = 200, body = Provenance), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn provenance(State(service): State<Service>, Id(id): Id) -> Result<Json<Provenance>, HttpError> {
+    Ok(Json(outcome(&service, id).await?.provenance()))
+}
+
 /// What deserves attention.
 #[utoipa::path(get, path = "/calibrations/{id}/flags", params(("id" = i64, Path)), responses(
     (status = 200, body = Vec<Flag>), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
@@ -229,9 +238,10 @@ async fn figures(State(service): State<Service>, Id(id): Id) -> Result<Json<Stud
     Ok(Json(study.figures()))
 }
 
-/// The report of its study, as `report.html` has it.
+/// The report of its study, as `report.html` has it, with its own model first.
 #[utoipa::path(get, path = "/calibrations/{id}/report", params(("id" = i64, Path)), responses(
     (status = 200, content_type = "text/html", body = String), (status = 404, body = ErrorBody)))]
 async fn report_page(State(service): State<Service>, Id(id): Id) -> Result<Html<String>, HttpError> {
-    Ok(Html(service.study_file(id, StudyFile::Report).await?))
+    let report = service.study_file(id, StudyFile::Report).await?;
+    Ok(Html(showing(&report, id)))
 }

@@ -26,6 +26,7 @@ mod stored_calibration;
 mod study_results;
 mod study_step;
 mod submission;
+mod what_if;
 
 pub use error::ServiceError;
 pub use farm_settings::{FarmSettings, LEASE_MS, VERIFIED_PERCENT};

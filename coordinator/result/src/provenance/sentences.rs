@@ -1,45 +1,25 @@
-//! The verdict on a calibration in sentences, with its flags and the model's limits.
+//! What a calibration reached, and what to keep in mind about it, in sentences.
 
 use inference::diagnostics::mean_and_sd;
 use job::repeat_scatter;
-use maud::{Markup, html};
 use shared::channel::Channel;
 use shared::experiment::{RunUse, WheelGeometry};
 use shared::model::ModelKind;
 use shared::parameters::noise_parameter;
 
-use super::estimate::reason;
 use crate::finished_calibration::FinishedCalibration;
 use crate::flag::model_limit::model_limits;
 use crate::flag::unsettled_run::unsettled;
-use crate::study::Study;
 use crate::table::comparison::Comparison;
 use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;
 use crate::table::row::rows_of;
 use crate::words::data_channel::ShownUnit;
 use crate::words::number;
+use inference::point_estimate::StopReason;
 
-/// Flags first, then the verdict, then the model's limits.
-pub(in crate::report) fn verdict(study: &Study, comparison: &Comparison) -> Markup {
-    let calibration = &study.lead;
-    let flags = study.flags();
-    html! {
-        @if !flags.is_empty() {
-            div.flags role="note" {
-                h2 { "Needs attention" }
-                ul { @for flag in &flags { li { span.kind { (flag.kind.name().replace('_', " ")) } ": " (flag.text) } } }
-            }
-        }
-        p.verdict {
-            @for sentence in sentences(calibration, comparison) { (sentence) " " }
-            @if flags.is_empty() { "No flag was raised." }
-        }
-        ul.notes { @for note in notes(calibration) { li { (note) } } }
-    }
-}
-
-fn sentences(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<String> {
+/// How the calibration ended, and its errors.
+pub(super) fn sentences(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<String> {
     let mut text = vec![match &calibration.estimate {
         Some(estimate) => format!(
             "A {} found the most probable parameters in {}; it stopped because {}. It does not show which other parameters the data allow.",
@@ -96,6 +76,19 @@ fn equilibrium(calibration: &FinishedCalibration) -> String {
             number::list(&unsettled)
         ),
         None => "Whether the sampler reached equilibrium is unknown.".into(),
+    }
+}
+
+/// Why a fit stopped, in words.
+fn reason(stop: StopReason) -> &'static str {
+    match stop {
+        StopReason::Decrease => "no step improves the posterior any more",
+        StopReason::Step => {
+            "no tried step improved the posterior: the numerical noise of the model hides smaller improvements"
+        }
+        StopReason::Budget => "its budget of evaluations was used; a better point may be near",
+        StopReason::Stagnation => "many generations brought no improvement",
+        StopReason::Generations => "its last generation was reached; a better point may be near",
     }
 }
 
@@ -273,7 +266,8 @@ fn runs(calibration: &FinishedCalibration, usage: RunUse) -> usize {
         .count()
 }
 
-fn notes(calibration: &FinishedCalibration) -> Vec<String> {
+/// The limits of the model, and what is not as in the source paper.
+pub(super) fn notes(calibration: &FinishedCalibration) -> Vec<String> {
     let mut notes = Vec::new();
     // where grousers are declared, the notes of the job name their wheels
     let quasi_static = calibration.spec.model.kind == ModelKind::QuasiStatic;
