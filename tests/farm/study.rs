@@ -23,6 +23,7 @@ fn timeless(mut summary: Value) -> Value {
     for part in ["calibrations", "point_estimates"] {
         for calibration in summary[part].as_array_mut().expect("a list") {
             calibration["wall_s"] = Value::Null;
+            calibration["calibration"] = Value::Null;
         }
     }
     summary

@@ -36,7 +36,7 @@ pub fn answers(study: &Study) -> Map<String, Value> {
         let diagnostics = calibration.diagnostics(&comparison);
         add(path("comparison"), json(&comparison));
         add(path("diagnostics"), json(&diagnostics));
-        add(path("figures"), json(&calibration.figures(study)));
+        add(path("figures"), json(&study.figures_of(calibration)));
         add(path("histories"), json(&calibration.histories()));
         add(path("provenance"), json(&calibration.provenance()));
         add(path("stages"), json(&calibration.stages));

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use shared::file::{FileError, FileSet};
+use shared::model::ModelKind;
 use toml_edit::{DocumentMut, Item, TableLike};
 
 use super::point_job::{edited, keep_candidates, with_algorithm};
@@ -24,6 +25,12 @@ pub fn is_discovery(toml: &str) -> bool {
     let job: Option<toml::Table> = toml.parse().ok();
     let sampler = job.as_ref().and_then(|job| job.get("sampler"));
     sampler.and_then(|sampler| sampler.get("algorithm")?.as_str()) == Some(AlgorithmName::Discovery.name())
+}
+
+/// The model of a job; `None` where this version does not know it. Reads nothing else: lists ask this of every job.
+pub fn model_kind(toml: &str) -> Option<ModelKind> {
+    let job: toml::Table = toml.parse().ok()?;
+    job.get("model")?.get("kind")?.clone().try_into().ok()
 }
 
 /// A job as its study goes on with it: it asks for no point estimates and no search of its own.
