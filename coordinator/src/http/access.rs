@@ -10,6 +10,7 @@ use shared::api::ErrorKind;
 use tokio::sync::watch;
 
 use super::error::HttpError;
+use super::page;
 use crate::store::Reader;
 use crate::token::{Role, Token, TokenHash};
 
@@ -115,10 +116,11 @@ impl Access {
     }
 }
 
-/// The role that a request needs; none asks whether the service is alive.
+/// The role that a request needs; nobody is asked for one to see whether the service is alive, or for the files of the page.
 fn needed(method: &Method, path: &str) -> Option<Role> {
     match path {
-        "/health" => None,
+        "/health" | "/" => None,
+        _ if path.starts_with(page::FOLDER) => None,
         _ if path.starts_with("/v1/work/") => Some(Role::Work),
         _ if [Method::GET, Method::HEAD].contains(method) => Some(Role::Read),
         _ => Some(Role::Submit),

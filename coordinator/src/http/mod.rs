@@ -16,6 +16,7 @@ mod gate;
 mod growth;
 mod host;
 mod metrics;
+mod page;
 mod request_metrics;
 mod studies;
 mod tls;
@@ -82,6 +83,7 @@ fn router(service: Service, gate: Gate) -> Router {
     );
     let document = get(async move || ([(CONTENT_TYPE, "application/json")], document));
     router
+        .merge(page::routes())
         .route("/openapi.json", document)
         .fallback(error::no_route)
         .method_not_allowed_fallback(error::no_method)

@@ -25,7 +25,7 @@ export function ChosenRuns({ model }) {
   };
   return html`
     <aside class="chosen-runs" aria-label="Chosen runs">
-      <p><b>${chosen.label}</b>: ${runs.length === 1 ? "1 run" : `${runs.length} runs`}
+      <p><b>${chosen.label}</b>: ${runs.length === 1 ? "1 run" : `${runs.length} runs`}${" "}
         <span class="note">${runs.length <= 8 ? runs.join(", ") : `${runs.slice(0, 8).join(", ")} and ${runs.length - 8} more`}</span></p>
       ${!isReport && model && html`<button class="main" type="button" onClick=${ask}>What if these runs were left out?</button>`}
       <button type="button" onClick=${() => choose(null)}>Let them go</button>

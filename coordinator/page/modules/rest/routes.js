@@ -12,6 +12,7 @@ export const path = {
   workers: "/v1/workers",
   examples: "/v1/examples",
   effects: "/v1/effects",
+  experiment: (/** @type {number} */ id) => `/v1/experiments/${id}`,
   study,
   calibration,
   comparison: (/** @type {number} */ id) => `${calibration(id)}/comparison`,

@@ -11,10 +11,10 @@ const RETRY_MS = 1000;
  * The answer of a path.
  * @template [T=any]
  * @param {string | null} path null: nothing is asked
- * @param {{ everyMs?: number | null }} [options] how often it is asked again
+ * @param {{ everyMs?: (answer: any) => number | null }} [options] how long after an answer it is asked again [ms]
  * @returns {{ answer: T | null, error: any, reload: () => void }} error: of the last look, null where it succeeded
  */
-export function useAnswer(path, { everyMs = null } = {}) {
+export function useAnswer(path, { everyMs = () => null } = {}) {
   const [state, setState] = useState(/** @type {any} */ ({ path: null, answer: null, error: null }));
   const [round, setRound] = useState(0);
   const period = useRef(everyMs);
@@ -27,15 +27,16 @@ export function useAnswer(path, { everyMs = null } = {}) {
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     let timer;
     const look = async () => {
-      let pauseMs = period.current;
+      let pauseMs;
       try {
         const answer = await get(path, abort.signal);
         if (abort.signal.aborted) return;
+        pauseMs = period.current(answer);
         setState({ path, answer, error: null });
       } catch (error) {
         if (abort.signal.aborted) return;
         setState((/** @type {any} */ before) => ({ path, answer: before.path === path ? before.answer : null, error }));
-        if (/** @type {any} */ (error).status === 0) pauseMs = RETRY_MS;
+        pauseMs = /** @type {any} */ (error).status === 0 ? RETRY_MS : null;
       }
       if (pauseMs !== null) timer = setTimeout(look, pauseMs);
     };
@@ -44,6 +45,27 @@ export function useAnswer(path, { everyMs = null } = {}) {
       abort.abort();
       clearTimeout(timer);
     };
-  }, [path, round, everyMs !== null]);
+  }, [path, round]);
   return { answer: state.path === path ? state.answer : null, error: state.path === path ? state.error : null, reload };
+}
+
+/**
+ * The answers of several paths; those that are not there yet are missing.
+ * @param {string[]} paths
+ * @returns {Record<string, any>}
+ */
+export function useAnswers(paths) {
+  const [answers, setAnswers] = useState(/** @type {Record<string, any>} */ ({}));
+  useEffect(() => {
+    const abort = new AbortController();
+    for (const path of paths.filter((p) => !(p in answers))) {
+      get(path, abort.signal).then(
+        (answer) => setAnswers((/** @type {Record<string, any>} */ before) => ({ ...before, [path]: answer })),
+        // A layer that is not there is not drawn; its own view says why.
+        () => undefined,
+      );
+    }
+    return () => abort.abort();
+  }, [paths.join(" ")]);
+  return answers;
 }

@@ -1,6 +1,89 @@
-import { html } from "../html.js";
+// Where the model fails: residuals of every run and channel, and what orders them.
 
-/** @param {any} properties */
-export function Failures(properties) {
-  return html`<p class="empty">Failures</p>`;
+import { html, useMemo, useState } from "../html.js";
+import { RESIDUAL_RANGE } from "../chart/colour.js";
+import { varying } from "../chart/condition.js";
+import { Figure, fileName } from "../chart/figure.js";
+import { Plot, STYLE } from "../chart/library.js";
+import { ResidualChart } from "../chart/residual_chart.js";
+import { byRun, pointable } from "../chart/runs.js";
+import { Pending } from "../part/message.js";
+import { path } from "../rest/routes.js";
+import { useAnswer } from "../rest/use_answer.js";
+import { CHANNELS, digits, minus, short } from "../words/quantity.js";
+
+/** Residuals beyond so many sds have one colour. */
+const MOST_SDS = 4;
+/** More runs than these have no name on the axis. */
+const MOST_NAMES = 48;
+
+/** @param {{ study: any, model: any, query: Record<string, string> }} properties */
+export function Failures({ study, model }) {
+  const { answer: comparison, error } = useAnswer(model ? path.comparison(model.id) : null);
+  const { answer: diagnostics } = useAnswer(model ? path.diagnostics(model.id) : null);
+  const [order, setOrder] = useState("slip");
+  const rows = useMemo(() => withPlace(comparison?.rows ?? []), [comparison]);
+  const ofChannel = useMemo(() => CHANNELS.map((channel) => ({ channel, own: rows.filter((r) => r.channel === channel) })).filter(({ own }) => own.length > 0), [rows]);
+  if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
+  if (!comparison) return html`<${Pending} answer=${comparison} error=${error} what="the residuals" />`;
+  const axes = varying(comparison.rows);
+  const orders = [...axes.map((a) => ({ key: a.key, title: a.title })), { key: "made", title: "order of the runs" }, { key: "size", title: "size of the residual" }];
+  const axis = axes.find((a) => a.key === order) ?? MADE;
+  const findings = diagnostics?.findings ?? [];
+  return html`
+    ${findings.length > 0 && html`<ul>${findings.map((/** @type {string} */ f) => html`<li>${f}</li>`)}</ul>`}
+    <div class="actions" role="group" aria-label="Ordered by">
+      <span class="note">Ordered by</span>
+      ${orders.map((o) => html`<button type="button" aria-pressed=${o.key === order} onClick=${() => setOrder(o.key)}>${o.title}</button>`)}
+    </div>
+    <${HeatMap} rows=${rows} order=${order} name=${study.name} />
+    <h2>Residuals against ${axis.title}</h2>
+    <p class="note">Measured less computed; the grey band is one sd of the noise. The line is the trend that the diagnosis tests, where it is beyond chance (p below 0.01 among all tests).</p>
+    <div class="figures">
+      ${ofChannel.map(({ channel, own }) => html`
+        <${ResidualChart} key=${channel} channel=${channel} rows=${own} axis=${axis} trends=${diagnostics?.trends ?? []} name=${study.name} />`)}
+    </div>`;
+}
+
+/** The order in which the runs stand in the file. */
+const MADE = { key: "place", title: "order of the runs", short: "runs", unit: "1", scale: 1 };
+
+/** Rows with the place of their run. */
+function withPlace(/** @type {any[]} */ rows) {
+  const places = new Map([...new Set(rows.map((r) => r.run))].map((run, k) => [run, k + 1]));
+  return rows.map((r) => ({ ...r, place: places.get(r.run) }));
+}
+
+/** Runs by channels, coloured by the residual over its sd. */
+function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { rows, order, name }) {
+  const judged = rows.filter((r) => r.residual_sigma !== null && r.residual_sigma !== undefined);
+  /** @type {Map<string, number>} */
+  const worst = new Map();
+  for (const r of judged) worst.set(r.run, Math.max(worst.get(r.run) ?? 0, Math.abs(r.residual_sigma)));
+  const first = new Map(rows.map((r) => [r.run, r]));
+  const runs = [...new Set(judged.map((r) => r.run))];
+  const value = (/** @type {string} */ run) => (order === "size" ? -(worst.get(run) ?? 0) : order === "made" ? first.get(run).place : first.get(run)[order]);
+  const values = new Map(runs.map((run) => [run, value(run)]));
+  runs.sort((a, b) => values.get(a) - values.get(b) || first.get(a).place - first.get(b).place);
+  const hint = (/** @type {any} */ r) => `run ${r.run}${r.use === "holdout" ? " (held out)" : ""}, ${short(r.channel)}\nslip ${digits(r.slip, 2)}, ${digits(r.wheel_load_n)} N, ${digits(1000 * r.sled_speed_m_s)} mm/s\n${minus(r.residual_sigma.toFixed(1))} sds: measured ${r.residual_sigma > 0 ? "above" : "below"} computed`;
+  const draw = (/** @type {number} */ width) => Plot.plot({
+    width, height: 96 + 30 * new Set(judged.map((r) => r.channel)).size, marginLeft: 92, marginBottom: runs.length > MOST_NAMES ? 26 : 66, style: STYLE,
+    x: { domain: runs, label: runs.length > MOST_NAMES ? "runs" : null, tickRotate: -60, tickSize: 0, ...(runs.length > MOST_NAMES ? { ticks: [] } : {}) },
+    y: { domain: CHANNELS.filter((c) => judged.some((r) => r.channel === c)), label: null, tickFormat: short, tickSize: 0 },
+    color: { type: "linear", domain: [-MOST_SDS, 0, MOST_SDS], range: RESIDUAL_RANGE, clamp: true, interpolate: mix },
+    marks: [
+      Plot.cell(judged, byRun(judged, { x: "run", y: "channel", fill: "residual_sigma", inset: runs.length > 200 ? 0 : 0.5 })),
+      Plot.dot(judged.filter((r) => r.use === "holdout"), { x: "run", y: "channel", r: runs.length > MOST_NAMES ? 1 : 2, fill: "var(--ink)", className: "held" }),
+      Plot.tip(judged, Plot.pointer({ x: "run", y: "channel", title: hint, fill: "var(--panel)", stroke: "var(--rule)" })),
+    ],
+  });
+  return html`<${Figure} title="Residuals of every run and channel, in standard deviations" name=${fileName(name, "residuals")} deps=${[rows, order]} draw=${draw}
+    rows=${() => judged.map((r) => ({ run: r.run, use: r.use, channel: r.channel, slip: r.slip, wheel_load_n: r.wheel_load_n, sled_speed_m_s: r.sled_speed_m_s, residual_sds: r.residual_sigma }))}
+    onDrawn=${(/** @type {any} */ plot) => pointable(plot)}
+    legend=${html`<span><i class="swatch below"></i>computed too high by ${MOST_SDS} sds or more</span><span><i class="swatch level"></i>as measured</span><span><i class="swatch above"></i>computed too low</span><span>dot: held out</span>`} />`;
+}
+
+/** Mixes two colours of the style sheet. */
+function mix(/** @type {string} */ from, /** @type {string} */ to) {
+  return (/** @type {number} */ share) => `color-mix(in srgb, ${to} ${(100 * share).toFixed(1)}%, ${from})`;
 }

@@ -1,6 +1,85 @@
-import { html } from "../html.js";
+// What is missing: the explanations with their probabilities, what each would change, what was not tried, and which runs would tell.
 
-/** @param {any} properties */
-export function MissingEffect(properties) {
-  return html`<p class="empty">MissingEffect</p>`;
+import { html, useState } from "../html.js";
+import { varying } from "../chart/condition.js";
+import { LawChart } from "../chart/law_chart.js";
+import { InformationMap } from "../chart/information_map.js";
+import { ChannelCharts } from "../part/channel_charts.js";
+import { Explanations } from "../part/explanations.js";
+import { Failure, Pending } from "../part/message.js";
+import { NewRuns } from "../part/new_runs.js";
+import { NotTried } from "../part/not_tried.js";
+import { isReport } from "../rest/answers.js";
+import { discover, extend, path } from "../rest/routes.js";
+import { useAnswer } from "../rest/use_answer.js";
+import { address } from "../route.js";
+import { capital } from "../words/quantity.js";
+
+/** @param {{ study: any, model: any, reload?: () => void }} properties */
+export function MissingEffect({ study, model, reload }) {
+  const search = study.members.find((/** @type {any} */ m) => m.kind === "search" && m.searches === model?.id);
+  const isFound = search?.state === "finished";
+  const { answer: record, error } = useAnswer(isFound ? path.discovery(search.id) : null);
+  const { answer: comparison } = useAnswer(model ? path.comparison(model.id) : null);
+  const [ghost, setGhost] = useState(/** @type {string | null} */ (null));
+  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [isBusy, setBusy] = useState(false);
+  if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
+  const act = async (/** @type {() => Promise<any>} */ what) => {
+    setFailure(null);
+    setBusy(true);
+    try {
+      const created = await what();
+      reload?.();
+      location.hash = address(["studies", created.study, "live"]);
+    } catch (problem) {
+      setFailure(problem);
+    }
+    setBusy(false);
+  };
+  if (!search) {
+    return html`
+      <p>Nobody has asked yet what this model is missing.</p>
+      ${isReport ? html`<p>Ask with <code>coordinator discover ${model.id}</code>.</p>`
+        : html`<button class="main" type="button" disabled=${isBusy} onClick=${() => act(() => discover(model.id))}>Search for the missing effect</button>`}
+      <${Failure} error=${failure} />`;
+  }
+  if (!isFound) return html`<p class="empty">The search is ${search.state}${search.message ? `: ${search.message}` : ""}; <a href=${address(["studies", study.id, "live"])}>Live</a> shows how far it is.</p>`;
+  if (!record) return html`<${Pending} answer=${record} error=${error} what="the search" />`;
+  const add = (/** @type {any} */ extension) => act(() => extend(model.id, extension));
+  const layers = comparison ? withGhost(comparison.rows, record.curves, ghost) : [];
+  return html`
+    <p class="verdict">${capital(record.text)}.</p>
+    <${Failure} error=${failure} />
+    <div class="beside">
+      <div>
+        <${Explanations} record=${record} ghost=${ghost} show=${setGhost} add=${isReport ? null : add} study=${study} model=${model} isBusy=${isBusy} />
+      </div>
+      <div class="ghosts">
+        <p class="note" aria-live="polite">${ghost ? html`Dashed: what <b>${ghost}</b> would predict for the fitted runs, from the search's fit. Nothing has been computed anew.` : "Point at an explanation: its predictions appear over the data before anything is computed."}</p>
+        ${comparison && html`<${ChannelCharts} small=${true} layers=${layers} axis=${varying(comparison.rows)[0]} name=${`${study.name}-ghost`} />`}
+      </div>
+    </div>
+    ${record.outside && html`<${LawChart} law=${record.outside} name=${study.name} add=${isReport ? null : () => add({ effect_file: { name: "outside.toml", text: record.outside.effect_file } })} />`}
+    <${NotTried} record=${record} />
+    <h2>Which runs would tell</h2>
+    ${record.next_runs.length === 0 && html`<p>No run within reach of the rig would change these probabilities by much.</p>`}
+    <${InformationMap} record=${record} name=${study.name} />
+    ${record.other_tests.length > 0 && html`<h3>Tests without a rolling wheel that would tell</h3><ul>${record.other_tests.map((/** @type {string} */ t) => html`<li>${t}</li>`)}</ul>`}
+    ${!isReport && comparison && html`<${NewRuns} study=${study} record=${record} comparison=${comparison} />`}`;
+}
+
+/**
+ * The model, and the predictions of an explanation in its place.
+ * @param {any[]} rows
+ * @param {any} curves
+ * @param {string | null} ghost
+ */
+function withGhost(rows, curves, ghost) {
+  const layers = [{ name: "model", colour: null, rows }];
+  const values = ghost ? curves?.effects?.[ghost] : null;
+  if (!values) return layers;
+  const known = new Map(curves.data.map((/** @type {any} */ d, /** @type {number} */ k) => [`${d.run} ${d.channel}`, values[k]]));
+  const own = rows.map((r) => ({ ...r, predicted: known.get(`${r.run} ${r.channel}`) ?? null, q05: null, q95: null }));
+  return [...layers, { name: String(ghost), colour: "var(--ghost)", rows: own, isGhost: true }];
 }

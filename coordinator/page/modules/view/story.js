@@ -1,6 +1,59 @@
-import { html } from "../html.js";
+// The story of a study in three sentences: what the model gets wrong, what is missing, what to do next; then how the error fell.
 
-/** @param {any} properties */
-export function Story(properties) {
-  return html`<p class="empty">Story</p>`;
+import { html, useState } from "../html.js";
+import { LedgerCharts } from "../chart/ledger_chart.js";
+import { Flags } from "../part/flags.js";
+import { Failure } from "../part/message.js";
+import { isReport } from "../rest/answers.js";
+import { discover, extend } from "../rest/routes.js";
+import { address } from "../route.js";
+import { capital, probability } from "../words/quantity.js";
+import { ledgerLines } from "./errors.js";
+
+/** @param {{ study: any, model: any, reload?: () => void }} properties */
+export function Story({ study, model, reload }) {
+  const { story } = study;
+  const lines = ledgerLines(study);
+  if (!story) {
+    return html`<p class="empty">Nothing is finished yet: the story begins with the first calibration. <a href=${address(["studies", study.id, "live"])}>Live</a> shows how far it is.</p>`;
+  }
+  return html`
+    <div class="three">
+      <section class="card"><h2>What the model gets wrong</h2>
+        ${story.wrong.map((/** @type {any} */ w) => html`<p class=${w.is_within_noise ? "calm" : "alarm"}>${sentence(w.text)}</p>`)}
+        <p class="note"><a href=${address(["studies", study.id, "failures"])}>Where it fails</a></p></section>
+      <section class="card"><h2>What is missing</h2>
+        <p>${sentence(story.missing.text)}</p>
+        ${story.missing.alternatives.length > 0 && html`<p class="note">Instead it could be ${story.missing.alternatives.map((/** @type {any} */ a) => `${a.name} (${probability(a.probability)})`).join(", ")}.</p>`}
+        ${story.missing.not_tried.length > 0 && html`<p class="note">Not tried, because the experiment does not state what they need: ${story.missing.not_tried.join(", ")}.</p>`}
+        <p class="note"><a href=${address(["studies", study.id, "effects"])}>All explanations</a></p></section>
+      <section class="card"><h2>What to do next</h2>
+        <ol>${story.next.map((/** @type {any} */ step) => html`<li><${Step} step=${step} study=${study} model=${model} reload=${reload} /></li>`)}</ol></section>
+    </div>
+    ${lines.length > 0 && html`<h2>How the error falls</h2><${LedgerCharts} study=${study} lines=${lines} />`}
+    <${Flags} study=${study} />`;
+}
+
+const sentence = (/** @type {string} */ text) => capital(/[.!?]$/.test(text) ? text : `${text}.`);
+
+/** A step with the button that takes it; a report has the command. */
+function Step(/** @type {{ step: any, study: any, model: any, reload?: () => void }} */ { step, study, model, reload }) {
+  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const act = async (/** @type {() => Promise<any>} */ what) => {
+    try {
+      const created = await what();
+      reload?.();
+      location.hash = address(["studies", created.study ?? study.id, "live"]);
+    } catch (error) {
+      setFailure(error);
+    }
+  };
+  const buttons = /** @type {Record<string, any>} */ ({
+    add_effect: () => html`<button class="main" type="button" onClick=${() => act(() => extend(model.id, step.wheel ? { effect: step.effect, wheel: step.wheel } : { effect: step.effect }))}>Add ${step.effect}</button>`,
+    add_effect_file: () => html`<button class="main" type="button" onClick=${() => act(() => extend(model.id, { effect_file: step.effect_file }))}>Add this law</button>`,
+    discover: () => html`<button class="main" type="button" onClick=${() => act(() => discover(model.id))}>Search for the missing effect</button>`,
+    make_runs: () => html`<a class="button" href=${address(["studies", study.id, "effects"])}>See the runs, and add them</a>`,
+  });
+  const button = !isReport && model && buttons[step.kind];
+  return html`${sentence(step.text)} ${button ? html`<span class="actions">${button()}</span>` : step.command && html`<code>coordinator ${step.command}</code>`}<${Failure} error=${failure} />`;
 }

@@ -16,6 +16,8 @@ import { Story } from "./story.js";
 
 /** How often a study that works is looked at [ms]. */
 const LOOK_MS = 1000;
+/** The same of one that rests: somebody may extend it elsewhere [ms]. */
+const REST_MS = 10000;
 const FINAL = ["finished", "failed", "cancelled"];
 
 /** The views in their order: what a person reads from top to bottom in a report. */
@@ -47,7 +49,7 @@ export function modelOf(/** @type {any} */ study, /** @type {number | null} */ a
 
 /** @param {{ id: number, view: string, query: Record<string, string> }} properties */
 export function StudyPage({ id, view, query }) {
-  const { answer: study, error, reload } = useAnswer(path.study(id), { everyMs: LOOK_MS });
+  const { answer: study, error, reload } = useAnswer(path.study(id), { everyMs: (now) => (isOver(now) ? REST_MS : LOOK_MS) });
   if (!study) return html`<${Pending} answer=${study} error=${error} what=${`study ${id}`} />`;
   const model = modelOf(study, query.model ? Number(query.model) : null);
   const shown = VIEWS.find((v) => v.name === view) ?? VIEWS[0];

@@ -14,6 +14,9 @@ export const CHANNELS = /** @type {const} */ (["drawbar_pull", "torque", "sinkag
 /** `drawbar_pull` as words. */
 export const words = (/** @type {string} */ name) => name.replaceAll("_", " ");
 
+/** A sentence begins with a capital, unless it begins with a name of the program. */
+export const capital = (/** @type {string} */ text) => (/^[a-z0-9]*_/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1));
+
 /** A short name of a channel. */
 export const short = (/** @type {string} */ channel) => SHORT[/** @type {keyof typeof SHORT} */ (channel)] ?? words(channel);
 

@@ -1,0 +1,136 @@
+// A channel of one wheel against a condition: measurements at their true places, models as lines with their 90 % bands.
+
+import { html, useMemo } from "../html.js";
+import { digits, shown, titled, words } from "../words/quantity.js";
+import { groups } from "../words/group.js";
+import { colour, symbol } from "./colour.js";
+import { spanWords } from "./condition.js";
+import { Entry, Figure, fileName } from "./figure.js";
+import { Plot, STYLE } from "./library.js";
+import { byRun, pointable } from "./runs.js";
+
+/** Runs at fewer places are drawn one by one. */
+const LEAST_LINE = 3;
+/** More levels are not named in the legend. */
+const MOST_NAMES = 10;
+const GLYPHS = /** @type {Record<string, any>} */ ({
+  circle: html`<circle cx="8" cy="8" r="4" />`, square: html`<rect x="4" y="4" width="8" height="8" />`,
+  triangle: html`<path d="M8 3l5 9H3z" />`, diamond: html`<path d="M8 3l4 5l-4 5l-4 -5z" />`,
+  star: html`<path d="M8 2l1.6 4h4l-3.2 2.6 1.2 4.2L8 10.4l-3.6 2.4 1.2-4.2L2.4 6h4z" />`, wye: html`<path d="M7 8L3 4l2-2 3 4 3-4 2 2-4 4v6H7z" />`,
+  cross: html`<path d="M6 2h4v4h4v4h-4v4H6v-4H2V6h4z" />`, times: html`<path d="M3 3l10 10M13 3L3 13" stroke-width="3" stroke="currentColor" />`,
+});
+
+/**
+ * @typedef {{ name: string, colour: string | null, rows: any[], isGhost?: boolean }} Layer
+ *   colour: of all its lines; null: each group of runs has its own.
+ * @param {{ channel: string, wheel: string | null, layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string }} properties
+ *   layers: models, each with the rows of its comparison; the first one's measurements are drawn.
+ */
+export function ChannelChart({ channel, wheel, layers, axis, name }) {
+  const own = (/** @type {any[]} */ rows) => rows.filter((r) => r.channel === channel && (wheel === null || r.wheel === wheel));
+  const measured = own(layers[0].rows);
+  const quantity = shown(measured[0].unit);
+  const found = useMemo(() => groups(measured), [layers[0].rows, channel, wheel]);
+  const title = `${words(channel)}${wheel === null ? "" : `, wheel ${wheel}`}, measured and computed, by ${axis.title}`;
+  const draw = (/** @type {number} */ width) => picture({ width, layers: layers.map((l) => ({ ...l, rows: own(l.rows) })), found, axis, quantity, channel });
+  const runsIn = (/** @type {number} */ from, /** @type {number} */ to) =>
+    measured.filter((r) => r[axis.key] * axis.scale >= from && r[axis.key] * axis.scale <= to).map((r) => r.run);
+  const used = [...new Set(found.groups.map((g) => g.other))];
+  // Where the colours are the models', the signs of the measurements tell their loads.
+  const isLayered = layers.some((l) => l.colour !== null && !l.isGhost);
+  const loads = found.loads.slice(0, MOST_NAMES).map((load, k) => html`<${Entry} glyph=${isLayered
+    ? html`<g fill="currentColor">${GLYPHS[symbol(k)]}</g>`
+    : html`<rect x="1" y="5" width="14" height="6" fill=${colour(k)} />`}>${load}<//>`);
+  const others = found.others.length < 2 || isLayered ? [] : used.slice(0, MOST_NAMES).map((k) => html`<${Entry} glyph=${html`<g fill="currentColor">${GLYPHS[symbol(k)]}</g>`}>${found.others[k]}<//>`);
+  const hasHoldout = measured.some((r) => r.use === "holdout");
+  return html`<${Figure} title=${title} name=${fileName(name, channel, wheel ?? "")}
+    deps=${[layers.map((l) => `${l.name} ${l.rows.length}`).join(), layers.at(-1)?.rows, layers[0].rows, axis.key]}
+    draw=${draw} rows=${() => table(layers, own)}
+    onDrawn=${(/** @type {any} */ plot) => pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) })}
+    legend=${html`${loads}${others}
+      ${hasHoldout && html`<${Entry} glyph=${html`<circle cx="8" cy="8" r="4" fill="none" stroke="currentColor" stroke-width="2" />`}>held out<//>`}
+      ${layers.filter((l) => l.colour !== null).map((l) => html`<${Entry} glyph=${html`<path d="M0 8h16" stroke=${l.colour} stroke-width="2" stroke-dasharray=${l.isGhost ? "3 3" : ""} />`}>${l.name}<//>`)}`} />`;
+}
+
+/** Measured and computed values as rows of a file. */
+function table(/** @type {Layer[]} */ layers, /** @type {(rows: any[]) => any[]} */ own) {
+  return layers.flatMap((layer) => own(layer.rows).map((r) => ({
+    model: layer.name, run: r.run, use: r.use, wheel: r.wheel, slip: r.slip, wheel_load_n: r.wheel_load_n, sled_speed_m_s: r.sled_speed_m_s,
+    slip_angle_deg: r.slip_angle_deg, channel: r.channel, unit: r.unit, measured: r.measured, predicted: r.predicted, q05: r.q05, q95: r.q95,
+  })));
+}
+
+/** @param {{ width: number, layers: Layer[], found: ReturnType<typeof groups>, axis: any, quantity: any, channel: string }} properties */
+function picture({ width, layers, found, axis, quantity, channel }) {
+  const x = (/** @type {any} */ r) => r[axis.key] * axis.scale;
+  const value = (/** @type {string} */ key) => (/** @type {any} */ r) => (r[key] === null || r[key] === undefined ? NaN : r[key] * quantity.scale);
+  const place = new Map(found.groups.flatMap((group) => group.rows.map((r) => [r.run, group])));
+  const marks = layers.flatMap((layer) => layerMarks(layer, place, x, value));
+  const measured = layers[0].rows;
+  const isLayered = layers.some((l) => l.colour !== null && !l.isGhost);
+  const dots = (/** @type {any[]} */ rows, /** @type {any} */ look) => found.groups.map((group) => {
+    const own = rows.filter((r) => place.get(r.run) === group);
+    const sign = isLayered ? { symbol: symbol(group.load), ...look("var(--measured)") } : { symbol: symbol(group.other), ...look(colour(group.load)) };
+    return Plot.dot(own, byRun(own, { x, y: value("measured"), r: 4.2, ...sign }));
+  });
+  const tip = (/** @type {any} */ r) => [
+    `run ${r.run}${r.use === "holdout" ? " (held out)" : ""}`,
+    `slip ${digits(r.slip, 2)}, ${digits(r.wheel_load_n, 3)} N, ${digits(1000 * r.sled_speed_m_s, 3)} mm/s`,
+    `measured ${digits(r.measured * quantity.scale)} ${quantity.unit}`,
+    ...layers.map((l) => {
+      const own = l.rows.find((o) => o.run === r.run);
+      return own?.predicted === undefined || own?.predicted === null ? "" : `${l.name} ${digits(own.predicted * quantity.scale)} ${quantity.unit}`;
+    }),
+  ].filter(Boolean).join("\n");
+  return Plot.plot({
+    width, height: Math.max(240, Math.min(360, 0.62 * width)), marginTop: 26, marginLeft: 56, marginBottom: 40, inset: 7, grid: true, style: STYLE,
+    x: { label: titled(axis.title, axis.unit), labelArrow: "none", labelAnchor: "center", nice: true },
+    y: { label: titled(words(channel), quantity.unit), labelArrow: "none", nice: true },
+    marks: [
+      ...marks,
+      ...dots(measured.filter((r) => r.use !== "holdout"), (c) => ({ fill: c, stroke: "var(--paper)", strokeWidth: 0.7 })),
+      ...dots(measured.filter((r) => r.use === "holdout"), (c) => ({ fill: "var(--paper)", stroke: c, strokeWidth: 1.8 })),
+      Plot.tip(measured, Plot.pointer({ x, y: value("measured"), title: tip, maxRadius: 14, fill: "var(--panel)", stroke: "var(--rule)" })),
+    ],
+  });
+}
+
+/** The lines of a model: one for each group of runs. */
+function layerMarks(/** @type {Layer} */ layer, /** @type {Map<string, any>} */ place, /** @type {any} */ x, /** @type {any} */ value) {
+  const known = layer.rows.filter((r) => r.predicted !== null && r.predicted !== undefined && place.has(r.run));
+  const all = [...new Set(known.map((r) => place.get(r.run)))];
+  return all.flatMap((group) => {
+    const rows = known.filter((r) => place.get(r.run) === group).sort((a, b) => x(a) - x(b));
+    const stroke = layer.colour ?? colour(group.load);
+    const dash = layer.isGhost ? { strokeDasharray: "4 3", strokeWidth: 2.2 } : { strokeWidth: 1.6 };
+    const band = { x, y1: value("q05"), y2: value("q95") };
+    const means = atEqual(rows, x);
+    if (means.length >= LEAST_LINE) {
+      return [
+        ...(layer.isGhost ? [] : [Plot.areaY(means, { ...band, fill: stroke, fillOpacity: 0.16 })]),
+        Plot.lineY(means, { x, y: value("predicted"), stroke, ...dash, className: layer.isGhost ? "ghost" : "model" }),
+      ];
+    }
+    return [
+      ...(layer.isGhost ? [] : [Plot.ruleX(rows, byRun(rows, { ...band, stroke, strokeOpacity: 0.5 }))]),
+      Plot.dot(rows, byRun(rows, { x, y: value("predicted"), stroke, symbol: "times", r: 4, ...dash, className: layer.isGhost ? "ghost" : "model" })),
+    ];
+  });
+}
+
+/** Rows of one place become their mean: repeats do not make a line go up and down. */
+function atEqual(/** @type {any[]} */ rows, /** @type {(r: any) => number} */ x) {
+  const span = x(rows[rows.length - 1]) - x(rows[0]);
+  /** @type {any[][]} */
+  const places = [];
+  for (const row of rows) {
+    const last = places.at(-1);
+    if (last && x(row) - x(last[0]) <= 0.012 * span) last.push(row);
+    else places.push([row]);
+  }
+  const mean = (/** @type {any[]} */ all, /** @type {(r: any) => number} */ of) => all.reduce((sum, r) => sum + of(r), 0) / all.length;
+  return places.map((all) => {
+    const of = (/** @type {string} */ key) => (all.some((r) => r[key] === null || r[key] === undefined) ? null : mean(all, (r) => r[key]));
+    return { ...all[0], slip: of("slip"), wheel_load_n: of("wheel_load_n"), sled_speed_m_s: of("sled_speed_m_s"), predicted: of("predicted"), q05: of("q05"), q95: of("q95") };
+  });
+}

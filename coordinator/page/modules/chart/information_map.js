@@ -1,0 +1,45 @@
+// What a further run would tell about the open explanations, over slip and load, for each speed of the rim.
+
+import { html } from "../html.js";
+import { digits, minus } from "../words/quantity.js";
+import { levelOf, levels, levelWords, rimSpeed } from "../words/group.js";
+import { Figure, fileName } from "./figure.js";
+import { Plot, STYLE } from "./library.js";
+
+/** @param {{ record: any, name: string }} properties */
+export function InformationMap({ record, name }) {
+  const runs = record.information ?? [];
+  if (runs.length === 0) return html`<${ProposedRuns} record=${record} />`;
+  const speeds = levels(runs.map(rimSpeed));
+  const most = Math.max(...runs.map((/** @type {any} */ r) => r.nats), 1e-6);
+  const draw = (/** @type {number} */ k) => (/** @type {number} */ width) => {
+    const own = runs.filter((/** @type {any} */ r) => levelOf(speeds, rimSpeed(r)) === k);
+    const next = record.next_runs.map((/** @type {any} */ r, /** @type {number} */ n) => ({ ...r, n: n + 1 })).filter((/** @type {any} */ r) => own.some((/** @type {any} */ o) => isSame(o, r)));
+    return Plot.plot({
+      width, height: 210, marginTop: 26, marginLeft: 60, marginBottom: 40, style: STYLE,
+      x: { label: "slip", labelArrow: "none", labelAnchor: "center", type: "band", tickFormat: (/** @type {number} */ v) => minus(v) },
+      y: { label: "wheel load [N]", labelArrow: "none", type: "band", reverse: true },
+      color: { type: "linear", domain: [0, most], range: ["var(--panel)", "var(--accent)"], interpolate: (/** @type {string} */ a, /** @type {string} */ b) => (/** @type {number} */ t) => `color-mix(in srgb, ${b} ${(100 * t).toFixed(1)}%, ${a})` },
+      marks: [
+        Plot.cell(own, { x: "slip", y: "wheel_load_n", fill: "nats", inset: 0.5, title: (/** @type {any} */ r) => `${digits(r.nats, 2)} nats at slip ${minus(r.slip)}, ${r.wheel_load_n} N, ${digits(1000 * r.sled_speed_m_s, 2)} mm/s` }),
+        Plot.dot(next, { x: "slip", y: "wheel_load_n", r: 10, fill: "var(--paper)", stroke: "currentColor" }),
+        Plot.text(next, { x: "slip", y: "wheel_load_n", text: "n", fontWeight: "bold", fill: "currentColor" }),
+      ],
+    });
+  };
+  return html`
+    <p class="note">Darker: the run tells more, up to ${digits(most, 2)} nats of ${digits(Math.log(2), 2)} nats for a yes or no. Numbers: the runs to make, each chosen given those before it.</p>
+    <div class="figures small">${speeds.map((speed, k) => html`
+      <${Figure} key=${k} title=${`Information of a run at a rim speed of ${levelWords(speed, "mm/s", 1000)}`} name=${fileName(name, "next-runs", k + 1)} deps=${[record]} draw=${draw(k)}
+        rows=${() => runs.filter((/** @type {any} */ r) => levelOf(speeds, rimSpeed(r)) === k)} />`)}</div>
+    <${ProposedRuns} record=${record} />`;
+}
+
+const isSame = (/** @type {any} */ a, /** @type {any} */ b) =>
+  a.slip === b.slip && a.wheel_load_n === b.wheel_load_n && a.sled_speed_m_s === b.sled_speed_m_s;
+
+function ProposedRuns(/** @type {{ record: any }} */ { record }) {
+  if (record.next_runs.length === 0) return null;
+  return html`<ol>${record.next_runs.map((/** @type {any} */ r, /** @type {number} */ k) => html`
+    <li>slip ${minus(r.slip)}, ${digits(r.wheel_load_n)} N, ${digits(1000 * r.sled_speed_m_s, 2)} mm/s ${k === 0 ? "tells" : "adds"} ${digits(r.information_nats, 2)} nats: it separates ${r.separates.join(", ").replace("none", "nothing missing")}</li>`)}</ol>`;
+}

@@ -1,0 +1,23 @@
+// Every channel of every wheel against a condition.
+
+import { html } from "../html.js";
+import { ChannelChart } from "../chart/channel_chart.js";
+import { CHANNELS } from "../words/quantity.js";
+
+/** @param {{ layers: import("../chart/channel_chart.js").Layer[], axis: import("../chart/condition.js").ConditionAxis, name: string, small?: boolean }} properties */
+export function ChannelCharts({ layers, axis, name, small = false }) {
+  const rows = layers[0].rows;
+  const wheels = [...new Set(rows.map((r) => r.wheel))];
+  const pairs = CHANNELS.filter((channel) => rows.some((r) => r.channel === channel)).flatMap((channel) =>
+    (wheels.length > 1 ? wheels : [null]).filter((w) => w === null || rows.some((r) => r.channel === channel && r.wheel === w)).map((wheel) => ({ channel, wheel })));
+  return html`<div class=${`figures ${small ? "small" : ""}`}>
+    ${pairs.map(({ channel, wheel }) => html`<${ChannelChart} key=${`${channel} ${wheel}`} channel=${channel} wheel=${wheel} layers=${layers} axis=${axis} name=${name} />`)}
+  </div>`;
+}
+
+/** Chooses the condition that runs are drawn against. */
+export function AxisPicker(/** @type {{ axes: import("../chart/condition.js").ConditionAxis[], axis: any, choose: (key: string) => void }} */ { axes, axis, choose }) {
+  if (axes.length < 2) return null;
+  return html`<div class="actions" role="group" aria-label="Drawn against">
+    ${axes.map((a) => html`<button type="button" aria-pressed=${a.key === axis.key} onClick=${() => choose(a.key)}>${a.title}</button>`)}</div>`;
+}

@@ -1,0 +1,62 @@
+// The explanations of a misfit by falling probability; pointing at one shows what it would change, a click adds it.
+
+import { html, useState } from "../html.js";
+import { path } from "../rest/routes.js";
+import { useAnswer } from "../rest/use_answer.js";
+import { digits, minus, probability } from "../words/quantity.js";
+
+/** So many are shown at first. */
+const FIRST = 8;
+const OTHERS = /** @type {Record<string, string>} */ ({ none: "nothing is missing", not_in_library: "a law that is not in the library" });
+
+/**
+ * @param {{ record: any, ghost: string | null, show: (name: string | null) => void, add: ((extension: any) => void) | null,
+ *   study: any, model: any, isBusy: boolean }} properties
+ */
+export function Explanations({ record, ghost, show, add, study, model, isBusy }) {
+  const { answer: catalogue } = useAnswer(path.effects);
+  const [isAll, setAll] = useState(false);
+  const effects = isAll ? record.effects : record.effects.slice(0, FIRST);
+  const summaries = new Map((catalogue ?? []).map((/** @type {any} */ e) => [e.name, e.summary]));
+  const made = new Set(study.members.filter((/** @type {any} */ m) => m.kind !== "search").map((/** @type {any} */ m) => m.effects.join(" ")));
+  const isMade = (/** @type {string} */ name) => made.has([...model.effects, name].join(" "));
+  const classes = record.effects.reduce((/** @type {Map<number, number>} */ all, /** @type {any} */ e) => all.set(e.class, (all.get(e.class) ?? 0) + 1), new Map());
+  return html`
+    <div class="scroll" tabindex="0" role="region" aria-label="Explanations">
+      <table class="explanations">
+        <thead><tr><th scope="col">explanation</th><th scope="col">probability</th><th scope="col" class="number">nats</th><th scope="col">strength</th><th scope="col"></th></tr></thead>
+        <tbody>${effects.map((/** @type {any} */ effect) => html`
+          <tr key=${effect.name} class=${`${effect.name === ghost ? "shown" : ""} ${effect.in_credible_set ? "credible" : ""}`}
+              onMouseEnter=${() => show(effect.name)} onMouseLeave=${() => show(null)}>
+            <th scope="row">
+              <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)} aria-label=${`show what ${effect.name} would change`}><b>${OTHERS[effect.name] ?? effect.name}</b></button>
+              <span class="note">${summaries.get(effect.name.split(".")[0]) ?? ""}${(classes.get(effect.class) ?? 0) > 1 ? ` These data cannot tell it from ${same(record, effect)}.` : ""}</span>
+            </th>
+            <td><span class="bar"><i style=${{ width: `${(100 * effect.probability).toFixed(1)}%` }}></i></span> <span class="number">${probability(effect.probability)}</span></td>
+            <td class="number">${minus(effect.log_bayes_factor.toFixed(1))}</td>
+            <td>${Object.entries(effect.parameters).map(([name, value]) => html`<div>${name.split(".").slice(1).join(".") || name} ${digits(/** @type {number} */ (value))}</div>`)}
+              ${effect.prior_sds !== null && Math.abs(effect.prior_sds) > 2 ? html`<span class="note">${digits(effect.prior_sds, 2)} sds out in its prior</span>` : null}</td>
+            <td>${add && !(effect.name in OTHERS) && (isMade(effect.name)
+              ? html`<span class="note">added</span>`
+              : html`<button type="button" disabled=${isBusy} onClick=${() => add(extension(effect.name, record))} aria-label=${`add ${effect.name}`}>Add</button>`)}</td>
+          </tr>`)}
+        </tbody>
+      </table>
+    </div>
+    ${record.effects.length > FIRST && html`<button type="button" onClick=${() => setAll(!isAll)}>${isAll ? "Show fewer" : `Show all ${record.effects.length}`}</button>`}
+    <p class="note">Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the prior probability is on “nothing is missing”.</p>`;
+}
+
+/** The others of a class. */
+function same(/** @type {any} */ record, /** @type {any} */ effect) {
+  const others = record.effects.filter((/** @type {any} */ e) => e.class === effect.class && e.name !== effect.name).map((/** @type {any} */ e) => e.name);
+  return others.length > 3 ? `${others.slice(0, 3).join(", ")} and ${others.length - 3} more` : others.join(", ");
+}
+
+/** What is sent to add an effect; `EFFECT.WHEEL` acts on one wheel. */
+function extension(/** @type {string} */ name, /** @type {any} */ record) {
+  const named = record.extension;
+  if (named?.on_wheel && `${named.on_wheel.effect}.${named.on_wheel.wheel}` === name) return named.on_wheel;
+  const [effect, wheel] = name.split(".");
+  return wheel ? { effect, wheel } : { effect };
+}

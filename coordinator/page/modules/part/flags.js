@@ -1,0 +1,25 @@
+// Flags: those of the current model open, those of superseded models folded away.
+
+import { html } from "../html.js";
+import { words } from "../words/quantity.js";
+import { modelName } from "../view/study.js";
+
+/** @param {{ study: any }} properties */
+export function Flags({ study }) {
+  const isOld = (/** @type {any} */ flag) => flag.calibration !== null && flag.calibration !== undefined && flag.calibration !== study.current;
+  const now = study.flags.filter((/** @type {any} */ f) => !isOld(f));
+  const old = study.flags.filter(isOld);
+  const name = (/** @type {number} */ id) => {
+    const member = study.members.find((/** @type {any} */ m) => m.id === id);
+    return member ? modelName(member) : `calibration ${id}`;
+  };
+  return html`
+    <h2>What deserves attention</h2>
+    ${now.length === 0 ? html`<p>Nothing about the current model.</p>` : html`<${List} flags=${now} />`}
+    ${old.length > 0 && html`<details><summary>${old.length === 1 ? "1 flag" : `${old.length} flags`} of models that are no longer the current one</summary>
+      ${[...new Set(old.map((/** @type {any} */ f) => f.calibration))].map((id) => html`<h3>${name(/** @type {number} */ (id))}</h3><${List} flags=${old.filter((/** @type {any} */ f) => f.calibration === id)} />`)}
+    </details>`}`;
+}
+
+const List = (/** @type {{ flags: any[] }} */ { flags }) =>
+  html`<ul class="flags">${flags.map((f) => html`<li><b>${words(f.kind)}</b>: ${f.text}</li>`)}</ul>`;

@@ -1,0 +1,31 @@
+// The table of runs: measured, computed, interval, residual.
+
+import { html } from "../html.js";
+import { digits, minus, shown, short } from "../words/quantity.js";
+import { choose, point } from "../selection.js";
+
+/** @param {{ rows: any[] }} properties rows of a comparison */
+export function RunTable({ rows }) {
+  return html`
+    <div class="scroll" tabindex="0" role="region" aria-label="All runs">
+      <table>
+        <thead><tr>${["run", "use", "slip", "load N", "speed mm/s", "channel", "measured", "model", "90 % interval", "residual, sds"].map((h, k) => html`<th scope="col" class=${k > 1 && k !== 5 ? "number" : ""}>${h}</th>`)}</tr></thead>
+        <tbody>${rows.map((r) => html`<${RunRow} key=${`${r.run} ${r.channel}`} row=${r} />`)}</tbody>
+      </table>
+    </div>`;
+}
+
+function RunRow(/** @type {{ row: any }} */ { row }) {
+  const quantity = shown(row.unit);
+  const value = (/** @type {number | null} */ v) => digits(v === null ? null : v * quantity.scale);
+  return html`
+    <tr data-run=${row.run} onMouseEnter=${() => point([row.run])} onMouseLeave=${() => point(null)}>
+      <th scope="row"><button class="plain" type="button" onClick=${() => choose([row.run], `run ${row.run}`)}>${row.run}</button></th>
+      <td>${row.use === "holdout" ? "held out" : "fit"}</td>
+      <td class="number">${minus(row.slip.toFixed(2))}</td><td class="number">${digits(row.wheel_load_n)}</td><td class="number">${digits(1000 * row.sled_speed_m_s)}</td>
+      <td>${short(row.channel)} ${quantity.unit}</td>
+      <td class="number">${value(row.measured)}</td><td class="number">${value(row.predicted)}</td>
+      <td class="number">${row.q05 === null ? "–" : `${value(row.q05)} to ${value(row.q95)}`}</td>
+      <td class="number">${row.residual_sigma === null ? "–" : minus(row.residual_sigma.toFixed(1))}</td>
+    </tr>`;
+}

@@ -1,0 +1,110 @@
+//! The embedded files.
+
+use std::borrow::Cow;
+
+#[derive(rust_embed::RustEmbed)]
+#[folder = "shell"]
+struct Shell;
+
+#[derive(rust_embed::RustEmbed)]
+#[folder = "modules"]
+#[prefix = "modules/"]
+struct Modules;
+
+#[derive(rust_embed::RustEmbed)]
+#[folder = "style"]
+#[prefix = "style/"]
+struct Style;
+
+#[derive(rust_embed::RustEmbed)]
+#[folder = "vendor"]
+#[prefix = "vendor/"]
+struct Vendor;
+
+fn file(path: &str) -> Option<rust_embed::EmbeddedFile> {
+    Shell::get(path)
+        .or_else(|| Modules::get(path))
+        .or_else(|| Style::get(path))
+        .or_else(|| Vendor::get(path))
+}
+
+/// A file of the page.
+#[derive(Debug, Clone)]
+pub struct Asset {
+    /// Its content.
+    pub content: Cow<'static, [u8]>,
+    /// Its media type.
+    pub media_type: &'static str,
+    /// Names its content, in hexadecimal digits.
+    pub tag: String,
+}
+
+/// The document that a browser begins with.
+pub const INDEX: &str = "index.html";
+
+/// A file by its path below the folder of the page; `None` where there is none.
+pub fn asset(path: &str) -> Option<Asset> {
+    let file = file(path)?;
+    let hash = file.metadata.sha256_hash();
+    Some(Asset {
+        media_type: media_type(path),
+        tag: hash.iter().take(16).map(|byte| format!("{byte:02x}")).collect(),
+        content: file.data,
+    })
+}
+
+/// A text file that is there.
+pub(crate) fn text(path: &str) -> String {
+    let file = file(path).unwrap_or_else(|| panic!("the page has the file {path}"));
+    String::from_utf8_lossy(&file.data).into_owned()
+}
+
+/// The paths of all modules, in order.
+pub(crate) fn modules() -> Vec<String> {
+    let mut paths: Vec<String> = Modules::iter().map(Cow::into_owned).collect();
+    paths.push("vendor/preact.js".into());
+    paths.sort();
+    paths
+}
+
+fn media_type(path: &str) -> &'static str {
+    match path.rsplit_once('.').map(|(_, extension)| extension) {
+        Some("html") => "text/html; charset=utf-8",
+        Some("js") => "text/javascript; charset=utf-8",
+        Some("css") => "text/css; charset=utf-8",
+        Some("svg") => "image/svg+xml",
+        _ => "text/plain; charset=utf-8",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everything_that_the_index_names_is_there() {
+        let index = text(INDEX);
+        let named: Vec<&str> = index
+            .split('"')
+            .filter_map(|part| part.strip_prefix("/page/"))
+            .collect();
+        assert!(named.len() > 5, "{named:?}");
+        for path in named {
+            let asset = asset(path).unwrap_or_else(|| panic!("{path}"));
+            assert!(asset.media_type != "text/plain; charset=utf-8", "{path}");
+            assert_eq!(asset.tag.len(), 32);
+        }
+        assert!(asset("Cargo.toml").is_none() && asset("../Cargo.toml").is_none());
+    }
+
+    #[test]
+    fn nothing_asks_another_host() {
+        for path in modules().iter().filter(|path| path.starts_with("modules/")) {
+            let source = text(path).replace("http://www.w3.org/2000/svg", "");
+            assert!(
+                !source.contains("http://") && !source.contains("https://"),
+                "{path}"
+            );
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! A report: the page's modules, styles and the recorded answers of the service in one document.
+
+use std::fmt::Write;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Map, Value, json};
+
+use crate::asset::{modules, text};
+
+/// A module goes by this name and its path: a document of its own has no address to which paths are relative.
+const PREFIX: &str = "grouser/";
+/// A report asks nobody, and runs nothing but what it carries.
+const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' data:; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'";
+
+/// What a report carries.
+#[derive(Debug, Clone)]
+pub struct Report<'a> {
+    /// Title of the document, as text.
+    pub title: &'a str,
+    /// Markup of its content for whoever runs no scripts.
+    pub content: &'a str,
+    /// The study.
+    pub study: i64,
+    /// The calibration whose model it shows first.
+    pub calibration: i64,
+    /// Answers of the service by their paths.
+    pub answers: &'a Map<String, Value>,
+}
+
+/// The document.
+pub fn report(report: &Report) -> String {
+    let mut page = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    let styles: String = ["base", "layout", "chart"]
+        .iter()
+        .map(|name| text(&format!("style/{name}.css")))
+        .collect();
+    let shown = json!({"study": report.study, "calibration": report.calibration});
+    let parts = [
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">".to_owned(),
+        "<meta name=\"color-scheme\" content=\"light dark\">".to_owned(),
+        format!("<meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">"),
+        format!("<title>{}</title>", escaped(report.title)),
+        format!("<style>\n{styles}</style>"),
+        format!("<script type=\"importmap\">{}</script>", import_map()),
+        "</head>\n<body>".to_owned(),
+        format!("<main id=\"page\" class=\"report\">{}</main>", report.content),
+        data("answers", &Value::Object(report.answers.clone())),
+        data("shown", &shown),
+        format!("<script>{}</script>", text("vendor/d3.js")),
+        format!("<script>{}</script>", text("vendor/plot.js")),
+        format!("<script type=\"module\">import \"{PREFIX}modules/report.js\";</script>"),
+        "</body>\n</html>\n".to_owned(),
+    ];
+    for part in parts {
+        let _ = writeln!(page, "{part}");
+    }
+    page
+}
+
+/// Numbers and names as JSON in which no text can end the element that it stands in.
+fn data(id: &str, value: &Value) -> String {
+    // `<` stands in texts alone, where its escape means the same.
+    let json = value.to_string().replace('<', "\\u003c");
+    format!("<script type=\"application/json\" id=\"{id}\">{json}</script>")
+}
+
+/// Where the browser finds each module: in the document itself.
+fn import_map() -> String {
+    let entry = |path: String| {
+        let source = STANDARD.encode(with_names(&path, &text(&path)));
+        (
+            format!("{PREFIX}{path}"),
+            Value::from(format!("data:text/javascript;base64,{source}")),
+        )
+    };
+    let imports: Map<String, Value> = modules().into_iter().map(entry).collect();
+    json!({ "imports": imports }).to_string()
+}
+
+/// A module whose imports go by name in place of relative paths.
+fn with_names(path: &str, source: &str) -> String {
+    let folder = folder_of(path);
+    let line = |line: &str| match line.rsplit_once(" from \"") {
+        Some((head, relative)) if relative.starts_with('.') => {
+            format!("{head} from \"{PREFIX}{}", resolved(folder, relative))
+        }
+        _ => line.to_owned(),
+    };
+    source.split_inclusive('\n').map(line).collect()
+}
+
+fn folder_of(path: &str) -> &str {
+    path.rsplit_once('/').map_or("", |(folder, _)| folder)
+}
+
+/// The path of a relative one below a folder.
+fn resolved(folder: &str, relative: &str) -> String {
+    if let Some(rest) = relative.strip_prefix("../") {
+        return resolved(folder_of(folder), rest);
+    }
+    let rest = relative.strip_prefix("./").unwrap_or(relative);
+    match folder {
+        "" => rest.to_owned(),
+        folder => format!("{folder}/{rest}"),
+    }
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn example(answers: &Map<String, Value>) -> String {
+        report(&Report {
+            title: "<sand>",
+            content: "<p>story</p>",
+            study: 1,
+            calibration: 3,
+            answers,
+        })
+    }
+
+    #[test]
+    fn imports_go_by_name() {
+        let source = "import { a } from \"./b.js\";\nexport { c } from \"../rest/d.js\";\nconst e = 1;\n";
+        let expected = "import { a } from \"grouser/modules/view/b.js\";\nexport { c } from \"grouser/modules/rest/d.js\";\nconst e = 1;\n";
+        assert_eq!(with_names("modules/view/x.js", source), expected);
+        let expected = "import { a } from \"grouser/vendor/p.js\";";
+        assert_eq!(
+            with_names("modules/x.js", "import { a } from \"../vendor/p.js\";"),
+            expected
+        );
+    }
+
+    #[test]
+    fn every_module_that_is_imported_is_carried() {
+        let map: Value = serde_json::from_str(&import_map()).unwrap();
+        for path in modules() {
+            let source = with_names(&path, &text(&path));
+            let named = source
+                .split(" from \"")
+                .skip(1)
+                .filter_map(|rest| rest.split('"').next());
+            for name in named.filter(|_| path.starts_with("modules/")) {
+                assert!(map["imports"][name].is_string(), "{path} imports {name}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_text_leaves_its_element() {
+        let answers = Map::from_iter([("/v1/studies/1".to_owned(), json!({"name": "</script><i>"}))]);
+        let page = example(&answers);
+        assert!(!page.contains("</script><i>") && page.contains("&lt;sand&gt;"));
+        // The import map, two sets of data, two libraries, the beginning.
+        assert_eq!(page.matches("<script").count(), 6);
+        assert_eq!(page.matches("</script").count(), 6);
+    }
+
+    #[test]
+    fn nothing_is_asked_elsewhere() {
+        let page = example(&Map::new());
+        assert!(page.contains(POLICY));
+        for word in ["src=\"http", "href=\"http", "@import url"] {
+            assert!(!page.contains(word), "{word}");
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! `/` and `/page/…`: the page, as embedded. It needs no token: what it shows, it asks for with that of its user.
+
+use axum::Router;
+use axum::extract::Path;
+use axum::http::header::{
+    CACHE_CONTROL, CONTENT_SECURITY_POLICY, CONTENT_TYPE, ETAG, IF_NONE_MATCH, REFERRER_POLICY,
+    X_CONTENT_TYPE_OPTIONS,
+};
+use axum::http::{HeaderMap, StatusCode, Uri};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use page::asset::{INDEX, asset};
+
+use super::error::no_route;
+use crate::service::Service;
+
+/// Where the files are.
+pub(super) const FOLDER: &str = "/page/";
+/// The page runs its own modules alone, asks this service alone, and stands in no other page. Styles in elements are those of the
+/// pictures.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+pub(super) fn routes() -> Router<Service> {
+    Router::new()
+        .route(
+            "/",
+            get(async |uri: Uri, headers: HeaderMap| file(INDEX, uri, headers).await),
+        )
+        .route(
+            &format!("{FOLDER}{{*path}}"),
+            get(async |Path(path): Path<String>, uri: Uri, headers: HeaderMap| {
+                file(&path, uri, headers).await
+            }),
+        )
+}
+
+/// A file; a browser that has it is told so.
+async fn file(path: &str, uri: Uri, headers: HeaderMap) -> Response {
+    let Some(asset) = asset(path) else {
+        return no_route(uri).await.into_response();
+    };
+    let tag = format!("\"{}\"", asset.tag);
+    let common = [
+        (CONTENT_TYPE, asset.media_type),
+        (CONTENT_SECURITY_POLICY, POLICY),
+        (REFERRER_POLICY, "no-referrer"),
+        (X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        // Asked again each time: a new program has other files under the same names.
+        (CACHE_CONTROL, "no-cache"),
+    ];
+    let is_known = headers
+        .get(IF_NONE_MATCH)
+        .and_then(|value| value.to_str().ok())
+        .is_some_and(|tags| {
+            tags.split(',')
+                .any(|known| known.trim().trim_start_matches("W/") == tag)
+        });
+    let own = [(ETAG, tag)];
+    match is_known {
+        true => (StatusCode::NOT_MODIFIED, common, own).into_response(),
+        false => (common, own, asset.content).into_response(),
+    }
+}
