@@ -1,0 +1,38 @@
+// The studies as a table: a row each, with the errors of its current model on fitted and held-out rows.
+
+import { html } from "../html.js";
+import { address } from "../route.js";
+import { CHANNELS, digits, short, shown, titled, unitOf, words } from "../words/quantity.js";
+import { progressWords, verdictWords } from "../words/state.js";
+import { Table } from "./table.js";
+
+/** An error on fitted rows, above that on held-out rows. */
+const pair = (/** @type {any} */ error, /** @type {(use: any) => number | null | undefined} */ of, scale = 1) =>
+  error && html`${["fit", "holdout"].filter((use) => error[use]).map((use) => {
+    const value = of(error[use]);
+    return html`<div>${digits(value === null || value === undefined ? null : value * scale)}</div>`;
+  })}`;
+
+function State(/** @type {{ study: any }} */ { study }) {
+  return html`<span class=${`state ${study.state}`}>${study.state}</span>
+    ${study.progress && html`<div class="note">${progressWords(study.progress)}</div>`}`;
+}
+
+/** @param {{ studies: any[] }} properties */
+export function StudyTable({ studies }) {
+  const channels = CHANNELS.filter((channel) => studies.some((s) => s.error?.fit?.[channel] ?? s.error?.holdout?.[channel]));
+  const rows = [...studies].sort((a, b) => b.id - a.id).map((study) => [
+    html`<a href=${address(["studies", study.id, study.state === "finished" ? "story" : "live"])}>${study.name ?? `study ${study.id}`}</a>
+      <div class="note">study ${study.id}${study.archived ? ", archived" : ""}</div>`,
+    html`<${State} study=${study} />`,
+    html`${words(study.model_kind ?? "unknown")}${study.effects.length > 0 && html`<div class="note">with ${study.effects.map(words).join(", ")}</div>`}`,
+    study.error && html`${["fit", "holdout"].filter((use) => study.error[use]).map((use) => html`<div class="whole">${use === "fit" ? "fit" : "held out"}</div>`)}`,
+    ...channels.map((channel) => pair(study.error, (use) => use[channel]?.rmse, shown(unitOf(channel)).scale)),
+    pair(study.error, (use) => use.all?.rmse_fixed_sigma),
+    study.state === "finished" || study.verdict ? verdictWords(study.verdict) : "",
+  ]);
+  return html`
+    <p class="note">Errors are root mean squares of prediction minus measurement of the current model; 1 × noise is as good as the measurements allow.</p>
+    <${Table} label="Studies" rows=${rows} numbers=${[...channels, "all"].map((_, k) => k + 4)}
+      head=${["study", "state", "model", "rows", ...channels.map((c) => `error of ${titled(short(c), shown(unitOf(c)).unit)}`), "error [× noise]", "missing effect"]} />`;
+}

@@ -1,0 +1,27 @@
+// States, progress and verdicts as people read them.
+
+import { digits, duration } from "./quantity.js";
+
+const VERDICTS = {
+  nothing_detectable: "nothing detectable is missing",
+  named: "an effect is missing, and named",
+  class: "an effect is missing: one of a class",
+  not_in_library: "an effect is missing that the library does not have",
+  undecided: "undecided",
+};
+
+/** A verdict of a search; null where none has ended. */
+export const verdictWords = (/** @type {string | null} */ verdict) =>
+  verdict === null ? "no search yet" : VERDICTS[/** @type {keyof typeof VERDICTS} */ (verdict)] ?? verdict.replaceAll("_", " ");
+
+/** How far a calibration has come: `stage 5, exponent 0.012, 2300 evaluations, about 12 s to go`. */
+export function progressWords(/** @type {any} */ progress) {
+  const parts = [`stage ${progress.stage}`];
+  if (progress.stage > 0 && progress.tempering_exponent < 1) parts.push(`exponent ${digits(progress.tempering_exponent, 2)}`);
+  parts.push(`${progress.evaluations} evaluations`);
+  if (progress.remaining_s !== null) parts.push(`about ${duration(progress.remaining_s)} to go`);
+  return parts.join(", ");
+}
+
+/** How long ago something was heard of. */
+export const ago = (/** @type {number} */ ms) => (ms < 1500 ? "now" : `${duration(ms / 1000)} ago`);
