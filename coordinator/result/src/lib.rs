@@ -10,6 +10,7 @@
 //!   `diagnosis`: both, computed once.
 //! - `summary`: `summary.json`. `discovery`: its block on missing effects.
 //! - [`figure`]: the numbers of the source paper's figures.
+//! - [`story`]: what is wrong, what is missing, what to do next.
 //! - [`report`]: the HTML page. [`terminal`]: text for a terminal.
 //! - `words`: numbers, units and probabilities as people read them.
 
@@ -22,6 +23,7 @@ mod finished_calibration;
 mod fixture;
 mod flag;
 pub mod report;
+pub mod story;
 mod study;
 mod study_file;
 mod summary;
@@ -35,6 +37,7 @@ pub use figure::{ChannelHistory, MeasuredSeries, ModelSeries, StudyFigures};
 pub use finished_calibration::{FinishedCalibration, first_population, likeliest};
 pub use flag::kind::{Flag, FlagKind};
 pub use flag::model_limit::model_limits;
+pub use story::Story;
 pub use study::Study;
 pub use study_file::StudyFile;
 pub use summary::calibration::CalibrationSummary;
