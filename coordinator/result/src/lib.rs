@@ -12,6 +12,8 @@
 //! - [`figure`]: the numbers of the source paper's figures.
 //! - [`report`]: one document with everything. [`terminal`]: text for a terminal.
 //! - `provenance`: how a calibration came about, and what it reached in sentences.
+//! - [`story`]: what is wrong, what is missing, what to do next.
+//! - [`report`]: the HTML page. [`terminal`]: text for a terminal.
 //! - `words`: numbers, units and probabilities as people read them.
 
 mod diagnosis;
@@ -25,6 +27,7 @@ mod flag;
 mod overview;
 mod provenance;
 pub mod report;
+pub mod story;
 mod study;
 mod study_file;
 mod study_member;
@@ -41,6 +44,7 @@ pub use flag::kind::{Flag, FlagKind};
 pub use flag::model_limit::model_limits;
 pub use overview::{StudyFlag, StudyListItem, StudyOverview, StudyVerdict};
 pub use provenance::Provenance;
+pub use story::Story;
 pub use study::Study;
 pub use study_file::StudyFile;
 pub use study_member::{MemberKind, StudyMember};

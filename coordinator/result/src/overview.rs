@@ -7,6 +7,7 @@ use shared::api::{CalibrationState, Progress};
 
 use crate::diagnostics::trends::TrendVariable;
 use crate::flag::kind::{Flag, FlagKind};
+use crate::story::Story;
 use crate::study::Study;
 use crate::study_member::StudyMember;
 use crate::summary::calibration::CalibrationSummary;
@@ -178,8 +179,21 @@ impl Study {
                 verdict: round.record.verdict,
                 text: round.record.text.clone(),
             }),
-            ..StudyOverview::begun(id, experiment, Some(kind), self.members.clone())
+            ..StudyOverview::begun(id, experiment, Some(kind), self.members_with_stories())
         }
+    }
+}
+
+impl Study {
+    /// The members, each finished calibration with its story.
+    fn members_with_stories(&self) -> Vec<StudyMember> {
+        let mut members = self.members.clone();
+        for calibration in self.calibrations() {
+            if let Some(own) = members.iter_mut().find(|member| member.id == calibration.row.id) {
+                own.story = Some(Story::of(self, calibration));
+            }
+        }
+        members
     }
 }
 

@@ -64,6 +64,7 @@ fn member(
         effects,
         searches,
         message: row.message.clone(),
+        story: None,
     }
 }
 

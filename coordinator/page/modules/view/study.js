@@ -65,7 +65,7 @@ export function StudyPage({ id, view, query }) {
     <nav class="views" aria-label="Views of the study">
       ${VIEWS.map((v) => html`<a href=${to(v.name)} aria-current=${v === shown ? "page" : null}>${v.title}</a>`)}
     </nav>
-    ${shown.name !== "live" && shown.name !== "story" && html`<${ModelPicker} study=${study} model=${model} view=${shown.name} />`}
+    ${shown.name !== "live" && html`<${ModelPicker} study=${study} model=${model} view=${shown.name} />`}
     <section class=${`view ${shown.name}`} aria-label=${shown.title}>
       <${shown.view} study=${study} model=${model} query=${query} reload=${reload} />
     </section>
