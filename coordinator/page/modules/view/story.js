@@ -25,8 +25,7 @@ export function Story({ study, model, reload }) {
         <p class="note"><a href=${to("failures")}>Where it fails</a></p></section>
       <section class="card"><h2>What is missing</h2>
         <p>${sentence(story.missing.text)}</p>
-        ${story.missing.alternatives.length > 0 && html`<p class="note">It could also be ${story.missing.alternatives.map((/** @type {any} */ a) => `${a.name} (${probability(a.probability)})`).join(", ")}.</p>`}
-        ${story.missing.not_tried.length > 0 && html`<p class="note">Not tried, because the experiment does not state what they need: ${story.missing.not_tried.join(", ")}.</p>`}
+        ${story.missing.verdict !== "nothing_detectable" && story.missing.alternatives.length > 0 && html`<p class="note">It could also be ${story.missing.alternatives.map((/** @type {any} */ a) => `${a.name} (${probability(a.probability)})`).join(", ")}.</p>`}
         <p class="note"><a href=${to("effects")}>All explanations</a></p></section>
       <section class="card"><h2>What to do next</h2>
         <ol>${story.next.steps.map((/** @type {any} */ step) => html`<li><${Step} step=${step} study=${study} model=${model} reload=${reload} /></li>`)}</ol></section>
