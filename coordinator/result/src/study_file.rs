@@ -1,6 +1,7 @@
 //! The files that a study ends with: written into its folder, shown by a service, stored.
 
 use crate::report;
+use crate::story::Story;
 use crate::study::Study;
 use crate::terminal;
 
@@ -13,9 +14,11 @@ pub enum StudyFile {
     Posterior,
     /// Report.
     Report,
-    /// Results as text for a terminal.
-    Text,
-    /// Searches and error ledger as text for a terminal.
+    /// Its tables and flags, as text for a terminal.
+    Details,
+    /// Calibrations, searches and error ledger, as text for a terminal.
+    Brief,
+    /// The story of the current model, as JSON.
     Story,
     /// Diagnostics of a finished calibration, as JSON.
     Diagnostics(i64),
@@ -23,11 +26,12 @@ pub enum StudyFile {
 
 impl StudyFile {
     /// The files that every study has.
-    const OF_ALL: [StudyFile; 5] = [
+    const OF_ALL: [StudyFile; 6] = [
         StudyFile::Summary,
         StudyFile::Posterior,
         StudyFile::Report,
-        StudyFile::Text,
+        StudyFile::Details,
+        StudyFile::Brief,
         StudyFile::Story,
     ];
 
@@ -37,8 +41,9 @@ impl StudyFile {
             StudyFile::Summary => "summary.json".into(),
             StudyFile::Posterior => "posterior.csv".into(),
             StudyFile::Report => "report.html".into(),
-            StudyFile::Text => "study.txt".into(),
-            StudyFile::Story => "story.txt".into(),
+            StudyFile::Details => "details.txt".into(),
+            StudyFile::Brief => "brief.txt".into(),
+            StudyFile::Story => "story.json".into(),
             StudyFile::Diagnostics(calibration) => format!("diagnostics-{calibration}.json"),
         }
     }
@@ -57,8 +62,9 @@ impl Study {
             StudyFile::Summary => json(&self.summary()) + "\n",
             StudyFile::Posterior => self.current().unwrap_or(&self.lead).posterior_table().to_csv(),
             StudyFile::Report => report::page(self),
-            StudyFile::Text => terminal::study(self),
-            StudyFile::Story => terminal::discovery::story(self),
+            StudyFile::Details => terminal::study(self),
+            StudyFile::Brief => terminal::brief(self),
+            StudyFile::Story => json(&Story::current(self)) + "\n",
             StudyFile::Diagnostics(id) => {
                 let calibration = self.calibrations().find(|c| c.row.id == id)?;
                 json(&calibration.diagnostics(&calibration.comparison()))
