@@ -42,7 +42,10 @@ pub fn answers(study: &Study) -> Map<String, Value> {
         add(path("stages"), json(&calibration.stages));
     }
     for round in &study.rounds {
-        let search = study.members.iter().find(|m| m.searches == Some(round.calibration));
+        let search = study
+            .members
+            .iter()
+            .find(|m| m.searches == Some(round.calibration));
         if let Some(search) = search {
             add(
                 format!("calibrations/{}/discovery", search.id),
