@@ -1,6 +1,6 @@
 //! The messages between a user and the service.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -101,6 +101,14 @@ pub struct NewRuns {
     /// The calibration of the study whose model is fitted to all runs; the last of its ledger where nothing is said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<i64>,
+}
+
+/// `POST /v1/calibrations/ID/what-if`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewWhatIf {
+    /// The runs that are left out of the fit.
+    pub without: BTreeSet<String>,
 }
 
 /// Answer to further runs.

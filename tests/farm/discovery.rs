@@ -285,7 +285,7 @@ fn a_folder_grows_and_its_run_knows_it_again() {
     assert_eq!(ledger(&summary), ["[]", "[\"torque_gain\"]", "[\"torque_gain\"]"]);
     let report = text(&folder.path().join("out/report.html"));
     assert!(
-        report.contains("<h3>Error ledger</h3>"),
+        report.contains("\"/v1/calibrations/3/comparison\"") && report.contains("\"ledger\":["),
         "the ledger stands in the report"
     );
 }

@@ -125,11 +125,29 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
         let answer = service.client.json(&format!("/v1/calibrations/2/{part}"));
         assert!(answer.is_object() || answer.is_array(), "{part}: {answer}");
     }
-    let studies = service.client.json("/v1/studies");
+    let part = service.client.json("/v1/calibrations/2/samples?most=10");
+    let whole = service.client.json("/v1/calibrations/2/samples");
     assert_eq!(
-        studies[1],
-        json!({"id": 2, "experiment": 2, "calibrations": [2], "archived": false})
+        (part["of"].as_u64(), whole["of"].as_u64()),
+        (Some(150), Some(150))
     );
+    let spaced = (0..10).map(|k| whole["samples"][15 * k + 14].clone());
+    assert_eq!(part["samples"], spaced.collect::<Value>());
+    let studies = service.client.json("/v1/studies");
+    for (key, value) in [
+        ("id", json!(2)),
+        ("experiment", json!(2)),
+        ("calibrations", json!([2])),
+        ("archived", json!(false)),
+        ("state", json!("finished")),
+        ("model_kind", json!("quasi_static")),
+    ] {
+        assert_eq!(studies[1][key], value, "{key}");
+    }
+    until("the errors of the study in the list", || {
+        let item = &service.client.json("/v1/studies")[0];
+        item["error"]["fit"]["drawbar_pull"]["rmse"].as_f64()
+    });
     let ledger = service.client.json("/v1/studies/1")["ledger"].clone();
     assert_eq!(
         ledger[0]["evaluations"],

@@ -291,6 +291,12 @@ fn open_effects_are_distinguished_by_the_run_where_their_predictions_differ() {
     ));
     let first = found.next_runs.first().expect("something is open");
     assert_eq!(first.run, 1, "{:?}", found.next_runs);
+    let alone = found.information.iter().find(|(run, _)| *run == first.run);
+    assert_eq!(
+        alone.map(|(_, nats)| *nats),
+        Some(first.information_nats),
+        "nothing is known before the first"
+    );
     assert!(first.information_nats > 0.1 && first.separates.len() > 1);
 }
 

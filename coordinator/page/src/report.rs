@@ -13,13 +13,16 @@ const PREFIX: &str = "grouser/";
 /// A report asks nobody, and runs nothing but what it carries.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' data:; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'";
 
+/// The element that says which calibration of which study is shown first.
+const SHOWN: &str = "shown";
+
 /// What a report carries.
 #[derive(Debug, Clone)]
 pub struct Report<'a> {
     /// Title of the document, as text.
     pub title: &'a str,
-    /// Markup of its content for whoever runs no scripts.
-    pub content: &'a str,
+    /// What stands there for whoever runs no scripts.
+    pub text: &'a str,
     /// The study.
     pub study: i64,
     /// The calibration whose model it shows first.
@@ -35,7 +38,6 @@ pub fn report(report: &Report) -> String {
         .iter()
         .map(|name| text(&format!("style/{name}.css")))
         .collect();
-    let shown = json!({"study": report.study, "calibration": report.calibration});
     let parts = [
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">".to_owned(),
         "<meta name=\"color-scheme\" content=\"light dark\">".to_owned(),
@@ -44,9 +46,15 @@ pub fn report(report: &Report) -> String {
         format!("<style>\n{styles}</style>"),
         format!("<script type=\"importmap\">{}</script>", import_map()),
         "</head>\n<body>".to_owned(),
-        format!("<main id=\"page\" class=\"report\">{}</main>", report.content),
+        format!(
+            "<main id=\"page\" class=\"report\"><pre>{}</pre></main>",
+            escaped(report.text)
+        ),
         data("answers", &Value::Object(report.answers.clone())),
-        data("shown", &shown),
+        data(
+            SHOWN,
+            &json!({"study": report.study, "calibration": report.calibration}),
+        ),
         format!("<script>{}</script>", text("vendor/d3.js")),
         format!("<script>{}</script>", text("vendor/plot.js")),
         format!("<script type=\"module\">import \"{PREFIX}modules/report.js\";</script>"),
@@ -58,11 +66,29 @@ pub fn report(report: &Report) -> String {
     page
 }
 
+/// The same report with the model of another calibration first.
+pub fn showing(document: &str, calibration: i64) -> String {
+    let (begin, end) = (opening(SHOWN), "</script>");
+    let parts = document.split_once(&begin).and_then(|(before, rest)| {
+        let (shown, after) = rest.split_once(end)?;
+        Some((before, serde_json::from_str::<Value>(shown).ok()?, after))
+    });
+    let Some((before, mut shown, after)) = parts else {
+        return document.to_owned();
+    };
+    shown["calibration"] = calibration.into();
+    format!("{before}{begin}{shown}{end}{after}")
+}
+
+fn opening(id: &str) -> String {
+    format!("<script type=\"application/json\" id=\"{id}\">")
+}
+
 /// Numbers and names as JSON in which no text can end the element that it stands in.
 fn data(id: &str, value: &Value) -> String {
     // `<` stands in texts alone, where its escape means the same.
     let json = value.to_string().replace('<', "\\u003c");
-    format!("<script type=\"application/json\" id=\"{id}\">{json}</script>")
+    format!("{}{json}</script>", opening(id))
 }
 
 /// Where the browser finds each module: in the document itself.
@@ -119,7 +145,7 @@ mod tests {
     fn example(answers: &Map<String, Value>) -> String {
         report(&Report {
             title: "<sand>",
-            content: "<p>story</p>",
+            text: "a < b",
             study: 1,
             calibration: 3,
             answers,
@@ -157,10 +183,20 @@ mod tests {
     fn no_text_leaves_its_element() {
         let answers = Map::from_iter([("/v1/studies/1".to_owned(), json!({"name": "</script><i>"}))]);
         let page = example(&answers);
-        assert!(!page.contains("</script><i>") && page.contains("&lt;sand&gt;"));
+        assert!(!page.contains("</script><i>") && page.contains("&lt;sand&gt;") && page.contains("a &lt; b"));
         // The import map, two sets of data, two libraries, the beginning.
         assert_eq!(page.matches("<script").count(), 6);
         assert_eq!(page.matches("</script").count(), 6);
+    }
+
+    #[test]
+    fn another_calibration_is_shown() {
+        let page = example(&Map::new());
+        let other = showing(&page, 5);
+        assert!(page.contains("{\"calibration\":3,\"study\":1}</script>"));
+        assert!(other.contains("{\"calibration\":5,\"study\":1}</script>"));
+        assert_eq!(showing(&other, 3), page);
+        assert_eq!(showing("no report", 3), "no report");
     }
 
     #[test]

@@ -80,6 +80,12 @@ pub struct Discovery {
     /// channel by its column, in its unit; empty where it is negligible.
     #[serde(default)]
     pub numerical_noise: BTreeMap<String, f64>,
+    /// What each explanation predicts for the fitted runs; null in records of versions that did not keep it, and in summaries.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curves: Option<ExplainedRuns>,
+    /// What each run within reach of the rig would tell by itself; empty where nothing is open, and in summaries.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub information: Vec<RunInformation>,
     /// Goodness of fit of the searched model.
     pub chi2: ChiSquare,
     /// Goodness of fit with the best explanation.
@@ -88,6 +94,53 @@ pub struct Discovery {
     pub evaluations_to_name: u64,
     /// All evaluations.
     pub evaluations: u64,
+}
+
+impl Discovery {
+    /// The record without what pictures alone need.
+    #[must_use]
+    pub fn brief(&self) -> Discovery {
+        Discovery {
+            curves: None,
+            information: Vec::new(),
+            ..self.clone()
+        }
+    }
+}
+
+/// What explanations predict for the fitted runs, each at its best fit; of an effect that was only screened, at the best step of the
+/// screen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ExplainedRuns {
+    /// The measurements that are predicted.
+    pub data: Vec<PredictedDatum>,
+    /// Predictions of the searched model, in the unit of each channel.
+    pub base: Vec<f64>,
+    /// Predictions with each effect by its name.
+    pub effects: BTreeMap<String, Vec<f64>>,
+}
+
+/// A measurement that is predicted.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct PredictedDatum {
+    /// Its run.
+    pub run: String,
+    /// Channel without unit.
+    #[schema(value_type = String)]
+    pub channel: Channel,
+}
+
+/// What a run would tell by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RunInformation {
+    /// Slip.
+    pub slip: f64,
+    /// Wheel load.
+    pub wheel_load_n: f64,
+    /// Sled speed.
+    pub sled_speed_m_s: f64,
+    /// Expected information on the explanations \[nats\].
+    pub nats: f64,
 }
 
 /// An addition to a model.

@@ -150,8 +150,10 @@ pub(crate) fn search() -> FinishedCalibration {
 
 /// A sample with a search beside it.
 pub(crate) fn study() -> Study {
+    let mut beside = search();
+    beside.row.id = 2;
     Study {
-        point_estimates: vec![search()],
+        point_estimates: vec![beside],
         ..Study::from(calibration())
     }
 }

@@ -8,8 +8,11 @@
 //! - `table`: model against measurement, errors, intervals, the posterior's draws.
 //! - [`diagnostics`]: how far the posterior can be trusted. `flag`: warnings in words.
 //!   `diagnosis`: both, computed once.
-//! - `summary`: `summary.json`. `discovery`: its block on missing effects.
+//! - `overview`, `study_member`: a study as the page shows it. `summary`: `summary.json`. `discovery`: its block on missing effects.
 //! - [`figure`]: the numbers of the source paper's figures.
+//! - [`report`]: one document with everything. [`terminal`]: text for a terminal.
+//! - `provenance`: how a calibration came about, and what it reached in sentences.
+//! - [`story`]: what is wrong, what is missing, what to do next.
 //! - [`report`]: the HTML page. [`terminal`]: text for a terminal.
 //! - `words`: numbers, units and probabilities as people read them.
 
@@ -21,9 +24,13 @@ mod finished_calibration;
 #[cfg(test)]
 mod fixture;
 mod flag;
+mod overview;
+mod provenance;
 pub mod report;
+pub mod story;
 mod study;
 mod study_file;
+mod study_member;
 mod summary;
 mod table;
 pub mod terminal;
@@ -31,12 +38,16 @@ mod words;
 
 pub use diagnostics::Diagnostics;
 pub use discovery::{DiscoveryRound, DiscoverySummary};
-pub use figure::{ChannelHistory, MeasuredSeries, ModelSeries, StudyFigures};
+pub use figure::{CalibrationFigures, ChannelHistory, MeasuredSeries, ModelSeries, StudyFigures};
 pub use finished_calibration::{FinishedCalibration, first_population, likeliest};
 pub use flag::kind::{Flag, FlagKind};
 pub use flag::model_limit::model_limits;
+pub use overview::{StudyFlag, StudyListItem, StudyOverview, StudyVerdict};
+pub use provenance::Provenance;
+pub use story::Story;
 pub use study::Study;
 pub use study_file::StudyFile;
+pub use study_member::{MemberKind, StudyMember};
 pub use summary::calibration::CalibrationSummary;
 pub use summary::parameter::ParameterSummary;
 pub use summary::point_estimate::PointEstimate;

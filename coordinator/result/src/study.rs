@@ -4,6 +4,7 @@ use shared::api::CalibrationState;
 
 use crate::discovery::DiscoveryRound;
 use crate::finished_calibration::FinishedCalibration;
+use crate::study_member::StudyMember;
 
 /// The finished calibrations of a study, oldest first. There is at least one.
 #[derive(Debug)]
@@ -18,6 +19,8 @@ pub struct Study {
     pub extensions: Vec<FinishedCalibration>,
     /// The searches for missing effects.
     pub rounds: Vec<DiscoveryRound>,
+    /// Every member, finished or not, oldest first.
+    pub members: Vec<StudyMember>,
 }
 
 impl Study {
@@ -70,6 +73,7 @@ impl From<FinishedCalibration> for Study {
             point_estimates: Vec::new(),
             extensions: Vec::new(),
             rounds: Vec::new(),
+            members: Vec::new(),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The files that a study ends with: written into its folder, shown by a service, stored.
 
+use crate::finished_calibration::FinishedCalibration;
 use crate::report;
 use crate::study::Study;
 use crate::terminal;
@@ -17,18 +18,27 @@ pub enum StudyFile {
     Text,
     /// Searches and error ledger as text for a terminal.
     Story,
+    /// Members, error ledger and flags for the page, as JSON.
+    Overview,
     /// Diagnostics of a finished calibration, as JSON.
     Diagnostics(i64),
+    /// The numbers of a finished calibration's figures, as JSON.
+    Figures(i64),
+    /// Model against measurement of a finished calibration, as JSON.
+    Comparison(i64),
+    /// Histories of a finished calibration, as JSON; `null` of a model that knows no time.
+    Histories(i64),
 }
 
 impl StudyFile {
     /// The files that every study has.
-    const OF_ALL: [StudyFile; 5] = [
+    const OF_ALL: [StudyFile; 6] = [
         StudyFile::Summary,
         StudyFile::Posterior,
         StudyFile::Report,
         StudyFile::Text,
         StudyFile::Story,
+        StudyFile::Overview,
     ];
 
     /// Its name.
@@ -39,32 +49,48 @@ impl StudyFile {
             StudyFile::Report => "report.html".into(),
             StudyFile::Text => "study.txt".into(),
             StudyFile::Story => "story.txt".into(),
+            StudyFile::Overview => "overview.json".into(),
             StudyFile::Diagnostics(calibration) => format!("diagnostics-{calibration}.json"),
+            StudyFile::Figures(calibration) => format!("figures-{calibration}.json"),
+            StudyFile::Comparison(calibration) => format!("comparison-{calibration}.json"),
+            StudyFile::Histories(calibration) => format!("histories-{calibration}.json"),
         }
     }
 }
 
 impl Study {
-    /// Every file of the study.
+    /// The files that a study ends with. The others are for who looks at one calibration, and computed when somebody does.
     pub fn files(&self) -> impl Iterator<Item = StudyFile> {
         let diagnosed = self.calibrations().map(|c| StudyFile::Diagnostics(c.row.id));
         StudyFile::OF_ALL.into_iter().chain(diagnosed)
     }
 
-    /// The text of a file; `None` of diagnostics where the study has no such finished calibration.
+    fn calibration(&self, id: i64) -> Option<&FinishedCalibration> {
+        self.calibrations().find(|calibration| calibration.row.id == id)
+    }
+
+    /// The text of a file; `None` where it is that of a calibration that the study has not, or not finished.
     pub fn file(&self, file: StudyFile) -> Option<String> {
         Some(match file {
             StudyFile::Summary => json(&self.summary()) + "\n",
             StudyFile::Posterior => self.current().unwrap_or(&self.lead).posterior_table().to_csv(),
-            StudyFile::Report => report::page(self),
+            StudyFile::Report => report::document(self),
             StudyFile::Text => terminal::study(self),
             StudyFile::Story => terminal::discovery::story(self),
+            StudyFile::Overview => json(&self.overview()),
             StudyFile::Diagnostics(id) => {
-                let calibration = self.calibrations().find(|c| c.row.id == id)?;
+                let calibration = self.calibration(id)?;
                 json(&calibration.diagnostics(&calibration.comparison()))
             }
+            StudyFile::Figures(id) => compact(&self.figures_of(self.calibration(id)?)),
+            StudyFile::Comparison(id) => compact(&self.calibration(id)?.comparison()),
+            StudyFile::Histories(id) => compact(&self.calibration(id)?.histories()),
         })
     }
+}
+
+fn compact(value: &impl serde::Serialize) -> String {
+    serde_json::to_string(value).expect("results have a JSON form")
 }
 
 fn json(value: &impl serde::Serialize) -> String {

@@ -55,6 +55,8 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
         exposure,
         stop.wait(),
     ));
+    let overviews = service.clone();
+    let overviews = tokio::spawn(async move { overviews.keep_overviews().await });
     let signal = stop_signal()?;
     let is_written = !config.read_only;
     tokio::select! {
@@ -66,6 +68,7 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
             bail!("the store can no longer be written; see the log")
         }
     }
+    overviews.abort();
     stop.now();
     if let Some(workers) = workers {
         workers.join().await;

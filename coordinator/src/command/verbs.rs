@@ -19,6 +19,7 @@ use crate::config::{
 };
 use crate::effect::EffectCard;
 use job::{OwnEffect, foreign_effects};
+use page::report::showing;
 use result::{self, terminal};
 
 pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
@@ -152,8 +153,13 @@ pub(super) async fn diagnose(target: &TargetArguments) -> anyhow::Result<()> {
 
 pub(super) async fn report(config: &ReportArguments) -> anyhow::Result<()> {
     let place = CalibrationSource::open(&config.target.source).await?;
-    let page = place.report(place.id(&config.target).await?).await?;
-    write(config.output.as_deref(), &page)
+    let report = place.report(place.id(&config.target).await?).await?;
+    // Of a study without an id the current model is shown first.
+    let report = match config.target.id {
+        Some(id) => showing(&report, id),
+        None => report,
+    };
+    write(config.output.as_deref(), &report)
 }
 
 pub(super) async fn export(config: &ExportArguments) -> anyhow::Result<()> {

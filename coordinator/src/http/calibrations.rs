@@ -13,11 +13,12 @@ use super::access::Caller;
 use super::error::{Body, HttpError, Id, Query};
 use super::studies::WithArchived;
 use crate::farm::Control;
-use crate::service::{Service, finished_calibration, finished_study};
+use crate::service::{Service, finished_calibration};
+use page::report::showing;
 use record::{Sample, StageRow};
 use result::{
-    ChannelHistory, Comparison, Diagnostics, FinishedCalibration, Flag, PosteriorTable, StudyFigures,
-    StudyFile, StudySummary,
+    CalibrationFigures, ChannelHistory, Comparison, Diagnostics, FinishedCalibration, Flag, PosteriorTable,
+    Provenance, StudyFile, StudySummary,
 };
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -33,6 +34,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(comparison))
         .routes(routes!(diagnostics))
         .routes(routes!(histories))
+        .routes(routes!(provenance))
         .routes(routes!(flags))
         .routes(routes!(summary))
         .routes(routes!(figures))
@@ -138,34 +140,52 @@ async fn stages(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<S
     Ok(Json(service.store().reader().stages(id).await?))
 }
 
-/// Which population.
+/// Which population, and how much of it.
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
 #[serde(deny_unknown_fields)]
-struct WhichStage {
+struct WhichSamples {
     /// Stage, counted from 0; the last one where nothing is said.
     stage: Option<u32>,
+    /// Most draws: of a larger population, as many equally spaced ones.
+    most: Option<u32>,
 }
 
-/// The population at the end of a stage.
+/// The population at the end of a stage, or a part of it.
 #[derive(Debug, serde::Serialize, utoipa::ToSchema)]
 struct Population {
+    /// Names of the parameters, in the order of `theta`.
     parameters: Vec<String>,
+    /// Size of the population.
+    of: u64,
+    /// Its draws in their order, or equally spaced ones of them.
     samples: Vec<Sample>,
 }
 
-/// The population at the end of a stage.
-#[utoipa::path(get, path = "/calibrations/{id}/samples", params(("id" = i64, Path), WhichStage), responses(
+/// The population at the end of a stage; with `most`, at most so many equally spaced draws of it.
+#[utoipa::path(get, path = "/calibrations/{id}/samples", params(("id" = i64, Path), WhichSamples), responses(
     (status = 200, body = Population), (status = 404, body = ErrorBody)))]
 async fn samples(
     State(service): State<Service>,
     Id(id): Id,
-    Query(which): Query<WhichStage>,
+    Query(which): Query<WhichSamples>,
 ) -> Result<Json<Population>, HttpError> {
     let row = service.calibration_row(id).await?;
     let spec = service.spec_of(&row).await?;
     let parameters = spec.parameters.into_iter().map(|p| p.name).collect();
-    let samples = service.store().reader().samples(id, which.stage).await?;
-    Ok(Json(Population { parameters, samples }))
+    let reader = service.store().reader();
+    let (samples, of) = match which.most {
+        None => {
+            let samples = reader.samples(id, which.stage).await?;
+            let of = samples.len() as u64;
+            (samples, of)
+        }
+        Some(most) => reader.thinned_samples(id, which.stage, most).await?,
+    };
+    Ok(Json(Population {
+        parameters,
+        of,
+        samples,
+    }))
 }
 
 async fn outcome(service: &Service, id: i64) -> Result<FinishedCalibration, HttpError> {
@@ -183,8 +203,13 @@ async fn posterior(State(service): State<Service>, Id(id): Id) -> Result<Json<Po
 /// Model against measurement, run by run.
 #[utoipa::path(get, path = "/calibrations/{id}/comparison", params(("id" = i64, Path)), responses(
     (status = 200, body = Comparison), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
-async fn comparison(State(service): State<Service>, Id(id): Id) -> Result<Json<Comparison>, HttpError> {
-    Ok(Json(outcome(&service, id).await?.comparison()))
+async fn comparison(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
+    Ok(json(service.calibration_file(id, StudyFile::Comparison).await?))
+}
+
+/// A text that is JSON already.
+fn json(text: String) -> impl IntoResponse {
+    ([(header::CONTENT_TYPE, "application/json")], text)
 }
 
 /// How far the result can be trusted, and where the model fails.
@@ -198,11 +223,15 @@ async fn diagnostics(State(service): State<Service>, Id(id): Id) -> Result<Json<
 /// time.
 #[utoipa::path(get, path = "/calibrations/{id}/histories", params(("id" = i64, Path)), responses(
     (status = 200, body = Option<Vec<ChannelHistory>>), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
-async fn histories(
-    State(service): State<Service>,
-    Id(id): Id,
-) -> Result<Json<Option<Vec<ChannelHistory>>>, HttpError> {
-    Ok(Json(outcome(&service, id).await?.histories()))
+async fn histories(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
+    Ok(json(service.calibration_file(id, StudyFile::Histories).await?))
+}
+
+/// How it came about: what it reached in sentences, its inputs and versions.
+#[utoipa::path(get, path = "/calibrations/{id}/provenance", params(("id" = i64, Path)), responses(
+    (status = 200, body = Provenance), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn provenance(State(service): State<Service>, Id(id): Id) -> Result<Json<Provenance>, HttpError> {
+    Ok(Json(outcome(&service, id).await?.provenance()))
 }
 
 /// What deserves attention.
@@ -216,22 +245,20 @@ async fn flags(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<Fl
 #[utoipa::path(get, path = "/calibrations/{id}/summary", params(("id" = i64, Path)), responses(
     (status = 200, body = StudySummary), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
 async fn summary(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
-    let json = service.study_file(id, StudyFile::Summary).await?;
-    Ok(([(header::CONTENT_TYPE, "application/json")], json))
+    Ok(json(service.study_file(id, StudyFile::Summary).await?))
 }
 
-/// What the figures of its study show, as numbers.
+/// What its figures show, as numbers: marginal and joint densities, convergence, histories, prediction errors.
 #[utoipa::path(get, path = "/calibrations/{id}/figures", params(("id" = i64, Path)), responses(
-    (status = 200, body = StudyFigures), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
-async fn figures(State(service): State<Service>, Id(id): Id) -> Result<Json<StudyFigures>, HttpError> {
-    let row = service.calibration_row(id).await?;
-    let study = finished_study(&service.store().reader(), &row).await?;
-    Ok(Json(study.figures()))
+    (status = 200, body = CalibrationFigures), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+async fn figures(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
+    Ok(json(service.calibration_file(id, StudyFile::Figures).await?))
 }
 
-/// The report of its study, as `report.html` has it.
+/// The report of its study, as `report.html` has it, with its own model first.
 #[utoipa::path(get, path = "/calibrations/{id}/report", params(("id" = i64, Path)), responses(
     (status = 200, content_type = "text/html", body = String), (status = 404, body = ErrorBody)))]
 async fn report_page(State(service): State<Service>, Id(id): Id) -> Result<Html<String>, HttpError> {
-    Ok(Html(service.study_file(id, StudyFile::Report).await?))
+    let report = service.study_file(id, StudyFile::Report).await?;
+    Ok(Html(showing(&report, id)))
 }

@@ -4,14 +4,17 @@ use axum::Json;
 use axum::extract::State;
 use axum::http::StatusCode;
 use shared::api::{ErrorBody, ExperimentCreated, NewExperiment};
+use shared::file::FileSet;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::error::{Body, HttpError};
+use super::error::{Body, HttpError, Id};
 use crate::service::Service;
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
-    OpenApiRouter::new().routes(routes!(create))
+    OpenApiRouter::new()
+        .routes(routes!(create))
+        .routes(routes!(files))
 }
 
 /// Validates and stores an experiment.
@@ -25,4 +28,12 @@ async fn create(
 ) -> Result<(StatusCode, Json<ExperimentCreated>), HttpError> {
     let id = service.add_experiment(new).await?;
     Ok((StatusCode::CREATED, Json(ExperimentCreated { id })))
+}
+
+/// The files of an experiment.
+#[utoipa::path(get, path = "/experiments/{id}", params(("id" = i64, Path)), responses(
+    (status = 200, body = NewExperiment), (status = 404, body = ErrorBody)))]
+async fn files(State(service): State<Service>, Id(id): Id) -> Result<Json<NewExperiment>, HttpError> {
+    let FileSet { toml, files } = service.experiment(id).await?;
+    Ok(Json(NewExperiment { toml, files }))
 }

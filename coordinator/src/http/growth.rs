@@ -3,7 +3,7 @@
 use axum::Json;
 use axum::extract::State;
 use axum::http::StatusCode;
-use shared::api::{CalibrationCreated, ErrorBody, ErrorKind, NewExtension, NewRuns, RunsAdded};
+use shared::api::{CalibrationCreated, ErrorBody, ErrorKind, NewExtension, NewRuns, NewWhatIf, RunsAdded};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -17,6 +17,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(extend))
         .routes(routes!(discovery, discover))
         .routes(routes!(add_runs))
+        .routes(routes!(what_if))
 }
 
 /// Adds a calibration to the study of another: the same job with an effect more.
@@ -63,6 +64,24 @@ async fn discover(
 ) -> Result<(StatusCode, Json<CalibrationCreated>), HttpError> {
     let created = service.discover(id).await?;
     tracing::info!(calibration = created.id, searches = id, %by, "submitted");
+    Ok((StatusCode::CREATED, Json(created)))
+}
+
+/// Begins a study of the same job with some runs left out of the fit, and searches its model for a missing effect: what would be
+/// concluded without them. The runs are held out, so that its error on them is known.
+#[utoipa::path(post, path = "/calibrations/{id}/what-if", params(("id" = i64, Path)), request_body = NewWhatIf, responses(
+    (status = 201, body = CalibrationCreated), (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody, description = "the calibration is a search"),
+    (status = 422, body = ErrorBody, description = "a run is unknown, or none is left to fit"),
+))]
+async fn what_if(
+    State(service): State<Service>,
+    by: Caller,
+    Id(id): Id,
+    Body(new): Body<NewWhatIf>,
+) -> Result<(StatusCode, Json<CalibrationCreated>), HttpError> {
+    let created = service.what_if(id, &new.without).await?;
+    tracing::info!(calibration = created.id, asks_about = id, %by, "submitted");
     Ok((StatusCode::CREATED, Json(created)))
 }
 

@@ -2,21 +2,19 @@
 
 use axum::Json;
 use axum::extract::State;
-use shared::api::{CalibrationState, ErrorBody, ErrorKind, StudyArchived, StudyDeleted};
+use shared::api::{ErrorBody, StudyArchived, StudyDeleted};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::access::Caller;
 use super::error::{HttpError, Id, Query};
-use crate::service::{Service, finished_calibration};
-use crate::store::StoredStudy;
-use job::is_discovery;
-use result::{CalibrationSummary, FixedSigmas, PointEstimate};
+use crate::service::Service;
+use result::{StudyListItem, StudyOverview};
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new()
         .routes(routes!(list))
-        .routes(routes!(ledger, delete))
+        .routes(routes!(overview, delete))
         .routes(routes!(archive))
         .routes(routes!(restore))
 }
@@ -29,41 +27,15 @@ pub(super) struct WithArchived {
     pub(super) archived: bool,
 }
 
-/// A study.
-#[derive(Debug, serde::Serialize, utoipa::ToSchema)]
-struct Study {
-    id: i64,
-    experiment: i64,
-    calibrations: Vec<i64>,
-    archived: bool,
-}
-
-/// A study with the error ledger of its finished calibrations.
-#[derive(Debug, serde::Serialize, utoipa::ToSchema)]
-struct Ledger {
-    id: i64,
-    experiment: i64,
-    calibrations: Vec<i64>,
-    ledger: Vec<CalibrationSummary>,
-    point_estimates: Vec<PointEstimate>,
-}
-
-/// Every study, oldest first; archived ones with `archived=true` alone.
+/// Every study, oldest first; archived ones with `archived=true` alone. Errors and verdict of a study that has just changed are null
+/// until they are computed.
 #[utoipa::path(get, path = "/studies", params(("archived" = Option<bool>, Query)), responses(
-    (status = 200, body = Vec<Study>)))]
+    (status = 200, body = Vec<StudyListItem>)))]
 async fn list(
     State(service): State<Service>,
     Query(which): Query<WithArchived>,
-) -> Result<Json<Vec<Study>>, HttpError> {
-    let reader = service.store().reader();
-    let archived = reader.archived().await?;
-    let studies = reader.studies().await?.into_iter().map(|study| Study {
-        archived: archived.iter().any(|&(id, _)| id == study.id),
-        id: study.id,
-        experiment: study.experiment,
-        calibrations: study.calibrations,
-    });
-    Ok(Json(studies.filter(|s| which.archived || !s.archived).collect()))
+) -> Result<Json<Vec<StudyListItem>>, HttpError> {
+    Ok(Json(service.studies(which.archived).await?))
 }
 
 /// Deletes a study with its calibrations and results, and with its experiments where no other study has them.
@@ -108,42 +80,9 @@ async fn restore(
     Ok(Json(StudyArchived { id, archived: false }))
 }
 
-/// A study with its error ledger.
+/// A study: its members, error ledger and flags; of one in progress, what is finished.
 #[utoipa::path(get, path = "/studies/{id}", params(("id" = i64, Path)), responses(
-    (status = 200, body = Ledger), (status = 404, body = ErrorBody)))]
-async fn ledger(State(service): State<Service>, Id(id): Id) -> Result<Json<Ledger>, HttpError> {
-    let reader = service.store().reader();
-    let StoredStudy {
-        id,
-        experiment,
-        calibrations,
-    } = reader
-        .studies()
-        .await?
-        .into_iter()
-        .find(|study| study.id == id)
-        .ok_or_else(|| HttpError::new(ErrorKind::NotFound, format!("there is no study {id}")))?;
-    // Those of the first calibration, by which all are measured.
-    let mut sigmas = None;
-    let (mut ledger, mut point_estimates) = (Vec::new(), Vec::new());
-    for &calibration in &calibrations {
-        let row = service.calibration_row(calibration).await?;
-        if row.state == CalibrationState::Finished && !is_discovery(&row.job.toml) {
-            let outcome = finished_calibration(&reader, &row).await?;
-            let sigmas = sigmas.get_or_insert_with(|| FixedSigmas::of(&outcome));
-            ledger.extend(
-                outcome
-                    .calibration_summary()
-                    .map(|line| line.in_fixed_sigmas(sigmas)),
-            );
-            point_estimates.extend(outcome.point_estimate().map(|own| own.in_fixed_sigmas(sigmas)));
-        }
-    }
-    Ok(Json(Ledger {
-        id,
-        experiment,
-        calibrations,
-        ledger,
-        point_estimates,
-    }))
+    (status = 200, body = StudyOverview), (status = 404, body = ErrorBody)))]
+async fn overview(State(service): State<Service>, Id(id): Id) -> Result<Json<StudyOverview>, HttpError> {
+    Ok(Json(service.study_overview(id).await?))
 }

@@ -13,6 +13,7 @@ use shared::channel::Channel;
 
 use super::candidate::CandidateEffect;
 use super::entry::CandidateEntry;
+use super::explained_runs::{explained_runs, information};
 use super::law::curve;
 use super::models::SearchModels;
 use super::narrative::sentence;
@@ -93,6 +94,8 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         next_runs: next_runs.collect(),
         remaining: remaining_misfit(models, &conclusion.remaining),
         numerical_noise: numerical_noise(&conclusion.numerical_noise_sds),
+        curves: explained_runs(models, conclusion),
+        information: information(models, conclusion),
         chi2: chi_square(conclusion.chi_square, models),
         chi2_best: chi_square(conclusion.chi_square_best, models),
         evaluations_to_name: conclusion.ranking.evaluations.to_name() as u64,

@@ -4,7 +4,8 @@ use shared::api::CalibrationState;
 
 use super::error::ServiceError;
 use super::stored_calibration::spec_of;
-use super::study_step::{is_search_of, next_step_from};
+use super::study_members::{searched_by, study_members};
+use super::study_step::next_step_from;
 use crate::store::Reader;
 use job::{AlgorithmSettings, is_discovery};
 use record::CalibrationRow;
@@ -138,6 +139,7 @@ pub(super) async fn finished_study_of(
         point_estimates,
         extensions,
         rounds: search_rounds(reader, rows).await?,
+        members: study_members(reader, rows).await?,
     })
 }
 
@@ -159,14 +161,4 @@ pub async fn search_rounds(
         }
     }
     Ok(rounds)
-}
-
-/// The calibration whose model a search is about: the first of those that have the same.
-fn searched_by(search: &CalibrationRow, study: &[CalibrationRow]) -> Result<Option<i64>, ServiceError> {
-    for row in study.iter().filter(|row| !is_discovery(&row.job.toml)) {
-        if is_search_of(search, row)? {
-            return Ok(Some(row.id));
-        }
-    }
-    Ok(None)
 }

@@ -175,7 +175,7 @@ impl Service {
     }
 
     /// A calibration that can be extended and searched.
-    async fn searchable(&self, id: i64) -> Result<CalibrationRow, ServiceError> {
+    pub(super) async fn searchable(&self, id: i64) -> Result<CalibrationRow, ServiceError> {
         let row = self.calibration_row(id).await?;
         match is_discovery(&row.job.toml) {
             true => Err(ServiceError::Search(id)),

@@ -10,6 +10,7 @@ use shared::file::FileSet;
 use super::clock::now_ms;
 use super::error::ServiceError;
 use super::farm_settings::{FarmSettings, LEASE_MS};
+use super::overview_cache::Overviews;
 use super::recovery::{recover, rewind};
 use super::stored_calibration;
 use super::study_results;
@@ -33,6 +34,7 @@ pub struct Service {
     verified_share: f64,
     left_alone: Arc<BTreeMap<i64, String>>,
     pub(super) webhook_hosts: WebhookHosts,
+    pub(super) overviews: Overviews,
     /// Held by whoever adds to a study: each sees what the one before has added.
     pub(super) growing: Arc<tokio::sync::Mutex<()>>,
 }
@@ -62,6 +64,7 @@ impl Service {
             verified_share: settings.verified_share,
             left_alone,
             webhook_hosts: WebhookHosts::default(),
+            overviews: Overviews::default(),
             growing: Arc::default(),
         })
     }
@@ -89,6 +92,7 @@ impl Service {
             verified_share: 0.0,
             left_alone: Arc::default(),
             webhook_hosts: WebhookHosts::default(),
+            overviews: Overviews::default(),
             growing: Arc::default(),
         })
     }
@@ -146,12 +150,15 @@ impl Service {
     }
 
     /// The files of a stored experiment.
-    pub(super) async fn experiment(&self, id: i64) -> Result<FileSet, ServiceError> {
+    ///
+    /// # Errors
+    /// [`ServiceError::NotFound`]; others where the store cannot be read.
+    pub async fn experiment(&self, id: i64) -> Result<FileSet, ServiceError> {
         stored_calibration::experiment_files(&self.store.reader(), id).await
     }
 
     /// The writer for what has to be computed; `None` where the store is only read.
-    fn results_writer(&self) -> Option<&Writer> {
+    pub(super) fn results_writer(&self) -> Option<&Writer> {
         (!self.store.is_read_only()).then(|| self.store.writer())
     }
 
@@ -162,6 +169,19 @@ impl Service {
     pub async fn study_file(&self, id: i64, file: StudyFile) -> Result<String, ServiceError> {
         let row = self.calibration_row(id).await?;
         study_results::study_file(&self.store.reader(), self.results_writer(), &row, file).await
+    }
+
+    /// A file of a finished calibration; what has to be computed for it is stored once its study is over.
+    ///
+    /// # Errors
+    /// As those of [`super::finished_calibration`].
+    pub async fn calibration_file(
+        &self,
+        id: i64,
+        file: impl Fn(i64) -> StudyFile,
+    ) -> Result<String, ServiceError> {
+        let row = self.calibration_row(id).await?;
+        study_results::calibration_file(&self.store.reader(), self.results_writer(), &row, file(id)).await
     }
 
     /// The diagnostics of a finished calibration.

@@ -10,6 +10,7 @@
 //! - `announcement`: what web hooks are told.
 //! - `growth`: what is added to a study that is there.
 //! - `stored_calibration`, `study_step`, `finished_study`: what is read from the store.
+//! - `study_members`: the members of a study. `study_overview`: studies as the page shows them, `overview_cache`: kept.
 //! - `study_results`: the files of a study, computed once.
 
 mod announcement;
@@ -20,12 +21,16 @@ mod farm_settings;
 mod finished_study;
 mod growth;
 mod handle;
+mod overview_cache;
 mod recovery;
 mod removal;
 mod stored_calibration;
+mod study_members;
+mod study_overview;
 mod study_results;
 mod study_step;
 mod submission;
+mod what_if;
 
 pub use error::ServiceError;
 pub use farm_settings::{FarmSettings, LEASE_MS, VERIFIED_PERCENT};

@@ -5,7 +5,7 @@ use shared::file::FileSet;
 
 use super::error::ServiceError;
 use crate::store::{Reader, StoreError};
-use job::{AlgorithmSettings, JobFile, Spec};
+use job::{AlgorithmSettings, Spec, model_kind};
 use record::CalibrationRow;
 
 /// A stored calibration.
@@ -68,8 +68,6 @@ pub fn stored_status(id: i64, row: &Result<CalibrationRow, StoreError>) -> Calib
             };
         }
     };
-    // So does one whose job this version does not understand.
-    let model = JobFile::parse("job.toml", &row.job.toml).map(|job| job.model);
     CalibrationStatus {
         id,
         name: row.name.clone(),
@@ -77,7 +75,7 @@ pub fn stored_status(id: i64, row: &Result<CalibrationRow, StoreError>) -> Calib
         experiment: row.experiment,
         state: row.state,
         message: row.message.clone(),
-        model_kind: model.ok().map(|m| m.kind.name().to_owned()),
+        model_kind: model_kind(&row.job.toml).map(|kind| kind.name().to_owned()),
         model_version: row.model_version.clone(),
         progress: None,
     }

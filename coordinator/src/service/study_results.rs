@@ -41,10 +41,12 @@ pub async fn study_file(
         return study.file(file).ok_or_else(none);
     };
     let text = |file: StudyFile| Some((file.name(), study.file(file)?));
+    let files: Vec<StudyFile> = study.files().collect();
+    let files = if files.contains(&file) { files } else { vec![file] };
     let results = StudyResults {
         study: row.study,
         stamp,
-        files: study.files().filter_map(text).collect(),
+        files: files.into_iter().filter_map(text).collect(),
     };
     let text = results.files.get(&file.name()).cloned();
     writer.keep_results(results).await?;
@@ -69,6 +71,23 @@ pub async fn diagnostics(
     let text = study_file(reader, writer, row, StudyFile::Diagnostics(row.id)).await?;
     let corrupt = |e| StoreError::Corrupt(format!("diagnostics of calibration {}: {e}", row.id));
     Ok(serde_json::from_str(&text).map_err(corrupt)?)
+}
+
+/// A file of a finished calibration, from the store where it stands there.
+///
+/// # Errors
+/// As those of [`finished_calibration`].
+pub(super) async fn calibration_file(
+    reader: &Reader,
+    writer: Option<&Writer>,
+    row: &CalibrationRow,
+    file: StudyFile,
+) -> Result<String, ServiceError> {
+    if row.state != CalibrationState::Finished || is_discovery(&row.job.toml) {
+        // Says why there is none.
+        finished_calibration(reader, row).await?;
+    }
+    study_file(reader, writer, row, file).await
 }
 
 /// What the files of a study are computed by and from; `None` while a member may change. What is stored of a calibration

@@ -162,6 +162,21 @@ impl Reader {
             .collect()
     }
 
+    /// Study, id and state of every calibration, oldest first.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn member_states(&self) -> Result<Vec<(i64, i64, CalibrationState)>, StoreError> {
+        let rows = sqlx::query("SELECT study, id, state FROM calibrations ORDER BY id");
+        let rows = rows.fetch_all(&self.pool).await?;
+        // A state that cannot be read is reported where the calibration is asked for.
+        let known = |row: &SqliteRow| {
+            let state = CalibrationState::from_name(row.try_get("state").ok()?)?;
+            Some((row.try_get("study").ok()?, row.try_get("id").ok()?, state))
+        };
+        Ok(rows.iter().filter_map(known).collect())
+    }
+
     /// The studies whose members are all over, each with their number; archived ones left out.
     ///
     /// # Errors
@@ -222,6 +237,41 @@ impl Reader {
         .fetch_all(&self.pool)
         .await?;
         rows.iter().map(sample).collect()
+    }
+
+    /// At most so many equally spaced draws of the population at the end of a stage, or of the last one, and its size.
+    ///
+    /// Of n draws m are taken: those k with floor((k + 1) m / n) > floor(k m / n).
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn thinned_samples(
+        &self,
+        calibration: i64,
+        stage: Option<u32>,
+        most: u32,
+    ) -> Result<(Vec<Sample>, u64), StoreError> {
+        let population = "FROM samples WHERE calibration = ?1
+             AND stage = coalesce(?2, (SELECT max(stage) FROM samples WHERE calibration = ?1))";
+        let count = format!("SELECT count(*) {population}");
+        let count: i64 = sqlx::query_scalar(sqlx::AssertSqlSafe(count))
+            .bind(calibration)
+            .bind(stage)
+            .fetch_one(&self.pool)
+            .await?;
+        let taken = format!(
+            "SELECT theta, log_likelihood, log_prior {population}
+             AND (particle + 1) * ?3 / ?4 > particle * ?3 / ?4 ORDER BY particle"
+        );
+        let rows = sqlx::query(sqlx::AssertSqlSafe(taken))
+            .bind(calibration)
+            .bind(stage)
+            .bind(i64::from(most).min(count))
+            .bind(count.max(1))
+            .fetch_all(&self.pool)
+            .await?;
+        let samples: Result<Vec<Sample>, StoreError> = rows.iter().map(sample).collect();
+        Ok((samples?, count.unsigned_abs()))
     }
 
     /// The populations at the end of every stage, in order.

@@ -7,7 +7,7 @@ use sqlx::SqliteConnection;
 use super::error::StoreError;
 use super::reader::Reader;
 
-/// The files of a study, computed by one build of the program from one state of the study.
+/// Files of a study, computed by one build of the program from one state of the study.
 #[derive(Debug, Clone)]
 pub struct StudyResults {
     /// The study.
@@ -18,23 +18,27 @@ pub struct StudyResults {
     pub files: BTreeMap<String, String>,
 }
 
-/// Writes the files of a study in place of all that were there.
+/// Writes files of a study; those under another stamp are out of date and go. A study that is deleted meanwhile keeps nothing.
 pub(super) async fn write(
     connection: &mut SqliteConnection,
     results: StudyResults,
 ) -> Result<(), sqlx::Error> {
-    sqlx::query("DELETE FROM results WHERE study = ?")
+    sqlx::query("DELETE FROM results WHERE study = ? AND stamp <> ?")
         .bind(results.study)
+        .bind(&results.stamp)
         .execute(&mut *connection)
         .await?;
     for (name, body) in results.files {
-        sqlx::query("INSERT INTO results (study, name, stamp, body) VALUES (?, ?, ?, ?)")
-            .bind(results.study)
-            .bind(name)
-            .bind(&results.stamp)
-            .bind(body)
-            .execute(&mut *connection)
-            .await?;
+        sqlx::query(
+            "INSERT OR REPLACE INTO results (study, name, stamp, body) SELECT id, ?2, ?3, ?4 FROM studies
+             WHERE id = ?1 AND NOT EXISTS (SELECT 1 FROM deletions WHERE study = ?1)",
+        )
+        .bind(results.study)
+        .bind(name)
+        .bind(&results.stamp)
+        .bind(body)
+        .execute(&mut *connection)
+        .await?;
     }
     Ok(())
 }
@@ -64,7 +68,7 @@ mod tests {
     use crate::store::fixture;
 
     #[tokio::test]
-    async fn results_are_read_under_their_own_stamp_alone_and_replaced_as_a_whole() {
+    async fn results_are_read_under_their_own_stamp_alone_and_go_with_it() {
         let (_folder, store, calibration) = fixture::store().await;
         let study = store
             .reader()
@@ -92,6 +96,8 @@ mod tests {
         assert_eq!(read("report.html", "one").await, None);
         assert_eq!(read("diagnostics-1.json", "one").await, None);
         assert_eq!(read("report.html", "two").await.unwrap(), "report.html by two");
+        keep("two", &["figures-1.json"]).await;
+        assert!(read("report.html", "two").await.is_some(), "of the same stamp");
         store.close().await;
     }
 }

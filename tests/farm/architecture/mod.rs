@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 13] = [
+const CRATES: [&str; 14] = [
     "shared",
     "shared/formula",
     "shared/signal",
@@ -17,13 +17,14 @@ const CRATES: [&str; 13] = [
     "coordinator/inference",
     "coordinator/discovery",
     "coordinator/job",
+    "coordinator/page",
     "coordinator/record",
     "coordinator/result",
     "worker",
     "worker/scm",
     "tests",
 ];
-const OURS: [&str; 13] = [
+const OURS: [&str; 14] = [
     "shared",
     "formula",
     "signal",
@@ -32,6 +33,7 @@ const OURS: [&str; 13] = [
     "inference",
     "discovery",
     "job",
+    "page",
     "record",
     "result",
     "worker",
@@ -149,6 +151,7 @@ fn manifests_keep_the_direction_of_dependencies() {
         ours("coordinator/job"),
         set(&["formula", "inference", "shared", "statistics"])
     );
+    assert_eq!(ours("coordinator/page"), set(&[]));
     assert_eq!(
         ours("coordinator/record"),
         set(&["inference", "job", "shared", "statistics"])
@@ -159,6 +162,7 @@ fn manifests_keep_the_direction_of_dependencies() {
             "formula",
             "inference",
             "job",
+            "page",
             "record",
             "shared",
             "signal",
@@ -176,6 +180,7 @@ fn manifests_keep_the_direction_of_dependencies() {
             "formula",
             "inference",
             "job",
+            "page",
             "record",
             "result",
             "shared",
@@ -211,6 +216,7 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         "coordinator/inference",
         "coordinator/discovery",
         "coordinator/job",
+        "coordinator/page",
         "coordinator/record",
         "coordinator/result",
     ] {

@@ -25,6 +25,7 @@ pub(super) fn outcome(client: &Client, study: &Value) -> Result<Option<String>, 
     for part in ["calibrations", "point_estimates"] {
         for calibration in summary[part].as_array_mut().into_iter().flatten() {
             calibration["wall_s"] = Value::Null;
+            calibration["calibration"] = Value::Null;
         }
     }
     let mut text = format!("{summary:#}\n");

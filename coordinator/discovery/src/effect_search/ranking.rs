@@ -42,7 +42,9 @@ pub struct RankedEffect {
     pub is_credible: bool,
     /// The most probable parameters, the base's first.
     pub theta: Vec<f64>,
-    /// Which of them lie at a bound, or at the value at which a one-sided strength is absent.
+    /// The predicted values there.
+    pub values: Vec<f64>,
+    /// Which of the parameters lie at a bound, or at the value at which a one-sided strength is absent.
     pub at_bound: Vec<bool>,
     /// Evaluations spent on it alone.
     pub evaluations: usize,

@@ -174,6 +174,7 @@ impl EffectSearch {
             class: 0,
             is_credible: false,
             theta: frame.theta(&point.position),
+            values: point.values.clone(),
             at_bound: frame.at_bound(&point.position),
             evaluations: self.evaluations.base,
         };

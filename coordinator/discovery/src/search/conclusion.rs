@@ -6,7 +6,7 @@ use crate::laplace::draws::draws;
 use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
 use crate::search::hypotheses::FittedLaw;
-use crate::search::next_run::InformativeRun;
+use crate::search::next_run::{InformativeRun, Informed};
 use crate::search::state::SearchState;
 use crate::search::verdict::SearchVerdict;
 use crate::search::weighing::{WeighedSet, Weighing};
@@ -39,6 +39,8 @@ pub struct OutsideLaw {
     pub log_bayes_factor: f64,
     /// Its most probable parameters.
     pub parameters: Vec<f64>,
+    /// The predicted values there.
+    pub values: Vec<f64>,
     /// Log predictive density of left-out levels over that of the base and of the library's best.
     pub left_out_nats: [f64; 2],
 }
@@ -82,6 +84,8 @@ pub struct Conclusion {
     pub best: PosteriorModel,
     /// Runs to make next.
     pub next_runs: Vec<InformativeRun>,
+    /// Proposed runs with the expected information of each by itself \[nats\]; empty where nothing is open.
+    pub information: Vec<(usize, f64)>,
     /// Scatter of the model's predictions about a smooth function of its parameters, which counts as noise: an sd for each channel by its
     /// index, in its unit; empty where it is negligible.
     pub numerical_noise_sds: Vec<f64>,
@@ -98,7 +102,7 @@ fn explains(task: &SearchTask, of_library: Option<FitChiSquare>, law: &FittedLaw
 }
 
 impl Conclusion {
-    pub(super) fn new(state: &SearchState, next_runs: Vec<InformativeRun>) -> Self {
+    pub(super) fn new(state: &SearchState, informed: Informed) -> Self {
         let SearchState {
             task,
             hypotheses,
@@ -152,6 +156,7 @@ impl Conclusion {
                 candidate: law.candidate,
                 log_bayes_factor: law.log_bayes_factor,
                 parameters: law.fit.theta()[task.prior.dimension()..].to_vec(),
+                values: law.fit.point.values.clone(),
                 left_out_nats: law.left_out.unwrap_or([0.0; 2]),
             }),
             combination: detected.map_or(Vec::new(), |best| best.effects.clone()),
@@ -160,7 +165,8 @@ impl Conclusion {
             chi_square_best: law.map_or(of_library, |law| chi_square(&law.fit)),
             base: model(Vec::new(), base, OF_BASE),
             best: model(effects, fit, OF_BEST),
-            next_runs,
+            next_runs: informed.runs,
+            information: informed.alone,
             numerical_noise_sds: numerical_noise_sds.clone(),
             evaluations: *evaluations,
         }

@@ -33,6 +33,15 @@ pub struct InformativeRun {
     pub separates: Vec<Vec<usize>>,
 }
 
+/// What the proposed runs tell.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Informed {
+    /// The most informative runs, each given those before it.
+    pub(super) runs: Vec<InformativeRun>,
+    /// Expected information of each run by itself \[nats\].
+    pub(super) alone: Vec<(usize, f64)>,
+}
+
 /// An explanation with the parameters at which it is asked for its predictions.
 #[derive(Debug, Clone)]
 struct AskedHypothesis {
@@ -130,7 +139,7 @@ impl RunSelection {
     }
 
     /// The most informative runs, each given those before it: the first tells most by itself, the next one most beyond the first.
-    pub(super) fn best(&self) -> Vec<InformativeRun> {
+    pub(super) fn best(&self) -> Informed {
         let predicted = self
             .asked
             .iter()
@@ -139,10 +148,11 @@ impl RunSelection {
             .map(|(own, prediction)| (own, (own.probability, prediction)))
             .unzip();
         if asked.len() < 2 {
-            return Vec::new();
+            return Informed::default();
         }
         let predictive = Predictive::new(predictions, &self.proposed.noise_sds, MOST, self.seed);
-        let mut runs: Vec<InformativeRun> = Vec::new();
+        let mut informed = Informed::default();
+        let runs = &mut informed.runs;
         let mut known = 0.0;
         while runs.len() < MOST {
             let chosen: Vec<usize> = runs.iter().map(|run| run.run).collect();
@@ -152,6 +162,9 @@ impl RunSelection {
             };
             let left = (0..self.proposed.runs).filter(|run| !chosen.contains(run));
             let gains: Vec<(usize, f64)> = left.filter_map(gain).collect();
+            if runs.is_empty() {
+                informed.alone.clone_from(&gains);
+            }
             let most = gains.iter().map(|(_, gain)| *gain).fold(0.0, f64::max);
             if most < LEAST {
                 break;
@@ -171,6 +184,6 @@ impl RunSelection {
                 separates: separated.map(|k| asked[k].effects.clone()).collect(),
             });
         }
-        runs
+        informed
     }
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use shared::file::{FileError, FileSet};
+use shared::model::ModelKind;
 use toml_edit::{DocumentMut, Item, TableLike};
 
 use super::point_job::{edited, keep_candidates, with_algorithm};
@@ -26,6 +27,12 @@ pub fn is_discovery(toml: &str) -> bool {
     sampler.and_then(|sampler| sampler.get("algorithm")?.as_str()) == Some(AlgorithmName::Discovery.name())
 }
 
+/// The model of a job; `None` where this version does not know it. Reads nothing else: lists ask this of every job.
+pub fn model_kind(toml: &str) -> Option<ModelKind> {
+    let job: toml::Table = toml.parse().ok()?;
+    job.get("model")?.get("kind")?.clone().try_into().ok()
+}
+
 /// A job as its study goes on with it: it asks for no point estimates and no search of its own.
 ///
 /// # Errors
@@ -36,6 +43,30 @@ pub fn continued_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
             sampler.remove("point_estimates");
         }
         keep_candidates(document);
+        Ok(())
+    })?;
+    Ok(FileSet {
+        toml,
+        files: job.files.clone(),
+    })
+}
+
+/// A job that asks for the search of its model; one that asks for more keeps its word.
+///
+/// # Errors
+/// [`FileError`] where the text is no job.
+pub fn searching_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
+    let toml = edited(name, &job.toml, |document| {
+        let discovery = document
+            .entry("discovery")
+            .or_insert(Item::Table(toml_edit::Table::new()));
+        let discovery = discovery
+            .as_table_like_mut()
+            .ok_or("[discovery] must be a table")?;
+        let is_off = |apply: &Item| apply.as_str() == Some("off");
+        if discovery.get("apply").is_none_or(is_off) {
+            discovery.insert("apply", toml_edit::value("ask"));
+        }
         Ok(())
     })?;
     Ok(FileSet {
@@ -120,6 +151,27 @@ point_estimates = ["ga"]
 [discovery]
 apply = "auto"
 "#;
+
+    #[test]
+    fn a_job_that_asks_for_a_search_keeps_its_word_and_another_learns_to_ask() {
+        assert_eq!(searching_job("job.toml", &job()).unwrap(), job());
+        let off = FileSet {
+            toml: JOB.replace("\"auto\"", "\"off\""),
+            ..job()
+        };
+        let asks = searching_job("job.toml", &off).unwrap();
+        assert_eq!(asks.toml, JOB.replace("\"auto\"", "\"ask\""));
+        let silent = FileSet {
+            toml: JOB.replace("[discovery]\napply = \"auto\"\n", ""),
+            ..job()
+        };
+        let asks = searching_job("job.toml", &silent).unwrap();
+        assert!(
+            asks.toml.ends_with("[discovery]\napply = \"ask\"\n"),
+            "{}",
+            asks.toml
+        );
+    }
 
     fn job() -> FileSet {
         let file = |name: &str| format!("name = \"{name}\"\nshear = \"tau\"\n");

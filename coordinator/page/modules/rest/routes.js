@@ -18,6 +18,7 @@ export const path = {
   comparison: (/** @type {number} */ id) => `${calibration(id)}/comparison`,
   diagnostics: (/** @type {number} */ id) => `${calibration(id)}/diagnostics`,
   figures: (/** @type {number} */ id) => `${calibration(id)}/figures`,
+  provenance: (/** @type {number} */ id) => `${calibration(id)}/provenance`,
   histories: (/** @type {number} */ id) => `${calibration(id)}/histories`,
   discovery: (/** @type {number} */ id) => `${calibration(id)}/discovery`,
   stages: (/** @type {number} */ id) => `${calibration(id)}/stages`,

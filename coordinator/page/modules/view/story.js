@@ -12,23 +12,23 @@ import { ledgerLines } from "./errors.js";
 
 /** @param {{ study: any, model: any, reload?: () => void }} properties */
 export function Story({ study, model, reload }) {
-  const { story } = study;
+  const story = model?.story;
   const lines = ledgerLines(study);
   if (!story) {
     return html`<p class="empty">Nothing is finished yet: the story begins with the first calibration. <a href=${address(["studies", study.id, "live"])}>Live</a> shows how far it is.</p>`;
   }
+  const to = (/** @type {string} */ view) => (isReport ? `#${view}` : address(["studies", study.id, view], { model: model.id }));
   return html`
     <div class="three">
       <section class="card"><h2>What the model gets wrong</h2>
-        ${story.wrong.map((/** @type {any} */ w) => html`<p class=${w.is_within_noise ? "calm" : "alarm"}>${sentence(w.text)}</p>`)}
-        <p class="note"><a href=${address(["studies", study.id, "failures"])}>Where it fails</a></p></section>
+        <p class=${story.wrong.channels.every((/** @type {any} */ c) => c.is_within_noise) ? "calm" : "alarm"}>${sentence(story.wrong.text)}</p>
+        <p class="note"><a href=${to("failures")}>Where it fails</a></p></section>
       <section class="card"><h2>What is missing</h2>
         <p>${sentence(story.missing.text)}</p>
-        ${story.missing.alternatives.length > 0 && html`<p class="note">Instead it could be ${story.missing.alternatives.map((/** @type {any} */ a) => `${a.name} (${probability(a.probability)})`).join(", ")}.</p>`}
-        ${story.missing.not_tried.length > 0 && html`<p class="note">Not tried, because the experiment does not state what they need: ${story.missing.not_tried.join(", ")}.</p>`}
-        <p class="note"><a href=${address(["studies", study.id, "effects"])}>All explanations</a></p></section>
+        ${story.missing.verdict !== "nothing_detectable" && story.missing.alternatives.length > 0 && html`<p class="note">It could also be ${story.missing.alternatives.map((/** @type {any} */ a) => `${a.name} (${probability(a.probability)})`).join(", ")}.</p>`}
+        <p class="note"><a href=${to("effects")}>All explanations</a></p></section>
       <section class="card"><h2>What to do next</h2>
-        <ol>${story.next.map((/** @type {any} */ step) => html`<li><${Step} step=${step} study=${study} model=${model} reload=${reload} /></li>`)}</ol></section>
+        <ol>${story.next.steps.map((/** @type {any} */ step) => html`<li><${Step} step=${step} study=${study} model=${model} reload=${reload} /></li>`)}</ol></section>
     </div>
     ${lines.length > 0 && html`<h2>How the error falls</h2><${LedgerCharts} study=${study} lines=${lines} />`}
     <${Flags} study=${study} />`;

@@ -13,6 +13,7 @@ import { Live } from "./live.js";
 import { MissingEffect } from "./missing_effect.js";
 import { Posterior } from "./posterior.js";
 import { Story } from "./story.js";
+import { Trust } from "./trust.js";
 
 /** How often a study that works is looked at [ms]. */
 const LOOK_MS = 1000;
@@ -29,6 +30,7 @@ export const VIEWS = [
   { name: "effects", title: "Missing effect", view: MissingEffect },
   { name: "posterior", title: "Posterior", view: Posterior },
   { name: "errors", title: "Error falls", view: Errors },
+  { name: "trust", title: "How far to trust it", view: Trust },
 ];
 
 /** The name of a model of a study: what it has beyond the submitted job. */
@@ -63,7 +65,7 @@ export function StudyPage({ id, view, query }) {
     <nav class="views" aria-label="Views of the study">
       ${VIEWS.map((v) => html`<a href=${to(v.name)} aria-current=${v === shown ? "page" : null}>${v.title}</a>`)}
     </nav>
-    ${shown.name !== "live" && shown.name !== "story" && html`<${ModelPicker} study=${study} model=${model} view=${shown.name} />`}
+    ${shown.name !== "live" && html`<${ModelPicker} study=${study} model=${model} view=${shown.name} />`}
     <section class=${`view ${shown.name}`} aria-label=${shown.title}>
       <${shown.view} study=${study} model=${model} query=${query} reload=${reload} />
     </section>

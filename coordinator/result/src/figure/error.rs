@@ -68,7 +68,7 @@ fn density(study: &Study, sample: &FinishedCalibration, channel: Channel) -> Opt
     if let Some(at) = likeliest.and_then(|values| error(&sample.spec, values, channel)) {
         marks.push(Mark::new(MarkKind::MaximumLikelihood, "maximum likelihood", at));
     }
-    for (label, calibration) in study.optima() {
+    for (label, calibration) in study.optima_beside(sample) {
         let at = errors(calibration).first().copied();
         marks.extend(at.map(|at| Mark::new(MarkKind::PointEstimate, label, at)));
     }

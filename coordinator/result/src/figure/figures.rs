@@ -3,7 +3,9 @@
 use super::convergence::{self, Populations, SearchConvergence, StageConvergence};
 use super::error::{self, ErrorDensity};
 use super::history::{self, ChannelHistory};
+use super::marginal::{self, MarginalDensity};
 use super::posterior::{self, JointPosterior};
+use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 
 /// The numbers of a study's figures.
@@ -18,6 +20,27 @@ pub struct StudyFigures {
     /// The populations of some stages in two parameters; null without a sample, or of one parameter.
     pub populations: Option<Populations>,
     /// Joint posterior densities.
+    pub posteriors: Vec<JointPosterior>,
+    /// Measurement and model over time; null of a model without time.
+    pub histories: Option<Vec<ChannelHistory>>,
+    /// Prediction errors over the posterior, by channel.
+    pub errors: Vec<ErrorDensity>,
+}
+
+/// The numbers of a calibration's figures.
+#[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
+pub struct CalibrationFigures {
+    /// Id of the calibration.
+    pub calibration: i64,
+    /// Convergence of the searches by generations: its own, and those beside the submitted calibration.
+    pub searches: Vec<SearchConvergence>,
+    /// The stages of the sampler, from the prior on; empty without a sample.
+    pub stages: Vec<StageConvergence>,
+    /// The populations of some stages in two parameters; null without a sample, or of one parameter.
+    pub populations: Option<Populations>,
+    /// Every parameter after and before the data, in the order of the job; empty without draws.
+    pub marginals: Vec<MarginalDensity>,
+    /// Joint posterior densities of all pairs of parameters, of more than ten parameters the 45 most correlated pairs.
     pub posteriors: Vec<JointPosterior>,
     /// Measurement and model over time; null of a model without time.
     pub histories: Option<Vec<ChannelHistory>>,
@@ -48,8 +71,31 @@ impl Study {
             searches: self.submitted().filter_map(convergence::search).collect(),
             stages: sample.map(convergence::stages).unwrap_or_default(),
             populations: sample.and_then(convergence::populations),
-            posteriors: sample.map(|s| posterior::all(self, s)).unwrap_or_default(),
+            posteriors: sample.map(|s| posterior::of_paper(self, s)).unwrap_or_default(),
             histories: history::all(self),
+            errors: sample.map(|s| error::all(self, s)).unwrap_or_default(),
+        }
+    }
+
+    /// The figures of one calibration of the study. The point estimates of the study are marks on those of the submitted model alone:
+    /// another model has other parameters.
+    pub fn figures_of(&self, calibration: &FinishedCalibration) -> CalibrationFigures {
+        let is_submitted = self.submitted().any(|own| own.row.id == calibration.row.id);
+        let beside = self
+            .submitted()
+            .filter(|own| is_submitted && own.row.id != calibration.row.id);
+        let sample = Some(calibration).filter(|calibration| calibration.estimate.is_none());
+        CalibrationFigures {
+            calibration: calibration.row.id,
+            searches: std::iter::once(calibration)
+                .chain(beside)
+                .filter_map(convergence::search)
+                .collect(),
+            stages: sample.map(convergence::stages).unwrap_or_default(),
+            populations: sample.and_then(convergence::populations),
+            marginals: sample.map(marginal::all).unwrap_or_default(),
+            posteriors: sample.map(|s| posterior::all(self, s)).unwrap_or_default(),
+            histories: calibration.histories(),
             errors: sample.map(|s| error::all(self, s)).unwrap_or_default(),
         }
     }
@@ -76,6 +122,19 @@ mod tests {
         assert_eq!(channels, ["drawbar_pull", "sinkage"]);
         assert!(figures.histories.is_none() && !figures.is_empty());
         assert!(Study::from(fixture::fit()).figures().is_empty());
+    }
+
+    #[test]
+    fn a_calibration_s_figures_have_every_pair_and_every_parameter() {
+        let study = fixture::grown();
+        let figures = study.figures_of(&study.lead);
+        let free = study.lead.spec.parameters.len();
+        assert_eq!((figures.marginals.len(), figures.searches.len()), (free, 1));
+        assert_eq!(figures.posteriors.len(), free * (free - 1) / 2);
+        let extension = study.figures_of(&study.extensions[0]);
+        assert_eq!((extension.calibration, extension.searches.len()), (3, 0));
+        let of_search = study.figures_of(&study.point_estimates[0]);
+        assert!(of_search.marginals.is_empty() && of_search.searches.len() == 1);
     }
 
     #[test]

@@ -3,12 +3,12 @@
 //! Everything is in SI and carries its unit; the page draws it, and so can any other program.
 //!
 //! # Layout
-//! - `figures`: all of them.
+//! - `figures`: all of them, of a study or of a calibration. `marginal`: densities of single parameters.
 //! - `convergence`: convergence of the searches and the sampler (Fig. 5).
 //! - `posterior`: joint densities of two parameters, with point estimates and reference values (Fig. 6).
 //! - `history`: measurement and model over time (Fig. 7).
 //! - `error`: prediction errors over the posterior (Fig. 8).
-//! - `axis_parameter`: a parameter on an axis. `mark`: single points; `optimum`: point estimates as such points,
+//! - `thinned`: a part of many draws. `axis_parameter`: a parameter on an axis. `mark`: single points; `optimum`: point estimates as such points,
 //!   `reference`: independent tests.
 
 mod axis_parameter;
@@ -16,15 +16,18 @@ mod convergence;
 mod error;
 mod figures;
 mod history;
+mod marginal;
 mod mark;
 mod optimum;
 mod posterior;
 mod reference;
+mod thinned;
 
 pub use axis_parameter::AxisParameter;
 pub use convergence::{Populations, SearchConvergence, StageConvergence};
 pub use error::ErrorDensity;
-pub use figures::StudyFigures;
+pub use figures::{CalibrationFigures, StudyFigures};
 pub use history::{ChannelHistory, MeasuredSeries, ModelSeries};
+pub use marginal::MarginalDensity;
 pub use mark::{Mark, MarkKind, PlanePoint};
 pub use posterior::{JointPosterior, LabelledLine};

@@ -7,6 +7,7 @@ use inference::diagnostics;
 use super::axis_parameter::AxisParameter;
 use super::mark::{Mark, MarkKind, PlanePoint};
 use super::reference;
+use super::thinned::{five_digits, thinned_draws};
 use crate::diagnostics::correlated_pair::most_correlated;
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
@@ -18,8 +19,11 @@ const PAPER: [[&str; 2]; 3] = [
     ["n", "friction_angle_deg"],
     ["n", "wheel_radius_m"],
 ];
-/// Points of the grid along each axis.
+/// Points of the grid along each axis: of few pairs, of all pairs.
 const GRID: usize = 48;
+const SMALL_GRID: usize = 32;
+/// Most pairs of all: those of ten parameters.
+const PAIRS: usize = 45;
 /// Shares of the posterior that the contours enclose.
 const SHARES: [f64; 5] = [0.95, 0.8, 0.6, 0.4, 0.2];
 /// The grid reaches this share of the draws' range beyond them.
@@ -70,7 +74,7 @@ pub struct LabelledLine {
 
 /// The source paper's pairs that the job has; with parameters beyond those of the paper, the most correlated pairs
 /// that one of them is in. Pairs whose draws lie on a line have no density and are left out.
-pub(super) fn all(study: &Study, sample: &FinishedCalibration) -> Vec<JointPosterior> {
+pub(super) fn of_paper(study: &Study, sample: &FinishedCalibration) -> Vec<JointPosterior> {
     let free = &sample.spec.parameters;
     let draws: Vec<Vec<f64>> = (0..free.len()).map(|i| sample.draws(i)).collect();
     let place = |name: &str| free.iter().position(|p| p.name == name);
@@ -82,8 +86,47 @@ pub(super) fn all(study: &Study, sample: &FinishedCalibration) -> Vec<JointPoste
     let reference = reference::values(&sample.spec);
     pairs
         .into_iter()
-        .filter_map(|pair| posterior(study, sample, &draws, pair, &reference))
+        .filter_map(|pair| posterior(study, sample, &draws, pair, &reference, GRID))
         .collect()
+}
+
+/// All pairs of parameters in the order of the job; where those are more than [`PAIRS`], the most correlated. Estimated from a part of
+/// many draws, so that the cost has a bound. Pairs whose draws lie on a line have no density and are left out.
+pub(super) fn all(study: &Study, sample: &FinishedCalibration) -> Vec<JointPosterior> {
+    let draws = thinned_draws(sample);
+    let correlation =
+        |[i, j]: [usize; 2]| diagnostics::rank_correlation(&draws[i], &draws[j]).map_or(0.0, f64::abs);
+    let pairs = (0..draws.len()).flat_map(|i| (i + 1..draws.len()).map(move |j| [i, j]));
+    let mut pairs: Vec<([usize; 2], f64)> = pairs.map(|pair| (pair, correlation(pair))).collect();
+    pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
+    pairs.truncate(PAIRS);
+    pairs.sort_by_key(|(pair, _)| *pair);
+    let reference = reference::values(&sample.spec);
+    let joint = |(pair, _)| posterior(study, sample, &draws, pair, &reference, SMALL_GRID);
+    pairs
+        .into_iter()
+        .filter_map(joint)
+        .map(JointPosterior::rounded)
+        .collect()
+}
+
+impl JointPosterior {
+    /// With five digits of each number, which are more than a picture shows.
+    fn rounded(mut self) -> Self {
+        for axis in &mut self.grid {
+            axis.iter_mut().for_each(|x| *x = five_digits(*x));
+        }
+        self.range = self.range.map(|ends| ends.map(five_digits));
+        self.highest = five_digits(self.highest);
+        for contour in &mut self.contours {
+            contour.density = five_digits(contour.density);
+        }
+        self.rank_correlation = five_digits(self.rank_correlation);
+        for mark in &mut self.marks {
+            (mark.at.x, mark.at.y) = (mark.at.x.map(five_digits), mark.at.y.map(five_digits));
+        }
+        self
+    }
 }
 
 fn posterior(
@@ -92,15 +135,16 @@ fn posterior(
     draws: &[Vec<f64>],
     pair: [usize; 2],
     reference: &BTreeMap<String, f64>,
+    points: usize,
 ) -> Option<JointPosterior> {
     let parameters = pair.map(|i| &sample.spec.parameters[i]);
     let values = pair.map(|i| draws[i].as_slice());
     let support = parameters.map(|p| p.marginal.support());
     let ends = [0, 1].map(|i| ends(values[i], support[i]));
     let grid = ends.map(|[low, high]| -> Vec<f64> {
-        let step = (high - low) / (GRID - 1) as f64;
+        let step = (high - low) / (points - 1) as f64;
         // the last point to the bit: a step beyond a bound there would be no density
-        let inner = (0..GRID - 1).map(|k| low + step * k as f64);
+        let inner = (0..points - 1).map(|k| low + step * k as f64);
         inner.chain(std::iter::once(high)).collect()
     });
     let density = diagnostics::joint_density(values, support, [&grid[0], &grid[1]])?;
@@ -124,7 +168,7 @@ fn posterior(
         draws: values[0].len(),
         range,
         density: density
-            .chunks(GRID)
+            .chunks(points)
             .map(|row| row.iter().map(|f| round(f / highest)).collect())
             .collect(),
         grid,
@@ -166,7 +210,7 @@ fn marks(
             at.into(),
         ));
     }
-    for (label, calibration) in study.optima() {
+    for (label, calibration) in study.optima_beside(sample) {
         let value = |name: &str| {
             let place = calibration.spec.parameters.iter().position(|p| p.name == name)?;
             Some(calibration.estimate.as_ref()?.theta[place])

@@ -81,14 +81,31 @@ pub(crate) fn shared_causes(trends: &[TrendDiagnostics]) -> Vec<String> {
 
 /// `drawbar pull is over-predicted at low slip and under-predicted at high slip, by about 4.1 N from one end to the other`.
 fn sentence(trend: &TrendDiagnostics) -> String {
-    let channel = trend.channel.words();
     let by = ShownUnit::of(trend.channel).size(trend.change.abs());
+    let (channel, pattern) = (trend.channel.words(), pattern(trend));
+    match trend.against {
+        TrendVariable::Constant => {
+            let how = if trend.change > 0.0 { "under" } else { "over" };
+            format!("{channel} is {how}-predicted by about {by} in all runs, before the fit compensates")
+        }
+        _ => format!(
+            "{channel} is {pattern}, by about {by} from one end to the other, before the fit compensates"
+        ),
+    }
+}
+
+/// The strongest trend of a channel that is beyond chance: `over-predicted at low slip and under-predicted at high slip`.
+pub(crate) fn pattern_of(trends: &[TrendDiagnostics], channel: Channel) -> Option<String> {
+    let strongest = strongest(&alarming(trends));
+    let own = strongest.iter().find(|(trend, _)| trend.channel == channel)?;
+    Some(pattern(own.0))
+}
+
+fn pattern(trend: &TrendDiagnostics) -> String {
     let [low, high] = match trend.against {
         TrendVariable::Constant => {
             let how = if trend.change > 0.0 { "under" } else { "over" };
-            return format!(
-                "{channel} is {how}-predicted by about {by} in all runs, before the fit compensates"
-            );
+            return format!("{how}-predicted in all runs");
         }
         TrendVariable::Slip => ["at low slip", "at high slip"],
         TrendVariable::WheelLoad => ["under low loads", "under high loads"],
@@ -101,9 +118,7 @@ fn sentence(trend: &TrendDiagnostics) -> String {
     } else {
         ["under", "over"]
     };
-    format!(
-        "{channel} is {first}-predicted {low} and {then}-predicted {high}, by about {by} from one end to the other, before the fit compensates"
-    )
+    format!("{first}-predicted {low} and {then}-predicted {high}")
 }
 
 /// Known causes of the strongest trends; hints, since other effects can leave the same trends.

@@ -14,11 +14,11 @@ use crate::words::number;
 
 /// Error of the model over that of interpolation from which it is clearly larger: beyond the scatter of two root mean squares
 /// over a few runs, each known to 1 / sqrt(2n) of itself.
-const RATIO: f64 = 1.5;
+pub(crate) const RATIO: f64 = 1.5;
 /// Least held-out runs in which both have a value.
-const LEAST_RUNS: usize = 4;
+pub(crate) const LEAST_RUNS: usize = 4;
 /// Probability of so large an error by noise alone below which noise is no excuse.
-const BY_CHANCE: f64 = 0.01;
+pub(crate) const BY_CHANCE: f64 = 0.01;
 
 impl Study {
     /// Flags of the current model, on the held-out runs where interpolation need not extrapolate.

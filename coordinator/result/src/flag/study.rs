@@ -13,19 +13,32 @@ const MISSED_NATS: f64 = 15.0;
 impl Study {
     /// All flags: of a point estimate with the name of its algorithm, of an extension with its own name.
     pub fn flags(&self) -> Vec<Flag> {
+        self.flags_by_calibration()
+            .into_iter()
+            .map(|(_, flag)| flag)
+            .collect()
+    }
+
+    /// The same, each with the calibration that it is about; `None` where that is several.
+    pub(crate) fn flags_by_calibration(&self) -> Vec<(Option<i64>, Flag)> {
         let of = |calibration: &FinishedCalibration| calibration.diagnostics(&calibration.comparison()).flags;
-        let mut flags = self.missed_modes();
-        flags.extend(of(&self.lead));
+        let mut flags: Vec<_> = self.missed_modes().into_iter().map(|flag| (None, flag)).collect();
+        let lead = Some(self.lead.row.id);
+        flags.extend(of(&self.lead).into_iter().map(|flag| (lead, flag)));
         let beside = self.point_estimates.iter().map(|o| (o.spec.algorithm.name(), o));
         let extensions = self.extensions.iter().map(|o| (o.experiment.as_str(), o));
         for (name, calibration) in beside.chain(extensions) {
-            flags.extend(of(calibration).into_iter().map(|flag| Flag {
+            let named = |flag: Flag| Flag {
                 text: format!("{name}: {}", flag.text),
                 ..flag
-            }));
+            };
+            let own = of(calibration).into_iter();
+            flags.extend(own.map(|flag| (Some(calibration.row.id), named(flag))));
         }
-        flags.extend(self.interpolation_beats());
-        flags.extend(self.incomplete());
+        let current = self.current().map(|calibration| calibration.row.id);
+        flags.extend(self.interpolation_beats().into_iter().map(|flag| (current, flag)));
+        let searched = self.rounds.last().map(|round| round.calibration);
+        flags.extend(self.incomplete().map(|flag| (searched, flag)));
         flags
     }
 

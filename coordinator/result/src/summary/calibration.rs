@@ -17,6 +17,8 @@ use crate::table::row::{ComparisonRow, rows_of};
 /// A calibration of the ledger.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct CalibrationSummary {
+    /// Id of the calibration.
+    pub calibration: i64,
     /// Effects switched on.
     pub effects: Vec<String>,
     /// Algorithm.
@@ -122,6 +124,7 @@ impl FinishedCalibration {
             })
             .collect();
         Some(CalibrationSummary {
+            calibration: self.row.id,
             effects: self.effects(),
             algorithm: self.spec.algorithm.algorithm_name(),
             normal_approximation: self.approximated.is_some(),

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use super::calibration::CalibrationSummary;
 use super::point_estimate::PointEstimate;
 use crate::discovery::DiscoverySummary;
+use crate::finished_calibration::FinishedCalibration;
 use crate::flag::kind::Flag;
 use crate::study::Study;
-use crate::table::fixed_sigma::FixedSigma;
+use crate::table::fixed_sigma::{FixedSigma, FixedSigmas};
 
 /// The summary of a study; what does not apply is null.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -46,6 +47,26 @@ impl Study {
             .collect()
     }
 
+    /// The lines of the error ledger.
+    pub(crate) fn ledger_summaries(&self, sigmas: &FixedSigmas) -> Vec<CalibrationSummary> {
+        let line = |calibration: &FinishedCalibration| {
+            let line = calibration.calibration_summary()?;
+            let effects = self.parts(calibration);
+            Some(CalibrationSummary {
+                effects,
+                ..line.in_fixed_sigmas(sigmas)
+            })
+        };
+        self.ledger().filter_map(line).collect()
+    }
+
+    /// The point estimates of every model.
+    pub(crate) fn point_estimate_summaries(&self, sigmas: &FixedSigmas) -> Vec<PointEstimate> {
+        self.calibrations()
+            .filter_map(|calibration| Some(calibration.point_estimate()?.in_fixed_sigmas(sigmas)))
+            .collect()
+    }
+
     /// `summary.json`.
     pub fn summary(&self) -> StudySummary {
         let lead = &self.lead;
@@ -56,21 +77,8 @@ impl Study {
             model_version: lead.row.model_version.clone().unwrap_or_default(),
             model_kind: lead.spec.model.kind.name().to_owned(),
             status: self.state.name().to_owned(),
-            calibrations: self
-                .ledger()
-                .filter_map(|calibration| {
-                    let line = calibration.calibration_summary()?;
-                    let effects = self.parts(calibration);
-                    Some(CalibrationSummary {
-                        effects,
-                        ..line.in_fixed_sigmas(&sigmas)
-                    })
-                })
-                .collect(),
-            point_estimates: self
-                .calibrations()
-                .filter_map(|calibration| Some(calibration.point_estimate()?.in_fixed_sigmas(&sigmas)))
-                .collect(),
+            calibrations: self.ledger_summaries(&sigmas),
+            point_estimates: self.point_estimate_summaries(&sigmas),
             fixed_sigma: sigmas.by_name(),
             flags: self.flags(),
             discovery: DiscoverySummary::of(&self.rounds, self.added()),

@@ -54,9 +54,3 @@ impl ComparisonRow {
 pub(crate) fn rows_of(rows: &[ComparisonRow], usage: RunUse) -> impl Iterator<Item = &ComparisonRow> + Clone {
     rows.iter().filter(move |row| row.usage == usage)
 }
-
-/// The channels that any row has, in the order of all tables.
-pub(crate) fn measured_channels(rows: &[ComparisonRow]) -> Vec<Channel> {
-    let has = |c: &Channel| rows.iter().any(|r| r.channel == *c);
-    Channel::ALL.into_iter().filter(has).collect()
-}

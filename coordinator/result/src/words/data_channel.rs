@@ -106,11 +106,6 @@ impl ShownUnit {
     }
 }
 
-/// Title of an axis or a column: `sinkage [mm]`.
-pub(crate) fn title(channel: Channel) -> String {
-    format!("{} [{}]", channel.words(), ShownUnit::of(channel).name)
-}
-
 /// A word for a narrow column: `pull`.
 pub(crate) fn short_name(channel: Channel) -> &'static str {
     match channel {

@@ -1,0 +1,72 @@
+// How far to trust a calibration: what it reached, what the data determine, where the model refuses, what it was computed from.
+
+import { html } from "../html.js";
+import { Pending } from "../part/message.js";
+import { Table } from "../part/table.js";
+import { path } from "../rest/routes.js";
+import { useAnswer } from "../rest/use_answer.js";
+import { digits, probability, shown, words } from "../words/quantity.js";
+
+/** @param {{ study: any, model: any }} properties */
+export function Trust({ model }) {
+  const { answer: provenance, error } = useAnswer(model ? path.provenance(model.id) : null);
+  const { answer: diagnostics } = useAnswer(model ? path.diagnostics(model.id) : null);
+  if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
+  if (!provenance) return html`<${Pending} answer=${provenance} error=${error} what="the account" />`;
+  return html`
+    ${provenance.sentences.map((/** @type {string} */ s) => html`<p>${s}</p>`)}
+    <ul class="note">${provenance.notes.map((/** @type {string} */ n) => html`<li>${n}</li>`)}</ul>
+    ${diagnostics && html`<${Data} diagnostics=${diagnostics} /><${Refused} rejections=${diagnostics.rejections} />`}
+    <h2>What it was computed from</h2>
+    <dl>
+      <dt>Model</dt><dd>${provenance.model}, version ${provenance.model_version ?? "unknown"}</dd>
+      <dt>Data</dt><dd>${provenance.data}</dd>
+      ${provenance.errors.map((/** @type {string} */ e) => html`<dt>Errors</dt><dd>${e}</dd>`)}
+      <dt>Algorithm</dt><dd>${provenance.algorithm}, seed ${provenance.seed}</dd>
+      <dt>Program</dt><dd>${provenance.program}</dd>
+    </dl>
+    <p class="note">The result is a function of job, seed and model version alone: the same three give the same numbers, bit for bit.</p>
+    <details><summary>Text of the job</summary><pre tabindex="0">${provenance.job}</pre></details>
+    ${provenance.effects.map((/** @type {any} */ e) => html`<details><summary>Effect ${e.name}</summary><pre tabindex="0">${e.text}</pre></details>`)}`;
+}
+
+/** What each channel tells, and what the parameters know of it. */
+function Data(/** @type {{ diagnostics: any }} */ { diagnostics }) {
+  const p = (/** @type {number | null} */ value) => (value === null || value === undefined ? "–" : value < 1e-6 ? "< 10⁻⁶" : digits(value, 2));
+  const channels = diagnostics.channels.map((/** @type {any} */ c) => {
+    const quantity = shown(c.unit);
+    const value = (/** @type {number | null} */ v) => digits(v === null ? null : v * quantity.scale);
+    return [`${words(c.channel)} ${quantity.unit}`, c.data, value(c.error_sd), value(c.prior_predictive_sd), digits(c.information, 2), digits(c.chi_square?.chi_square), digits(c.chi_square?.degrees_of_freedom), p(c.chi_square?.p)];
+  });
+  const parameters = diagnostics.parameters.map((/** @type {any} */ q) => [q.name, digits(q.contraction, 2), p(q.conflict_p), q.at_bound ? "at its bound" : ""]);
+  return html`
+    <h2>What the data tell</h2>
+    <${Table} label="Channels" head=${["channel", "rows", "error sd", "prior spread", "information", "chi-square", "expected", "p"]} rows=${channels} numbers=${[1, 2, 3, 4, 5, 6, 7]} />
+    <p class="note">Error sd: noise, discrepancy and shared errors together. Information: the prior's spread of a prediction over it; below 1 a row tells less than the prior.</p>
+    <${Table} label="Parameters against their priors" head=${["parameter", "contraction", "p of prior conflict", ""]} rows=${parameters} numbers=${[1, 2]} />
+    <p class="note">Contraction: 1 less the sd after the fit over that before; 0: the data tell nothing. Prior conflict: probability of a posterior so far out if the prior is right.</p>
+    ${diagnostics.verification.results > 0 && html`<p>${verified(diagnostics.verification)}</p>`}`;
+}
+
+/** What was computed twice. */
+function verified(/** @type {any} */ { results, confirmed, workers }) {
+  return workers < 2
+    ? `One worker computed all ${results} results, so that none was compared with another's.`
+    : `${workers} workers computed ${results} results; ${confirmed} were computed twice and agreed.`;
+}
+
+/** Where the model refuses parameters. */
+function Refused(/** @type {{ rejections: any }} */ { rejections }) {
+  if (rejections.prior_draws === 0) return null;
+  if (rejections.prior_refused === 0) return html`<p>The model accepted every draw from the prior (${rejections.prior_draws}).</p>`;
+  const end = (/** @type {number | null} */ v) => (v === null ? "" : digits(v, 3));
+  const cell = (/** @type {any} */ bin) => {
+    const refused = /** @type {number[]} */ (Object.values(bin.refused)).reduce((a, b) => a + b, 0);
+    return html`<b>${refused}</b> of ${bin.draws}<br /><span class="note">${end(bin.from)} to ${end(bin.to)}</span>`;
+  };
+  return html`
+    <h2>Where the model refuses parameters</h2>
+    <p>It refused ${rejections.prior_refused} of ${rejections.prior_draws} draws from the prior${rejections.region ? `, most of them in one region (${probability(rejections.region.p)} by chance)` : ""}.</p>
+    <${Table} label="Rejections by region of the prior" head=${["parameter", "lowest fifth", "second", "middle", "fourth", "highest fifth"]}
+      rows=${rejections.parameters.map((/** @type {any} */ q) => [`${q.name}${q.unit === "1" ? "" : ` ${q.unit}`}`, ...q.bins.map(cell)])} />`;
+}

@@ -1,0 +1,47 @@
+//! A part of many draws, and numbers of few digits: what a picture needs.
+
+use crate::finished_calibration::FinishedCalibration;
+
+/// Most draws that a density is estimated from.
+const DRAWS: usize = 2000;
+
+/// The draws of every parameter; of more than [`DRAWS`] as many equally spaced ones.
+pub(super) fn thinned_draws(sample: &FinishedCalibration) -> Vec<Vec<f64>> {
+    let count = sample.posterior.len();
+    let kept: Vec<usize> = (0..count.min(DRAWS))
+        .map(|k| k * count / count.min(DRAWS))
+        .collect();
+    let draws = |i: usize| kept.iter().map(|&k| sample.posterior[k].theta[i]).collect();
+    (0..sample.spec.parameters.len()).map(draws).collect()
+}
+
+/// A number to five significant digits.
+pub(super) fn five_digits(x: f64) -> f64 {
+    format!("{x:.4e}").parse().unwrap_or(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn few_draws_are_all_kept_and_many_are_equally_spaced() {
+        let mut calibration = fixture::calibration();
+        assert_eq!(thinned_draws(&calibration)[0], calibration.draws(0));
+        let draws = calibration.posterior.clone();
+        calibration.posterior = (0..125).flat_map(|_| draws.clone()).collect();
+        let thinned = thinned_draws(&calibration);
+        assert_eq!(thinned[0].len(), 2000);
+        let all = calibration.draws(0);
+        assert_eq!(thinned[0][..4], [all[0], all[2], all[5], all[7]]);
+    }
+
+    #[test]
+    fn five_digits_are_kept() {
+        assert_eq!(
+            [1.234_567, -0.000_123_456_7, 0.0].map(five_digits),
+            [1.2346, -0.000_123_46, 0.0]
+        );
+    }
+}

@@ -1,0 +1,243 @@
+//! A study as the page shows it: its members, its error ledger, its flags.
+
+use std::collections::BTreeMap;
+
+use record::Verdict;
+use shared::api::{CalibrationState, Progress};
+
+use crate::diagnostics::trends::TrendVariable;
+use crate::flag::kind::{Flag, FlagKind};
+use crate::story::Story;
+use crate::study::Study;
+use crate::study_member::StudyMember;
+use crate::summary::calibration::CalibrationSummary;
+use crate::summary::error::ErrorSummary;
+use crate::summary::point_estimate::PointEstimate;
+use crate::table::fixed_sigma::FixedSigma;
+use crate::words::data_channel::DataChannel;
+
+/// A study: what is finished of it, and what is still computed.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct StudyOverview {
+    /// Its id.
+    pub id: i64,
+    /// Its name: that of the submitted calibration.
+    pub name: String,
+    /// The experiment of the submitted calibration.
+    pub experiment: i64,
+    /// `finished` where no further step follows, else the state of its first unfinished member.
+    pub state: CalibrationState,
+    /// Whether it is archived.
+    pub archived: bool,
+    /// Model of the submitted calibration; null where this version does not understand its job.
+    pub model_kind: Option<String>,
+    /// The calibration of the current model: the line of the ledger with the most evidence on the newest measurements; null without a line.
+    pub current: Option<i64>,
+    /// Ids of the members, oldest first.
+    pub calibrations: Vec<i64>,
+    /// The members, oldest first.
+    pub members: Vec<StudyMember>,
+    /// The error ledger: base first, then each extension.
+    pub ledger: Vec<CalibrationSummary>,
+    /// The noise sd of each channel that `rmse_fixed_sigma` is in, by name.
+    pub fixed_sigma: BTreeMap<String, FixedSigma>,
+    /// Deterministic fits.
+    pub point_estimates: Vec<PointEstimate>,
+    /// The flags.
+    pub flags: Vec<StudyFlag>,
+    /// The verdict of the search of the current model, else of the last search; null where none is finished.
+    pub verdict: Option<StudyVerdict>,
+}
+
+/// A flag of a study.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct StudyFlag {
+    /// The calibration that it is about; null where it compares several.
+    pub calibration: Option<i64>,
+    /// Its kind.
+    #[schema(value_type = String)]
+    pub kind: FlagKind,
+    /// The channel it is about.
+    #[schema(value_type = Option<String>)]
+    pub channel: Option<DataChannel>,
+    /// The condition it varies with.
+    #[schema(value_type = Option<String>)]
+    pub against: Option<TrendVariable>,
+    /// Probability of the observation if nothing were wrong.
+    pub p: Option<f64>,
+    /// Its meaning.
+    pub text: String,
+}
+
+/// The verdict of a search.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct StudyVerdict {
+    /// The calibration whose model was searched.
+    pub calibration: i64,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The verdict in a sentence.
+    pub text: String,
+}
+
+/// A study in a list.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct StudyListItem {
+    /// Its id.
+    pub id: i64,
+    /// Its name: that of the submitted calibration.
+    pub name: String,
+    /// The experiment of the submitted calibration.
+    pub experiment: i64,
+    /// `finished` where no further step follows, else the state of its first unfinished member.
+    pub state: CalibrationState,
+    /// Whether it is archived.
+    pub archived: bool,
+    /// Ids of the members, oldest first.
+    pub calibrations: Vec<i64>,
+    /// Model of the submitted calibration; null where this version does not understand its job.
+    pub model_kind: Option<String>,
+    /// Effects and freed parameters of the current model beyond the submitted job's.
+    pub effects: Vec<String>,
+    /// Errors of the current model; null without a line in the ledger, or while they are computed.
+    pub error: Option<ErrorSummary>,
+    /// Live figures of the member that is computed; null where none is.
+    pub progress: Option<Progress>,
+    /// The verdict of the search of the current model, else of the last search; null where none is finished.
+    pub verdict: Option<StudyVerdict>,
+}
+
+impl StudyOverview {
+    /// A study without a finished calibration. There is at least one member.
+    pub fn begun(id: i64, experiment: i64, model_kind: Option<String>, members: Vec<StudyMember>) -> Self {
+        let unfinished = members.iter().find(|m| m.state != CalibrationState::Finished);
+        StudyOverview {
+            id,
+            name: members.first().map(|m| m.name.clone()).unwrap_or_default(),
+            experiment,
+            state: unfinished.map_or(CalibrationState::Finished, |m| m.state),
+            archived: false,
+            model_kind,
+            current: None,
+            calibrations: members.iter().map(|m| m.id).collect(),
+            members,
+            ledger: Vec::new(),
+            fixed_sigma: BTreeMap::new(),
+            point_estimates: Vec::new(),
+            flags: Vec::new(),
+            verdict: None,
+        }
+    }
+
+    /// Its line in a list, with the live figures of the member that is computed.
+    pub fn list_item(&self, progress: Option<Progress>) -> StudyListItem {
+        let current = self
+            .ledger
+            .iter()
+            .find(|line| Some(line.calibration) == self.current);
+        let member = self.members.iter().find(|m| Some(m.id) == self.current);
+        StudyListItem {
+            id: self.id,
+            name: self.name.clone(),
+            experiment: self.experiment,
+            state: self.state,
+            archived: self.archived,
+            calibrations: self.calibrations.clone(),
+            model_kind: self.model_kind.clone(),
+            effects: member.map(|m| m.effects.clone()).unwrap_or_default(),
+            error: current.map(|line| line.error.clone()),
+            progress,
+            verdict: self.verdict.clone(),
+        }
+    }
+}
+
+impl Study {
+    /// The study as the page shows it. Whether it is archived is not known here.
+    pub fn overview(&self) -> StudyOverview {
+        let sigmas = self.fixed_sigmas();
+        let current = self.current().map(|calibration| calibration.row.id);
+        let of_current = self
+            .rounds
+            .iter()
+            .find(|round| Some(round.calibration) == current);
+        let kind = self.lead.spec.model.kind.name().to_owned();
+        let (id, experiment) = (self.lead.row.study, self.lead.row.experiment);
+        StudyOverview {
+            state: self.state,
+            current,
+            ledger: self.ledger_summaries(&sigmas),
+            point_estimates: self.point_estimate_summaries(&sigmas),
+            fixed_sigma: sigmas.by_name(),
+            flags: self
+                .flags_by_calibration()
+                .into_iter()
+                .map(StudyFlag::from)
+                .collect(),
+            verdict: of_current.or(self.rounds.last()).map(|round| StudyVerdict {
+                calibration: round.calibration,
+                verdict: round.record.verdict,
+                text: round.record.text.clone(),
+            }),
+            ..StudyOverview::begun(id, experiment, Some(kind), self.members_with_stories())
+        }
+    }
+}
+
+impl Study {
+    /// The members, each finished calibration with its story.
+    fn members_with_stories(&self) -> Vec<StudyMember> {
+        let mut members = self.members.clone();
+        for calibration in self.calibrations() {
+            if let Some(own) = members.iter_mut().find(|member| member.id == calibration.row.id) {
+                own.story = Some(Story::of(self, calibration));
+            }
+        }
+        members
+    }
+}
+
+impl From<(Option<i64>, Flag)> for StudyFlag {
+    fn from((calibration, flag): (Option<i64>, Flag)) -> Self {
+        StudyFlag {
+            calibration,
+            kind: flag.kind,
+            channel: flag.channel,
+            against: flag.against,
+            p: flag.p,
+            text: flag.text,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn a_study_comes_back_from_json_and_its_list_item_says_the_current_model_s_errors() {
+        let overview = fixture::grown().overview();
+        let json = serde_json::to_string(&overview).unwrap();
+        let read: StudyOverview = serde_json::from_str(&json).unwrap();
+        assert_eq!(serde_json::to_string(&read).unwrap(), json);
+        let current = overview.current.unwrap();
+        let line = overview.ledger.iter().find(|l| l.calibration == current).unwrap();
+        let item = overview.list_item(None);
+        assert_eq!(item.error.unwrap().fit, line.error.fit);
+        assert_eq!(item.verdict.unwrap().calibration, 1);
+    }
+
+    #[test]
+    fn every_flag_of_a_calibration_names_it() {
+        let study = fixture::grown();
+        let overview = study.overview();
+        assert_eq!(overview.flags.len(), study.flags().len());
+        let of_extension = overview
+            .flags
+            .iter()
+            .filter(|f| f.text.contains("slip_sinkage: "));
+        let calibrations: Vec<_> = of_extension.map(|f| f.calibration).collect();
+        assert!(!calibrations.is_empty() && calibrations.iter().all(|c| *c == Some(3)));
+    }
+}

@@ -1,0 +1,101 @@
+//! The report of a study: one document that opens offline, with the pictures of the page and their numbers.
+//!
+//! It carries what a service would answer to the page, by the paths of the REST interface: whatever the page shows of a study, the
+//! report shows too. Without scripts it has the text of the terminal.
+
+use serde_json::{Map, Value};
+
+use page::report::{Report, report};
+
+use crate::study::Study;
+use crate::terminal;
+
+/// The report, which shows the current model first.
+pub fn document(study: &Study) -> String {
+    let shown = study.current().unwrap_or(&study.lead);
+    report(&Report {
+        title: &format!("Calibration report: {}", study.lead.experiment),
+        text: &terminal::study(study),
+        study: shown.row.study,
+        calibration: shown.row.id,
+        answers: &answers(study),
+    })
+}
+
+/// What a service answers of a study, by path.
+pub fn answers(study: &Study) -> Map<String, Value> {
+    let overview = study.overview();
+    let mut answers = Map::new();
+    let mut add = |path: String, answer: Value| {
+        answers.insert(format!("/v1/{path}"), answer);
+    };
+    add(format!("studies/{}", overview.id), json(&overview));
+    for calibration in study.calibrations() {
+        let path = |what: &str| format!("calibrations/{}/{what}", calibration.row.id);
+        let comparison = calibration.comparison();
+        let diagnostics = calibration.diagnostics(&comparison);
+        add(path("comparison"), json(&comparison));
+        add(path("diagnostics"), json(&diagnostics));
+        add(path("figures"), json(&study.figures_of(calibration)));
+        add(path("histories"), json(&calibration.histories()));
+        add(path("provenance"), json(&calibration.provenance()));
+        add(path("stages"), json(&calibration.stages));
+    }
+    for round in &study.rounds {
+        let search = overview
+            .members
+            .iter()
+            .find(|m| m.searches == Some(round.calibration));
+        if let Some(search) = search {
+            add(
+                format!("calibrations/{}/discovery", search.id),
+                json(&round.record),
+            );
+        }
+    }
+    answers
+}
+
+fn json(answer: &impl serde::Serialize) -> Value {
+    serde_json::to_value(answer).expect("results have a JSON form")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn every_calibration_and_every_search_is_in_the_report() {
+        let study = fixture::grown();
+        let answers = answers(&study);
+        let count = |what: &str| answers.keys().filter(|path| path.ends_with(what)).count();
+        assert_eq!(count("/discovery"), study.rounds.len());
+        assert_eq!(count("/comparison"), study.calibrations().count());
+    }
+
+    #[test]
+    fn names_of_users_are_escaped() {
+        let document = document(&fixture::study());
+        assert!(document.contains("\\u003cscript>") && document.contains("&lt;script&gt;"));
+        assert!(!document.contains("<script>alert"));
+    }
+
+    #[test]
+    fn equal_studies_give_equal_reports() {
+        assert_eq!(document(&fixture::study()), document(&fixture::study()));
+    }
+
+    #[test]
+    fn every_study_has_a_report() {
+        for calibration in [
+            fixture::without_holdout(),
+            fixture::all_rejected(),
+            fixture::fit(),
+            fixture::search(),
+        ] {
+            let document = document(&Study::from(calibration));
+            assert!(document.ends_with("</html>\n"));
+        }
+    }
+}

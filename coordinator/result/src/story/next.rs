@@ -1,0 +1,328 @@
+//! What to do next, with the command of each step.
+
+use std::collections::BTreeSet;
+
+use record::{Discovery, Extension, NextRun, Verdict, effect_of};
+
+use crate::discovery::effect_file;
+use crate::finished_calibration::FinishedCalibration;
+use crate::study::Study;
+use crate::words::number;
+
+/// The steps, the first one first; at least one.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct Next {
+    /// The steps.
+    pub steps: Vec<NextStep>,
+    /// The first step in a sentence.
+    pub text: String,
+}
+
+/// A step.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct NextStep {
+    /// Its kind.
+    pub kind: StepKind,
+    /// What to do, in a sentence.
+    pub text: String,
+    /// Verb and arguments of the program `coordinator`, without the place of the study; null of what no command does.
+    pub command: Option<String>,
+    /// The effect to add, or that its runs would tell apart.
+    pub effect: Option<String>,
+    /// The wheel that alone has it.
+    pub wheel: Option<String>,
+    /// The effect file to add.
+    pub effect_file: Option<EffectFile>,
+    /// The runs to make.
+    pub runs: Vec<NextRun>,
+}
+
+/// Kind of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum StepKind {
+    /// Add an effect of the catalogue.
+    AddEffect,
+    /// Add the effect of a file.
+    AddEffectFile,
+    /// Search for a missing effect.
+    Discover,
+    /// Make test runs.
+    MakeRuns,
+    /// Make a test without a rolling wheel.
+    MeasureOther,
+    /// State in the experiment what it lacks.
+    StateInExperiment,
+    /// Use the posterior.
+    Predict,
+}
+
+/// An effect file.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct EffectFile {
+    /// Its name.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+impl NextStep {
+    fn new(kind: StepKind, text: impl Into<String>, command: Option<String>) -> Self {
+        NextStep {
+            kind,
+            text: text.into(),
+            command,
+            effect: None,
+            wheel: None,
+            effect_file: None,
+            runs: Vec::new(),
+        }
+    }
+}
+
+impl Next {
+    pub(super) fn of(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool) -> Next {
+        let steps = steps(study, calibration, is_within_noise);
+        let text = steps.first().map_or_else(String::new, |step| step.text.clone());
+        Next { steps, text }
+    }
+}
+
+fn steps(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool) -> Vec<NextStep> {
+    let id = calibration.row.id;
+    if let Some(current) = study.current().filter(|current| current.row.id != id) {
+        let text = format!(
+            "go on with calibration {} ({}), the current model of the study",
+            current.row.id, current.experiment
+        );
+        let command = format!("report {}", current.row.id);
+        return vec![NextStep::new(StepKind::Predict, text, Some(command))];
+    }
+    let predict = |text: &str| NextStep::new(StepKind::Predict, text, Some(format!("export {id}")));
+    let Some(record) = study.search_of(calibration) else {
+        let text = "search the library for the effect that the model is missing";
+        let mut steps = vec![NextStep::new(
+            StepKind::Discover,
+            text,
+            Some(format!("discover {id}")),
+        )];
+        if is_within_noise {
+            steps.push(predict(
+                "predict with the posterior: its errors are within the noise",
+            ));
+        }
+        return steps;
+    };
+    let add = record
+        .extension
+        .as_ref()
+        .filter(|extension| !is_made(study, calibration, &effect_of(extension)))
+        .map(|extension| addition(id, record, extension));
+    let runs = (!record.next_runs.is_empty()).then(|| runs(id, &record.next_runs));
+    let mut steps: Vec<NextStep> = match record.verdict {
+        // Runs decide before a guess is added.
+        Verdict::Undecided => runs.into_iter().chain(add).collect(),
+        _ => add.into_iter().chain(runs).collect(),
+    };
+    if steps.is_empty() && is_within_noise {
+        steps.push(predict(
+            "predict with the posterior: the model explains the runs to within the noise",
+        ));
+    }
+    let tests = record.other_tests.iter();
+    steps.extend(tests.map(|test| NextStep::new(StepKind::MeasureOther, format!("measure {test}"), None)));
+    let needs: BTreeSet<&str> = record
+        .not_tried
+        .iter()
+        .map(|effect| effect.needs.as_str())
+        .collect();
+    steps.extend(needs.into_iter().map(|needs| {
+        let own = record.not_tried.iter().filter(|effect| effect.needs == needs);
+        let mut names: Vec<String> = own.map(|effect| effect.name.clone()).collect();
+        names.dedup();
+        let text = format!(
+            "state {needs} in the experiment, so that {} can be tried",
+            number::list(&names)
+        );
+        NextStep::new(StepKind::StateInExperiment, text, None)
+    }));
+    if steps.is_empty() {
+        steps.push(predict(
+            "predict with the posterior, within the errors above: these data show no more",
+        ));
+    }
+    steps
+}
+
+/// Whether the study has a calibration with all that this one has, and the effect.
+fn is_made(study: &Study, calibration: &FinishedCalibration, effect: &String) -> bool {
+    let parts = study.parts(calibration);
+    let mut others = study.calibrations().map(|other| study.parts(other));
+    others.any(|other| other.contains(effect) && parts.iter().all(|part| other.contains(part)))
+}
+
+fn addition(id: i64, record: &Discovery, extension: &Extension) -> NextStep {
+    let effect = effect_of(extension);
+    let hedge = match record.verdict {
+        Verdict::Undecided => "try",
+        _ => "add",
+    };
+    match extension {
+        Extension::Effect(_) => {
+            let text = format!("{hedge} {effect} and calibrate again");
+            let command = format!("extend {id} --effect {effect}");
+            NextStep {
+                effect: Some(effect),
+                ..NextStep::new(StepKind::AddEffect, text, Some(command))
+            }
+        }
+        Extension::OnWheel { wheel, .. } => {
+            let text = format!("{hedge} {effect} on wheel {wheel} and calibrate again");
+            let command = format!("extend {id} --effect {effect} --wheel {wheel}");
+            NextStep {
+                effect: Some(effect),
+                wheel: Some(wheel.clone()),
+                ..NextStep::new(StepKind::AddEffect, text, Some(command))
+            }
+        }
+        Extension::File { name, text } => {
+            let (name, text) = effect_file(record).unwrap_or_else(|| (name.clone(), text.clone()));
+            let words = format!("{hedge} the law that was found, {effect}, and calibrate again");
+            let command = format!("extend {id} --effect-file {name}");
+            NextStep {
+                effect: Some(effect),
+                effect_file: Some(EffectFile { name, text }),
+                ..NextStep::new(StepKind::AddEffectFile, words, Some(command))
+            }
+        }
+    }
+}
+
+fn runs(id: i64, runs: &[NextRun]) -> NextStep {
+    let words = runs.iter().map(|run| {
+        format!(
+            "slip {:.2} under {} N at {} mm/s",
+            run.slip,
+            number::significant(run.wheel_load_n, 3),
+            number::significant(1000.0 * run.sled_speed_m_s, 3)
+        )
+    });
+    let mut separates: Vec<String> = runs.iter().flat_map(|run| run.separates.clone()).collect();
+    separates.sort();
+    separates.dedup();
+    let words: Vec<String> = words.collect();
+    let text = format!(
+        "run the wheel at {}, which tells {} apart, and add the rows",
+        words.join(", then "),
+        number::list(&separates)
+    );
+    NextStep {
+        runs: runs.to_vec(),
+        ..NextStep::new(
+            StepKind::MakeRuns,
+            text,
+            Some(format!("add-runs {id} new-runs.csv")),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use record::NotTried;
+
+    use super::*;
+    use crate::fixture;
+
+    fn kinds(next: &Next) -> Vec<StepKind> {
+        next.steps.iter().map(|step| step.kind).collect()
+    }
+
+    /// A searched study without the extension.
+    fn searched() -> Study {
+        let mut study = fixture::grown();
+        study.extensions.clear();
+        study
+    }
+
+    #[test]
+    fn what_was_not_searched_is_searched_next() {
+        let study = fixture::study();
+        let next = Next::of(&study, &study.lead, false);
+        assert_eq!(kinds(&next), [StepKind::Discover]);
+        assert_eq!(next.steps[0].command.as_deref(), Some("discover 1"));
+        assert_eq!(kinds(&Next::of(&study, &study.lead, true))[1], StepKind::Predict);
+    }
+
+    #[test]
+    fn a_named_effect_is_added_before_runs_are_made_and_an_open_one_after() {
+        let mut study = searched();
+        let next = Next::of(&study, &study.lead, false);
+        assert_eq!(
+            kinds(&next),
+            [StepKind::AddEffect, StepKind::MakeRuns, StepKind::MeasureOther]
+        );
+        assert_eq!(
+            next.steps[0].command.as_deref(),
+            Some("extend 1 --effect slip_sinkage")
+        );
+        assert!(
+            next.steps[1].text.contains("slip 0.60 under 80.0 N at 20.0 mm/s"),
+            "{next:?}"
+        );
+        study.rounds[0].record.verdict = Verdict::Undecided;
+        let open = Next::of(&study, &study.lead, false);
+        assert_eq!(kinds(&open)[..2], [StepKind::MakeRuns, StepKind::AddEffect]);
+    }
+
+    #[test]
+    fn an_extension_that_the_study_has_made_is_not_advised_again() {
+        let mut study = fixture::grown();
+        let advises =
+            |study: &Study| kinds(&Next::of(study, &study.lead, false)).contains(&StepKind::AddEffect);
+        study.rounds[0].record.extension = Some(Extension::Effect("cohesion_pa".into()));
+        assert!(advises(&study));
+        study.extensions[0].spec.parameters[0].name = "cohesion_pa".into();
+        assert_eq!(study.parts(&study.extensions[0]), ["cohesion_pa"]);
+        assert!(!advises(&study));
+    }
+
+    #[test]
+    fn a_superseded_model_sends_to_the_current_one() {
+        let mut study = fixture::grown();
+        study.extensions[0].row.log_evidence = Some(10.0);
+        let next = Next::of(&study, &study.lead, false);
+        assert_eq!(kinds(&next), [StepKind::Predict]);
+        assert_eq!(next.steps[0].command.as_deref(), Some("report 3"));
+    }
+
+    #[test]
+    fn a_law_that_was_found_is_added_by_its_file() {
+        let mut study = searched();
+        study.rounds[0].record.extension = Some(Extension::File {
+            name: "anything.toml".into(),
+            text: "name = \"shear_slip_step\"\n".into(),
+        });
+        let next = Next::of(&study, &study.lead, false);
+        assert_eq!(next.steps[0].kind, StepKind::AddEffectFile);
+        let file = next.steps[0].effect_file.as_ref().unwrap();
+        assert_eq!(file.name, "shear_slip_step.toml");
+    }
+
+    #[test]
+    fn where_nothing_is_left_the_model_predicts_and_what_is_not_stated_is_asked_for() {
+        let mut study = searched();
+        let record = &mut study.rounds[0].record;
+        record.verdict = Verdict::NothingDetectable;
+        record.extension = None;
+        record.next_runs.clear();
+        record.other_tests.clear();
+        record.not_tried = vec![NotTried {
+            name: "end_wall".into(),
+            why: "the length of the bin is not stated".into(),
+            needs: "bin_length_m under [rig]".into(),
+        }];
+        let next = Next::of(&study, &study.lead, true);
+        assert_eq!(kinds(&next), [StepKind::Predict, StepKind::StateInExperiment]);
+        assert!(next.steps[1].text.contains("bin_length_m under [rig]"));
+    }
+}

@@ -1,0 +1,38 @@
+//! A member of a study, finished or not.
+
+use shared::api::CalibrationState;
+
+use crate::story::Story;
+
+/// A calibration or a search of a study.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct StudyMember {
+    /// Its id.
+    pub id: i64,
+    /// Its name.
+    pub name: String,
+    /// Its state.
+    pub state: CalibrationState,
+    /// What it computes.
+    pub kind: MemberKind,
+    /// The effects and freed parameters of its model beyond those of the submitted job.
+    pub effects: Vec<String>,
+    /// The calibration whose model it searches; null of a sample or a fit.
+    pub searches: Option<i64>,
+    /// Why it is paused or failed.
+    pub message: Option<String>,
+    /// What is wrong, what is missing, what to do next; null of a search, and of what is not finished.
+    pub story: Option<Story>,
+}
+
+/// What a member of a study computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MemberKind {
+    /// A sample of the posterior.
+    Sample,
+    /// The most probable parameters, by `lm`, `ga` or `cma-es`.
+    Fit,
+    /// A search for missing effects.
+    Search,
+}

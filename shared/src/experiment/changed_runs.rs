@@ -1,0 +1,209 @@
+//! An experiment with other runs: further ones, or some held out.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Experiment, settings, table};
+use crate::file::{FileError, FileSet};
+
+impl Experiment {
+    /// The files of an experiment with the rows of another `runs.csv` appended, and the resulting number of runs.
+    ///
+    /// Columns are matched by name; where one of the two files lacks a column of the other, its rows leave it blank. Comments of
+    /// both are left out.
+    ///
+    /// # Errors
+    /// [`FileError`] with the line of the new rows where one is malformed or its run stands in the experiment already.
+    pub fn with_runs(name: &str, files: &FileSet, csv: &str) -> Result<(FileSet, usize), FileError> {
+        let before = Experiment::parse(name, files)?;
+        let file = file_of_runs(name, files, "append to")?;
+        let fail = |e: csv::Error| FileError::whole(&file, e.to_string());
+        let with = |text: String| {
+            let mut all = files.clone();
+            all.files.insert(file.clone(), text);
+            all
+        };
+        // first alone, so that messages name the lines of the new file
+        Experiment::parse(name, &with(csv.to_owned()))?;
+        let (mut header, mut rows) = records(&file, files.named(name, &file)?)?;
+        let (new_header, new_rows) = records(&file, csv)?;
+        let run_at = new_header.iter().position(|column| column == "run");
+        let names: BTreeSet<&str> = before.runs.iter().map(|run| run.name.as_str()).collect();
+        for (line, row) in &new_rows {
+            if let Some(run) = run_at.and_then(|at| row.get(at))
+                && names.contains(run.as_str())
+            {
+                return Err(FileError::at(
+                    &file,
+                    *line,
+                    format!("run \"{run}\" is in the study already"),
+                ));
+            }
+        }
+        for column in &new_header {
+            if !header.contains(column) {
+                header.push(column.clone());
+            }
+        }
+        for (line, row) in new_rows {
+            let mut fields: BTreeMap<&str, String> = BTreeMap::new();
+            fields.extend(new_header.iter().map(String::as_str).zip(row));
+            let row = header
+                .iter()
+                .map(|column| fields.remove(column.as_str()).unwrap_or_default());
+            rows.push((line, row.collect()));
+        }
+        let enlarged = with(written(&header, rows).map_err(fail)?);
+        let runs = Experiment::parse(name, &enlarged)?.runs.len();
+        Ok((enlarged, runs))
+    }
+}
+
+impl Experiment {
+    /// The files of an experiment in which some of its runs are held out; comments of `runs.csv` are left out.
+    ///
+    /// # Errors
+    /// [`FileError`] for a run that the experiment does not have.
+    pub fn holding_out(name: &str, files: &FileSet, runs: &BTreeSet<String>) -> Result<FileSet, FileError> {
+        let file = file_of_runs(name, files, "hold out")?;
+        let (mut header, mut rows) = records(&file, files.named(name, &file)?)?;
+        let place = |header: &[String], column: &str| header.iter().position(|own| own == column);
+        let run_at =
+            place(&header, "run").ok_or_else(|| FileError::whole(&file, "column \"run\" is missing"))?;
+        let use_at = place(&header, "use").unwrap_or_else(|| {
+            header.push("use".into());
+            header.len() - 1
+        });
+        let mut left: BTreeSet<&str> = runs.iter().map(String::as_str).collect();
+        for (_, row) in &mut rows {
+            if left.remove(row[run_at].as_str()) || runs.contains(&row[run_at]) {
+                row.resize(header.len(), String::new());
+                row[use_at] = "holdout".into();
+            }
+        }
+        if let Some(unknown) = left.first() {
+            return Err(FileError::whole(&file, format!("there is no run \"{unknown}\"")));
+        }
+        let mut all = files.clone();
+        let text = written(&header, rows).map_err(|e| FileError::whole(&file, e.to_string()))?;
+        all.files.insert(file, text);
+        Ok(all)
+    }
+}
+
+/// The name of `runs.csv`.
+fn file_of_runs(name: &str, files: &FileSet, what: &str) -> Result<String, FileError> {
+    settings::parse(name, &files.toml)?.runs.ok_or_else(|| {
+        let message = format!("runs = \"runs.csv\" is missing: the experiment has no runs to {what}");
+        FileError::whole(name, message)
+    })
+}
+
+/// The header of a CSV file, and its rows with their lines.
+type Records = (Vec<String>, Vec<(usize, Vec<String>)>);
+
+fn records(file: &str, text: &str) -> Result<Records, FileError> {
+    let mut reader = table::reader(text);
+    let fail = |e: csv::Error| FileError::whole(file, e.to_string());
+    let fields = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect();
+    let header = fields(reader.headers().map_err(fail)?);
+    let rows = reader
+        .records()
+        .map(|record| record.map(|record| (table::line_of(text, &record), fields(&record))))
+        .collect::<Result<_, _>>()
+        .map_err(fail)?;
+    Ok((header, rows))
+}
+
+/// The text of a CSV file; short rows are filled with blanks.
+fn written(header: &[String], rows: Vec<(usize, Vec<String>)>) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header)?;
+    for (_, mut row) in rows {
+        row.resize(header.len(), String::new());
+        writer.write_record(row)?;
+    }
+    let bytes = writer.into_inner().map_err(|e| e.into_error())?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::RunUse;
+
+    const TOML: &str = "runs = \"runs.csv\"\n[wheel.a]\nradius_m = 0.1\nwidth_m = 0.05\n[soil.sand]\n[noise]\ndrawbar_pull_n = 1.0\ntorque_n_m = 0.1\n";
+    const RUNS: &str = "# first day\nrun,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\n\"one, two\",a,sand,0.2,25,0.01,0.5,fit\n";
+    const MORE: &str = "# second day\nuse,run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,torque_n_m\n# sunny\nholdout,three,a,sand,0.4,25,0.02,0.7\n";
+
+    fn files(runs: &str) -> FileSet {
+        FileSet {
+            toml: TOML.into(),
+            files: BTreeMap::from([("runs.csv".into(), runs.into())]),
+        }
+    }
+
+    #[test]
+    fn rows_join_by_the_names_of_their_columns() {
+        let (enlarged, runs) = Experiment::with_runs("experiment.toml", &files(RUNS), MORE).unwrap();
+        assert_eq!((runs, &enlarged.toml), (2, &files(RUNS).toml));
+        let after = Experiment::parse("experiment.toml", &enlarged).unwrap();
+        let before = Experiment::parse("experiment.toml", &files(RUNS)).unwrap();
+        let alone = Experiment::parse("experiment.toml", &files(MORE)).unwrap();
+        assert_eq!(after.runs, [before.runs, alone.runs].concat());
+    }
+
+    #[test]
+    fn runs_that_are_held_out_keep_their_values() {
+        let (both, _) = Experiment::with_runs("experiment.toml", &files(RUNS), MORE).unwrap();
+        let without = |run: &str| {
+            let runs = BTreeSet::from([run.to_owned()]);
+            Experiment::holding_out("experiment.toml", &both, &runs)
+        };
+        let mut expected = Experiment::parse("experiment.toml", &both).unwrap().runs;
+        expected[0].usage = RunUse::Holdout;
+        let held = Experiment::parse("experiment.toml", &without("one, two").unwrap()).unwrap();
+        assert_eq!(held.runs, expected);
+        let error = without("four").unwrap_err();
+        assert_eq!(error.to_string(), "runs.csv: there is no run \"four\"");
+        // Without the column every run is fitted.
+        let plain = files(&RUNS.replace(",use", "").replace(",fit", ""));
+        let runs = BTreeSet::from(["one, two".to_owned()]);
+        let held = Experiment::holding_out("experiment.toml", &plain, &runs).unwrap();
+        let held = Experiment::parse("experiment.toml", &held).unwrap();
+        assert_eq!(held.runs[0].usage, RunUse::Holdout);
+    }
+
+    #[test]
+    fn what_cannot_join_names_its_line() {
+        for (more, message) in [
+            (
+                MORE.replace("three", "\"one, two\""),
+                "runs.csv line 4: run \"one, two\" is in the study already",
+            ),
+            (
+                MORE.replace("0.4,25", "1.4,25"),
+                "runs.csv line 4: slip 1.4 must lie in [-1, 1)",
+            ),
+            (
+                MORE.replace("torque_n_m", "torque"),
+                "runs.csv line 2: unknown column \"torque\"",
+            ),
+            (
+                MORE.replace("0.02,0.7", "0.02"),
+                "runs.csv line 4: 7 fields where the header has 8",
+            ),
+        ] {
+            let error = Experiment::with_runs("experiment.toml", &files(RUNS), &more).unwrap_err();
+            assert!(error.to_string().starts_with(message), "{error}");
+        }
+        let plates = FileSet {
+            toml: TOML.replace("runs = \"runs.csv\"", "plates = \"plates.csv\""),
+            files: BTreeMap::from([(
+                "plates.csv".into(),
+                "test,plate_radius_m,sinkage_m,pressure_pa\na,0.03,0.01,8000\n".into(),
+            )]),
+        };
+        let error = Experiment::with_runs("experiment.toml", &plates, MORE).unwrap_err();
+        assert!(error.to_string().contains("no runs to append to"), "{error}");
+    }
+}

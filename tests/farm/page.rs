@@ -1,0 +1,94 @@
+//! The page as a service serves it, and the report, which carries what the service answers.
+
+use farm_tests::job::Job;
+use farm_tests::programs::{coordinator, run};
+use farm_tests::service::Service;
+use serde_json::{Map, Value};
+
+/// The paths that a text of the page names.
+fn named(text: &str) -> impl Iterator<Item = &str> {
+    text.split('"').filter(|part| part.starts_with("/page/"))
+}
+
+#[test]
+fn the_page_needs_no_token_and_nothing_from_elsewhere() {
+    let service = Service::start(&[]);
+    let store = service.store().display().to_string();
+    let added = [
+        "token",
+        "add",
+        "reader",
+        "--role",
+        "read",
+        "--store",
+        &format!("sqlite://{store}"),
+    ];
+    run(coordinator(added)).success();
+    farm_tests::wait::until("tokens are asked for", || {
+        (service.client.get("/v1/studies").status == 401).then_some(())
+    });
+    let index = service.client.get("/");
+    assert_eq!(index.status, 200, "{}", index.body);
+    let policy = index.header("content-security-policy").expect("a policy");
+    assert!(
+        policy.starts_with("default-src 'none'; script-src 'self';"),
+        "{policy}"
+    );
+    assert!(!index.body.contains("http"), "{}", index.body);
+    assert!(named(&index.body).count() > 5);
+    for path in named(&index.body) {
+        let file = service.client.get(path);
+        assert_eq!(file.status, 200, "{path}");
+        assert!(
+            !file
+                .header("content-type")
+                .unwrap_or("text/plain")
+                .starts_with("text/plain"),
+            "{path}"
+        );
+    }
+    for path in [
+        "/page/",
+        "/page/none.js",
+        "/page/../Cargo.toml",
+        "/page/modules/%2e%2e/page.js",
+    ] {
+        assert_eq!(service.client.get(path).status, 404, "{path}");
+    }
+}
+
+/// The answers that a report carries.
+fn answers(report: &str) -> Map<String, Value> {
+    let (_, rest) = report.split_once("id=\"answers\">").expect("answers");
+    let (answers, _) = rest.split_once("</script>").expect("their end");
+    serde_json::from_str(answers).expect("JSON")
+}
+
+#[test]
+fn a_report_carries_the_answers_of_the_service() {
+    let service = Service::start(&["--local-workers", "2"]);
+    let id = service.submit(&Job::small());
+    service.wait_for(id, "finished");
+    let extension = serde_json::json!({"effect": "slip_sinkage"});
+    let extended = service
+        .client
+        .post(&format!("/v1/calibrations/{id}/extend"), &extension);
+    let extended = extended.json()["id"].as_i64().expect("an id");
+    service.wait_for(extended, "finished");
+    let report = run(coordinator([
+        "report",
+        &extended.to_string(),
+        "--url",
+        &service.url(),
+    ]))
+    .success();
+    let answers = answers(&report);
+    assert_eq!(answers.len(), 1 + 2 * 6, "{:?}", answers.keys());
+    for (path, answer) in &answers {
+        assert_eq!(&service.client.json(path), answer, "{path}");
+    }
+    // Each calibration has its own: they differ in what they show first.
+    assert!(report.contains(&format!("{{\"calibration\":{extended},\"study\":1}}")));
+    let first = service.client.get(&format!("/v1/calibrations/{id}/report")).body;
+    assert!(first.contains(&format!("{{\"calibration\":{id},\"study\":1}}")));
+}
