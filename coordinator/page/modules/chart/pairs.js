@@ -1,7 +1,7 @@
 // Joint posteriors: a triangle of small contours, and one of them large with what else is known of its parameters.
 
 import { html } from "../html.js";
-import { digits, shown, titled, words } from "../words/quantity.js";
+import { digits, shown, titled, parameterName } from "../words/quantity.js";
 import { symbol } from "./colour.js";
 import { Entry, Figure, fileName } from "./figure.js";
 import { d3, Plot } from "./library.js";
@@ -42,7 +42,7 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
         regions(pair, x, y, pair.parameters[0].name !== column.name).forEach((d) => cell.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"));
         cell.style("cursor", "pointer").on("click", () => onCell(pair));
       }
-      const label = (/** @type {any} */ m) => (words(m.name).length > 17 ? `${words(m.name).slice(0, 16)}…` : words(m.name));
+      const label = (/** @type {any} */ m) => (parameterName(m.name).length > 17 ? `${parameterName(m.name).slice(0, 16)}…` : parameterName(m.name));
       if (j === count - 1) cell.append("text").attr("x", SIDE / 2).attr("y", SIDE + 14).attr("text-anchor", "middle").attr("font-size", 11).attr("fill", "currentColor").text(label(column));
       if (i === 0) cell.append("text").attr("transform", `translate(-8,${SIDE / 2}) rotate(-90)`).attr("text-anchor", "middle").attr("font-size", 11).attr("fill", "currentColor").text(label(row));
     }));
@@ -51,8 +51,8 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
   const open = (/** @type {any} */ event) => event.target.value !== "" && onCell(pairs[Number(event.target.value)]);
   return html`
     <p><label>Large picture of <select onChange=${open}><option value="">a pair: choose it, or click its cell</option>
-      ${pairs.map((p, k) => html`<option value=${k}>${p.parameters.map((/** @type {any} */ q) => words(q.name)).join(" and ")}, rank correlation ${digits(p.rank_correlation, 2)}</option>`)}</select></label></p>
-    <${Figure} title=${`Joint posterior of ${marginals.map((m) => words(m.name)).join(", ")}`} name=${fileName("pairs", name)} deps=${[marginals.map((m) => m.name).join()]} draw=${draw} />`;
+      ${pairs.map((p, k) => html`<option value=${k}>${p.parameters.map((/** @type {any} */ q) => parameterName(q.name)).join(" and ")}, rank correlation ${digits(p.rank_correlation, 2)}</option>`)}</select></label></p>
+    <${Figure} title=${`Joint posterior of ${marginals.map((m) => parameterName(m.name)).join(", ")}`} name=${fileName("pairs", name)} deps=${[marginals.map((m) => m.name).join()]} draw=${draw} />`;
 }
 
 /** @param {{ pair: any }} properties */
@@ -65,13 +65,13 @@ export function JointPicture({ pair }) {
     if (m.at.x === null) return Plot.ruleY([m.at.y * b.scale], { stroke });
     return Plot.dot([m], { x: () => m.at.x * a.scale, y: () => m.at.y * b.scale, symbol: /** @type {any} */ (symbol(k + 1)), stroke, fill: stroke, r: 5 });
   };
-  const title = `Joint posterior of ${words(a.name)} and ${words(b.name)}`;
+  const title = `Joint posterior of ${parameterName(a.name)} and ${parameterName(b.name)}`;
   return html`<${Figure} title=${title} note=${`regions of ${pair.contours.map((/** @type {any} */ c) => Math.round(100 * c.share)).join(", ")} % of the posterior; rank correlation ${digits(pair.rank_correlation, 2)}`}
     name=${fileName("joint", a.name, b.name)} deps=${[pair]}
     legend=${pair.marks.map((/** @type {any} */ m, /** @type {number} */ k) => html`<${Entry} glyph=${html`<circle cx="8" cy="8" r="5" fill=${`var(--series-${(k % 7) + 1})`} />`}>${m.label}<//>`)}
     draw=${(/** @type {number} */ width) => Plot.plot({
       width: Math.min(width, 620), height: 420, marginLeft: 60, grid: true,
-      x: { label: titled(words(a.name), a.unit), domain: domain(0, a.scale) }, y: { label: titled(words(b.name), b.unit), domain: domain(1, b.scale) },
+      x: { label: titled(parameterName(a.name), a.unit), domain: domain(0, a.scale) }, y: { label: titled(parameterName(b.name), b.unit), domain: domain(1, b.scale) },
       marks: [
         (/** @type {any} */ _, /** @type {any} */ scales) => /** @type {any} */ (d3.create("svg:g").call((g) => regions(pair, (v) => scales.x(v * a.scale), (v) => scales.y(v * b.scale))
           .forEach((d) => g.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"))).node()),

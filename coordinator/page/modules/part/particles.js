@@ -5,7 +5,7 @@ import { Plot } from "../chart/library.js";
 import { html, useEffect, useState } from "../html.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { digits, words } from "../words/quantity.js";
+import { digits, parameterName } from "../words/quantity.js";
 import { Pending } from "./message.js";
 
 const FRAME_MS = 700;
@@ -35,7 +35,7 @@ export function Particles({ id, stages }) {
   const exponent = stages[stage - 1]?.tempering_exponent;
   const choose = (/** @type {number} */ end) => html`<label>${end === 0 ? "across" : "up"} <select value=${chosen[end]}
     onChange=${(/** @type {any} */ e) => setPair(pair.map((k, i) => (i === end ? Number(e.target.value) : k)))}>
-    ${names.map((/** @type {string} */ name, /** @type {number} */ k) => html`<option value=${k} selected=${k === chosen[end]}>${words(name)}</option>`)}</select></label>`;
+    ${names.map((/** @type {string} */ name, /** @type {number} */ k) => html`<option value=${k} selected=${k === chosen[end]}>${parameterName(name)}</option>`)}</select></label>`;
   return html`
     <h2>Particles</h2>
     <div class="actions">${choose(0)} ${choose(1)}
@@ -43,7 +43,7 @@ export function Particles({ id, stages }) {
       <label>stage <input type="range" min="1" max=${last} value=${stage} onInput=${(/** @type {any} */ e) => { setPlaying(false); setStage(Number(e.target.value)); }} /></label>
       <output>${stage} of ${last}: exponent ${digits(exponent, 2)}</output></div>
     ${now.length === 0 && !isPlaying && html`<${Pending} answer=${answer} error=${error} what="This population" />`}
-    ${now.length + early.length > 0 && html`<${Figure} title=${`Particles in ${words(names[chosen[0]])} and ${words(names[chosen[1]])}`} note="grey: stage 1, close to the prior"
+    ${now.length + early.length > 0 && html`<${Figure} title=${`Particles in ${parameterName(names[chosen[0]])} and ${parameterName(names[chosen[1]])}`} note="grey: stage 1, close to the prior"
       name=${fileName("particles", id, names[chosen[0]], names[chosen[1]])} deps=${[answer, first.answer, ...chosen]} rows=${() => now}
       draw=${(/** @type {number} */ width) => Plot.plot({
         width: Math.min(width, 640), height: 380, marginLeft: 64, grid: true, x: { label: names[chosen[0]] }, y: { label: names[chosen[1]] },

@@ -9,7 +9,7 @@ import { Failure, Pending } from "../part/message.js";
 import { ParameterTable } from "../part/parameter_table.js";
 import { get, path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { shown, titled, words } from "../words/quantity.js";
+import { shown, titled, parameterName } from "../words/quantity.js";
 
 /** So many parameters fit into one pair plot. */
 const MOST = 6;
@@ -39,7 +39,7 @@ function Pictures(/** @type {{ figures: any, model: any }} */ { figures, model }
     <p class="legend"><span>filled: posterior</span><span>dashed outline: prior</span><span>line: mode</span><span>dotted line: reference value, where one was measured</span></p>
     <h2>Pairs of parameters</h2>
     ${names.length > MOST && html`<div class="actions" role="group" aria-label="Parameters in the pair plot">
-      ${names.map((/** @type {string} */ name) => html`<button type="button" aria-pressed=${chosen.includes(name)} onClick=${() => flip(name)}>${words(name)}</button>`)}</div>`}
+      ${names.map((/** @type {string} */ name) => html`<button type="button" aria-pressed=${chosen.includes(name)} onClick=${() => flip(name)}>${parameterName(name)}</button>`)}</div>`}
     <${PairPlot} pairs=${figures.posteriors} marginals=${marginals.filter((/** @type {any} */ m) => chosen.includes(m.name))} name=${model.name} onCell=${setCell} />
     ${cell && html`<div class="card"><${JointPicture} pair=${cell} /><button type="button" onClick=${() => setCell(null)}>Close</button></div>`}`;
 }
@@ -47,9 +47,9 @@ function Pictures(/** @type {{ figures: any, model: any }} */ { figures, model }
 function Marginal(/** @type {{ marginal: any }} */ { marginal }) {
   const { unit, scale } = shown(marginal.unit);
   const rows = marginal.grid.map((/** @type {number} */ x, /** @type {number} */ k) => ({ x: x * scale, prior: marginal.prior[k], posterior: marginal.posterior[k] }));
-  return html`<${Figure} title=${`Posterior of ${words(marginal.name)}`} name=${fileName("posterior", marginal.name)} deps=${[marginal]} rows=${() => rows}
+  return html`<${Figure} title=${`Posterior of ${parameterName(marginal.name)}`} name=${fileName("posterior", marginal.name)} deps=${[marginal]} rows=${() => rows}
     draw=${(/** @type {number} */ width) => Plot.plot({
-      width, height: 190, marginLeft: 14, x: { label: titled(words(marginal.name), unit), ticks: 5 }, y: { axis: null },
+      width, height: 190, marginLeft: 14, x: { label: titled(parameterName(marginal.name), unit), ticks: 5 }, y: { axis: null },
       marks: [
         Plot.areaY(rows, { x: "x", y: "posterior", fill: "var(--series-0)", fillOpacity: 0.3 }),
         Plot.lineY(rows, { x: "x", y: "posterior", stroke: "var(--series-0)" }),
