@@ -38,6 +38,8 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
     setFailure(null);
     plot.setAttribute("role", "img");
     plot.setAttribute("aria-label", title);
+    // Plot names groups that have no role, which screen readers refuse.
+    for (const group of plot.querySelectorAll("g[aria-label]")) group.removeAttribute("aria-label");
     /** @type {HTMLElement} */ (place.current).replaceChildren(plot);
     light(plot);
     return onDrawn?.(plot) ?? undefined;

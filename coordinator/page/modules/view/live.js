@@ -1,6 +1,75 @@
-import { html } from "../html.js";
+// How the sampler of a study comes to its result: state, stages, particles; it goes on after a restart of the coordinator.
 
-/** @param {any} properties */
-export function Live(properties) {
-  return html`<p class="empty">Live</p>`;
+import { html, useEffect, useState } from "../html.js";
+import { Controls } from "../part/controls.js";
+import { Failure } from "../part/message.js";
+import { Particles } from "../part/particles.js";
+import { StageCharts } from "../part/stage_charts.js";
+import { Table } from "../part/table.js";
+import { isReport } from "../rest/answers.js";
+import { follow } from "../rest/events.js";
+import { path } from "../rest/routes.js";
+import { useAnswer } from "../rest/use_answer.js";
+import { address, replace } from "../route.js";
+import { words } from "../words/quantity.js";
+import { progressWords } from "../words/state.js";
+
+const FINAL = ["finished", "failed", "cancelled"];
+const KINDS = { sample: "calibration", fit: "fit", search: "search for a missing effect" };
+
+/** The member that is shown: the one that the address names, or the one that works, or the last calibration. */
+function memberOf(/** @type {any} */ study, /** @type {string | undefined} */ asked) {
+  const of = (/** @type {(m: any) => boolean} */ test) => study.members.findLast(test);
+  return of((m) => String(m.id) === asked) ?? of((m) => m.state === "running") ?? of((m) => ["paused", "queued"].includes(m.state)) ?? of((m) => m.kind !== "search") ?? study.members.at(-1);
+}
+
+/** @param {{ study: any, query: Record<string, string>, reload: () => void }} properties */
+export function Live({ study, query, reload }) {
+  const member = memberOf(study, query.member);
+  if (!member) return html`<p class="empty">This study has no calibration.</p>`;
+  const go = (/** @type {number} */ id) => replace(address(["studies", study.id, "live"], { member: id }));
+  const names = study.members.map((/** @type {any} */ m) => [
+    isReport ? m.name : html`<button type="button" aria-pressed=${m.id === member.id} onClick=${() => go(m.id)}>${m.name}</button>`,
+    KINDS[/** @type {keyof typeof KINDS} */ (m.kind)] ?? words(m.kind),
+    html`<span class=${`state ${m.state}`}>${m.state}</span>`,
+    m.message ?? "",
+  ]);
+  return html`
+    <${Member} key=${member.id} member=${member} reload=${reload} />
+    <h2>Everything in this study</h2>
+    <${Table} label="Calibrations and searches of the study" head=${["name", "what", "state", "message"]} rows=${names} />`;
+}
+
+function Member(/** @type {{ member: any, reload: () => void }} */ { member, reload }) {
+  const isOver = FINAL.includes(member.state);
+  const recorded = useAnswer(isOver ? path.stages(member.id) : null);
+  const [status, setStatus] = useState(/** @type {any} */ (null));
+  const [live, setLive] = useState(/** @type {any[]} */ ([]));
+  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  useEffect(() => {
+    if (isReport || isOver) return undefined;
+    return follow(path.events(member.id), {
+      onEvent(event, data) {
+        if (event === "status") setStatus(data);
+        // A stream that is opened again begins with the first stage.
+        else setLive((/** @type {any[]} */ before) => [...before.filter((s) => s.stage !== data.stage), data].sort((a, b) => a.stage - b.stage));
+      },
+      onError: setFailure,
+      isOver: (event, data) => event === "status" && FINAL.includes(data.state),
+    });
+  }, [member.id, isOver]);
+  const stages = recorded.answer ?? live;
+  const state = isOver ? member.state : status?.state ?? member.state;
+  const progress = isOver ? null : status?.progress;
+  return html`
+    <h2>${member.name}</h2>
+    <p aria-live="polite"><span class=${`state ${state}`}>${state}</span>${progress ? `: ${progressWords(progress)}` : ""}
+      ${progress && html` <span class="note">${Math.round(progress.evaluations_per_s)} evaluations/s; ${progress.step_done} of ${progress.step_size} evaluations of the present step; ${progress.rejected} rejected by the model</span>`}</p>
+    <${Failure} error=${failure} />
+    ${!isReport && !isOver && html`<${Controls} id=${member.id} state=${state} reload=${reload} />`}
+    ${member.kind === "search"
+      ? html`<p class="empty">A search fits each candidate effect; its result is in the view Missing effect.</p>`
+      : stages.length > 0
+        ? html`<${StageCharts} stages=${stages} name=${member.name} /><${Particles} id=${member.id} stages=${stages} />`
+        : html`<p class="empty">${isOver ? "This calibration has no stages: it is a fit, or it ended before its first stage." : "The first stage draws from the prior; pictures come with its end."}</p>`}`;
 }

@@ -1,6 +1,84 @@
-import { html } from "../html.js";
+// A new calibration: its files are dropped, chosen, taken from an example or written from a table, then sent.
 
-/** @param {any} properties */
-export function NewCalibration(properties) {
-  return html`<p class="empty">NewCalibration</p>`;
+import { experimentOf, fileOf, find, kindOf, missing, named, requests } from "../draft.js";
+import { html, useEffect, useState } from "../html.js";
+import { ColumnMapping } from "../part/column_mapping.js";
+import { DropZone } from "../part/drop_zone.js";
+import { FileCard } from "../part/file_card.js";
+import { Failure } from "../part/message.js";
+import { RigForm } from "../part/rig_form.js";
+import { addExperiment, get, path, submit } from "../rest/routes.js";
+import { useAnswer } from "../rest/use_answer.js";
+import { address } from "../route.js";
+
+/** @typedef {import("../draft.js").Files} Files */
+
+/** @param {{ query: Record<string, string> }} properties query.example: the example to begin with */
+export function NewCalibration({ query }) {
+  const [files, setFiles] = useState(/** @type {Files} */ ({}));
+  const [asked, setJob] = useState(/** @type {string | null} */ (null));
+  const [name, setName] = useState("");
+  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [isSent, setSent] = useState(false);
+  const examples = useAnswer(path.examples);
+  const kinds = Object.fromEntries(Object.entries(files).map(([own, text]) => [own, kindOf(own, text)]));
+  const of = (/** @type {string} */ kind) => Object.keys(files).filter((own) => kinds[own] === kind);
+  const job = asked !== null && asked in files ? asked : of("job")[0] ?? null;
+  const experiment = job === null ? null : experimentOf(files, job);
+  const change = (/** @type {Files} */ next) => {
+    setFiles(next);
+    setFailure(null);
+  };
+  const add = (/** @type {Files} */ more) => change({ ...files, ...more });
+  const remove = (/** @type {string} */ own) => change(Object.fromEntries(Object.entries(files).filter(([key]) => key !== own)));
+  const open = async (/** @type {string} */ example) => {
+    try {
+      const answer = await get(`${path.examples}/${encodeURIComponent(example)}`);
+      change({ [answer.job.name]: answer.job.text, [answer.experiment.name]: answer.experiment.text, ...answer.files });
+      setJob(answer.job.name);
+      setName(answer.name);
+    } catch (error) {
+      setFailure(error);
+    }
+  };
+  useEffect(() => void (query.example && open(query.example)), [query.example]);
+  const start = async () => {
+    setSent(true);
+    setFailure(null);
+    try {
+      const { experiment: rig, job: calibration } = requests(files, /** @type {string} */ (job), /** @type {string} */ (experiment));
+      const { id } = await addExperiment(rig);
+      const created = await submit({ experiment: id, ...calibration, name: name.trim() || null });
+      location.hash = address(["studies", created.study, "live"]);
+    } catch (error) {
+      setFailure(error);
+    }
+    setSent(false);
+  };
+  const absent = missing(files, job);
+  const list = job === null ? null : named(files, job, experiment);
+  const used = list === null ? null : new Set([job, experiment, ...[...list.job, ...list.experiment].map((one) => find(files, one.name))]);
+  const table = of("table")[0];
+  const runs = find(files, "runs.csv");
+  const isRuns = runs !== null && kinds[runs] === "runs";
+  const place = failure && fileOf(failure.message, files, job, experiment);
+  const isEmpty = Object.keys(files).length === 0;
+  return html`
+    <h1>New calibration</h1>
+    <${DropZone} onFiles=${add} />
+    ${examples.answer?.length > 0 && html`<div class="actions"><span>Or begin with an example:</span>
+      ${examples.answer.map((/** @type {any} */ e) => html`<button type="button" onClick=${() => open(e.name)}>${e.name}</button>`)}</div>`}
+    ${table && html`<${ColumnMapping} key=${table} name=${table} source=${files[table]}
+      onRuns=${(/** @type {string} */ text) => change({ ...Object.fromEntries(Object.entries(files).filter(([own]) => own !== table)), "runs.csv": text })} />`}
+    ${isRuns && job === null && of("experiment").length === 0 && html`<${RigForm} runs=${files[runs]} onFiles=${add} />`}
+    ${Object.keys(files).map((own) => html`<${FileCard} key=${own} name=${own} text=${files[own]} kind=${kinds[own]} isUsed=${used === null || used.has(own)}
+      error=${place === own ? failure : null} onText=${(/** @type {string} */ text) => add({ [own]: text })} onRemove=${() => remove(own)} />`)}
+    ${of("job").length > 1 && html`<p><label>Job <select value=${job} onChange=${(/** @type {any} */ e) => setJob(e.target.value)}>
+      ${of("job").map((own) => html`<option value=${own} selected=${own === job}>${own}</option>`)}</select></label></p>`}
+    ${!isEmpty && !table && absent.length > 0 && html`<div class="missing" role="status"><p>Still needed:</p><ul>${absent.map((what) => html`<li>${what}</li>`)}</ul></div>`}
+    ${failure && place === null && html`<${Failure} error=${failure} />`}
+    ${!isEmpty && html`<div class="actions">
+      <label>Name <input value=${name} placeholder="as the study is listed" onInput=${(/** @type {any} */ e) => setName(e.target.value)} /></label>
+      <button class="main" type="button" disabled=${absent.length > 0 || Boolean(table) || isSent} onClick=${start}>${isSent ? "It is being sent" : "Start the calibration"}</button>
+    </div>`}`;
 }

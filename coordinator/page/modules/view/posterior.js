@@ -1,6 +1,75 @@
-import { html } from "../html.js";
+// The parameters of a model: their marginal and joint posteriors, with the priors under them.
 
-/** @param {any} properties */
-export function Posterior(properties) {
-  return html`<p class="empty">Posterior</p>`;
+import { Figure, fileName } from "../chart/figure.js";
+import { Plot } from "../chart/library.js";
+import { csv, save } from "../chart/download.js";
+import { JointPicture, PairPlot } from "../chart/pairs.js";
+import { html, useState } from "../html.js";
+import { Failure, Pending } from "../part/message.js";
+import { ParameterTable } from "../part/parameter_table.js";
+import { get, path } from "../rest/routes.js";
+import { useAnswer } from "../rest/use_answer.js";
+import { shown, titled, parameterName } from "../words/quantity.js";
+
+/** So many parameters fit into one pair plot. */
+const MOST = 6;
+
+/** @param {{ study: any, model: any }} properties */
+export function Posterior({ study, model }) {
+  const { answer, error } = useAnswer(model && path.figures(model.id));
+  if (!model) return html`<p class="empty">The posterior is known as soon as a calibration has finished. The view Live shows how far it is.</p>`;
+  const line = [...study.ledger, ...(study.point_estimates ?? [])].find((/** @type {any} */ l) => l.calibration === model.id);
+  if (!answer) return html`<${Pending} answer=${answer} error=${error} what="The posterior" />`;
+  return html`
+    <${Pictures} key=${model.id} figures=${answer} model=${model} />
+    <h2>Parameters</h2>
+    <${ParameterTable} marginals=${answer.marginals ?? []} line=${line} />
+    <${Draws} model=${model} />`;
+}
+
+function Pictures(/** @type {{ figures: any, model: any }} */ { figures, model }) {
+  const marginals = figures.marginals ?? [];
+  const names = marginals.map((/** @type {any} */ m) => m.name);
+  const [chosen, setChosen] = useState(/** @type {string[]} */ (names.slice(0, MOST)));
+  const [cell, setCell] = useState(/** @type {any} */ (null));
+  if (marginals.length === 0) return html`<p class="empty">A fit has a point and no draws: there is no density to draw.</p>`;
+  const flip = (/** @type {string} */ name) => setChosen(chosen.includes(name) ? chosen.filter((c) => c !== name) : [...chosen, name].slice(-MOST));
+  return html`
+    <div class="figures small">${marginals.map((/** @type {any} */ m) => html`<${Marginal} key=${m.name} marginal=${m} />`)}</div>
+    <p class="legend"><span>filled: posterior</span><span>dashed outline: prior</span><span>line: mode</span><span>dotted line: reference value, where one was measured</span></p>
+    <h2>Pairs of parameters</h2>
+    ${names.length > MOST && html`<div class="actions" role="group" aria-label="Parameters in the pair plot">
+      ${names.map((/** @type {string} */ name) => html`<button type="button" aria-pressed=${chosen.includes(name)} onClick=${() => flip(name)}>${parameterName(name)}</button>`)}</div>`}
+    <${PairPlot} pairs=${figures.posteriors} marginals=${marginals.filter((/** @type {any} */ m) => chosen.includes(m.name))} name=${model.name} onCell=${setCell} />
+    ${cell && html`<div class="card"><${JointPicture} pair=${cell} /><button type="button" onClick=${() => setCell(null)}>Close</button></div>`}`;
+}
+
+function Marginal(/** @type {{ marginal: any }} */ { marginal }) {
+  const { unit, scale } = shown(marginal.unit);
+  const rows = marginal.grid.map((/** @type {number} */ x, /** @type {number} */ k) => ({ x: x * scale, prior: marginal.prior[k], posterior: marginal.posterior[k] }));
+  return html`<${Figure} title=${`Posterior of ${parameterName(marginal.name)}`} name=${fileName("posterior", marginal.name)} deps=${[marginal]} rows=${() => rows}
+    draw=${(/** @type {number} */ width) => Plot.plot({
+      width, height: 190, marginLeft: 14, x: { label: titled(parameterName(marginal.name), unit), ticks: 5 }, y: { axis: null },
+      marks: [
+        Plot.areaY(rows, { x: "x", y: "posterior", fill: "var(--series-0)", fillOpacity: 0.3 }),
+        Plot.lineY(rows, { x: "x", y: "posterior", stroke: "var(--series-0)" }),
+        Plot.lineY(rows, { x: "x", y: "prior", stroke: "var(--prior)", strokeDasharray: "5 3" }),
+        ...(marginal.mode === null ? [] : [Plot.ruleX([marginal.mode * scale], { stroke: "var(--ink)" })]),
+        ...(marginal.reference === null ? [] : [Plot.ruleX([marginal.reference * scale], { stroke: "var(--reference)", strokeDasharray: "2 3", strokeWidth: 2 })]),
+        Plot.ruleY([0], { stroke: "var(--rule)" }),
+      ],
+    })} />`;
+}
+
+function Draws(/** @type {{ model: any }} */ { model }) {
+  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const download = async () => {
+    try {
+      const { columns, rows } = await get(`${path.calibration(model.id)}/posterior`);
+      save("posterior.csv", csv(rows.map((/** @type {number[]} */ row) => Object.fromEntries(columns.map((/** @type {string} */ c, /** @type {number} */ k) => [c, row[k]])))));
+    } catch (error) {
+      setFailure(error);
+    }
+  };
+  return html`<div class="actions"><button type="button" onClick=${download}>Download the draws (posterior.csv)</button></div><${Failure} error=${failure} />`;
 }

@@ -17,6 +17,9 @@ export const words = (/** @type {string} */ name) => name.replaceAll("_", " ");
 /** A sentence begins with a capital, unless it begins with a name of the program. */
 export const capital = (/** @type {string} */ text) => (/^[a-z0-9]*_/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1));
 
+/** The name of a parameter as words, without the unit at its end, which stands beside it. */
+export const parameterName = (/** @type {string} */ name) => words(name.replace(/_(n_m|m_s|kg_m3|deg|pa|m|n)(?=\.[^.]*$|$)/, ""));
+
 /** A short name of a channel. */
 export const short = (/** @type {string} */ channel) => SHORT[/** @type {keyof typeof SHORT} */ (channel)] ?? words(channel);
 

@@ -1,0 +1,82 @@
+// Joint posteriors: a triangle of small contours, and one of them large with what else is known of its parameters.
+
+import { html } from "../html.js";
+import { digits, shown, titled, parameterName } from "../words/quantity.js";
+import { symbol } from "./colour.js";
+import { Entry, Figure, fileName } from "./figure.js";
+import { d3, Plot } from "./library.js";
+
+/** The regions of highest density as paths in pixels; the density is given at the points of a grid. */
+function regions(/** @type {any} */ pair, /** @type {(v: number) => number} */ x, /** @type {(v: number) => number} */ y, isTurned = false) {
+  const [xs, ys] = pair.grid;
+  const geometry = d3.contours().size([xs.length, ys.length]);
+  const at = (/** @type {number[]} */ of, /** @type {number} */ k) => of[0] + ((k - 0.5) * (of[of.length - 1] - of[0])) / (of.length - 1);
+  const values = pair.density.flat();
+  return pair.contours.map(({ density }) => geometry.contour(values, density).coordinates.flat().map((ring) =>
+    `M${ring.map(([i, j]) => (isTurned ? [x(at(ys, j)), y(at(xs, i))] : [x(at(xs, i)), y(at(ys, j))]).map((v) => v.toFixed(1)).join(",")).join("L")}Z`).join(""));
+}
+
+const SIDE = 110;
+const GAP = 8;
+const EDGE = 46;
+
+/** @param {{ pairs: any[], marginals: any[], name: string, onCell: (pair: any) => void }} properties */
+export function PairPlot({ pairs, marginals, name, onCell }) {
+  const count = marginals.length;
+  const draw = (/** @type {number} */ width) => {
+    const whole = EDGE + count * (SIDE + GAP);
+    const svg = d3.create("svg").attr("viewBox", `0 0 ${whole} ${whole}`).attr("width", Math.min(width, whole));
+    const scale = (/** @type {any} */ m) => d3.scaleLinear([Math.min(m.q05, m.mean - 3.5 * m.sd), Math.max(m.q95, m.mean + 3.5 * m.sd)], [0, SIDE]);
+    marginals.forEach((row, j) => marginals.slice(0, j + 1).forEach((column, i) => {
+      const cell = svg.append("g").attr("transform", `translate(${EDGE + i * (SIDE + GAP)},${j * (SIDE + GAP)})`);
+      cell.append("rect").attr("width", SIDE).attr("height", SIDE).attr("fill", "transparent").attr("stroke", "var(--rule)");
+      const x = scale(column);
+      if (i === j) {
+        const top = d3.max(column.posterior) ?? 1;
+        const line = d3.line((/** @type {any} */ _, k) => x(column.grid[k]), (/** @type {any} */ v) => SIDE - (0.92 * SIDE * v) / Number(top)).defined((_, k) => x(column.grid[k]) >= 0 && x(column.grid[k]) <= SIDE);
+        cell.append("path").attr("d", line(column.posterior)).attr("fill", "none").attr("stroke", "var(--series-0)");
+      } else {
+        const pair = pairs.find((p) => [column.name, row.name].every((n) => p.parameters.some((/** @type {any} */ q) => q.name === n)));
+        if (!pair) return;
+        const y = (/** @type {number} */ v) => SIDE - scale(row)(v);
+        regions(pair, x, y, pair.parameters[0].name !== column.name).forEach((d) => cell.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"));
+        cell.style("cursor", "pointer").on("click", () => onCell(pair));
+      }
+      const label = (/** @type {any} */ m) => (parameterName(m.name).length > 17 ? `${parameterName(m.name).slice(0, 16)}…` : parameterName(m.name));
+      if (j === count - 1) cell.append("text").attr("x", SIDE / 2).attr("y", SIDE + 14).attr("text-anchor", "middle").attr("font-size", 11).attr("fill", "currentColor").text(label(column));
+      if (i === 0) cell.append("text").attr("transform", `translate(-8,${SIDE / 2}) rotate(-90)`).attr("text-anchor", "middle").attr("font-size", 11).attr("fill", "currentColor").text(label(row));
+    }));
+    return /** @type {any} */ (svg.node());
+  };
+  const open = (/** @type {any} */ event) => event.target.value !== "" && onCell(pairs[Number(event.target.value)]);
+  return html`
+    <p><label>Large picture of <select onChange=${open}><option value="">a pair: choose it, or click its cell</option>
+      ${pairs.map((p, k) => html`<option value=${k}>${p.parameters.map((/** @type {any} */ q) => parameterName(q.name)).join(" and ")}, rank correlation ${digits(p.rank_correlation, 2)}</option>`)}</select></label></p>
+    <${Figure} title=${`Joint posterior of ${marginals.map((m) => parameterName(m.name)).join(", ")}`} name=${fileName("pairs", name)} deps=${[marginals.map((m) => m.name).join()]} draw=${draw} />`;
+}
+
+/** @param {{ pair: any }} properties */
+export function JointPicture({ pair }) {
+  const [a, b] = pair.parameters.map((/** @type {any} */ p) => ({ ...p, ...shown(p.unit) }));
+  const domain = (/** @type {number} */ k, /** @type {number} */ scale) => /** @type {[number, number]} */ ([pair.grid[k][0] * scale, pair.grid[k].at(-1) * scale]);
+  const mark = (/** @type {any} */ m, /** @type {number} */ k) => {
+    const stroke = `var(--series-${(k % 7) + 1})`;
+    if (m.at.y === null) return Plot.ruleX([m.at.x * a.scale], { stroke });
+    if (m.at.x === null) return Plot.ruleY([m.at.y * b.scale], { stroke });
+    return Plot.dot([m], { x: () => m.at.x * a.scale, y: () => m.at.y * b.scale, symbol: /** @type {any} */ (symbol(k + 1)), stroke, fill: stroke, r: 5 });
+  };
+  const title = `Joint posterior of ${parameterName(a.name)} and ${parameterName(b.name)}`;
+  return html`<${Figure} title=${title} note=${`regions of ${pair.contours.map((/** @type {any} */ c) => Math.round(100 * c.share)).join(", ")} % of the posterior; rank correlation ${digits(pair.rank_correlation, 2)}`}
+    name=${fileName("joint", a.name, b.name)} deps=${[pair]}
+    legend=${pair.marks.map((/** @type {any} */ m, /** @type {number} */ k) => html`<${Entry} glyph=${html`<circle cx="8" cy="8" r="5" fill=${`var(--series-${(k % 7) + 1})`} />`}>${m.label}<//>`)}
+    draw=${(/** @type {number} */ width) => Plot.plot({
+      width: Math.min(width, 620), height: 420, marginLeft: 60, grid: true,
+      x: { label: titled(parameterName(a.name), a.unit), domain: domain(0, a.scale) }, y: { label: titled(parameterName(b.name), b.unit), domain: domain(1, b.scale) },
+      marks: [
+        (/** @type {any} */ _, /** @type {any} */ scales) => /** @type {any} */ (d3.create("svg:g").call((g) => regions(pair, (v) => scales.x(v * a.scale), (v) => scales.y(v * b.scale))
+          .forEach((d) => g.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"))).node()),
+        ...pair.lines.map((/** @type {any} */ l) => Plot.line(l.points, { x: (p) => p[0] * a.scale, y: (p) => p[1] * b.scale, stroke: "var(--reference)", strokeDasharray: "6 4" })),
+        ...pair.marks.map(mark),
+      ],
+    })} />`;
+}

@@ -1,0 +1,30 @@
+// A file of a draft: what it is, its text to be edited, and what the service says about it.
+
+import { html } from "../html.js";
+import { Failure } from "./message.js";
+
+const KINDS = {
+  job: "the job", experiment: "the experiment", runs: "runs", effect: "an effect", history: "the recording of a run",
+  readings: "plate or shear readings", posterior: "a posterior as a prior", table: "a table in other columns than runs.csv has", file: "a file",
+};
+
+/**
+ * @param {{ name: string, text: string, kind: string, isUsed: boolean, error: any,
+ *   onText: (text: string) => void, onRemove: () => void }} properties
+ */
+export function FileCard({ name, text, kind, isUsed, error, onText, onRemove }) {
+  const lines = text.split("\n").filter(Boolean).length;
+  return html`
+    <div class="card file" data-file=${name}>
+      <div class="actions">
+        <b>${name}</b>
+        <span class="note">${KINDS[/** @type {keyof typeof KINDS} */ (kind)]}, ${lines === 1 ? "1 line" : `${lines} lines`}${isUsed ? "" : "; nothing names it, so it is not sent"}</span>
+        <button type="button" onClick=${onRemove} aria-label=${`remove ${name}`}>Remove</button>
+      </div>
+      <${Failure} error=${error} />
+      <details open=${Boolean(error)}>
+        <summary>Text of ${name}</summary>
+        <textarea aria-label=${`text of ${name}`} spellcheck=${false} value=${text} onInput=${(/** @type {any} */ e) => onText(e.target.value)}></textarea>
+      </details>
+    </div>`;
+}

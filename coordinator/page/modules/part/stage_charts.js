@@ -1,0 +1,26 @@
+// The stages of a sampler as curves: exponent, effective samples, acceptance, evidence.
+
+import { Figure, fileName } from "../chart/figure.js";
+import { Plot } from "../chart/library.js";
+import { html } from "../html.js";
+import { digits } from "../words/quantity.js";
+
+const CURVES = [
+  { key: "tempering_exponent", title: "tempering exponent", note: "1: the whole likelihood", type: "log" },
+  { key: "ess", title: "effective samples", note: "after the weighting of a stage", type: "linear" },
+  { key: "acceptance", title: "acceptance rate", note: "", type: "linear" },
+  { key: "evidence", title: "ln evidence so far", note: "", type: "linear" },
+];
+
+/** @param {{ stages: any[], name: string }} properties */
+export function StageCharts({ stages, name }) {
+  let evidence = 0;
+  const rows = stages.map((stage) => ({ ...stage, evidence: (evidence += stage.log_evidence_increment) }));
+  return html`<div class="figures small">${CURVES.map(({ key, title, note, type }) => html`
+    <${Figure} key=${key} title=${`${title} by stage`} note=${note} name=${fileName(name, key)} deps=${[stages]}
+      rows=${() => rows.map((row) => ({ stage: row.stage, [key]: row[key] }))}
+      draw=${(/** @type {number} */ width) => Plot.plot({
+        width, height: 190, marginLeft: 56, x: { label: "stage", ticks: 5, tickFormat: "d" }, y: { label: null, type: /** @type {any} */ (type), grid: type === "linear", ticks: 4, zero: key === "acceptance", ...(type === "log" ? { tickFormat: (/** @type {number} */ v) => digits(v, 1) } : {}) },
+        marks: [Plot.line(rows, { x: "stage", y: key, stroke: "var(--series-0)" }), Plot.dot(rows, { x: "stage", y: key, r: 2.5, fill: "var(--series-0)" })],
+      })} />`)}</div>`;
+}

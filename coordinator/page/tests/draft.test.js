@@ -1,0 +1,51 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { parse } from "../modules/columns.js";
+import { experimentOf, fileOf, kindOf, missing, requests } from "../modules/draft.js";
+import * as template from "../modules/template.js";
+
+const RUNS = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,history\na,w,s,0.2,100,0.01,logs/a.csv\n";
+const FILES = {
+  "job.toml": 'experiment = "rig.toml" # not "other.toml"\n[model]\nkind = "quasi_static"\neffect_files = [\n  "mine.toml",\n]\n',
+  "rig.toml": 'runs = "runs.csv"\n[wheel.w]\n[soil.s]\n',
+  "runs.csv": RUNS,
+  "mine.toml": 'name = "mine"\nsinkage = "sinkage + 1"\n',
+};
+
+test("files are told by their content", () => {
+  assert.deepEqual(Object.entries(FILES).map(([name, text]) => kindOf(name, text)), ["job", "experiment", "runs", "effect"]);
+  assert.equal(kindOf("a.csv", "t_s,torque_n_m\n"), "history");
+  assert.equal(kindOf("a.csv", "Rad;Last\n"), "table");
+});
+
+test("what is named and absent is said, with who names it", () => {
+  assert.equal(experimentOf(FILES, "job.toml"), "rig.toml");
+  assert.deepEqual(missing(FILES, "job.toml"), ["logs/a.csv, which runs.csv names"]);
+  assert.match(missing({}, null)[0], /a job file/);
+  assert.match(missing({ "job.toml": FILES["job.toml"] }, "job.toml")[0], /^rig.toml, the experiment of job.toml/);
+});
+
+test("a file without its folder is the one that is named", () => {
+  const files = { ...FILES, "a.csv": "t_s,torque_n_m\n0.1,2\n" };
+  assert.deepEqual(missing(files, "job.toml"), []);
+  const sent = requests(files, "job.toml", "rig.toml");
+  assert.deepEqual(Object.keys(sent.experiment.files), ["runs.csv", "logs/a.csv"]);
+  assert.deepEqual(Object.keys(sent.job.files), ["mine.toml"]);
+});
+
+test("a message finds its file", () => {
+  assert.equal(fileOf('experiment.toml line 5: unknown key "foo"', FILES, "job.toml", "rig.toml"), "rig.toml");
+  assert.equal(fileOf("runs.csv line 2: no number", FILES, "job.toml", "rig.toml"), "runs.csv");
+  assert.equal(fileOf("the service is busy", FILES, "job.toml", "rig.toml"), null);
+});
+
+test("templates name what the form says", () => {
+  const wheels = [{ name: "a", radiusMm: 125, widthMm: 112 }, { name: "b c", radiusMm: 60, widthMm: 60 }];
+  const toml = template.experiment({ wheels, soil: "s", noise: { drawbar_pull_n: "1.2", sinkage_m: "unknown" } });
+  assert.match(toml, /\[wheel\.a\]\nradius_m = 0\.125\nwidth_m = 0\.112\n/);
+  assert.match(toml, /\[wheel\."b c"\]/);
+  assert.match(toml, /drawbar_pull_n = 1\.2\nsinkage_m = "unknown"/);
+  assert.match(template.job({ wheels }), /"wheel_radius_m\.a" = \{ uniform = \[0\.125, 0\.155\] \}/);
+  assert.equal(parse("").header.length, 0);
+});
