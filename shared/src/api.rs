@@ -103,6 +103,14 @@ pub struct NewRuns {
     pub calibration: Option<i64>,
 }
 
+/// `POST /v1/calibrations/ID/what-if`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WhatIf {
+    /// Names of fitted runs that are held out.
+    pub without: Vec<String>,
+}
+
 /// Answer to further runs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct RunsAdded {

@@ -21,6 +21,7 @@ mod not_tried;
 mod older_store;
 mod operation;
 mod own_effects;
+mod page_data;
 mod point_fit;
 mod posterior_prior;
 mod reference;

@@ -3,7 +3,7 @@
 use axum::Json;
 use axum::extract::State;
 use axum::http::StatusCode;
-use shared::api::{CalibrationCreated, ErrorBody, ErrorKind, NewExtension, NewRuns, RunsAdded};
+use shared::api::{CalibrationCreated, ErrorBody, ErrorKind, NewExtension, NewRuns, RunsAdded, WhatIf};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -17,6 +17,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(extend))
         .routes(routes!(discovery, discover))
         .routes(routes!(add_runs))
+        .routes(routes!(what_if))
 }
 
 /// Adds a calibration to the study of another: the same job with an effect more.
@@ -90,4 +91,21 @@ async fn add_runs(
     let added = service.add_runs(id, new.runs, new.calibration).await?;
     tracing::info!(calibration = added.id, study = id, %by, "submitted");
     Ok((StatusCode::CREATED, Json(added)))
+}
+
+/// Begins a study with the job of a calibration in which some fitted runs are held out, with a search for a missing effect.
+#[utoipa::path(post, path = "/calibrations/{id}/what-if", params(("id" = i64, Path)), request_body = WhatIf, responses(
+    (status = 201, body = CalibrationCreated), (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody, description = "the calibration is a search"),
+    (status = 422, body = ErrorBody, description = "a run is unknown or held out already, or none is left to fit"),
+))]
+async fn what_if(
+    State(service): State<Service>,
+    by: Caller,
+    Id(id): Id,
+    Body(new): Body<WhatIf>,
+) -> Result<(StatusCode, Json<CalibrationCreated>), HttpError> {
+    let created = service.what_if(id, new.without).await?;
+    tracing::info!(calibration = created.id, what_if = id, %by, "submitted");
+    Ok((StatusCode::CREATED, Json(created)))
 }

@@ -11,6 +11,7 @@ mod document;
 mod effects;
 mod error;
 mod events;
+mod examples;
 mod experiments;
 mod gate;
 mod growth;
@@ -65,6 +66,7 @@ fn router(service: Service, gate: Gate) -> Router {
             "/v1",
             OpenApiRouter::new()
                 .merge(experiments::routes())
+                .merge(examples::routes())
                 .merge(effects::routes())
                 .merge(calibrations::routes())
                 .merge(events::routes())

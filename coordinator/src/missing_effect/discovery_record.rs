@@ -7,11 +7,13 @@ use discovery::{
 };
 use job::{PlainParameter, candidate_priors};
 use record::{
-    ChiSquare, Discovery, Extension, JudgedEffect, JudgedSet, NONE, NOT_IN_LIBRARY, NextRun, Outside, Verdict,
+    ChiSquare, Discovery, Extension, JudgedEffect, JudgedSet, NONE, NOT_IN_LIBRARY, NextRun, Outside,
+    RunInformation, Verdict,
 };
 use shared::channel::Channel;
 
 use super::candidate::CandidateEffect;
+use super::curves::curves;
 use super::entry::CandidateEntry;
 use super::law::curve;
 use super::models::SearchModels;
@@ -70,6 +72,15 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
             information_nats: run.information_nats,
         })
     });
+    let information = conclusion.information.iter().filter_map(|&(run, nats)| {
+        let condition = models.design.get(run)?;
+        Some(RunInformation {
+            slip: condition.slip,
+            wheel_load_n: condition.wheel_load_n,
+            sled_speed_m_s: condition.sled_speed_m_s,
+            nats,
+        })
+    });
     let given = models.base.fit_variant.effects.iter();
     Discovery {
         given: given.map(|effect| effect.name.clone()).collect(),
@@ -91,6 +102,8 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         refused: names(&conclusion.ranking.refused),
         not_tried: models.not_tried().cloned().collect(),
         next_runs: next_runs.collect(),
+        information: information.collect(),
+        curves: curves(models, conclusion),
         remaining: remaining_misfit(models, &conclusion.remaining),
         numerical_noise: numerical_noise(&conclusion.numerical_noise_sds),
         chi2: chi_square(conclusion.chi_square, models),

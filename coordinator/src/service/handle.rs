@@ -150,7 +150,10 @@ impl Service {
     }
 
     /// The files of a stored experiment.
-    pub(super) async fn experiment(&self, id: i64) -> Result<FileSet, ServiceError> {
+    ///
+    /// # Errors
+    /// [`ServiceError::NotFound`] and others.
+    pub async fn experiment(&self, id: i64) -> Result<FileSet, ServiceError> {
         stored_calibration::experiment_files(&self.store.reader(), id).await
     }
 

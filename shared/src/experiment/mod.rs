@@ -4,13 +4,14 @@
 //! - `settings`: the tables of `experiment.toml`; `wheel`: those of the wheels; `scatter`: relative noise.
 //! - `mesh`: a wheel given as a surface of triangles.
 //! - `runs`: the rows of `runs.csv`; `history`: the recorded time history of a run, and its averages.
-//! - `more_runs`: an experiment with further runs.
+//! - `more_runs`: an experiment with further runs. `fewer_runs`: with fitted runs held out.
 //! - `bevameter`: the rows of `plates.csv` and `shear.csv`.
 //! - `check`: checks of single numbers.
 //! - `table`: rows of a CSV file whose columns are known by name.
 
 mod bevameter;
 mod check;
+mod fewer_runs;
 mod history;
 mod mesh;
 mod more_runs;

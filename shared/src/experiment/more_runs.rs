@@ -65,9 +65,9 @@ impl Experiment {
 }
 
 /// The header of a CSV file, and its rows with their lines.
-type Records = (Vec<String>, Vec<(usize, Vec<String>)>);
+pub(super) type Records = (Vec<String>, Vec<(usize, Vec<String>)>);
 
-fn records(file: &str, text: &str) -> Result<Records, FileError> {
+pub(super) fn records(file: &str, text: &str) -> Result<Records, FileError> {
     let mut reader = table::reader(text);
     let fail = |e: csv::Error| FileError::whole(file, e.to_string());
     let fields = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect();
@@ -81,7 +81,7 @@ fn records(file: &str, text: &str) -> Result<Records, FileError> {
 }
 
 /// The text of a CSV file; short rows are filled with blanks.
-fn written(header: &[String], rows: Vec<(usize, Vec<String>)>) -> Result<String, csv::Error> {
+pub(super) fn written(header: &[String], rows: Vec<(usize, Vec<String>)>) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(header)?;
     for (_, mut row) in rows {

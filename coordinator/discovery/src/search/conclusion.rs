@@ -6,7 +6,7 @@ use crate::laplace::draws::draws;
 use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
 use crate::search::hypotheses::FittedLaw;
-use crate::search::next_run::InformativeRun;
+use crate::search::next_run::{InformativeRun, RunChoice};
 use crate::search::state::SearchState;
 use crate::search::verdict::SearchVerdict;
 use crate::search::weighing::{WeighedSet, Weighing};
@@ -52,6 +52,8 @@ pub struct Conclusion {
     pub ranking: EffectRanking,
     /// Log Bayes factor and probability of a law outside the library; `None`: not searched.
     pub not_in_library: Option<(f64, f64)>,
+    /// Predicted values of the data by the best law outside the library; `None`: none was fitted.
+    pub predicted_by_law: Option<Vec<f64>>,
     /// Every model that was compared, by falling probability.
     pub sets: Vec<WeighedSet>,
     /// The effect with which to begin, where the verdict is open but evidence and prediction agree on the best set.
@@ -82,6 +84,8 @@ pub struct Conclusion {
     pub best: PosteriorModel,
     /// Runs to make next.
     pub next_runs: Vec<InformativeRun>,
+    /// Index of each proposed run with what it would tell by itself \[nats\]; empty where no explanations are compared.
+    pub information: Vec<(usize, f64)>,
     /// Scatter of the model's predictions about a smooth function of its parameters, which counts as noise: an sd for each channel by its
     /// index, in its unit; empty where it is negligible.
     pub numerical_noise_sds: Vec<f64>,
@@ -98,7 +102,7 @@ fn explains(task: &SearchTask, of_library: Option<FitChiSquare>, law: &FittedLaw
 }
 
 impl Conclusion {
-    pub(super) fn new(state: &SearchState, next_runs: Vec<InformativeRun>) -> Self {
+    pub(super) fn new(state: &SearchState, choice: RunChoice) -> Self {
         let SearchState {
             task,
             hypotheses,
@@ -145,6 +149,10 @@ impl Conclusion {
             agreed: weighing.agreed().filter(|_| verdict == SearchVerdict::Undecided),
             ranking: weighing.ranking,
             not_in_library: weighing.not_in_library,
+            predicted_by_law: hypotheses.laws.as_ref().and_then(|scan| {
+                let law = scan.laws.get(scan.confirmed.unwrap_or(0))?;
+                Some(law.fit.point.values.clone())
+            }),
             sets: weighing.sets,
             misfit: weighing.misfit,
             outside: law.map(|law| OutsideLaw {
@@ -160,7 +168,8 @@ impl Conclusion {
             chi_square_best: law.map_or(of_library, |law| chi_square(&law.fit)),
             base: model(Vec::new(), base, OF_BASE),
             best: model(effects, fit, OF_BEST),
-            next_runs,
+            next_runs: choice.runs,
+            information: choice.alone,
             numerical_noise_sds: numerical_noise_sds.clone(),
             evaluations: *evaluations,
         }

@@ -2,7 +2,7 @@
 
 use crate::search::conclusion::Conclusion;
 use crate::search::cross_validation::{ComparedModel, CrossValidation};
-use crate::search::next_run::{InformativeRun, RunSelection};
+use crate::search::next_run::{RunChoice, RunSelection};
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
 use crate::search::weighing::Weighing;
@@ -47,11 +47,11 @@ impl SearchState {
         let open = Weighing::new(&self.task, &self.hypotheses).open(&self.hypotheses);
         match RunSelection::new(&self.task, open) {
             Some(runs) => Stage::NextRuns(runs),
-            None => self.done(Vec::new()),
+            None => self.done(RunChoice::default()),
         }
     }
 
-    pub(super) fn done(&self, next_runs: Vec<InformativeRun>) -> Stage {
-        Stage::Done(Box::new(Conclusion::new(self, next_runs)))
+    pub(super) fn done(&self, choice: RunChoice) -> Stage {
+        Stage::Done(Box::new(Conclusion::new(self, choice)))
     }
 }

@@ -20,6 +20,30 @@ pub fn discovery_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
     })
 }
 
+/// A job whose study searches for a missing effect: one that does not ask for it is given `[discovery] apply = "ask"`.
+///
+/// # Errors
+/// [`FileError`] where the text is no job.
+pub fn searched_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
+    let toml = edited(name, &job.toml, |document| {
+        let discovery = document.entry("discovery").or_insert(toml_edit::table());
+        let discovery = discovery
+            .as_table_like_mut()
+            .ok_or("[discovery] is not a table")?;
+        if discovery
+            .get("apply")
+            .is_none_or(|apply| apply.as_str() == Some("off"))
+        {
+            discovery.insert("apply", toml_edit::value("ask"));
+        }
+        Ok(())
+    })?;
+    Ok(FileSet {
+        toml,
+        files: job.files.clone(),
+    })
+}
+
 /// Whether a job is such a search.
 pub fn is_discovery(toml: &str) -> bool {
     let job: Option<toml::Table> = toml.parse().ok();

@@ -1,0 +1,74 @@
+//! `/v1/examples`: jobs that the program carries, to try it with.
+
+use std::collections::BTreeMap;
+
+use axum::Json;
+use axum::extract::Path;
+use shared::api::{ErrorBody, ErrorKind, NamedText};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::error::HttpError;
+use crate::example::{EXAMPLES, Example};
+use crate::service::Service;
+
+pub(super) fn routes() -> OpenApiRouter<Service> {
+    OpenApiRouter::new().routes(routes!(list)).routes(routes!(files))
+}
+
+/// An example.
+#[derive(Debug, serde::Serialize, utoipa::ToSchema)]
+struct ListedExample {
+    /// Its name.
+    name: &'static str,
+    /// Its name for people.
+    title: &'static str,
+    /// What it shows.
+    summary: &'static str,
+    /// Text of its job.
+    job: &'static str,
+}
+
+/// The files of an example.
+#[derive(Debug, serde::Serialize, utoipa::ToSchema)]
+struct ExampleFiles {
+    /// Its name.
+    name: &'static str,
+    /// The job.
+    job: NamedText,
+    /// The experiment.
+    experiment: NamedText,
+    /// Texts of the files that the experiment names, by name.
+    files: BTreeMap<&'static str, &'static str>,
+}
+
+/// Every example.
+#[utoipa::path(get, path = "/examples", operation_id = "list_examples", responses((status = 200, body = Vec<ListedExample>)))]
+async fn list() -> Json<Vec<ListedExample>> {
+    let listed = |example: Example| ListedExample {
+        name: example.name,
+        title: example.title,
+        summary: example.summary,
+        job: example.job.1,
+    };
+    Json(EXAMPLES.map(listed).into())
+}
+
+/// The files of an example, ready to be submitted.
+#[utoipa::path(get, path = "/examples/{name}", operation_id = "example_files", params(("name" = String, Path)), responses(
+    (status = 200, body = ExampleFiles), (status = 404, body = ErrorBody)))]
+async fn files(Path(name): Path<String>) -> Result<Json<ExampleFiles>, HttpError> {
+    let example = EXAMPLES.iter().find(|example| example.name == name);
+    let example = example
+        .ok_or_else(|| HttpError::new(ErrorKind::NotFound, format!("there is no example \"{name}\"")))?;
+    let named = |(name, text): (&str, &str)| NamedText {
+        name: name.to_owned(),
+        text: text.to_owned(),
+    };
+    Ok(Json(ExampleFiles {
+        name: example.name,
+        job: named(example.job),
+        experiment: named(example.experiment),
+        files: example.files.iter().copied().collect(),
+    }))
+}
