@@ -11,6 +11,7 @@
 //! - [`token`]: bearer tokens and their roles.
 //! - [`http`]: the REST interface; the only place that knows axum.
 //! - [`missing_effect`]: the search for a missing effect: candidates, and what is said in the end.
+//! - [`example`]: the examples that the program carries.
 //! - [`effect`]: the effects as users meet them: cards and signatures.
 //! - [`embedded`]: local workers in this process; the only place that knows the worker.
 //! - [`command`]: the verbs of the command line.
@@ -21,6 +22,7 @@ pub mod command;
 pub mod config;
 pub mod effect;
 pub mod embedded;
+pub mod example;
 pub mod farm;
 pub mod http;
 pub mod lease;

@@ -1,6 +1,6 @@
 //! The messages between a user and the service.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -106,9 +106,9 @@ pub struct NewRuns {
 /// `POST /v1/calibrations/ID/what-if`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub struct NewWhatIf {
-    /// The runs that are left out of the fit.
-    pub without: BTreeSet<String>,
+pub struct WhatIf {
+    /// Names of fitted runs that are held out.
+    pub without: Vec<String>,
 }
 
 /// Answer to further runs.

@@ -22,6 +22,7 @@ mod older_store;
 mod operation;
 mod own_effects;
 mod page;
+mod page_data;
 mod point_fit;
 mod posterior_prior;
 mod reference;

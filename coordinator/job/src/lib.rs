@@ -23,7 +23,7 @@ pub use data::noise::repeat_scatter;
 pub use data::soil_scatter::SoilScatter;
 pub use derived::assumed_experiment::{AssumedExperiment, SiteProperty, UnsaidProperty};
 pub use derived::discovery_job::{
-    continued_job, discovery_job, effect_name, is_discovery, model_kind, searching_job, without_effects,
+    continued_job, discovery_job, effect_name, is_discovery, model_kind, searched_job, without_effects,
 };
 pub use derived::extended_job::{extended_job, with_free, with_setting};
 pub use derived::own_effects::{OwnEffect, foreign_effects, with_own_effects, without_own_effects};

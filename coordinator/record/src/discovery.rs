@@ -74,18 +74,19 @@ pub struct Discovery {
     pub not_tried: Vec<NotTried>,
     /// Test runs that together would distinguish the remaining explanations, each given those before it.
     pub next_runs: Vec<NextRun>,
+    /// What every proposed run would tell by itself; absent where no explanations are compared, in records of earlier versions, and from
+    /// `summary.json`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub information: Vec<RunInformation>,
+    /// What each explanation predicts of the fitted measurements; absent from records of earlier versions, and from `summary.json`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curves: Option<EffectCurves>,
     /// Tests without a rolling wheel that would distinguish them.
     pub other_tests: Vec<String>,
     /// Scatter of the model's predictions about a smooth function of its parameters, which the search counts as noise: an sd for each
     /// channel by its column, in its unit; empty where it is negligible.
     #[serde(default)]
     pub numerical_noise: BTreeMap<String, f64>,
-    /// What each explanation predicts for the fitted runs; null in records of versions that did not keep it, and in summaries.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub curves: Option<ExplainedRuns>,
-    /// What each run within reach of the rig would tell by itself; empty where nothing is open, and in summaries.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub information: Vec<RunInformation>,
     /// Goodness of fit of the searched model.
     pub chi2: ChiSquare,
     /// Goodness of fit with the best explanation.
@@ -94,53 +95,6 @@ pub struct Discovery {
     pub evaluations_to_name: u64,
     /// All evaluations.
     pub evaluations: u64,
-}
-
-impl Discovery {
-    /// The record without what pictures alone need.
-    #[must_use]
-    pub fn brief(&self) -> Discovery {
-        Discovery {
-            curves: None,
-            information: Vec::new(),
-            ..self.clone()
-        }
-    }
-}
-
-/// What explanations predict for the fitted runs, each at its best fit; of an effect that was only screened, at the best step of the
-/// screen.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ExplainedRuns {
-    /// The measurements that are predicted.
-    pub data: Vec<PredictedDatum>,
-    /// Predictions of the searched model, in the unit of each channel.
-    pub base: Vec<f64>,
-    /// Predictions with each effect by its name.
-    pub effects: BTreeMap<String, Vec<f64>>,
-}
-
-/// A measurement that is predicted.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct PredictedDatum {
-    /// Its run.
-    pub run: String,
-    /// Channel without unit.
-    #[schema(value_type = String)]
-    pub channel: Channel,
-}
-
-/// What a run would tell by itself.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct RunInformation {
-    /// Slip.
-    pub slip: f64,
-    /// Wheel load.
-    pub wheel_load_n: f64,
-    /// Sled speed.
-    pub sled_speed_m_s: f64,
-    /// Expected information on the explanations \[nats\].
-    pub nats: f64,
 }
 
 /// An addition to a model.
@@ -296,6 +250,53 @@ pub struct NextRun {
     pub separates: Vec<String>,
     /// Expected information on them beyond that of the runs before it in the list \[nats\].
     pub information_nats: f64,
+}
+
+/// What a test run would tell by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RunInformation {
+    /// Slip.
+    pub slip: f64,
+    /// Wheel load.
+    pub wheel_load_n: f64,
+    /// Sled speed.
+    pub sled_speed_m_s: f64,
+    /// Expected information on the explanations that remain \[nats\].
+    pub nats: f64,
+}
+
+/// What the explanations predict of the fitted measurements of a wheel, to six digits, SI.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct EffectCurves {
+    /// The measurements, in the order of every list of values.
+    pub data: Vec<CurveDatum>,
+    /// The searched model at its best fit.
+    pub base: Vec<f64>,
+    /// By name of the explanation: the model with the effect at its own best fit; of an effect that was only screened, linear about the
+    /// base's fit. `not_in_library` is the best law outside the library.
+    pub effects: BTreeMap<String, Vec<f64>>,
+}
+
+/// A fitted measurement.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct CurveDatum {
+    /// Name of the run.
+    pub run: String,
+    /// Its channel.
+    #[schema(value_type = String)]
+    pub channel: Channel,
+}
+
+impl Discovery {
+    /// The record without what is of use to pictures alone.
+    #[must_use]
+    pub fn without_curves(self) -> Self {
+        Discovery {
+            curves: None,
+            information: Vec::new(),
+            ..self
+        }
+    }
 }
 
 /// Squared residuals in units of the noise.

@@ -19,8 +19,8 @@ mod verification;
 
 pub use calibration::{CalibrationRow, ExperimentRow, SealKey};
 pub use discovery::{
-    ChiSquare, Discovery, ExplainedRuns, Extension, JudgedEffect, JudgedSet, NEXT_RUNS, NONE, NOT_IN_LIBRARY,
-    NextRun, NotTried, Outside, PredictedDatum, RemainingMisfit, RunInformation, Verdict, effect_of,
+    ChiSquare, CurveDatum, Discovery, EffectCurves, Extension, JudgedEffect, JudgedSet, NEXT_RUNS, NONE,
+    NOT_IN_LIBRARY, NextRun, NotTried, Outside, RemainingMisfit, RunInformation, Verdict, effect_of,
 };
 pub use estimate::EstimateRow;
 pub use evaluation_key::{EvaluationKey, LIKELIEST, PREDICTIONS_FROM};

@@ -35,7 +35,7 @@ pub enum StudyFile {
 
 impl StudyFile {
     /// The files that every study has.
-    const OF_ALL: [StudyFile; 6] = [
+    const OF_ALL: [StudyFile; 7] = [
         StudyFile::Summary,
         StudyFile::Posterior,
         StudyFile::Report,

@@ -1,10 +1,11 @@
 //! `/v1/experiments`: measured data sets.
 
+use std::collections::BTreeMap;
+
 use axum::Json;
 use axum::extract::State;
 use axum::http::StatusCode;
 use shared::api::{ErrorBody, ExperimentCreated, NewExperiment};
-use shared::file::FileSet;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -13,7 +14,7 @@ use crate::service::Service;
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new()
-        .routes(routes!(create))
+        .routes(routes!(create, list))
         .routes(routes!(files))
 }
 
@@ -30,10 +31,44 @@ async fn create(
     Ok((StatusCode::CREATED, Json(ExperimentCreated { id })))
 }
 
+/// A stored experiment.
+#[derive(Debug, serde::Serialize, utoipa::ToSchema)]
+struct ListedExperiment {
+    /// Its id.
+    id: i64,
+    /// The studies that have a calibration on it.
+    studies: Vec<i64>,
+}
+
 /// The files of an experiment.
-#[utoipa::path(get, path = "/experiments/{id}", params(("id" = i64, Path)), responses(
-    (status = 200, body = NewExperiment), (status = 404, body = ErrorBody)))]
-async fn files(State(service): State<Service>, Id(id): Id) -> Result<Json<NewExperiment>, HttpError> {
-    let FileSet { toml, files } = service.experiment(id).await?;
-    Ok(Json(NewExperiment { toml, files }))
+#[derive(Debug, serde::Serialize, utoipa::ToSchema)]
+struct ExperimentFiles {
+    /// Its id.
+    id: i64,
+    /// Text of `experiment.toml`.
+    toml: String,
+    /// Texts of the files that it names, by name.
+    files: BTreeMap<String, String>,
+}
+
+/// Every experiment, oldest first.
+#[utoipa::path(get, path = "/experiments", operation_id = "list_experiments", responses((status = 200, body = Vec<ListedExperiment>)))]
+async fn list(State(service): State<Service>) -> Result<Json<Vec<ListedExperiment>>, HttpError> {
+    let experiments = service.store().reader().experiments().await?;
+    let listed = experiments
+        .into_iter()
+        .map(|(id, studies)| ListedExperiment { id, studies });
+    Ok(Json(listed.collect()))
+}
+
+/// The files of an experiment, as they were submitted.
+#[utoipa::path(get, path = "/experiments/{id}", operation_id = "experiment_files", params(("id" = i64, Path)), responses(
+    (status = 200, body = ExperimentFiles), (status = 404, body = ErrorBody)))]
+async fn files(State(service): State<Service>, Id(id): Id) -> Result<Json<ExperimentFiles>, HttpError> {
+    let files = service.experiment(id).await?;
+    Ok(Json(ExperimentFiles {
+        id,
+        toml: files.toml,
+        files: files.files,
+    }))
 }

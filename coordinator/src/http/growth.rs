@@ -3,7 +3,7 @@
 use axum::Json;
 use axum::extract::State;
 use axum::http::StatusCode;
-use shared::api::{CalibrationCreated, ErrorBody, ErrorKind, NewExtension, NewRuns, NewWhatIf, RunsAdded};
+use shared::api::{CalibrationCreated, ErrorBody, ErrorKind, NewExtension, NewRuns, RunsAdded, WhatIf};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -67,24 +67,6 @@ async fn discover(
     Ok((StatusCode::CREATED, Json(created)))
 }
 
-/// Begins a study of the same job with some runs left out of the fit, and searches its model for a missing effect: what would be
-/// concluded without them. The runs are held out, so that its error on them is known.
-#[utoipa::path(post, path = "/calibrations/{id}/what-if", params(("id" = i64, Path)), request_body = NewWhatIf, responses(
-    (status = 201, body = CalibrationCreated), (status = 404, body = ErrorBody),
-    (status = 409, body = ErrorBody, description = "the calibration is a search"),
-    (status = 422, body = ErrorBody, description = "a run is unknown, or none is left to fit"),
-))]
-async fn what_if(
-    State(service): State<Service>,
-    by: Caller,
-    Id(id): Id,
-    Body(new): Body<NewWhatIf>,
-) -> Result<(StatusCode, Json<CalibrationCreated>), HttpError> {
-    let created = service.what_if(id, &new.without).await?;
-    tracing::info!(calibration = created.id, asks_about = id, %by, "submitted");
-    Ok((StatusCode::CREATED, Json(created)))
-}
-
 /// What the search of a calibration's model found.
 #[utoipa::path(get, path = "/calibrations/{id}/discovery", params(("id" = i64, Path)), responses(
     (status = 200, body = Discovery), (status = 404, body = ErrorBody, description = "no search was asked for"),
@@ -109,4 +91,21 @@ async fn add_runs(
     let added = service.add_runs(id, new.runs, new.calibration).await?;
     tracing::info!(calibration = added.id, study = id, %by, "submitted");
     Ok((StatusCode::CREATED, Json(added)))
+}
+
+/// Begins a study with the job of a calibration in which some fitted runs are held out, with a search for a missing effect.
+#[utoipa::path(post, path = "/calibrations/{id}/what-if", params(("id" = i64, Path)), request_body = WhatIf, responses(
+    (status = 201, body = CalibrationCreated), (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody, description = "the calibration is a search"),
+    (status = 422, body = ErrorBody, description = "a run is unknown or held out already, or none is left to fit"),
+))]
+async fn what_if(
+    State(service): State<Service>,
+    by: Caller,
+    Id(id): Id,
+    Body(new): Body<WhatIf>,
+) -> Result<(StatusCode, Json<CalibrationCreated>), HttpError> {
+    let created = service.what_if(id, new.without).await?;
+    tracing::info!(calibration = created.id, what_if = id, %by, "submitted");
+    Ok((StatusCode::CREATED, Json(created)))
 }

@@ -7,13 +7,14 @@ use discovery::{
 };
 use job::{PlainParameter, candidate_priors};
 use record::{
-    ChiSquare, Discovery, Extension, JudgedEffect, JudgedSet, NONE, NOT_IN_LIBRARY, NextRun, Outside, Verdict,
+    ChiSquare, Discovery, Extension, JudgedEffect, JudgedSet, NONE, NOT_IN_LIBRARY, NextRun, Outside,
+    RunInformation, Verdict,
 };
 use shared::channel::Channel;
 
 use super::candidate::CandidateEffect;
+use super::curves::curves;
 use super::entry::CandidateEntry;
-use super::explained_runs::{explained_runs, information};
 use super::law::curve;
 use super::models::SearchModels;
 use super::narrative::sentence;
@@ -71,6 +72,15 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
             information_nats: run.information_nats,
         })
     });
+    let information = conclusion.information.iter().filter_map(|&(run, nats)| {
+        let condition = models.design.get(run)?;
+        Some(RunInformation {
+            slip: condition.slip,
+            wheel_load_n: condition.wheel_load_n,
+            sled_speed_m_s: condition.sled_speed_m_s,
+            nats,
+        })
+    });
     let given = models.base.fit_variant.effects.iter();
     Discovery {
         given: given.map(|effect| effect.name.clone()).collect(),
@@ -92,10 +102,10 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         refused: names(&conclusion.ranking.refused),
         not_tried: models.not_tried().cloned().collect(),
         next_runs: next_runs.collect(),
+        information: information.collect(),
+        curves: curves(models, conclusion),
         remaining: remaining_misfit(models, &conclusion.remaining),
         numerical_noise: numerical_noise(&conclusion.numerical_noise_sds),
-        curves: explained_runs(models, conclusion),
-        information: information(models, conclusion),
         chi2: chi_square(conclusion.chi_square, models),
         chi2_best: chi_square(conclusion.chi_square_best, models),
         evaluations_to_name: conclusion.ranking.evaluations.to_name() as u64,

@@ -6,15 +6,14 @@
 //! - `models`: the models of a search, made when they are queried; `entry`: their candidates. `design`: levels of the design, and
 //!   runs that the rig could make.
 //! - `search`: a search in progress, as leases take it.
-//! - `discovery_record`: its result as stored; `narrative`: in one sentence; `remaining_misfit`: what it leaves; `explained_runs`:
-//!   what explanations predict. `rig_test`: tests
+//! - `discovery_record`: its result as stored; `curves`: what its explanations predict; `narrative`: in one sentence; `remaining_misfit`: what it leaves. `rig_test`: tests
 //!   without a rolling wheel.
 
 pub mod candidate;
+mod curves;
 mod design;
 mod discovery_record;
 mod entry;
-mod explained_runs;
 #[cfg(test)]
 mod fixture;
 mod law;

@@ -152,7 +152,7 @@ impl Service {
     /// The files of a stored experiment.
     ///
     /// # Errors
-    /// [`ServiceError::NotFound`]; others where the store cannot be read.
+    /// [`ServiceError::NotFound`] and others.
     pub async fn experiment(&self, id: i64) -> Result<FileSet, ServiceError> {
         stored_calibration::experiment_files(&self.store.reader(), id).await
     }

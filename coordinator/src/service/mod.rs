@@ -8,7 +8,7 @@
 //! - `effects`: what users add to the catalogue, and jobs that name it.
 //! - `removal`: what is archived or deleted.
 //! - `announcement`: what web hooks are told.
-//! - `growth`: what is added to a study that is there.
+//! - `growth`: what is added to a study that is there. `what_if`: studies without some runs.
 //! - `stored_calibration`, `study_step`, `finished_study`: what is read from the store.
 //! - `study_members`: the members of a study. `study_overview`: studies as the page shows them, `overview_cache`: kept.
 //! - `study_results`: the files of a study, computed once.

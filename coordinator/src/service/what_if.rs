@@ -1,52 +1,55 @@
-//! What would be concluded without some runs: a study beside the one that has them.
-
-use std::collections::BTreeSet;
+//! What a study would say without some of its fitted runs.
 
 use shared::api::{CalibrationCreated, NewCalibration, NewExperiment};
 use shared::experiment::Experiment;
-use shared::file::FileError;
 
 use super::error::ServiceError;
 use super::handle::Service;
-use job::{continued_job, searching_job};
+use crate::farm::dispatch::Stopped;
+use job::{Spec, is_discovery, searched_job};
 
-/// More runs are counted in the name of the study, not listed.
-const MOST_LISTED: usize = 3;
+/// Most runs that a name lists.
+const NAMED: usize = 3;
 
 impl Service {
-    /// Begins a study of the job of a calibration with some of its runs held out, and with a search of its model.
+    /// Begins a study with the job of a calibration, in which these fitted runs are held out and a missing effect is searched for.
     ///
     /// # Errors
-    /// [`ServiceError`]: a run is unknown, or the experiment with these runs held out is refused.
-    pub async fn what_if(
-        &self,
-        id: i64,
-        without: &BTreeSet<String>,
-    ) -> Result<CalibrationCreated, ServiceError> {
-        if without.is_empty() {
-            return Err(FileError::whole("without", "no run is named").into());
+    /// [`ServiceError`]: a run is unknown or held out already, or none is left to fit; the calibration is a search.
+    pub async fn what_if(&self, id: i64, without: Vec<String>) -> Result<CalibrationCreated, ServiceError> {
+        let row = self.calibration_row(id).await?;
+        if is_discovery(&row.job.toml) {
+            return Err(ServiceError::Search(id));
         }
-        let row = self.searchable(id).await?;
-        let experiment = self.experiment(row.experiment).await?;
-        let held = Experiment::holding_out("experiment.toml", &experiment, without)?;
-        let experiment = NewExperiment {
-            toml: held.toml,
-            files: held.files,
-        };
-        let job = continued_job("job.toml", &row.job)?;
-        let job = searching_job("job.toml", &job)?;
-        let listed: Vec<&str> = without.iter().map(String::as_str).collect();
-        let name = match listed.len() {
-            ..=MOST_LISTED => format!("{} without {}", row.name, listed.join(", ")),
-            many => format!("{} without {many} runs", row.name),
-        };
+        let files = self.experiment(row.experiment).await?;
+        let name = name(&row.name, &without);
+        let job = searched_job("job.toml", &row.job)?;
+        let trial = job.clone();
+        // Refused before anything is stored.
+        let edited = tokio::task::spawn_blocking(move || {
+            let edited = Experiment::with_held_out("experiment.toml", &files, &without)?;
+            Spec::new("job.toml", &trial, "experiment.toml", &edited)?;
+            Ok::<_, ServiceError>(edited)
+        });
+        let edited = edited.await.map_err(|_| Stopped)??;
+        let experiment = self.add_experiment(NewExperiment {
+            toml: edited.toml,
+            files: edited.files,
+        });
         let new = NewCalibration {
-            experiment: self.add_experiment(experiment).await?,
+            experiment: experiment.await?,
             toml: job.toml,
             files: job.files,
             name: Some(name),
             webhook: None,
         };
         self.add_calibration(new).await
+    }
+}
+
+fn name(of: &str, without: &[String]) -> String {
+    match without.len() > NAMED {
+        true => format!("{of} without {} runs", without.len()),
+        false => format!("{of} without {}", without.join(", ")),
     }
 }

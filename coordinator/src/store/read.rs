@@ -98,6 +98,21 @@ impl Reader {
         .transpose()
     }
 
+    /// Every experiment, oldest first, with the studies that have a calibration on it.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn experiments(&self) -> Result<Vec<(i64, Vec<i64>)>, StoreError> {
+        let rows = sqlx::query(
+            "SELECT e.id, (SELECT json_group_array(DISTINCT c.study) FROM calibrations c JOIN studies s ON s.id = c.study
+             WHERE coalesce(c.experiment, s.experiment) = e.id) AS studies FROM experiments e ORDER BY e.id",
+        )
+        .fetch_all(&self.pool)
+        .await?;
+        let row = |row: &SqliteRow| Ok((row.try_get("id")?, array(row.try_get("studies")?)?));
+        rows.iter().map(row).collect()
+    }
+
     /// A calibration.
     ///
     /// # Errors

@@ -4,16 +4,17 @@
 //! - `settings`: the tables of `experiment.toml`; `wheel`: those of the wheels; `scatter`: relative noise.
 //! - `mesh`: a wheel given as a surface of triangles.
 //! - `runs`: the rows of `runs.csv`; `history`: the recorded time history of a run, and its averages.
-//! - `changed_runs`: an experiment with further runs, or with some held out.
+//! - `more_runs`: an experiment with further runs. `fewer_runs`: with fitted runs held out.
 //! - `bevameter`: the rows of `plates.csv` and `shear.csv`.
 //! - `check`: checks of single numbers.
 //! - `table`: rows of a CSV file whose columns are known by name.
 
 mod bevameter;
-mod changed_runs;
 mod check;
+mod fewer_runs;
 mod history;
 mod mesh;
+mod more_runs;
 mod runs;
 mod scatter;
 mod settings;

@@ -5,6 +5,7 @@ use crate::effect_search::screen::{Screened, difference};
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::point::FitPoint;
+use crate::laplace::quadratic::quadratic;
 use statistics::likelihood::Likelihood;
 
 /// A fit that begins at the base's fit or at the screen's point, whichever is more probable; with a switch turned at the latter.
@@ -44,4 +45,22 @@ pub(crate) fn fit(
         fit.hold(shapes());
     }
     Some(fit)
+}
+
+/// The predicted values at the optimum of the model that is linear about where the fit begins: what the effect would change, before
+/// its fit has made a step. `None` where the fit has no beginning.
+pub(crate) fn linearised(
+    frame: &NormalFrame,
+    base: &LaplaceFit,
+    screened: &Screened,
+    likelihood: &Likelihood,
+    depth: &Depth,
+) -> Option<Vec<f64>> {
+    let fit = fit(frame, base, screened, likelihood, depth)?;
+    let step = quadratic(frame, likelihood, &fit.point, &fit.columns).step(0.0)?;
+    let moved = |i: usize| {
+        let changes = step.iter().zip(&fit.columns).map(|(by, column)| by * column[i]);
+        fit.point.values[i] + changes.sum::<f64>()
+    };
+    Some((0..fit.point.values.len()).map(moved).collect())
 }

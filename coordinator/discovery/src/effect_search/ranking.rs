@@ -42,9 +42,9 @@ pub struct RankedEffect {
     pub is_credible: bool,
     /// The most probable parameters, the base's first.
     pub theta: Vec<f64>,
-    /// The predicted values there.
-    pub values: Vec<f64>,
-    /// Which of the parameters lie at a bound, or at the value at which a one-sided strength is absent.
+    /// Predicted values of the data there; of an effect that was only screened, by the linear model about the base's fit.
+    pub predicted: Vec<f64>,
+    /// Which of them lie at a bound, or at the value at which a one-sided strength is absent.
     pub at_bound: Vec<bool>,
     /// Evaluations spent on it alone.
     pub evaluations: usize,

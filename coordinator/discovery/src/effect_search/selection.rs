@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::chi_square::FitChiSquare;
 use crate::effect_search::class::{Projection, classes};
 use crate::effect_search::confirmation;
+use crate::effect_search::extension;
 use crate::effect_search::ranking::{EffectRanking, EvidenceMethod, RankedEffect};
 use crate::effect_search::state::{EffectSearch, EvidenceEstimate, Phase};
 use crate::laplace::batch::FitBatch;
@@ -162,6 +163,7 @@ impl EffectSearch {
         let (Some(base), Some(projected)) = (&self.base, self.projected()) else {
             return;
         };
+        let likelihood = &self.likelihood;
         let ranked = |candidate, frame: &NormalFrame, point: &FitPoint| RankedEffect {
             candidate,
             log_bayes_factor: 0.0,
@@ -174,7 +176,7 @@ impl EffectSearch {
             class: 0,
             is_credible: false,
             theta: frame.theta(&point.position),
-            values: point.values.clone(),
+            predicted: point.values.clone(),
             at_bound: frame.at_bound(&point.position),
             evaluations: self.evaluations.base,
         };
@@ -191,7 +193,11 @@ impl EffectSearch {
             } else {
                 f64::NEG_INFINITY
             };
+            let of_fit = estimate.fit.as_ref().map(|fit| fit.point.values.clone());
+            let of_screen =
+                || extension::linearised(&state.frame, &base.fit, screened, likelihood, self.depth);
             effects.push(RankedEffect {
+                predicted: of_fit.or_else(of_screen).unwrap_or_default(),
                 log_bayes_factor: estimate.log_bayes_factor.max(least),
                 stated_log_bayes_factor: estimate.stated_log_bayes_factor.max(least),
                 screen_log_bayes_factor: screened.log_bayes_factor,

@@ -6,7 +6,7 @@ use crate::laplace::draws::draws;
 use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
 use crate::search::hypotheses::FittedLaw;
-use crate::search::next_run::{InformativeRun, Informed};
+use crate::search::next_run::{InformativeRun, RunChoice};
 use crate::search::state::SearchState;
 use crate::search::verdict::SearchVerdict;
 use crate::search::weighing::{WeighedSet, Weighing};
@@ -39,8 +39,6 @@ pub struct OutsideLaw {
     pub log_bayes_factor: f64,
     /// Its most probable parameters.
     pub parameters: Vec<f64>,
-    /// The predicted values there.
-    pub values: Vec<f64>,
     /// Log predictive density of left-out levels over that of the base and of the library's best.
     pub left_out_nats: [f64; 2],
 }
@@ -54,6 +52,8 @@ pub struct Conclusion {
     pub ranking: EffectRanking,
     /// Log Bayes factor and probability of a law outside the library; `None`: not searched.
     pub not_in_library: Option<(f64, f64)>,
+    /// Predicted values of the data by the best law outside the library; `None`: none was fitted.
+    pub predicted_by_law: Option<Vec<f64>>,
     /// Every model that was compared, by falling probability.
     pub sets: Vec<WeighedSet>,
     /// The effect with which to begin, where the verdict is open but evidence and prediction agree on the best set.
@@ -84,7 +84,7 @@ pub struct Conclusion {
     pub best: PosteriorModel,
     /// Runs to make next.
     pub next_runs: Vec<InformativeRun>,
-    /// Proposed runs with the expected information of each by itself \[nats\]; empty where nothing is open.
+    /// Index of each proposed run with what it would tell by itself \[nats\]; empty where no explanations are compared.
     pub information: Vec<(usize, f64)>,
     /// Scatter of the model's predictions about a smooth function of its parameters, which counts as noise: an sd for each channel by its
     /// index, in its unit; empty where it is negligible.
@@ -102,7 +102,7 @@ fn explains(task: &SearchTask, of_library: Option<FitChiSquare>, law: &FittedLaw
 }
 
 impl Conclusion {
-    pub(super) fn new(state: &SearchState, informed: Informed) -> Self {
+    pub(super) fn new(state: &SearchState, choice: RunChoice) -> Self {
         let SearchState {
             task,
             hypotheses,
@@ -149,6 +149,10 @@ impl Conclusion {
             agreed: weighing.agreed().filter(|_| verdict == SearchVerdict::Undecided),
             ranking: weighing.ranking,
             not_in_library: weighing.not_in_library,
+            predicted_by_law: hypotheses.laws.as_ref().and_then(|scan| {
+                let law = scan.laws.get(scan.confirmed.unwrap_or(0))?;
+                Some(law.fit.point.values.clone())
+            }),
             sets: weighing.sets,
             misfit: weighing.misfit,
             outside: law.map(|law| OutsideLaw {
@@ -156,7 +160,6 @@ impl Conclusion {
                 candidate: law.candidate,
                 log_bayes_factor: law.log_bayes_factor,
                 parameters: law.fit.theta()[task.prior.dimension()..].to_vec(),
-                values: law.fit.point.values.clone(),
                 left_out_nats: law.left_out.unwrap_or([0.0; 2]),
             }),
             combination: detected.map_or(Vec::new(), |best| best.effects.clone()),
@@ -165,8 +168,8 @@ impl Conclusion {
             chi_square_best: law.map_or(of_library, |law| chi_square(&law.fit)),
             base: model(Vec::new(), base, OF_BASE),
             best: model(effects, fit, OF_BEST),
-            next_runs: informed.runs,
-            information: informed.alone,
+            next_runs: choice.runs,
+            information: choice.alone,
             numerical_noise_sds: numerical_noise_sds.clone(),
             evaluations: *evaluations,
         }

@@ -2,7 +2,7 @@
 
 use crate::search::conclusion::Conclusion;
 use crate::search::cross_validation::{ComparedModel, CrossValidation};
-use crate::search::next_run::{Informed, RunSelection};
+use crate::search::next_run::{RunChoice, RunSelection};
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
 use crate::search::weighing::Weighing;
@@ -47,11 +47,11 @@ impl SearchState {
         let open = Weighing::new(&self.task, &self.hypotheses).open(&self.hypotheses);
         match RunSelection::new(&self.task, open) {
             Some(runs) => Stage::NextRuns(runs),
-            None => self.done(Informed::default()),
+            None => self.done(RunChoice::default()),
         }
     }
 
-    pub(super) fn done(&self, informed: Informed) -> Stage {
-        Stage::Done(Box::new(Conclusion::new(self, informed)))
+    pub(super) fn done(&self, choice: RunChoice) -> Stage {
+        Stage::Done(Box::new(Conclusion::new(self, choice)))
     }
 }

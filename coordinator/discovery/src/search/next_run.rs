@@ -33,12 +33,11 @@ pub struct InformativeRun {
     pub separates: Vec<Vec<usize>>,
 }
 
-/// What the proposed runs tell.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Informed {
-    /// The most informative runs, each given those before it.
+/// The runs to make next, and what every run would tell.
+#[derive(Debug, Clone, Default)]
+pub(super) struct RunChoice {
     pub(super) runs: Vec<InformativeRun>,
-    /// Expected information of each run by itself \[nats\].
+    /// Index of each proposed run with its information by itself \[nats\].
     pub(super) alone: Vec<(usize, f64)>,
 }
 
@@ -139,7 +138,7 @@ impl RunSelection {
     }
 
     /// The most informative runs, each given those before it: the first tells most by itself, the next one most beyond the first.
-    pub(super) fn best(&self) -> Informed {
+    pub(super) fn best(&self) -> RunChoice {
         let predicted = self
             .asked
             .iter()
@@ -148,11 +147,11 @@ impl RunSelection {
             .map(|(own, prediction)| (own, (own.probability, prediction)))
             .unzip();
         if asked.len() < 2 {
-            return Informed::default();
+            return RunChoice::default();
         }
         let predictive = Predictive::new(predictions, &self.proposed.noise_sds, MOST, self.seed);
-        let mut informed = Informed::default();
-        let runs = &mut informed.runs;
+        let mut runs: Vec<InformativeRun> = Vec::new();
+        let mut alone = Vec::new();
         let mut known = 0.0;
         while runs.len() < MOST {
             let chosen: Vec<usize> = runs.iter().map(|run| run.run).collect();
@@ -163,7 +162,7 @@ impl RunSelection {
             let left = (0..self.proposed.runs).filter(|run| !chosen.contains(run));
             let gains: Vec<(usize, f64)> = left.filter_map(gain).collect();
             if runs.is_empty() {
-                informed.alone.clone_from(&gains);
+                alone.clone_from(&gains);
             }
             let most = gains.iter().map(|(_, gain)| *gain).fold(0.0, f64::max);
             if most < LEAST {
@@ -184,6 +183,6 @@ impl RunSelection {
                 separates: separated.map(|k| asked[k].effects.clone()).collect(),
             });
         }
-        informed
+        RunChoice { runs, alone }
     }
 }

@@ -85,6 +85,7 @@ impl Weighing {
                 effect.log_likelihood = single.fit.point.log_likelihood(&single.fit.frame);
                 effect.prior_sds = single.fit.frame.strength_distance(&single.fit.point.position);
                 effect.theta = single.fit.theta();
+                effect.predicted.clone_from(&single.fit.point.values);
                 effect.at_bound = single.fit.frame.at_bound(&single.fit.point.position);
             }
         }

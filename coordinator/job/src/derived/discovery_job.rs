@@ -20,6 +20,30 @@ pub fn discovery_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
     })
 }
 
+/// A job whose study searches for a missing effect: one that does not ask for it is given `[discovery] apply = "ask"`.
+///
+/// # Errors
+/// [`FileError`] where the text is no job.
+pub fn searched_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
+    let toml = edited(name, &job.toml, |document| {
+        let discovery = document.entry("discovery").or_insert(toml_edit::table());
+        let discovery = discovery
+            .as_table_like_mut()
+            .ok_or("[discovery] is not a table")?;
+        if discovery
+            .get("apply")
+            .is_none_or(|apply| apply.as_str() == Some("off"))
+        {
+            discovery.insert("apply", toml_edit::value("ask"));
+        }
+        Ok(())
+    })?;
+    Ok(FileSet {
+        toml,
+        files: job.files.clone(),
+    })
+}
+
 /// Whether a job is such a search.
 pub fn is_discovery(toml: &str) -> bool {
     let job: Option<toml::Table> = toml.parse().ok();
@@ -43,30 +67,6 @@ pub fn continued_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
             sampler.remove("point_estimates");
         }
         keep_candidates(document);
-        Ok(())
-    })?;
-    Ok(FileSet {
-        toml,
-        files: job.files.clone(),
-    })
-}
-
-/// A job that asks for the search of its model; one that asks for more keeps its word.
-///
-/// # Errors
-/// [`FileError`] where the text is no job.
-pub fn searching_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
-    let toml = edited(name, &job.toml, |document| {
-        let discovery = document
-            .entry("discovery")
-            .or_insert(Item::Table(toml_edit::Table::new()));
-        let discovery = discovery
-            .as_table_like_mut()
-            .ok_or("[discovery] must be a table")?;
-        let is_off = |apply: &Item| apply.as_str() == Some("off");
-        if discovery.get("apply").is_none_or(is_off) {
-            discovery.insert("apply", toml_edit::value("ask"));
-        }
         Ok(())
     })?;
     Ok(FileSet {
@@ -151,27 +151,6 @@ point_estimates = ["ga"]
 [discovery]
 apply = "auto"
 "#;
-
-    #[test]
-    fn a_job_that_asks_for_a_search_keeps_its_word_and_another_learns_to_ask() {
-        assert_eq!(searching_job("job.toml", &job()).unwrap(), job());
-        let off = FileSet {
-            toml: JOB.replace("\"auto\"", "\"off\""),
-            ..job()
-        };
-        let asks = searching_job("job.toml", &off).unwrap();
-        assert_eq!(asks.toml, JOB.replace("\"auto\"", "\"ask\""));
-        let silent = FileSet {
-            toml: JOB.replace("[discovery]\napply = \"auto\"\n", ""),
-            ..job()
-        };
-        let asks = searching_job("job.toml", &silent).unwrap();
-        assert!(
-            asks.toml.ends_with("[discovery]\napply = \"ask\"\n"),
-            "{}",
-            asks.toml
-        );
-    }
 
     fn job() -> FileSet {
         let file = |name: &str| format!("name = \"{name}\"\nshear = \"tau\"\n");

@@ -44,7 +44,10 @@ impl DiscoverySummary {
     /// The block of a study; `added` are the effects of its best calibration that the first one did not have.
     /// `None` where nothing was searched.
     pub(crate) fn of(rounds: &[DiscoveryRound], added: Vec<String>) -> Option<DiscoverySummary> {
-        let records: Vec<Discovery> = rounds.iter().map(|round| round.record.brief()).collect();
+        let records: Vec<Discovery> = rounds
+            .iter()
+            .map(|round| round.record.clone().without_curves())
+            .collect();
         let (first, last) = (records.first()?, records.last()?);
         // The last search with a detection rather than the first: further runs may have added information.
         let named = records.iter().find(|record| {

@@ -15,9 +15,9 @@ pub(super) fn thinned_draws(sample: &FinishedCalibration) -> Vec<Vec<f64>> {
     (0..sample.spec.parameters.len()).map(draws).collect()
 }
 
-/// A number to five significant digits.
+/// A number to five significant digits; zero has no sign.
 pub(super) fn five_digits(x: f64) -> f64 {
-    format!("{x:.4e}").parse().unwrap_or(x)
+    format!("{x:.4e}").parse().unwrap_or(x) + 0.0
 }
 
 #[cfg(test)]
@@ -39,9 +39,12 @@ mod tests {
 
     #[test]
     fn five_digits_are_kept() {
-        assert_eq!(
-            [1.234_567, -0.000_123_456_7, 0.0].map(five_digits),
-            [1.2346, -0.000_123_46, 0.0]
-        );
+        for (x, rounded) in [
+            (1.234_567, 1.2346),
+            (-0.000_123_456_7, -0.000_123_46),
+            (-0.0, 0.0),
+        ] {
+            assert_eq!(five_digits(x).to_bits(), f64::to_bits(rounded));
+        }
     }
 }

@@ -116,6 +116,17 @@ pub(crate) fn list(words: &[String]) -> String {
     }
 }
 
+/// Seconds, minutes or hours.
+pub(crate) fn duration(seconds: f64) -> String {
+    if seconds < 120.0 {
+        format!("{seconds:.1} s")
+    } else if seconds < 7200.0 {
+        format!("{:.1} min", seconds / 60.0)
+    } else {
+        format!("{:.1} h", seconds / 3600.0)
+    }
+}
+
 /// Power of ten of the first digit.
 pub(crate) fn magnitude(x: f64) -> i32 {
     x.abs().log10().floor() as i32

@@ -1,4 +1,4 @@
-//! An experiment with other runs: further ones, or some held out.
+//! Further runs added to an experiment.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,7 +15,13 @@ impl Experiment {
     /// [`FileError`] with the line of the new rows where one is malformed or its run stands in the experiment already.
     pub fn with_runs(name: &str, files: &FileSet, csv: &str) -> Result<(FileSet, usize), FileError> {
         let before = Experiment::parse(name, files)?;
-        let file = file_of_runs(name, files, "append to")?;
+        let file = settings::parse(name, &files.toml)?.runs;
+        let file = file.ok_or_else(|| {
+            FileError::whole(
+                name,
+                "runs = \"runs.csv\" is missing: the experiment has no runs to append to",
+            )
+        })?;
         let fail = |e: csv::Error| FileError::whole(&file, e.to_string());
         let with = |text: String| {
             let mut all = files.clone();
@@ -58,50 +64,10 @@ impl Experiment {
     }
 }
 
-impl Experiment {
-    /// The files of an experiment in which some of its runs are held out; comments of `runs.csv` are left out.
-    ///
-    /// # Errors
-    /// [`FileError`] for a run that the experiment does not have.
-    pub fn holding_out(name: &str, files: &FileSet, runs: &BTreeSet<String>) -> Result<FileSet, FileError> {
-        let file = file_of_runs(name, files, "hold out")?;
-        let (mut header, mut rows) = records(&file, files.named(name, &file)?)?;
-        let place = |header: &[String], column: &str| header.iter().position(|own| own == column);
-        let run_at =
-            place(&header, "run").ok_or_else(|| FileError::whole(&file, "column \"run\" is missing"))?;
-        let use_at = place(&header, "use").unwrap_or_else(|| {
-            header.push("use".into());
-            header.len() - 1
-        });
-        let mut left: BTreeSet<&str> = runs.iter().map(String::as_str).collect();
-        for (_, row) in &mut rows {
-            if left.remove(row[run_at].as_str()) || runs.contains(&row[run_at]) {
-                row.resize(header.len(), String::new());
-                row[use_at] = "holdout".into();
-            }
-        }
-        if let Some(unknown) = left.first() {
-            return Err(FileError::whole(&file, format!("there is no run \"{unknown}\"")));
-        }
-        let mut all = files.clone();
-        let text = written(&header, rows).map_err(|e| FileError::whole(&file, e.to_string()))?;
-        all.files.insert(file, text);
-        Ok(all)
-    }
-}
-
-/// The name of `runs.csv`.
-fn file_of_runs(name: &str, files: &FileSet, what: &str) -> Result<String, FileError> {
-    settings::parse(name, &files.toml)?.runs.ok_or_else(|| {
-        let message = format!("runs = \"runs.csv\" is missing: the experiment has no runs to {what}");
-        FileError::whole(name, message)
-    })
-}
-
 /// The header of a CSV file, and its rows with their lines.
-type Records = (Vec<String>, Vec<(usize, Vec<String>)>);
+pub(super) type Records = (Vec<String>, Vec<(usize, Vec<String>)>);
 
-fn records(file: &str, text: &str) -> Result<Records, FileError> {
+pub(super) fn records(file: &str, text: &str) -> Result<Records, FileError> {
     let mut reader = table::reader(text);
     let fail = |e: csv::Error| FileError::whole(file, e.to_string());
     let fields = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect();
@@ -115,7 +81,7 @@ fn records(file: &str, text: &str) -> Result<Records, FileError> {
 }
 
 /// The text of a CSV file; short rows are filled with blanks.
-fn written(header: &[String], rows: Vec<(usize, Vec<String>)>) -> Result<String, csv::Error> {
+pub(super) fn written(header: &[String], rows: Vec<(usize, Vec<String>)>) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(header)?;
     for (_, mut row) in rows {
@@ -129,7 +95,6 @@ fn written(header: &[String], rows: Vec<(usize, Vec<String>)>) -> Result<String,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::RunUse;
 
     const TOML: &str = "runs = \"runs.csv\"\n[wheel.a]\nradius_m = 0.1\nwidth_m = 0.05\n[soil.sand]\n[noise]\ndrawbar_pull_n = 1.0\ntorque_n_m = 0.1\n";
     const RUNS: &str = "# first day\nrun,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\n\"one, two\",a,sand,0.2,25,0.01,0.5,fit\n";
@@ -150,27 +115,6 @@ mod tests {
         let before = Experiment::parse("experiment.toml", &files(RUNS)).unwrap();
         let alone = Experiment::parse("experiment.toml", &files(MORE)).unwrap();
         assert_eq!(after.runs, [before.runs, alone.runs].concat());
-    }
-
-    #[test]
-    fn runs_that_are_held_out_keep_their_values() {
-        let (both, _) = Experiment::with_runs("experiment.toml", &files(RUNS), MORE).unwrap();
-        let without = |run: &str| {
-            let runs = BTreeSet::from([run.to_owned()]);
-            Experiment::holding_out("experiment.toml", &both, &runs)
-        };
-        let mut expected = Experiment::parse("experiment.toml", &both).unwrap().runs;
-        expected[0].usage = RunUse::Holdout;
-        let held = Experiment::parse("experiment.toml", &without("one, two").unwrap()).unwrap();
-        assert_eq!(held.runs, expected);
-        let error = without("four").unwrap_err();
-        assert_eq!(error.to_string(), "runs.csv: there is no run \"four\"");
-        // Without the column every run is fitted.
-        let plain = files(&RUNS.replace(",use", "").replace(",fit", ""));
-        let runs = BTreeSet::from(["one, two".to_owned()]);
-        let held = Experiment::holding_out("experiment.toml", &plain, &runs).unwrap();
-        let held = Experiment::parse("experiment.toml", &held).unwrap();
-        assert_eq!(held.runs[0].usage, RunUse::Holdout);
     }
 
     #[test]

@@ -1,0 +1,86 @@
+//! The examples that the program carries: a first calibration needs no files.
+
+/// A text with the name of its file.
+type NamedFile = (&'static str, &'static str);
+
+/// A job with its experiment.
+#[derive(Debug, Clone, Copy)]
+pub struct Example {
+    /// Its name.
+    pub name: &'static str,
+    /// Its name for people.
+    pub title: &'static str,
+    /// What it shows.
+    pub summary: &'static str,
+    /// The job.
+    pub job: NamedFile,
+    /// The experiment.
+    pub experiment: NamedFile,
+    /// The files that the experiment names.
+    pub files: &'static [NamedFile],
+}
+
+/// Every example.
+pub const EXAMPLES: [Example; 3] = [
+    Example {
+        name: "hidden-effect",
+        title: "A hidden effect",
+        summary: "synthetic tests of a smooth wheel: the model misses one effect, which is found, added and checked on held-out runs",
+        job: ("job.toml", include_str!("../../examples/hidden-effect/job.toml")),
+        experiment: (
+            "experiment.toml",
+            include_str!("../../examples/hidden-effect/experiment.toml"),
+        ),
+        files: &[("runs.csv", include_str!("../../examples/hidden-effect/runs.csv"))],
+    },
+    Example {
+        name: "cmu-sand",
+        title: "Measured sand: calibration",
+        summary: "single-wheel tests of a smooth and a grousered wheel by Carnegie Mellon University: one calibration of the base model",
+        job: ("job.toml", include_str!("../../examples/cmu-sand/job.toml")),
+        experiment: (
+            "experiment.toml",
+            include_str!("../../examples/cmu-sand/experiment.toml"),
+        ),
+        files: &[("runs.csv", include_str!("../../examples/cmu-sand/runs.csv"))],
+    },
+    Example {
+        name: "cmu-sand-discover",
+        title: "Measured sand: what is missing",
+        summary: "the same tests: a search for the effect that the model misses, which is added and searched again",
+        job: (
+            "discover.toml",
+            include_str!("../../examples/cmu-sand/discover.toml"),
+        ),
+        experiment: (
+            "discover-experiment.toml",
+            include_str!("../../examples/cmu-sand/discover-experiment.toml"),
+        ),
+        files: &[("runs.csv", include_str!("../../examples/cmu-sand/runs.csv"))],
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use job::Spec;
+    use shared::file::FileSet;
+
+    use super::*;
+
+    #[test]
+    fn every_example_is_a_valid_job_with_all_its_files() {
+        for example in EXAMPLES {
+            let set = |toml: &str, files: &[NamedFile]| FileSet {
+                toml: toml.to_owned(),
+                files: files
+                    .iter()
+                    .map(|&(name, text)| (name.to_owned(), text.to_owned()))
+                    .collect(),
+            };
+            let job = set(example.job.1, &[]);
+            let experiment = set(example.experiment.1, example.files);
+            let spec = Spec::new(example.job.0, &job, example.experiment.0, &experiment);
+            assert!(spec.is_ok(), "{}: {:?}", example.name, spec.err());
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! What the explanations of a search predict of the fitted measurements, for pictures.
+
+use std::collections::BTreeMap;
+
+use discovery::Conclusion;
+use job::PLATE;
+use record::{CurveDatum, EffectCurves, NOT_IN_LIBRARY};
+use shared::channel::Channel;
+
+use super::models::SearchModels;
+
+/// The curves of the base and of every explanation; `None` where the base was not fitted.
+pub(super) fn curves(models: &SearchModels, conclusion: &Conclusion) -> Option<EffectCurves> {
+    let spec = &models.base;
+    // Readings of plates and rings are no channel of a run.
+    let data = spec.likelihood.data().iter().enumerate();
+    let data: Vec<(usize, CurveDatum)> = data
+        .filter(|(_, datum)| datum.channel < PLATE)
+        .filter_map(|(i, datum)| {
+            let channel = *Channel::ALL.iter().find(|c| c.index() == datum.channel)?;
+            let run = spec.experiment.runs[spec.fit_runs[datum.run]].name.clone();
+            Some((i, CurveDatum { run, channel }))
+        })
+        .collect();
+    let of_wheel =
+        |values: &[f64]| -> Vec<f64> { data.iter().map(|(i, _)| six_digits(values[*i])).collect() };
+    let ranking = &conclusion.ranking;
+    let base = of_wheel(&ranking.of(None)?.predicted);
+    let known = ranking
+        .effects
+        .iter()
+        .filter(|effect| !effect.predicted.is_empty());
+    let effects =
+        known.filter_map(|effect| Some((models.name(effect.candidate?), of_wheel(&effect.predicted))));
+    let law = conclusion.predicted_by_law.as_deref();
+    let law = law.map(|values| (NOT_IN_LIBRARY.to_owned(), of_wheel(values)));
+    let effects: BTreeMap<String, Vec<f64>> = effects.chain(law).collect();
+    let data = data.into_iter().map(|(_, datum)| datum).collect();
+    Some(EffectCurves { data, base, effects })
+}
+
+/// A number to six significant digits: more than a picture shows.
+fn six_digits(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}
