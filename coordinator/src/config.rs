@@ -114,6 +114,9 @@ pub struct RunArguments {
     /// Number of simulation threads in this process; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
+    /// Prints tables, flags and explanations too.
+    #[arg(long)]
+    pub verbose: bool,
     /// Address at which remote workers may join.
     #[arg(long, value_name = "ADDR")]
     pub listen: Option<std::net::SocketAddr>,
@@ -389,6 +392,9 @@ pub struct DiscoverArguments {
     /// Number of simulation threads in this process, with --out; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
+    /// Prints tables, flags and explanations too.
+    #[arg(long)]
+    pub verbose: bool,
 }
 
 /// Extend a study by a calibration with one additional effect.
@@ -414,6 +420,9 @@ pub struct ExtendArguments {
     /// Number of simulation threads in this process, with --out; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
+    /// Prints tables, flags and explanations too.
+    #[arg(long)]
+    pub verbose: bool,
 }
 
 /// Add measurements to a study.
@@ -429,22 +438,26 @@ pub struct AddRunsArguments {
     /// Number of simulation threads in this process, with --out; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
+    /// Prints tables, flags and explanations too.
+    #[arg(long)]
+    pub verbose: bool,
 }
 
 impl CoordinatorCommand {
-    /// What is logged: `RUST_LOG`, as a level or as `target=level` between commas, else `info,sqlx::query=warn`. The journal, a
+    /// What is logged: `RUST_LOG`, as a level or as `target=level` between commas, else `info,sqlx::query=error`: slow statements of a busy disk are no news to a user. The journal, a
     /// line for each start, pause and end of a calibration, is a service's: a run in a folder shows these itself.
     pub fn log_filter(&self) -> Targets {
         let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
-        let journal = match self {
-            CoordinatorCommand::Serve(_) => LevelFilter::INFO,
-            _ => LevelFilter::OFF,
+        let (journal, of_workers) = match self {
+            CoordinatorCommand::Serve(_) => (LevelFilter::INFO, LevelFilter::INFO),
+            _ => (LevelFilter::OFF, LevelFilter::WARN),
         };
         stated.unwrap_or_else(|| {
             Targets::new()
                 .with_default(LevelFilter::INFO)
-                .with_target("sqlx::query", LevelFilter::WARN)
+                .with_target("sqlx::query", LevelFilter::ERROR)
                 .with_target("journal", journal)
+                .with_target("worker", of_workers)
         })
     }
 }

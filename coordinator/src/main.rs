@@ -3,6 +3,7 @@
 use std::io::Write as _;
 
 use clap::Parser;
+use coordinator::command::Stopped;
 use coordinator::config::CoordinatorConfig;
 use shared::sentence::of_causes;
 use tracing_subscriber::Layer as _;
@@ -29,7 +30,13 @@ async fn run() -> std::process::ExitCode {
         .init();
     match coordinator::command::execute(config.command).await {
         Ok(()) => std::process::ExitCode::SUCCESS,
-        Err(error) => refuse(of_causes(error.chain())),
+        Err(error) => match error.downcast_ref::<Stopped>() {
+            Some(stopped) => {
+                let _ = writeln!(std::io::stderr(), "{stopped}");
+                std::process::ExitCode::from(stopped.exit_status())
+            }
+            None => refuse(of_causes(error.chain())),
+        },
     }
 }
 

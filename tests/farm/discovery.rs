@@ -268,10 +268,16 @@ fn a_folder_grows_and_its_run_knows_it_again() {
         refusal.contains("the nearest known is \"bulldozing\""),
         "{refusal}"
     );
-    let printed = go(&["extend", "--effect", "torque_gain"]).success();
+    let printed = go(&["extend", "--effect", "torque_gain", "--verbose"]).success();
     assert!(
         printed.contains("model quasi_static with torque_gain"),
         "{printed}"
+    );
+    let again = go(&["extend", "1", "--effect", "torque_gain"]);
+    assert!(
+        again.stderr.contains("calibration 2 has it already"),
+        "{}",
+        again.stderr
     );
     let enlarged = go(&["add-runs", "2", &runs.display().to_string()]).success();
     assert!(enlarged.contains("(42 runs)"), "{enlarged}");

@@ -67,6 +67,7 @@ fn local_and_remote_workers_fit_effects_to_the_same_bytes() {
         &path(&out),
         "--local-workers",
         "2",
+        "--verbose",
     ]))
     .success();
     assert!(

@@ -115,7 +115,7 @@ fn a_run_of_a_fit_prints_it_again_and_check_says_what_it_costs() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = fit().write(&folder.path().join("job")).display().to_string();
     let out = folder.path().join("out").display().to_string();
-    let command = || run(coordinator(["run", &path, "--out", &out])).success();
+    let command = || run(coordinator(["run", &path, "--out", &out, "--verbose"])).success();
     let first = command();
     for words in [
         "lm stopped by",

@@ -126,7 +126,14 @@ fn a_run_prints_the_whole_study_and_knows_its_folder_again() {
     let out = folder.path().join("out");
     let go = || coordinator(["run", &path, "--out", &out.display().to_string()]);
     let printed = run(go()).success();
-    for words in ["log-evidence", "lm stopped by", "cma-es stopped by"] {
+    for words in [
+        "log-evidence",
+        "lm stopped by",
+        "cma-es stopped by",
+        "\nwrong:",
+        "\nmissing:",
+        "\nnext:",
+    ] {
         assert!(printed.contains(words), "{words} in\n{printed}");
     }
     let summary: Value = serde_json::from_str(&text(&out.join("summary.json"))).expect("JSON");

@@ -153,7 +153,14 @@ pub fn study(job: &Job) -> (String, Value) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = job.write(&folder.path().join("job")).display().to_string();
     let out = folder.path().join("out");
-    let text = run(coordinator(["run", &path, "--out", &out.display().to_string()])).success();
+    let text = run(coordinator([
+        "run",
+        &path,
+        "--out",
+        &out.display().to_string(),
+        "--verbose",
+    ]))
+    .success();
     assert!(out.join("report.html").exists());
     let summary = std::fs::read_to_string(out.join("summary.json")).expect("summary.json");
     let summary = serde_json::from_str(&summary).expect("JSON, which has no form for what is no number");

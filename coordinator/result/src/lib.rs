@@ -42,7 +42,7 @@ pub use figure::{CalibrationFigures, ChannelHistory, MeasuredSeries, ModelSeries
 pub use finished_calibration::{FinishedCalibration, first_population, likeliest};
 pub use flag::kind::{Flag, FlagKind};
 pub use flag::model_limit::model_limits;
-pub use overview::{StudyFlag, StudyListItem, StudyOverview, StudyVerdict};
+pub use overview::{MemberOverview, StudyFlag, StudyListItem, StudyOverview, StudyVerdict};
 pub use provenance::Provenance;
 pub use story::Story;
 pub use study::Study;

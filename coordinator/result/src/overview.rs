@@ -36,7 +36,7 @@ pub struct StudyOverview {
     /// Ids of the members, oldest first.
     pub calibrations: Vec<i64>,
     /// The members, oldest first.
-    pub members: Vec<StudyMember>,
+    pub members: Vec<MemberOverview>,
     /// The error ledger: base first, then each extension.
     pub ledger: Vec<CalibrationSummary>,
     /// The noise sd of each channel that `rmse_fixed_sigma` is in, by name.
@@ -47,6 +47,16 @@ pub struct StudyOverview {
     pub flags: Vec<StudyFlag>,
     /// The verdict of the search of the current model, else of the last search; null where none is finished.
     pub verdict: Option<StudyVerdict>,
+}
+
+/// A member of a study with its story.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct MemberOverview {
+    /// The member.
+    #[serde(flatten)]
+    pub member: StudyMember,
+    /// What is wrong, what is missing, what to do next; null of a search, and of what is not finished.
+    pub story: Option<Story>,
 }
 
 /// A flag of a study.
@@ -120,7 +130,10 @@ impl StudyOverview {
             model_kind,
             current: None,
             calibrations: members.iter().map(|m| m.id).collect(),
-            members,
+            members: members
+                .into_iter()
+                .map(|member| MemberOverview { member, story: None })
+                .collect(),
             ledger: Vec::new(),
             fixed_sigma: BTreeMap::new(),
             point_estimates: Vec::new(),
@@ -135,7 +148,11 @@ impl StudyOverview {
             .ledger
             .iter()
             .find(|line| Some(line.calibration) == self.current);
-        let member = self.members.iter().find(|m| Some(m.id) == self.current);
+        let member = self
+            .members
+            .iter()
+            .map(|m| &m.member)
+            .find(|m| Some(m.id) == self.current);
         StudyListItem {
             id: self.id,
             name: self.name.clone(),
@@ -179,21 +196,23 @@ impl Study {
                 verdict: round.record.verdict,
                 text: round.record.text.clone(),
             }),
-            ..StudyOverview::begun(id, experiment, Some(kind), self.members_with_stories())
+            members: self.members_with_stories(),
+            ..StudyOverview::begun(id, experiment, Some(kind), self.members.clone())
         }
     }
 }
 
 impl Study {
     /// The members, each finished calibration with its story.
-    fn members_with_stories(&self) -> Vec<StudyMember> {
-        let mut members = self.members.clone();
-        for calibration in self.calibrations() {
-            if let Some(own) = members.iter_mut().find(|member| member.id == calibration.row.id) {
-                own.story = Some(Story::of(self, calibration));
+    fn members_with_stories(&self) -> Vec<MemberOverview> {
+        let with_story = |member: &StudyMember| {
+            let calibration = self.calibrations().find(|own| own.row.id == member.id);
+            MemberOverview {
+                member: member.clone(),
+                story: calibration.map(|own| Story::of(self, own)),
             }
-        }
-        members
+        };
+        self.members.iter().map(with_story).collect()
     }
 }
 

@@ -42,7 +42,7 @@ pub fn answers(study: &Study) -> Map<String, Value> {
         add(path("stages"), json(&calibration.stages));
     }
     for round in &study.rounds {
-        let search = overview
+        let search = study
             .members
             .iter()
             .find(|m| m.searches == Some(round.calibration));

@@ -2,6 +2,7 @@
 
 use crate::finished_calibration::FinishedCalibration;
 use crate::report;
+use crate::story::Story;
 use crate::study::Study;
 use crate::terminal;
 
@@ -14,9 +15,11 @@ pub enum StudyFile {
     Posterior,
     /// Report.
     Report,
-    /// Results as text for a terminal.
-    Text,
-    /// Searches and error ledger as text for a terminal.
+    /// Its tables and flags, as text for a terminal.
+    Details,
+    /// Calibrations, searches and error ledger, as text for a terminal.
+    Brief,
+    /// The story of the current model, as JSON.
     Story,
     /// Members, error ledger and flags for the page, as JSON.
     Overview,
@@ -36,7 +39,8 @@ impl StudyFile {
         StudyFile::Summary,
         StudyFile::Posterior,
         StudyFile::Report,
-        StudyFile::Text,
+        StudyFile::Details,
+        StudyFile::Brief,
         StudyFile::Story,
         StudyFile::Overview,
     ];
@@ -47,8 +51,9 @@ impl StudyFile {
             StudyFile::Summary => "summary.json".into(),
             StudyFile::Posterior => "posterior.csv".into(),
             StudyFile::Report => "report.html".into(),
-            StudyFile::Text => "study.txt".into(),
-            StudyFile::Story => "story.txt".into(),
+            StudyFile::Details => "details.txt".into(),
+            StudyFile::Brief => "brief.txt".into(),
+            StudyFile::Story => "story.json".into(),
             StudyFile::Overview => "overview.json".into(),
             StudyFile::Diagnostics(calibration) => format!("diagnostics-{calibration}.json"),
             StudyFile::Figures(calibration) => format!("figures-{calibration}.json"),
@@ -75,8 +80,9 @@ impl Study {
             StudyFile::Summary => json(&self.summary()) + "\n",
             StudyFile::Posterior => self.current().unwrap_or(&self.lead).posterior_table().to_csv(),
             StudyFile::Report => report::document(self),
-            StudyFile::Text => terminal::study(self),
-            StudyFile::Story => terminal::discovery::story(self),
+            StudyFile::Details => terminal::study(self),
+            StudyFile::Brief => terminal::brief(self),
+            StudyFile::Story => json(&Story::current(self)) + "\n",
             StudyFile::Overview => json(&self.overview()),
             StudyFile::Diagnostics(id) => {
                 let calibration = self.calibration(id)?;

@@ -2,8 +2,6 @@
 
 use shared::api::CalibrationState;
 
-use crate::story::Story;
-
 /// A calibration or a search of a study.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct StudyMember {
@@ -21,8 +19,6 @@ pub struct StudyMember {
     pub searches: Option<i64>,
     /// Why it is paused or failed.
     pub message: Option<String>,
-    /// What is wrong, what is missing, what to do next; null of a search, and of what is not finished.
-    pub story: Option<Story>,
 }
 
 /// What a member of a study computes.

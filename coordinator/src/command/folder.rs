@@ -11,24 +11,39 @@ use tokio::net::TcpListener;
 use super::exposure::exposure;
 use super::output::{note, say};
 use super::progress::Display;
-use super::shutdown::{Shutdown, stop_signal};
+use super::shutdown::{Shutdown, Stopped, stop_signal};
 use crate::config::ExposureArguments;
 use crate::embedded::{LocalWorkers, model_version};
 use crate::farm::Control;
 use crate::http::Exposure;
 use crate::service::{FarmSettings, LEASE_MS, Service, VERIFIED_PERCENT, next_step_of, search_rounds};
+use job::Apply;
 use record::CalibrationRow;
 use result::discovery::effect_file;
-use result::terminal::discovery;
-use result::{DiscoveryRound, StudyFile};
+use result::{DiscoveryRound, StudyFile, terminal};
 
 /// How often the display looks.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// How the work ended.
-enum End {
-    Over,
-    Stopped,
+/// Whether the tables and flags of a study are printed.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Details {
+    /// They are left to the report.
+    Hidden,
+    /// They are, with a search: that of a calibration where it is named, else the last.
+    Shown {
+        /// The searched calibration.
+        searched: Option<i64>,
+    },
+}
+
+impl Details {
+    pub(super) fn new(verbose: bool, searched: Option<i64>) -> Self {
+        match verbose {
+            true => Details::Shown { searched },
+            false => Details::Hidden,
+        }
+    }
 }
 
 /// A folder with its store open.
@@ -108,31 +123,19 @@ impl Folder {
         Ok(())
     }
 
-    /// Brings a study to its end, writes its results and prints them; of its searches the one of a calibration, or the last.
-    pub(super) async fn finish(mut self, study: i64, searched: Option<i64>) -> anyhow::Result<()> {
+    /// Brings a study to its end, writes its results and prints them.
+    pub(super) async fn finish(mut self, study: i64, details: Details) -> anyhow::Result<()> {
         let reader = self.service.store().reader();
         let rows = reader.study(study).await?;
         let is_over = rows.iter().all(|row| row.state.is_final());
         if !is_over || next_step_of(&reader, study).await?.is_some() {
-            match self.calibrate(study).await? {
-                End::Over => {}
-                End::Stopped => {
-                    note("stopped; the same command resumes from here");
-                    return Ok(());
-                }
-            }
+            self.calibrate(study).await?;
         }
         let rows = reader.study(study).await?;
         if let Some(row) = rows.iter().find(|row| row.state == CalibrationState::Finished) {
             let rounds = search_rounds(&reader, &rows).await?;
             self.write_results(row.id, &rounds).await?;
-            let text = self.service.study_file(row.id, StudyFile::Text).await?;
-            let found = self.found(row.id, &rounds, searched).await?;
-            let files = format!(
-                "\nin {}: summary.json, posterior.csv, report.html, grouser.db\n",
-                self.out.display()
-            );
-            say(&(text + &found + &files))?;
+            say(&self.results(row.id, &rounds, details).await?)?;
         }
         match rows.iter().find(|row| row.state != CalibrationState::Finished) {
             None => Ok(()),
@@ -145,25 +148,39 @@ impl Folder {
         }
     }
 
-    /// What a search found, and how it is added.
-    async fn found(
+    /// What is printed of a study.
+    async fn results(
         &self,
         calibration: i64,
         rounds: &[DiscoveryRound],
-        searched: Option<i64>,
+        details: Details,
     ) -> anyhow::Result<String> {
-        let meant = rounds.iter().find(|r| Some(r.calibration) == searched);
-        let Some(round) = meant.or(rounds.last()) else {
-            return Ok(String::new());
-        };
         let place = format!("--out {}", self.out.display());
-        let text = discovery::text(&round.record, round.calibration, &place, &self.out);
-        let story = self.service.study_file(calibration, StudyFile::Story).await?;
-        Ok(format!("\n{text}\n{story}"))
+        let file = async |file| self.service.study_file(calibration, file).await;
+        let mut text = String::new();
+        if let Details::Shown { searched } = details {
+            text += &(file(StudyFile::Details).await? + "\n");
+            let meant = rounds.iter().find(|r| Some(r.calibration) == searched);
+            if let Some(round) = meant.or(rounds.last()) {
+                text += &terminal::discovery::text(&round.record, round.calibration, &place, &self.out);
+                text.push('\n');
+            }
+        }
+        text += &file(StudyFile::Brief).await?;
+        let more = match details {
+            Details::Hidden => "\nmore with --verbose, and",
+            Details::Shown { .. } => "\nfiles",
+        };
+        text += &format!(
+            "{more} in {}: report.html, summary.json, posterior.csv, grouser.db\n\n",
+            self.out.display()
+        );
+        let story = serde_json::from_str(&file(StudyFile::Story).await?)?;
+        Ok(text + &terminal::story(&story, &place, &self.out))
     }
 
     /// Simulates until the study is over, or until ^C.
-    async fn calibrate(&mut self, study: i64) -> anyhow::Result<End> {
+    async fn calibrate(&mut self, study: i64) -> anyhow::Result<()> {
         let server = self.server.take();
         let service = &self.service;
         let stop = Shutdown::new();
@@ -230,7 +247,7 @@ async fn watch_until_over(
     study: i64,
     service: &Service,
     failure: Option<impl Future<Output = String>>,
-) -> anyhow::Result<End> {
+) -> anyhow::Result<()> {
     let failure = async {
         match failure {
             Some(failure) => failure.await,
@@ -242,16 +259,18 @@ async fn watch_until_over(
     tokio::pin!(stop);
     let store_fails = service.store().writer().stopped();
     tokio::pin!(store_fails);
-    let mut display = Display::new();
+    let mut display = Display::new(expected_members(study, service).await?);
     loop {
         tokio::select! {
-            () = &mut stop => { display.finish(); return Ok(End::Stopped); }
+            signal = &mut stop => { display.finish(); return Err(Stopped::by(signal).into()); }
             () = &mut store_fails => bail!("the store can no longer be written; see the log"),
             reason = &mut failure => bail!("the local workers ended: {reason}"),
             () = tokio::time::sleep(LOOK) => {}
         }
         let mut statuses = service.list(true).await?;
-        statuses.retain(|status| status.study == study && !status.state.is_final());
+        statuses.retain(|status| status.study == study);
+        let members = statuses.len();
+        statuses.retain(|status| !status.state.is_final());
         let paused = statuses.iter().find(|s| s.state == CalibrationState::Paused);
         if let Some(status) = paused {
             display.finish();
@@ -265,8 +284,20 @@ async fn watch_until_over(
                 continue;
             }
             display.finish();
-            return Ok(End::Over);
+            return Ok(());
         };
-        display.show(status);
+        display.show(status, members - statuses.len());
     }
+}
+
+/// The least number of calibrations and searches that a study will have: where effects are added, it is expected to find one.
+async fn expected_members(study: i64, service: &Service) -> anyhow::Result<usize> {
+    let rows = service.store().reader().study(study).await?;
+    let Some(first) = rows.first() else { return Ok(0) };
+    let to_come = match service.spec_of(first).await?.discovery.apply {
+        Apply::Off => 0,
+        Apply::Ask => 1,
+        Apply::Auto => 3,
+    };
+    Ok(rows.len().max(1 + to_come))
 }

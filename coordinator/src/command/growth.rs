@@ -10,8 +10,8 @@ use shared::api::{
 };
 use shared::file::read_text;
 
-use super::folder::Folder;
-use super::output::say;
+use super::folder::{Details, Folder};
+use super::output::{note, say};
 use super::source::{CalibrationSource, ServiceClient};
 use crate::config::{AddRunsArguments, DiscoverArguments, ExtendArguments};
 use crate::service::{Service, ServiceError};
@@ -27,7 +27,8 @@ pub(super) async fn discover(config: &DiscoverArguments) -> anyhow::Result<()> {
     let id = place.id(&config.target).await?;
     let client = match (&config.target.source.out, place) {
         (Some(out), _) => {
-            return grow(out, id, config.local_workers, async |service| {
+            let details = Details::new(config.verbose, Some(id));
+            return grow(out, id, config.local_workers, details, async |service| {
                 service.discover(id).await.map(drop)
             })
             .await;
@@ -73,8 +74,14 @@ pub(super) async fn extend(config: &ExtendArguments) -> anyhow::Result<()> {
             (None, _, Some(NamedText { name, text })) => Extension::File { name, text },
             (None, _, None) => bail!("--effect or --effect-file is missing"),
         };
-        return grow(out, id, config.local_workers, async |service| {
-            service.extend(id, extension.clone()).await.map(drop)
+        let details = Details::new(config.verbose, Some(id));
+        return grow(out, id, config.local_workers, details, async |service| {
+            let before = service.store().reader().calibrations().await?.len();
+            let created = service.extend(id, extension.clone()).await?;
+            if service.store().reader().calibrations().await?.len() == before {
+                note(&format!("calibration {} has it already", created.id));
+            }
+            Ok(())
         })
         .await;
     }
@@ -105,7 +112,8 @@ pub(super) async fn add_runs(config: &AddRunsArguments) -> anyhow::Result<()> {
     let runs = read_text(&config.runs)?;
     let study = CalibrationSource::open(source).await?.status(*id).await?.study;
     if let Some(out) = &source.out {
-        return grow(out, *id, config.local_workers, async |service| {
+        let details = Details::new(config.verbose, Some(*id));
+        return grow(out, *id, config.local_workers, details, async |service| {
             let last = Some(*id);
             service.add_runs(study, runs.clone(), last).await.map(drop)
         })
@@ -131,6 +139,7 @@ async fn grow(
     out: &Path,
     id: i64,
     local_workers: Option<usize>,
+    details: Details,
     add: impl AsyncFn(&Service) -> Result<(), ServiceError>,
 ) -> anyhow::Result<()> {
     let folder = Folder::open(out, local_workers, None).await?;
@@ -139,7 +148,7 @@ async fn grow(
         let study = folder.service.calibration_row(id).await?.study;
         folder.go_on(study).await?;
         add(&folder.service).await?;
-        folder.finish(study, Some(id)).await
+        folder.finish(study, details).await
     };
     let result = result.await;
     service.close().await;

@@ -18,6 +18,8 @@ mod verbs;
 
 use crate::config::CoordinatorCommand;
 
+pub use shutdown::Stopped;
+
 /// Executes a command.
 ///
 /// # Errors

@@ -1,59 +1,162 @@
-//! The progress display of a running calibration.
+//! The progress display of a study: one share of the whole, which never falls.
 
 use std::io::IsTerminal;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use shared::api::{CalibrationState, CalibrationStatus};
+use shared::api::{CalibrationState, CalibrationStatus, Progress};
 
 use super::output::note;
 
-/// A bar on a terminal; a line for each stage elsewhere.
+/// Natural logarithm of the first tempering exponent of a usual calibration, about 1e-5: the stages climb from there to 0.
+const FIRST_LN_EXPONENT: f64 = -11.5;
+/// Share of a calibration's work before the exponent is 1.
+const CLIMB: f64 = 0.9;
+/// Evaluations of a usual search.
+const SEARCH: f64 = 2000.0;
+/// Steps of a usual fit.
+const FIT_STEPS: f64 = 8.0;
+/// Generations of a usual search by generations.
+const GENERATIONS: f64 = 100.0;
+/// Least share done from which the remaining time is estimated.
+const LEAST: f64 = 0.03;
+/// The display never says that all is done.
+const MOST: f64 = 0.99;
+
+/// The share of a study that is done, from 0 to 1: of equal parts, those that are over and what is done of the present one. It is
+/// monotone by construction, as the parts to come are a guess.
+#[derive(Debug, Default, PartialEq)]
+struct StudyShare(f64);
+
+impl StudyShare {
+    /// The share now.
+    ///
+    /// # Arguments
+    /// - `over`: members that are over. `expected`: the least number of members in the end.
+    fn advance(&mut self, over: usize, expected: usize, present: &Progress) -> f64 {
+        let parts = expected.max(over + 1) as f64;
+        let now = (over as f64 + share_of(present)) / parts;
+        self.0 = now.min(MOST).max(self.0);
+        self.0
+    }
+}
+
+/// The share of a calibration or a search that is done, from 0 to 1.
+fn share_of(p: &Progress) -> f64 {
+    let settling = |done: f64, usual: f64| 1.0 - libm::exp(-done / usual);
+    match p.algorithm.as_str() {
+        "lm" => settling(f64::from(p.stage), FIT_STEPS),
+        "ga" | "cma-es" => settling(f64::from(p.stage), GENERATIONS),
+        "discovery" => settling(p.evaluations as f64, SEARCH),
+        _ if p.tempering_exponent >= 1.0 => {
+            CLIMB + (1.0 - CLIMB) * p.step_done as f64 / p.step_size.max(1) as f64
+        }
+        _ => CLIMB * (1.0 - libm::log(p.tempering_exponent) / FIRST_LN_EXPONENT).clamp(0.0, 1.0),
+    }
+}
+
+/// The time to go, in words; `None` while too little is done to tell.
+fn time_to_go(elapsed_s: f64, first: f64, share: f64) -> Option<String> {
+    let done = share - first;
+    let seconds = elapsed_s * (1.0 - share) / done;
+    (done >= LEAST).then(|| match seconds {
+        s if s >= 5400.0 => format!("about {:.1} h left", s / 3600.0),
+        s if s >= 90.0 => format!("about {:.0} min left", s / 60.0),
+        s => format!("about {:.0} s left", s.max(1.0)),
+    })
+}
+
+/// Where a calibration stands: `stage 7 of about 12`.
+///
+/// # Arguments
+/// - `first`: stage and exponent at which it was seen first; its stages to come climb as fast as those since then.
+fn phase(p: &Progress, first: (u32, f64)) -> String {
+    match p.algorithm.as_str() {
+        "lm" => format!("fit, step {}", p.stage),
+        "ga" | "cma-es" => format!("generation {}", p.stage),
+        "discovery" => "search for a missing effect".into(),
+        _ if p.stage == 0 => "draws from the prior".into(),
+        _ if p.tempering_exponent >= 1.0 => format!("stage {}, the last", p.stage),
+        _ => {
+            let stages = f64::from(p.stage.saturating_sub(first.0));
+            let climbed = libm::log(p.tempering_exponent / first.1);
+            let left = -libm::log(p.tempering_exponent) * stages / climbed;
+            match left.is_finite() && stages > 0.0 && climbed > 0.0 {
+                true => format!(
+                    "stage {} of about {}",
+                    p.stage,
+                    p.stage + left.round().max(1.0) as u32
+                ),
+                false => format!("stage {}", p.stage),
+            }
+        }
+    }
+}
+
+/// A bar on a terminal; a line for each phase of each calibration elsewhere.
 pub(super) struct Display {
     bar: Option<ProgressBar>,
-    stage: Option<u32>,
+    began: Instant,
+    share: StudyShare,
+    /// The share when the display began.
+    first_share: Option<f64>,
+    /// The present calibration with its first stage and exponent.
+    first: Option<(i64, (u32, f64))>,
+    /// The phase that was shown last.
+    phase: (i64, String),
+    /// Least number of members in the end.
+    expected: usize,
 }
 
 impl Display {
-    pub(super) fn new() -> Self {
+    /// - `expected`: the least number of calibrations and searches that the study will have.
+    pub(super) fn new(expected: usize) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
-            let style = ProgressStyle::with_template("{elapsed_precise} [{bar:30}] {msg}")
+            let style = ProgressStyle::with_template("[{bar:20}] {wide_msg}")
                 .unwrap_or_else(|_| ProgressStyle::default_bar());
-            let bar = ProgressBar::new(1).with_style(style.progress_chars("=> "));
+            let bar = ProgressBar::new(1000).with_style(style.progress_chars("=> "));
             bar.enable_steady_tick(Duration::from_millis(200));
             bar
         });
-        Display { bar, stage: None }
+        Display {
+            bar,
+            began: Instant::now(),
+            share: StudyShare::default(),
+            first_share: None,
+            first: None,
+            phase: (0, String::new()),
+            expected,
+        }
     }
 
-    /// Shows where a calibration stands.
-    pub(super) fn show(&mut self, status: &CalibrationStatus) {
+    /// Shows where the study stands: its present calibration, and how many members are over.
+    pub(super) fn show(&mut self, status: &CalibrationStatus, over: usize) {
         let Some(p) = &status.progress else { return };
-        let time = match p.remaining_s {
-            Some(s) if s >= 90.0 => format!("about {:.0} min remaining", s / 60.0),
-            Some(s) => format!("about {s:.0} s remaining"),
-            None => "remaining time unknown".into(),
+        let here = (p.stage, p.tempering_exponent);
+        let first = match self.first {
+            Some((id, first)) if id == status.id && first.1 > 0.0 => first,
+            _ => here,
         };
-        let pace = format!("{} evaluations, {:.0}/s", p.evaluations, p.evaluations_per_s);
-        let message = match p.algorithm.as_str() {
-            "lm" => format!("{} steps taken | {pace}", p.stage),
-            "ga" | "cma-es" => format!("{} generations | {pace}", p.stage),
-            "discovery" => format!("search, round {} | {pace}", p.stage),
-            _ => format!(
-                "stage {} exponent {:.3e} step {} acceptance {:.2} | {pace} | {time}",
-                p.stage, p.tempering_exponent, p.step, p.acceptance
-            ),
-        };
+        self.first = Some((status.id, first));
+        let share = self.share.advance(over, self.expected, p);
+        let first_share = *self.first_share.get_or_insert(share);
+        let left = time_to_go(self.began.elapsed().as_secs_f64(), first_share, share);
+        let left = left.map_or(String::new(), |left| format!(", {left}"));
+        let name = status.name.trim_end_matches(" (discovery)");
+        let phase = (status.id, phase(p, first));
+        let message = format!("{:2.0} %{left}: {name}, {}", 100.0 * share, phase.1);
         match &self.bar {
             Some(bar) => {
-                bar.set_length(p.step_size.max(1));
-                bar.set_position(p.step_done);
+                bar.set_position((1000.0 * share) as u64);
                 bar.set_message(message);
             }
-            None if self.stage != Some(p.stage) => note(&message),
+            // A phase with the same stage is one, whatever the estimate of the others.
+            None if self.phase.0 != status.id || stage_of(&self.phase.1) != stage_of(&phase.1) => {
+                note(message.trim_start());
+            }
             None => {}
         }
-        self.stage = Some(p.stage);
+        self.phase = phase;
         if status.state == CalibrationState::Paused && self.bar.is_none() {
             note(&format!(
                 "paused: {}",
@@ -66,5 +169,85 @@ impl Display {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
+    }
+}
+
+/// A phase without the estimate of how many there are.
+fn stage_of(phase: &str) -> &str {
+    phase.split([',', ' ']).nth(1).unwrap_or(phase)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn progress(algorithm: &str, stage: u32, exponent: f64) -> Progress {
+        Progress {
+            algorithm: algorithm.into(),
+            stage,
+            tempering_exponent: exponent,
+            step: 0,
+            acceptance: 0.0,
+            evaluations: 1000 * u64::from(stage),
+            rejected: 0,
+            step_done: 0,
+            step_size: 1000,
+            evaluations_per_s: 1.0,
+            remaining_s: None,
+        }
+    }
+
+    #[test]
+    fn the_share_of_a_study_never_falls_and_never_reaches_the_whole() {
+        let mut share = StudyShare::default();
+        let mut shown = Vec::new();
+        // A study that turns out to have more members than expected, and stages whose progress starts again with each step.
+        for over in 0..6 {
+            for (stage, exponent) in [(0, 0.0), (1, 1e-6), (2, 1e-3), (3, 0.2), (4, 1.0)] {
+                for step_done in [0, 500, 1000, 10] {
+                    let p = Progress {
+                        step_done,
+                        ..progress("tmcmc", stage, exponent)
+                    };
+                    shown.push(share.advance(over, 4, &p));
+                }
+            }
+            shown.push(share.advance(over, 4, &progress("discovery", 1, 1.0)));
+        }
+        assert!(shown.windows(2).all(|pair| pair[0] <= pair[1]), "{shown:?}");
+        assert!(shown.iter().all(|s| (0.0..=MOST).contains(s)), "{shown:?}");
+        assert!(shown[0] < 0.01 && *shown.last().unwrap() > 0.8, "{shown:?}");
+    }
+
+    #[test]
+    fn every_algorithm_moves_its_share() {
+        for algorithm in ["tmcmc", "lm", "ga", "cma-es", "discovery"] {
+            let early = share_of(&progress(algorithm, 1, 1e-4));
+            let late = share_of(&progress(algorithm, 9, 0.5));
+            assert!(early < late && late < 1.0, "{algorithm}");
+        }
+    }
+
+    #[test]
+    fn the_time_to_go_follows_from_the_share_and_waits_for_some_of_it() {
+        assert_eq!(time_to_go(10.0, 0.0, 0.01), None);
+        assert_eq!(time_to_go(10.0, 0.0, 0.5).as_deref(), Some("about 10 s left"));
+        assert_eq!(time_to_go(600.0, 0.5, 0.75).as_deref(), Some("about 10 min left"));
+        assert_eq!(
+            time_to_go(36_000.0, 0.0, 0.5).as_deref(),
+            Some("about 10.0 h left")
+        );
+    }
+
+    #[test]
+    fn the_number_of_stages_follows_from_the_climb_so_far() {
+        let words = |stage, exponent| phase(&progress("tmcmc", stage, exponent), (1, 1e-4));
+        assert_eq!(words(1, 1e-4), "stage 1");
+        assert_eq!(words(3, 1e-2), "stage 3 of about 5");
+        assert_eq!(words(5, 1.0), "stage 5, the last");
+        assert_eq!(
+            phase(&progress("discovery", 1, 1.0), (0, 0.0)),
+            "search for a missing effect"
+        );
     }
 }

@@ -6,7 +6,7 @@ use anyhow::{Context, bail};
 use shared::api::{NewCalibration, NewExperiment};
 use tokio::net::TcpListener;
 
-use super::folder::Folder;
+use super::folder::{Details, Folder};
 use super::job_on_disk::{self, JobOnDisk};
 use super::output::note;
 use crate::config::RunArguments;
@@ -40,7 +40,7 @@ pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
     let service = folder.service.clone();
     let result = async {
         let study = take_up(&job, &folder).await?;
-        folder.finish(study, None).await
+        folder.finish(study, Details::new(config.verbose, None)).await
     };
     let result = result.await;
     service.close().await;

@@ -63,7 +63,7 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
         () = service.keep_growing(), if is_written => {}
         () = service.announce(), if is_written => {}
         () = service.keep_tidy(config.keep_days), if is_written => {}
-        () = signal => tracing::info!("stopping; workers will reconnect"),
+        _ = signal => tracing::info!("stopping; workers will reconnect"),
         () = service.store().writer().stopped(), if is_written => {
             bail!("the store can no longer be written; see the log")
         }

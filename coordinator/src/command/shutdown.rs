@@ -2,14 +2,42 @@
 
 use tokio::sync::watch;
 
+/// A signal that asks the program to stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum StopSignal {
+    /// ^C.
+    Interrupt,
+    /// SIGTERM.
+    Terminate,
+}
+
+/// A command that a signal stopped before its work was done.
+#[derive(Debug, thiserror::Error)]
+#[error("stopped; the same command resumes from here")]
+pub struct Stopped(StopSignal);
+
+impl Stopped {
+    pub(super) fn by(signal: StopSignal) -> Self {
+        Stopped(signal)
+    }
+
+    /// The exit status: 128 and the number of the signal, as shells have it.
+    pub fn exit_status(&self) -> u8 {
+        match self.0 {
+            StopSignal::Interrupt => 130,
+            StopSignal::Terminate => 143,
+        }
+    }
+}
+
 /// Ready at ^C or SIGTERM.
-pub(super) fn stop_signal() -> anyhow::Result<impl Future<Output = ()> + Send + 'static> {
+pub(super) fn stop_signal() -> anyhow::Result<impl Future<Output = StopSignal> + Send + 'static> {
     use tokio::signal::unix::{SignalKind, signal};
     let mut terminate = signal(SignalKind::terminate())?;
     Ok(async move {
         tokio::select! {
-            _ = terminate.recv() => {}
-            _ = tokio::signal::ctrl_c() => {}
+            _ = terminate.recv() => StopSignal::Terminate,
+            _ = tokio::signal::ctrl_c() => StopSignal::Interrupt,
         }
     })
 }

@@ -29,7 +29,7 @@ const FILES: [&str; 2] = ["job.toml", "experiment.toml"];
 const LOOK: Duration = Duration::from_millis(500);
 
 impl Service {
-    /// Adds a calibration to the study of another: its job with an effect more.
+    /// Adds a calibration to the study of another: its job with an effect more; one that is there already is meant.
     ///
     /// # Errors
     /// [`ServiceError`]: the effect is unknown, or stands there already.
@@ -40,6 +40,7 @@ impl Service {
     }
 
     async fn extended(&self, id: i64, extension: &Extension) -> Result<CalibrationCreated, ServiceError> {
+        use shared::api::CalibrationState::{Cancelled, Failed};
         let row = self.searchable(id).await?;
         let job = extended(FILES[0], &row.job, &[extension])?;
         let job = continued_job(FILES[0], &job)?;
@@ -47,7 +48,20 @@ impl Service {
             Extension::OnWheel { wheel, .. } => format!("{}+{}.{wheel}", row.name, effect_of(extension)),
             _ => format!("{}+{}", row.name, effect_of(extension)),
         };
-        self.add_member(&row, row.experiment, name, job).await
+        // The same model on the same measurements is one calibration, unless it ended without a result.
+        let members = self.store().reader().study(row.study).await?;
+        let same = members.iter().find(|member| {
+            let is_over = matches!(member.state, Failed | Cancelled);
+            member.experiment == row.experiment && member.job == job && !is_over
+        });
+        match same {
+            Some(member) => Ok(CalibrationCreated {
+                id: member.id,
+                study: member.study,
+                point_estimates: Vec::new(),
+            }),
+            None => self.add_member(&row, row.experiment, name, job).await,
+        }
     }
 
     /// Adds measurements to a study: an experiment with the rows of a CSV more, and the job of a calibration on it, of the last of

@@ -64,7 +64,6 @@ fn member(
         effects,
         searches,
         message: row.message.clone(),
-        story: None,
     }
 }
 

@@ -34,13 +34,13 @@ impl Service {
         // What changes without a member beginning or ending.
         for (member, row) in overview.members.iter_mut().zip(&rows) {
             let status = self.status_of(row).await?;
-            (member.state, member.message) = (status.state, status.message);
+            (member.member.state, member.member.message) = (status.state, status.message);
         }
         let unfinished = overview
             .members
             .iter()
-            .find(|m| m.state != CalibrationState::Finished);
-        overview.state = unfinished.map_or(overview.state, |member| member.state);
+            .find(|m| m.member.state != CalibrationState::Finished);
+        overview.state = unfinished.map_or(overview.state, |member| member.member.state);
         overview.archived = reader.archived().await?.iter().any(|&(study, _)| study == id);
         Ok(overview)
     }

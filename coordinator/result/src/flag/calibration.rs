@@ -158,8 +158,8 @@ impl FinishedCalibration {
 fn bound_text(name: &str, p: &ParameterSummary) -> String {
     format!(
         "{name} lies at a bound of its prior (90 % of the posterior in {} to {}): the data favour a value that the prior excludes, or an effect is missing",
-        number::significant(p.q05, 4),
-        number::significant(p.q95, 4)
+        number::to_spread(p.q05, p.sd),
+        number::to_spread(p.q95, p.sd)
     )
 }
 

@@ -6,41 +6,19 @@ use job::FreeParameter;
 use record::EstimateRow;
 
 use super::column::{cell, width};
-use super::comparison::{comparison, errors};
+use super::comparison::comparison;
 use super::diagnostics::{findings, flags};
 use crate::finished_calibration::{FinishedCalibration, prior_mean};
 use crate::flag::unsettled_run::unsettled;
 use crate::summary::point_estimate::fitted;
-use crate::table::comparison::Comparison;
 use crate::table::error_model::error_model;
 use crate::table::readings::reading_errors;
 use crate::words::number;
 
-/// The result of a run: parameters, errors, table of model against measurement, flags.
-pub(super) fn summary(calibration: &FinishedCalibration) -> String {
-    let compared = calibration.comparison();
-    let table = if calibration.spec.experiment.runs.is_empty() {
-        String::new()
-    } else {
-        comparison(&compared)
-    };
-    told(calibration, &compared, &table)
-}
-
-/// The same without the table.
-pub(super) fn brief(calibration: &FinishedCalibration) -> String {
-    let compared = calibration.comparison();
-    told(calibration, &compared, &errors(&compared))
-}
-
-fn told(calibration: &FinishedCalibration, compared: &Comparison, table: &str) -> String {
-    let mut text = String::new();
+/// `hidden-effect: 14 stages, 16658 evaluations (3 rejected by the model), 1.5 s, log-evidence -1347.66`.
+pub(super) fn headline(calibration: &FinishedCalibration) -> String {
     let row = &calibration.row;
-    let fit = calibration
-        .estimate
-        .as_ref()
-        .or(calibration.approximated.as_ref());
-    let how = match fit {
+    let how = match fit_of(calibration) {
         Some(estimate) => format!(
             "{} stopped by {}",
             calibration.spec.algorithm.name(),
@@ -48,14 +26,34 @@ fn told(calibration: &FinishedCalibration, compared: &Comparison, table: &str) -
         ),
         None => number::count(calibration.stages.len(), "stage"),
     };
-    let _ = writeln!(
-        text,
-        "{}: {how}, {} ({} rejected by the model), {:.1} s",
+    let rejected = match row.rejected {
+        None | Some(0) => String::new(),
+        Some(n) => format!(" ({n} rejected by the model)"),
+    };
+    let evidence = row.log_evidence.map(|z| format!(", log-evidence {z:.2}"));
+    format!(
+        "{}: {how}, {}{rejected}, {}{}",
         calibration.experiment,
         number::count(row.evaluations.unwrap_or(0) as usize, "evaluation"),
-        row.rejected.unwrap_or(0),
-        row.busy_ms as f64 / 1000.0
-    );
+        number::duration(row.busy_ms as f64 / 1000.0),
+        evidence.unwrap_or_default()
+    )
+}
+
+/// The fit behind a point or a normal approximation.
+fn fit_of(calibration: &FinishedCalibration) -> Option<&EstimateRow> {
+    calibration
+        .estimate
+        .as_ref()
+        .or(calibration.approximated.as_ref())
+}
+
+/// The result of a calibration: model against measurement, errors, parameters, findings, flags.
+pub(super) fn summary(calibration: &FinishedCalibration) -> String {
+    let compared = calibration.comparison();
+    let mut text = headline(calibration) + "\n";
+    let row = &calibration.row;
+    let fit = fit_of(calibration);
     if let Some(metamodel) = &calibration.subchains {
         let _ = writeln!(
             text,
@@ -87,7 +85,9 @@ fn told(calibration: &FinishedCalibration, compared: &Comparison, table: &str) -
         let _ = writeln!(text, "{words}");
     }
     text.push('\n');
-    text.push_str(table);
+    if !calibration.spec.experiment.runs.is_empty() {
+        text.push_str(&comparison(&compared));
+    }
     for error in reading_errors(calibration) {
         let _ = writeln!(text, "{}", error.words());
     }
@@ -95,7 +95,7 @@ fn told(calibration: &FinishedCalibration, compared: &Comparison, table: &str) -
         Some(estimate) => point(calibration, estimate),
         None => parameters(calibration),
     });
-    let diagnostics = calibration.diagnostics(compared);
+    let diagnostics = calibration.diagnostics(&compared);
     for words in [findings(&diagnostics), flags(&diagnostics)] {
         if !words.is_empty() {
             let _ = write!(text, "\n{words}");
@@ -119,8 +119,11 @@ fn point(calibration: &FinishedCalibration, estimate: &EstimateRow) -> String {
             text,
             "{:<width$} {:>10} {:>10}  {:<12} {}{}",
             p.free.name,
-            number::four_digits(p.value),
-            cell(p.sd, number::four_digits),
+            match p.sd {
+                Some(sd) => number::to_spread(p.value, sd),
+                None => number::four_digits(p.value),
+            },
+            cell(p.sd, |sd| number::to_spread(sd, sd)),
             p.free.unit,
             prior(p.free),
             if p.at_bound { "  AT BOUND" } else { "" }
@@ -130,10 +133,11 @@ fn point(calibration: &FinishedCalibration, estimate: &EstimateRow) -> String {
 }
 
 fn prior(free: &FreeParameter) -> String {
+    let sd = free.marginal.sd();
     format!(
         "{} +- {}",
-        number::four_digits(prior_mean(&free.marginal)),
-        number::four_digits(free.marginal.sd())
+        number::to_spread(prior_mean(&free.marginal), sd),
+        number::to_spread(sd, sd)
     )
 }
 
@@ -156,11 +160,11 @@ fn parameters(calibration: &FinishedCalibration) -> String {
         let _ = writeln!(
             text,
             "{name:<width$} {:>10} {:>10} {:>10} {:>10} {:>10}  {:<12} {prior}{bound}",
-            number::four_digits(p.mean),
-            number::four_digits(p.sd),
-            number::four_digits(p.q05),
-            number::four_digits(p.q95),
-            number::four_digits(p.map),
+            number::to_spread(p.mean, p.sd),
+            number::to_spread(p.sd, p.sd),
+            number::to_spread(p.q05, p.sd),
+            number::to_spread(p.q95, p.sd),
+            number::to_spread(p.map, p.sd),
             free.unit
         );
     }

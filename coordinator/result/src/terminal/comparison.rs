@@ -47,7 +47,7 @@ pub fn comparison(comparison: &Comparison) -> String {
 }
 
 /// Errors by channel, and how many measurements lie within their intervals.
-pub(super) fn errors(comparison: &Comparison) -> String {
+fn errors(comparison: &Comparison) -> String {
     let mut text = String::new();
     let _ = writeln!(
         text,

@@ -37,10 +37,11 @@ pub fn diagnostics(diagnostics: &Diagnostics) -> String {
     parts.join("\n")
 }
 
-/// The findings, a line each.
+/// The findings that no flag repeats, a line each.
 pub(crate) fn findings(diagnostics: &Diagnostics) -> String {
-    let lines = diagnostics.findings.iter().map(|words| format!("{words}\n"));
-    lines.collect()
+    let is_flag = |words: &&String| diagnostics.flags.iter().any(|flag| flag.text.ends_with(*words));
+    let lines = diagnostics.findings.iter().filter(|words| !is_flag(words));
+    lines.map(|words| format!("{words}\n")).collect()
 }
 
 /// The flags, a line each.

@@ -7,31 +7,13 @@ use std::path::Path;
 use record::{ChiSquare, Discovery, JudgedSet};
 
 use super::column::{cell, width};
-use super::ledger::ledger;
 use crate::discovery::{arguments, effect_file, numerical_noise, word};
-use crate::study::Study;
 use crate::words::probability::p_words;
 
 /// Most explanations that are shown.
 const SHOWN: usize = 8;
 /// Most names in a list of effects.
 const LISTED: usize = 20;
-
-/// The searches of a study with their results, and its error ledger.
-pub fn story(study: &Study) -> String {
-    let mut text = String::new();
-    for round in &study.rounds {
-        let searched = study.calibrations().find(|c| c.row.id == round.calibration);
-        let freed = searched.map_or(Vec::new(), |searched| study.freed(searched));
-        let given = [round.record.given.as_slice(), &freed].concat();
-        let given = match given.as_slice() {
-            [] => "the model as it is".to_owned(),
-            given => format!("with {}", given.join(", ")),
-        };
-        let _ = writeln!(text, "search, {given}: {}", round.record.text);
-    }
-    text + &ledger(study)
-}
 
 /// The result of a search, and the command that adds it to the model.
 ///

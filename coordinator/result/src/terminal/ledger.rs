@@ -5,13 +5,16 @@ use std::fmt::Write;
 use shared::channel::Channel;
 use shared::experiment::RunUse;
 
-use super::column::cell;
+use super::column::{cell, labelled};
 use crate::study::Study;
-use crate::table::ledger::{LedgerLine, LedgerRow};
+use crate::table::errors::ErrorTable;
+use crate::table::ledger::LedgerRow;
 use crate::words::data_channel::{ShownUnit, short_name};
 
 /// Least width of the column of models.
-const MODEL: usize = 24;
+const MODEL: usize = 20;
+/// The line of what no model predicts.
+const INTERPOLATION: &str = "interpolation";
 
 /// The ledger of a study, with a line on the noise that errors are measured by; nothing without a calibration in it.
 pub(super) fn ledger(study: &Study) -> String {
@@ -28,47 +31,61 @@ pub(super) fn ledger(study: &Study) -> String {
         .iter()
         .map(|line| line.model.chars().count())
         .fold(MODEL, usize::max);
-    let mut text = format!("\n{:<width$} {:<8}", "error ledger", "runs");
+    let mut text = format!("\n{:<width$} {:<8}", "root mean sq. error", "runs");
     for &channel in &channels {
         let unit = ShownUnit::of(channel);
-        let _ = write!(text, " {:>14}", format!("{} {}", short_name(channel), unit.name));
+        let _ = write!(text, " {:>10}", format!("{} {}", short_name(channel), unit.name));
     }
-    let _ = writeln!(text, " {:>10} {:>9} {:>12}", "noise sds", "inside", "ln evidence");
+    let _ = writeln!(text, " {:>7} {:>9}", "x noise", "inside");
     for line in &lines {
         for (i, row) in line.rows.iter().enumerate() {
-            let _ = writeln!(text, "{}", ledger_row(line, row, i == 0, &channels, width));
+            let model = if i == 0 { line.model.as_str() } else { "" };
+            let _ = writeln!(text, "{model:<width$} {}", ledger_row(row, &channels));
         }
     }
-    let _ = writeln!(
-        text,
-        "root mean square errors; noise sds, equal for all lines: {}",
-        study.fixed_sigmas().words()
-    );
+    let interpolated = lines
+        .last()
+        .and_then(|line| line.calibration.comparison().baseline_holdout);
+    if let Some(errors) = interpolated {
+        let cells = cells(&errors, &channels, &[]);
+        let _ = writeln!(
+            text,
+            "{INTERPOLATION:<width$} {:<8}{cells}",
+            usage(RunUse::Holdout)
+        );
+    }
+    text += &labelled("noise:", &study.fixed_sigmas().words());
+    if lines
+        .iter()
+        .flat_map(|line| &line.rows)
+        .any(|row| !row.worse.is_empty())
+    {
+        let _ = writeln!(text, "*: worse than in the model above");
+    }
     text
 }
 
-fn ledger_row(line: &LedgerLine, row: &LedgerRow, first: bool, channels: &[Channel], width: usize) -> String {
-    let usage = match row.usage {
+fn usage(usage: RunUse) -> &'static str {
+    match usage {
         RunUse::Fit => "fit",
         RunUse::Holdout => "held out",
-    };
-    let mut text = format!("{:<width$} {usage:<8}", if first { &line.model } else { "" });
-    for channel in channels {
-        let error = cell(row.errors.channel(*channel), |error| {
-            let mark = if row.worse.contains(channel) { "worse " } else { "" };
-            format!("{mark}{:.2}", error.rmse * ShownUnit::of(*channel).factor)
-        });
-        let _ = write!(text, " {error:>14}");
     }
+}
+
+fn ledger_row(row: &LedgerRow, channels: &[Channel]) -> String {
     let sigmas = cell(row.errors.all.rmse_fixed_sigma, |s| format!("{s:.2}"));
     let inside = cell(row.coverage.as_ref(), |c| format!("{} of {}", c.inside, c.of));
-    let evidence = match (first, line.calibration.row.log_evidence) {
-        (true, Some(z)) => format!("{z:.2}"),
-        _ => String::new(),
-    };
-    let _ = write!(text, " {sigmas:>10} {inside:>9} {evidence:>12}");
-    if first && line.calibration.approximated.is_some() {
-        text.push_str("  normal approximation");
-    }
-    text.trim_end().to_owned()
+    let cells = cells(&row.errors, channels, &row.worse);
+    format!("{:<8}{cells} {sigmas:>7} {inside:>9}", usage(row.usage))
+}
+
+fn cells(errors: &ErrorTable, channels: &[Channel], worse: &[Channel]) -> String {
+    let cells = channels.iter().map(|channel| {
+        let error = cell(errors.channel(*channel), |error| {
+            let mark = if worse.contains(channel) { "*" } else { "" };
+            format!("{mark}{:.2}", error.rmse * ShownUnit::of(*channel).factor)
+        });
+        format!(" {error:>10}")
+    });
+    cells.collect()
 }

@@ -2,11 +2,12 @@
 //!
 //! # Layout
 //! - `specification`: a job before it runs. `status`: states of calibrations.
-//! - `study`: the results of a study; `calibration`: of one calibration; `comparison`: its errors.
-//! - `ledger`: the errors of a study's calibrations.
+//! - `brief`: a study in a few lines; `story`: its three last. `ledger`: the errors of its calibrations.
+//! - `study`: the tables of a study; `calibration`: of one calibration; `comparison`: its errors.
 //! - `diagnostics`: how far a result can be trusted. [`discovery`]: a search for a missing effect.
 //! - `column`: widths and cells of columns.
 
+mod brief;
 mod calibration;
 mod column;
 mod comparison;
@@ -15,10 +16,13 @@ pub mod discovery;
 mod ledger;
 mod specification;
 mod status;
+mod story;
 mod study;
 
+pub use brief::brief;
 pub use comparison::{comparison, groups};
 pub use diagnostics::diagnostics;
 pub use specification::specification;
 pub use status::status_table;
+pub use story::story;
 pub use study::study;

@@ -1,0 +1,79 @@
+//! The three last lines of a study: what is wrong, what is missing, what to do next.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::column::{LABEL, labelled};
+use crate::story::{NextStep, Story};
+
+/// Most steps.
+const STEPS: usize = 3;
+
+/// The story, with the commands of its steps.
+///
+/// # Arguments
+/// - `place`: the argument that locates the study. `folder`: of effect files.
+pub fn story(story: &Story, place: &str, folder: &Path) -> String {
+    let mut text = labelled("wrong:", &story.wrong.text) + &labelled("missing:", &story.missing.text);
+    for (number, step) in story.next.steps.iter().take(STEPS).enumerate() {
+        let label = if number == 0 { "next:" } else { "  then:" };
+        text += &labelled(label, &step.text);
+        if let Some(command) = command(step, folder) {
+            let _ = writeln!(text, "{:LABEL$}  coordinator {command} {place}", "");
+        }
+    }
+    text
+}
+
+/// The command of a step, its effect file in the folder.
+fn command(step: &NextStep, folder: &Path) -> Option<String> {
+    let command = step.command.clone()?;
+    Some(match &step.effect_file {
+        Some(file) => command.replace(&file.name, &folder.join(&file.name).display().to_string()),
+        None => command,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use record::Extension;
+
+    use super::*;
+    use crate::fixture;
+    use crate::study::Study;
+
+    /// A searched study that was not extended.
+    fn searched() -> Study {
+        let mut study = fixture::grown();
+        study.extensions.clear();
+        study
+    }
+
+    fn printed(study: &Study) -> String {
+        story(&Story::current(study), "--out out/sand", Path::new("out/sand"))
+    }
+
+    #[test]
+    fn the_three_lines_stand_in_order_and_fit_the_terminal() {
+        let text = printed(&searched());
+        let place = |words: &str| text.find(words).unwrap_or_else(|| panic!("{words} in\n{text}"));
+        assert!(place("wrong:") < place("\nmissing:") && place("\nmissing:") < place("\nnext:"));
+        assert!(text.contains("coordinator extend 1 --effect slip_sinkage --out out/sand"));
+        let sentences = text.lines().filter(|line| !line.contains("coordinator "));
+        for line in sentences {
+            assert!(line.chars().count() <= 80, "{line}");
+        }
+    }
+
+    #[test]
+    fn an_effect_file_is_named_by_its_path() {
+        let mut study = searched();
+        study.rounds[0].record.extension = Some(Extension::File {
+            name: "anything.toml".into(),
+            text: "name = \"shear_slip_step\"\n".into(),
+        });
+        let text = printed(&study);
+        let command = "extend 1 --effect-file out/sand/shear_slip_step.toml --out out/sand";
+        assert!(text.contains(command), "{text}");
+    }
+}
