@@ -88,8 +88,8 @@ function picture({ width, layers, found, axis, quantity, channel }) {
     y: { label: titled(words(channel), quantity.unit), labelArrow: "none", nice: true },
     marks: [
       ...marks,
-      ...dots(measured.filter((r) => r.use !== "holdout"), (c) => ({ fill: c, stroke: "var(--paper)", strokeWidth: 0.7 })),
-      ...dots(measured.filter((r) => r.use === "holdout"), (c) => ({ fill: "var(--paper)", stroke: c, strokeWidth: 1.8 })),
+      ...dots(measured.filter((r) => r.use !== "holdout"), (/** @type {string} */ c) => ({ fill: c, stroke: "var(--paper)", strokeWidth: 0.7 })),
+      ...dots(measured.filter((r) => r.use === "holdout"), (/** @type {string} */ c) => ({ fill: "var(--paper)", stroke: c, strokeWidth: 1.8 })),
       Plot.tip(measured, Plot.pointer({ x, y: value("measured"), title: tip, maxRadius: 14, fill: "var(--panel)", stroke: "var(--rule)" })),
     ],
   });

@@ -19,7 +19,7 @@ export function InformationMap({ record, name }) {
       width, height: 210, marginTop: 26, marginLeft: 60, marginBottom: 40, style: STYLE,
       x: { label: "slip", labelArrow: "none", labelAnchor: "center", type: "band", tickFormat: (/** @type {number} */ v) => minus(v) },
       y: { label: "wheel load [N]", labelArrow: "none", type: "band", reverse: true },
-      color: { type: "linear", domain: [0, most], range: ["var(--panel)", "var(--accent)"], interpolate: (/** @type {string} */ a, /** @type {string} */ b) => (/** @type {number} */ t) => `color-mix(in srgb, ${b} ${(100 * t).toFixed(1)}%, ${a})` },
+      color: { type: "linear", domain: [0, most], range: ["var(--panel)", "var(--accent)"], interpolate: /** @type {any} */ ((/** @type {string} */ a, /** @type {string} */ b) => (/** @type {number} */ t) => `color-mix(in srgb, ${b} ${(100 * t).toFixed(1)}%, ${a})`) },
       marks: [
         Plot.cell(own, { x: "slip", y: "wheel_load_n", fill: "nats", inset: 0.5, title: (/** @type {any} */ r) => `${digits(r.nats, 2)} nats at slip ${minus(r.slip)}, ${r.wheel_load_n} N, ${digits(1000 * r.sled_speed_m_s, 2)} mm/s` }),
         Plot.dot(next, { x: "slip", y: "wheel_load_n", r: 10, fill: "var(--paper)", stroke: "currentColor" }),

@@ -12,7 +12,7 @@ function regions(/** @type {any} */ pair, /** @type {(v: number) => number} */ x
   const geometry = d3.contours().size([xs.length, ys.length]);
   const at = (/** @type {number[]} */ of, /** @type {number} */ k) => of[0] + ((k - 0.5) * (of[of.length - 1] - of[0])) / (of.length - 1);
   const values = pair.density.flat();
-  return pair.contours.map(({ density }) => geometry.contour(values, density).coordinates.flat().map((ring) =>
+  return pair.contours.map((/** @type {{ density: number }} */ { density }) => geometry.contour(values, density).coordinates.flat().map((ring) =>
     `M${ring.map(([i, j]) => (isTurned ? [x(at(ys, j)), y(at(xs, i))] : [x(at(xs, i)), y(at(ys, j))]).map((v) => v.toFixed(1)).join(",")).join("L")}Z`).join(""));
 }
 
@@ -39,7 +39,7 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
         const pair = pairs.find((p) => [column.name, row.name].every((n) => p.parameters.some((/** @type {any} */ q) => q.name === n)));
         if (!pair) return;
         const y = (/** @type {number} */ v) => SIDE - scale(row)(v);
-        regions(pair, x, y, pair.parameters[0].name !== column.name).forEach((d) => cell.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"));
+        regions(pair, x, y, pair.parameters[0].name !== column.name).forEach((/** @type {string} */ d) => cell.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"));
         cell.style("cursor", "pointer").on("click", () => onCell(pair));
       }
       const label = (/** @type {any} */ m) => (parameterName(m.name).length > 17 ? `${parameterName(m.name).slice(0, 16)}…` : parameterName(m.name));
@@ -74,7 +74,7 @@ export function JointPicture({ pair }) {
       x: { label: titled(parameterName(a.name), a.unit), domain: domain(0, a.scale) }, y: { label: titled(parameterName(b.name), b.unit), domain: domain(1, b.scale) },
       marks: [
         (/** @type {any} */ _, /** @type {any} */ scales) => /** @type {any} */ (d3.create("svg:g").call((g) => regions(pair, (v) => scales.x(v * a.scale), (v) => scales.y(v * b.scale))
-          .forEach((d) => g.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"))).node()),
+          .forEach((/** @type {string} */ d) => g.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"))).node()),
         ...pair.lines.map((/** @type {any} */ l) => Plot.line(l.points, { x: (p) => p[0] * a.scale, y: (p) => p[1] * b.scale, stroke: "var(--reference)", strokeDasharray: "6 4" })),
         ...pair.marks.map(mark),
       ],

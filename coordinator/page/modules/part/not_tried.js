@@ -12,7 +12,7 @@ export function NotTried({ record }) {
   /** @type {Map<string, { names: string[], why: string, needs: string }>} */
   const untried = new Map();
   for (const { name, why, needs } of record.not_tried) {
-    const same = untried.get(`${why} ${needs}`) ?? { names: [], why, needs };
+    const same = untried.get(`${why} ${needs}`) ?? { names: /** @type {string[]} */ ([]), why, needs };
     same.names.push(name);
     untried.set(`${why} ${needs}`, same);
   }

@@ -34,7 +34,10 @@ export function Errors({ study, model }) {
     ${axis && html`<${AxisPicker} axes=${axes} axis=${axis} choose=${setKey} /><${ChannelCharts} layers=${layers} axis=${axis} name=${`${study.name}-layers`} />`}`;
 }
 
-/** The lines of the ledger with their names and colours. */
+/**
+ * The lines of the ledger with their names and colours.
+ * @returns {{ id: number, name: string, colour: string, line: any }[]}
+ */
 export function ledgerLines(/** @type {any} */ study) {
   return study.ledger.map((/** @type {any} */ line, /** @type {number} */ k) => {
     const member = study.members.find((/** @type {any} */ m) => m.id === line.calibration);

@@ -70,7 +70,7 @@ function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { r
     width, height: 96 + 30 * new Set(judged.map((r) => r.channel)).size, marginLeft: 92, marginBottom: runs.length > MOST_NAMES ? 26 : 66, style: STYLE,
     x: { domain: runs, label: runs.length > MOST_NAMES ? "runs" : null, tickRotate: -60, tickSize: 0, ...(runs.length > MOST_NAMES ? { ticks: [] } : {}) },
     y: { domain: CHANNELS.filter((c) => judged.some((r) => r.channel === c)), label: null, tickFormat: short, tickSize: 0 },
-    color: { type: "linear", domain: [-MOST_SDS, 0, MOST_SDS], range: RESIDUAL_RANGE, clamp: true, interpolate: mix },
+    color: { type: "linear", domain: [-MOST_SDS, 0, MOST_SDS], range: RESIDUAL_RANGE, clamp: true, interpolate: /** @type {any} */ (mix) },
     marks: [
       Plot.cell(judged, byRun(judged, { x: "run", y: "channel", fill: "residual_sigma", inset: runs.length > 200 ? 0 : 0.5 })),
       Plot.dot(judged.filter((r) => r.use === "holdout"), { x: "run", y: "channel", r: runs.length > MOST_NAMES ? 1 : 2, fill: "var(--ink)", className: "held" }),

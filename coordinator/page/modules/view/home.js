@@ -10,8 +10,8 @@ import { useAnswer } from "../rest/use_answer.js";
 const LOOK_MS = 2000;
 
 export function Home() {
-  const studies = useAnswer(path.studies, { everyMs: LOOK_MS });
-  const workers = useAnswer(path.workers, { everyMs: LOOK_MS });
+  const studies = useAnswer(path.studies, { everyMs: () => LOOK_MS });
+  const workers = useAnswer(path.workers, { everyMs: () => LOOK_MS });
   return html`
     <div class="actions heading">
       <h1>Studies</h1>
