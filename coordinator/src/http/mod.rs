@@ -32,6 +32,7 @@ use axum::http::header::CONTENT_TYPE;
 use axum::routing::get;
 use tokio::net::TcpListener;
 use tokio_rustls::TlsAcceptor;
+use tower_http::compression::CompressionLayer;
 use utoipa_axum::router::OpenApiRouter;
 
 use crate::service::Service;
@@ -89,6 +90,8 @@ fn router(service: Service, gate: Gate) -> Router {
         .route("/openapi.json", document)
         .fallback(error::no_route)
         .method_not_allowed_fallback(error::no_method)
+        // Whoever asks for it is answered compressed: browsers do, workers do not.
+        .layer(CompressionLayer::new())
         // The gate bounds bodies, by route.
         .layer(DefaultBodyLimit::disable())
         .layer(axum::middleware::from_fn_with_state(gate, gate::pass))
