@@ -58,7 +58,7 @@ pub fn report(report: &Report) -> String {
         format!("<script>{}</script>", text("vendor/d3.js")),
         format!("<script>{}</script>", text("vendor/plot.js")),
         format!("<script type=\"module\">import \"{PREFIX}modules/report.js\";</script>"),
-        "</body>\n</html>\n".to_owned(),
+        "</body>\n</html>".to_owned(),
     ];
     for part in parts {
         let _ = writeln!(page, "{part}");

@@ -15,6 +15,7 @@ use shared::outcome::Observables;
 use crate::discovery::DiscoveryRound;
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
+use crate::study_member::{MemberKind, StudyMember};
 
 const JOB: &str = r#"
 # <i>bold & brave</i>
@@ -173,7 +174,21 @@ pub(crate) fn grown() -> Study {
         curve: vec![[0.0, 1.0], [0.3, 1.0], [0.31, 1.2], [0.6, 1.2]],
         left_out_nats: [8.0, 3.0],
     });
+    let member = |id: i64, kind: MemberKind, searches: Option<i64>| StudyMember {
+        id,
+        name: format!("member {id}"),
+        state: CalibrationState::Finished,
+        kind,
+        effects: Vec::new(),
+        searches,
+        message: None,
+    };
     Study {
+        members: vec![
+            member(1, MemberKind::Sample, None),
+            member(2, MemberKind::Search, Some(1)),
+            member(3, MemberKind::Sample, None),
+        ],
         extensions: vec![extension],
         rounds: vec![DiscoveryRound {
             calibration: 1,

@@ -38,7 +38,7 @@ mod words;
 
 pub use diagnostics::Diagnostics;
 pub use discovery::{DiscoveryRound, DiscoverySummary};
-pub use figure::{CalibrationFigures, ChannelHistory, MeasuredSeries, ModelSeries, StudyFigures};
+pub use figure::{CalibrationFigures, ChannelHistory, MeasuredSeries, ModelSeries};
 pub use finished_calibration::{FinishedCalibration, first_population, likeliest};
 pub use flag::kind::{Flag, FlagKind};
 pub use flag::model_limit::model_limits;

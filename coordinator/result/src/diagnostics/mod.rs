@@ -5,8 +5,7 @@
 //! - `sampler`: stages, equilibrium, effective sample size.
 //! - `channels`: information of each channel, its misfit, coverage of its intervals.
 //! - `residuals`: every fitted measurement beside its prediction. `trends`: whether they follow a condition of the runs.
-//! - `parameters`: contraction, bounds, conflict with the prior. `directions`: combinations of parameters;
-//!   `correlated_pair`: strongly correlated pairs.
+//! - `parameters`: contraction, bounds, conflict with the prior. `directions`: combinations of parameters.
 //! - `rejections`: rejections and faults by region of the prior.
 //! - `verification`: how many results a second worker has computed as well.
 //! - `data_channel`: channels and runs of the fitted data.
@@ -16,7 +15,6 @@
 
 pub(crate) mod calibration;
 pub(crate) mod channels;
-pub(crate) mod correlated_pair;
 pub(crate) mod data_channel;
 pub(crate) mod directions;
 pub(crate) mod parameters;

@@ -1,4 +1,4 @@
-//! All figures of a study.
+//! All figures of a calibration.
 
 use super::convergence::{self, Populations, SearchConvergence, StageConvergence};
 use super::error::{self, ErrorDensity};
@@ -7,25 +7,6 @@ use super::marginal::{self, MarginalDensity};
 use super::posterior::{self, JointPosterior};
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
-
-/// The numbers of a study's figures.
-#[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
-pub struct StudyFigures {
-    /// Name of the experiment.
-    pub experiment: String,
-    /// Convergence of the searches by generations.
-    pub searches: Vec<SearchConvergence>,
-    /// The stages of the sampler, from the prior on; empty without a sample.
-    pub stages: Vec<StageConvergence>,
-    /// The populations of some stages in two parameters; null without a sample, or of one parameter.
-    pub populations: Option<Populations>,
-    /// Joint posterior densities.
-    pub posteriors: Vec<JointPosterior>,
-    /// Measurement and model over time; null of a model without time.
-    pub histories: Option<Vec<ChannelHistory>>,
-    /// Prediction errors over the posterior, by channel.
-    pub errors: Vec<ErrorDensity>,
-}
 
 /// The numbers of a calibration's figures.
 #[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
@@ -48,35 +29,7 @@ pub struct CalibrationFigures {
     pub errors: Vec<ErrorDensity>,
 }
 
-impl StudyFigures {
-    /// Whether there is no figure.
-    pub fn is_empty(&self) -> bool {
-        // populations stand beside stages
-        self.searches.is_empty()
-            && self.stages.is_empty()
-            && self.posteriors.is_empty()
-            && self.histories.is_none()
-            && self.errors.is_empty()
-    }
-}
-
 impl Study {
-    /// The figures of the first sample and of its point estimates.
-    pub fn figures(&self) -> StudyFigures {
-        let sample = self
-            .submitted()
-            .find(|calibration| calibration.estimate.is_none());
-        StudyFigures {
-            experiment: self.lead.experiment.clone(),
-            searches: self.submitted().filter_map(convergence::search).collect(),
-            stages: sample.map(convergence::stages).unwrap_or_default(),
-            populations: sample.and_then(convergence::populations),
-            posteriors: sample.map(|s| posterior::of_paper(self, s)).unwrap_or_default(),
-            histories: history::all(self),
-            errors: sample.map(|s| error::all(self, s)).unwrap_or_default(),
-        }
-    }
-
     /// The figures of one calibration of the study. The point estimates of the study are marks on those of the submitted model alone:
     /// another model has other parameters.
     pub fn figures_of(&self, calibration: &FinishedCalibration) -> CalibrationFigures {
@@ -95,7 +48,10 @@ impl Study {
             populations: sample.and_then(convergence::populations),
             marginals: sample.map(marginal::all).unwrap_or_default(),
             posteriors: sample.map(|s| posterior::all(self, s)).unwrap_or_default(),
-            histories: calibration.histories(),
+            histories: match is_submitted {
+                true => history::all(self),
+                false => calibration.histories(),
+            },
             errors: sample.map(|s| error::all(self, s)).unwrap_or_default(),
         }
     }
@@ -107,21 +63,13 @@ mod tests {
     use crate::fixture;
 
     #[test]
-    fn a_study_has_every_figure_that_its_calibrations_allow() {
-        let figures = fixture::study().figures();
-        assert_eq!(figures.searches.len(), 1);
-        assert_eq!(figures.stages.len(), 4);
-        assert!(figures.populations.is_some());
-        let pairs: Vec<[&str; 2]> = figures
-            .posteriors
-            .iter()
-            .map(|p| [p.parameters[0].name.as_str(), p.parameters[1].name.as_str()])
-            .collect();
-        assert_eq!(pairs[0], ["n", "friction_angle_deg"]);
+    fn a_sample_has_every_figure_that_it_allows() {
+        let study = fixture::study();
+        let figures = study.figures_of(&study.lead);
+        assert_eq!((figures.searches.len(), figures.stages.len()), (1, 4));
+        assert!(figures.populations.is_some() && figures.histories.is_none());
         let channels: Vec<&str> = figures.errors.iter().map(|e| e.channel.name()).collect();
         assert_eq!(channels, ["drawbar_pull", "sinkage"]);
-        assert!(figures.histories.is_none() && !figures.is_empty());
-        assert!(Study::from(fixture::fit()).figures().is_empty());
     }
 
     #[test]
@@ -139,7 +87,8 @@ mod tests {
 
     #[test]
     fn a_fit_alone_has_no_densities() {
-        let figures = Study::from(fixture::search()).figures();
+        let study = Study::from(fixture::search());
+        let figures = study.figures_of(&study.lead);
         assert_eq!(figures.searches.len(), 1);
         assert!(figures.posteriors.is_empty() && figures.errors.is_empty() && figures.stages.is_empty());
     }
@@ -151,7 +100,7 @@ mod tests {
             Study::from(fixture::all_rejected()),
             Study::from(fixture::fit()),
         ] {
-            let json = serde_json::to_value(study.figures()).unwrap();
+            let json = serde_json::to_value(study.figures_of(&study.lead)).unwrap();
             // serde_json writes null where a number is none: only these may be null.
             let mut nulls = Vec::new();
             find_nulls("", &json, &mut nulls);
@@ -159,6 +108,8 @@ mod tests {
                 "/histories",
                 "/populations",
                 "/mean",
+                "/reference",
+                "/bounds",
                 "/log_likelihood",
                 "/at/x",
                 "/at/y",

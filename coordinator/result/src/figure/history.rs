@@ -35,6 +35,8 @@ pub struct MeasuredSeries {
     pub value: Vec<f64>,
     /// Before it [channel's unit].
     pub raw: Vec<f64>,
+    /// The part that the protocol averages `[s]`.
+    pub window_s: [f64; 2],
 }
 
 /// The simulated history at one parameter vector.
@@ -106,6 +108,7 @@ fn measured(history: &MeasuredHistory, channel: Channel) -> Option<MeasuredSerie
         t_s: ends(recorded.raw.len(), history.interval_s),
         value: recorded.filtered.clone(),
         raw: recorded.raw.clone(),
+        window_s: [history.transient_s, history.transient_s + recorded.covered_s],
     })
 }
 

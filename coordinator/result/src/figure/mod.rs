@@ -26,7 +26,7 @@ mod thinned;
 pub use axis_parameter::AxisParameter;
 pub use convergence::{Populations, SearchConvergence, StageConvergence};
 pub use error::ErrorDensity;
-pub use figures::{CalibrationFigures, StudyFigures};
+pub use figures::CalibrationFigures;
 pub use history::{ChannelHistory, MeasuredSeries, ModelSeries};
 pub use marginal::MarginalDensity;
 pub use mark::{Mark, MarkKind, PlanePoint};

@@ -8,7 +8,6 @@ use super::axis_parameter::AxisParameter;
 use super::mark::{Mark, MarkKind, PlanePoint};
 use super::reference;
 use super::thinned::{five_digits, thinned_draws};
-use crate::diagnostics::correlated_pair::most_correlated;
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 use crate::words::number;
@@ -19,9 +18,7 @@ const PAPER: [[&str; 2]; 3] = [
     ["n", "friction_angle_deg"],
     ["n", "wheel_radius_m"],
 ];
-/// Points of the grid along each axis: of few pairs, of all pairs.
-const GRID: usize = 48;
-const SMALL_GRID: usize = 32;
+const GRID: usize = 32;
 /// Most pairs of all: those of ten parameters.
 const PAIRS: usize = 45;
 /// Shares of the posterior that the contours enclose.
@@ -72,24 +69,6 @@ pub struct LabelledLine {
     pub points: [[f64; 2]; 2],
 }
 
-/// The source paper's pairs that the job has; with parameters beyond those of the paper, the most correlated pairs
-/// that one of them is in. Pairs whose draws lie on a line have no density and are left out.
-pub(super) fn of_paper(study: &Study, sample: &FinishedCalibration) -> Vec<JointPosterior> {
-    let free = &sample.spec.parameters;
-    let draws: Vec<Vec<f64>> = (0..free.len()).map(|i| sample.draws(i)).collect();
-    let place = |name: &str| free.iter().position(|p| p.name == name);
-    let of_paper = PAPER.iter().filter_map(|[x, y]| Some([place(x)?, place(y)?]));
-    let mut pairs: Vec<[usize; 2]> = of_paper.collect();
-    let known = |i: usize| PAPER.as_flattened().contains(&free[i].name.as_str());
-    let others = most_correlated(&draws).into_iter().map(|(i, j, _)| [i, j]);
-    pairs.extend(others.filter(|[i, j]| !known(*i) || !known(*j)));
-    let reference = reference::values(&sample.spec);
-    pairs
-        .into_iter()
-        .filter_map(|pair| posterior(study, sample, &draws, pair, &reference, GRID))
-        .collect()
-}
-
 /// All pairs of parameters in the order of the job; where those are more than [`PAIRS`], the most correlated. Estimated from a part of
 /// many draws, so that the cost has a bound. Pairs whose draws lie on a line have no density and are left out.
 pub(super) fn all(study: &Study, sample: &FinishedCalibration) -> Vec<JointPosterior> {
@@ -102,7 +81,7 @@ pub(super) fn all(study: &Study, sample: &FinishedCalibration) -> Vec<JointPoste
     pairs.truncate(PAIRS);
     pairs.sort_by_key(|(pair, _)| *pair);
     let reference = reference::values(&sample.spec);
-    let joint = |(pair, _)| posterior(study, sample, &draws, pair, &reference, SMALL_GRID);
+    let joint = |(pair, _)| posterior(study, sample, &draws, pair, &reference);
     pairs
         .into_iter()
         .filter_map(joint)
@@ -135,16 +114,15 @@ fn posterior(
     draws: &[Vec<f64>],
     pair: [usize; 2],
     reference: &BTreeMap<String, f64>,
-    points: usize,
 ) -> Option<JointPosterior> {
     let parameters = pair.map(|i| &sample.spec.parameters[i]);
     let values = pair.map(|i| draws[i].as_slice());
     let support = parameters.map(|p| p.marginal.support());
     let ends = [0, 1].map(|i| ends(values[i], support[i]));
     let grid = ends.map(|[low, high]| -> Vec<f64> {
-        let step = (high - low) / (points - 1) as f64;
+        let step = (high - low) / (GRID - 1) as f64;
         // the last point to the bit: a step beyond a bound there would be no density
-        let inner = (0..points - 1).map(|k| low + step * k as f64);
+        let inner = (0..GRID - 1).map(|k| low + step * k as f64);
         inner.chain(std::iter::once(high)).collect()
     });
     let density = diagnostics::joint_density(values, support, [&grid[0], &grid[1]])?;
@@ -168,7 +146,7 @@ fn posterior(
         draws: values[0].len(),
         range,
         density: density
-            .chunks(points)
+            .chunks(GRID)
             .map(|row| row.iter().map(|f| round(f / highest)).collect())
             .collect(),
         grid,
@@ -284,8 +262,10 @@ mod tests {
     fn marks_carry_what_is_known_and_the_range_holds_them() {
         let mut study = fixture::study();
         study.lead.spec.reference = BTreeMap::from([("friction_angle_deg".to_owned(), 50.0)]);
-        let figures = study.figures();
-        let pair = &figures.posteriors[0];
+        let pairs = all(&study, &study.lead);
+        let is_paper_s =
+            |pair: &&JointPosterior| pair.parameters.each_ref().map(|p| p.name.as_str()) == PAPER[1];
+        let pair = pairs.iter().find(is_paper_s).expect("the job has both");
         let kinds: Vec<MarkKind> = pair.marks.iter().map(|m| m.kind).collect();
         let all = [
             MarkKind::MaximumLikelihood,
