@@ -163,14 +163,25 @@ impl Reader {
         Ok(counts.fetch_one(&self.pool).await?)
     }
 
-    /// How far the results of a calibration are verified. Of a store of before migration 18, which only reading leaves as it is,
-    /// nothing is known.
+    /// How far the results of a calibration are verified. In a store of before migration 18, which only reading leaves as it is, none
+    /// is.
     ///
     /// # Errors
     /// [`StoreError`].
     pub async fn verified(&self, calibration: i64) -> Result<Verified, StoreError> {
         if !self.has_table("quarantine").await? {
-            return Ok(Verified::default());
+            // Written before results were verified.
+            let (results, workers): (i64, i64) = sqlx::query_as(
+                "SELECT count(*), count(DISTINCT worker) FROM evaluations WHERE calibration = ? AND worker <> ''",
+            )
+            .bind(calibration)
+            .fetch_one(&self.pool)
+            .await?;
+            return Ok(Verified {
+                results: results.unsigned_abs(),
+                workers: workers.unsigned_abs(),
+                ..Verified::default()
+            });
         }
         let (results, confirmed, workers): (i64, i64, i64) = sqlx::query_as(
             "SELECT count(*), count(nullif(confirmed_by, '')), count(DISTINCT worker) FROM evaluations

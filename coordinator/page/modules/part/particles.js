@@ -1,11 +1,11 @@
 // The particles of a stage in two parameters, and a scrubber through the stages.
 
 import { Figure, fileName } from "../chart/figure.js";
-import { Plot } from "../chart/library.js";
+import { Plot, STYLE } from "../chart/library.js";
 import { html, useEffect, useState } from "../html.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { digits, parameterName } from "../words/quantity.js";
+import { digits, parameterName, parameterTitle } from "../words/quantity.js";
 import { Pending } from "./message.js";
 
 const FRAME_MS = 700;
@@ -46,7 +46,8 @@ export function Particles({ id, stages }) {
     ${now.length + early.length > 0 && html`<${Figure} title=${`Particles in ${parameterName(names[chosen[0]])} and ${parameterName(names[chosen[1]])}`} note="grey: stage 1, close to the prior"
       name=${fileName("particles", id, names[chosen[0]], names[chosen[1]])} deps=${[answer, first.answer, ...chosen]} rows=${() => now}
       draw=${(/** @type {number} */ width) => Plot.plot({
-        width: Math.min(width, 640), height: 380, marginLeft: 64, grid: true, x: { label: names[chosen[0]] }, y: { label: names[chosen[1]] },
+        width: Math.min(width, 640), height: 380, marginTop: 26, marginLeft: 64, marginBottom: 40, grid: true, style: STYLE,
+        x: { label: parameterTitle(names[chosen[0]]), labelArrow: "none", labelAnchor: "center" }, y: { label: parameterTitle(names[chosen[1]]), labelArrow: "none" },
         marks: [Plot.dot(early, { x: "x", y: "y", r: 1.6, fill: "var(--rule)" }), Plot.dot(now, { x: "x", y: "y", r: 2, fill: "var(--series-0)", fillOpacity: 0.6 })],
       })} />`}`;
 }

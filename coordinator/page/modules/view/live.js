@@ -4,6 +4,7 @@ import { html, useEffect, useState } from "../html.js";
 import { Controls } from "../part/controls.js";
 import { Failure } from "../part/message.js";
 import { Particles } from "../part/particles.js";
+import { Populations } from "../part/populations.js";
 import { StageCharts } from "../part/stage_charts.js";
 import { Table } from "../part/table.js";
 import { isReport } from "../rest/answers.js";
@@ -70,6 +71,6 @@ function Member(/** @type {{ member: any, reload: () => void }} */ { member, rel
     ${member.kind === "search"
       ? html`<p class="empty">A search fits each candidate effect; its result is in the view Missing effect.</p>`
       : stages.length > 0
-        ? html`<${StageCharts} stages=${stages} name=${member.name} /><${Particles} id=${member.id} stages=${stages} />`
+        ? html`<${StageCharts} stages=${stages} name=${member.name} /><${isReport ? Populations : Particles} id=${member.id} stages=${stages} />`
         : html`<p class="empty">${isOver ? "This calibration has no stages: it is a fit, or it ended before its first stage." : "The first stage draws from the prior; pictures come with its end."}</p>`}`;
 }

@@ -1,12 +1,13 @@
 // The parameters of a model: their marginal and joint posteriors, with the priors under them.
 
 import { Figure, fileName } from "../chart/figure.js";
-import { Plot } from "../chart/library.js";
+import { Plot, STYLE } from "../chart/library.js";
 import { csv, save } from "../chart/download.js";
 import { JointPicture, PairPlot } from "../chart/pairs.js";
 import { html, useState } from "../html.js";
 import { Failure, Pending } from "../part/message.js";
 import { ParameterTable } from "../part/parameter_table.js";
+import { isReport } from "../rest/answers.js";
 import { get, path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { shown, titled, parameterName } from "../words/quantity.js";
@@ -23,12 +24,15 @@ export function Posterior({ study, model }) {
   return html`
     <${Pictures} key=${model.id} figures=${answer} model=${model} />
     <h2>Parameters</h2>
-    <${ParameterTable} marginals=${answer.marginals ?? []} line=${line} />
-    <${Draws} model=${model} />`;
+    <${ParameterTable} marginals=${flat(answer)} line=${line} />
+    ${!isReport && html`<${Draws} model=${model} />`}`;
 }
 
+/** The marginals with the name and unit of their parameter beside their numbers. */
+const flat = (/** @type {any} */ figures) => figures.marginals.map((/** @type {any} */ m) => ({ ...m, ...m.parameter }));
+
 function Pictures(/** @type {{ figures: any, model: any }} */ { figures, model }) {
-  const marginals = figures.marginals ?? [];
+  const marginals = flat(figures);
   const names = marginals.map((/** @type {any} */ m) => m.name);
   const [chosen, setChosen] = useState(/** @type {string[]} */ (names.slice(0, MOST)));
   const [cell, setCell] = useState(/** @type {any} */ (null));
@@ -49,7 +53,8 @@ function Marginal(/** @type {{ marginal: any }} */ { marginal }) {
   const rows = marginal.grid.map((/** @type {number} */ x, /** @type {number} */ k) => ({ x: x * scale, prior: marginal.prior[k], posterior: marginal.posterior[k] }));
   return html`<${Figure} title=${`Posterior of ${parameterName(marginal.name)}`} name=${fileName("posterior", marginal.name)} deps=${[marginal]} rows=${() => rows}
     draw=${(/** @type {number} */ width) => Plot.plot({
-      width, height: 190, marginLeft: 14, x: { label: titled(parameterName(marginal.name), unit), ticks: 5 }, y: { axis: null },
+      width, height: 190, marginLeft: 14, marginBottom: 40, style: STYLE, y: { axis: null },
+      x: { label: titled(parameterName(marginal.name), unit), labelArrow: "none", labelAnchor: "center", ticks: 5, type: marginal.logarithmic ? "log" : "linear" },
       marks: [
         Plot.areaY(rows, { x: "x", y: "posterior", fill: "var(--series-0)", fillOpacity: 0.3 }),
         Plot.lineY(rows, { x: "x", y: "posterior", stroke: "var(--series-0)" }),

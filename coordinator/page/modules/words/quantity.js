@@ -20,6 +20,14 @@ export const capital = (/** @type {string} */ text) => (/^[a-z0-9]*_/.test(text)
 /** The name of a parameter as words, without the unit at its end, which stands beside it. */
 export const parameterName = (/** @type {string} */ name) => words(name.replace(/_(n_m|m_s|kg_m3|deg|pa|m|n)(?=\.[^.]*$|$)/, ""));
 
+const SUFFIXES = /** @type {Record<string, string>} */ ({ n_m: "N m", m_s: "m/s", kg_m3: "kg/m³", deg: "°", pa: "Pa", m: "m", n: "N" });
+
+/** `friction angle [°]`: the name of a parameter with the unit that it ends with. */
+export function parameterTitle(/** @type {string} */ name) {
+  const suffix = /_(n_m|m_s|kg_m3|deg|pa|m|n)(?=\.[^.]*$|$)/.exec(name)?.[1];
+  return titled(parameterName(name), suffix ? SUFFIXES[suffix] : "1");
+}
+
 /** A short name of a channel. */
 export const short = (/** @type {string} */ channel) => SHORT[/** @type {keyof typeof SHORT} */ (channel)] ?? words(channel);
 
