@@ -1,0 +1,123 @@
+// A hidden effect, from the files to the repaired model, by clicking; the coordinator is killed on the way.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+
+import { open, shot, studyOf, view } from "./browser.js";
+import { Service, filesOf } from "./service.js";
+
+const FOLDER = "examples/hidden-effect";
+const STUDY_MS = 90_000;
+let service, tab, page;
+
+before(async () => {
+  service = await Service.start();
+  tab = await open({ url: service.url });
+  page = tab.page;
+});
+after(async () => {
+  await tab?.close();
+  await service?.stop();
+});
+
+const ask = (job) => job.replace('apply = "auto"', 'apply = "ask"');
+
+test("dropped files and chosen files are the same draft", async () => {
+  await page.goto(service.url);
+  await page.getByRole("link", { name: "New calibration" }).first().click();
+  const files = await filesOf(FOLDER, ask);
+  const dropped = await page.evaluateHandle((all) => {
+    const transfer = new DataTransfer();
+    for (const { name, text } of all) transfer.items.add(new File([text], name));
+    return transfer;
+  }, files);
+  await page.dispatchEvent(".drop", "drop", { dataTransfer: dropped });
+  await page.locator(".card.file").nth(files.length - 1).waitFor();
+  const names = await page.locator(".card.file b").allTextContents();
+  for (const name of names) await page.getByRole("button", { name: `remove ${name}` }).click();
+  await page.locator('input[type="file"]').setInputFiles(files.map(({ text, ...file }) => ({ ...file, buffer: Buffer.from(text) })));
+  await page.locator(".card.file").nth(files.length - 1).waitFor();
+  assert.deepEqual((await page.locator(".card.file b").allTextContents()).sort(), names.sort());
+  await shot(page, "hidden-new");
+});
+
+test("the page outlives its coordinator", async () => {
+  await page.getByRole("button", { name: "Start the calibration" }).click();
+  await page.waitForURL(/studies\/\d+\/live/);
+  await page.locator('[data-figure$="ess"] svg').first().waitFor({ timeout: STUDY_MS });
+  await service.kill();
+  await page.getByText("the coordinator does not answer").first().waitFor();
+  await shot(page, "hidden-live-away");
+  await service.restart();
+  await page.getByText("the coordinator does not answer").first().waitFor({ state: "detached" });
+  await page.locator(".heading .state.finished").waitFor({ timeout: STUDY_MS });
+  await page.locator('[data-figure^="particles"] svg circle').first().waitFor();
+  await shot(page, "hidden-live");
+});
+
+test("a cell of the residuals lights up its run in the other pictures", async () => {
+  await view(page, "Where it fails");
+  const cell = page.locator('[data-figure$="residuals"] rect[data-run]').first();
+  await cell.waitFor();
+  const run = await cell.getAttribute("data-run");
+  await cell.hover();
+  const lit = page.locator(`figure:not([data-figure$="residuals"]) [data-run="${run}"].lit`);
+  await lit.first().waitFor();
+  await shot(page, "hidden-failures");
+  await page.mouse.move(2, 2);
+  assert.equal(await page.locator(".lit").count(), 0);
+});
+
+test("an explanation shows what it predicts before it is computed, and a click adds it", async () => {
+  await view(page, "Missing effect");
+  const button = page.getByRole("button", { name: "show what janosi_hanamoto would change" });
+  await button.hover();
+  await page.locator(".ghosts .ghost").first().waitFor({ state: "attached" });
+  assert.match(await page.locator(".ghosts .note").first().textContent(), /Dashed: what janosi_hanamoto would predict/);
+  await shot(page, "hidden-effects");
+  await page.getByRole("button", { name: "add janosi_hanamoto" }).click();
+  await page.waitForURL(/live/);
+  const study = await service.finished(studyOf(page), STUDY_MS);
+  assert.deepEqual(study.members.find((m) => m.id === study.current).effects, ["janosi_hanamoto"]);
+});
+
+test("the error falls, and the models are layers", async () => {
+  const id = studyOf(page);
+  await page.locator(".heading .state.finished").waitFor({ timeout: STUDY_MS });
+  await view(page, "Error falls");
+  const { ledger } = await service.get(`/v1/studies/${id}`);
+  const [base, extended] = ledger.map((line) => line.error.holdout.all.rmse_fixed_sigma);
+  assert.ok(extended < base, `held out, the extension errs by ${extended} noise sds, the base by ${base}`);
+  const layers = page.getByRole("group", { name: "Models that are shown" }).getByRole("button");
+  assert.equal(await layers.count(), 2);
+  const curves = page.locator('[data-figure*="layers-drawbar"] .model path');
+  await curves.first().waitFor({ state: "attached" });
+  await page.waitForTimeout(300);
+  const both = await curves.count();
+  await layers.first().click();
+  await page.waitForTimeout(300);
+  assert.ok((await curves.count()) < both, "a layer that is switched off is still drawn");
+  await shot(page, "hidden-errors");
+});
+
+test("runs of a region can be left out, as a study of its own", async () => {
+  const id = studyOf(page);
+  await view(page, "Compare");
+  const picture = page.locator('[data-figure*="drawbar"] svg').first();
+  await picture.waitFor();
+  await shot(page, "hidden-compare");
+  const box = await picture.boundingBox();
+  await page.mouse.move(box.x + 0.7 * box.width, box.y + 0.25 * box.height);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.85 * box.width, box.y + 0.4 * box.height, { steps: 4 });
+  await page.mouse.move(box.x + 0.99 * box.width, box.y + 0.4 * box.height, { steps: 4 });
+  await page.mouse.up();
+  await page.getByRole("complementary", { name: "Chosen runs" }).waitFor();
+  await page.getByRole("button", { name: "What if these runs were left out?" }).click();
+  await page.waitForURL((url) => /live/.test(url.hash) && !url.hash.includes(`/${id}/`));
+  const study = await service.finished(studyOf(page), STUDY_MS);
+  assert.equal(study.state, "finished");
+  assert.notEqual(study.id, id);
+});
+
+test("nothing went wrong on the way", () => assert.deepEqual(tab.faults, []));

@@ -1,0 +1,9 @@
+// Writes the interface of a served coordinator to a file: node tests/page/openapi.js FILE
+
+import { writeFile } from "node:fs/promises";
+
+import { Service } from "./service.js";
+
+const service = await Service.start();
+await writeFile(process.argv[2], `${JSON.stringify(await service.get("/openapi.json"), null, 2)}\n`);
+await service.stop();
