@@ -103,9 +103,10 @@ test("the error falls, and the models are layers", async () => {
 test("runs of a region can be left out, as a study of its own", async () => {
   const id = studyOf(page);
   await view(page, "Compare");
-  const picture = page.locator('[data-figure*="drawbar"] svg').first();
+  const picture = page.locator('[data-figure*="drawbar"] .plot > svg').first();
   await picture.waitFor();
   await shot(page, "hidden-compare");
+  await picture.scrollIntoViewIfNeeded();
   const box = await picture.boundingBox();
   await page.mouse.move(box.x + 0.7 * box.width, box.y + 0.25 * box.height);
   await page.mouse.down();

@@ -1,3 +1,3 @@
 // Elements and their state: preact with htm, as vendored.
 
-export { html, render, useCallback, useEffect, useMemo, useRef, useState } from "../vendor/preact.js";
+export { html, render, useCallback, useEffect, useErrorBoundary, useMemo, useRef, useState } from "../vendor/preact.js";

@@ -1,12 +1,13 @@
 // The parameters of a model: their marginal and joint posteriors, with the priors under them.
 
 import { Figure, fileName } from "../chart/figure.js";
-import { Plot } from "../chart/library.js";
+import { Plot, STYLE } from "../chart/library.js";
 import { csv, save } from "../chart/download.js";
 import { JointPicture, PairPlot } from "../chart/pairs.js";
 import { html, useState } from "../html.js";
 import { Failure, Pending } from "../part/message.js";
 import { ParameterTable } from "../part/parameter_table.js";
+import { isReport } from "../rest/answers.js";
 import { get, path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { shown, titled, parameterName } from "../words/quantity.js";
@@ -20,15 +21,15 @@ export function Posterior({ study, model }) {
   if (!model) return html`<p class="empty">The posterior is known as soon as a calibration has finished. The view Live shows how far it is.</p>`;
   const line = [...study.ledger, ...(study.point_estimates ?? [])].find((/** @type {any} */ l) => l.calibration === model.id);
   if (!answer) return html`<${Pending} answer=${answer} error=${error} what="The posterior" />`;
+  const marginals = (answer.marginals ?? []).map((/** @type {any} */ m) => ({ ...m, ...m.parameter }));
   return html`
-    <${Pictures} key=${model.id} figures=${answer} model=${model} />
+    <${Pictures} key=${model.id} marginals=${marginals} pairs=${answer.posteriors ?? []} model=${model} />
     <h2>Parameters</h2>
-    <${ParameterTable} marginals=${answer.marginals ?? []} line=${line} />
-    <${Draws} model=${model} />`;
+    <${ParameterTable} marginals=${marginals} line=${line} />
+    ${!isReport && html`<${Draws} model=${model} />`}`;
 }
 
-function Pictures(/** @type {{ figures: any, model: any }} */ { figures, model }) {
-  const marginals = figures.marginals ?? [];
+function Pictures(/** @type {{ marginals: any[], pairs: any[], model: any }} */ { marginals, pairs, model }) {
   const names = marginals.map((/** @type {any} */ m) => m.name);
   const [chosen, setChosen] = useState(/** @type {string[]} */ (names.slice(0, MOST)));
   const [cell, setCell] = useState(/** @type {any} */ (null));
@@ -40,7 +41,7 @@ function Pictures(/** @type {{ figures: any, model: any }} */ { figures, model }
     <h2>Pairs of parameters</h2>
     ${names.length > MOST && html`<div class="actions" role="group" aria-label="Parameters in the pair plot">
       ${names.map((/** @type {string} */ name) => html`<button type="button" aria-pressed=${chosen.includes(name)} onClick=${() => flip(name)}>${parameterName(name)}</button>`)}</div>`}
-    <${PairPlot} pairs=${figures.posteriors} marginals=${marginals.filter((/** @type {any} */ m) => chosen.includes(m.name))} name=${model.name} onCell=${setCell} />
+    <${PairPlot} pairs=${pairs} marginals=${marginals.filter((/** @type {any} */ m) => chosen.includes(m.name))} name=${model.name} onCell=${setCell} />
     ${cell && html`<div class="card"><${JointPicture} pair=${cell} /><button type="button" onClick=${() => setCell(null)}>Close</button></div>`}`;
 }
 
@@ -49,7 +50,8 @@ function Marginal(/** @type {{ marginal: any }} */ { marginal }) {
   const rows = marginal.grid.map((/** @type {number} */ x, /** @type {number} */ k) => ({ x: x * scale, prior: marginal.prior[k], posterior: marginal.posterior[k] }));
   return html`<${Figure} title=${`Posterior of ${parameterName(marginal.name)}`} name=${fileName("posterior", marginal.name)} deps=${[marginal]} rows=${() => rows}
     draw=${(/** @type {number} */ width) => Plot.plot({
-      width, height: 190, marginLeft: 14, x: { label: titled(parameterName(marginal.name), unit), ticks: 5 }, y: { axis: null },
+      width, height: 190, marginLeft: 14, marginRight: 14, marginBottom: 40, style: STYLE,
+      x: { type: marginal.logarithmic ? "log" : "linear", label: titled(parameterName(marginal.name), unit), labelArrow: "none", labelAnchor: "center", ticks: 5, grid: true }, y: { axis: null },
       marks: [
         Plot.areaY(rows, { x: "x", y: "posterior", fill: "var(--series-0)", fillOpacity: 0.3 }),
         Plot.lineY(rows, { x: "x", y: "posterior", stroke: "var(--series-0)" }),
