@@ -53,7 +53,7 @@ function Marginal(/** @type {{ marginal: any }} */ { marginal }) {
       width, height: 190, marginLeft: 14, marginRight: 14, marginBottom: 40, style: STYLE,
       x: { type: marginal.logarithmic ? "log" : "linear", label: titled(parameterName(marginal.name), unit), labelArrow: "none", labelAnchor: "center", ticks: 5, grid: true }, y: { axis: null },
       marks: [
-        Plot.areaY(rows, { x: "x", y: "posterior", fill: "var(--series-0)", fillOpacity: 0.3 }),
+        Plot.areaY(rows, { x: "x", y1: 0, y2: "posterior", fill: "var(--series-0)", fillOpacity: 0.3 }),
         Plot.lineY(rows, { x: "x", y: "posterior", stroke: "var(--series-0)" }),
         Plot.lineY(rows, { x: "x", y: "prior", stroke: "var(--prior)", strokeDasharray: "5 3" }),
         ...(marginal.mode === null ? [] : [Plot.ruleX([marginal.mode * scale], { stroke: "var(--ink)" })]),
