@@ -2,7 +2,7 @@
 
 import { html, useState } from "../html.js";
 import { isReport } from "../rest/answers.js";
-import { whatIf } from "../rest/routes.js";
+import { get, path, whatIf } from "../rest/routes.js";
 import { address } from "../route.js";
 import { choose, useChosen } from "../selection.js";
 import { Failure } from "./message.js";
@@ -16,7 +16,11 @@ export function ChosenRuns({ model }) {
   const ask = async () => {
     setFailure(null);
     try {
-      const created = await whatIf(model.id, runs);
+      const { rows } = await get(path.comparison(model.id));
+      const fitted = new Set(rows.filter((/** @type {any} */ r) => r.use === "fit").map((/** @type {any} */ r) => r.run));
+      const without = runs.filter((run) => fitted.has(run));
+      if (without.length === 0) throw new Error("these runs are held out already: choose runs that are fitted");
+      const created = await whatIf(model.id, without);
       choose(null);
       location.hash = address(["studies", created.study, "live"]);
     } catch (error) {

@@ -1,0 +1,120 @@
+// How the page behaves: for keyboard and screen reader, in both themes, on narrow screens, towards other hosts, with tokens and files.
+
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { after, before, test } from "node:test";
+
+import { findings, open, shot, sideways } from "./browser.js";
+import { Service, filesOf } from "./service.js";
+
+const VIEWS = ["story", "live", "compare", "failures", "effects", "posterior", "errors", "trust"];
+/** What is sent for the first view. */
+const MOST_BYTES = 300_000;
+let service;
+
+before(async () => {
+  service = await Service.start();
+  const files = Object.fromEntries((await filesOf("examples/hidden-effect")).map(({ name, text }) => [name, text]));
+  const { id } = await service.post("/v1/experiments", { toml: files["experiment.toml"], files: { "runs.csv": files["runs.csv"] } });
+  const { study } = await service.post("/v1/calibrations", { experiment: id, toml: files["job.toml"], files: {}, name: "hidden" });
+  assert.equal((await service.finished(study)).state, "finished");
+});
+after(() => service?.stop());
+
+/** Does something with a tab and closes it. */
+async function within(options, what) {
+  const tab = await open({ url: service.url, ...options });
+  try {
+    await what(tab.page, tab);
+    assert.deepEqual(tab.faults, []);
+  } finally {
+    await tab.close();
+  }
+}
+
+/** Goes to an address and waits until nothing is loading. */
+async function go(page, hash) {
+  await page.goto(`${service.url}/${hash}`);
+  await page.locator("#content h1").first().waitFor();
+  await page.locator('[aria-busy="true"]').first().waitFor({ state: "detached" });
+  await page.waitForFunction(() => [...document.querySelectorAll("figure .plot")].every((plot) => plot.firstElementChild || plot.getBoundingClientRect().width === 0));
+}
+
+for (const [theme, width] of [["light", 1280], ["dark", 1280], ["light", 400], ["dark", 400]]) {
+  test(`every view is accessible and fits, ${theme}, ${width} px`, () => within({ theme, width }, async (page) => {
+    for (const hash of ["#/", "#/new", "#/new?example=hidden-effect", ...VIEWS.map((name) => `#/studies/1/${name}`)]) {
+      await go(page, hash);
+      assert.deepEqual(await findings(page), [], hash);
+      assert.equal(await sideways(page), 0, `${hash} scrolls sideways [px]`);
+      await shot(page, `manners-${hash.replace(/\W+/g, "-")}-${theme}-${width}`);
+    }
+  }));
+}
+
+test("a policy forbids what comes from elsewhere", async () => {
+  const policy = (await fetch(service.url)).headers.get("content-security-policy") ?? "";
+  assert.match(policy, /default-src 'self'|default-src 'none'/);
+  assert.doesNotMatch(policy, /https?:|script-src[^;]*'unsafe-inline'/);
+});
+
+test("the keyboard reaches the views, and focus shows what an explanation predicts", () => within({}, async (page) => {
+  await go(page, "#/studies/1/effects?model=1");
+  await page.evaluate(() => document.activeElement?.blur());
+  const reached = [];
+  let isShown = false;
+  for (let k = 0; k < 40 && !isShown; k += 1) {
+    await page.keyboard.press("Tab");
+    const [text, label] = await page.evaluate(() => [document.activeElement?.textContent?.trim() ?? "", document.activeElement?.getAttribute("aria-label") ?? ""]);
+    reached.push(text);
+    isShown = label === "show what janosi_hanamoto would change";
+  }
+  for (const title of ["Story", "Compare", "Where it fails", "Missing effect", "Error falls"]) assert.ok(reached.includes(title), `Tab does not reach ${title}`);
+  assert.ok(isShown, "Tab does not reach the first explanation");
+  await page.locator(".ghosts .ghost").first().waitFor({ state: "attached" });
+}));
+
+test("a picture is saved as SVG, PNG and CSV", () => within({}, async (page) => {
+  await go(page, "#/studies/1/compare");
+  const figure = page.locator("figure").first();
+  const begins = { SVG: /^<svg/, PNG: /^.PNG/s, CSV: /^model,run,/ };
+  for (const [kind, first] of Object.entries(begins)) {
+    const [download] = await Promise.all([page.waitForEvent("download"), figure.getByRole("button", { name: kind }).click()]);
+    const content = await readFile(await download.path(), "latin1");
+    assert.match(content, first);
+    assert.ok(content.length > 500, `${kind} has ${content.length} bytes`);
+  }
+}));
+
+test("a view is reached by its address", () => within({}, async (page) => {
+  await go(page, "#/studies/1/compare?model=1");
+  await page.locator('section[aria-label="Compare"] figure').first().waitFor();
+  assert.equal(await page.locator(".picker select").inputValue(), "1");
+}));
+
+test("the first view takes little to send", () => within({}, async (page) => {
+  const session = await page.context().newCDPSession(page);
+  await session.send("Network.enable");
+  let bytes = 0;
+  session.on("Network.loadingFinished", ({ encodedDataLength }) => (bytes += encodedDataLength));
+  await go(page, "#/studies/1/story");
+  assert.ok(bytes > 0 && bytes < MOST_BYTES, `${bytes} bytes`);
+}));
+
+test("a token is asked for, and never part of an address", async () => {
+  const guarded = await Service.start({ tokenOf: "ann" });
+  const tab = await open({ url: guarded.url });
+  try {
+    await tab.page.goto(guarded.url);
+    await tab.page.getByLabel("Token").fill(guarded.token);
+    assert.deepEqual(await findings(tab.page), []);
+    await tab.page.getByRole("button", { name: "Use it" }).click();
+    await tab.page.getByText("There is no study yet").waitFor();
+    assert.equal(await tab.page.getByLabel("Token").count(), 0);
+    assert.ok(!tab.requests.some((url) => url.includes(guarded.token)), "the token is in an address");
+    assert.ok(!tab.page.url().includes(guarded.token));
+    assert.deepEqual(tab.faults, []);
+  } finally {
+    await tab.close();
+    await guarded.stop();
+  }
+});

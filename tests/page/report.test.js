@@ -1,0 +1,61 @@
+// A report as a file: the story first, every picture, nothing asked of anybody.
+
+import assert from "node:assert/strict";
+import { mkdtemp, rm } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+
+import { findings, open, shot, sideways } from "./browser.js";
+import { coordinator } from "./service.js";
+
+let folder;
+
+before(async () => {
+  folder = await mkdtemp(join(tmpdir(), "report-"));
+  await coordinator("run", "examples/hidden-effect/job.toml", "--out", join(folder, "out"));
+});
+after(() => rm(folder, { recursive: true, force: true }));
+
+/** Opens a report and returns the tab; each section is there. */
+async function opened(file, options) {
+  const url = pathToFileURL(file).href;
+  const tab = await open({ url, ...options });
+  await tab.page.goto(url);
+  await tab.page.locator("section#trust").waitFor();
+  return tab;
+}
+
+for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
+  test(`the report tells its story without asking anybody, ${theme}, ${width} px`, async () => {
+    const tab = await opened(join(folder, "out", "report.html"), { theme, width });
+    const { page } = tab;
+    try {
+      assert.equal(await page.locator("section").first().getAttribute("id"), "story");
+      for (const id of ["live", "compare", "failures", "posterior", "errors"]) {
+        await page.locator(`section#${id} figure .plot svg`).first().waitFor({ state: "attached" });
+      }
+      assert.equal(await page.locator(".error").count(), 0, await page.locator(".error").first().textContent().catch(() => ""));
+      assert.deepEqual(await findings(page), []);
+      assert.equal(await sideways(page), 0);
+      assert.deepEqual(tab.requests.filter((url) => !/^(file|data|blob):/.test(url)), []);
+      assert.equal(tab.requests.filter((url) => url.startsWith("file:")).length, 1);
+      assert.deepEqual(tab.faults, []);
+      await shot(page, `report-${theme}-${width}`);
+    } finally {
+      await tab.close();
+    }
+  });
+}
+
+test("a model of the study has a report of its own", async () => {
+  const base = join(folder, "base.html");
+  await coordinator("report", "1", "--out", join(folder, "out"), "--output", base);
+  const tab = await opened(base);
+  try {
+    assert.match(await tab.page.locator("header .note").first().textContent(), /, base;/);
+  } finally {
+    await tab.close();
+  }
+});
