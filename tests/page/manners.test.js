@@ -26,9 +26,10 @@ async function within(options, what) {
   const tab = await open({ url: service.url, ...options });
   try {
     await what(tab.page, tab);
-    assert.deepEqual(tab.faults, []);
   } finally {
     await tab.close();
+    // First: an error of a script is why an element never comes.
+    assert.deepEqual(tab.faults, []);
   }
 }
 
