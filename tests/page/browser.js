@@ -1,64 +1,61 @@
-// Chromium, with an eye on what a page must not do: fail, log errors, ask another host, be wider than its window.
+// Chromium on the page of a service, with what a page must not do: ask other hosts, print errors, scroll sideways, shut people out.
 
-import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 
 const require = createRequire(new URL("../../coordinator/page/package.json", import.meta.url));
 const { chromium } = require("playwright-core");
-const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
+const axe = require.resolve("axe-core/axe.min.js");
 
-/** While the coordinator is down the browser logs each request that fails. */
-const DOWN = /ERR_CONNECTION|Failed to load resource/;
+/** So long a step may take before it counts as missing. */
+export const STEP_MS = 10_000;
 
-export async function launch() {
-  return chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
-}
-
-/** A page that remembers its complaints. */
-export async function open(browser, url, { width = 1280, theme = "light" } = {}) {
-  const page = await browser.newPage({ viewport: { width, height: 900 }, colorScheme: theme, bypassCSP: true });
-  page.setDefaultTimeout(60_000);
-  const complaints = [];
-  // A report's modules are addresses of a hundred kilobytes.
-  const say = (text) => complaints.push(String(text).slice(0, 300));
-  page.on("pageerror", (error) => say(error.message));
-  page.on("console", (message) => message.type() === "error" && !DOWN.test(message.text()) && say(message.text()));
+/** A browser with one page; `faults` collects requests to other hosts, errors on the console and of scripts. */
+export async function open({ url, width = 1280, height = 900, theme = "light" }) {
+  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: theme, acceptDownloads: true, bypassCSP: false });
+  const page = await context.newPage();
+  page.setDefaultTimeout(STEP_MS);
+  const faults = [], requests = [];
+  const host = url.startsWith("file:") ? "" : new URL(url).host;
   page.on("request", (request) => {
-    const to = new URL(request.url());
-    if (/^(https?|wss?):$/.test(to.protocol) && to.origin !== new URL(url).origin) say(`asks ${to.origin}`);
+    const asked = new URL(request.url());
+    requests.push(request.url());
+    if (!["data:", "blob:"].includes(asked.protocol) && asked.host !== host) faults.push(`request to ${asked.host}`);
   });
-  await page.goto(url);
-  return { page, complaints };
+  // A module of a report is a data URL: its name would fill the screen.
+  const brief = (text) => text.replace(/data:\S{80,}/g, "data:…").slice(0, 300);
+  // A coordinator that is killed on purpose, or that asks for a token, makes the browser itself print these.
+  const isExpected = (text) => /Failed to load resource|ERR_CONNECTION|ERR_INCOMPLETE|ERR_EMPTY/.test(text);
+  page.on("console", (message) => message.type() === "error" && !isExpected(message.text()) && faults.push(`console: ${brief(message.text())}`));
+  page.on("pageerror", (error) => faults.push(`error: ${brief(error.message)}`));
+  return { browser, context, page, faults, requests, close: () => browser.close() };
 }
 
-/** What a screen reader or a keyboard would stumble over. */
-export async function stumbles(page) {
-  await page.evaluate(axe);
-  const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
-  const serious = violations.filter((v) => ["serious", "critical"].includes(v.impact));
-  return serious.map((v) => `${v.id}: ${v.nodes[0].html.slice(0, 200)}`);
+/** Serious findings of axe-core; the styles of a page forbid injected script tags, so it is evaluated. */
+export async function findings(page) {
+  const { readFile } = await import("node:fs/promises");
+  await page.evaluate(await readFile(axe, "utf8"));
+  return page.evaluate(async () => {
+    const { violations } = await globalThis.axe.run(document, { resultTypes: ["violations"] });
+    return violations.filter((v) => ["serious", "critical"].includes(v.impact))
+      .map((v) => `${v.id}: ${v.nodes.slice(0, 3).map((n) => n.target.join(" ")).join("; ")}`);
+  });
 }
 
-/** The page is as wide as its window. */
-export async function fits(page, what) {
-  const [inner, outer] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
-  assert.ok(inner <= outer, `${what} is ${inner} px wide in a window of ${outer} px`);
-}
+/** How far a page scrolls sideways [px]. */
+export const sideways = (page) => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
-/** A picture for whoever wants to look. */
-export async function picture(page, name) {
+/** Writes a picture of the page where $SCREENSHOTS names a folder. */
+export async function shot(page, name) {
   if (process.env.SCREENSHOTS) await page.screenshot({ path: join(process.env.SCREENSHOTS, `${name}.png`), fullPage: true });
 }
 
-/** Opens a view of the study by its name in the navigation. */
+/** Goes to a view of the study that is open. */
 export async function view(page, title) {
   await page.getByRole("navigation", { name: "Views of the study" }).getByRole("link", { name: title, exact: true }).click();
-  await page.getByRole("region", { name: title, exact: true }).waitFor();
+  await page.locator(`section[aria-label="${title}"]`).waitFor();
 }
 
-/** Waits until the study takes no further step. */
-export async function finished(page) {
-  await page.locator(".heading .state.finished").waitFor({ timeout: 120_000 });
-}
+/** The number of the study that is open. */
+export const studyOf = (page) => Number(page.url().match(/studies\/(\d+)/)[1]);

@@ -1,98 +1,124 @@
+// A hidden effect, from the files to the repaired model, by clicking; the coordinator is killed on the way.
+
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 
-import { finished, launch, open, picture, view } from "./browser.js";
-import { Service } from "./service.js";
+import { open, shot, studyOf, view } from "./browser.js";
+import { Service, filesOf } from "./service.js";
 
-const EXAMPLE = new URL("../../examples/hidden-effect/", import.meta.url);
-const text = (name) => readFileSync(new URL(name, EXAMPLE), "utf8");
-// A person adds the effect here, not the study itself.
-const job = text("job.toml").replace('"auto"', '"ask"');
-const files = [["job.toml", job], ["experiment.toml", text("experiment.toml")], ["runs.csv", text("runs.csv")]];
+const FOLDER = "examples/hidden-effect";
+const STUDY_MS = 90_000;
+let service, tab, page;
 
-let service;
-let browser;
 before(async () => {
   service = await Service.start();
-  browser = await launch();
+  tab = await open({ url: service.url });
+  page = tab.page;
 });
 after(async () => {
-  await browser.close();
-  await service.stop();
+  await tab?.close();
+  await service?.stop();
 });
 
-test("from dropped files to a repaired model by clicking, though the coordinator is killed in the middle", async () => {
-  assert.ok(job.includes('"ask"'));
-  const { page, complaints } = await open(browser, service.url);
+const ask = (job) => job.replace('apply = "auto"', 'apply = "ask"');
+
+test("dropped files and chosen files are the same draft", async () => {
+  await page.goto(service.url);
   await page.getByRole("link", { name: "New calibration" }).first().click();
-  await page.locator("input[type=file]").setInputFiles(files.map(([name, body]) => ({ name, mimeType: "text/plain", buffer: Buffer.from(body) })));
-  await page.getByRole("button", { name: /^Start/ }).click();
-  await page.waitForURL(/#\/studies\/1\/live/);
-  await page.locator(".state.running").first().waitFor();
+  const files = await filesOf(FOLDER, ask);
+  const dropped = await page.evaluateHandle((all) => {
+    const transfer = new DataTransfer();
+    for (const { name, text } of all) transfer.items.add(new File([text], name));
+    return transfer;
+  }, files);
+  await page.dispatchEvent(".drop", "drop", { dataTransfer: dropped });
+  await page.locator(".card.file").nth(files.length - 1).waitFor();
+  const names = await page.locator(".card.file b").allTextContents();
+  for (const name of names) await page.getByRole("button", { name: `remove ${name}` }).click();
+  await page.locator('input[type="file"]').setInputFiles(files.map(({ text, ...file }) => ({ ...file, buffer: Buffer.from(text) })));
+  await page.locator(".card.file").nth(files.length - 1).waitFor();
+  assert.deepEqual((await page.locator(".card.file b").allTextContents()).sort(), names.sort());
+  await shot(page, "hidden-new");
+});
+
+test("the page outlives its coordinator", async () => {
+  await page.getByRole("button", { name: "Start the calibration" }).click();
+  await page.waitForURL(/studies\/\d+\/live/);
+  await page.locator('[data-figure$="ess"] svg').first().waitFor({ timeout: STUDY_MS });
   await service.kill();
   await page.getByText("the coordinator does not answer").first().waitFor();
-  await service.spawn();
-  await finished(page);
-  await picture(page, "hidden-live");
+  await shot(page, "hidden-live-away");
+  await service.restart();
+  await page.getByText("the coordinator does not answer").first().waitFor({ state: "detached" });
+  await page.locator(".heading .state.finished").waitFor({ timeout: STUDY_MS });
+  await page.locator('[data-figure^="particles"] svg circle').first().waitFor();
+  await shot(page, "hidden-live");
+});
 
-  await view(page, "Compare");
-  await page.locator('[data-figure*="drawbar-pull"] .plot svg').first().waitFor();
-  await picture(page, "hidden-compare");
+test("a cell of the residuals lights up its run in the other pictures", async () => {
   await view(page, "Where it fails");
-  const cell = page.locator('[data-figure$="residuals"] rect[data-run="r05"]').first();
+  const cell = page.locator('[data-figure$="residuals"] rect[data-run]').first();
+  await cell.waitFor();
+  const run = await cell.getAttribute("data-run");
   await cell.hover();
-  const others = page.locator('[data-figure*="residuals-drawbar-pull"] [data-run="r05"].lit');
-  await others.first().waitFor();
-  assert.equal(await page.locator('[data-run="r06"].lit').count(), 0);
-  await picture(page, "hidden-failures");
+  const lit = page.locator(`figure:not([data-figure$="residuals"]) [data-run="${run}"].lit`);
+  await lit.first().waitFor();
+  await shot(page, "hidden-failures");
+  await page.mouse.move(2, 2);
+  assert.equal(await page.locator(".lit").count(), 0);
+});
 
+test("an explanation shows what it predicts before it is computed, and a click adds it", async () => {
   await view(page, "Missing effect");
-  const row = page.getByRole("row", { name: /janosi_hanamoto/ });
-  assert.equal(await page.locator(".ghost").count(), 0);
-  await row.hover();
+  const button = page.getByRole("button", { name: "show what janosi_hanamoto would change" });
+  await button.hover();
   await page.locator(".ghosts .ghost").first().waitFor({ state: "attached" });
-  await page.getByText("Nothing has been computed anew").waitFor();
-  await picture(page, "hidden-ghost");
+  assert.match(await page.locator(".ghosts .note").first().textContent(), /Dashed: what janosi_hanamoto would predict/);
+  await shot(page, "hidden-effects");
   await page.getByRole("button", { name: "add janosi_hanamoto" }).click();
   await page.waitForURL(/live/);
-  await page.getByRole("cell", { name: /janosi_hanamoto/ }).or(page.getByRole("rowheader", { name: /janosi_hanamoto/ })).first().waitFor();
-  await finished(page);
+  const study = await service.finished(studyOf(page), STUDY_MS);
+  assert.deepEqual(study.members.find((m) => m.id === study.current).effects, ["janosi_hanamoto"]);
+});
 
+test("the error falls, and the models are layers", async () => {
+  const id = studyOf(page);
+  await page.locator(".heading .state.finished").waitFor({ timeout: STUDY_MS });
   await view(page, "Error falls");
-  await page.locator('[data-figure*="error-drawbar-pull"] .plot svg').first().waitFor();
-  await picture(page, "hidden-errors");
-  const { ledger } = await service.json("/v1/studies/1");
-  const [base, repaired] = ledger.map((line) => line.error.holdout.drawbar_pull.rmse);
-  assert.ok(repaired < base / 5, `held out ${base} N, then ${repaired} N`);
-  const layer = page.getByRole("button", { name: "base", exact: true });
-  assert.equal(await layer.getAttribute("aria-pressed"), "true");
-  await layer.click();
-  assert.equal(await layer.getAttribute("aria-pressed"), "false");
-  await view(page, "Story");
-  await page.getByText(/janosi_hanamoto was missing/).waitFor();
-  await picture(page, "hidden-story");
-  assert.deepEqual(complaints, []);
+  const { ledger } = await service.get(`/v1/studies/${id}`);
+  const [base, extended] = ledger.map((line) => line.error.holdout.all.rmse_fixed_sigma);
+  assert.ok(extended < base, `held out, the extension errs by ${extended} noise sds, the base by ${base}`);
+  const layers = page.getByRole("group", { name: "Models that are shown" }).getByRole("button");
+  assert.equal(await layers.count(), 2);
+  const curves = page.locator('[data-figure*="layers-drawbar"] .model path');
+  await curves.first().waitFor({ state: "attached" });
+  await page.waitForTimeout(300);
+  const both = await curves.count();
+  await layers.first().click();
+  await page.waitForTimeout(300);
+  assert.ok((await curves.count()) < both, "a layer that is switched off is still drawn");
+  await shot(page, "hidden-errors");
 });
 
-test("runs that are brushed out become a study without them", async () => {
-  const { page, complaints } = await open(browser, `${service.url}#/studies/1/compare`);
-  const plot = page.locator('[data-figure*="drawbar-pull"] .plot svg').first();
-  await plot.waitFor();
-  const box = await plot.boundingBox();
-  await page.mouse.move(box.x + 60, box.y + 40);
+test("runs of a region can be left out, as a study of its own", async () => {
+  const id = studyOf(page);
+  await view(page, "Compare");
+  const picture = page.locator('[data-figure*="drawbar"] .plot > svg').first();
+  await picture.waitFor();
+  await shot(page, "hidden-compare");
+  await picture.scrollIntoViewIfNeeded();
+  const box = await picture.boundingBox();
+  await page.mouse.move(box.x + 0.7 * box.width, box.y + 0.25 * box.height);
   await page.mouse.down();
-  await page.mouse.move(box.x + 0.25 * box.width, box.y + 60, { steps: 5 });
+  await page.mouse.move(box.x + 0.85 * box.width, box.y + 0.4 * box.height, { steps: 4 });
+  await page.mouse.move(box.x + 0.99 * box.width, box.y + 0.4 * box.height, { steps: 4 });
   await page.mouse.up();
-  const bar = page.getByRole("complementary", { name: "Chosen runs" });
-  await bar.getByText(/slip .* to/).waitFor();
-  assert.ok((await page.locator("[data-run].chosen").count()) > 0);
-  await picture(page, "hidden-brushed");
-  await bar.getByRole("button", { name: "What if these runs were left out?" }).click();
-  await page.waitForURL(/#\/studies\/2\/live/);
-  await finished(page);
-  const { rows } = await service.json("/v1/calibrations/" + (await service.json("/v1/studies/2")).current + "/comparison");
-  const fitted = rows.filter((row) => row.use === "fit");
-  assert.ok(fitted.length > 0 && fitted.every((row) => row.slip > 0.05), "the runs of least slip are held out");
-  assert.deepEqual(complaints, []);
+  await page.getByRole("complementary", { name: "Chosen runs" }).waitFor();
+  await page.getByRole("button", { name: "What if these runs were left out?" }).click();
+  await page.waitForURL((url) => /live/.test(url.hash) && !url.hash.includes(`/${id}/`));
+  const study = await service.finished(studyOf(page), STUDY_MS);
+  assert.equal(study.state, "finished");
+  assert.notEqual(study.id, id);
 });
+
+test("nothing went wrong on the way", () => assert.deepEqual(tab.faults, []));

@@ -1,48 +1,61 @@
+// A report as a file: the story first, every picture, nothing asked of anybody.
+
 import assert from "node:assert/strict";
-import { mkdtempSync, rmSync } from "node:fs";
+import { mkdtemp, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 
-import { fits, launch, open, picture, stumbles } from "./browser.js";
-import { command } from "./service.js";
+import { findings, open, shot, sideways } from "./browser.js";
+import { coordinator } from "./service.js";
 
-let browser;
 let folder;
-before(async () => {
-  browser = await launch();
-  folder = mkdtempSync(join(tmpdir(), "report-"));
-});
-after(async () => {
-  await browser.close();
-  rmSync(folder, { recursive: true });
-});
 
-for (const example of ["hidden-effect", "cmu-sand"]) {
-  test(`the report of ${example} opens offline and begins with the story`, async () => {
-    const out = join(folder, example);
-    command(["run", `examples/${example}/job.toml`, "--out", out]);
-    const { page, complaints } = await open(browser, pathToFileURL(join(out, "report.html")).href);
-    await page.locator("#compare svg").first().waitFor();
-    await page.waitForTimeout(500);
-    const first = await page.locator("section").first().textContent();
-    assert.match(first, /What the model gets wrong.*What is missing.*What to do next/s);
-    for (const section of ["story", "live", "compare", "failures", "posterior", "errors"]) {
-      assert.ok((await page.locator(`#${section} figure svg`).count()) > 0, section);
+before(async () => {
+  folder = await mkdtemp(join(tmpdir(), "report-"));
+  await coordinator("run", "examples/hidden-effect/job.toml", "--out", join(folder, "out"));
+});
+after(() => rm(folder, { recursive: true, force: true }));
+
+/** Opens a report and returns the tab; each section is there. */
+async function opened(file, options) {
+  const url = pathToFileURL(file).href;
+  const tab = await open({ url, ...options });
+  await tab.page.goto(url);
+  await tab.page.locator("section#trust").waitFor();
+  return tab;
+}
+
+for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
+  test(`the report tells its story without asking anybody, ${theme}, ${width} px`, async () => {
+    const tab = await opened(join(folder, "out", "report.html"), { theme, width });
+    const { page } = tab;
+    try {
+      assert.equal(await page.locator("section").first().getAttribute("id"), "story");
+      for (const id of ["live", "compare", "failures", "posterior", "errors"]) {
+        await page.locator(`section#${id} figure .plot svg`).first().waitFor({ state: "attached" });
+      }
+      assert.equal(await page.locator(".error").count(), 0, await page.locator(".error").first().textContent().catch(() => ""));
+      assert.deepEqual(await findings(page), []);
+      assert.equal(await sideways(page), 0);
+      assert.deepEqual(tab.requests.filter((url) => !/^(file|data|blob):/.test(url)), []);
+      assert.equal(tab.requests.filter((url) => url.startsWith("file:")).length, 1);
+      assert.deepEqual(tab.faults, []);
+      await shot(page, `report-${theme}-${width}`);
+    } finally {
+      await tab.close();
     }
-    assert.equal(await page.locator(".error").count(), 0);
-    await picture(page, `report-${example}`);
-    assert.deepEqual(await stumbles(page), []);
-    await fits(page, "the report");
-    assert.deepEqual(complaints, []);
   });
 }
 
-test("the report of a calibration shows its own model", async () => {
-  const file = join(folder, "base.html");
-  command(["report", "1", "--out", join(folder, "hidden-effect"), "--output", file]);
-  const { page } = await open(browser, pathToFileURL(file).href);
-  await page.getByText(/quasi_static, base/).waitFor();
-  await page.locator("#story").getByText(/held-out/).first().waitFor();
+test("a model of the study has a report of its own", async () => {
+  const base = join(folder, "base.html");
+  await coordinator("report", "1", "--out", join(folder, "out"), "--output", base);
+  const tab = await opened(base);
+  try {
+    assert.match(await tab.page.locator("header .note").first().textContent(), /, base;/);
+  } finally {
+    await tab.close();
+  }
 });

@@ -1,65 +1,101 @@
-// A coordinator with its own store and one local worker; it can be killed and started again in its place.
+// A coordinator with one local worker on a free port, with a store of its own.
 
-import { spawn, spawnSync } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { spawn } from "node:child_process";
+import { once } from "node:events";
+import { mkdtemp, readFile, readdir, rm } from "node:fs/promises";
 import { createServer } from "node:net";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
-import { setTimeout as sleep } from "node:timers/promises";
+import { basename, join } from "node:path";
 
-export const PROGRAM = process.env.COORDINATOR ?? "target/release/coordinator";
+const PROGRAM = process.env.COORDINATOR ?? "target/release/coordinator";
+const LOOK_MS = 100;
+const START_MS = 20_000;
 
-const freePort = () => new Promise((resolve) => {
-  const server = createServer().listen(0, "127.0.0.1", () => {
-    const { port } = server.address();
-    server.close(() => resolve(port));
-  });
-});
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-/** Runs the program to its end; what it prints. */
-export function command(words, options = {}) {
-  const { status, stdout, stderr } = spawnSync(PROGRAM, words, { encoding: "utf8", ...options });
-  if (status !== 0) throw new Error(`coordinator ${words.join(" ")}: ${stderr}`);
-  return stdout;
+async function freePort() {
+  const server = createServer().listen(0, "127.0.0.1");
+  await once(server, "listening");
+  const { port } = server.address();
+  server.close();
+  await once(server, "close");
+  return port;
+}
+
+/** Runs the coordinator to its end and returns what it prints. */
+export async function coordinator(...parameters) {
+  const child = spawn(PROGRAM, parameters, { stdio: ["ignore", "pipe", "pipe"] });
+  let out = "", errors = "";
+  child.stdout.on("data", (text) => (out += text));
+  child.stderr.on("data", (text) => (errors += text));
+  const [code] = await once(child, "close");
+  if (code !== 0) throw new Error(`coordinator ${parameters.join(" ")} exits ${code}: ${errors}`);
+  return out;
 }
 
 export class Service {
-  static async start() {
+  /** Starts a service on an empty store; with `tokenOf`, it asks for a token, which `token` then holds. */
+  static async start({ tokenOf = null } = {}) {
     const service = new Service();
-    service.folder = mkdtempSync(join(tmpdir(), "page-"));
-    service.store = `sqlite://${join(service.folder, "grouser.db")}`;
+    service.folder = await mkdtemp(join(tmpdir(), "page-"));
+    service.store = `sqlite://${join(service.folder, "store.db")}`;
+    if (tokenOf) {
+      const text = await coordinator("token", "add", tokenOf, "--role", "submit", "--store", service.store);
+      service.token = text.match(/\S{24,}/)[0];
+    }
     service.port = await freePort();
-    await service.spawn();
+    service.url = `http://127.0.0.1:${service.port}`;
+    await service.restart();
     return service;
   }
 
-  get url() {
-    return `http://127.0.0.1:${this.port}/`;
-  }
-
-  async spawn() {
-    const words = ["serve", "--listen", `127.0.0.1:${this.port}`, "--store", this.store, "--local-workers", "1"];
-    this.process = spawn(PROGRAM, words, { stdio: "ignore" });
-    for (let look = 0; look < 200; look += 1) {
-      if (await fetch(`${this.url}health`).then((r) => r.ok, () => false)) return;
-      await sleep(50);
+  /** Starts it (again) on the same port and store. */
+  async restart() {
+    this.child = spawn(PROGRAM, ["serve", "--listen", `127.0.0.1:${this.port}`, "--store", this.store, "--local-workers", "1"], { stdio: "ignore" });
+    for (const end = Date.now() + START_MS; ; await sleep(LOOK_MS)) {
+      if (await fetch(`${this.url}/openapi.json`).then((r) => r.ok, () => false)) return;
+      if (Date.now() > end) throw new Error(`the coordinator does not answer after ${START_MS} ms`);
     }
-    throw new Error("the coordinator does not answer");
   }
 
-  /** As a power cut would end it. */
+  /** Ends it at once, as a power cut does. */
   async kill() {
-    const ended = new Promise((resolve) => this.process.once("exit", resolve));
-    this.process.kill("SIGKILL");
-    await ended;
+    this.child.kill("SIGKILL");
+    await once(this.child, "exit");
   }
 
   async stop() {
-    await this.kill();
-    rmSync(this.folder, { recursive: true });
+    if (this.child.exitCode === null && this.child.signalCode === null) await this.kill();
+    await rm(this.folder, { recursive: true, force: true });
   }
 
-  async json(path) {
-    return (await fetch(this.url + path.replace(/^\//, ""))).json();
+  async get(path) {
+    const response = await fetch(this.url + path);
+    if (!response.ok) throw new Error(`GET ${path}: ${response.status} ${await response.text()}`);
+    return response.json();
   }
+
+  async post(path, body) {
+    const response = await fetch(this.url + path, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) });
+    if (!response.ok) throw new Error(`POST ${path}: ${response.status} ${await response.text()}`);
+    return response.json();
+  }
+
+  /** Waits until a study is over and returns it. */
+  async finished(id, withinMs = 90_000) {
+    for (const end = Date.now() + withinMs; ; await sleep(LOOK_MS)) {
+      const study = await this.get(`/v1/studies/${id}`);
+      if (["finished", "failed", "cancelled"].includes(study.state)) return study;
+      if (Date.now() > end) throw new Error(`study ${id} is ${study.state} after ${withinMs} ms`);
+    }
+  }
+}
+
+/** The files of an example as the page takes them, with `edit(text of the job)` in place of the job. */
+export async function filesOf(folder, edit = (job) => job, names = null) {
+  const all = names ?? (await readdir(folder)).filter((name) => /\.(toml|csv)$/.test(name));
+  return Promise.all(all.map(async (name) => {
+    const text = await readFile(join(folder, name), "utf8");
+    return { name: basename(name), mimeType: "text/plain", text: name === "job.toml" ? edit(text) : text };
+  }));
 }

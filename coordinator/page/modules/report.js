@@ -2,7 +2,7 @@
 
 import { html, render } from "./html.js";
 import { ChosenRuns } from "./part/chosen_runs.js";
-import { Guard } from "./part/guard.js";
+import { Guarded } from "./part/guarded.js";
 import { Pending } from "./part/message.js";
 import { path } from "./rest/routes.js";
 import { useAnswer } from "./rest/use_answer.js";
@@ -24,7 +24,7 @@ function Report() {
     ${VIEWS.map((v) => html`
       <section id=${v.name} class=${`view ${v.name}`}>
         ${v.name !== "story" && html`<h1 class="section">${v.title}</h1>`}
-        <${Guard} what=${v.title}><${v.view} study=${study} model=${model} query=${{ member: String(model?.id) }} /><//>
+        <${Guarded} title=${v.title}><${v.view} study=${study} model=${model} query=${{}} /><//>
       </section>`)}
     <${ChosenRuns} study=${study} model=${model} />`;
 }

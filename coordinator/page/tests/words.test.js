@@ -3,7 +3,7 @@ import { test } from "node:test";
 
 import { table } from "../modules/chart/download.js";
 import { groups, levels, levelWords } from "../modules/words/group.js";
-import { digits, duration, meanAndSd, probability, size } from "../modules/words/quantity.js";
+import { digits, duration, meanAndSd, parameterUnit, probability, size } from "../modules/words/quantity.js";
 
 test("a number has its significant digits, and an exponent only where it needs one", () => {
   assert.equal(digits(0.00933), "0.00933");
@@ -54,4 +54,10 @@ test("runs are grouped by the speed that the rig holds", () => {
 
 test("a table as CSV quotes what needs it", () => {
   assert.equal(table([{ run: 'a "1", b', rmse: 1.5 }, { run: "c", unit: null }]), 'run,rmse,unit\n"a ""1"", b",1.5,\nc,,\n');
+});
+
+test("the name of a parameter tells its unit", () => {
+  assert.equal(parameterUnit("wheel_radius_m.smooth"), "m");
+  assert.equal(parameterUnit("friction_angle_deg"), "°");
+  assert.equal(parameterUnit("n"), "1");
 });

@@ -4,7 +4,7 @@ import { html } from "../html.js";
 import { digits, shown, titled, parameterName } from "../words/quantity.js";
 import { symbol } from "./colour.js";
 import { Entry, Figure, fileName } from "./figure.js";
-import { d3, Plot } from "./library.js";
+import { d3, Plot, STYLE } from "./library.js";
 
 /** The regions of highest density as paths in pixels; the density is given at the points of a grid. */
 function regions(/** @type {any} */ pair, /** @type {(v: number) => number} */ x, /** @type {(v: number) => number} */ y, isTurned = false) {
@@ -70,8 +70,9 @@ export function JointPicture({ pair }) {
     name=${fileName("joint", a.name, b.name)} deps=${[pair]}
     legend=${pair.marks.map((/** @type {any} */ m, /** @type {number} */ k) => html`<${Entry} glyph=${html`<circle cx="8" cy="8" r="5" fill=${`var(--series-${(k % 7) + 1})`} />`}>${m.label}<//>`)}
     draw=${(/** @type {number} */ width) => Plot.plot({
-      width: Math.min(width, 620), height: 420, marginLeft: 60, grid: true,
-      x: { label: titled(parameterName(a.name), a.unit), domain: domain(0, a.scale) }, y: { label: titled(parameterName(b.name), b.unit), domain: domain(1, b.scale) },
+      width: Math.min(width, 620), height: 420, marginLeft: 60, marginBottom: 40, grid: true, style: STYLE,
+      x: { label: titled(parameterName(a.name), a.unit), labelArrow: "none", labelAnchor: "center", domain: domain(0, a.scale) },
+      y: { label: titled(parameterName(b.name), b.unit), labelArrow: "none", domain: domain(1, b.scale) },
       marks: [
         (/** @type {any} */ _, /** @type {any} */ scales) => /** @type {any} */ (d3.create("svg:g").call((g) => regions(pair, (v) => scales.x(v * a.scale), (v) => scales.y(v * b.scale))
           .forEach((/** @type {string} */ d) => g.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"))).node()),

@@ -36,8 +36,9 @@ const runAt = (/** @type {Event} */ event) => /** @type {SVGElement} */ (event.t
  */
 export function pointable(plot, { runsIn, words } = {}) {
   const abort = new AbortController();
+  // Ahead of the pointer of a tip, which keeps what it hears to itself.
   const on = (/** @type {string} */ type, /** @type {(event: any) => void} */ listener) =>
-    plot.addEventListener(type, listener, { signal: abort.signal });
+    plot.addEventListener(type, listener, { signal: abort.signal, capture: true });
   on("pointerover", (event) => {
     const run = runAt(event);
     if (run && event.buttons === 0) point([run], `run ${run}`);

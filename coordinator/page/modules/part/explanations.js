@@ -29,7 +29,7 @@ export function Explanations({ record, ghost, show, add, study, model, isBusy })
           <tr key=${effect.name} class=${`${effect.name === ghost ? "shown" : ""} ${effect.in_credible_set ? "credible" : ""}`}
               onMouseEnter=${() => show(effect.name)} onMouseLeave=${() => show(null)}>
             <th scope="row">
-              <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)}><b>${OTHERS[effect.name] ?? effect.name}</b></button>
+              <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)} aria-label=${`show what ${OTHERS[effect.name] ?? effect.name} would change`}><b>${OTHERS[effect.name] ?? effect.name}</b></button>
               <span class="note">${summaries.get(effect.name.split(".")[0]) ?? ""}${(classes.get(effect.class) ?? 0) > 1 ? ` These data cannot tell it from ${same(record, effect)}.` : ""}</span>
             </th>
             <td><span class="bar"><i style=${{ width: `${(100 * effect.probability).toFixed(1)}%` }}></i></span> <span class="number">${probability(effect.probability)}</span></td>

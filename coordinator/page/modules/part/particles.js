@@ -2,10 +2,10 @@
 
 import { Figure, fileName } from "../chart/figure.js";
 import { Plot, STYLE } from "../chart/library.js";
-import { html, useEffect, useState } from "../html.js";
+import { html, useEffect, useMemo, useState } from "../html.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { digits, parameterName, parameterTitle } from "../words/quantity.js";
+import { digits, parameterName, parameterUnit, titled } from "../words/quantity.js";
 import { Pending } from "./message.js";
 
 const FRAME_MS = 700;
@@ -31,7 +31,8 @@ export function Particles({ id, stages }) {
   const names = answer?.parameters ?? first.answer?.parameters ?? [];
   const chosen = pair.map((k) => Math.min(k, Math.max(0, names.length - 1)));
   const points = (/** @type {any} */ of) => (of?.samples ?? []).map((/** @type {any} */ s) => ({ x: s.theta[chosen[0]], y: s.theta[chosen[1]] }));
-  const [now, early] = [points(answer), points(first.answer)];
+  const now = useMemo(() => points(answer), [answer, ...chosen]);
+  const early = useMemo(() => points(first.answer), [first.answer, ...chosen]);
   const exponent = stages[stage - 1]?.tempering_exponent;
   const choose = (/** @type {number} */ end) => html`<label>${end === 0 ? "across" : "up"} <select value=${chosen[end]}
     onChange=${(/** @type {any} */ e) => setPair(pair.map((k, i) => (i === end ? Number(e.target.value) : k)))}>
@@ -43,11 +44,39 @@ export function Particles({ id, stages }) {
       <label>stage <input type="range" min="1" max=${last} value=${stage} onInput=${(/** @type {any} */ e) => { setPlaying(false); setStage(Number(e.target.value)); }} /></label>
       <output>${stage} of ${last}: exponent ${digits(exponent, 2)}</output></div>
     ${now.length === 0 && !isPlaying && html`<${Pending} answer=${answer} error=${error} what="This population" />`}
-    ${now.length + early.length > 0 && html`<${Figure} title=${`Particles in ${parameterName(names[chosen[0]])} and ${parameterName(names[chosen[1]])}`} note="grey: stage 1, close to the prior"
-      name=${fileName("particles", id, names[chosen[0]], names[chosen[1]])} deps=${[answer, first.answer, ...chosen]} rows=${() => now}
-      draw=${(/** @type {number} */ width) => Plot.plot({
-        width: Math.min(width, 640), height: 380, marginTop: 26, marginLeft: 64, marginBottom: 40, grid: true, style: STYLE,
-        x: { label: parameterTitle(names[chosen[0]]), labelArrow: "none", labelAnchor: "center" }, y: { label: parameterTitle(names[chosen[1]]), labelArrow: "none" },
-        marks: [Plot.dot(early, { x: "x", y: "y", r: 1.6, fill: "var(--rule)" }), Plot.dot(now, { x: "x", y: "y", r: 2, fill: "var(--series-0)", fillOpacity: 0.6 })],
-      })} />`}`;
+    ${now.length + early.length > 0 && html`<${Cloud} id=${id} x=${named(names[chosen[0]])} y=${named(names[chosen[1]])} now=${now} early=${early} />`}`;
+}
+
+/**
+ * The particles that a report carries: the first, a middle and the last stage, in two parameters.
+ * @param {{ id: number }} properties
+ */
+export function RecordedParticles({ id }) {
+  const { answer } = useAnswer(path.figures(id));
+  const [place, setPlace] = useState(/** @type {number | null} */ (null));
+  const populations = answer?.populations;
+  if (!populations) return null;
+  const { stages, parameters } = populations;
+  const of = (/** @type {any} */ population) => population.points.map((/** @type {number[]} */ [x, y]) => ({ x, y }));
+  const shown = place ?? stages.length - 1;
+  return html`
+    <h2>Particles</h2>
+    <div class="actions" role="group" aria-label="Stage">
+      ${stages.map((/** @type {any} */ s, /** @type {number} */ k) => html`<button type="button" aria-pressed=${k === shown} onClick=${() => setPlace(k)}>stage ${s.stage}: exponent ${digits(s.tempering_exponent, 2)}</button>`)}</div>
+    <${Cloud} id=${id} x=${parameters[0]} y=${parameters[1]} now=${of(stages[shown])} early=${of(stages[0])} />`;
+}
+
+/** A parameter of which only the name is known, which ends with its unit. */
+const named = (/** @type {string} */ name) => ({ name, unit: parameterUnit(name) });
+
+/** @param {{ id: number, x: { name: string, unit: string }, y: { name: string, unit: string }, now: any[], early: any[] }} properties */
+function Cloud({ id, x, y, now, early }) {
+  const label = (/** @type {{ name: string, unit: string }} */ p) => titled(parameterName(p.name), p.unit);
+  return html`<${Figure} title=${`Particles in ${parameterName(x.name)} and ${parameterName(y.name)}`} note="grey: the first stage, close to the prior"
+    name=${fileName("particles", id, x.name, y.name)} deps=${[now, early]} rows=${() => now}
+    draw=${(/** @type {number} */ width) => Plot.plot({
+      width: Math.min(width, 640), height: 380, marginLeft: 64, marginTop: 26, marginBottom: 40, grid: true, style: STYLE,
+      x: { label: label(x), labelArrow: "none", labelAnchor: "center" }, y: { label: label(y), labelArrow: "none" },
+      marks: [Plot.dot(early, { x: "x", y: "y", r: 1.6, fill: "var(--rule)" }), Plot.dot(now, { x: "x", y: "y", r: 2, fill: "var(--series-0)", fillOpacity: 0.6 })],
+    })} />`;
 }

@@ -1,7 +1,7 @@
 // The stages of a sampler as curves: exponent, effective samples, acceptance, evidence.
 
 import { Figure, fileName } from "../chart/figure.js";
-import { Plot } from "../chart/library.js";
+import { Plot, STYLE } from "../chart/library.js";
 import { html } from "../html.js";
 import { digits } from "../words/quantity.js";
 
@@ -20,7 +20,7 @@ export function StageCharts({ stages, name }) {
     <${Figure} key=${key} title=${`${title} by stage`} note=${note} name=${fileName(name, key)} deps=${[stages]}
       rows=${() => rows.map((row) => ({ stage: row.stage, [key]: row[key] }))}
       draw=${(/** @type {number} */ width) => Plot.plot({
-        width, height: 190, marginLeft: 56, x: { label: "stage", ticks: 5, tickFormat: "d" }, y: { label: null, type: /** @type {any} */ (type), grid: type === "linear", ticks: 4, zero: key === "acceptance", ...(type === "log" ? { tickFormat: (/** @type {number} */ v) => digits(v, 1) } : {}) },
+        width, height: 190, marginLeft: 56, marginBottom: 40, style: STYLE, x: { label: "stage", labelArrow: "none", labelAnchor: "center", ticks: 5, tickFormat: "d" }, y: { label: null, type: /** @type {any} */ (type), grid: type === "linear", ticks: 4, zero: key === "acceptance", ...(type === "log" ? { tickFormat: (/** @type {number} */ v) => digits(v, 1) } : {}) },
         marks: [Plot.line(rows, { x: "stage", y: key, stroke: "var(--series-0)" }), Plot.dot(rows, { x: "stage", y: key, r: 2.5, fill: "var(--series-0)" })],
       })} />`)}</div>`;
 }

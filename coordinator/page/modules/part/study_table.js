@@ -29,7 +29,7 @@ export function StudyTable({ studies }) {
     study.error && html`${["fit", "holdout"].filter((use) => study.error[use]).map((use) => html`<div class="whole">${use === "fit" ? "fit" : "held out"}</div>`)}`,
     ...channels.map((channel) => pair(study.error, (use) => use[channel]?.rmse, shown(unitOf(channel)).scale)),
     pair(study.error, (use) => use.all?.rmse_fixed_sigma),
-    study.state === "finished" || study.verdict ? verdictWords(study.verdict) : "",
+    study.state === "finished" || study.verdict ? verdictWords(study.verdict?.verdict ?? null) : "",
   ]);
   return html`
     <p class="note">Errors are root mean squares of prediction minus measurement of the current model; 1 × noise is as good as the measurements allow.</p>

@@ -3,8 +3,7 @@
 import { html, useEffect, useState } from "../html.js";
 import { Controls } from "../part/controls.js";
 import { Failure } from "../part/message.js";
-import { Particles } from "../part/particles.js";
-import { Populations } from "../part/populations.js";
+import { Particles, RecordedParticles } from "../part/particles.js";
 import { StageCharts } from "../part/stage_charts.js";
 import { Table } from "../part/table.js";
 import { isReport } from "../rest/answers.js";
@@ -24,9 +23,9 @@ function memberOf(/** @type {any} */ study, /** @type {string | undefined} */ as
   return of((m) => String(m.id) === asked) ?? of((m) => m.state === "running") ?? of((m) => ["paused", "queued"].includes(m.state)) ?? of((m) => m.kind !== "search") ?? study.members.at(-1);
 }
 
-/** @param {{ study: any, query: Record<string, string>, reload: () => void }} properties */
-export function Live({ study, query, reload }) {
-  const member = memberOf(study, query.member);
+/** @param {{ study: any, model: any, query: Record<string, string>, reload: () => void }} properties */
+export function Live({ study, model, query, reload }) {
+  const member = memberOf(study, query.member ?? (isReport ? String(model?.id) : undefined));
   if (!member) return html`<p class="empty">This study has no calibration.</p>`;
   const go = (/** @type {number} */ id) => replace(address(["studies", study.id, "live"], { member: id }));
   const names = study.members.map((/** @type {any} */ m) => [
@@ -71,6 +70,6 @@ function Member(/** @type {{ member: any, reload: () => void }} */ { member, rel
     ${member.kind === "search"
       ? html`<p class="empty">A search fits each candidate effect; its result is in the view Missing effect.</p>`
       : stages.length > 0
-        ? html`<${StageCharts} stages=${stages} name=${member.name} /><${isReport ? Populations : Particles} id=${member.id} stages=${stages} />`
+        ? html`<${StageCharts} stages=${stages} name=${member.name} /><${isReport ? RecordedParticles : Particles} id=${member.id} stages=${stages} />`
         : html`<p class="empty">${isOver ? "This calibration has no stages: it is a fit, or it ended before its first stage." : "The first stage draws from the prior; pictures come with its end."}</p>`}`;
 }

@@ -21,18 +21,15 @@ export function Posterior({ study, model }) {
   if (!model) return html`<p class="empty">The posterior is known as soon as a calibration has finished. The view Live shows how far it is.</p>`;
   const line = [...study.ledger, ...(study.point_estimates ?? [])].find((/** @type {any} */ l) => l.calibration === model.id);
   if (!answer) return html`<${Pending} answer=${answer} error=${error} what="The posterior" />`;
+  const marginals = (answer.marginals ?? []).map((/** @type {any} */ m) => ({ ...m, ...m.parameter }));
   return html`
-    <${Pictures} key=${model.id} figures=${answer} model=${model} />
+    <${Pictures} key=${model.id} marginals=${marginals} pairs=${answer.posteriors ?? []} model=${model} />
     <h2>Parameters</h2>
-    <${ParameterTable} marginals=${flat(answer)} line=${line} />
+    <${ParameterTable} marginals=${marginals} line=${line} />
     ${!isReport && html`<${Draws} model=${model} />`}`;
 }
 
-/** The marginals with the name and unit of their parameter beside their numbers. */
-const flat = (/** @type {any} */ figures) => figures.marginals.map((/** @type {any} */ m) => ({ ...m, ...m.parameter }));
-
-function Pictures(/** @type {{ figures: any, model: any }} */ { figures, model }) {
-  const marginals = flat(figures);
+function Pictures(/** @type {{ marginals: any[], pairs: any[], model: any }} */ { marginals, pairs, model }) {
   const names = marginals.map((/** @type {any} */ m) => m.name);
   const [chosen, setChosen] = useState(/** @type {string[]} */ (names.slice(0, MOST)));
   const [cell, setCell] = useState(/** @type {any} */ (null));
@@ -44,7 +41,7 @@ function Pictures(/** @type {{ figures: any, model: any }} */ { figures, model }
     <h2>Pairs of parameters</h2>
     ${names.length > MOST && html`<div class="actions" role="group" aria-label="Parameters in the pair plot">
       ${names.map((/** @type {string} */ name) => html`<button type="button" aria-pressed=${chosen.includes(name)} onClick=${() => flip(name)}>${parameterName(name)}</button>`)}</div>`}
-    <${PairPlot} pairs=${figures.posteriors} marginals=${marginals.filter((/** @type {any} */ m) => chosen.includes(m.name))} name=${model.name} onCell=${setCell} />
+    <${PairPlot} pairs=${pairs} marginals=${marginals.filter((/** @type {any} */ m) => chosen.includes(m.name))} name=${model.name} onCell=${setCell} />
     ${cell && html`<div class="card"><${JointPicture} pair=${cell} /><button type="button" onClick=${() => setCell(null)}>Close</button></div>`}`;
 }
 
@@ -53,10 +50,10 @@ function Marginal(/** @type {{ marginal: any }} */ { marginal }) {
   const rows = marginal.grid.map((/** @type {number} */ x, /** @type {number} */ k) => ({ x: x * scale, prior: marginal.prior[k], posterior: marginal.posterior[k] }));
   return html`<${Figure} title=${`Posterior of ${parameterName(marginal.name)}`} name=${fileName("posterior", marginal.name)} deps=${[marginal]} rows=${() => rows}
     draw=${(/** @type {number} */ width) => Plot.plot({
-      width, height: 190, marginLeft: 14, marginBottom: 40, style: STYLE, y: { axis: null },
-      x: { label: titled(parameterName(marginal.name), unit), labelArrow: "none", labelAnchor: "center", ticks: 5, type: marginal.logarithmic ? "log" : "linear" },
+      width, height: 190, marginLeft: 14, marginRight: 14, marginBottom: 40, style: STYLE,
+      x: { type: marginal.logarithmic ? "log" : "linear", label: titled(parameterName(marginal.name), unit), labelArrow: "none", labelAnchor: "center", ticks: 5, grid: true }, y: { axis: null },
       marks: [
-        Plot.areaY(rows, { x: "x", y: "posterior", fill: "var(--series-0)", fillOpacity: 0.3 }),
+        Plot.areaY(rows, { x: "x", y1: 0, y2: "posterior", fill: "var(--series-0)", fillOpacity: 0.3 }),
         Plot.lineY(rows, { x: "x", y: "posterior", stroke: "var(--series-0)" }),
         Plot.lineY(rows, { x: "x", y: "prior", stroke: "var(--prior)", strokeDasharray: "5 3" }),
         ...(marginal.mode === null ? [] : [Plot.ruleX([marginal.mode * scale], { stroke: "var(--ink)" })]),

@@ -2,7 +2,7 @@
 
 import { html } from "../html.js";
 import { ChosenRuns } from "../part/chosen_runs.js";
-import { Guard } from "../part/guard.js";
+import { Guarded } from "../part/guarded.js";
 import { Pending } from "../part/message.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
@@ -68,7 +68,7 @@ export function StudyPage({ id, view, query }) {
     </nav>
     ${shown.name !== "live" && html`<${ModelPicker} study=${study} model=${model} view=${shown.name} />`}
     <section class=${`view ${shown.name}`} aria-label=${shown.title}>
-      <${Guard} key=${shown.name} what=${shown.title}><${shown.view} study=${study} model=${model} query=${query} reload=${reload} /><//>
+      <${Guarded} key=${shown.name} title=${shown.title}><${shown.view} study=${study} model=${model} query=${query} reload=${reload} /><//>
     </section>
     <${ChosenRuns} study=${study} model=${model} />`;
 }

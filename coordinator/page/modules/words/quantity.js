@@ -20,12 +20,12 @@ export const capital = (/** @type {string} */ text) => (/^[a-z0-9]*_/.test(text)
 /** The name of a parameter as words, without the unit at its end, which stands beside it. */
 export const parameterName = (/** @type {string} */ name) => words(name.replace(/_(n_m|m_s|kg_m3|deg|pa|m|n)(?=\.[^.]*$|$)/, ""));
 
-const SUFFIXES = /** @type {Record<string, string>} */ ({ n_m: "N m", m_s: "m/s", kg_m3: "kg/m³", deg: "°", pa: "Pa", m: "m", n: "N" });
+const PARAMETER_UNITS = { n_m: "N m", m_s: "m/s", kg_m3: "kg/m³", deg: "°", pa: "Pa", m: "m", n: "N" };
 
-/** `friction angle [°]`: the name of a parameter with the unit that it ends with. */
-export function parameterTitle(/** @type {string} */ name) {
-  const suffix = /_(n_m|m_s|kg_m3|deg|pa|m|n)(?=\.[^.]*$|$)/.exec(name)?.[1];
-  return titled(parameterName(name), suffix ? SUFFIXES[suffix] : "1");
+/** The unit in SI with which the name of a parameter ends; `1` where it ends with none. */
+export function parameterUnit(/** @type {string} */ name) {
+  const end = /_(n_m|m_s|kg_m3|deg|pa|m|n)(?=\.[^.]*$|$)/.exec(name)?.[1];
+  return end === undefined ? "1" : PARAMETER_UNITS[/** @type {keyof typeof PARAMETER_UNITS} */ (end)];
 }
 
 /** A short name of a channel. */

@@ -1,0 +1,66 @@
+// Measured sand: from the example to the explanations, then runs that were made are typed in and the study is calibrated with all.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+
+import { open, shot, studyOf, view } from "./browser.js";
+import { Service } from "./service.js";
+
+const STUDY_MS = 120_000;
+let service, tab, page;
+
+before(async () => {
+  service = await Service.start();
+  tab = await open({ url: service.url });
+  page = tab.page;
+});
+after(async () => {
+  await tab?.close();
+  await service?.stop();
+});
+
+test("an example is edited in the form and calibrated", async () => {
+  await page.goto(`${service.url}/#/new`);
+  await page.getByRole("button", { name: "cmu-sand-discover", exact: true }).click();
+  const card = page.locator('[data-file="discover.toml"]');
+  await card.locator("summary").click();
+  const text = page.getByLabel("text of discover.toml");
+  // Fewer particles keep the test short; the search waits for a click.
+  const job = (await text.inputValue()).replace(/particles = \d+/, "particles = 200").replace(/moves = .*/, "").replace('apply = "auto"', 'apply = "ask"');
+  await text.fill(job);
+  await page.getByRole("button", { name: "Start the calibration" }).click();
+  await page.waitForURL(/live/);
+  await page.locator(".heading .state.finished").waitFor({ timeout: STUDY_MS });
+  for (const title of ["Compare", "Where it fails", "Posterior", "Error falls"]) {
+    await view(page, title);
+    await page.locator(`section[aria-label="${title}"] figure .plot > svg`).first().waitFor();
+    await shot(page, `cmu-${title.toLowerCase().replaceAll(" ", "-")}`);
+  }
+});
+
+test("the explanations come with a map of the runs that would tell", async () => {
+  await view(page, "Missing effect");
+  await page.locator("table.explanations tbody tr").first().waitFor();
+  await page.locator('section[aria-label="Missing effect"] figure .plot > svg').last().waitFor();
+  await page.locator("table.explanations button.plain").first().focus();
+  await page.locator(".ghosts .note b").first().waitFor();
+  await shot(page, "cmu-effects");
+});
+
+test("measured values of the proposed runs start a calibration of all", async () => {
+  const id = studyOf(page);
+  const before = await service.get(`/v1/studies/${id}`);
+  // What the model predicts nearby will do for a measurement.
+  await page.getByLabel("pull of run 1 in N").fill("3.5");
+  await page.getByLabel("sinkage of run 1 in mm").fill("14.5");
+  await page.getByRole("button", { name: "Add 1 run and calibrate again" }).click();
+  await page.waitForURL((url) => /live/.test(url.hash));
+  const added = studyOf(page);
+  const study = await service.finished(added, STUDY_MS);
+  assert.equal(study.state, "finished");
+  assert.ok(added !== id || study.members.length > before.members.length, "there is no calibration with the new run");
+  const { rows } = await service.get(`/v1/calibrations/${study.current}/comparison`);
+  assert.ok(rows.some((row) => row.run.startsWith("next-")), "the new run is not among the compared ones");
+});
+
+test("nothing went wrong on the way", () => assert.deepEqual(tab.faults, []));
