@@ -53,7 +53,7 @@ export class Service {
   async restart() {
     this.child = spawn(PROGRAM, ["serve", "--listen", `127.0.0.1:${this.port}`, "--store", this.store, "--local-workers", "1"], { stdio: "ignore" });
     for (const end = Date.now() + START_MS; ; await sleep(LOOK_MS)) {
-      if (await fetch(`${this.url}/openapi.json`).then((r) => r.ok, () => false)) return;
+      if (await fetch(`${this.url}/openapi.json`).then((r) => r.status < 500, () => false)) return;
       if (Date.now() > end) throw new Error(`the coordinator does not answer after ${START_MS} ms`);
     }
   }
