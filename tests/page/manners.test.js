@@ -92,7 +92,7 @@ test("a view is reached by its address", () => within({}, async (page) => {
   assert.equal(await page.locator(".picker select").inputValue(), "1");
 }));
 
-test("the first view takes little to send", { skip: "needs a service that compresses" }, () => within({}, async (page) => {
+test("the first view takes little to send", () => within({}, async (page) => {
   const session = await page.context().newCDPSession(page);
   await session.send("Network.enable");
   let bytes = 0;

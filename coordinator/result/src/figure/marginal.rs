@@ -109,18 +109,15 @@ fn density(
         logarithmic,
         prior: coordinates.iter().map(before).collect(),
         posterior: after.into_iter().map(five_digits).collect(),
-        grid: coordinates
-            .into_iter()
-            .map(|u| five_digits(backward(u)))
-            .collect(),
+        grid: coordinates.into_iter().map(backward).collect(),
         bounds: [lower, upper].map(|bound| bound.is_finite().then_some(bound)),
-        mode: five_digits(summary.map),
+        mode: summary.map,
         reference,
-        mean: five_digits(summary.mean),
+        mean: summary.mean,
         sd: five_digits(summary.sd),
-        q05: five_digits(summary.q05),
-        q50: five_digits(summary.q50),
-        q95: five_digits(summary.q95),
+        q05: summary.q05,
+        q50: summary.q50,
+        q95: summary.q95,
     }
 }
 

@@ -90,20 +90,14 @@ pub(super) fn all(study: &Study, sample: &FinishedCalibration) -> Vec<JointPoste
 }
 
 impl JointPosterior {
-    /// With five digits of each number, which are more than a picture shows.
+    /// With five digits of each density, which are more than a picture shows. Places keep all of theirs: a narrow posterior may lie
+    /// within the fifth.
     fn rounded(mut self) -> Self {
-        for axis in &mut self.grid {
-            axis.iter_mut().for_each(|x| *x = five_digits(*x));
-        }
-        self.range = self.range.map(|ends| ends.map(five_digits));
         self.highest = five_digits(self.highest);
         for contour in &mut self.contours {
             contour.density = five_digits(contour.density);
         }
         self.rank_correlation = five_digits(self.rank_correlation);
-        for mark in &mut self.marks {
-            (mark.at.x, mark.at.y) = (mark.at.x.map(five_digits), mark.at.y.map(five_digits));
-        }
         self
     }
 }
