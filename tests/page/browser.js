@@ -12,7 +12,7 @@ export const STEP_MS = 10_000;
 
 /** A browser with one page; `faults` collects requests to other hosts, errors on the console and of scripts. */
 export async function open({ url, width = 1280, height = 900, theme = "light" }) {
-  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
+  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--disable-dev-shm-usage", "--no-sandbox"] });
   const context = await browser.newContext({ viewport: { width, height }, colorScheme: theme, acceptDownloads: true, bypassCSP: false });
   const page = await context.newPage();
   page.setDefaultTimeout(STEP_MS);

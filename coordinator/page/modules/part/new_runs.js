@@ -64,6 +64,11 @@ export function NewRuns({ study, record, comparison }) {
 /** The first run of an experiment, whose wheel and soil further ones have. */
 function firstRun(/** @type {any} */ experiment) {
   const files = Object.values(experiment?.files ?? {});
-  const runs = files.find((text) => /^\uFEFF?\s*run\s*,/.test(/** @type {string} */ (text)));
-  return runs ? d3.csvParse(/** @type {string} */ (runs))[0] : null;
+  const runs = files.find((text) => /^\uFEFF?run\s*,/m.test(/** @type {string} */ (text)));
+  if (!runs) return null;
+  // Row by row: a parser of objects compiles code, which the page's policy forbids. Comments may stand above the header.
+  const rows = d3.csvParseRows(/** @type {string} */ (runs).replace(/^\uFEFF/, ""));
+  const header = rows.find((row) => row[0] === "run") ?? [];
+  const first = rows.slice(rows.indexOf(header) + 1).find((row) => row.length === header.length && !row[0].startsWith("#"));
+  return first ? Object.fromEntries(header.map((column, k) => [column, first[k]])) : null;
 }
