@@ -8,7 +8,7 @@ const { chromium } = require("playwright-core");
 const axe = require.resolve("axe-core/axe.min.js");
 
 /** So long a step may take before it counts as missing. */
-export const STEP_MS = 10_000;
+export const STEP_MS = 60_000;
 
 /** A browser with one page; `faults` collects requests to other hosts, errors on the console and of scripts. */
 export async function open({ url, width = 1280, height = 900, theme = "light" }) {

@@ -6,7 +6,7 @@ import { after, before, test } from "node:test";
 import { open, shot, studyOf, view } from "./browser.js";
 import { Service } from "./service.js";
 
-const STUDY_MS = 120_000;
+const STUDY_MS = 600_000;
 let service, tab, page;
 
 before(async () => {
@@ -52,7 +52,8 @@ test("measured values of the proposed runs start a calibration of all", async ()
   const before = await service.get(`/v1/studies/${id}`);
   // What the model predicts nearby will do for a measurement.
   await page.getByLabel("pull of run 1 in N").fill("3.5");
-  await page.getByLabel("sinkage of run 1 in mm").fill("14.5");
+  await page.getByLabel("sinkage of run 1 in mm").fill("14,5");
+  await page.getByLabel("wheel of run 1").selectOption("grousered");
   await page.getByRole("button", { name: "Add 1 run and calibrate again" }).click();
   await page.waitForURL((url) => /live/.test(url.hash));
   const added = studyOf(page);
@@ -60,7 +61,12 @@ test("measured values of the proposed runs start a calibration of all", async ()
   assert.equal(study.state, "finished");
   assert.ok(added !== id || study.members.length > before.members.length, "there is no calibration with the new run");
   const { rows } = await service.get(`/v1/calibrations/${study.current}/comparison`);
-  assert.ok(rows.some((row) => row.run.startsWith("next-")), "the new run is not among the compared ones");
+  const own = rows.filter((row) => row.run.startsWith("next-"));
+  assert.deepEqual(own.map((row) => [row.wheel, row.channel, row.measured]).sort(), [["grousered", "drawbar_pull", 3.5], ["grousered", "sinkage", 0.0145]]);
+  await page.goto(`${service.url}/#/studies/${study.id}/errors`);
+  const names = await page.getByRole("group", { name: "Models that are shown" }).getByRole("button").allTextContents();
+  assert.equal(new Set(names).size, names.length, `models share a name: ${names}`);
+  await page.locator('[data-figure*="layers"] [data-run^="next-"]').first().waitFor({ state: "attached" });
 });
 
 test("nothing went wrong on the way", () => assert.deepEqual(tab.faults, []));

@@ -7,7 +7,7 @@ import { open, shot, studyOf, view } from "./browser.js";
 import { Service, filesOf } from "./service.js";
 
 const FOLDER = "examples/hidden-effect";
-const STUDY_MS = 90_000;
+const STUDY_MS = 600_000;
 let service, tab, page;
 
 before(async () => {
@@ -45,6 +45,7 @@ test("the page outlives its coordinator", async () => {
   await page.getByRole("button", { name: "Start the calibration" }).click();
   await page.waitForURL(/studies\/\d+\/live/);
   await page.locator('[data-figure$="ess"] svg').first().waitFor({ timeout: STUDY_MS });
+  assert.equal((await service.get(`/v1/studies/${studyOf(page)}`)).state, "running");
   await service.kill();
   await page.getByText("the coordinator does not answer").first().waitFor();
   await shot(page, "hidden-live-away");
@@ -66,6 +67,16 @@ test("a cell of the residuals lights up its run in the other pictures", async ()
   await shot(page, "hidden-failures");
   await page.mouse.move(2, 2);
   assert.equal(await page.locator(".lit").count(), 0);
+  await cell.click();
+  const bar = page.getByRole("complementary", { name: "Chosen runs" });
+  await bar.waitFor();
+  const here = page.url();
+  // Another study has other runs.
+  await page.getByRole("link", { name: "Studies", exact: true }).click();
+  await page.locator("h1", { hasText: "Studies" }).waitFor();
+  await page.goto(here);
+  await cell.waitFor();
+  assert.equal(await bar.count(), 0);
 });
 
 test("an explanation shows what it predicts before it is computed, and a click adds it", async () => {
@@ -87,6 +98,8 @@ test("the error falls, and the models are layers", async () => {
   await view(page, "Error falls");
   const { ledger } = await service.get(`/v1/studies/${id}`);
   const [base, extended] = ledger.map((line) => line.error.holdout.all.rmse_fixed_sigma);
+  const pull = ledger.at(-1).error.holdout.drawbar_pull.rmse;
+  assert.match(await page.locator("table", { hasText: "with janosi_hanamoto" }).first().textContent(), new RegExp(pull.toPrecision(3).replace(".", "\\.")));
   assert.ok(extended < base, `held out, the extension errs by ${extended} noise sds, the base by ${base}`);
   const layers = page.getByRole("group", { name: "Models that are shown" }).getByRole("button");
   assert.equal(await layers.count(), 2);

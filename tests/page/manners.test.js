@@ -37,6 +37,10 @@ async function within(options, what) {
 async function go(page, hash) {
   await page.goto(`${service.url}/${hash}`);
   await page.locator("#content h1").first().waitFor();
+  // Only the address changes within the page: what was there before says nothing.
+  const [, name] = /studies\/\d+\/(\w+)/.exec(hash) ?? [];
+  if (name) await page.locator(`section.view.${name}`).waitFor();
+  if (["story", "compare", "failures", "effects", "posterior", "errors"].includes(name)) await page.locator("figure .plot > svg").first().waitFor();
   await page.locator('[aria-busy="true"]').first().waitFor({ state: "detached" });
   await page.waitForFunction(() => [...document.querySelectorAll("figure .plot")].every((plot) => plot.firstElementChild || plot.getBoundingClientRect().width === 0));
 }
@@ -47,6 +51,8 @@ for (const [theme, width] of [["light", 1280], ["dark", 1280], ["light", 400], [
       await go(page, hash);
       assert.deepEqual(await findings(page), [], hash);
       assert.equal(await sideways(page), 0, `${hash} scrolls sideways [px]`);
+      const cut = await page.evaluate(() => [...document.querySelectorAll(".stacked")].filter((table) => table.scrollWidth > table.clientWidth + 1).map((table) => table.getAttribute("aria-label")));
+      assert.deepEqual(width < 640 ? cut : [], [], `${hash} cuts tables`);
       await shot(page, `manners-${hash.replace(/\W+/g, "-")}-${theme}-${width}`);
     }
   }));
@@ -72,6 +78,28 @@ test("the keyboard reaches the views, and focus shows what an explanation predic
   for (const title of ["Story", "Compare", "Where it fails", "Missing effect", "Error falls"]) assert.ok(reached.includes(title), `Tab does not reach ${title}`);
   assert.ok(isShown, "Tab does not reach the first explanation");
   await page.locator(".ghosts .ghost").first().waitFor({ state: "attached" });
+}));
+
+test("a proxy that answers for a moment in place of the coordinator ends nothing", () => within({}, async (page) => {
+  let isAway = true;
+  await page.route("**/v1/studies", (route) => (isAway ? route.fulfill({ status: 502, body: "Bad Gateway" }) : route.continue()));
+  await page.goto(service.url);
+  await page.getByText("Bad Gateway").first().waitFor();
+  isAway = false;
+  await page.getByRole("link", { name: "hidden" }).first().waitFor();
+  // An answer that breaks off is none either.
+  let isBroken = true;
+  await page.route("**/v1/studies", (route) => (isBroken ? route.fulfill({ status: 200, contentType: "application/json", body: '[{"id": 1' }) : route.continue()));
+  await page.getByText("the coordinator does not answer").first().waitFor();
+  isBroken = false;
+  await page.getByText("the coordinator does not answer").first().waitFor({ state: "detached" });
+}));
+
+test("an address that is mistyped says so", () => within({}, async (page) => {
+  for (const hash of ["#/%E0%A4%A", "#/studies/abc"]) {
+    await page.goto(`${service.url}/${hash}`);
+    await page.getByText("There is no such page").waitFor();
+  }
 }));
 
 test("a picture is saved as SVG, PNG and CSV", () => within({}, async (page) => {

@@ -9,7 +9,7 @@ import { basename, join } from "node:path";
 
 const PROGRAM = process.env.COORDINATOR ?? "target/release/coordinator";
 const LOOK_MS = 100;
-const START_MS = 20_000;
+const START_MS = 60_000;
 
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
@@ -82,7 +82,7 @@ export class Service {
   }
 
   /** Waits until a study is over and returns it. */
-  async finished(id, withinMs = 90_000) {
+  async finished(id, withinMs = 600_000) {
     for (const end = Date.now() + withinMs; ; await sleep(LOOK_MS)) {
       const study = await this.get(`/v1/studies/${id}`);
       if (["finished", "failed", "cancelled"].includes(study.state)) return study;

@@ -13,6 +13,7 @@ function Page() {
   const [isAsked, setAsked] = useState(token.isAsked());
   useEffect(() => token.watch(() => setAsked(token.isAsked())), []);
   const [first, id, view] = route.place;
+  const isStudy = first === "studies" && /^\d+$/.test(id ?? "");
   useEffect(() => {
     document.getElementById("content")?.focus({ preventScroll: true });
     scrollTo(0, 0);
@@ -32,8 +33,8 @@ function Page() {
       ${isAsked && html`<${Login} />`}
       ${first === undefined && html`<${Home} />`}
       ${first === "new" && html`<${NewCalibration} query=${route.query} />`}
-      ${first === "studies" && html`<${StudyPage} key=${id} id=${Number(id)} view=${view ?? "story"} query=${route.query} />`}
-      ${!["new", "studies", undefined].includes(first) && html`<h1>There is no such page</h1><p><a href="#/">To the studies</a></p>`}
+      ${isStudy && html`<${StudyPage} key=${id} id=${Number(id)} view=${view ?? "story"} query=${route.query} />`}
+      ${!isStudy && !["new", undefined].includes(first) && html`<h1>There is no such page</h1><p><a href="#/">To the studies</a></p>`}
     </main>`;
 }
 

@@ -18,7 +18,7 @@ function Report() {
   return html`
     <header class="heading">
       <h1>${study.name}</h1>
-      <p class="note">${study.model_kind}, ${model ? modelName(model) : "no model"}${study.members.length > 1 ? html`; models: ${study.members.filter((/** @type {any} */ m) => m.kind !== "search").map((/** @type {any} */ m) => modelName(m)).join(" → ")}` : null}</p>
+      <p class="note">${study.model_kind}, ${model ? modelName(study, model) : "no model"}${study.members.length > 1 ? html`; models: ${study.members.filter((/** @type {any} */ m) => m.kind !== "search").map((/** @type {any} */ m) => modelName(study, m)).join(" → ")}` : null}</p>
       <nav class="views" aria-label="Sections">${VIEWS.map((v) => html`<a href=${`#${v.name}`}>${v.title}</a>`)}</nav>
     </header>
     ${VIEWS.map((v) => html`

@@ -12,9 +12,18 @@ import { useEffect, useState } from "./html.js";
 export function parse(hash) {
   const [path, query] = hash.replace(/^#\/?/, "").split("?");
   return {
-    place: path.split("/").filter(Boolean).map(decodeURIComponent),
+    place: path.split("/").filter(Boolean).map(decoded),
     query: Object.fromEntries(new URLSearchParams(query ?? "")),
   };
+}
+
+/** A part of an address; one that is mistyped stands as it is. */
+function decoded(/** @type {string} */ part) {
+  try {
+    return decodeURIComponent(part);
+  } catch {
+    return part;
+  }
 }
 
 /**

@@ -3,7 +3,7 @@ import { test } from "node:test";
 
 import { table } from "../modules/chart/download.js";
 import { groups, levels, levelWords } from "../modules/words/group.js";
-import { digits, duration, meanAndSd, parameterUnit, probability, size } from "../modules/words/quantity.js";
+import { digits, duration, meanAndSd, numberOf, parameterUnit, probability, size } from "../modules/words/quantity.js";
 
 test("a number has its significant digits, and an exponent only where it needs one", () => {
   assert.equal(digits(0.00933), "0.00933");
@@ -60,4 +60,13 @@ test("the name of a parameter tells its unit", () => {
   assert.equal(parameterUnit("wheel_radius_m.smooth"), "m");
   assert.equal(parameterUnit("friction_angle_deg"), "°");
   assert.equal(parameterUnit("n"), "1");
+  assert.equal(parameterUnit("deflection_m_n"), "m/N");
+  assert.equal(parameterUnit("drag_n_s_m"), "N s/m");
+});
+
+test("a typed number has a point or a comma", () => {
+  assert.equal(numberOf(" 2,5 "), 2.5);
+  assert.equal(numberOf("−3.5"), -3.5);
+  assert.equal(numberOf("1,234.5"), null);
+  assert.equal(numberOf(""), null);
 });

@@ -6,6 +6,7 @@
 use serde_json::{Map, Value};
 
 use page::report::{Report, report};
+use shared::api::CalibrationState;
 
 use crate::study::Study;
 use crate::terminal;
@@ -42,10 +43,11 @@ pub fn answers(study: &Study) -> Map<String, Value> {
         add(path("stages"), json(&calibration.stages));
     }
     for round in &study.rounds {
+        // One that was cancelled or failed before it has no record.
         let search = study
             .members
             .iter()
-            .find(|m| m.searches == Some(round.calibration));
+            .rfind(|m| m.searches == Some(round.calibration) && m.state == CalibrationState::Finished);
         if let Some(search) = search {
             add(
                 format!("calibrations/{}/discovery", search.id),

@@ -88,8 +88,8 @@ fn verdict(
             let own = effects.iter().find(|e| e.name == name);
             if let Some(untried) = models.entry(k).and_then(|entry| entry.not_tried.as_ref()) {
                 return format!(
-                    "{name} would explain the data best (probability {:.3}, {:.1} nats over {kind}), but {}; state {} and search again",
-                    own.map_or(0.0, |e| e.probability),
+                    "{name} would explain the data best ({}, {:.1} nats over {kind}), but {}; state {} and search again",
+                    probability(own.map_or(0.0, |e| e.probability)),
                     own.map_or(0.0, |e| e.log_bayes_factor),
                     untried.why,
                     untried.needs
@@ -107,8 +107,8 @@ fn verdict(
                 }
             };
             format!(
-                "{claim} (probability {:.3}, {:.1} nats over {kind})",
-                own.map_or(0.0, |e| e.probability),
+                "{claim} ({}, {:.1} nats over {kind})",
+                probability(own.map_or(0.0, |e| e.probability)),
                 own.map_or(0.0, |e| e.log_bayes_factor),
             )
         }
@@ -118,9 +118,9 @@ fn verdict(
             let untried = untried.filter(|untried| own().any(|e| e.name == untried.name));
             let needs = untried.map(|untried| format!("; {} needs {}", untried.name, untried.needs));
             format!(
-                "one of {} is missing (joint probability {:.3}); these data cannot distinguish them{}",
+                "one of {} is missing (joint {}); these data cannot distinguish them{}",
                 list(own().map(|e| e.name.as_str())),
-                own().map(|e| e.probability).sum::<f64>(),
+                probability(own().map(|e| e.probability).sum()),
                 needs.collect::<String>()
             )
         }
@@ -145,6 +145,14 @@ fn verdict(
                 )
             }
         },
+    }
+}
+
+/// A probability in words; never a certainty.
+fn probability(value: f64) -> String {
+    match value {
+        value if value > 0.999 => "probability > 0.999".into(),
+        value => format!("probability {value:.3}"),
     }
 }
 

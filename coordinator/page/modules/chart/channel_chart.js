@@ -6,6 +6,7 @@ import { groups } from "../words/group.js";
 import { colour, symbol } from "./colour.js";
 import { spanWords } from "./condition.js";
 import { Entry, Figure, fileName } from "./figure.js";
+import { glyph } from "./glyph.js";
 import { Plot, STYLE } from "./library.js";
 import { byRun, pointable } from "./runs.js";
 
@@ -13,38 +14,32 @@ import { byRun, pointable } from "./runs.js";
 const LEAST_LINE = 3;
 /** More levels are not named in the legend. */
 const MOST_NAMES = 10;
-const GLYPHS = /** @type {Record<string, any>} */ ({
-  circle: html`<circle cx="8" cy="8" r="4" />`, square: html`<rect x="4" y="4" width="8" height="8" />`,
-  triangle: html`<path d="M8 3l5 9H3z" />`, diamond: html`<path d="M8 3l4 5l-4 5l-4 -5z" />`,
-  star: html`<path d="M8 2l1.6 4h4l-3.2 2.6 1.2 4.2L8 10.4l-3.6 2.4 1.2-4.2L2.4 6h4z" />`, wye: html`<path d="M7 8L3 4l2-2 3 4 3-4 2 2-4 4v6H7z" />`,
-  cross: html`<path d="M6 2h4v4h4v4h-4v4H6v-4H2V6h4z" />`, times: html`<path d="M3 3l10 10M13 3L3 13" stroke-width="3" stroke="currentColor" />`,
-});
 
 /**
  * @typedef {{ name: string, colour: string | null, rows: any[], isGhost?: boolean }} Layer
  *   colour: of all its lines; null: each group of runs has its own.
- * @param {{ channel: string, wheel: string | null, layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string }} properties
- *   layers: models, each with the rows of its comparison; the first one's measurements are drawn.
+ * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string }} properties
+ *   layers: models, each with the rows of its comparison. measurements: each of them once.
  */
-export function ChannelChart({ channel, wheel, layers, axis, name }) {
+export function ChannelChart({ channel, wheel, measurements, layers, axis, name }) {
   const own = (/** @type {any[]} */ rows) => rows.filter((r) => r.channel === channel && (wheel === null || r.wheel === wheel));
-  const measured = own(layers[0].rows);
+  const measured = own(measurements);
   const quantity = shown(measured[0].unit);
-  const found = useMemo(() => groups(measured), [layers[0].rows, channel, wheel]);
+  const found = useMemo(() => groups(measured), [measurements, channel, wheel]);
   const title = `${words(channel)}${wheel === null ? "" : `, wheel ${wheel}`}, measured and computed, by ${axis.title}`;
-  const draw = (/** @type {number} */ width) => picture({ width, layers: layers.map((l) => ({ ...l, rows: own(l.rows) })), found, axis, quantity, channel });
+  const draw = (/** @type {number} */ width) => picture({ width, layers: layers.map((l) => ({ ...l, rows: own(l.rows) })), measured, found, axis, quantity, channel });
   const runsIn = (/** @type {number} */ from, /** @type {number} */ to) =>
     measured.filter((r) => r[axis.key] * axis.scale >= from && r[axis.key] * axis.scale <= to).map((r) => r.run);
   const used = [...new Set(found.groups.map((g) => g.other))];
   // Where the colours are the models', the signs of the measurements tell their loads.
   const isLayered = layers.some((l) => l.colour !== null && !l.isGhost);
   const loads = found.loads.slice(0, MOST_NAMES).map((load, k) => html`<${Entry} glyph=${isLayered
-    ? html`<g fill="currentColor">${GLYPHS[symbol(k)]}</g>`
+    ? html`<g fill="currentColor">${glyph(k)}</g>`
     : html`<rect x="1" y="5" width="14" height="6" fill=${colour(k)} />`}>${load}<//>`);
-  const others = found.others.length < 2 || isLayered ? [] : used.slice(0, MOST_NAMES).map((k) => html`<${Entry} glyph=${html`<g fill="currentColor">${GLYPHS[symbol(k)]}</g>`}>${found.others[k]}<//>`);
+  const others = found.others.length < 2 || isLayered ? [] : used.slice(0, MOST_NAMES).map((k) => html`<${Entry} glyph=${html`<g fill="currentColor">${glyph(k)}</g>`}>${found.others[k]}<//>`);
   const hasHoldout = measured.some((r) => r.use === "holdout");
   return html`<${Figure} title=${title} name=${fileName(name, channel, wheel ?? "")}
-    deps=${[layers.map((l) => `${l.name} ${l.rows.length}`).join(), layers.at(-1)?.rows, layers[0].rows, axis.key]}
+    deps=${[layers.map((l) => `${l.name} ${l.rows.length}`).join(), layers.at(-1)?.rows, measurements, axis.key]}
     draw=${draw} rows=${() => table(layers, own)}
     onDrawn=${(/** @type {any} */ plot) => pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) })}
     legend=${html`${loads}${others}
@@ -60,13 +55,12 @@ function table(/** @type {Layer[]} */ layers, /** @type {(rows: any[]) => any[]}
   })));
 }
 
-/** @param {{ width: number, layers: Layer[], found: ReturnType<typeof groups>, axis: any, quantity: any, channel: string }} properties */
-function picture({ width, layers, found, axis, quantity, channel }) {
+/** @param {{ width: number, layers: Layer[], measured: any[], found: ReturnType<typeof groups>, axis: any, quantity: any, channel: string }} properties */
+function picture({ width, layers, measured, found, axis, quantity, channel }) {
   const x = (/** @type {any} */ r) => r[axis.key] * axis.scale;
   const value = (/** @type {string} */ key) => (/** @type {any} */ r) => (r[key] === null || r[key] === undefined ? NaN : r[key] * quantity.scale);
   const place = new Map(found.groups.flatMap((group) => group.rows.map((r) => [r.run, group])));
   const marks = layers.flatMap((layer) => layerMarks(layer, place, x, value));
-  const measured = layers[0].rows;
   const isLayered = layers.some((l) => l.colour !== null && !l.isGhost);
   const dots = (/** @type {any[]} */ rows, /** @type {any} */ look) => found.groups.map((group) => {
     const own = rows.filter((r) => place.get(r.run) === group);

@@ -45,6 +45,13 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
     return onDrawn?.(plot) ?? undefined;
   }, [width, ...deps]);
   const drawn = () => /** @type {SVGSVGElement} */ (place.current?.querySelector("svg"));
+  const savePng = async () => {
+    try {
+      save(`${name}.png`, await png(drawn()));
+    } catch (error) {
+      setFailure(`this picture cannot be saved: ${/** @type {Error} */ (error).message}`);
+    }
+  };
   return html`
     <figure data-figure=${name}>
       <figcaption><b>${title}</b>${note ? html` <span class="note">${note}</span>` : null}</figcaption>
@@ -53,7 +60,7 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
       ${legend && html`<div class="legend">${legend}</div>`}
       <div class="downloads" role="group" aria-label=${`download: ${title}`}>
         <button type="button" onClick=${() => save(`${name}.svg`, svg(drawn()))}>SVG</button>
-        <button type="button" onClick=${async () => save(`${name}.png`, await png(drawn()))}>PNG</button>
+        <button type="button" onClick=${savePng}>PNG</button>
         ${rows && html`<button type="button" onClick=${() => save(`${name}.csv`, csv(rows()))}>CSV</button>`}
       </div>
     </figure>`;

@@ -28,7 +28,7 @@ export function InformationMap({ record, name }) {
     });
   };
   return html`
-    <p class="note">Darker: the run tells more, up to ${digits(most, 2)} nats of ${digits(Math.log(2), 2)} nats for a yes or no. Numbers: the runs to make, each chosen given those before it.</p>
+    <p class="note">Darker: the run tells more, up to ${digits(most, 2)} nats about which explanation holds (a sure answer to a yes or no is worth ${digits(Math.log(2), 2)}). Numbers: the runs to make, each chosen given those before it.</p>
     <div class="figures small">${speeds.map((speed, k) => html`
       <${Figure} key=${k} title=${`Information of a run at a rim speed of ${levelWords(speed, "mm/s", 1000)}`} name=${fileName(name, "next-runs", k + 1)} deps=${[record]} draw=${draw(k)}
         rows=${() => runs.filter((/** @type {any} */ r) => levelOf(speeds, rimSpeed(r)) === k)} />`)}</div>

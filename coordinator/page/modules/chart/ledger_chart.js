@@ -5,7 +5,7 @@ import { CHANNELS, digits, shown, titled, unitOf, words } from "../words/quantit
 import { Entry, Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
 
-/** @param {{ study: any, lines: any[], current?: number }} properties */
+/** @param {{ study: any, lines: any[] }} properties */
 export function LedgerCharts({ study, lines }) {
   const channels = CHANNELS.filter((channel) => lines.some(({ line }) => line.error.fit[channel]));
   return html`<div class="figures small">${channels.map((channel) => html`<${LedgerChart} key=${channel} study=${study} lines=${lines} channel=${channel} />`)}</div>`;
@@ -35,7 +35,7 @@ function LedgerChart(/** @type {{ study: any, lines: any[], channel: string }} *
         return [
           Plot.lineY(own, { x: "name", y: "rmse", ...look, strokeWidth: 1.8 }),
           Plot.dot(own, { x: "name", y: "rmse", r: 4.5, ...look, fill: k === 0 ? "var(--series-0)" : "var(--paper)", strokeWidth: 1.8 }),
-          Plot.text(own, { x: "name", y: "rmse", text: (/** @type {any} */ p) => digits(p.rmse), textAnchor: k === 0 ? "end" : "start", dx: k === 0 ? -9 : 9, fill: "currentColor" }),
+          Plot.text(own, { x: "name", y: "rmse", text: (/** @type {any} */ p) => digits(p.rmse), textAnchor: k === 0 ? "end" : "start", dx: k === 0 ? -9 : 9, fill: "currentColor", stroke: "var(--paper)", strokeWidth: 4 }),
         ];
       }),
     ],

@@ -4,6 +4,7 @@ import { html } from "../html.js";
 import { digits, shown, titled, parameterName } from "../words/quantity.js";
 import { symbol } from "./colour.js";
 import { Entry, Figure, fileName } from "./figure.js";
+import { glyph } from "./glyph.js";
 import { d3, Plot, STYLE } from "./library.js";
 
 /** The regions of highest density as paths in pixels; the density is given at the points of a grid. */
@@ -18,33 +19,48 @@ function regions(/** @type {any} */ pair, /** @type {(v: number) => number} */ x
 
 const SIDE = 110;
 const GAP = 8;
-const EDGE = 46;
+/** Left of the first column and under the last row: a name with its unit, and ticks. */
+const EDGE = 64;
 
 /** @param {{ pairs: any[], marginals: any[], name: string, onCell: (pair: any) => void }} properties */
 export function PairPlot({ pairs, marginals, name, onCell }) {
   const count = marginals.length;
   const draw = (/** @type {number} */ width) => {
     const whole = EDGE + count * (SIDE + GAP);
+    const ticks = (/** @type {any} */ g, /** @type {any} */ axis) => g.call(axis).attr("font-size", 9).attr("font-family", "inherit").select(".domain").remove();
+    const label = (/** @type {any} */ text, /** @type {any} */ m) => {
+      text.attr("text-anchor", "middle").attr("font-size", 10).attr("fill", "currentColor");
+      [short(parameterName(m.name)), titled("", shown(m.unit).unit).trim()].forEach((line, k) => text.append("tspan").attr("x", text.attr("x")).attr("dy", k === 0 ? 0 : "1.15em").text(line));
+    };
+    const tick = (/** @type {any} */ m) => (/** @type {any} */ v) => digits(v * shown(m.unit).scale);
     const svg = d3.create("svg").attr("viewBox", `0 0 ${whole} ${whole}`).attr("width", Math.min(width, whole));
     const scale = (/** @type {any} */ m) => d3.scaleLinear([Math.min(m.q05, m.mean - 3.5 * m.sd), Math.max(m.q95, m.mean + 3.5 * m.sd)], [0, SIDE]);
     marginals.forEach((row, j) => marginals.slice(0, j + 1).forEach((column, i) => {
       const cell = svg.append("g").attr("transform", `translate(${EDGE + i * (SIDE + GAP)},${j * (SIDE + GAP)})`);
       cell.append("rect").attr("width", SIDE).attr("height", SIDE).attr("fill", "transparent").attr("stroke", "var(--rule)");
+      // A picture of its own, at whose edge contours end.
+      const inside = cell.append("svg").attr("width", SIDE).attr("height", SIDE);
       const x = scale(column);
       if (i === j) {
         const top = d3.max(column.posterior) ?? 1;
         const line = d3.line((/** @type {any} */ _, k) => x(column.grid[k]), (/** @type {any} */ v) => SIDE - (0.92 * SIDE * v) / Number(top)).defined((_, k) => x(column.grid[k]) >= 0 && x(column.grid[k]) <= SIDE);
-        cell.append("path").attr("d", line(column.posterior)).attr("fill", "none").attr("stroke", "var(--series-0)");
+        inside.append("path").attr("d", line(column.posterior)).attr("fill", "none").attr("stroke", "var(--series-0)");
       } else {
         const pair = pairs.find((p) => [column.name, row.name].every((n) => p.parameters.some((/** @type {any} */ q) => q.name === n)));
         if (!pair) return;
         const y = (/** @type {number} */ v) => SIDE - scale(row)(v);
-        regions(pair, x, y, pair.parameters[0].name !== column.name).forEach((/** @type {string} */ d) => cell.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"));
+        regions(pair, x, y, pair.parameters[0].name !== column.name).forEach((/** @type {string} */ d) => inside.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"));
         cell.style("cursor", "pointer").on("click", () => onCell(pair));
       }
-      const label = (/** @type {any} */ m) => (parameterName(m.name).length > 17 ? `${parameterName(m.name).slice(0, 16)}…` : parameterName(m.name));
-      if (j === count - 1) cell.append("text").attr("x", SIDE / 2).attr("y", SIDE + 14).attr("text-anchor", "middle").attr("font-size", 11).attr("fill", "currentColor").text(label(column));
-      if (i === 0) cell.append("text").attr("transform", `translate(-8,${SIDE / 2}) rotate(-90)`).attr("text-anchor", "middle").attr("font-size", 11).attr("fill", "currentColor").text(label(row));
+      if (j === count - 1) {
+        ticks(cell.append("g").attr("transform", `translate(0,${SIDE})`), d3.axisBottom(x).ticks(3).tickSize(3).tickFormat(tick(column)));
+        label(cell.append("text").attr("x", SIDE / 2).attr("y", SIDE + 28), column);
+      }
+      if (i === 0) {
+        // The first row has a density upwards, the others their parameter.
+        if (j > 0) ticks(cell.append("g"), d3.axisLeft(scale(row).range([SIDE, 0])).ticks(3).tickSize(3).tickFormat(tick(row)));
+        label(cell.append("text").attr("x", 0).attr("transform", `translate(-48,${SIDE / 2}) rotate(-90)`), row);
+      }
     }));
     return /** @type {any} */ (svg.node());
   };
@@ -52,7 +68,25 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
   return html`
     <p><label>Large picture of <select onChange=${open}><option value="">a pair: choose it, or click its cell</option>
       ${pairs.map((p, k) => html`<option value=${k}>${p.parameters.map((/** @type {any} */ q) => parameterName(q.name)).join(" and ")}, rank correlation ${digits(p.rank_correlation, 2)}</option>`)}</select></label></p>
-    <${Figure} title=${`Joint posterior of ${marginals.map((m) => parameterName(m.name)).join(", ")}`} name=${fileName("pairs", name)} deps=${[marginals.map((m) => m.name).join()]} draw=${draw} />`;
+    <${Figure} title=${`Joint posterior of ${marginals.map((m) => parameterName(m.name)).join(", ")}`} name=${fileName("pairs", name)} deps=${[marginals.map((m) => m.name).join()]} draw=${draw}
+      rows=${() => densities(pairs.filter((p) => p.parameters.every((/** @type {any} */ q) => marginals.some((m) => m.name === q.name))))} />`;
+}
+
+/** A name as wide as a cell: its end tells the wheel. */
+const short = (/** @type {string} */ name) => (name.length > 20 ? `${name.slice(0, 10)}…${name.slice(-9)}` : name);
+
+/** The joint densities as rows: one for each point of each grid. */
+function densities(/** @type {any[]} */ pairs) {
+  return pairs.flatMap((pair) => pair.grid[0].flatMap((/** @type {number} */ x, /** @type {number} */ i) => pair.grid[1].map((/** @type {number} */ y, /** @type {number} */ j) => (
+    { x_parameter: pair.parameters[0].name, y_parameter: pair.parameters[1].name, x, y, density: pair.density[j][i] }))));
+}
+
+/** What the picture has for a mark: a line where it fixes one parameter, else its symbol. */
+function entryGlyph(/** @type {any} */ mark, /** @type {number} */ k) {
+  const colour = `var(--series-${(k % 7) + 1})`;
+  if (mark.at.y === null) return html`<path d="M8,1V15" stroke=${colour} stroke-width="1.5" />`;
+  if (mark.at.x === null) return html`<path d="M1,8H15" stroke=${colour} stroke-width="1.5" />`;
+  return html`<g fill=${colour} color=${colour}>${glyph(k + 1)}</g>`;
 }
 
 /** @param {{ pair: any }} properties */
@@ -67,8 +101,8 @@ export function JointPicture({ pair }) {
   };
   const title = `Joint posterior of ${parameterName(a.name)} and ${parameterName(b.name)}`;
   return html`<${Figure} title=${title} note=${`regions of ${pair.contours.map((/** @type {any} */ c) => Math.round(100 * c.share)).join(", ")} % of the posterior; rank correlation ${digits(pair.rank_correlation, 2)}`}
-    name=${fileName("joint", a.name, b.name)} deps=${[pair]}
-    legend=${pair.marks.map((/** @type {any} */ m, /** @type {number} */ k) => html`<${Entry} glyph=${html`<circle cx="8" cy="8" r="5" fill=${`var(--series-${(k % 7) + 1})`} />`}>${m.label}<//>`)}
+    name=${fileName("joint", a.name, b.name)} deps=${[pair]} rows=${() => densities([pair])}
+    legend=${pair.marks.map((/** @type {any} */ m, /** @type {number} */ k) => html`<${Entry} glyph=${entryGlyph(m, k)}>${m.label}<//>`)}
     draw=${(/** @type {number} */ width) => Plot.plot({
       width: Math.min(width, 620), height: 420, marginLeft: 60, marginBottom: 40, grid: true, style: STYLE,
       x: { label: titled(parameterName(a.name), a.unit), labelArrow: "none", labelAnchor: "center", domain: domain(0, a.scale) },

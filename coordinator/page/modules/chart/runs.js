@@ -81,6 +81,8 @@ function drag(plot, on, runsIn, words) {
   });
   on("pointermove", (event) => {
     if (!begun) return;
+    // Released outside: nothing told it here.
+    if (event.buttons === 0) return end();
     const [from, to] = [begun.from, at(event)].sort((a, b) => a - b);
     if (!begun.band) {
       if (to - from < LEAST_PX) return;

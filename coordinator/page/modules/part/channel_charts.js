@@ -1,18 +1,28 @@
 // Every channel of every wheel against a condition.
 
-import { html } from "../html.js";
+import { html, useMemo } from "../html.js";
 import { ChannelChart } from "../chart/channel_chart.js";
 import { CHANNELS } from "../words/quantity.js";
 
 /** @param {{ layers: import("../chart/channel_chart.js").Layer[], axis: import("../chart/condition.js").ConditionAxis, name: string, small?: boolean }} properties */
 export function ChannelCharts({ layers, axis, name, small = false }) {
-  const rows = layers[0].rows;
+  const rows = useMemo(() => measurements(layers), [layers.map((layer) => layer.name).join(), ...ends(layers)]);
   const wheels = [...new Set(rows.map((r) => r.wheel))];
   const pairs = CHANNELS.filter((channel) => rows.some((r) => r.channel === channel)).flatMap((channel) =>
     (wheels.length > 1 ? wheels : [null]).filter((w) => w === null || rows.some((r) => r.channel === channel && r.wheel === w)).map((wheel) => ({ channel, wheel })));
   return html`<div class=${`figures ${small ? "small" : ""}`}>
-    ${pairs.map(({ channel, wheel }) => html`<${ChannelChart} key=${`${channel} ${wheel}`} channel=${channel} wheel=${wheel} layers=${layers} axis=${axis} name=${name} />`)}
+    ${pairs.map(({ channel, wheel }) => html`<${ChannelChart} key=${`${channel} ${wheel}`} channel=${channel} wheel=${wheel} measurements=${rows} layers=${layers} axis=${axis} name=${name} />`)}
   </div>`;
+}
+
+/** The first and the last layer: those between change with them. */
+const ends = (/** @type {import("../chart/channel_chart.js").Layer[]} */ layers) => [layers[0].rows, layers.at(-1)?.rows];
+
+/** Every measurement once: a later model may have runs that an earlier one has not. */
+function measurements(/** @type {import("../chart/channel_chart.js").Layer[]} */ layers) {
+  const rows = layers.flatMap((layer) => layer.rows);
+  const first = new Map(rows.toReversed().map((row) => [`${row.run} ${row.channel}`, row]));
+  return rows.filter((row) => first.get(`${row.run} ${row.channel}`) === row);
 }
 
 /** Chooses the condition that runs are drawn against. */

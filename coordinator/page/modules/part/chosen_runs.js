@@ -11,10 +11,12 @@ import { Failure } from "./message.js";
 export function ChosenRuns({ model }) {
   const chosen = useChosen();
   const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [isBusy, setBusy] = useState(false);
   if (!chosen) return null;
   const runs = [...chosen.runs];
   const ask = async () => {
     setFailure(null);
+    setBusy(true);
     try {
       const { rows } = await get(path.comparison(model.id));
       const fitted = new Set(rows.filter((/** @type {any} */ r) => r.use === "fit").map((/** @type {any} */ r) => r.run));
@@ -26,12 +28,13 @@ export function ChosenRuns({ model }) {
     } catch (error) {
       setFailure(error);
     }
+    setBusy(false);
   };
   return html`
     <aside class="chosen-runs" aria-label="Chosen runs">
       <p><b>${chosen.label}</b>: ${runs.length === 1 ? "1 run" : `${runs.length} runs`}${" "}
         <span class="note">${runs.length <= 8 ? runs.join(", ") : `${runs.slice(0, 8).join(", ")} and ${runs.length - 8} more`}</span></p>
-      ${!isReport && model && html`<button class="main" type="button" onClick=${ask}>What if these runs were left out?</button>`}
+      ${!isReport && model && html`<button class="main" type="button" disabled=${isBusy} onClick=${ask}>What if these runs were left out?</button>`}
       <button type="button" onClick=${() => choose(null)}>Let them go</button>
       <${Failure} error=${failure} />
     </aside>`;

@@ -3,23 +3,24 @@
 import { html, useState } from "../html.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { digits, minus, probability } from "../words/quantity.js";
+import { digits, minus, parameterName, parameterUnit, probability, shown } from "../words/quantity.js";
 
 /** So many are shown at first. */
 const FIRST = 8;
-const OTHERS = /** @type {Record<string, string>} */ ({ none: "nothing is missing", not_in_library: "a law that is not in the library" });
+export const OTHERS = /** @type {Record<string, string>} */ ({ none: "nothing is missing", not_in_library: "a law that is not in the library" });
 
 /**
- * @param {{ record: any, ghost: string | null, show: (name: string | null) => void, add: ((extension: any) => void) | null,
+ * @param {{ record: any, ghost: string | null, kept: string | null, show: (name: string | null) => void, keep: (name: string | null) => void, add: ((extension: any) => void) | null,
  *   study: any, model: any, isBusy: boolean }} properties
  */
-export function Explanations({ record, ghost, show, add, study, model, isBusy }) {
+export function Explanations({ record, ghost, kept, show, keep, add, study, model, isBusy }) {
   const { answer: catalogue } = useAnswer(path.effects);
   const [isAll, setAll] = useState(false);
   const effects = isAll ? record.effects : record.effects.slice(0, FIRST);
   const summaries = new Map((catalogue ?? []).map((/** @type {any} */ e) => [e.name, e.summary]));
   const made = new Set(study.members.filter((/** @type {any} */ m) => m.kind !== "search").map((/** @type {any} */ m) => m.effects.join(" ")));
   const isMade = (/** @type {string} */ name) => made.has([...model.effects, name].join(" "));
+  const untried = new Map(record.not_tried.map((/** @type {any} */ e) => [e.name, e.why]));
   const classes = record.effects.reduce((/** @type {Map<number, number>} */ all, /** @type {any} */ e) => all.set(e.class, (all.get(e.class) ?? 0) + 1), new Map());
   return html`
     <div class="scroll" tabindex="0" role="region" aria-label="Explanations">
@@ -29,14 +30,14 @@ export function Explanations({ record, ghost, show, add, study, model, isBusy })
           <tr key=${effect.name} class=${`${effect.name === ghost ? "shown" : ""} ${effect.in_credible_set ? "credible" : ""}`}
               onMouseEnter=${() => show(effect.name)} onMouseLeave=${() => show(null)}>
             <th scope="row">
-              <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)} aria-label=${`show what ${OTHERS[effect.name] ?? effect.name} would change`}><b>${OTHERS[effect.name] ?? effect.name}</b></button>
-              <span class="note">${summaries.get(effect.name.split(".")[0]) ?? ""}${(classes.get(effect.class) ?? 0) > 1 ? ` These data cannot tell it from ${same(record, effect)}.` : ""}</span>
+              <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)} onClick=${() => keep(kept === effect.name ? null : effect.name)} aria-pressed=${kept === effect.name} aria-label=${`show what ${OTHERS[effect.name] ?? effect.name} would change`}><b>${OTHERS[effect.name] ?? effect.name}</b></button>
+              <span class="note">${[untried.get(effect.name), summaries.get(effect.name.split(".")[0]), (classes.get(effect.class) ?? 0) > 1 ? `these data cannot tell it from ${same(record, effect)}` : null].filter(Boolean).join("; ")}</span>
             </th>
             <td><span class="bar"><i style=${{ width: `${(100 * effect.probability).toFixed(1)}%` }}></i></span> <span class="number">${probability(effect.probability)}</span></td>
             <td class="number">${minus(effect.log_bayes_factor.toFixed(1))}</td>
-            <td>${Object.entries(effect.parameters).map(([name, value]) => html`<div>${name.split(".").slice(1).join(".") || name} ${digits(/** @type {number} */ (value))}</div>`)}
+            <td>${Object.entries(effect.parameters).map(([name, value]) => html`<div>${strength(name, /** @type {number} */ (value))}</div>`)}
               ${effect.prior_sds !== null && Math.abs(effect.prior_sds) > 2 ? html`<span class="note">${digits(effect.prior_sds, 2)} sds out in its prior</span>` : null}</td>
-            <td>${add && !(effect.name in OTHERS) && (isMade(effect.name)
+            <td>${add && !(effect.name in OTHERS) && !untried.has(effect.name) && (isMade(effect.name)
               ? html`<span class="note">added</span>`
               : html`<button type="button" disabled=${isBusy} onClick=${() => add(extension(effect.name, record))} aria-label=${`add ${effect.name}`}>Add</button>`)}</td>
           </tr>`)}
@@ -45,6 +46,13 @@ export function Explanations({ record, ghost, show, add, study, model, isBusy })
     </div>
     ${record.effects.length > FIRST && html`<button type="button" onClick=${() => setAll(!isAll)}>${isAll ? "Show fewer" : `Show all ${record.effects.length}`}</button>`}
     <p class="note">Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the prior probability is on “nothing is missing”.</p>`;
+}
+
+/** A fitted parameter in the unit of its name. */
+function strength(/** @type {string} */ name, /** @type {number} */ value) {
+  const own = name.split(".").slice(1).join(".") || name;
+  const { unit, scale } = shown(parameterUnit(own));
+  return `${parameterName(own)} ${digits(value * scale)}${unit === "1" ? "" : ` ${unit}`}`;
 }
 
 /** The others of a class. */

@@ -11,7 +11,7 @@ export function Flags({ study }) {
   const old = study.flags.filter(isOld);
   const name = (/** @type {number} */ id) => {
     const member = study.members.find((/** @type {any} */ m) => m.id === id);
-    return member ? modelName(member) : `calibration ${id}`;
+    return member ? modelName(study, member) : `calibration ${id}`;
   };
   return html`
     <h2>What deserves attention</h2>

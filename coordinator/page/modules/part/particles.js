@@ -5,7 +5,7 @@ import { Plot, STYLE } from "../chart/library.js";
 import { html, useEffect, useMemo, useState } from "../html.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { digits, parameterName, parameterUnit, titled } from "../words/quantity.js";
+import { digits, parameterName, parameterUnit, shown, titled } from "../words/quantity.js";
 import { Pending } from "./message.js";
 
 const FRAME_MS = 700;
@@ -71,12 +71,13 @@ const named = (/** @type {string} */ name) => ({ name, unit: parameterUnit(name)
 
 /** @param {{ id: number, x: { name: string, unit: string }, y: { name: string, unit: string }, now: any[], early: any[] }} properties */
 function Cloud({ id, x, y, now, early }) {
-  const label = (/** @type {{ name: string, unit: string }} */ p) => titled(parameterName(p.name), p.unit);
+  const label = (/** @type {{ name: string, unit: string }} */ p) => titled(parameterName(p.name), shown(p.unit).unit);
+  const at = { x: (/** @type {any} */ p) => p.x * shown(x.unit).scale, y: (/** @type {any} */ p) => p.y * shown(y.unit).scale };
   return html`<${Figure} title=${`Particles in ${parameterName(x.name)} and ${parameterName(y.name)}`} note="grey: the first stage, close to the prior"
     name=${fileName("particles", id, x.name, y.name)} deps=${[now, early]} rows=${() => now}
     draw=${(/** @type {number} */ width) => Plot.plot({
       width: Math.min(width, 640), height: 380, marginLeft: 64, marginTop: 26, marginBottom: 40, grid: true, style: STYLE,
       x: { label: label(x), labelArrow: "none", labelAnchor: "center" }, y: { label: label(y), labelArrow: "none" },
-      marks: [Plot.dot(early, { x: "x", y: "y", r: 1.6, fill: "var(--rule)" }), Plot.dot(now, { x: "x", y: "y", r: 2, fill: "var(--series-0)", fillOpacity: 0.6 })],
+      marks: [Plot.dot(early, { ...at, r: 1.6, fill: "var(--rule)" }), Plot.dot(now, { ...at, r: 2, fill: "var(--series-0)", fillOpacity: 0.6 })],
     })} />`;
 }

@@ -2,7 +2,7 @@
 
 import { html } from "../html.js";
 import { digits, minus, shown, short } from "../words/quantity.js";
-import { choose, point } from "../selection.js";
+import { point, toggle } from "../selection.js";
 
 /** @param {{ rows: any[] }} properties rows of a comparison */
 export function RunTable({ rows }) {
@@ -20,7 +20,7 @@ function RunRow(/** @type {{ row: any }} */ { row }) {
   const value = (/** @type {number | null} */ v) => digits(v === null ? null : v * quantity.scale);
   return html`
     <tr data-run=${row.run} onMouseEnter=${() => point([row.run])} onMouseLeave=${() => point(null)}>
-      <th scope="row"><button class="plain" type="button" onClick=${() => choose([row.run], `run ${row.run}`)}>${row.run}</button></th>
+      <th scope="row"><button class="plain" type="button" onClick=${() => toggle(row.run)}>${row.run}</button></th>
       <td>${row.use === "holdout" ? "held out" : "fit"}</td>
       <td class="number">${minus(row.slip.toFixed(2))}</td><td class="number">${digits(row.wheel_load_n)}</td><td class="number">${digits(1000 * row.sled_speed_m_s)}</td>
       <td>${short(row.channel)} ${quantity.unit}</td>

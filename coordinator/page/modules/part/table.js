@@ -9,13 +9,13 @@ import { html } from "../html.js";
 export function Table({ label, head, rows, numbers = [] }) {
   const kind = (/** @type {number} */ k) => (numbers.includes(k) ? "number" : "");
   return html`
-    <div class="scroll" tabindex="0" role="region" aria-label=${label}>
+    <div class="scroll stacked" tabindex="0" role="region" aria-label=${label}>
       <table>
         <thead><tr>${head.map((cell, k) => html`<th scope="col" class=${kind(k)}>${cell}</th>`)}</tr></thead>
         <tbody>
           ${rows.map((row) => html`<tr>${row.map((cell, k) => (k === 0
             ? html`<th scope="row" class=${kind(k)}>${cell}</th>`
-            : html`<td class=${kind(k)}>${cell}</td>`))}</tr>`)}
+            : html`<td class=${kind(k)} data-label=${head[k]}>${cell}</td>`))}</tr>`)}
         </tbody>
       </table>
     </div>`;

@@ -17,6 +17,9 @@ export class AnswerError extends Error {
   }
 }
 
+/** The coordinator is away, or the network is. */
+export const unreachable = () => new AnswerError(0, "unreachable", "the coordinator does not answer; the page goes on as soon as it does");
+
 /** The answers that a report carries, by path; null on the page of a service. */
 const recorded = (() => {
   const element = globalThis.document?.getElementById("answers");
@@ -43,18 +46,28 @@ export async function request(method, path, { body, signal } = {}) {
     response = await fetch(path, { method, headers, signal, body: body === undefined ? undefined : JSON.stringify(body) });
   } catch (error) {
     if (signal?.aborted) throw error;
-    throw new AnswerError(0, "unreachable", "the coordinator does not answer; the page goes on as soon as it does");
+    throw unreachable();
   }
   if (response.ok) return response;
   const text = await response.text();
   let detail = { type: "internal", message: text || response.statusText };
   try {
-    detail = JSON.parse(text).error;
+    detail = JSON.parse(text).error ?? detail;
   } catch {
     // A proxy in between answers in its own words.
   }
   if (response.status === 401) token.refused();
   throw new AnswerError(response.status, detail.type, detail.message);
+}
+
+/** What an answer says; one that is cut off on its way is none. */
+async function body(/** @type {Response} */ response, /** @type {AbortSignal | undefined} */ signal = undefined) {
+  try {
+    return await response.json();
+  } catch (error) {
+    if (signal?.aborted) throw error;
+    throw unreachable();
+  }
 }
 
 /**
@@ -67,14 +80,14 @@ export async function get(path, signal) {
     if (path in recorded) return recorded[path];
     throw new AnswerError(404, "not_found", "this report does not carry it");
   }
-  return (await request("GET", path, { signal })).json();
+  return body(await request("GET", path, { signal }), signal);
 }
 
 /**
  * The answer to a POST request.
  * @param {string} path
- * @param {unknown} [body]
+ * @param {unknown} [question]
  */
-export async function post(path, body = {}) {
-  return (await request("POST", path, { body })).json();
+export async function post(path, question = {}) {
+  return body(await request("POST", path, { body: question }));
 }

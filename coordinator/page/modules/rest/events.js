@@ -1,6 +1,6 @@
 // The events of a calibration as they happen. A stream that breaks is opened again: the coordinator may restart.
 
-import { request } from "./answers.js";
+import { AnswerError, request, unreachable } from "./answers.js";
 
 const AGAIN_MS = 1000;
 
@@ -47,7 +47,8 @@ export function follow(path, { onEvent, onError, isOver }) {
       await read();
     } catch (error) {
       if (abort.signal.aborted) return;
-      onError(error);
+      // A stream that breaks off while it is read fails in the words of the browser.
+      onError(error instanceof AnswerError ? error : unreachable());
       isEnded ||= [403, 404].includes(/** @type {any} */ (error).status);
     }
     if (!isEnded && !abort.signal.aborted) setTimeout(loop, AGAIN_MS);

@@ -7,6 +7,9 @@ import { token } from "./token.js";
 /** A look fails while the coordinator restarts: the next one is so much later [ms]. */
 const RETRY_MS = 1000;
 
+/** Whether the same question may be answered later: the coordinator, or a proxy before it, is away or busy. */
+const isPassing = (/** @type {number} */ status) => status === 0 || status === 429 || status >= 500;
+
 /**
  * The answer of a path.
  * @template [T=any]
@@ -36,7 +39,7 @@ export function useAnswer(path, { everyMs = () => null } = {}) {
       } catch (error) {
         if (abort.signal.aborted) return;
         setState((/** @type {any} */ before) => ({ path, answer: before.path === path ? before.answer : null, error }));
-        pauseMs = /** @type {any} */ (error).status === 0 ? RETRY_MS : null;
+        pauseMs = isPassing(/** @type {any} */ (error).status) ? RETRY_MS : null;
       }
       if (pauseMs !== null) timer = setTimeout(look, pauseMs);
     };

@@ -6,14 +6,20 @@ import { varying } from "../chart/condition.js";
 import { AxisPicker, ChannelCharts } from "../part/channel_charts.js";
 import { Pending } from "../part/message.js";
 import { RunTable } from "../part/run_table.js";
+import { isReport } from "../rest/answers.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
+import { address, replace } from "../route.js";
 
 /** @param {{ study: any, model: any, query: Record<string, string> }} properties */
 export function Compare({ study, model, query }) {
   const { answer: comparison, error } = useAnswer(model ? path.comparison(model.id) : null);
   const { answer: histories } = useAnswer(model ? path.histories(model.id) : null);
   const [key, setKey] = useState(query.against ?? "slip");
+  const choose = (/** @type {string} */ to) => {
+    setKey(to);
+    if (!isReport) replace(address(["studies", study.id, "compare"], { ...query, against: to }));
+  };
   if (!model) return html`<p class="empty">No calibration of this study is finished yet; <a href=${`#/studies/${study.id}/live`}>Live</a> shows how far it is.</p>`;
   if (!comparison) return html`<${Pending} answer=${comparison} error=${error} what="the comparison" />`;
   const axes = varying(comparison.rows);
@@ -21,7 +27,7 @@ export function Compare({ study, model, query }) {
   const layers = [{ name: "model", colour: null, rows: comparison.rows }];
   return html`
     <p class="note">Signs are measurements (hollow: held out, never fitted), lines the mean of the posterior, bands its 90 % interval of a measurement. Point at a run, or drag over a region: it lights up in every picture.</p>
-    <${AxisPicker} axes=${axes} axis=${axis} choose=${setKey} />
+    <${AxisPicker} axes=${axes} axis=${axis} choose=${choose} />
     <${ChannelCharts} layers=${layers} axis=${axis} name=${study.name} />
     ${histories?.length > 0 && html`<h2>Time histories</h2><div class="figures">${histories.map((/** @type {any} */ h) => html`<${HistoryChart} history=${h} name=${study.name} />`)}</div>`}
     <details><summary>Table of all runs</summary><${RunTable} rows=${comparison.rows} /></details>`;

@@ -10,8 +10,8 @@ import { path } from "../rest/routes.js";
 import { useAnswers } from "../rest/use_answer.js";
 import { modelName } from "./study.js";
 
-/** @param {{ study: any, model: any }} properties */
-export function Errors({ study, model }) {
+/** @param {{ study: any }} properties */
+export function Errors({ study }) {
   const [hidden, setHidden] = useState(/** @type {number[]} */ ([]));
   const [key, setKey] = useState("slip");
   const lines = ledgerLines(study);
@@ -24,7 +24,7 @@ export function Errors({ study, model }) {
   const axis = axes.find((a) => a.key === key) ?? axes[0];
   return html`
     <p class="note">Root mean square errors in the unit of each channel. Held-out runs are never fitted.</p>
-    <${LedgerCharts} study=${study} lines=${lines} current=${model?.id} />
+    <${LedgerCharts} study=${study} lines=${lines} />
     <${Ledger} study=${study} lines=${lines} />
     <h2>The models over the data</h2>
     <div class="actions" role="group" aria-label="Models that are shown">
@@ -41,6 +41,6 @@ export function Errors({ study, model }) {
 export function ledgerLines(/** @type {any} */ study) {
   return study.ledger.map((/** @type {any} */ line, /** @type {number} */ k) => {
     const member = study.members.find((/** @type {any} */ m) => m.id === line.calibration);
-    return { id: line.calibration, name: member ? modelName(member) : `calibration ${line.calibration}`, colour: colour(k), line };
+    return { id: line.calibration, name: member ? modelName(study, member) : `calibration ${line.calibration}`, colour: colour(k), line };
   });
 }

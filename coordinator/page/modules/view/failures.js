@@ -14,8 +14,10 @@ import { CHANNELS, digits, minus, short } from "../words/quantity.js";
 
 /** Residuals beyond so many sds have one colour. */
 const MOST_SDS = 4;
-/** More runs than these have no name on the axis. */
-const MOST_NAMES = 48;
+/** Names of runs stand under cells of this width [px] at least. */
+const LEAST_CELL = 14;
+/** A character of a name below the axis, along its slant, takes so much height [px]. */
+const CHARACTER = 5.2;
 
 /** @param {{ study: any, model: any, query: Record<string, string> }} properties */
 export function Failures({ study, model }) {
@@ -38,7 +40,7 @@ export function Failures({ study, model }) {
     </div>
     <${HeatMap} rows=${rows} order=${order} name=${study.name} />
     <h2>Residuals against ${axis.title}</h2>
-    <p class="note">Measured less computed; the grey band is one sd of the noise. The line is the trend that the diagnosis tests, where it is beyond chance (p below 0.01 among all tests).</p>
+    <p class="note">Measured less computed; the grey band is one sd of all errors that the calibration assumes or infers: noise, discrepancy and shared errors. The line is the trend that the diagnosis tests, where it is beyond chance (p below 0.01 among all tests).</p>
     <div class="figures">
       ${ofChannel.map(({ channel, own }) => html`
         <${ResidualChart} key=${channel} channel=${channel} rows=${own} axis=${axis} trends=${diagnostics?.trends ?? []} name=${study.name} />`)}
@@ -66,18 +68,20 @@ function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { r
   const values = new Map(runs.map((run) => [run, value(run)]));
   runs.sort((a, b) => values.get(a) - values.get(b) || first.get(a).place - first.get(b).place);
   const hint = (/** @type {any} */ r) => `run ${r.run}${r.use === "holdout" ? " (held out)" : ""}, ${short(r.channel)}\nslip ${digits(r.slip, 2)}, ${digits(r.wheel_load_n)} N, ${digits(1000 * r.sled_speed_m_s)} mm/s\n${minus(r.residual_sigma.toFixed(1))} sds: measured ${r.residual_sigma > 0 ? "above" : "below"} computed`;
+  const isNamed = (/** @type {number} */ width) => (width - 112) / runs.length >= LEAST_CELL;
+  const below = (/** @type {number} */ width) => (isNamed(width) ? 14 + CHARACTER * Math.max(...runs.map((run) => run.length)) : 26);
   const draw = (/** @type {number} */ width) => Plot.plot({
-    width, height: 96 + 30 * new Set(judged.map((r) => r.channel)).size, marginLeft: 92, marginBottom: runs.length > MOST_NAMES ? 26 : 66, style: STYLE,
-    x: { domain: runs, label: runs.length > MOST_NAMES ? "runs" : null, tickRotate: -60, tickSize: 0, ...(runs.length > MOST_NAMES ? { ticks: [] } : {}) },
+    width, height: 30 + below(width) + 30 * new Set(judged.map((r) => r.channel)).size, marginLeft: 92, marginBottom: below(width), style: STYLE,
+    x: { domain: runs, label: isNamed(width) ? null : "runs", tickRotate: -60, tickSize: 0, ...(isNamed(width) ? {} : { ticks: [] }) },
     y: { domain: CHANNELS.filter((c) => judged.some((r) => r.channel === c)), label: null, tickFormat: short, tickSize: 0 },
     color: { type: "linear", domain: [-MOST_SDS, 0, MOST_SDS], range: RESIDUAL_RANGE, clamp: true, interpolate: /** @type {any} */ (mix) },
     marks: [
       Plot.cell(judged, byRun(judged, { x: "run", y: "channel", fill: "residual_sigma", inset: runs.length > 200 ? 0 : 0.5 })),
-      Plot.dot(judged.filter((r) => r.use === "holdout"), { x: "run", y: "channel", r: runs.length > MOST_NAMES ? 1 : 2, fill: "var(--ink)", className: "held" }),
+      Plot.dot(judged.filter((r) => r.use === "holdout"), { x: "run", y: "channel", r: isNamed(width) ? 2 : 1, fill: "var(--ink)", className: "held" }),
       Plot.tip(judged, Plot.pointer({ x: "run", y: "channel", title: hint, fill: "var(--panel)", stroke: "var(--rule)" })),
     ],
   });
-  return html`<${Figure} title="Residuals of every run and channel, in standard deviations" name=${fileName(name, "residuals")} deps=${[rows, order]} draw=${draw}
+  return html`<${Figure} title="Residuals of every run and channel, in sds of noise, discrepancy and shared errors" name=${fileName(name, "residuals")} deps=${[rows, order]} draw=${draw}
     rows=${() => judged.map((r) => ({ run: r.run, use: r.use, channel: r.channel, slip: r.slip, wheel_load_n: r.wheel_load_n, sled_speed_m_s: r.sled_speed_m_s, residual_sds: r.residual_sigma }))}
     onDrawn=${(/** @type {any} */ plot) => pointable(plot)}
     legend=${html`<span><i class="swatch below"></i>computed too high by ${MOST_SDS} sds or more</span><span><i class="swatch level"></i>as measured</span><span><i class="swatch above"></i>computed too low</span><span>dot: held out</span>`} />`;

@@ -5,7 +5,7 @@ import { varying } from "../chart/condition.js";
 import { LawChart } from "../chart/law_chart.js";
 import { InformationMap } from "../chart/information_map.js";
 import { ChannelCharts } from "../part/channel_charts.js";
-import { Explanations } from "../part/explanations.js";
+import { Explanations, OTHERS } from "../part/explanations.js";
 import { Failure, Pending } from "../part/message.js";
 import { NewRuns } from "../part/new_runs.js";
 import { NotTried } from "../part/not_tried.js";
@@ -17,11 +17,15 @@ import { capital } from "../words/quantity.js";
 
 /** @param {{ study: any, model: any, reload?: () => void }} properties */
 export function MissingEffect({ study, model, reload }) {
-  const search = study.members.find((/** @type {any} */ m) => m.kind === "search" && m.searches === model?.id);
+  const searches = study.members.filter((/** @type {any} */ m) => m.kind === "search" && m.searches === model?.id);
+  const search = searches.findLast((/** @type {any} */ m) => m.state === "finished") ?? searches.at(-1);
   const isFound = search?.state === "finished";
+  const isLost = ["failed", "cancelled"].includes(search?.state);
   const { answer: record, error } = useAnswer(isFound ? path.discovery(search.id) : null);
   const { answer: comparison } = useAnswer(model ? path.comparison(model.id) : null);
-  const [ghost, setGhost] = useState(/** @type {string | null} */ (null));
+  const [pointed, setPointed] = useState(/** @type {string | null} */ (null));
+  const [kept, setKept] = useState(/** @type {string | null} */ (null));
+  const ghost = pointed ?? kept;
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const [isBusy, setBusy] = useState(false);
   if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
@@ -37,10 +41,10 @@ export function MissingEffect({ study, model, reload }) {
     }
     setBusy(false);
   };
-  if (!search) {
+  if (!search || isLost) {
     return html`
-      <p>Nobody has asked yet what this model is missing.</p>
-      ${isReport ? html`<p>Ask with <code>coordinator discover ${model.id}</code>.</p>`
+      <p>${isLost ? `The search is ${search.state}${search.message ? `: ${search.message}` : ""}.` : "Nobody has asked yet what this model is missing."}</p>
+      ${isReport ? html`<p>Ask, in the folder of this report, with <code>coordinator discover ${model.id} --out .</code></p>`
         : html`<button class="main" type="button" disabled=${isBusy} onClick=${() => act(() => discover(model.id))}>Search for the missing effect</button>`}
       <${Failure} error=${failure} />`;
   }
@@ -53,10 +57,10 @@ export function MissingEffect({ study, model, reload }) {
     <${Failure} error=${failure} />
     <div class="beside">
       <div>
-        <${Explanations} record=${record} ghost=${ghost} show=${setGhost} add=${isReport ? null : add} study=${study} model=${model} isBusy=${isBusy} />
+        <${Explanations} record=${record} ghost=${ghost} kept=${kept} show=${setPointed} keep=${setKept} add=${isReport ? null : add} study=${study} model=${model} isBusy=${isBusy} />
       </div>
       <div class="ghosts">
-        <p class="note" aria-live="polite">${ghost ? html`Dashed: what <b>${ghost}</b> would predict for the fitted runs, from the search's fit. Nothing has been computed anew.` : "Point at an explanation: its predictions appear over the data before anything is computed."}</p>
+        <p class="note" aria-live="polite">${ghost ? html`Dashed: what <b>${OTHERS[ghost] ?? ghost}</b> would predict for the fitted runs, from the search's fit. Nothing has been computed anew.` : "Point at an explanation: its predictions appear over the data before anything is computed; a click on its name keeps them."}</p>
         ${comparison && html`<${ChannelCharts} small=${true} layers=${layers} axis=${varying(comparison.rows)[0]} name=${`${study.name}-ghost`} />`}
       </div>
     </div>
@@ -66,7 +70,7 @@ export function MissingEffect({ study, model, reload }) {
     ${record.next_runs.length === 0 && html`<p>No run within reach of the rig would change these probabilities by much.</p>`}
     <${InformationMap} record=${record} name=${study.name} />
     ${record.other_tests.length > 0 && html`<h3>Tests without a rolling wheel that would tell</h3><ul>${record.other_tests.map((/** @type {string} */ t) => html`<li>${t}</li>`)}</ul>`}
-    ${!isReport && comparison && html`<${NewRuns} study=${study} record=${record} comparison=${comparison} />`}`;
+    ${!isReport && comparison && html`<${NewRuns} study=${study} record=${record} comparison=${comparison} reload=${reload} />`}`;
 }
 
 /**

@@ -17,6 +17,8 @@ export function Story({ study, model, reload }) {
   if (!story) {
     return html`<p class="empty">Nothing is finished yet: the story begins with the first calibration. <a href=${address(["studies", study.id, "live"])}>Live</a> shows how far it is.</p>`;
   }
+  // What it does next by itself is no advice.
+  const isAtWork = !isReport && ["queued", "running"].includes(study.state);
   const to = (/** @type {string} */ view) => (isReport ? `#${view}` : address(["studies", study.id, view], { model: model.id }));
   return html`
     <div class="three">
@@ -28,7 +30,9 @@ export function Story({ study, model, reload }) {
         ${story.missing.verdict !== "nothing_detectable" && story.missing.alternatives.length > 0 && html`<p class="note">It could also be ${story.missing.alternatives.map((/** @type {any} */ a) => `${a.name} (${probability(a.probability)})`).join(", ")}.</p>`}
         <p class="note"><a href=${to("effects")}>All explanations</a></p></section>
       <section class="card"><h2>What to do next</h2>
-        <ol>${story.next.steps.map((/** @type {any} */ step) => html`<li><${Step} step=${step} study=${study} model=${model} reload=${reload} /></li>`)}</ol></section>
+        ${isAtWork && html`<p>The program is at work on this study: <a href=${to("live")}>Live</a> shows how far it is.</p>`}
+        <ol>${(isAtWork ? [] : story.next.steps).map((/** @type {any} */ step) => html`<li><${Step} step=${step} study=${study} model=${model} reload=${reload} /></li>`)}</ol>
+        ${isReport && story.next.steps.some((/** @type {any} */ step) => step.command) && html`<p class="note">Commands run in the folder of this report.</p>`}</section>
     </div>
     ${lines.length > 0 && html`<h2>How the error falls</h2><${LedgerCharts} study=${study} lines=${lines} />`}
     <${Flags} study=${study} />`;
@@ -39,7 +43,10 @@ const sentence = (/** @type {string} */ text) => capital(/[.!?]$/.test(text) ? t
 /** A step with the button that takes it; a report has the command. */
 function Step(/** @type {{ step: any, study: any, model: any, reload?: () => void }} */ { step, study, model, reload }) {
   const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [isBusy, setBusy] = useState(false);
   const act = async (/** @type {() => Promise<any>} */ what) => {
+    setBusy(true);
+    setFailure(null);
     try {
       const created = await what();
       reload?.();
@@ -47,13 +54,17 @@ function Step(/** @type {{ step: any, study: any, model: any, reload?: () => voi
     } catch (error) {
       setFailure(error);
     }
+    setBusy(false);
   };
   const buttons = /** @type {Record<string, any>} */ ({
-    add_effect: () => html`<button class="main" type="button" onClick=${() => act(() => extend(model.id, step.wheel ? { effect: step.effect, wheel: step.wheel } : { effect: step.effect }))}>Add ${step.effect}</button>`,
-    add_effect_file: () => html`<button class="main" type="button" onClick=${() => act(() => extend(model.id, { effect_file: step.effect_file }))}>Add this law</button>`,
-    discover: () => html`<button class="main" type="button" onClick=${() => act(() => discover(model.id))}>Search for the missing effect</button>`,
+    add_effect: () => html`<button class="main" type="button" disabled=${isBusy} onClick=${() => act(() => extend(model.id, step.wheel ? { effect: step.effect, wheel: step.wheel } : { effect: step.effect }))}>Add ${step.effect}</button>`,
+    add_effect_file: () => html`<button class="main" type="button" disabled=${isBusy} onClick=${() => act(() => extend(model.id, { effect_file: step.effect_file }))}>Add this law</button>`,
+    discover: () => html`<button class="main" type="button" disabled=${isBusy} onClick=${() => act(() => discover(model.id))}>Search for the missing effect</button>`,
+    predict: () => (study.current !== model.id
+      ? html`<a class="button" href=${address(["studies", study.id, "story"], { model: study.current })}>Go to the current model</a>`
+      : html`<a class="button" href=${address(["studies", study.id, "posterior"], { model: model.id })}>Open the posterior</a>`),
     make_runs: () => html`<a class="button" href=${address(["studies", study.id, "effects"])}>See the runs, and add them</a>`,
   });
   const button = !isReport && model && buttons[step.kind];
-  return html`${sentence(step.text)} ${button ? html`<span class="actions">${button()}</span>` : step.command && html`<code>coordinator ${step.command}</code>`}<${Failure} error=${failure} />`;
+  return html`${sentence(step.text)} ${button ? html`<span class="actions">${button()}</span>` : step.command && html`<code>coordinator ${step.command}${isReport ? " --out ." : ""}</code>`}<${Failure} error=${failure} />`;
 }

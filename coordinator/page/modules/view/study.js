@@ -1,12 +1,13 @@
 // A study: its views, and the model that they show.
 
-import { html } from "../html.js";
+import { html, useEffect } from "../html.js";
 import { ChosenRuns } from "../part/chosen_runs.js";
 import { Guarded } from "../part/guarded.js";
 import { Pending } from "../part/message.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
+import { choose, point } from "../selection.js";
 import { Compare } from "./compare.js";
 import { Errors } from "./errors.js";
 import { Failures } from "./failures.js";
@@ -34,9 +35,11 @@ export const VIEWS = [
   { name: "trust", title: "How far to trust it", view: Trust },
 ];
 
-/** The name of a model of a study: what it has beyond the submitted job. */
-export function modelName(/** @type {any} */ member) {
-  return member.effects.length === 0 ? "base" : `with ${member.effects.join(", ")}`;
+/** The name of a model of a study: what it has beyond the submitted job, and, where another has the same, its calibration. */
+export function modelName(/** @type {any} */ study, /** @type {any} */ member) {
+  const name = (/** @type {any} */ m) => (m.effects.length === 0 ? "base" : `with ${m.effects.join(", ")}`);
+  const isShared = models(study).filter((/** @type {any} */ m) => name(m) === name(member)).length > 1;
+  return isShared ? `${name(member)} (${member.name}, ${member.id})` : name(member);
 }
 
 /** The models of a study that have results: everything but searches. */
@@ -53,6 +56,11 @@ export function modelOf(/** @type {any} */ study, /** @type {number | null} */ a
 /** @param {{ id: number, view: string, query: Record<string, string> }} properties */
 export function StudyPage({ id, view, query }) {
   const { answer: study, error, reload } = useAnswer(path.study(id), { everyMs: (now) => (isOver(now) ? REST_MS : LOOK_MS) });
+  useEffect(() => () => {
+    // Another study has other runs.
+    choose(null);
+    point(null);
+  }, []);
   if (!study) return html`<${Pending} answer=${study} error=${error} what=${`study ${id}`} />`;
   const model = modelOf(study, query.model ? Number(query.model) : null);
   const shown = VIEWS.find((v) => v.name === view) ?? VIEWS[0];
@@ -66,9 +74,9 @@ export function StudyPage({ id, view, query }) {
     <nav class="views" aria-label="Views of the study">
       ${VIEWS.map((v) => html`<a href=${to(v.name)} aria-current=${v === shown ? "page" : null}>${v.title}</a>`)}
     </nav>
-    ${shown.name !== "live" && html`<${ModelPicker} study=${study} model=${model} view=${shown.name} />`}
+    ${!["live", "errors"].includes(shown.name) && html`<${ModelPicker} study=${study} model=${model} view=${shown.name} />`}
     <section class=${`view ${shown.name}`} aria-label=${shown.title}>
-      <${Guarded} key=${shown.name} title=${shown.title}><${shown.view} study=${study} model=${model} query=${query} reload=${reload} /><//>
+      <${Guarded} key=${`${shown.name} ${model?.id}`} title=${shown.title}><${shown.view} study=${study} model=${model} query=${query} reload=${reload} /><//>
     </section>
     <${ChosenRuns} study=${study} model=${model} />`;
 }
@@ -81,7 +89,7 @@ function ModelPicker(/** @type {{ study: any, model: any, view: string }} */ { s
   return html`
     <p class="picker"><label>Model
       <select value=${model?.id} onChange=${go}>
-        ${finished.map((/** @type {any} */ m) => html`<option value=${m.id} selected=${m.id === model?.id}>${modelName(m)}${m.id === study.current ? " (current)" : ""}${m.kind === "fit" ? ` (${m.name})` : ""}</option>`)}
+        ${finished.map((/** @type {any} */ m) => html`<option value=${m.id} selected=${m.id === model?.id}>${modelName(study, m)}${m.id === study.current ? " (current)" : ""}</option>`)}
       </select></label></p>`;
 }
 

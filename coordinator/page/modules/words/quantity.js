@@ -17,15 +17,23 @@ export const words = (/** @type {string} */ name) => name.replaceAll("_", " ");
 /** A sentence begins with a capital, unless it begins with a name of the program. */
 export const capital = (/** @type {string} */ text) => (/^[a-z0-9]*_/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1));
 
-/** The name of a parameter as words, without the unit at its end, which stands beside it. */
-export const parameterName = (/** @type {string} */ name) => words(name.replace(/_(n_m|m_s|kg_m3|deg|pa|m|n)(?=\.[^.]*$|$)/, ""));
+const PARAMETER_UNITS = { n_s_m: "N s/m", m_pa: "m/Pa", m_n: "m/N", per_m: "1/m", n_m: "N m", m_s: "m/s", kg_m3: "kg/m³", deg: "°", pa: "Pa", m: "m", n: "N" };
+/** The unit that a name ends with, before the name of a wheel. */
+const UNIT_AT_END = new RegExp(`_(${Object.keys(PARAMETER_UNITS).join("|")})(?=\\.[^.]*$|$)`);
 
-const PARAMETER_UNITS = { n_m: "N m", m_s: "m/s", kg_m3: "kg/m³", deg: "°", pa: "Pa", m: "m", n: "N" };
+/** The name of a parameter as words, without the unit at its end, which stands beside it. */
+export const parameterName = (/** @type {string} */ name) => words(name.replace(UNIT_AT_END, ""));
 
 /** The unit in SI with which the name of a parameter ends; `1` where it ends with none. */
 export function parameterUnit(/** @type {string} */ name) {
-  const end = /_(n_m|m_s|kg_m3|deg|pa|m|n)(?=\.[^.]*$|$)/.exec(name)?.[1];
+  const end = UNIT_AT_END.exec(name)?.[1];
   return end === undefined ? "1" : PARAMETER_UNITS[/** @type {keyof typeof PARAMETER_UNITS} */ (end)];
+}
+
+/** A number that a person typed, with a point or a comma; null where it is none. */
+export function numberOf(/** @type {string} */ text) {
+  const plain = text.trim().replace("−", "-").replace(/^([^.,]*),([^.,]*)$/, "$1.$2");
+  return plain === "" || !Number.isFinite(Number(plain)) ? null : Number(plain);
 }
 
 /** A short name of a channel. */

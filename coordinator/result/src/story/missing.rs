@@ -128,7 +128,7 @@ impl Missing {
         }
         if !not_tried.is_empty() {
             text.push(format!(
-                "not tried for want of data on the rig: {}",
+                "not judged for want of data on the rig: {}",
                 not_tried.join(", ")
             ));
         }

@@ -141,7 +141,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool
         let mut names: Vec<String> = own.map(|effect| effect.name.clone()).collect();
         names.dedup();
         let text = format!(
-            "state {needs} in the experiment, so that {} can be tried",
+            "state {needs} in the experiment, so that {} can be judged",
             number::list(&names)
         );
         NextStep::new(StepKind::StateInExperiment, text, None)
