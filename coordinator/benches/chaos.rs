@@ -25,7 +25,7 @@ fn main() -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
-    let (tally, broken) = soak(events, seed);
+    let (tally, broken) = soak(events, seed, |event| println!("{event}"));
     print!("{tally}");
     match broken {
         None => {

@@ -39,6 +39,8 @@ const BLOCK: u64 = 100;
 const LOOK: Duration = Duration::from_millis(30);
 /// Without progress for so long a farm stands still.
 const PATIENCE: Duration = Duration::from_secs(90);
+/// So many events before a broken promise are told with it.
+const LAST: usize = 12;
 /// Most memory of a program `[kB]`.
 const MOST_KB: u64 = 300_000;
 
@@ -47,9 +49,9 @@ pub fn faults() -> impl Iterator<Item = Fault> {
     FAULTS.iter().map(|(fault, ..)| *fault)
 }
 
-/// Lets so many events happen to a farm, which may finish what it has after every hundred of them; what happened, and the promise that
-/// was broken, with the number of the last event.
-pub fn soak(events: u64, seed: u64) -> (Tally, Option<String>) {
+/// Lets so many events happen to a farm, which may finish what it has after every hundred of them, and tells each as it happens; what
+/// happened, and the promise that was broken, with the last events.
+pub fn soak(events: u64, seed: u64, mut tell: impl FnMut(&str)) -> (Tally, Option<String>) {
     let references = job::references();
     let mut farm = Farm::start();
     let user = User::new(farm.client.clone(), references);
@@ -59,14 +61,15 @@ pub fn soak(events: u64, seed: u64) -> (Tally, Option<String>) {
     };
     let mut soak = Soak { user, tally };
     let began = Instant::now();
-    let mut last = 0;
+    let mut told: Vec<String> = Vec::new();
     let mut run = || {
         for number in 1..=events {
             let event = Event::draw(seed, number);
             soak.live(&mut farm, event.wait)?;
             farm.check_logs()?;
-            println!("{:8.2} s  {event}", began.elapsed().as_secs_f64());
-            last = number;
+            let line = format!("{:8.2} s  {event}", began.elapsed().as_secs_f64());
+            tell(&line);
+            told.push(line);
             *soak.tally.events.entry(event.fault).or_default() += 1;
             if farm.suffer(&event, &mut soak.tally) {
                 soak.user.acknowledged.expect_a_backup();
@@ -82,8 +85,10 @@ pub fn soak(events: u64, seed: u64) -> (Tally, Option<String>) {
     let broken = done.err().map(|promise| {
         let kept = farm.keep();
         format!(
-            "seed {seed}, after event {last}: {promise}\nlogs and store: {}",
-            kept.display()
+            "seed {seed}, after event {}: {promise}\nlogs and store: {}\n{}",
+            told.len(),
+            kept.display(),
+            told[told.len().saturating_sub(LAST)..].join("\n")
         )
     });
     (soak.tally, broken)
