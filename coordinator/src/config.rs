@@ -40,7 +40,7 @@ pub enum CoordinatorCommand {
     Compare(TargetArguments),
     /// Write the report of a calibration.
     Report(ReportArguments),
-    /// Write the posterior draws and the comparison of a calibration.
+    /// Write a calibration for other programs: csv, json, arrow, parquet, zarr, netcdf.
     Export(ExportArguments),
     /// Show how reliable a calibration is and where its model fails.
     Diagnose(TargetArguments),
@@ -360,16 +360,16 @@ pub struct ReportArguments {
     pub output: Option<PathBuf>,
 }
 
-/// Write the posterior draws and the comparison of a calibration.
+/// Write a calibration for other programs.
 #[derive(Debug, Args)]
 pub struct ExportArguments {
     /// The calibration.
     #[command(flatten)]
     pub target: TargetArguments,
-    /// csv: the posterior; json: summary, posterior and comparison.
+    /// What is written.
     #[arg(long, value_enum, default_value_t = ExportFormat::Csv)]
     pub format: ExportFormat,
-    /// Output file; by default, standard output.
+    /// Output file, of zarr a new folder; by default, standard output for csv and json.
     #[arg(long)]
     pub output: Option<PathBuf>,
 }
@@ -381,6 +381,14 @@ pub enum ExportFormat {
     Csv,
     /// Summary, posterior and comparison.
     Json,
+    /// The draws as an Arrow file (Feather).
+    Arrow,
+    /// The draws as a Parquet file.
+    Parquet,
+    /// Inference data for ArviZ and xarray as a folder, Zarr v3.
+    Zarr,
+    /// The same as one file, NetCDF 3.
+    Netcdf,
 }
 
 /// Search for an effect that the model of a calibration is missing.

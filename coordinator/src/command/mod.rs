@@ -3,6 +3,7 @@
 mod backup;
 mod check;
 mod effects;
+mod export_file;
 mod exposure;
 mod folder;
 mod growth;
@@ -37,7 +38,7 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Resume(resume) => verbs::resume(&resume).await,
         CoordinatorCommand::Compare(target) => verbs::compare(&target).await,
         CoordinatorCommand::Report(report) => verbs::report(&report).await,
-        CoordinatorCommand::Export(export) => verbs::export(&export).await,
+        CoordinatorCommand::Export(export) => export_file::export(&export).await,
         CoordinatorCommand::Diagnose(target) => verbs::diagnose(&target).await,
         CoordinatorCommand::Discover(discover) => growth::discover(&discover).await,
         CoordinatorCommand::Extend(extend) => growth::extend(&extend).await,

@@ -14,6 +14,7 @@ use super::error::{Body, HttpError, Id, Query};
 use super::studies::WithArchived;
 use crate::farm::Control;
 use crate::service::{Service, finished_calibration};
+use export::InferenceData;
 use page::report::showing;
 use record::{Sample, StageRow};
 use result::{
@@ -31,6 +32,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(stages))
         .routes(routes!(samples))
         .routes(routes!(posterior))
+        .routes(routes!(inference_data))
         .routes(routes!(comparison))
         .routes(routes!(diagnostics))
         .routes(routes!(histories))
@@ -239,6 +241,23 @@ async fn outcome(service: &Service, id: i64) -> Result<FinishedCalibration, Http
     (status = 409, body = ErrorBody)))]
 async fn posterior(State(service): State<Service>, Id(id): Id) -> Result<Json<PosteriorTable>, HttpError> {
     Ok(Json(outcome(&service, id).await?.posterior_table()))
+}
+
+/// The calibration as inference data.
+///
+/// Groups of variables as ArviZ names them: `posterior`, `sample_stats`, `prior`, `log_likelihood`,
+/// `posterior_predictive`, `observed_data`, `constant_data`, of held-out runs `predictions` and
+/// `predictions_constant_data`. Values stand flat, the last dimension varying fastest. 409 of a fit without draws.
+#[utoipa::path(get, path = "/calibrations/{id}/inference-data", operation_id = "get_inference_data", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "groups of variables", body = InferenceData),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
+async fn inference_data(
+    State(service): State<Service>,
+    Id(id): Id,
+) -> Result<Json<InferenceData>, HttpError> {
+    Ok(Json(export::inference_data(&outcome(&service, id).await?)?))
 }
 
 /// Model against measurement.
