@@ -2,6 +2,7 @@
 
 mod backup;
 mod check;
+mod doctor;
 mod effects;
 mod export_file;
 mod exposure;
@@ -12,6 +13,7 @@ mod output;
 mod progress;
 mod run;
 mod serve;
+mod shell;
 mod shutdown;
 mod source;
 mod token;
@@ -48,6 +50,9 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Restore(study) => verbs::archive(&study, "restore").await,
         CoordinatorCommand::Delete(study) => verbs::delete(&study).await,
         CoordinatorCommand::Backup(config) => backup::backup(&config).await,
+        CoordinatorCommand::Doctor(config) => doctor::doctor(&config).await,
+        CoordinatorCommand::Completions { shell } => shell::completions(shell),
+        CoordinatorCommand::Man { folder } => shell::man(&folder),
         CoordinatorCommand::Token(command) => token::token(&command).await,
     }
 }
