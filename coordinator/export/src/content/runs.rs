@@ -1,10 +1,12 @@
 //! Runs: what was set, what was measured, and what the model says at the draws that were simulated on every run.
 
 use record::Prediction;
-use result::FinishedCalibration;
+use result::{Component, FinishedCalibration, NewMeasurements};
 use shared::channel::Channel;
 use shared::experiment::TestRun;
 use shared::outcome::Observables;
+use statistics::ErrorLaw;
+use statistics::rng::Stream;
 
 use super::draws::{draw_labels, numbers};
 use crate::inference_data::Group;
@@ -13,9 +15,14 @@ use crate::variable::{Values, Variable};
 /// The name that measured values, their predictions and their log-likelihoods share.
 const MEASUREMENT: &str = "measurement";
 
+/// Names the random numbers of new measurements among those of a seed: no sampler has so many stages.
+const NEW: u64 = u64::MAX;
+
 /// The fitted runs of a calibration, or those held out.
 pub(super) struct Part<'a> {
     calibration: &'a FinishedCalibration,
+    /// Its runs, as positions in the experiment.
+    places: &'a [usize],
     runs: Vec<&'a TestRun>,
     /// The channels that some run of the experiment has measured.
     channels: Vec<Channel>,
@@ -39,14 +46,15 @@ impl<'a> Part<'a> {
 
     fn new(
         calibration: &'a FinishedCalibration,
-        runs: &[usize],
+        places: &'a [usize],
         of: fn(&Prediction) -> Option<&Observables>,
     ) -> Self {
         let all = &calibration.spec.experiment.runs;
         let is_measured = |channel: &Channel| all.iter().any(|run| run.measured[channel.index()].is_some());
         Part {
             calibration,
-            runs: runs.iter().map(|&run| &all[run]).collect(),
+            places,
+            runs: places.iter().map(|&run| &all[run]).collect(),
             channels: Channel::ALL.into_iter().filter(is_measured).collect(),
             of,
         }
@@ -69,37 +77,51 @@ impl<'a> Part<'a> {
         [("run", self.runs.len()), ("channel", self.channels.len())]
     }
 
-    /// A variable over the simulated draws, runs and channels.
-    fn over_draws(&self, name: &str, group: &str, meaning: &str, values: Vec<f64>) -> Group {
+    /// Variables over the simulated draws, runs and channels.
+    fn over_draws<const N: usize>(&self, group: &str, variables: [(&str, &str, Vec<f64>); N]) -> Group {
         let draws = self.calibration.predictive_draws();
         let [run, channel] = self.dims();
         let dims = [("chain", 1), ("draw", draws.len()), run, channel];
         let mut coords = draw_labels(places(self.calibration));
         coords.extend(self.labels());
+        let variable = |(name, meaning, values): (&str, &str, Vec<f64>)| {
+            Variable::new(name, &dims, "", meaning, Values::Real(values))
+        };
         Group {
             name: group.to_owned(),
             coords,
-            data_vars: vec![Variable::new(name, &dims, "", meaning, Values::Real(values))],
+            data_vars: variables.map(variable).into(),
         }
     }
 
-    /// What the model says, without noise; NaN where it rejects a draw.
+    /// What the model says, and new measurements with the errors that the calibration found; NaN where it rejects a draw.
     pub(super) fn predictive(&self, group: &str) -> Group {
-        let mut values = Vec::new();
-        for draw in self.calibration.predictive_draws() {
-            let observables = (self.of)(draw);
-            for run in 0..self.runs.len() {
-                let value = |channel: &Channel| {
-                    let values = observables.map(|observables| observables.channel(*channel));
-                    values
-                        .and_then(|values| values.get(run).copied())
-                        .unwrap_or(f64::NAN)
-                };
-                values.extend(self.channels.iter().map(value));
+        let law = self.calibration.spec.likelihood.law();
+        let seed = self.calibration.spec.algorithm.seed();
+        let new = NewMeasurements::of(self.calibration);
+        let size = self.places.len() * self.channels.len();
+        let empty = vec![f64::NAN; size * self.calibration.predictive_draws().len()];
+        let (mut values, mut measurements) = (empty.clone(), empty);
+        for (run, &place) in self.places.iter().enumerate() {
+            for (column, &channel) in self.channels.iter().enumerate() {
+                for said in new.at(place, channel) {
+                    let mut stream =
+                        Stream::new(seed, NEW, said.draw as u64, (4 * place + channel.index()) as u64);
+                    let at = said.draw * size + run * self.channels.len() + column;
+                    if let Some(component) = chosen(&said.components, stream.uniform()) {
+                        values[at] = component.mean;
+                        let error = error(law, [stream.uniform(), stream.uniform()]);
+                        measurements[at] = component.mean + component.scale.unwrap_or(0.0) * error;
+                    }
+                }
             }
         }
-        let meaning = "value of the model at the draw, without noise, in the unit of the channel";
-        self.over_draws(MEASUREMENT, group, meaning, values)
+        let model = "value of the model at the draw, without noise, in the unit of the channel";
+        let measured = "new measurement at the draw, with its errors, in the unit of the channel";
+        self.over_draws(
+            group,
+            [("model", model, values), (MEASUREMENT, measured, measurements)],
+        )
     }
 
     /// The log-density of each fitted measurement by itself.
@@ -128,7 +150,7 @@ impl<'a> Part<'a> {
                 "log-density of the measurement by itself: some errors are common to several, so that the sum is not the joint log-density"
             }
         };
-        self.over_draws(MEASUREMENT, "log_likelihood", meaning, values)
+        self.over_draws("log_likelihood", [(MEASUREMENT, meaning, values)])
     }
 
     /// What was measured; NaN where nothing was.
@@ -179,6 +201,30 @@ impl<'a> Part<'a> {
     }
 }
 
+/// The component in which a probability falls.
+fn chosen(components: &[Component], mut probability: f64) -> Option<&Component> {
+    let found = components.iter().find(|component| {
+        probability -= component.weight;
+        probability < 0.0
+    });
+    // Rounding may leave a rest behind the last one.
+    found.or(components.last())
+}
+
+/// A random error of scale 1 from two uniform numbers.
+///
+/// # Source
+/// Box & Muller 1958, doi:10.1214/aoms/1177706645; of Student's t Bailey 1994, Math. Comp. 62:779, doi:10.2307/2153537.
+fn error(law: ErrorLaw, [first, second]: [f64; 2]) -> f64 {
+    let squared = match law {
+        ErrorLaw::Gaussian => -2.0 * libm::log(first),
+        ErrorLaw::StudentT {
+            degrees_of_freedom: nu,
+        } => nu * libm::expm1(-2.0 / nu * libm::log(first)),
+    };
+    squared.sqrt() * libm::cos(std::f64::consts::TAU * second)
+}
+
 /// Where the simulated draws stand in the posterior, which they are equally spaced draws of.
 fn places(calibration: &FinishedCalibration) -> Vec<i64> {
     let draws = calibration.predictive_draws();
@@ -190,4 +236,49 @@ fn places(calibration: &FinishedCalibration) -> Vec<i64> {
     };
     let places: Option<Vec<i64>> = draws.iter().map(place).collect();
     places.unwrap_or_else(|| numbers(draws.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_have_the_quantiles_of_their_law() {
+        for law in [
+            ErrorLaw::Gaussian,
+            ErrorLaw::StudentT {
+                degrees_of_freedom: 3.0,
+            },
+        ] {
+            let mut stream = Stream::new(1, NEW, 0, 0);
+            let errors: Vec<f64> = (0..20_000)
+                .map(|_| error(law, [stream.uniform(), stream.uniform()]))
+                .collect();
+            for z in [-2.0, -0.5, 0.0, 1.0, 3.0] {
+                let below = errors.iter().filter(|&&e| e < z).count() as f64 / errors.len() as f64;
+                let expected = law.cumulative(z);
+                // Four standard errors of a share.
+                let bound = 4.0 * (expected * (1.0 - expected) / errors.len() as f64).sqrt();
+                assert!(
+                    (below - expected).abs() < bound,
+                    "{law:?} {z}: {below} {expected}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_component_is_chosen_by_its_weight() {
+        let component = |mean, weight| Component {
+            mean,
+            scale: None,
+            weight,
+        };
+        let both = [component(1.0, 0.25), component(2.0, 0.75)];
+        let mean = |probability| chosen(&both, probability).map(|c| c.mean.to_bits());
+        assert_eq!(mean(0.24), Some(1.0_f64.to_bits()));
+        assert_eq!(mean(0.26), Some(2.0_f64.to_bits()));
+        assert_eq!(mean(1.0), Some(2.0_f64.to_bits()));
+        assert!(chosen(&[], 0.5).is_none());
+    }
 }
