@@ -6,6 +6,9 @@ use clap::{Args, Parser, Subcommand};
 use shared::bearer::{BearerToken, BearerTokenError};
 use tracing_subscriber::filter::{LevelFilter, Targets};
 
+/// The processors that this program was built for.
+pub const ARCHITECTURE: &str = std::env::consts::ARCH;
+
 /// Finds the physics that a wheel-soil model is missing.
 #[derive(Debug, Parser)]
 #[command(version, name = "coordinator")]
@@ -40,7 +43,7 @@ pub enum CoordinatorCommand {
     Compare(TargetArguments),
     /// Write the report of a calibration.
     Report(ReportArguments),
-    /// Write the posterior draws and the comparison of a calibration.
+    /// Write a calibration for other programs: csv, json, arrow, parquet, zarr, netcdf.
     Export(ExportArguments),
     /// Show how reliable a calibration is and where its model fails.
     Diagnose(TargetArguments),
@@ -60,6 +63,18 @@ pub enum CoordinatorCommand {
     Delete(StudyArguments),
     /// Copy a store, also one that a service is using, to a new file.
     Backup(BackupArguments),
+    /// Check this machine, its store and a service, and say what to do where something is amiss.
+    Doctor(DoctorArguments),
+    /// Print completions of the command line for a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Write the man pages of the program into a folder.
+    Man {
+        /// The folder; it is made where there is none.
+        folder: PathBuf,
+    },
     /// Add, list and revoke the tokens that a service asks for.
     #[command(subcommand)]
     Token(TokenCommand),
@@ -189,6 +204,23 @@ pub struct ServeArguments {
     /// Who may use the address.
     #[command(flatten)]
     pub exposure: ExposureArguments,
+}
+
+/// What is checked.
+#[derive(Debug, Args)]
+pub struct DoctorArguments {
+    /// The store that `serve` would use.
+    #[command(flatten)]
+    pub store: StoreArguments,
+    /// The address that `serve` would listen on.
+    #[arg(long, env = "GROUSER_LISTEN", default_value = "127.0.0.1:7070")]
+    pub listen: std::net::SocketAddr,
+    /// A service whose answers, token and workers are checked too; by default none.
+    #[arg(long, env = "GROUSER_URL")]
+    pub url: Option<String>,
+    /// What it asks for.
+    #[command(flatten)]
+    pub client: ClientArguments,
 }
 
 /// Copy a store.
@@ -360,16 +392,16 @@ pub struct ReportArguments {
     pub output: Option<PathBuf>,
 }
 
-/// Write the posterior draws and the comparison of a calibration.
+/// Write a calibration for other programs.
 #[derive(Debug, Args)]
 pub struct ExportArguments {
     /// The calibration.
     #[command(flatten)]
     pub target: TargetArguments,
-    /// csv: the posterior; json: summary, posterior and comparison.
+    /// What is written.
     #[arg(long, value_enum, default_value_t = ExportFormat::Csv)]
     pub format: ExportFormat,
-    /// Output file; by default, standard output.
+    /// Output file, of zarr a new folder; by default, standard output for csv and json.
     #[arg(long)]
     pub output: Option<PathBuf>,
 }
@@ -381,6 +413,14 @@ pub enum ExportFormat {
     Csv,
     /// Summary, posterior and comparison.
     Json,
+    /// The draws as an Arrow file (Feather).
+    Arrow,
+    /// The draws as a Parquet file.
+    Parquet,
+    /// Inference data for ArviZ and xarray as a folder, Zarr v3.
+    Zarr,
+    /// The same as one file, NetCDF 3.
+    Netcdf,
 }
 
 /// Search for an effect that the model of a calibration is missing.

@@ -19,6 +19,7 @@ mod mesh;
 mod metamodel;
 mod not_tried;
 mod older_store;
+mod openapi;
 mod operation;
 mod own_effects;
 mod page;

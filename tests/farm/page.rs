@@ -27,25 +27,27 @@ fn the_page_needs_no_token_and_nothing_from_elsewhere() {
     farm_tests::wait::until("tokens are asked for", || {
         (service.client.get("/v1/studies").status == 401).then_some(())
     });
-    let index = service.client.get("/");
-    assert_eq!(index.status, 200, "{}", index.body);
-    let policy = index.header("content-security-policy").expect("a policy");
-    assert!(
-        policy.starts_with("default-src 'none'; script-src 'self';"),
-        "{policy}"
-    );
-    assert!(!index.body.contains("http"), "{}", index.body);
-    assert!(named(&index.body).count() > 5);
-    for path in named(&index.body) {
-        let file = service.client.get(path);
-        assert_eq!(file.status, 200, "{path}");
+    for document in ["/", "/docs"] {
+        let document = service.client.get(document);
+        assert_eq!(document.status, 200, "{}", document.body);
+        let policy = document.header("content-security-policy").expect("a policy");
         assert!(
-            !file
-                .header("content-type")
-                .unwrap_or("text/plain")
-                .starts_with("text/plain"),
-            "{path}"
+            policy.starts_with("default-src 'none'; script-src 'self';"),
+            "{policy}"
         );
+        assert!(!document.body.contains("http"), "{}", document.body);
+        assert!(named(&document.body).count() > 4);
+        for path in named(&document.body) {
+            let file = service.client.get(path);
+            assert_eq!(file.status, 200, "{path}");
+            assert!(
+                !file
+                    .header("content-type")
+                    .unwrap_or("text/plain")
+                    .starts_with("text/plain"),
+                "{path}"
+            );
+        }
     }
     for path in [
         "/page/",

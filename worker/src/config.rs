@@ -53,6 +53,16 @@ impl PullArguments {
 pub enum WorkerCommand {
     /// Forward runs of an experiment, without a coordinator.
     Simulate(Simulate),
+    /// Print completions of the command line for a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Write the man pages of the program into a folder.
+    Man {
+        /// The folder; it is made where there is none.
+        folder: PathBuf,
+    },
 }
 
 /// Forward runs of an experiment; at least one of `--out`, `--plates` and `--shear` must be given, one for each table.

@@ -7,7 +7,7 @@
 //! - [`client`]: HTTP client of the coordinator.
 //! - [`simulate`]: forward runs of an experiment without a coordinator.
 //! - [`processor`]: whether this machine can run what was built.
-//! - [`config`]: command line and environment.
+//! - [`config`]: command line and environment. [`shell`]: completions and man pages.
 
 pub mod client;
 pub mod config;
@@ -15,6 +15,7 @@ pub mod evaluator;
 pub mod model;
 pub mod processor;
 pub mod pull;
+pub mod shell;
 pub mod simulate;
 
 /// Version of the equations that this worker computes.

@@ -31,6 +31,12 @@ fn main() -> std::process::ExitCode {
         (Some(WorkerCommand::Simulate(command)), _) => {
             worker::simulate::simulate(&command).map_err(Into::into)
         }
+        (Some(WorkerCommand::Completions { shell }), _) => {
+            worker::shell::completions(shell, &mut std::io::stdout()).map_err(Into::into)
+        }
+        (Some(WorkerCommand::Man { folder }), _) => {
+            worker::shell::man(&folder).with_context(|| folder.display().to_string())
+        }
         (None, Some(serve)) => pull(&serve),
         (None, None) => Err(anyhow::anyhow!("--coordinator URL is missing")),
     };

@@ -25,7 +25,7 @@ function Page() {
       <nav aria-label="Pages">
         <a href="#/" aria-current=${first === undefined ? "page" : null}>Studies</a>
         <a href="#/new" aria-current=${first === "new" ? "page" : null}>New calibration</a>
-        <a href="/openapi.json">Interface</a>
+        <a href="/docs">Interface</a>
       </nav>
       ${token.get() && html`<button type="button" onClick=${() => token.clear()}>Forget the token</button>`}
     </header>

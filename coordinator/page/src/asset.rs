@@ -41,6 +41,8 @@ pub struct Asset {
 
 /// The document that a browser begins with.
 pub const INDEX: &str = "index.html";
+/// The document that describes the interface.
+pub const DOCS: &str = "docs.html";
 
 /// A file by its path below the folder of the page; `None` where there is none.
 pub fn asset(path: &str) -> Option<Asset> {
@@ -82,9 +84,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn everything_that_the_index_names_is_there() {
-        let index = text(INDEX);
-        let named: Vec<&str> = index
+    fn everything_that_the_documents_name_is_there() {
+        let documents = text(INDEX) + &text(DOCS);
+        let named: Vec<&str> = documents
             .split('"')
             .filter_map(|part| part.strip_prefix("/page/"))
             .collect();

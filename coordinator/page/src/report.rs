@@ -13,6 +13,9 @@ const PREFIX: &str = "grouser/";
 /// A report asks nobody, and runs nothing but what it carries.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' data:; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'";
 
+/// The modules of the page that describes the interface, which a report does not show.
+const INTERFACE: &str = "modules/interface/";
+
 /// The element that says which calibration of which study is shown first.
 const SHOWN: &str = "shown";
 
@@ -100,7 +103,8 @@ fn import_map() -> String {
             Value::from(format!("data:text/javascript;base64,{source}")),
         )
     };
-    let imports: Map<String, Value> = modules().into_iter().map(entry).collect();
+    let carried = modules().into_iter().filter(|path| !path.starts_with(INTERFACE));
+    let imports: Map<String, Value> = carried.map(entry).collect();
     json!({ "imports": imports }).to_string()
 }
 

@@ -143,7 +143,7 @@ fn deeds(signature: &Signature) -> String {
     if !signature.shapes.is_empty() {
         let shapes = signature.shapes.iter();
         let shapes: Vec<String> = shapes
-            .map(|(name, value, unit)| set(name, *value, unit))
+            .map(|held| set(&held.name, held.value, &held.unit))
             .collect();
         text += &format!("with {}\n", shapes.join(", "));
     }

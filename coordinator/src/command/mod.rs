@@ -2,7 +2,9 @@
 
 mod backup;
 mod check;
+mod doctor;
 mod effects;
+mod export_file;
 mod exposure;
 mod folder;
 mod growth;
@@ -11,6 +13,7 @@ mod output;
 mod progress;
 mod run;
 mod serve;
+mod shell;
 mod shutdown;
 mod source;
 mod token;
@@ -37,7 +40,7 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Resume(resume) => verbs::resume(&resume).await,
         CoordinatorCommand::Compare(target) => verbs::compare(&target).await,
         CoordinatorCommand::Report(report) => verbs::report(&report).await,
-        CoordinatorCommand::Export(export) => verbs::export(&export).await,
+        CoordinatorCommand::Export(export) => export_file::export(&export).await,
         CoordinatorCommand::Diagnose(target) => verbs::diagnose(&target).await,
         CoordinatorCommand::Discover(discover) => growth::discover(&discover).await,
         CoordinatorCommand::Extend(extend) => growth::extend(&extend).await,
@@ -47,6 +50,9 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Restore(study) => verbs::archive(&study, "restore").await,
         CoordinatorCommand::Delete(study) => verbs::delete(&study).await,
         CoordinatorCommand::Backup(config) => backup::backup(&config).await,
+        CoordinatorCommand::Doctor(config) => doctor::doctor(&config).await,
+        CoordinatorCommand::Completions { shell } => shell::completions(shell),
+        CoordinatorCommand::Man { folder } => shell::man(&folder),
         CoordinatorCommand::Token(command) => token::token(&command).await,
     }
 }

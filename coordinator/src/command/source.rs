@@ -1,6 +1,7 @@
 //! Access to stored calibrations: through a service or in a folder.
 
 use anyhow::{Context, bail};
+use export::InferenceData;
 use serde::de::DeserializeOwned;
 use shared::api::{CalibrationStatus, ErrorBody};
 use shared::bearer::BearerToken;
@@ -98,6 +99,15 @@ impl CalibrationSource {
                 client.get(&format!("/v1/calibrations/{id}/posterior")).await
             }
             CalibrationSource::Folder(reader) => Ok(outcome(reader, id).await?.posterior_table()),
+        }
+    }
+
+    pub(super) async fn inference_data(&self, id: i64) -> anyhow::Result<InferenceData> {
+        match self {
+            CalibrationSource::Service(client) => {
+                client.get(&format!("/v1/calibrations/{id}/inference-data")).await
+            }
+            CalibrationSource::Folder(reader) => Ok(export::inference_data(&outcome(reader, id).await?)?),
         }
     }
 

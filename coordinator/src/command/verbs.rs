@@ -1,4 +1,4 @@
-//! The short commands: submit, list, status, cancel, pause, resume, archive, delete, compare, diagnose, report, export.
+//! The short commands: submit, list, status, cancel, pause, resume, archive, delete, compare, diagnose, report.
 
 use std::path::Path;
 
@@ -14,8 +14,7 @@ use super::job_on_disk;
 use super::output::say;
 use super::source::{CalibrationSource, ServiceClient};
 use crate::config::{
-    ExportArguments, ExportFormat, ListArguments, ReportArguments, ResumeArguments, StudyArguments,
-    SubmitArguments, TargetArguments,
+    ListArguments, ReportArguments, ResumeArguments, StudyArguments, SubmitArguments, TargetArguments,
 };
 use crate::effect::EffectCard;
 use job::{OwnEffect, foreign_effects};
@@ -162,24 +161,8 @@ pub(super) async fn report(config: &ReportArguments) -> anyhow::Result<()> {
     write(config.output.as_deref(), &report)
 }
 
-pub(super) async fn export(config: &ExportArguments) -> anyhow::Result<()> {
-    let place = CalibrationSource::open(&config.target.source).await?;
-    let id = place.id(&config.target).await?;
-    let text = match config.format {
-        ExportFormat::Csv => place.posterior(id).await?.to_csv(),
-        ExportFormat::Json => {
-            let all = json!({
-                "summary": place.summary(id).await?,
-                "posterior": place.posterior(id).await?,
-                "comparison": place.comparison(id).await?,
-            });
-            serde_json::to_string_pretty(&all)? + "\n"
-        }
-    };
-    write(config.output.as_deref(), &text)
-}
-
-fn write(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
+/// Writes a text to a file, or to the terminal.
+pub(super) fn write(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
     match path {
         Some(path) => std::fs::write(path, text).with_context(|| path.display().to_string()),
         None => Ok(say(text)?),

@@ -47,12 +47,34 @@ pub struct Signature {
     pub pass: u32,
     /// Names of the conditions in the tables; slip 0.2, 100 N and 10 mm/s of rim speed where nothing else is said.
     pub conditions: Vec<String>,
-    /// Values at which the other parameters, which only shape the effect, are held: name, value, unit.
-    pub shapes: Vec<(String, f64, String)>,
+    /// The other parameters, which only shape the effect.
+    pub shapes: Vec<HeldParameter>,
     /// Slips of the curves.
     pub slips: Vec<f64>,
     /// Each strength alone, at its typical value.
     pub strengths: Vec<StrengthSignature>,
+}
+
+/// A parameter that is held at a value.
+#[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
+pub struct HeldParameter {
+    /// Its name.
+    pub name: String,
+    /// Where it is held.
+    pub value: f64,
+    /// Unit of the value.
+    pub unit: String,
+}
+
+impl HeldParameter {
+    /// A parameter at the value at which it is shown; `None` where there is none.
+    fn shown(parameter: &formula::Parameter) -> Option<Self> {
+        Some(HeldParameter {
+            name: parameter.name.clone(),
+            value: shown_at(parameter)?,
+            unit: parameter.unit.clone(),
+        })
+    }
 }
 
 /// What one strength does.
@@ -135,7 +157,7 @@ pub fn signature(effect: &Effect, kind: ModelKind) -> Result<Signature, String> 
             .parameters
             .iter()
             .filter(|p| p.neutral.is_none())
-            .filter_map(|p| Some((p.name.clone(), shown_at(p)?, p.unit.clone())))
+            .filter_map(HeldParameter::shown)
             .collect(),
         slips,
         strengths: shown,

@@ -119,7 +119,7 @@ impl Access {
 /// The role that a request needs; nobody is asked for one to see whether the service is alive, or for the files of the page.
 fn needed(method: &Method, path: &str) -> Option<Role> {
     match path {
-        "/health" | "/" => None,
+        "/health" | "/" | page::DOCS_PATH => None,
         _ if path.starts_with(page::FOLDER) => None,
         _ if path.starts_with("/v1/work/") => Some(Role::Work),
         _ if [Method::GET, Method::HEAD].contains(method) => Some(Role::Read),

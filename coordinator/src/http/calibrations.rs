@@ -14,6 +14,7 @@ use super::error::{Body, HttpError, Id, Query};
 use super::studies::WithArchived;
 use crate::farm::Control;
 use crate::service::{Service, finished_calibration};
+use export::InferenceData;
 use page::report::showing;
 use record::{Sample, StageRow};
 use result::{
@@ -31,6 +32,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(stages))
         .routes(routes!(samples))
         .routes(routes!(posterior))
+        .routes(routes!(inference_data))
         .routes(routes!(comparison))
         .routes(routes!(diagnostics))
         .routes(routes!(histories))
@@ -41,9 +43,14 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(report_page))
 }
 
-/// Validates a job, stores it and takes it in hand, with the point estimates that it asks for beside it.
-#[utoipa::path(post, path = "/calibrations", request_body = NewCalibration, responses(
-    (status = 201, body = CalibrationCreated, headers(("Location" = String))),
+/// Submits a job.
+///
+/// The job is validated, stored and started, with the point estimates that it asks for beside it. A job that is
+/// posted twice is calibrated twice.
+#[utoipa::path(post, path = "/calibrations", operation_id = "create_calibration", tag = "calibrations",
+    request_body = NewCalibration, responses(
+    (status = 201, description = "the calibration, its study and its point estimates", body = CalibrationCreated,
+        headers(("Location" = String, description = "path of the calibration"))),
     (status = 404, body = ErrorBody, description = "no such experiment"),
     (status = 422, body = ErrorBody, description = "a file is malformed"),
 ))]
@@ -62,9 +69,12 @@ async fn create(
     Ok((StatusCode::CREATED, headers, Json(created)))
 }
 
+/// Lists the calibrations.
+///
 /// Every calibration, oldest first; those of archived studies with `archived=true` alone.
-#[utoipa::path(get, path = "/calibrations", params(("archived" = Option<bool>, Query)), responses(
-    (status = 200, body = Vec<CalibrationStatus>)))]
+#[utoipa::path(get, path = "/calibrations", operation_id = "list_calibrations", tag = "calibrations",
+    params(("archived" = Option<bool>, Query, description = "whether those of archived studies are listed too")), responses(
+    (status = 200, description = "calibrations with state and progress", body = Vec<CalibrationStatus>)))]
 async fn list(
     State(service): State<Service>,
     Query(which): Query<WithArchived>,
@@ -72,9 +82,13 @@ async fn list(
     Ok(Json(service.list(which.archived).await?))
 }
 
-/// The status of a calibration.
-#[utoipa::path(get, path = "/calibrations/{id}", params(("id" = i64, Path)), responses(
-    (status = 200, body = CalibrationStatus), (status = 404, body = ErrorBody)))]
+/// State and progress of a calibration.
+///
+/// `progress` is null before the sampler starts and when it is over. Poll it, or watch
+/// `/v1/calibrations/{id}/events`.
+#[utoipa::path(get, path = "/calibrations/{id}", operation_id = "get_calibration", tag = "calibrations",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "where it stands", body = CalibrationStatus), (status = 404, body = ErrorBody)))]
 async fn status(State(service): State<Service>, Id(id): Id) -> Result<Json<CalibrationStatus>, HttpError> {
     Ok(Json(service.status(id).await?))
 }
@@ -82,6 +96,7 @@ async fn status(State(service): State<Service>, Id(id): Id) -> Result<Json<Calib
 /// The state after a command.
 #[derive(Debug, serde::Serialize, utoipa::ToSchema)]
 struct NewState {
+    /// The state.
     state: CalibrationState,
 }
 
@@ -98,15 +113,25 @@ async fn control(
 }
 
 /// Stops a calibration for good.
-#[utoipa::path(post, path = "/calibrations/{id}/cancel", params(("id" = i64, Path)), responses(
-    (status = 200, body = NewState), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+///
+/// No further evaluations are leased, and what workers still send of it is discarded. It cannot be resumed.
+#[utoipa::path(post, path = "/calibrations/{id}/cancel", operation_id = "cancel_calibration", tag = "calibrations",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "its new state", body = NewState),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
 async fn cancel(State(service): State<Service>, by: Caller, Id(id): Id) -> Result<Json<NewState>, HttpError> {
     control(&service, id, Control::Cancel, &by).await
 }
 
-/// Leases nothing more until resumed.
-#[utoipa::path(post, path = "/calibrations/{id}/pause", params(("id" = i64, Path)), responses(
-    (status = 200, body = NewState), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+/// Pauses a calibration.
+///
+/// No further evaluations are leased until it is resumed; results of those under way still count.
+#[utoipa::path(post, path = "/calibrations/{id}/pause", operation_id = "pause_calibration", tag = "calibrations",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "its new state", body = NewState),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
 async fn pause(State(service): State<Service>, by: Caller, Id(id): Id) -> Result<Json<NewState>, HttpError> {
     control(&service, id, Control::Pause, &by).await
 }
@@ -119,9 +144,14 @@ struct Resume {
     skip_faults: bool,
 }
 
-/// Goes on after a pause. With `skip_faults`, evaluations that had used up their attempts count as rejected.
-#[utoipa::path(post, path = "/calibrations/{id}/resume", params(("id" = i64, Path), ("skip_faults" = Option<bool>, Query)), responses(
-    (status = 200, body = NewState), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+/// Resumes a paused calibration.
+///
+/// Evaluations that had used up their attempts are tried again; with `skip_faults=true` they count as rejected.
+#[utoipa::path(post, path = "/calibrations/{id}/resume", operation_id = "resume_calibration", tag = "calibrations",
+    params(("id" = i64, Path), ("skip_faults" = Option<bool>, Query, description = "whether evaluations that used up their attempts count as rejected")), responses(
+    (status = 200, description = "its new state", body = NewState),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
 async fn resume(
     State(service): State<Service>,
     by: Caller,
@@ -132,9 +162,12 @@ async fn resume(
     control(&service, id, Control::Resume { skip_faults }, &by).await
 }
 
-/// The stages so far: tempering exponents, acceptance, drift.
-#[utoipa::path(get, path = "/calibrations/{id}/stages", params(("id" = i64, Path)), responses(
-    (status = 200, body = Vec<StageRow>), (status = 404, body = ErrorBody)))]
+/// Stages of the sampler so far.
+///
+/// Tempering exponents, acceptance, drift and evidence of each stage, also while it runs; none of a fit.
+#[utoipa::path(get, path = "/calibrations/{id}/stages", operation_id = "get_stages", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "stages in their order", body = Vec<StageRow>), (status = 404, body = ErrorBody)))]
 async fn stages(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<StageRow>>, HttpError> {
     service.calibration_row(id).await?;
     Ok(Json(service.store().reader().stages(id).await?))
@@ -161,9 +194,13 @@ struct Population {
     samples: Vec<Sample>,
 }
 
-/// The population at the end of a stage; with `most`, at most so many equally spaced draws of it.
-#[utoipa::path(get, path = "/calibrations/{id}/samples", params(("id" = i64, Path), WhichSamples), responses(
-    (status = 200, body = Population), (status = 404, body = ErrorBody)))]
+/// The population at the end of a stage.
+///
+/// By default that of the last stage. With `most`, at most so many equally spaced draws of it.
+#[utoipa::path(get, path = "/calibrations/{id}/samples", operation_id = "get_samples", tag = "results",
+    params(("id" = i64, Path), WhichSamples), responses(
+    (status = 200, description = "parameter names, size and draws", body = Population),
+    (status = 404, body = ErrorBody)))]
 async fn samples(
     State(service): State<Service>,
     Id(id): Id,
@@ -193,16 +230,44 @@ async fn outcome(service: &Service, id: i64) -> Result<FinishedCalibration, Http
     Ok(finished_calibration(&service.store().reader(), &row).await?)
 }
 
-/// The equally weighted draws of the posterior.
-#[utoipa::path(get, path = "/calibrations/{id}/posterior", params(("id" = i64, Path)), responses(
-    (status = 200, body = PosteriorTable), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+/// The draws of the posterior.
+///
+/// Equally weighted draws as a table with `log_likelihood`, `log_prior` and the parameters; no rows of a fit without
+/// a normal approximation.
+#[utoipa::path(get, path = "/calibrations/{id}/posterior", operation_id = "get_posterior", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "a table of draws", body = PosteriorTable),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
 async fn posterior(State(service): State<Service>, Id(id): Id) -> Result<Json<PosteriorTable>, HttpError> {
     Ok(Json(outcome(&service, id).await?.posterior_table()))
 }
 
-/// Model against measurement, run by run.
-#[utoipa::path(get, path = "/calibrations/{id}/comparison", params(("id" = i64, Path)), responses(
-    (status = 200, body = Comparison), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+/// The calibration as inference data.
+///
+/// Groups of variables as ArviZ names them: `posterior`, `sample_stats`, `prior`, `log_likelihood`,
+/// `posterior_predictive`, `observed_data`, `constant_data`, of held-out runs `predictions` and
+/// `predictions_constant_data`. Values stand flat, the last dimension varying fastest. 409 of a fit without draws.
+#[utoipa::path(get, path = "/calibrations/{id}/inference-data", operation_id = "get_inference_data", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "groups of variables", body = InferenceData),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
+async fn inference_data(
+    State(service): State<Service>,
+    Id(id): Id,
+) -> Result<Json<InferenceData>, HttpError> {
+    Ok(Json(export::inference_data(&outcome(&service, id).await?)?))
+}
+
+/// Model against measurement.
+///
+/// Measured and predicted values of every run and channel, with intervals and errors, fitted and held-out runs apart.
+#[utoipa::path(get, path = "/calibrations/{id}/comparison", operation_id = "get_comparison", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "the comparison", body = Comparison),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
 async fn comparison(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
     Ok(json(service.calibration_file(id, StudyFile::Comparison).await?))
 }
@@ -212,52 +277,86 @@ fn json(text: String) -> impl IntoResponse {
     ([(header::CONTENT_TYPE, "application/json")], text)
 }
 
-/// How far the result can be trusted, and where the model fails.
-#[utoipa::path(get, path = "/calibrations/{id}/diagnostics", params(("id" = i64, Path)), responses(
-    (status = 200, body = Diagnostics), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+/// How far the result can be trusted.
+///
+/// Diagnostics of the sampler, of every parameter and of the residuals: where the model fails, by channel and
+/// condition.
+#[utoipa::path(get, path = "/calibrations/{id}/diagnostics", operation_id = "get_diagnostics", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "the diagnostics", body = Diagnostics),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
 async fn diagnostics(State(service): State<Service>, Id(id): Id) -> Result<Json<Diagnostics>, HttpError> {
     Ok(Json(service.diagnostics(id).await?))
 }
 
-/// Measured and simulated histories of each fitted run, filtered, at the likeliest parameters; null of a model that knows no
-/// time.
-#[utoipa::path(get, path = "/calibrations/{id}/histories", params(("id" = i64, Path)), responses(
-    (status = 200, body = Option<Vec<ChannelHistory>>), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+/// Time histories of the fitted runs.
+///
+/// Measured and simulated histories, filtered, at the likeliest parameters; null of a model that knows no time.
+#[utoipa::path(get, path = "/calibrations/{id}/histories", operation_id = "get_histories", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "histories of each fitted run, or null", body = Option<Vec<ChannelHistory>>),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
 async fn histories(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
     Ok(json(service.calibration_file(id, StudyFile::Histories).await?))
 }
 
-/// How it came about: what it reached in sentences, its inputs and versions.
-#[utoipa::path(get, path = "/calibrations/{id}/provenance", params(("id" = i64, Path)), responses(
-    (status = 200, body = Provenance), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+/// How the result came about.
+///
+/// What it reached, in sentences, with its inputs and versions.
+#[utoipa::path(get, path = "/calibrations/{id}/provenance", operation_id = "get_provenance", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "the provenance", body = Provenance),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
 async fn provenance(State(service): State<Service>, Id(id): Id) -> Result<Json<Provenance>, HttpError> {
     Ok(Json(outcome(&service, id).await?.provenance()))
 }
 
 /// What deserves attention.
-#[utoipa::path(get, path = "/calibrations/{id}/flags", params(("id" = i64, Path)), responses(
-    (status = 200, body = Vec<Flag>), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+///
+/// Each flag has a kind of a closed list and a sentence that says what to do.
+#[utoipa::path(get, path = "/calibrations/{id}/flags", operation_id = "get_flags", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "the flags; none if all is well", body = Vec<Flag>),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
 async fn flags(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<Flag>>, HttpError> {
     Ok(Json(service.diagnostics(id).await?.flags))
 }
 
-/// The summary of its study, as `summary.json` has it.
-#[utoipa::path(get, path = "/calibrations/{id}/summary", params(("id" = i64, Path)), responses(
-    (status = 200, body = StudySummary), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+/// The summary of the study.
+///
+/// The content of `summary.json`: parameters, errors and search of every calibration of the study.
+#[utoipa::path(get, path = "/calibrations/{id}/summary", operation_id = "get_summary", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "the summary", body = StudySummary),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
 async fn summary(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
     Ok(json(service.study_file(id, StudyFile::Summary).await?))
 }
 
-/// What its figures show, as numbers: marginal and joint densities, convergence, histories, prediction errors.
-#[utoipa::path(get, path = "/calibrations/{id}/figures", params(("id" = i64, Path)), responses(
-    (status = 200, body = CalibrationFigures), (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
+/// The numbers behind the figures.
+///
+/// Marginal and joint densities from at most 2,000 draws, convergence, histories, prediction errors.
+#[utoipa::path(get, path = "/calibrations/{id}/figures", operation_id = "get_figures", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "the numbers of each figure", body = CalibrationFigures),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
 async fn figures(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
     Ok(json(service.calibration_file(id, StudyFile::Figures).await?))
 }
 
-/// The report of its study, as `report.html` has it, with its own model first.
-#[utoipa::path(get, path = "/calibrations/{id}/report", params(("id" = i64, Path)), responses(
-    (status = 200, content_type = "text/html", body = String), (status = 404, body = ErrorBody)))]
+/// The report of the study.
+///
+/// The content of `report.html`: one document without references to others, which shows this calibration first.
+#[utoipa::path(get, path = "/calibrations/{id}/report", operation_id = "get_report", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "an HTML document", content_type = "text/html", body = String),
+    (status = 404, body = ErrorBody)))]
 async fn report_page(State(service): State<Service>, Id(id): Id) -> Result<Html<String>, HttpError> {
     let report = service.study_file(id, StudyFile::Report).await?;
     Ok(Html(showing(&report, id)))

@@ -1,9 +1,12 @@
-//! The OpenAPI document: what the handlers state, and what the gate answers besides.
+//! The OpenAPI document: what the handlers state, and what holds for all of them: answers of the gate, meanings of statuses, numbers
+//! in paths, examples of bodies.
 
 use utoipa::OpenApi;
-use utoipa::openapi::path::{Parameter, ParameterIn};
+use utoipa::openapi::path::{Operation, Parameter, ParameterIn};
 use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityScheme};
 use utoipa::openapi::{Content, Ref, RefOr, ResponseBuilder};
+
+use super::request_example::request_example;
 
 /// The document that the handlers complete.
 #[derive(OpenApi)]
@@ -13,6 +16,17 @@ use utoipa::openapi::{Content, Ref, RefOr, ResponseBuilder};
         description = "Calibrates wheel-soil contact models by Bayesian updating on a farm of workers. Every POST is \
                        application/json. Where the service asks for tokens, GET needs the role read or submit, POST \
                        and DELETE the role submit, /v1/work the role work, and /health none."
+    ),
+    servers((url = "/", description = "the service that this document comes from")),
+    tags(
+        (name = "examples", description = "Jobs that the program carries, to try it with."),
+        (name = "experiments", description = "Measured data sets: rig, wheels, soils, runs."),
+        (name = "calibrations", description = "Jobs: submit, watch, pause, resume, cancel."),
+        (name = "results", description = "What a calibration found. Of one that is not finished, most answer 409."),
+        (name = "studies", description = "Calibrations on one experiment, with their error ledger, and how they grow."),
+        (name = "effects", description = "The catalogue of effects that a model may miss."),
+        (name = "work", description = "What workers talk to. Its messages have a version of their own, `protocol`."),
+        (name = "service", description = "Health and figures of the service."),
     ),
     security((), ("token" = []))
 )]
@@ -39,28 +53,88 @@ pub(super) fn base() -> utoipa::openapi::OpenApi {
 /// Answer of a handler to a body or a query that it cannot read.
 const UNREADABLE: (&str, &str) = ("400", "a body or query that is not of the form described");
 
-/// The document of all handlers, with the answers of the gate, and to what cannot be read, where a handler states none of that
-/// status.
+/// What the statuses of errors mean where a handler says nothing closer.
+const MEANINGS: [(&str, &str); 4] = [
+    ("404", "nothing has this number or name"),
+    (
+        "409",
+        "the state does not allow it, as results of a calibration that is not finished",
+    ),
+    ("422", "a file in the body is malformed"),
+    ("500", "something failed inside; the log of the service says what"),
+];
+
+/// What the number in a path is that begins so.
+const NUMBERS: [(&str, &str); 3] = [
+    ("/v1/calibrations/", "number of the calibration"),
+    ("/v1/experiments/", "number of the experiment"),
+    ("/v1/studies/", "number of the study"),
+];
+
+/// The document of all handlers, with what each leaves to be said once.
 pub(super) fn complete(mut document: utoipa::openapi::OpenApi) -> utoipa::openapi::OpenApi {
-    for item in document.paths.paths.values_mut() {
+    for (path, item) in &mut document.paths.paths {
         for (operation, refusals) in [
             (&mut item.get, &REFUSALS[..2]),
             (&mut item.delete, &REFUSALS[..2]),
             (&mut item.post, &REFUSALS[..]),
         ] {
             let Some(operation) = operation else { continue };
-            let is_query = |own: &RefOr<Parameter>| matches!(own, RefOr::T(own) if own.parameter_in == ParameterIn::Query);
-            let has_query = operation.parameters.iter().flatten().any(is_query);
-            let is_read = operation.request_body.is_some() || has_query;
-            for &(status, description) in refusals.iter().chain(is_read.then_some(&UNREADABLE)) {
-                let body = Content::new(Some(Ref::from_schema_name("ErrorBody")));
-                let refusal = ResponseBuilder::new()
-                    .description(description)
-                    .content("application/json", body);
-                let stated = operation.responses.responses.entry(status.to_owned());
-                stated.or_insert_with(|| refusal.build().into());
-            }
+            name_number(path, operation);
+            add_refusals(operation, refusals);
+            add_meanings(operation);
+            add_example(operation);
         }
     }
     document
+}
+
+/// Says what the number in the path is.
+fn name_number(path: &str, operation: &mut Operation) {
+    let number = NUMBERS.iter().find(|(begin, _)| path.starts_with(begin));
+    for parameter in operation.parameters.iter_mut().flatten() {
+        if let (RefOr::T(parameter), Some((_, meaning))) = (parameter, number)
+            && parameter.name == "id"
+        {
+            parameter.description.get_or_insert_with(|| (*meaning).to_owned());
+        }
+    }
+}
+
+/// Adds the answers of the gate, and to what cannot be read, where the handler states none of that status.
+fn add_refusals(operation: &mut Operation, refusals: &[(&str, &str)]) {
+    let is_query =
+        |own: &RefOr<Parameter>| matches!(own, RefOr::T(own) if own.parameter_in == ParameterIn::Query);
+    let has_query = operation.parameters.iter().flatten().any(is_query);
+    let is_read = operation.request_body.is_some() || has_query;
+    for &(status, description) in refusals.iter().chain(is_read.then_some(&UNREADABLE)) {
+        let body = Content::new(Some(Ref::from_schema_name("ErrorBody")));
+        let refusal = ResponseBuilder::new()
+            .description(description)
+            .content("application/json", body);
+        let stated = operation.responses.responses.entry(status.to_owned());
+        stated.or_insert_with(|| refusal.build().into());
+    }
+}
+
+/// Describes the answers that the handler states without a word.
+fn add_meanings(operation: &mut Operation) {
+    for (status, meaning) in MEANINGS {
+        if let Some(RefOr::T(response)) = operation.responses.responses.get_mut(status)
+            && response.description.is_empty()
+        {
+            meaning.clone_into(&mut response.description);
+        }
+    }
+}
+
+/// Shows a body that the operation takes.
+fn add_example(operation: &mut Operation) {
+    let Some(RefOr::T(body)) = &mut operation.request_body else {
+        return;
+    };
+    let example = operation.operation_id.as_deref().and_then(request_example);
+    if let Some(RefOr::T(content)) = body.content.get_mut("application/json") {
+        content.example = example;
+    }
 }

@@ -29,7 +29,9 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
 /// An effect of the catalogue, with its file and what it does.
 #[derive(Debug, Serialize, utoipa::ToSchema)]
 struct EffectPage {
+    /// Its card.
     effect: EffectCard,
+    /// The text of its file.
     text: String,
     /// What it does in the quasi-static model; null where that cannot express it.
     signature: Option<Signature>,
@@ -42,13 +44,17 @@ struct EffectPage {
 /// An effect that was added.
 #[derive(Debug, Serialize, utoipa::ToSchema)]
 struct EffectAdded {
+    /// Its name.
     name: String,
+    /// The version that has its text.
     version: EffectVersion,
 }
 
-/// Every effect of the catalogue: the library's in the order of evaluation, then the last versions of those that users have added, by
-/// name.
-#[utoipa::path(get, path = "/effects", responses((status = 200, body = Vec<EffectCard>)))]
+/// Lists the effects of the catalogue.
+///
+/// The library's in the order of evaluation, then the last versions of those that users have added, by name.
+#[utoipa::path(get, path = "/effects", operation_id = "list_effects", tag = "effects",
+    responses((status = 200, description = "cards of the effects", body = Vec<EffectCard>)))]
 async fn list(State(service): State<Service>) -> Result<Json<Vec<EffectCard>>, HttpError> {
     let own = service.store().reader().own_effects().await?;
     let cards = tokio::task::spawn_blocking(move || {
@@ -61,10 +67,12 @@ async fn list(State(service): State<Service>) -> Result<Json<Vec<EffectCard>>, H
     Ok(Json(cards.await.map_err(|_| Stopped)??))
 }
 
-/// An effect of the catalogue: its file, and what it does in the quasi-static model.
-#[utoipa::path(get, path = "/effects/{name}",
+/// An effect with its file and influence.
+///
+/// What it does to the measured quantities is computed in the quasi-static model, where that can express it.
+#[utoipa::path(get, path = "/effects/{name}", operation_id = "get_effect", tag = "effects",
     params(("name" = String, Path, description = "`NAME`; of one that a user has added also `NAME@VERSION`")),
-    responses((status = 200, body = EffectPage), (status = 404, body = ErrorBody)))]
+    responses((status = 200, description = "the effect", body = EffectPage), (status = 404, body = ErrorBody)))]
 async fn show(
     State(service): State<Service>,
     Path(name): Path<String>,
@@ -108,9 +116,12 @@ fn read(stored: &StoredEffect) -> Result<Effect, HttpError> {
     Ok(Effect::read(&stored.text).map_err(corrupt)?)
 }
 
-/// Adds an effect to the catalogue, as the next version of its name. Jobs name it as they name the library's; a study keeps the
-/// version that it began with.
-#[utoipa::path(post, path = "/effects", request_body = NewEffect, responses(
+/// Adds an effect to the catalogue.
+///
+/// It becomes the next version of its name. Jobs name it as they name the library's; a study keeps the version that
+/// it began with.
+#[utoipa::path(post, path = "/effects", operation_id = "add_effect", tag = "effects",
+    request_body = NewEffect, responses(
     (status = 201, body = EffectAdded, description = "a new version"),
     (status = 200, body = EffectAdded, description = "a version has this text already"),
     (status = 409, body = ErrorBody, description = "the name belongs to the library"),

@@ -5,6 +5,7 @@ use axum::extract::FromRequest;
 use axum::extract::rejection::{BytesRejection, JsonRejection, PathRejection, QueryRejection};
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use export::ExportError;
 use shared::api::{ErrorBody, ErrorDetail, ErrorKind};
 use shared::sentence::one_line;
 
@@ -104,6 +105,21 @@ impl From<ServiceError> for HttpError {
 impl From<StoreError> for HttpError {
     fn from(error: StoreError) -> Self {
         ServiceError::from(error).into()
+    }
+}
+
+impl From<ExportError> for HttpError {
+    fn from(error: ExportError) -> Self {
+        match error {
+            ExportError::NoDraws(_) => HttpError::new(ErrorKind::Conflict, error.to_string()),
+            other => {
+                tracing::error!(error = %other, "internal error");
+                HttpError::new(
+                    ErrorKind::Internal,
+                    "internal error of the coordinator; see its log",
+                )
+            }
+        }
     }
 }
 

@@ -32,7 +32,11 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
 }
 
 /// Streams what happens to a calibration.
-#[utoipa::path(get, path = "/calibrations/{id}/events", params(("id" = i64, Path)), responses(
+///
+/// Server-sent events: `status` has the content of `GET /v1/calibrations/{id}` whenever that has changed, `stage`
+/// each finished stage. The stream ends with the calibration.
+#[utoipa::path(get, path = "/calibrations/{id}/events", operation_id = "watch_calibration", tag = "calibrations",
+    params(("id" = i64, Path)), responses(
     (status = 200, content_type = "text/event-stream", body = String, description = "events: status, stage"),
     (status = 404, body = ErrorBody)))]
 async fn events(

@@ -42,8 +42,11 @@ struct ExampleFiles {
     files: BTreeMap<&'static str, &'static str>,
 }
 
-/// Every example.
-#[utoipa::path(get, path = "/examples", operation_id = "list_examples", responses((status = 200, body = Vec<ListedExample>)))]
+/// Lists the examples.
+///
+/// Jobs that the program carries, to try it with.
+#[utoipa::path(get, path = "/examples", operation_id = "list_examples", tag = "examples",
+    responses((status = 200, description = "examples with their jobs", body = Vec<ListedExample>)))]
 async fn list() -> Json<Vec<ListedExample>> {
     let listed = |example: Example| ListedExample {
         name: example.name,
@@ -54,9 +57,12 @@ async fn list() -> Json<Vec<ListedExample>> {
     Json(EXAMPLES.map(listed).into())
 }
 
-/// The files of an example, ready to be submitted.
-#[utoipa::path(get, path = "/examples/{name}", operation_id = "example_files", params(("name" = String, Path)), responses(
-    (status = 200, body = ExampleFiles), (status = 404, body = ErrorBody)))]
+/// The files of an example.
+///
+/// Ready to be posted to `/v1/experiments` and `/v1/calibrations`.
+#[utoipa::path(get, path = "/examples/{name}", operation_id = "get_example", tag = "examples",
+    params(("name" = String, Path, description = "name of the example")), responses(
+    (status = 200, description = "the files", body = ExampleFiles), (status = 404, body = ErrorBody)))]
 async fn files(Path(name): Path<String>) -> Result<Json<ExampleFiles>, HttpError> {
     let example = EXAMPLES.iter().find(|example| example.name == name);
     let example = example

@@ -18,9 +18,12 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(files))
 }
 
-/// Validates and stores an experiment.
-#[utoipa::path(post, path = "/experiments", request_body = NewExperiment, responses(
-    (status = 201, body = ExperimentCreated),
+/// Stores an experiment.
+///
+/// The files are validated; a calibration then refers to the experiment by its number.
+#[utoipa::path(post, path = "/experiments", operation_id = "create_experiment", tag = "experiments",
+    request_body = NewExperiment, responses(
+    (status = 201, description = "the number of the experiment", body = ExperimentCreated),
     (status = 422, body = ErrorBody, description = "a file is malformed"),
 ))]
 async fn create(
@@ -51,8 +54,11 @@ struct ExperimentFiles {
     files: BTreeMap<String, String>,
 }
 
-/// Every experiment, oldest first.
-#[utoipa::path(get, path = "/experiments", operation_id = "list_experiments", responses((status = 200, body = Vec<ListedExperiment>)))]
+/// Lists the experiments.
+///
+/// Every experiment, oldest first, with the studies that have a calibration on it.
+#[utoipa::path(get, path = "/experiments", operation_id = "list_experiments", tag = "experiments",
+    responses((status = 200, description = "experiments with their studies", body = Vec<ListedExperiment>)))]
 async fn list(State(service): State<Service>) -> Result<Json<Vec<ListedExperiment>>, HttpError> {
     let experiments = service.store().reader().experiments().await?;
     let listed = experiments
@@ -61,9 +67,12 @@ async fn list(State(service): State<Service>) -> Result<Json<Vec<ListedExperimen
     Ok(Json(listed.collect()))
 }
 
-/// The files of an experiment, as they were submitted.
-#[utoipa::path(get, path = "/experiments/{id}", operation_id = "experiment_files", params(("id" = i64, Path)), responses(
-    (status = 200, body = ExperimentFiles), (status = 404, body = ErrorBody)))]
+/// The files of an experiment.
+///
+/// As they were submitted, to the byte.
+#[utoipa::path(get, path = "/experiments/{id}", operation_id = "get_experiment", tag = "experiments",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "the files", body = ExperimentFiles), (status = 404, body = ErrorBody)))]
 async fn files(State(service): State<Service>, Id(id): Id) -> Result<Json<ExperimentFiles>, HttpError> {
     let files = service.experiment(id).await?;
     Ok(Json(ExperimentFiles {

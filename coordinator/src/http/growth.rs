@@ -20,9 +20,13 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(what_if))
 }
 
-/// Adds a calibration to the study of another: the same job with an effect more.
-#[utoipa::path(post, path = "/calibrations/{id}/extend", params(("id" = i64, Path)), request_body = NewExtension, responses(
-    (status = 201, body = CalibrationCreated), (status = 404, body = ErrorBody),
+/// Calibrates with one more effect.
+///
+/// Adds a calibration to the study of another: the same job with an effect more, of the catalogue or of a file. One
+/// that the study has already is answered with that.
+#[utoipa::path(post, path = "/calibrations/{id}/extend", operation_id = "extend_calibration", tag = "studies",
+    params(("id" = i64, Path)), request_body = NewExtension, responses(
+    (status = 201, description = "the new calibration", body = CalibrationCreated), (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody, description = "the calibration is a search"),
     (status = 422, body = ErrorBody, description = "the effect is unknown, malformed, or there already"),
 ))]
@@ -52,8 +56,11 @@ fn extension(new: NewExtension) -> Result<Extension, HttpError> {
     }
 }
 
-/// Starts the search of a calibration's model for a missing effect, unless there is one.
-#[utoipa::path(post, path = "/calibrations/{id}/discovery", params(("id" = i64, Path)), responses(
+/// Searches for a missing effect.
+///
+/// Starts the search of a calibration's model, unless there is one already.
+#[utoipa::path(post, path = "/calibrations/{id}/discovery", operation_id = "start_discovery", tag = "studies",
+    params(("id" = i64, Path)), responses(
     (status = 201, body = CalibrationCreated, description = "the search"), (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody, description = "the calibration is a search itself"),
 ))]
@@ -67,9 +74,13 @@ async fn discover(
     Ok((StatusCode::CREATED, Json(created)))
 }
 
-/// What the search of a calibration's model found.
-#[utoipa::path(get, path = "/calibrations/{id}/discovery", params(("id" = i64, Path)), responses(
-    (status = 200, body = Discovery), (status = 404, body = ErrorBody, description = "no search was asked for"),
+/// What the search found.
+///
+/// Probabilities of the effects and sets, what each predicts of the measurements, and what a further run would tell.
+#[utoipa::path(get, path = "/calibrations/{id}/discovery", operation_id = "get_discovery", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "the outcome of the search", body = Discovery),
+    (status = 404, body = ErrorBody, description = "no search was asked for"),
     (status = 409, body = ErrorBody, description = "the search is not finished"),
 ))]
 async fn discovery(State(service): State<Service>, Id(id): Id) -> Result<Json<Discovery>, HttpError> {
@@ -77,9 +88,13 @@ async fn discovery(State(service): State<Service>, Id(id): Id) -> Result<Json<Di
     Ok(Json(finished_search(&service.store().reader(), &row).await?))
 }
 
-/// Adds measurements to a study, and a calibration of all of them with the job at the end of its ledger.
-#[utoipa::path(post, path = "/studies/{id}/runs", params(("id" = i64, Path)), request_body = NewRuns, responses(
-    (status = 201, body = RunsAdded), (status = 404, body = ErrorBody),
+/// Adds measurements to a study.
+///
+/// A calibration of all runs follows, with the job of `calibration`, by default the last of the ledger.
+#[utoipa::path(post, path = "/studies/{id}/runs", operation_id = "add_runs", tag = "studies",
+    params(("id" = i64, Path)), request_body = NewRuns, responses(
+    (status = 201, description = "the new calibration and experiment", body = RunsAdded),
+    (status = 404, body = ErrorBody),
     (status = 422, body = ErrorBody, description = "a row is malformed, or its run is there already"),
 ))]
 async fn add_runs(
@@ -93,9 +108,14 @@ async fn add_runs(
     Ok((StatusCode::CREATED, Json(added)))
 }
 
-/// Begins a study with the job of a calibration in which some fitted runs are held out, with a search for a missing effect.
-#[utoipa::path(post, path = "/calibrations/{id}/what-if", params(("id" = i64, Path)), request_body = WhatIf, responses(
-    (status = 201, body = CalibrationCreated), (status = 404, body = ErrorBody),
+/// Calibrates without some runs.
+///
+/// Begins a study with the job of a calibration in which some fitted runs are held out, with a search for a missing
+/// effect.
+#[utoipa::path(post, path = "/calibrations/{id}/what-if", operation_id = "create_what_if", tag = "studies",
+    params(("id" = i64, Path)), request_body = WhatIf, responses(
+    (status = 201, description = "the new calibration and study", body = CalibrationCreated),
+    (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody, description = "the calibration is a search"),
     (status = 422, body = ErrorBody, description = "a run is unknown or held out already, or none is left to fit"),
 ))]

@@ -52,8 +52,11 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(health))
 }
 
-/// Numbers of farm and store in the text format of Prometheus.
-#[utoipa::path(get, path = "/metrics", responses((status = 200, content_type = "text/plain", body = String)))]
+/// Figures for Prometheus.
+///
+/// Numbers of farm, store and requests in the text format of Prometheus.
+#[utoipa::path(get, path = "/metrics", operation_id = "get_metrics", tag = "service",
+    responses((status = 200, description = "the figures", content_type = "text/plain", body = String)))]
 async fn metrics(
     State(service): State<Service>,
     Extension(requests): Extension<RequestMetrics>,
@@ -184,12 +187,17 @@ async fn metrics(
 /// What `/health` says.
 #[derive(serde::Serialize, utoipa::ToSchema)]
 struct Health {
+    /// `ok`.
     status: &'static str,
+    /// Version of the coordinator.
     version: &'static str,
 }
 
-/// Answers while farm and store work.
-#[utoipa::path(get, path = "/health", responses((status = 200, body = Health)))]
+/// Whether the service works.
+///
+/// Answers while farm and store work; needs no token.
+#[utoipa::path(get, path = "/health", operation_id = "get_health", tag = "service", security(()),
+    responses((status = 200, description = "it works", body = Health)))]
 async fn health(State(service): State<Service>) -> Result<Json<Health>, HttpError> {
     service.dispatcher().metrics().await?;
     Ok(Json(Health {

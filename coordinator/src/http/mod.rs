@@ -1,6 +1,6 @@
 //! The REST interface under `/v1`; the only place that knows axum.
 //!
-//! One file per resource; each exports `routes()`. The OpenAPI `document` is made from the handlers. Before these stand
+//! One file per resource; each exports `routes()`. The OpenAPI `document` is made from the handlers, with `request_example`s. Before these stand
 //! `connections` (how many, how long) and `gate` (`host`, `body`, `access`: what is let through); `request_metrics` counts around them.
 
 mod access;
@@ -18,6 +18,7 @@ mod growth;
 mod host;
 mod metrics;
 mod page;
+mod request_example;
 mod request_metrics;
 mod studies;
 mod tls;

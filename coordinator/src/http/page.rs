@@ -1,4 +1,5 @@
-//! `/` and `/page/…`: the page, as embedded. It needs no token: what it shows, it asks for with that of its user.
+//! `/`, `/docs` and `/page/…`: the page and the description of the interface, as embedded. They need no token: what they show, they ask
+//! for with that of their user.
 
 use axum::Router;
 use axum::extract::Path;
@@ -9,13 +10,15 @@ use axum::http::header::{
 use axum::http::{HeaderMap, StatusCode, Uri};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
-use page::asset::{INDEX, asset};
+use page::asset::{DOCS, INDEX, asset};
 
 use super::error::no_route;
 use crate::service::Service;
 
 /// Where the files are.
 pub(super) const FOLDER: &str = "/page/";
+/// Where the interface is described.
+pub(super) const DOCS_PATH: &str = "/docs";
 /// The page runs its own modules alone, asks this service alone, and stands in no other page. Styles in elements are those of the
 /// pictures.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -25,6 +28,10 @@ pub(super) fn routes() -> Router<Service> {
         .route(
             "/",
             get(async |uri: Uri, headers: HeaderMap| file(INDEX, uri, headers).await),
+        )
+        .route(
+            DOCS_PATH,
+            get(async |uri: Uri, headers: HeaderMap| file(DOCS, uri, headers).await),
         )
         .route(
             &format!("{FOLDER}{{*path}}"),

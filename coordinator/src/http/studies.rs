@@ -27,10 +27,13 @@ pub(super) struct WithArchived {
     pub(super) archived: bool,
 }
 
-/// Every study, oldest first; archived ones with `archived=true` alone. Errors and verdict of a study that has just changed are null
-/// until they are computed.
-#[utoipa::path(get, path = "/studies", params(("archived" = Option<bool>, Query)), responses(
-    (status = 200, body = Vec<StudyListItem>)))]
+/// Lists the studies.
+///
+/// Every study, oldest first; archived ones with `archived=true` alone. Error and verdict of a study that has just
+/// changed are null until they are computed.
+#[utoipa::path(get, path = "/studies", operation_id = "list_studies", tag = "studies",
+    params(("archived" = Option<bool>, Query, description = "whether archived studies are listed too")), responses(
+    (status = 200, description = "studies with state, error and verdict", body = Vec<StudyListItem>)))]
 async fn list(
     State(service): State<Service>,
     Query(which): Query<WithArchived>,
@@ -38,9 +41,12 @@ async fn list(
     Ok(Json(service.studies(which.archived).await?))
 }
 
-/// Deletes a study with its calibrations and results, and with its experiments where no other study has them.
-#[utoipa::path(delete, path = "/studies/{id}", params(("id" = i64, Path)), responses(
-    (status = 200, body = StudyDeleted), (status = 404, body = ErrorBody),
+/// Deletes a study for good.
+///
+/// With its calibrations and results, and with its experiments where no other study has them.
+#[utoipa::path(delete, path = "/studies/{id}", operation_id = "delete_study", tag = "studies",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "what was deleted", body = StudyDeleted), (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody, description = "one of its calibrations is not over")))]
 async fn delete(
     State(service): State<Service>,
@@ -52,9 +58,12 @@ async fn delete(
     Ok(Json(StudyDeleted { id, calibrations }))
 }
 
-/// Takes a study out of the lists; it stays readable by its number, and no longer grows.
-#[utoipa::path(post, path = "/studies/{id}/archive", params(("id" = i64, Path)), responses(
-    (status = 200, body = StudyArchived), (status = 404, body = ErrorBody),
+/// Takes a study out of the lists.
+///
+/// It stays readable by its number, and no longer grows.
+#[utoipa::path(post, path = "/studies/{id}/archive", operation_id = "archive_study", tag = "studies",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "the study is archived", body = StudyArchived), (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody, description = "one of its calibrations is not over")))]
 async fn archive(
     State(service): State<Service>,
@@ -66,9 +75,12 @@ async fn archive(
     Ok(Json(StudyArchived { id, archived: true }))
 }
 
-/// Takes an archived study back into the lists.
-#[utoipa::path(post, path = "/studies/{id}/restore", params(("id" = i64, Path)), responses(
-    (status = 200, body = StudyArchived), (status = 404, body = ErrorBody),
+/// Takes an archived study back.
+///
+/// It is in the lists again, and may grow.
+#[utoipa::path(post, path = "/studies/{id}/restore", operation_id = "restore_study", tag = "studies",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "the study is in the lists", body = StudyArchived), (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody, description = "one of its calibrations is not over")))]
 async fn restore(
     State(service): State<Service>,
@@ -80,9 +92,12 @@ async fn restore(
     Ok(Json(StudyArchived { id, archived: false }))
 }
 
-/// A study: its members, error ledger and flags; of one in progress, what is finished.
-#[utoipa::path(get, path = "/studies/{id}", params(("id" = i64, Path)), responses(
-    (status = 200, body = StudyOverview), (status = 404, body = ErrorBody)))]
+/// A study with its error ledger.
+///
+/// Members, error ledger and flags; of a study in progress, what is finished.
+#[utoipa::path(get, path = "/studies/{id}", operation_id = "get_study", tag = "studies",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "the study", body = StudyOverview), (status = 404, body = ErrorBody)))]
 async fn overview(State(service): State<Service>, Id(id): Id) -> Result<Json<StudyOverview>, HttpError> {
     Ok(Json(service.study_overview(id).await?))
 }

@@ -35,9 +35,12 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(workers))
 }
 
-/// Takes results and gives leases; waits for work up to `wait_ms`. The answer means: results are durable. It has the form that
-/// `Accept` names, else that of the request.
-#[utoipa::path(post, path = "/work/exchange", request_body(content(
+/// Takes results and gives leases.
+///
+/// Waits for work up to `wait_ms`. The answer means: results are durable. It has the form that `Accept` names, else
+/// that of the request.
+#[utoipa::path(post, path = "/work/exchange", operation_id = "exchange_work", tag = "work",
+    request_body(content(
     (ExchangeRequest = "application/json"), (ExchangeRequest = "application/vnd.msgpack"))), responses(
     (status = 200, description = "results are durable; new leases", content(
         (ExchangeResponse = "application/json"), (ExchangeResponse = "application/vnd.msgpack"))),
@@ -130,9 +133,12 @@ fn forms(headers: &HeaderMap) -> Result<(WireForm, WireForm), HttpError> {
     Ok((form, answer))
 }
 
-/// The variant of a hash, for a worker to keep.
-#[utoipa::path(get, path = "/work/variants/{hash}", params(("hash" = String, Path)), responses(
-    (status = 200, body = ModelVariant), (status = 404, body = ErrorBody)))]
+/// The variant of a hash.
+///
+/// Everything that maps a parameter vector to observables, for a worker to keep.
+#[utoipa::path(get, path = "/work/variants/{hash}", operation_id = "get_variant", tag = "work",
+    params(("hash" = String, Path, description = "hash of the variant, as a lease names it")), responses(
+    (status = 200, description = "the variant", body = ModelVariant), (status = 404, body = ErrorBody)))]
 async fn variant(
     State(service): State<Service>,
     Path(hash): Path<String>,
@@ -146,8 +152,11 @@ async fn variant(
     })
 }
 
-/// The workers heard of lately, by name.
-#[utoipa::path(get, path = "/workers", responses((status = 200, body = BTreeMap<String, WorkerRecord>)))]
+/// Lists the workers.
+///
+/// Those heard of lately, by name; of one that computes wrongly, why it is quarantined.
+#[utoipa::path(get, path = "/workers", operation_id = "list_workers", tag = "work",
+    responses((status = 200, description = "workers by name", body = BTreeMap<String, WorkerRecord>)))]
 async fn workers(State(service): State<Service>) -> Result<Json<BTreeMap<String, WorkerRecord>>, HttpError> {
     Ok(Json(service.dispatcher().workers().await?))
 }

@@ -12,7 +12,7 @@ use super::health::PATIENCE;
 use super::migrations;
 
 /// The file's name without the scheme.
-pub(super) fn file_of(path: &str) -> &str {
+pub(crate) fn file_of(path: &str) -> &str {
     path.strip_prefix("sqlite://").unwrap_or(path)
 }
 

@@ -443,6 +443,22 @@ fn variances_are_the_diagonal_of_the_covariance() {
 }
 
 #[test]
+fn densities_of_single_data_are_those_of_their_variances() {
+    let known = entangled(Discrepancy::Known(2.0));
+    let found = known.log_densities(&ENTANGLED, &[0.7]).unwrap();
+    assert_eq!(found.len(), 5);
+    for (datum, &density) in found.iter().enumerate() {
+        let (alone, places) = known.subset(&[datum]).unwrap();
+        let values: Vec<f64> = places.iter().map(|&place| ENTANGLED[place]).collect();
+        let expected = alone.log_likelihood(&values, &[0.7]).unwrap().value();
+        assert!(
+            (density - expected).abs() < 1e-12,
+            "{datum}: {density} {expected}"
+        );
+    }
+}
+
+#[test]
 fn a_subset_has_the_density_of_its_data_alone() {
     let whole = entangled(Discrepancy::Known(2.0));
     let (part, places) = whole.subset(&[0, 2, 4]).unwrap();

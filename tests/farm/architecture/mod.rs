@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 14] = [
+const CRATES: [&str; 15] = [
     "shared",
     "shared/formula",
     "shared/signal",
@@ -16,6 +16,7 @@ const CRATES: [&str; 14] = [
     "coordinator",
     "coordinator/inference",
     "coordinator/discovery",
+    "coordinator/export",
     "coordinator/job",
     "coordinator/page",
     "coordinator/record",
@@ -24,7 +25,7 @@ const CRATES: [&str; 14] = [
     "worker/scm",
     "tests",
 ];
-const OURS: [&str; 14] = [
+const OURS: [&str; 15] = [
     "shared",
     "formula",
     "signal",
@@ -32,6 +33,7 @@ const OURS: [&str; 14] = [
     "coordinator",
     "inference",
     "discovery",
+    "export",
     "job",
     "page",
     "record",
@@ -170,6 +172,10 @@ fn manifests_keep_the_direction_of_dependencies() {
         ])
     );
     assert_eq!(
+        ours("coordinator/export"),
+        set(&["job", "record", "result", "shared", "statistics"])
+    );
+    assert_eq!(
         ours("worker"),
         set(&["formula", "scm", "shared", "signal", "statistics"])
     );
@@ -177,6 +183,7 @@ fn manifests_keep_the_direction_of_dependencies() {
         ours("coordinator"),
         set(&[
             "discovery",
+            "export",
             "formula",
             "inference",
             "job",
@@ -215,6 +222,7 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         "worker/scm",
         "coordinator/inference",
         "coordinator/discovery",
+        "coordinator/export",
         "coordinator/job",
         "coordinator/page",
         "coordinator/record",
@@ -334,6 +342,7 @@ fn pure_rooms_read_no_clock() {
         "coordinator/src/lease",
         "coordinator/job/src",
         "coordinator/result/src",
+        "coordinator/export/src",
         "coordinator/src/effect",
     ];
     let clocks = [

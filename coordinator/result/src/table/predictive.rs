@@ -54,6 +54,63 @@ pub(crate) fn predictive(
     run: usize,
     channel: Channel,
 ) -> Option<Predictive> {
+    let draws = new_measurements(calibration, levels, run, channel)?;
+    let sds: Vec<f64> = draws.iter().filter_map(|draw| draw.noise_sd).collect();
+    let components: Vec<Component> = draws.into_iter().flat_map(|draw| draw.components).collect();
+    let values: Vec<(f64, f64)> = components.iter().map(|c| (c.mean, c.weight)).collect();
+    let mean = weighted_mean(&values)?;
+    let law = calibration.spec.likelihood.law();
+    Some(Predictive {
+        mean,
+        interval: calibration
+            .estimate
+            .is_none()
+            .then(|| [0.05, 0.95].map(|p| mixture_quantile(&components, law, p))),
+        noise_sd: inference::diagnostics::mean(&sds),
+    })
+}
+
+/// What a final draw says of a new measurement.
+#[derive(Debug, Clone)]
+pub struct NewMeasurement {
+    /// Number of the draw.
+    pub draw: usize,
+    /// Standard deviation of the noise alone [channel's unit]; `None` where none is known.
+    pub noise_sd: Option<f64>,
+    /// The model's value with the scale of the error about it, for each value of the discrepancy.
+    pub components: Vec<Component>,
+}
+
+/// What the final draws say of new measurements.
+#[derive(Debug)]
+pub struct NewMeasurements<'a> {
+    calibration: &'a FinishedCalibration,
+    levels: Levels,
+}
+
+impl<'a> NewMeasurements<'a> {
+    /// Of a calibration.
+    pub fn of(calibration: &'a FinishedCalibration) -> Self {
+        let levels = Levels::of(calibration);
+        NewMeasurements { calibration, levels }
+    }
+
+    /// Of a run and channel, from the draws that the model accepts.
+    ///
+    /// # Arguments
+    /// - `run`: position in the experiment.
+    pub fn at(&self, run: usize, channel: Channel) -> Vec<NewMeasurement> {
+        new_measurements(self.calibration, &self.levels, run, channel).unwrap_or_default()
+    }
+}
+
+/// New measurements of a run and channel; `None` of a run that is neither fitted nor held out.
+fn new_measurements(
+    calibration: &FinishedCalibration,
+    levels: &Levels,
+    run: usize,
+    channel: Channel,
+) -> Option<Vec<NewMeasurement>> {
     let source = noise_source(calibration, run, channel);
     let spec = &calibration.spec;
     let position = |runs: &[usize]| runs.iter().position(|&r| r == run);
@@ -62,47 +119,43 @@ pub(crate) fn predictive(
         None => RunPosition::Holdout(position(&spec.holdout_runs)?),
     };
     let radius_m = spec.experiment.wheels[&spec.experiment.runs[run].wheel].radius_m;
-    let mut draws = Vec::new();
-    let mut sds = Vec::new();
-    for (draw, theta, observables, position) in accepted(calibration, place) {
-        let sd = source.map(|s| match s {
+    let of_draw = |(draw, theta, observables, position): (usize, &[f64], &Observables, usize)| {
+        let noise_sd = source.map(|s| match s {
             ErrorSd::Known(sd) => sd,
             ErrorSd::Inferred { parameter } => theta[parameter],
         });
-        sds.extend(sd);
         let mean = observables.channel(channel)[position];
         let soil = spec
             .scatters
             .iter()
             .map(|scatter| scatter.shift(theta, observables, (channel, position), radius_m));
         let soil: f64 = soil.map(|shift| shift * shift).sum::<f64>().sqrt();
-        for &(m, weight) in &levels.0[draw][channel.index()] {
-            let scale = sd.map(|sd| widened(sd, [m * sd, soil]));
-            draws.push(Component { mean, scale, weight });
+        let component = |&(m, weight): &(f64, f64)| {
+            let scale = noise_sd.map(|sd| widened(sd, [m * sd, soil]));
+            Component { mean, scale, weight }
+        };
+        NewMeasurement {
+            draw,
+            noise_sd,
+            components: levels.0[draw][channel.index()].iter().map(component).collect(),
         }
-    }
-    let values: Vec<(f64, f64)> = draws.iter().map(|d| (d.mean, d.weight)).collect();
-    let mean = weighted_mean(&values)?;
-    Some(Predictive {
-        mean,
-        interval: calibration
-            .estimate
-            .is_none()
-            .then(|| [0.05, 0.95].map(|p| mixture_quantile(&draws, spec.likelihood.law(), p))),
-        noise_sd: inference::diagnostics::mean(&sds),
-    })
+    };
+    Some(accepted(calibration, place).map(of_draw).collect())
 }
 
 /// One draw of the posterior with one value of the discrepancy.
 #[derive(Debug, Clone, Copy)]
-struct Component {
-    mean: f64,
-    /// Noise, scatter and discrepancy together; `None` where no noise is known.
-    scale: Option<f64>,
-    weight: f64,
+pub struct Component {
+    /// The model's value [channel's unit].
+    pub mean: f64,
+    /// Noise, scatter and discrepancy together [channel's unit]; `None` where no noise is known.
+    pub scale: Option<f64>,
+    /// Probability of this value of the discrepancy.
+    pub weight: f64,
 }
 
 /// Of each final draw and channel, the values of the discrepancy with their posterior probabilities; m = 0 without one.
+#[derive(Debug)]
 pub(crate) struct Levels(Vec<[Vec<(f64, f64)>; 4]>);
 
 impl Levels {

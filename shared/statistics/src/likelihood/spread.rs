@@ -1,7 +1,7 @@
 //! The covariance of a block: the noise of each datum, and the common errors.
 
 use super::common_error::{CommonError, CommonErrorSize, Discrepancy, ErrorBlock, Sensitive};
-use super::datum::LikelihoodError;
+use super::datum::{Datum, LikelihoodError};
 use super::error_model::Likelihood;
 
 /// The values of m where none is unknown.
@@ -55,6 +55,26 @@ impl Likelihood {
             }
         }
         Ok(variances)
+    }
+
+    /// The log-density of each datum by itself, whatever the others are.
+    ///
+    /// # Arguments
+    /// As those of [`Likelihood::log_likelihood`].
+    ///
+    /// # Returns
+    /// One log-density for each datum, in their order; their sum is the log-likelihood where no error is common to several.
+    ///
+    /// # Errors
+    /// Those of [`Likelihood::log_likelihood`]. Checked by `likelihood::densities_of_single_data_are_those_of_their_variances`.
+    pub fn log_densities(&self, values: &[f64], theta: &[f64]) -> Result<Vec<f64>, LikelihoodError> {
+        let variances = self.error_variances(values, theta)?;
+        let density = |((datum, value), variance): ((&Datum, &f64), f64)| {
+            let residual = datum.value - value;
+            self.law
+                .log_density(1, residual * residual / variance, libm::log(variance))
+        };
+        Ok(self.data.iter().zip(values).zip(variances).map(density).collect())
     }
 
     /// The errors of a block, with a value of the m that is unknown.

@@ -1,0 +1,80 @@
+//! What a calibration has to say, group by group.
+//!
+//! # Layout
+//! - `draws`: posterior, prior and statistics of the sampler.
+//! - `runs`: measured and modelled values of the runs, and their conditions.
+
+mod draws;
+mod runs;
+
+use std::collections::BTreeMap;
+
+use result::FinishedCalibration;
+
+use crate::error::ExportError;
+use crate::inference_data::InferenceData;
+use runs::Part;
+
+/// A finished calibration as inference data.
+///
+/// # Errors
+/// [`ExportError::NoDraws`] of a fit without draws.
+pub fn inference_data(calibration: &FinishedCalibration) -> Result<InferenceData, ExportError> {
+    if calibration.posterior.is_empty() {
+        return Err(ExportError::NoDraws(calibration.row.id));
+    }
+    let fitted = Part::fitted(calibration);
+    let mut groups = vec![
+        draws::posterior(calibration),
+        draws::sample_stats(calibration),
+        draws::prior(calibration),
+        fitted.log_likelihood(),
+        fitted.predictive("posterior_predictive"),
+        fitted.measured("observed_data"),
+        fitted.conditions("constant_data"),
+    ];
+    // What was never fitted is a prediction, with the measurements that judge it.
+    if !calibration.spec.holdout_runs.is_empty() {
+        let held_out = Part::held_out(calibration);
+        groups.push(held_out.predictive("predictions"));
+        let mut constant = held_out.conditions("predictions_constant_data");
+        constant
+            .data_vars
+            .extend(held_out.measured("observed_data").data_vars);
+        groups.push(constant);
+    }
+    Ok(InferenceData {
+        attrs: attributes(calibration),
+        groups,
+    })
+}
+
+/// What is said of the whole.
+fn attributes(calibration: &FinishedCalibration) -> BTreeMap<String, String> {
+    let row = &calibration.row;
+    let said = [
+        (
+            "created_by",
+            Some(concat!("grouser ", env!("CARGO_PKG_VERSION")).to_owned()),
+        ),
+        ("calibration", Some(row.id.to_string())),
+        ("name", Some(row.name.clone())),
+        ("model_kind", Some(calibration.spec.model.kind.name().to_owned())),
+        ("model_version", row.model_version.clone()),
+        ("log_evidence", row.log_evidence.map(|value| value.to_string())),
+        (
+            "log_evidence_se",
+            row.log_evidence_se.map(|value| value.to_string()),
+        ),
+        (
+            "posterior",
+            Some(match calibration.approximated {
+                Some(_) => "draws of a normal approximation".to_owned(),
+                None => "equally weighted draws of a sample".to_owned(),
+            }),
+        ),
+    ];
+    let said = said.into_iter();
+    said.filter_map(|(name, value)| Some((name.to_owned(), value?)))
+        .collect()
+}

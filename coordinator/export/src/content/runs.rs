@@ -1,0 +1,284 @@
+//! Runs: what was set, what was measured, and what the model says at the draws that were simulated on every run.
+
+use record::Prediction;
+use result::{Component, FinishedCalibration, NewMeasurements};
+use shared::channel::Channel;
+use shared::experiment::TestRun;
+use shared::outcome::Observables;
+use statistics::ErrorLaw;
+use statistics::rng::Stream;
+
+use super::draws::{draw_labels, numbers};
+use crate::inference_data::Group;
+use crate::variable::{Values, Variable};
+
+/// The name that measured values, their predictions and their log-likelihoods share.
+const MEASUREMENT: &str = "measurement";
+
+/// Names the random numbers of new measurements among those of a seed: no sampler has so many stages.
+const NEW: u64 = u64::MAX;
+
+/// The fitted runs of a calibration, or those held out.
+pub(super) struct Part<'a> {
+    calibration: &'a FinishedCalibration,
+    /// Its runs, as positions in the experiment.
+    places: &'a [usize],
+    runs: Vec<&'a TestRun>,
+    /// The channels that some run of the experiment has measured.
+    channels: Vec<Channel>,
+    of: fn(&Prediction) -> Option<&Observables>,
+}
+
+impl<'a> Part<'a> {
+    /// The fitted runs.
+    pub(super) fn fitted(calibration: &'a FinishedCalibration) -> Self {
+        Part::new(calibration, &calibration.spec.fit_runs, |draw| {
+            draw.fit.as_ref().ok()
+        })
+    }
+
+    /// The runs that are not fitted.
+    pub(super) fn held_out(calibration: &'a FinishedCalibration) -> Self {
+        Part::new(calibration, &calibration.spec.holdout_runs, |draw| {
+            draw.holdout.as_ref()?.as_ref().ok()
+        })
+    }
+
+    fn new(
+        calibration: &'a FinishedCalibration,
+        places: &'a [usize],
+        of: fn(&Prediction) -> Option<&Observables>,
+    ) -> Self {
+        let all = &calibration.spec.experiment.runs;
+        let is_measured = |channel: &Channel| all.iter().any(|run| run.measured[channel.index()].is_some());
+        Part {
+            calibration,
+            places,
+            runs: places.iter().map(|&run| &all[run]).collect(),
+            channels: Channel::ALL.into_iter().filter(is_measured).collect(),
+            of,
+        }
+    }
+
+    /// The labels of run and channel.
+    fn labels(&self) -> Vec<Variable> {
+        let channels = self.channels.iter().map(|channel| channel.column().to_owned());
+        vec![
+            Variable::labels("run", Values::Text(self.texts(|run| &run.name))),
+            Variable::labels("channel", Values::Text(channels.collect())),
+        ]
+    }
+
+    fn texts(&self, of: impl Fn(&TestRun) -> &String) -> Vec<String> {
+        self.runs.iter().map(|run| of(run).clone()).collect()
+    }
+
+    fn dims(&self) -> [(&'static str, usize); 2] {
+        [("run", self.runs.len()), ("channel", self.channels.len())]
+    }
+
+    /// Variables over the simulated draws, runs and channels.
+    fn over_draws<const N: usize>(&self, group: &str, variables: [(&str, &str, Vec<f64>); N]) -> Group {
+        let draws = self.calibration.predictive_draws();
+        let [run, channel] = self.dims();
+        let dims = [("chain", 1), ("draw", draws.len()), run, channel];
+        let mut coords = draw_labels(places(self.calibration));
+        coords.extend(self.labels());
+        let variable = |(name, meaning, values): (&str, &str, Vec<f64>)| {
+            Variable::new(name, &dims, "", meaning, Values::Real(values))
+        };
+        Group {
+            name: group.to_owned(),
+            coords,
+            data_vars: variables.map(variable).into(),
+        }
+    }
+
+    /// What the model says, and new measurements with the errors that the calibration found; NaN where it rejects a draw.
+    pub(super) fn predictive(&self, group: &str) -> Group {
+        let law = self.calibration.spec.likelihood.law();
+        let seed = self.calibration.spec.algorithm.seed();
+        let new = NewMeasurements::of(self.calibration);
+        let size = self.places.len() * self.channels.len();
+        let empty = vec![f64::NAN; size * self.calibration.predictive_draws().len()];
+        let (mut values, mut measurements) = (empty.clone(), empty);
+        for (run, &place) in self.places.iter().enumerate() {
+            for (column, &channel) in self.channels.iter().enumerate() {
+                for said in new.at(place, channel) {
+                    let mut stream =
+                        Stream::new(seed, NEW, said.draw as u64, (4 * place + channel.index()) as u64);
+                    let at = said.draw * size + run * self.channels.len() + column;
+                    if let Some(component) = chosen(&said.components, stream.uniform()) {
+                        values[at] = component.mean;
+                        let error = error(law, [stream.uniform(), stream.uniform()]);
+                        measurements[at] = component.mean + component.scale.unwrap_or(0.0) * error;
+                    }
+                }
+            }
+        }
+        let model = "value of the model at the draw, without noise, in the unit of the channel";
+        let measured = "new measurement at the draw, with its errors, in the unit of the channel";
+        self.over_draws(
+            group,
+            [("model", model, values), (MEASUREMENT, measured, measurements)],
+        )
+    }
+
+    /// The log-density of each fitted measurement by itself.
+    pub(super) fn log_likelihood(&self) -> Group {
+        let spec = &self.calibration.spec;
+        let mut values = Vec::new();
+        for draw in self.calibration.predictive_draws() {
+            let mut table = vec![f64::NAN; self.runs.len() * self.channels.len()];
+            let predicted = (self.of)(draw).map(|observables| spec.predicted_values(observables));
+            let densities = predicted.and_then(|p| spec.likelihood.log_densities(&p, &draw.theta).ok());
+            for (datum, density) in spec.likelihood.data().iter().zip(densities.unwrap_or_default()) {
+                let place = self
+                    .channels
+                    .iter()
+                    .position(|channel| channel.index() == datum.channel);
+                if let Some(place) = place {
+                    table[datum.run * self.channels.len() + place] = density;
+                }
+            }
+            values.extend(table);
+        }
+        let is_alone = (0..spec.likelihood.data().len()).all(|datum| spec.likelihood.is_alone(datum));
+        let meaning = match is_alone {
+            true => "log-density of the measurement",
+            false => {
+                "log-density of the measurement by itself: some errors are common to several, so that the sum is not the joint log-density"
+            }
+        };
+        self.over_draws("log_likelihood", [(MEASUREMENT, meaning, values)])
+    }
+
+    /// What was measured; NaN where nothing was.
+    pub(super) fn measured(&self, group: &str) -> Group {
+        let of_run = |run: &&TestRun| -> Vec<f64> {
+            let value = |channel: &Channel| run.measured[channel.index()].unwrap_or(f64::NAN);
+            self.channels.iter().map(value).collect()
+        };
+        let values = self.runs.iter().flat_map(of_run).collect();
+        let meaning = "measured value, in the unit of the channel";
+        Group {
+            name: group.to_owned(),
+            coords: self.labels(),
+            data_vars: vec![Variable::new(
+                MEASUREMENT,
+                &self.dims(),
+                "",
+                meaning,
+                Values::Real(values),
+            )],
+        }
+    }
+
+    /// What the rig was set to.
+    pub(super) fn conditions(&self, group: &str) -> Group {
+        let [run, channel] = self.dims();
+        let real = |name: &str, unit: &str, of: fn(&TestRun) -> f64| {
+            let values = self.runs.iter().map(|run| of(run)).collect();
+            Variable::new(name, &[run], unit, "", Values::Real(values))
+        };
+        let text = |name: &str, values| Variable::new(name, &[run], "", "", Values::Text(values));
+        let passes = self.runs.iter().map(|run| i64::from(run.pass)).collect();
+        let units = self.channels.iter().map(|channel| channel.unit().to_owned());
+        Group {
+            name: group.to_owned(),
+            coords: self.labels(),
+            data_vars: vec![
+                text("wheel", self.texts(|run| &run.wheel)),
+                text("soil", self.texts(|run| &run.soil)),
+                real("slip", "1", |run| run.slip),
+                real("wheel_load_n", "N", |run| run.wheel_load_n),
+                real("sled_speed_m_s", "m/s", |run| run.sled_speed_m_s),
+                real("slip_angle_deg", "deg", |run| run.slip_angle_deg),
+                Variable::new("pass", &[run], "", "", Values::Whole(passes)),
+                Variable::new("unit", &[channel], "", "", Values::Text(units.collect())),
+            ],
+        }
+    }
+}
+
+/// The component in which a probability falls.
+fn chosen(components: &[Component], mut probability: f64) -> Option<&Component> {
+    let found = components.iter().find(|component| {
+        probability -= component.weight;
+        probability < 0.0
+    });
+    // Rounding may leave a rest behind the last one.
+    found.or(components.last())
+}
+
+/// A random error of scale 1 from two uniform numbers.
+///
+/// # Source
+/// Box & Muller 1958, doi:10.1214/aoms/1177706645; of Student's t Bailey 1994, Math. Comp. 62:779, doi:10.2307/2153537.
+fn error(law: ErrorLaw, [first, second]: [f64; 2]) -> f64 {
+    let squared = match law {
+        ErrorLaw::Gaussian => -2.0 * libm::log(first),
+        ErrorLaw::StudentT {
+            degrees_of_freedom: nu,
+        } => nu * libm::expm1(-2.0 / nu * libm::log(first)),
+    };
+    squared.sqrt() * libm::cos(std::f64::consts::TAU * second)
+}
+
+/// Where the simulated draws stand in the posterior, which they are equally spaced draws of.
+fn places(calibration: &FinishedCalibration) -> Vec<i64> {
+    let draws = calibration.predictive_draws();
+    let is_same = |a: &[f64], b: &[f64]| a.iter().map(|x| x.to_bits()).eq(b.iter().map(|x| x.to_bits()));
+    let mut posterior = calibration.posterior.iter().zip(0_i64..);
+    let place = |draw: &Prediction| {
+        let found = posterior.find(|(sample, _)| is_same(&sample.theta, &draw.theta));
+        found.map(|(_, place)| place)
+    };
+    let places: Option<Vec<i64>> = draws.iter().map(place).collect();
+    places.unwrap_or_else(|| numbers(draws.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_have_the_quantiles_of_their_law() {
+        for law in [
+            ErrorLaw::Gaussian,
+            ErrorLaw::StudentT {
+                degrees_of_freedom: 3.0,
+            },
+        ] {
+            let mut stream = Stream::new(1, NEW, 0, 0);
+            let errors: Vec<f64> = (0..20_000)
+                .map(|_| error(law, [stream.uniform(), stream.uniform()]))
+                .collect();
+            for z in [-2.0, -0.5, 0.0, 1.0, 3.0] {
+                let below = errors.iter().filter(|&&e| e < z).count() as f64 / errors.len() as f64;
+                let expected = law.cumulative(z);
+                // Four standard errors of a share.
+                let bound = 4.0 * (expected * (1.0 - expected) / errors.len() as f64).sqrt();
+                assert!(
+                    (below - expected).abs() < bound,
+                    "{law:?} {z}: {below} {expected}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_component_is_chosen_by_its_weight() {
+        let component = |mean, weight| Component {
+            mean,
+            scale: None,
+            weight,
+        };
+        let both = [component(1.0, 0.25), component(2.0, 0.75)];
+        let mean = |probability| chosen(&both, probability).map(|c| c.mean.to_bits());
+        assert_eq!(mean(0.24), Some(1.0_f64.to_bits()));
+        assert_eq!(mean(0.26), Some(2.0_f64.to_bits()));
+        assert_eq!(mean(1.0), Some(2.0_f64.to_bits()));
+        assert!(chosen(&[], 0.5).is_none());
+    }
+}

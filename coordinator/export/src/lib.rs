@@ -1,0 +1,24 @@
+//! A finished calibration for other programs: as the inference data of ArviZ, and as a table of draws.
+//!
+//! Everything here is a pure function of a [`result::FinishedCalibration`]; files are bytes, which somebody else writes.
+//!
+//! # Layout
+//! - `inference_data`: groups of variables with named dimensions; also the form of the REST answer.
+//! - `variable`: one of these variables, its values and what is checked of them.
+//! - `content`: what a calibration has to say, group by group.
+//! - `draw_table`: the draws of the posterior, one row each.
+//! - [`format`](mod@format): inference data as Zarr and NetCDF, the table as Arrow and Parquet.
+//! - `error`: why there is nothing to write.
+
+mod content;
+mod draw_table;
+mod error;
+pub mod format;
+mod inference_data;
+mod variable;
+
+pub use content::inference_data;
+pub use draw_table::DrawTable;
+pub use error::ExportError;
+pub use inference_data::{Group, InferenceData};
+pub use variable::{Values, Variable};

@@ -1,0 +1,175 @@
+//! Where a service would stand: its store, the disk below, the address.
+
+use std::io::{ErrorKind, Write};
+use std::net::SocketAddr;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use rustix::fs::statvfs;
+use tokio::net::TcpListener;
+
+use super::finding::Finding;
+use super::service;
+use crate::store::{Reader, file_of};
+
+/// A disk takes longer than this for one record where it is slow: every acknowledged result waits for it.
+const SLOW: Duration = Duration::from_millis(100);
+/// Free space that is little, and that is too little `[bytes]`.
+const LITTLE_BYTES: u64 = 1_000_000_000;
+const TOO_LITTLE_BYTES: u64 = 100_000_000;
+
+pub(super) async fn findings(store: &str, listen: SocketAddr) -> Vec<Finding> {
+    let file = Path::new(file_of(store));
+    let folder = match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let (stored, has_token) = stored(store, file).await;
+    vec![
+        stored,
+        writable(folder),
+        space(folder),
+        address(listen, has_token).await,
+    ]
+}
+
+/// What the store holds, and whether it has had a token.
+async fn stored(store: &str, file: &Path) -> (Finding, bool) {
+    let name = file.display();
+    if !file.exists() {
+        return (
+            Finding::ok("store", format!("{name} is not there yet; serve makes it")),
+            false,
+        );
+    }
+    let read = async {
+        let reader = Reader::open(store).await?;
+        Ok::<_, crate::store::StoreError>((reader.calibrations().await?, !reader.tokens().await?.is_empty()))
+    };
+    match read.await {
+        Ok((rows, has_token)) => {
+            let bad: Vec<String> = rows
+                .iter()
+                .filter(|(_, row)| row.is_err())
+                .map(|(id, _)| id.to_string())
+                .collect();
+            let count = rows.len();
+            let finding = match bad.as_slice() {
+                [] => Finding::ok("store", format!("{name}: {count} calibrations")),
+                bad => Finding::warn(
+                    "store",
+                    format!(
+                        "{name}: rows of {} of {count} calibrations cannot be read: {}",
+                        bad.len(),
+                        bad.join(", ")
+                    ),
+                    "coordinator list says why; put a backup back, or go on without them",
+                ),
+            };
+            (finding, has_token)
+        }
+        Err(error) => {
+            let remedy =
+                "name another file with --store, or put a backup back (coordinator backup makes them)";
+            (Finding::fail("store", error.to_string(), remedy), false)
+        }
+    }
+}
+
+/// Writes as a store does, and measures how long that lasts.
+fn writable(folder: &Path) -> Finding {
+    let probe = folder.join(format!(".grouser-doctor-{}", std::process::id()));
+    let begin = Instant::now();
+    let written = std::fs::File::create(&probe).and_then(|mut file| {
+        file.write_all(&[0; 4096])?;
+        file.sync_all()
+    });
+    let took = begin.elapsed();
+    // Where it was not made, there is nothing to remove.
+    let _ = std::fs::remove_file(&probe);
+    let name = folder.display();
+    match written {
+        Ok(()) if took > SLOW => Finding::warn(
+            "disk",
+            format!("{name}: a record is safe after {} ms", took.as_millis()),
+            "put the store on a faster disk: every acknowledged result waits for it",
+        ),
+        Ok(()) => Finding::ok(
+            "disk",
+            format!("{name}: a record is safe after {} ms", took.as_millis()),
+        ),
+        Err(error) => Finding::fail(
+            "disk",
+            format!("{name} cannot be written: {error}"),
+            "make the folder its user's (chown, chmod), or only read with serve --read-only",
+        ),
+    }
+}
+
+fn space(folder: &Path) -> Finding {
+    let name = folder.display();
+    match statvfs(folder) {
+        Ok(disk) => of_space(&name.to_string(), disk.f_bavail.saturating_mul(disk.f_frsize)),
+        Err(error) => Finding::fail(
+            "space",
+            format!("{name}: {error}"),
+            "name a folder that is there with --store",
+        ),
+    }
+}
+
+fn of_space(name: &str, free_bytes: u64) -> Finding {
+    let seen = format!("{name}: {:.1} GB are free", free_bytes as f64 / 1e9);
+    let remedy = "make room, or put the store elsewhere; coordinator delete STUDY frees space inside a store";
+    match free_bytes {
+        0..TOO_LITTLE_BYTES => Finding::fail("space", seen, remedy),
+        TOO_LITTLE_BYTES..LITTLE_BYTES => Finding::warn("space", seen, remedy),
+        _ => Finding::ok("space", seen),
+    }
+}
+
+/// Whether a service can listen there, or does.
+async fn address(listen: SocketAddr, has_token: bool) -> Finding {
+    let refused = match TcpListener::bind(listen).await {
+        Ok(_) if !listen.ip().is_loopback() && !has_token => {
+            return Finding::warn(
+                "address",
+                format!("{listen} is free; others reach it, and the store has no token"),
+                "coordinator token add NAME --role submit: serve does not start there without one",
+            );
+        }
+        Ok(_) => return Finding::ok("address", format!("{listen} is free")),
+        Err(error) => error,
+    };
+    if refused.kind() != ErrorKind::AddrInUse {
+        let remedy = "name an address of this machine with --listen; ports below 1024 are root's";
+        return Finding::fail("address", format!("{listen}: {refused}"), remedy);
+    }
+    match service::version_at(listen).await {
+        Some(version) => Finding::ok(
+            "address",
+            format!("{listen} is in use by a coordinator of version {version}"),
+        ),
+        None => Finding::fail(
+            "address",
+            format!("{listen} is in use by another program"),
+            "name another address with --listen; ss -ltnp says whose it is",
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn little_space_is_a_warning_and_none_a_failure() {
+        assert!(of_space("/", 99_999_999).is_failure());
+        let text = of_space("/", 500_000_000).to_string();
+        assert!(
+            text.starts_with("warn  space       /: 0.5 GB are free\n"),
+            "{text}"
+        );
+        assert!(of_space("/", LITTLE_BYTES).to_string().starts_with("ok"));
+    }
+}

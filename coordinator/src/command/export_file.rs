@@ -1,0 +1,73 @@
+//! `coordinator export`: a calibration as a file for other programs.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use anyhow::{Context, bail};
+use export::{DrawTable, InferenceData, format};
+use serde_json::json;
+
+use super::source::CalibrationSource;
+use super::verbs::write;
+use crate::config::{ExportArguments, ExportFormat};
+
+pub(super) async fn export(config: &ExportArguments) -> anyhow::Result<()> {
+    let output = config.output.as_deref();
+    let place = CalibrationSource::open(&config.target.source).await?;
+    let id = place.id(&config.target).await?;
+    match config.format {
+        ExportFormat::Csv => write(output, &place.posterior(id).await?.to_csv()),
+        ExportFormat::Json => {
+            let all = json!({
+                "summary": place.summary(id).await?,
+                "posterior": place.posterior(id).await?,
+                "comparison": place.comparison(id).await?,
+            });
+            write(output, &(serde_json::to_string_pretty(&all)? + "\n"))
+        }
+        ExportFormat::Arrow => {
+            let file = format::arrow(&DrawTable::of(&data(&place, id).await?)?)?;
+            write_bytes(output, &file)
+        }
+        ExportFormat::Parquet => {
+            let file = format::parquet(&DrawTable::of(&data(&place, id).await?)?)?;
+            write_bytes(output, &file)
+        }
+        ExportFormat::Netcdf => write_bytes(output, &format::netcdf(&data(&place, id).await?)?),
+        ExportFormat::Zarr => write_folder(output, &format::zarr(&data(&place, id).await?)?),
+    }
+}
+
+/// The inference data of a calibration; those that a service has sent are checked.
+async fn data(place: &CalibrationSource, id: i64) -> anyhow::Result<InferenceData> {
+    let data = place.inference_data(id).await?;
+    data.check()?;
+    Ok(data)
+}
+
+fn needed(output: Option<&Path>) -> anyhow::Result<&Path> {
+    output.context("--output is missing: only csv and json are written to a terminal")
+}
+
+fn write_bytes(output: Option<&Path>, bytes: &[u8]) -> anyhow::Result<()> {
+    let path = needed(output)?;
+    std::fs::write(path, bytes).with_context(|| path.display().to_string())
+}
+
+/// Writes files below a new folder.
+fn write_folder(output: Option<&Path>, files: &BTreeMap<String, Vec<u8>>) -> anyhow::Result<()> {
+    let folder = needed(output)?;
+    if folder.exists() {
+        bail!(
+            "{} exists already; zarr needs a new folder, because what an older one holds would be read too",
+            folder.display()
+        );
+    }
+    for (path, bytes) in files {
+        let file = folder.join(path);
+        let above = file.parent().unwrap_or(folder);
+        std::fs::create_dir_all(above).with_context(|| above.display().to_string())?;
+        std::fs::write(&file, bytes).with_context(|| file.display().to_string())?;
+    }
+    Ok(())
+}

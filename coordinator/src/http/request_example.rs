@@ -1,0 +1,64 @@
+//! Bodies that the operations take, for the OpenAPI document: those of the example `hidden-effect`, in the order in which somebody who
+//! tries the interface would post them.
+
+use serde_json::{Value, json};
+use shared::exchange::PROTOCOL_VERSION;
+
+use crate::example::{EXAMPLES, Example};
+
+/// A row of measurements that the example has not.
+const FURTHER_RUNS: &str =
+    "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,torque_n_m,sinkage_m,use
+more,w,s,0.25,80.0,0.015,11.9,1.62,0.0071,fit
+";
+
+/// An effect file.
+const EFFECT: &str = "name = \"stiffer_pull\"
+summary = \"the drawbar pull is larger by a constant share\"
+source = \"an example\"
+drawbar_pull = \"drawbar_pull * (1 + gain)\"
+
+[parameters.gain]
+unit = \"1\"
+neutral = 0.0
+prior = { normal = [0.0, 0.2] }
+";
+
+/// A body that the operation of this id takes; `None` of one that takes none.
+pub(super) fn request_example(operation: &str) -> Option<Value> {
+    let [
+        Example {
+            name,
+            job,
+            experiment,
+            files,
+            ..
+        },
+        ..,
+    ] = EXAMPLES;
+    let text_of = |&(name, text): &(&str, &str)| (name.to_owned(), Value::from(text));
+    Some(match operation {
+        "create_experiment" => {
+            let files: serde_json::Map<String, Value> = files.iter().map(text_of).collect();
+            json!({"toml": experiment.1, "files": files})
+        }
+        "create_calibration" => json!({"experiment": 1, "toml": job.1, "name": name}),
+        "extend_calibration" => json!({"effect": "slip_sinkage"}),
+        "create_what_if" => json!({"without": ["r00", "r01"]}),
+        "add_runs" => json!({ "runs": FURTHER_RUNS }),
+        "add_effect" => json!({ "text": EFFECT }),
+        "exchange_work" => json!({
+            "worker": "rig-pc-1",
+            "protocol": PROTOCOL_VERSION,
+            "model_version": "1",
+            "results": [],
+            "holding": [],
+            "returned": [],
+            "started": [],
+            "received": 0,
+            "want": 0,
+            "wait_ms": 0,
+        }),
+        _ => return None,
+    })
+}
