@@ -6,6 +6,8 @@ use clap::{Args, Parser, Subcommand};
 use shared::bearer::{BearerToken, BearerTokenError};
 use tracing_subscriber::filter::{LevelFilter, Targets};
 
+use crate::embedded::WorkerConfig;
+
 /// The processors that this program was built for.
 pub const ARCHITECTURE: &str = std::env::consts::ARCH;
 
@@ -78,6 +80,9 @@ pub enum CoordinatorCommand {
     /// Add, list and revoke the tokens that a service asks for.
     #[command(subcommand)]
     Token(TokenCommand),
+    /// Do what the program `worker` does: serve a coordinator, or simulate.
+    #[command(display_name = "worker", args_conflicts_with_subcommands = true)]
+    Worker(WorkerConfig),
 }
 
 /// A job file and additional effects.
@@ -489,7 +494,9 @@ impl CoordinatorCommand {
     pub fn log_filter(&self) -> Targets {
         let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
         let (journal, of_workers) = match self {
-            CoordinatorCommand::Serve(_) => (LevelFilter::INFO, LevelFilter::INFO),
+            CoordinatorCommand::Serve(_) | CoordinatorCommand::Worker(_) => {
+                (LevelFilter::INFO, LevelFilter::INFO)
+            }
             _ => (LevelFilter::OFF, LevelFilter::WARN),
         };
         stated.unwrap_or_else(|| {

@@ -54,5 +54,6 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Completions { shell } => shell::completions(shell),
         CoordinatorCommand::Man { folder } => shell::man(&folder),
         CoordinatorCommand::Token(command) => token::token(&command).await,
+        CoordinatorCommand::Worker(config) => Ok(crate::embedded::work(config).await?),
     }
 }
