@@ -96,6 +96,9 @@ pub struct JobArguments {
     /// Adds the effect of a file to the job; may be repeated.
     #[arg(long, value_name = "FILE")]
     pub effect_file: Vec<PathBuf>,
+    /// Accepts what looks odd as meant, by the name that the question has; may be repeated.
+    #[arg(long, value_name = "NAME")]
+    pub accept: Vec<String>,
 }
 
 /// List the effects of the catalogue, or show one.

@@ -3,7 +3,8 @@
 use std::fmt;
 use std::path::Path;
 
-use crate::file::{FileError, read_text};
+use crate::file::FileError;
+use crate::text_file::read_text;
 
 /// A token; its `Debug` does not show it.
 #[derive(Clone, PartialEq, Eq)]

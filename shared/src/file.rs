@@ -1,11 +1,11 @@
 //! Text files by name, and errors that name file, line and the nearest known word.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 
 pub use formula::word::unknown_word;
 
 use crate::sentence::one_line;
+use crate::toml_message::plain;
 
 /// A TOML file and the files it names, as text. The same value comes from disk and over REST.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -71,28 +71,6 @@ impl FileError {
     }
 }
 
-/// Reads a text file whole.
-///
-/// # Errors
-/// Names the path and the operating system's reason.
-pub fn read_text(path: &Path) -> Result<String, FileError> {
-    std::fs::read_to_string(path).map_err(|e| FileError::whole(&path.display().to_string(), e.to_string()))
-}
-
-/// Resolves a name written in the file `beside`, relative to that file's folder.
-pub fn sibling(beside: &Path, name: &str) -> PathBuf {
-    beside.parent().unwrap_or(Path::new("")).join(name)
-}
-
-/// Reads the files that the file `beside` names, by their names in it.
-///
-/// # Errors
-/// Names the path and the operating system's reason.
-pub fn read_beside(beside: &Path, names: &[String]) -> Result<BTreeMap<String, String>, FileError> {
-    let read = |name: &String| Ok((name.clone(), read_text(&sibling(beside, name))?));
-    names.iter().map(read).collect()
-}
-
 /// Deepest nesting of brackets; a job needs three.
 const DEEPEST: usize = 16;
 /// Largest TOML file `[bytes]`: the parser takes 80 ns for each of them.
@@ -117,7 +95,7 @@ pub fn parse_toml<T: serde::de::DeserializeOwned>(file: &str, text: &str) -> Res
             file: file.to_owned(),
             line,
             column: None,
-            message: with_nearest_key(e.message()),
+            message: plain(text, e.span(), e.message()),
         }
     })
 }
@@ -130,15 +108,6 @@ fn line_of(text: &str, offset: usize) -> usize {
 /// A number; an integer counts as one.
 pub fn number(value: &toml::Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
-}
-
-/// Turns serde's list of expected fields into the one that was probably meant.
-fn with_nearest_key(message: &str) -> String {
-    let mut quoted = message.split('`').skip(1).step_by(2);
-    match (message.starts_with("unknown field"), quoted.next()) {
-        (true, Some(unknown)) => unknown_word("key", unknown, quoted),
-        _ => message.trim_end().replace('\n', " "),
-    }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //!
 //! # Layout
 //! - [`channel`]: what a test rig measures: drawbar pull, torque, sinkage, lateral force.
+//! - [`limit`]: which values a quantity can have, and which are usual.
 //! - [`parameters`]: the names, units and physical bounds of the parameters.
 //! - [`experiment`]: an experiment as its files describe it: wheels, rig, noise, protocol, test runs.
 //! - [`model`]: which forward model is meant ([`model::ModelSettings`]) and the self-contained
@@ -13,7 +14,8 @@
 //! - [`api`]: the messages between a user and the service.
 //! - [`bearer`]: the token that a client shows to the service.
 //! - [`sentence`]: an error and its causes in one sentence.
-//! - [`mod@file`]: text files by name, and errors that name file, line and the nearest known word.
+//! - [`mod@file`]: files by name, and errors that name file, line and the nearest known word; `toml_message`: what is wrong with TOML.
+//! - [`text_file`]: text files on disk.
 //!
 //! The crate only parses and validates: no clock, no network, no database.
 
@@ -23,9 +25,12 @@ pub mod channel;
 pub mod exchange;
 pub mod experiment;
 pub mod file;
+pub mod limit;
 pub mod model;
 pub mod outcome;
 pub mod parameters;
 pub mod predicted;
 pub mod sentence;
+pub mod text_file;
+mod toml_message;
 pub mod wire;

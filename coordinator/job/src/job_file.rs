@@ -6,6 +6,7 @@ use serde::Deserialize;
 use shared::file::{FileError, parse_toml, unknown_word};
 use shared::model::ModelSettings;
 
+use crate::plausibility::question::Question;
 use crate::table::algorithm_settings::AlgorithmSettings;
 use crate::table::discovery_settings::{DiscoverySettings, RawDiscovery};
 use crate::table::likelihood_settings::{LikelihoodSettings, RawLikelihood};
@@ -18,6 +19,8 @@ use crate::table::sampler_table::RawSampler;
 pub struct JobFile {
     /// Name of the experiment's file, relative to the job's; absent where a service holds the experiment.
     pub experiment: Option<String>,
+    /// Names of the questions that are answered: what looks odd, and is meant.
+    pub accepted: Vec<String>,
     /// Which forward model, with its fixed parameters.
     pub model: ModelSettings,
     /// The priors in the order of the file.
@@ -40,6 +43,8 @@ pub struct JobFile {
 #[serde(deny_unknown_fields)]
 struct RawJob {
     experiment: Option<String>,
+    #[serde(default)]
+    accept: Vec<String>,
     model: toml::Table,
     #[serde(default)]
     priors: BTreeMap<String, toml::Spanned<toml::Value>>,
@@ -67,6 +72,9 @@ impl JobFile {
     pub fn parse(name: &str, toml: &str) -> Result<JobFile, FileError> {
         let mut raw: RawJob = parse_toml(name, toml)?;
         let fail = |message: String| FileError::whole(name, message);
+        for name in &raw.accept {
+            Question::check_name(name).map_err(fail)?;
+        }
         let likelihood = raw
             .likelihood
             .settings()
@@ -99,6 +107,7 @@ impl JobFile {
             .collect();
         Ok(JobFile {
             experiment: raw.experiment,
+            accepted: raw.accept,
             model,
             priors,
             posterior,
@@ -108,6 +117,16 @@ impl JobFile {
             likelihood,
             discovery,
         })
+    }
+
+    /// Answers a question.
+    ///
+    /// # Errors
+    /// No question has this name; the sentence has the nearest.
+    pub fn accept(&mut self, name: &str) -> Result<(), String> {
+        Question::check_name(name)?;
+        self.accepted.push(name.to_owned());
+        Ok(())
     }
 
     /// The files that the job names beside its experiment.

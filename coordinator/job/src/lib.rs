@@ -6,6 +6,7 @@
 //! - `data`: the fitted measurements: noise, likelihood, predicted values; whether their order follows a condition.
 //! - `spec`: [`Spec`], a calibration as its files determine it; `spec_words` says it in words.
 //! - `plain_parameter`: [`PlainParameter`], what a search may free. `model_switch`: [`ModelSwitch`], what it may turn.
+//! - `plausibility`: questions about what is possible, but was probably not meant.
 //! - `derived`: the jobs, and the experiment, that follow from a job and its experiment.
 
 mod data;
@@ -13,6 +14,7 @@ mod derived;
 mod job_file;
 mod model_switch;
 mod plain_parameter;
+mod plausibility;
 mod spec;
 mod spec_words;
 mod table;
@@ -21,6 +23,7 @@ pub use data::bevameter_readings::{BevameterReadings, PLATE, RING, Reading};
 pub use data::confounded_order::{ConfoundedOrder, SetCondition, confounded_orders};
 pub use data::noise::repeat_scatter;
 pub use data::soil_scatter::SoilScatter;
+pub use derived::accepting_job::accepting_job;
 pub use derived::assumed_experiment::{AssumedExperiment, SiteProperty, UnsaidProperty};
 pub use derived::discovery_job::{
     continued_job, discovery_job, effect_name, is_discovery, model_kind, searched_job, without_effects,
@@ -31,6 +34,7 @@ pub use derived::point_job::point_job;
 pub use job_file::JobFile;
 pub use model_switch::{MODEL_SWITCHES, ModelSwitch};
 pub use plain_parameter::{PLAIN_PARAMETERS, PlainParameter};
+pub use plausibility::{Question, Unanswered, check_accepted, questions};
 pub use spec::{EffectsChanged, PREDICTION_DRAWS, Spec};
 pub use table::algorithm_settings::{AlgorithmName, AlgorithmSettings, AlgorithmSettingsError};
 pub use table::candidate_priors::candidate_priors;

@@ -60,6 +60,8 @@ pub struct Spec {
     pub bevameter: BevameterReadings,
     /// Whether its study looks for missing effects.
     pub discovery: DiscoverySettings,
+    /// Names of the questions that its job answers: what looks odd, and is meant.
+    pub accepted: Vec<String>,
 }
 
 /// A calibration was begun with other files of its effects than this program has.
@@ -252,6 +254,7 @@ impl Spec {
             likelihood_settings: job.likelihood,
             bevameter,
             discovery: job.discovery,
+            accepted: job.accepted,
         })
     }
 
@@ -287,10 +290,20 @@ impl Spec {
             .count()
     }
 
-    /// Whether another specification means the same calibration; comments and the order of keys do not count.
+    /// Whether another specification means the same calibration; comments, the order of keys and what is accepted do not count.
     pub fn same_as(&self, other: &Spec) -> bool {
         // Debug output shows every number to the last bit.
-        format!("{self:?}") == format!("{other:?}")
+        let text = |spec: &Spec| {
+            let accepted = Vec::new();
+            format!(
+                "{:?}",
+                Spec {
+                    accepted,
+                    ..spec.clone()
+                }
+            )
+        };
+        text(self) == text(other)
     }
 
     /// Checks that the effects are those of the version that a calibration is pinned to; its equations are the

@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use anyhow::Context;
 use formula::catalogue::{catalogue, find};
-use shared::file::read_text;
 use shared::model::ModelKind;
 use shared::model::effects::own;
 use shared::model::settings::unknown_effect;
 use shared::parameters::behind;
+use shared::text_file::read_text;
 
 use super::output::say;
 use crate::config::{EffectsArguments, ModelChoice};

@@ -8,7 +8,7 @@ use serde_json::json;
 use shared::api::{
     CalibrationCreated, CalibrationState, CalibrationStatus, NamedText, NewExtension, NewRuns, RunsAdded,
 };
-use shared::file::read_text;
+use shared::text_file::read_text;
 
 use super::folder::{Details, Folder};
 use super::output::{note, say};

@@ -4,10 +4,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use shared::experiment::Experiment;
-use shared::file::{FileError, FileSet, read_beside, read_text, sibling};
+use shared::file::{FileError, FileSet};
+use shared::text_file::{read_beside, read_text, sibling};
 
 use crate::config::JobArguments;
-use job::{JobFile, OwnEffect, Spec, extended_job, with_own_effects, without_own_effects};
+use job::{
+    JobFile, OwnEffect, Spec, accepting_job, check_accepted, extended_job, with_own_effects,
+    without_own_effects,
+};
 
 /// A job with everything it names, read and validated.
 pub(super) struct JobOnDisk {
@@ -25,8 +29,11 @@ pub(super) struct JobOnDisk {
 pub(super) fn read(file: &JobArguments, own: &[OwnEffect]) -> Result<JobOnDisk, FileError> {
     let path = &file.job;
     let job_name = path.display().to_string();
-    let toml = read_text(path)?;
-    let mut job = JobFile::parse(&job_name, &without_own_effects(&job_name, &toml, own)?)?;
+    let written = read_text(path)?;
+    let mut job = JobFile::parse(&job_name, &without_own_effects(&job_name, &written, own)?)?;
+    for name in &file.accept {
+        job.accept(name).map_err(|e| FileError::whole(&job_name, e))?;
+    }
     let named = job.experiment.as_deref();
     let named =
         named.ok_or_else(|| FileError::whole(&job_name, "experiment = \"experiment.toml\" is missing"))?;
@@ -43,9 +50,11 @@ pub(super) fn read(file: &JobArguments, own: &[OwnEffect]) -> Result<JobOnDisk, 
     }
     files.extend(added);
     // Messages name the lines of the file as it is; what is kept has the additions.
-    let toml = extended_job(&job_name, &toml, &file.effect, &names, &[])?;
+    let toml = extended_job(&job_name, &written, &file.effect, &names, &[])?;
+    let toml = accepting_job(&job_name, &toml, &file.accept)?;
     let kept = with_own_effects(&job_name, FileSet { toml, files }, own)?;
     let spec = Spec::of(&job_name, job, &kept.files, &experiment_name, &experiment)?;
+    check_accepted(&spec).map_err(|e| FileError::whole(&job_name, e.to_string()))?;
     // An extension has a folder of its own beside its base's.
     let mut name = name(path);
     for more in file

@@ -8,7 +8,7 @@ use serde_json::json;
 use shared::api::{
     CalibrationCreated, ExperimentCreated, NewCalibration, NewExperiment, StudyArchived, StudyDeleted,
 };
-use shared::file::read_text;
+use shared::text_file::read_text;
 
 use super::job_on_disk;
 use super::output::say;

@@ -12,7 +12,10 @@ use super::handle::Service;
 use crate::calibration::{Calibration, CalibrationIdentity};
 use crate::farm::dispatch::Stopped;
 use crate::store::{NewCalibrationRow, NewStudy, StudyIds};
-use job::{AlgorithmSettings, JobFile, OwnEffect, Spec, point_job, with_own_effects, without_own_effects};
+use job::{
+    AlgorithmSettings, JobFile, OwnEffect, Spec, check_accepted, point_job, with_own_effects,
+    without_own_effects,
+};
 
 /// Longest name of a calibration `[bytes]`.
 const LONGEST_NAME: usize = 200;
@@ -102,6 +105,7 @@ fn members(
     added.map_err(|e| FileError::whole(file, e))?;
     let job = with_own_effects(file, job, own)?;
     let spec = Spec::of(file, parsed, &job.files, "experiment.toml", experiment)?;
+    check_accepted(&spec).map_err(|e| FileError::whole(file, e.to_string()))?;
     if matches!(spec.algorithm, AlgorithmSettings::Discover { .. }) {
         let message = "[sampler] algorithm = \"discovery\" is a search that a study starts by itself: set apply = \"ask\" or \"auto\" under [discovery]";
         return Err(FileError::whole(file, message).into());

@@ -40,8 +40,8 @@ pub const SHEAR_COLUMNS: [&str; 4] = [
     "shear_stress_pa",
 ];
 
-/// No bevameter has a plate of this radius or presses it this deep; a number in millimetres is larger.
-const LARGEST_PLATE_M: f64 = 1.0;
+/// No bevameter presses a plate this deep; a number in millimetres is larger.
+const DEEPEST_PLATE_M: f64 = 1.0;
 /// No ring is turned so far; a number in millimetres mostly is.
 const LARGEST_SHEAR_M: f64 = 10.0;
 
@@ -50,8 +50,7 @@ pub(super) fn plates(file: &str, text: &str) -> Result<Vec<PlateReading>, FileEr
     let readings = table::rows(file, text, &columns(&PLATE_COLUMNS), |row, _| {
         let plate_radius_m = row.positive("plate_radius_m", "m")?;
         let sinkage_m = row.not_negative("sinkage_m", "m")?;
-        in_metres("plate_radius_m", plate_radius_m, LARGEST_PLATE_M)?;
-        in_metres("sinkage_m", sinkage_m, LARGEST_PLATE_M)?;
+        in_metres("sinkage_m", sinkage_m, DEEPEST_PLATE_M)?;
         Ok(PlateReading {
             test: row.word("test")?.to_owned(),
             plate_radius_m,
@@ -128,7 +127,7 @@ mod tests {
             ("a,0.03,-0.002,1", "sinkage_m -0.002 m must be >= 0 m"),
             (
                 "a,30,0.002,1",
-                "plate_radius_m 30 m must be <= 1 m: metres are expected, were these millimetres?",
+                "plate_radius_m 30 m must be at most 1 m: was it typed in mm (0.03 m) or cm (0.3 m)?",
             ),
             (
                 "a,0.03,2,1",

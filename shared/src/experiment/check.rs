@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use super::mesh::MeshError;
+use crate::limit;
 
 /// A standard deviation as the file states it.
 #[derive(Deserialize)]
@@ -17,8 +18,13 @@ pub(super) enum RawSd {
 pub(super) enum ValueError {
     #[error("{0} is blank")]
     Blank(String),
-    #[error("{key} \"{text}\" is not a number")]
-    NotNumber { key: String, text: String },
+    #[error("{key} \"{text}\" is not a number{remedy}")]
+    NotNumber {
+        key: String,
+        text: String,
+        /// What to write instead, or nothing.
+        remedy: String,
+    },
     #[error("{key} {value} is not a finite number")]
     NotFinite { key: String, value: f64 },
     /// `bound` is `> 0`, `>= 0`, `< 90`…
@@ -41,14 +47,24 @@ pub(super) enum ValueError {
     Mesh(#[from] MeshError),
 }
 
-/// Requires a finite number above 0.
+/// Requires a finite number above 0 that the quantity can have.
 pub(super) fn positive(key: &str, value: f64, unit: &str) -> Result<(), ValueError> {
-    require(value.is_finite() && value > 0.0, key, value, unit, "> 0")
+    require(value.is_finite() && value > 0.0, key, value, unit, "> 0")?;
+    possible(key, value)
 }
 
-/// Requires a finite number of at least 0.
+/// Requires a finite number of at least 0 that the quantity can have.
 pub(super) fn not_negative(key: &str, value: f64, unit: &str) -> Result<(), ValueError> {
-    require(value.is_finite() && value >= 0.0, key, value, unit, ">= 0")
+    require(value.is_finite() && value >= 0.0, key, value, unit, ">= 0")?;
+    possible(key, value)
+}
+
+/// Requires a value that a rig can have.
+pub(super) fn possible(key: &str, value: f64) -> Result<(), ValueError> {
+    match limit::impossible(key, value) {
+        None => Ok(()),
+        Some(why) => Err(ValueError::Rule(format!("{key} {why}"))),
+    }
 }
 
 /// Requires what `holds`; `bound` says it in words.

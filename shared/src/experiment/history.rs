@@ -255,7 +255,7 @@ mod tests {
             ),
             (
                 "0.1,0\n0.2,5\n0.3,0\n",
-                "h.csv line 3: sinkage_m 5 m is more than the wheel's diameter 0.25 m: metres are expected, were these millimetres?",
+                "h.csv line 3: sinkage_m 5 m is more than the wheel's diameter 0.25 m: metres are expected, were these millimetres or centimetres?",
             ),
             ("0.1,0\n0.2,0\n", "h.csv: 2 samples are too few: at least 3"),
             (

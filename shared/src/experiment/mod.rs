@@ -33,7 +33,8 @@ pub use settings::{AveragingProtocol, Noise, NoiseSd, ProtocolKind, Rig, SoilPro
 pub use wheel::{WheelGeometry, rim_speed_m_s};
 
 use crate::channel::Channel;
-use crate::file::{FileError, FileSet, read_text, sibling};
+use crate::file::{FileError, FileSet};
+use crate::text_file::{read_text, sibling};
 
 /// A measured data set: the content of `experiment.toml` and of the files it names.
 #[derive(Debug, Clone, PartialEq)]
@@ -219,7 +220,7 @@ mod tests {
             ),
             (
                 "a,w,s,0.2,100,0.01,1,5.2,fit",
-                "runs.csv line 2: sinkage_m 5.2 m is more than the wheel's diameter 0.2 m: metres are expected, were these millimetres?",
+                "runs.csv line 2: sinkage_m 5.2 m is more than the wheel's diameter 0.2 m: metres are expected, were these millimetres or centimetres?",
             ),
             (
                 "a,v,s,0.2,100,0.01,1,,fit",
@@ -257,7 +258,7 @@ mod tests {
             format!("# a\n\n{HEADER}a,w,s,0.2,100,0.01,1,,fit\n# b\n# c\nd,w,s,2,100,0.01,1,,fit");
         assert_eq!(
             parse(TOML, &commented).unwrap_err(),
-            "runs.csv line 7: slip 2 must lie in [-1, 1)"
+            "runs.csv line 7: slip 2 must be at most 1: was it typed in per cent (0.02)?"
         );
         let column = "run,wheel,soil,slipp,wheel_load_n,sled_speed_m_s\n";
         assert_eq!(

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::check::ValueError;
+use super::check::{ValueError, possible};
 use super::history::{MeasuredHistory, averaged};
 use super::settings::{AveragingProtocol, SoilProperties};
 use super::table::{self, Columns, Row};
@@ -173,6 +173,7 @@ impl Row<'_> {
         let rule = |message: String| Err(ValueError::Rule(message));
         let wheel = self.named("wheel", wheels)?;
         let slip = self.required("slip")?;
+        possible("slip", slip)?;
         if !(-1.0..1.0).contains(&slip) {
             return rule(format!("slip {slip} must lie in [-1, 1)"));
         }

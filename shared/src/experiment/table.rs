@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::check::{ValueError, not_negative, positive};
 use crate::file::{FileError, unknown_word};
+use crate::text_file::CONVERT;
 
 /// Most rows of a file of runs or readings: 64 threads post as many results, each with nine values of 9 bytes for every run,
 /// in one message of 64 MiB.
@@ -21,20 +22,43 @@ pub(super) struct Columns<'a> {
 
 impl Columns<'_> {
     /// Where each column stands in the header.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
     fn find(&self, header: &csv::StringRecord) -> Result<BTreeMap<String, usize>, ValueError> {
-        let mut positions = BTreeMap::new();
-        for (position, name) in header.iter().enumerate() {
-            if !self.known.contains(&name) {
-                let known = self.known.iter().copied();
-                return Err(ValueError::Unknown(unknown_word("column", name, known)));
-            }
-            if positions.insert(name.to_owned(), position).is_some() {
-                return Err(ValueError::Rule(format!("column \"{name}\" appears twice")));
+        let whole = header.iter().collect::<Vec<_>>().join(",");
+        for (separator, name) in [(';', "semicolons"), ('\t', "tabs"), ('|', "bars")] {
+            if self
+                .required
+                .iter()
+                .all(|column| whole.split(separator).any(|word| word.trim() == *column))
+            {
+                let message = format!("columns are separated by {name}, commas are expected: {CONVERT}");
+                return Err(ValueError::Rule(message));
             }
         }
-        match self.required.iter().find(|&&c| !positions.contains_key(c)) {
-            Some(missing) => Err(ValueError::Rule(format!("column \"{missing}\" is missing"))),
-            None => Ok(positions),
+        let mut positions = BTreeMap::new();
+        let mut wrong = Vec::new();
+        for (position, name) in header.iter().enumerate() {
+            if !self.known.contains(&name) {
+                wrong.push(unknown_word("column", name, self.known.iter().copied()));
+            } else if positions.insert(name.to_owned(), position).is_some() {
+                wrong.push(format!("column \"{name}\" appears twice"));
+            }
+        }
+        let missing = |column: &&&str| {
+            let is_misspelt = || wrong.iter().any(|said| said.ends_with(&format!("\"{column}\"")));
+            !positions.contains_key(**column) && !is_misspelt()
+        };
+        let missing: Vec<&str> = self.required.iter().filter(missing).copied().collect();
+        match missing.as_slice() {
+            [] => {}
+            [column] => wrong.push(format!("column \"{column}\" is missing")),
+            columns => wrong.push(format!("columns {} are missing", columns.join(", "))),
+        }
+        match wrong.is_empty() {
+            true => Ok(positions),
+            false => Err(ValueError::Rule(wrong.join("; "))),
         }
     }
 }
@@ -51,7 +75,7 @@ pub(super) fn reader(text: &str) -> csv::Reader<&[u8]> {
 /// Parses the rows of a file with `row`, which also gets the line, counted from 1.
 ///
 /// # Errors
-/// [`FileError`] with the line of the header or of the row.
+/// [`FileError`] with the line of the header or of the first bad row, and with what is wrong with the next ones.
 pub(super) fn rows<T>(
     file: &str,
     text: &str,
@@ -67,14 +91,11 @@ pub(super) fn rows<T>(
         .find(&header)
         .map_err(|e| FileError::at(file, line_of(text, &header), e.to_string()))?;
     let mut parsed = Vec::new();
+    let mut wrong: Vec<FileError> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| FileError::whole(file, e.to_string()))?;
         let line = line_of(text, &record);
-        if record.len() != header.len() {
-            let message = format!("{} fields where the header has {}", record.len(), header.len());
-            return Err(FileError::at(file, line, message));
-        }
-        if parsed.len() == columns.most_rows {
+        if parsed.len() + wrong.len() == columns.most_rows {
             let message = format!("the file must have at most {} rows", columns.most_rows);
             return Err(FileError::at(file, line, message));
         }
@@ -82,9 +103,40 @@ pub(super) fn rows<T>(
             positions: &positions,
             record: &record,
         };
-        parsed.push(row(&fields, line).map_err(|e| FileError::at(file, line, e.to_string()))?);
+        let read = fields
+            .check_length(header.len())
+            .and_then(|()| row(&fields, line));
+        match read {
+            Ok(row) => parsed.push(row),
+            Err(_) if parsed.is_empty() && wrong.is_empty() && fields.has_no_number() => {
+                let message = "no field is a number: a row of units, or a second title, has no place here";
+                wrong.push(FileError::at(file, line, message));
+            }
+            Err(e) => wrong.push(FileError::at(file, line, e.to_string())),
+        }
     }
-    Ok(parsed)
+    match wrong.is_empty() {
+        true => Ok(parsed),
+        false => Err(all(file, &wrong)),
+    }
+}
+
+/// So many bad rows of a file are told.
+const TOLD: usize = 3;
+
+/// Bad rows as one error: at the first, with the next ones, and the number of all others.
+fn all(file: &str, wrong: &[FileError]) -> FileError {
+    let line = |error: &FileError| error.line.unwrap_or_default();
+    let mut message = wrong[0].message.clone();
+    for error in &wrong[1..wrong.len().min(TOLD)] {
+        message += &format!("; line {}: {}", line(error), error.message);
+    }
+    match wrong.len().saturating_sub(TOLD) {
+        0 => {}
+        1 => message += "; and 1 more row is wrong",
+        more => message += &format!("; and {more} more rows are wrong"),
+    }
+    FileError::at(file, line(&wrong[0]), message)
 }
 
 /// The line in which a record stands, counted from 1: its position is that of the comments before it.
@@ -100,6 +152,24 @@ pub(super) fn line_of(text: &str, record: &csv::StringRecord) -> usize {
         .count()
 }
 
+/// What a text that is no number should be, where it is nearly one.
+fn remedy(text: &str) -> String {
+    let pointed = text.replace(',', ".");
+    if text.matches(',').count() == 1 && pointed.parse::<f64>().is_ok() {
+        return format!(": a number has a point, no comma: write {pointed}");
+    }
+    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)));
+    match end.map(|end| text.split_at(end)) {
+        Some((number, unit)) if number.parse::<f64>().is_ok() => {
+            format!(
+                ": the unit {} stands in the column's name: write {number}",
+                unit.trim()
+            )
+        }
+        _ => String::new(),
+    }
+}
+
 /// One row, by the names of its columns.
 pub(super) struct Row<'a> {
     positions: &'a BTreeMap<String, usize>,
@@ -107,6 +177,25 @@ pub(super) struct Row<'a> {
 }
 
 impl Row<'_> {
+    fn check_length(&self, expected: usize) -> Result<(), ValueError> {
+        let found = self.record.len();
+        if found == expected {
+            return Ok(());
+        }
+        let behind = self.record.iter().skip(expected);
+        let remedy = match found > expected && behind.into_iter().all(str::is_empty) {
+            true => ": leave out the commas at its end",
+            false => "",
+        };
+        Err(ValueError::Rule(format!(
+            "{found} fields where the header has {expected}{remedy}"
+        )))
+    }
+
+    fn has_no_number(&self) -> bool {
+        self.record.iter().all(|field| field.parse::<f64>().is_err())
+    }
+
     /// Whether the file has a column.
     pub(super) fn has(&self, column: &str) -> bool {
         self.positions.contains_key(column)
@@ -138,6 +227,7 @@ impl Row<'_> {
             Err(_) => Err(ValueError::NotNumber {
                 key,
                 text: text.to_owned(),
+                remedy: remedy(text),
             }),
         }
     }

@@ -47,7 +47,7 @@ impl WheelGeometry {
         let diameter = 2.0 * self.radius_m;
         if sinkage_m.abs() > diameter {
             return Err(ValueError::Rule(format!(
-                "sinkage_m {sinkage_m} m is more than the wheel's diameter {diameter} m: metres are expected, were these millimetres?"
+                "sinkage_m {sinkage_m} m is more than the wheel's diameter {diameter} m: metres are expected, were these millimetres or centimetres?"
             )));
         }
         Ok(())

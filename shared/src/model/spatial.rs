@@ -5,6 +5,8 @@ use utoipa::ToSchema;
 
 use super::error::ModelError;
 use crate::experiment::{AveragingProtocol, ProtocolKind};
+use crate::limit;
+use crate::toml_message::plain;
 
 /// Length of a simulated run of the `paper` protocol `[s]`.
 pub const PAPER_DURATION_S: f64 = 50.0;
@@ -97,10 +99,9 @@ impl SpatialSettings {
     /// [`ModelError`] names the key, the value and what is allowed.
     pub fn from_table(table: toml::Table) -> Result<Self, ModelError> {
         let damped = table.contains_key("damping_n_s_m");
-        let settings: SpatialSettings = table.try_into().map_err(|e: toml::de::Error| {
-            let message = e.to_string().trim().replace('`', "\"").replace('\n', " ");
-            ModelError::Invalid(message)
-        })?;
+        let settings: SpatialSettings = table
+            .try_into()
+            .map_err(|e: toml::de::Error| ModelError::Invalid(plain("", None, &e.to_string())))?;
         for (key, value, unit) in [
             ("dem_spacing_m", settings.dem_spacing_m, " m"),
             ("travel_step_m", settings.travel_step_m, " m"),
@@ -111,6 +112,9 @@ impl SpatialSettings {
                 return Err(ModelError::Invalid(format!(
                     "{key} {value}{unit} must be > 0{unit}"
                 )));
+            }
+            if let Some(why) = limit::impossible(key, value) {
+                return Err(ModelError::Invalid(format!("{key} {why}")));
             }
         }
         if damped && settings.vertical == HubMotion::Balance {

@@ -24,7 +24,7 @@ fn malformed_readings_name_file_line_value_unit_and_bound() {
     );
     refused(
         plates("p1,0.04,0.002", "p1,40,0.002"),
-        "plates.csv line 2: plate_radius_m 40 m must be <= 1 m: metres are expected, were these millimetres?",
+        "plates.csv line 2: plate_radius_m 40 m must be at most 1 m: was it typed in mm (0.04 m) or cm (0.4 m)?",
     );
     refused(
         plates("0.006,", "-0.006,"),
@@ -53,7 +53,10 @@ fn readings_that_are_named_but_not_there_are_missed() {
     let small = Job::small();
     let experiment = format!("plates = \"plates.csv\"\n{}", small.experiment);
     let message = refusal(&Job { experiment, ..small });
-    assert!(message.starts_with("plates.csv: No such file"), "{message}");
+    assert!(
+        message.starts_with("plates.csv: there is no such file"),
+        "{message}"
+    );
 }
 
 /// The message of `worker simulate` on the small job with plates and shear; no table is left behind.

@@ -135,5 +135,8 @@ fn malformed_effect_files_name_file_line_and_column() {
         "copy.toml: effect my_gain is already in mine.toml",
     );
     let message = refusal(&model("effect_files = [\"mine.toml\"]"));
-    assert!(message.starts_with("mine.toml: No such file"), "{message}");
+    assert!(
+        message.starts_with("mine.toml: there is no such file"),
+        "{message}"
+    );
 }

@@ -40,11 +40,11 @@ fn unit_mistakes_name_value_unit_and_bound() {
     );
     refused(
         row(",0.05,", ",-1.2,"),
-        "runs.csv line 4: slip -1.2 must lie in [-1, 1)",
+        "runs.csv line 4: slip -1.2 must be at least -1: was it typed in per cent (-0.012)?",
     );
     refused(
         row("0.0055360117", "5.5360117"),
-        "runs.csv line 4: sinkage_m 5.5360117 m is more than the wheel's diameter 0.25 m: metres are expected, were these millimetres?",
+        "runs.csv line 4: sinkage_m 5.5360117 m is more than the wheel's diameter 0.25 m: metres are expected, were these millimetres or centimetres?",
     );
     refused(
         row("0.0095", "0"),
@@ -133,7 +133,7 @@ fn an_experiment_without_anything_to_fit_is_refused() {
             runs: String::new(),
             ..Job::small()
         },
-        "runs.csv line 1: column \"run\" is missing",
+        "runs.csv line 1: columns run, wheel, soil, slip, wheel_load_n, sled_speed_m_s are missing",
     );
     refused(
         Job {
@@ -160,7 +160,10 @@ fn files_that_are_not_there_or_not_text_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = Job::small().write(folder.path());
     let message = |path: &Path| refusal_in(path, folder.path());
-    assert!(message(&folder.path().join("jop.toml")).starts_with("jop.toml: No such file"));
+    assert!(
+        message(&folder.path().join("jop.toml"))
+            .starts_with("jop.toml: there is no such file; the nearest in its folder is")
+    );
     let directory = message(folder.path());
     assert!(directory.contains("directory"), "{directory}");
 
@@ -172,7 +175,10 @@ fn files_that_are_not_there_or_not_text_are_named() {
         assert!(said.starts_with(name) && said.contains("UTF-8"), "{said}");
         std::fs::remove_file(folder.path().join(name)).unwrap();
         let said = message(&path);
-        assert!(said.starts_with(&format!("{name}: No such file")), "{said}");
+        assert!(
+            said.starts_with(&format!("{name}: there is no such file")),
+            "{said}"
+        );
         std::fs::write(folder.path().join(name), text).unwrap();
     }
     let job = Job::small().in_job("experiment = \"experiment.toml\"", "");

@@ -25,8 +25,9 @@ pub(super) fn refusal(job: &Job) -> String {
     refusal_in(&job.write(folder.path()), folder.path())
 }
 
+/// The same of files that are in a folder.
 #[track_caller]
-fn refusal_in(path: &Path, folder: &Path) -> String {
+pub(super) fn refusal_in(path: &Path, folder: &Path) -> String {
     let out = folder.join("out");
     let path = path.display().to_string();
     let checked = run(coordinator(["check", &path])).refusal();

@@ -18,9 +18,10 @@ use rand::{RngExt, SeedableRng};
 use scm::spatial::History;
 use shared::channel::Channel;
 use shared::experiment::{CONDITION_COLUMNS, Experiment, NoiseSd, Scatter, ScatterSd, TestRun};
-use shared::file::{FileError, number, parse_toml, read_beside, read_text};
+use shared::file::{FileError, number, parse_toml};
 use shared::model::{EffectSet, ModelSettings, ModelVariant};
 use shared::outcome::{Observables, Outcome};
+use shared::text_file::{read_beside, read_text};
 
 use crate::config::Simulate;
 use crate::model::{CompiledBevameter, CompiledVariant, without_action};

@@ -6,8 +6,9 @@ use formula::catalogue::catalogue;
 use job::JobFile;
 use shared::exchange::{ExchangeRequest, PROTOCOL_VERSION, WorkResult};
 use shared::experiment::Experiment;
-use shared::file::{FileError, FileSet, read_beside, read_text, sibling};
+use shared::file::{FileError, FileSet};
 use shared::outcome::{Fault, Observables, Outcome};
+use shared::text_file::{read_beside, read_text, sibling};
 
 /// A job with its experiment, and every file that they name.
 #[derive(Debug, Clone)]

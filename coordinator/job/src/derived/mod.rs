@@ -1,6 +1,7 @@
 //! The jobs that follow from a job: point estimates beside it, the search of its model, extensions of it, effects of
-//! a service's catalogue as its files; and the experiment in which typical values stand for what it leaves unsaid.
+//! a service's catalogue as its files, answers to questions; and the experiment in which typical values stand for what it leaves unsaid.
 
+pub(crate) mod accepting_job;
 pub(crate) mod assumed_experiment;
 pub(crate) mod discovery_job;
 pub(crate) mod extended_job;

@@ -269,6 +269,10 @@ fn runs(calibration: &FinishedCalibration, usage: RunUse) -> usize {
 /// The limits of the model, and what is not as in the source paper.
 pub(super) fn notes(calibration: &FinishedCalibration) -> Vec<String> {
     let mut notes = Vec::new();
+    let accepted = calibration.spec.accepted.join(", ");
+    if !accepted.is_empty() {
+        notes.push(format!("What looks odd was accepted as meant: {accepted}."));
+    }
     // where grousers are declared, the notes of the job name their wheels
     let quasi_static = calibration.spec.model.kind == ModelKind::QuasiStatic;
     if quasi_static

@@ -2,6 +2,7 @@
 
 mod file;
 mod names;
+mod neutral;
 mod place;
 
 use crate::evaluation::program::Program;

@@ -20,7 +20,8 @@ use std::path::Path;
 pub use error::MeshError;
 pub use surface::{MOST_TRIANGLES, WheelMesh};
 
-use crate::file::{FileError, read_text};
+use crate::file::FileError;
+use crate::text_file::read_text;
 
 /// Largest file; the service accepts bodies of 64 MiB.
 pub const MOST_BYTES: usize = 48 << 20;

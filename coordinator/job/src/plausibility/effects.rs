@@ -1,0 +1,14 @@
+//! Effects that act where they should not.
+
+use shared::model::EffectSet;
+
+use super::question::{NEUTRAL, Question};
+use crate::Spec;
+
+/// The first effect of the model that changes something at its neutral value.
+pub(super) fn questions(spec: &Spec) -> Option<Question> {
+    // What was read once is read again.
+    let effects = EffectSet::read(&spec.fit_variant.effects).unwrap_or_default();
+    let words = effects.iter().find_map(|effect| effect.change_at_neutral())?;
+    Some(Question::new(NEUTRAL, words))
+}

@@ -1,0 +1,169 @@
+//! Measurements and noise against each other, and against load and wheel.
+
+use shared::channel::Channel;
+use shared::experiment::{Experiment, NoiseSd, TestRun};
+use shared::limit::{self, number};
+use shared::parameters::noise_parameter;
+
+use super::question::{DATA_FEW, Question, SLIP_ANGLE};
+use crate::Spec;
+
+/// No soil gives a pull beyond this share of the load, no rig measures only one below.
+const PULL: [f64; 2] = [1e-3, 2.0];
+/// The same of the torque, in shares of load times radius.
+const TORQUE: [f64; 2] = [1e-4, 3.0];
+/// A wheel that sinks deeper than this share of its radius has its axle near the ground.
+const SINKAGE: f64 = 0.9;
+/// The radius that a rig computes with is that of the rim, or of the tips of its grousers.
+const RIG_RADIUS: [f64; 2] = [0.7, 1.5];
+/// A noise sd beyond this many times the largest measurement makes the channel say nothing; below it, no sensor is so good.
+const NOISE: [f64; 2] = [1e-6, 10.0];
+
+pub(super) fn questions(spec: &Spec) -> Vec<Question> {
+    let experiment = &spec.experiment;
+    let mut questions = Vec::new();
+    let load_and_arm = |run: &TestRun| run.wheel_load_n * experiment.wheels[&run.wheel].radius_m;
+    questions.extend(share(
+        experiment,
+        Channel::DrawbarPull,
+        PULL,
+        "wheel loads",
+        |run| run.wheel_load_n,
+    ));
+    questions.extend(share(
+        experiment,
+        Channel::Torque,
+        TORQUE,
+        "load times radius",
+        load_and_arm,
+    ));
+    questions.extend(sinkage(experiment));
+    questions.extend(rig_radius(experiment));
+    questions.extend(slip_angle(experiment));
+    for channel in Channel::ALL {
+        questions.extend(noise(experiment, channel));
+    }
+    let (data, free) = (spec.likelihood.data().len(), spec.parameters.len());
+    if data < free {
+        let words =
+            format!("{data} fitted measurements for {free} free parameters: the priors decide the rest");
+        questions.push(Question::new(DATA_FEW, words));
+    }
+    questions
+}
+
+/// The largest size of a channel over a scale that it should be of the order of.
+fn share(
+    experiment: &Experiment,
+    channel: Channel,
+    [least, most]: [f64; 2],
+    scale_words: &str,
+    scale: impl Fn(&TestRun) -> f64,
+) -> Option<Question> {
+    // Where the load itself is odd, nothing can be held against it.
+    let has_odd_load = |run: &TestRun| limit::of("wheel_load_n")?.unusual(run.wheel_load_n);
+    let judged = experiment.runs.iter().filter(|run| has_odd_load(run).is_none());
+    let sizes = judged.filter_map(|run| {
+        let value = run.measured[channel.index()]?;
+        Some((run, value, value.abs() / scale(run)))
+    });
+    let (run, value, size) = sizes.max_by(|a, b| a.2.total_cmp(&b.2))?;
+    let (what, units) = match size {
+        size if size > most => (
+            "is",
+            match channel {
+                Channel::Torque => "N mm or N cm",
+                _ => "another unit",
+            },
+        ),
+        // All readings of a channel may be zero, as those of a free-rolling wheel.
+        size if size < least && size > 0.0 => (
+            "is the largest, and only",
+            match channel {
+                Channel::Torque => "kN m",
+                _ => "kN",
+            },
+        ),
+        _ => return None,
+    };
+    let words = format!(
+        "{} {} {} of run {} {what} {} {scale_words}: was it typed in {units}?",
+        channel.column(),
+        number(value),
+        channel.unit(),
+        run.name,
+        number(size)
+    );
+    Some(Question::new(channel.column(), words))
+}
+
+/// A wheel that has nearly disappeared.
+fn sinkage(experiment: &Experiment) -> Option<Question> {
+    let sizes = experiment.runs.iter().filter_map(|run| {
+        let sinkage_m = run.measured[Channel::Sinkage.index()]?;
+        Some((
+            run,
+            sinkage_m,
+            sinkage_m.abs() / experiment.wheels[&run.wheel].radius_m,
+        ))
+    });
+    let (run, sinkage_m, size) = sizes.max_by(|a, b| a.2.total_cmp(&b.2))?;
+    let words = format!(
+        "sinkage_m {} m of run {} is {} radii of its wheel: was it typed in mm or cm?",
+        number(sinkage_m),
+        run.name,
+        number(size)
+    );
+    (size > SINKAGE).then(|| Question::new(Channel::Sinkage.column(), words))
+}
+
+/// A radius of the rig that is hardly that of its wheel.
+fn rig_radius(experiment: &Experiment) -> Option<Question> {
+    let [least, most] = RIG_RADIUS;
+    experiment.wheels.iter().find_map(|(name, wheel)| {
+        let ratio = wheel.rig_radius_m / wheel.radius_m;
+        let words = format!(
+            "rig_radius_m {} m of wheel {name} is {} times its radius_m {} m: was it a diameter, or typed in another unit?",
+            number(wheel.rig_radius_m),
+            number(ratio),
+            number(wheel.radius_m)
+        );
+        (!(least..=most).contains(&ratio)).then(|| Question::new("rig_radius_m", words))
+    })
+}
+
+/// Slip angles that would all be right angles or less in radians.
+fn slip_angle(experiment: &Experiment) -> Option<Question> {
+    let angles = experiment.runs.iter().map(|run| run.slip_angle_deg.abs());
+    let largest = angles.reduce(f64::max)?;
+    let words = format!(
+        "the largest slip_angle_deg is {} deg: was it typed in rad ({} deg)?",
+        number(largest),
+        number(largest.to_degrees())
+    );
+    let in_radians = largest > 0.0 && largest <= std::f64::consts::FRAC_PI_2;
+    in_radians.then(|| Question::new(SLIP_ANGLE, words))
+}
+
+/// A noise sd against the largest measurement of its channel.
+fn noise(experiment: &Experiment, channel: Channel) -> Option<Question> {
+    let Some(NoiseSd::Known(sd)) = experiment.noise.sd[channel.index()] else {
+        return None;
+    };
+    let values = experiment
+        .runs
+        .iter()
+        .filter_map(|run| run.measured[channel.index()]);
+    let largest = values.map(f64::abs).reduce(f64::max)?;
+    let ratio = sd / largest;
+    let [least, most] = NOISE;
+    let words = format!(
+        "[noise] {} {} {} is {} times the largest measurement: was it typed in another unit?",
+        channel.column(),
+        number(sd),
+        channel.unit(),
+        number(ratio)
+    );
+    (largest > 0.0 && !(least..=most).contains(&ratio))
+        .then(|| Question::new(noise_parameter(channel), words))
+}

@@ -1,0 +1,72 @@
+//! A question, and how it is answered.
+
+use shared::channel::Channel;
+use shared::file::unknown_word;
+use shared::limit::LIMITS;
+use shared::parameters::noise_parameter;
+
+/// The question of a calibration with fewer fitted data than parameters.
+pub(super) const DATA_FEW: &str = "data_few";
+/// The question of an effect's neutral value.
+pub(super) const NEUTRAL: &str = "neutral";
+/// The question of slip angles.
+pub(super) const SLIP_ANGLE: &str = "slip_angle_deg";
+
+/// Something that is possible, but was probably not meant.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Question {
+    /// What it is about: the name by which it is accepted.
+    pub name: String,
+    /// What is odd, with place, value, unit and bound.
+    pub words: String,
+}
+
+impl Question {
+    pub(super) fn new(name: impl Into<String>, words: String) -> Question {
+        let name = name.into();
+        Question { name, words }
+    }
+
+    /// Whether there is a question of this name.
+    ///
+    /// # Errors
+    /// The sentence with the nearest name.
+    pub(crate) fn check_name(name: &str) -> Result<(), String> {
+        let noise = Channel::ALL.map(noise_parameter);
+        let measured = Channel::ALL.map(Channel::column);
+        let known: Vec<&str> = LIMITS
+            .iter()
+            .map(|limit| limit.name)
+            .chain(noise.iter().map(String::as_str))
+            .chain(measured)
+            .chain([DATA_FEW, NEUTRAL, SLIP_ANGLE])
+            .collect();
+        match known.contains(&name) {
+            true => Ok(()),
+            false => Err(unknown_word("name under accept", name, known)),
+        }
+    }
+}
+
+/// The questions that are still to be answered, at least one.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}; correct this, or accept it as meant: {}", self.words(), self.how())]
+pub struct Unanswered(pub Vec<Question>);
+
+impl Unanswered {
+    fn words(&self) -> String {
+        let each = self.0.iter().map(|question| question.words.as_str());
+        each.collect::<Vec<_>>().join("; ")
+    }
+
+    fn how(&self) -> String {
+        let names = || self.0.iter().map(|question| question.name.as_str());
+        let flags: Vec<String> = names().map(|name| format!("--accept {name}")).collect();
+        let list: Vec<String> = names().map(|name| format!("\"{name}\"")).collect();
+        format!(
+            "{}, or accept = [{}] in the job",
+            flags.join(" "),
+            list.join(", ")
+        )
+    }
+}

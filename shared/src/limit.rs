@@ -1,0 +1,232 @@
+//! Which values a quantity can have and which are usual: what lies outside was mostly typed in another unit.
+//!
+//! Bounds are wide: wheels from a pebble's to a mining truck's, soils from regolith to clay, gravity from an asteroid's to a centrifuge's.
+//! They say nothing of a soil; they tell a number in kN from one in N.
+
+/// The bounds of a quantity.
+#[derive(Debug)]
+pub struct Limit {
+    /// Column of a file, key of a table, or parameter.
+    pub name: &'static str,
+    unit: &'static str,
+    /// No rig has a value outside.
+    possible: [f64; 2],
+    /// A value outside is asked about.
+    usual: [f64; 2],
+    /// Units that are often typed instead, with their size in that of the quantity.
+    mistaken: &'static [(&'static str, f64)],
+}
+
+const LENGTHS: &[(&str, f64)] = &[("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254)];
+const ANGLES: &[(&str, f64)] = &[("rad", 180.0 / std::f64::consts::PI)];
+
+const fn limit(
+    name: &'static str,
+    unit: &'static str,
+    possible: [f64; 2],
+    usual: [f64; 2],
+    mistaken: &'static [(&'static str, f64)],
+) -> Limit {
+    Limit {
+        name,
+        unit,
+        possible,
+        usual,
+        mistaken,
+    }
+}
+
+const ANY: f64 = f64::INFINITY;
+
+/// Every quantity that has limits.
+pub const LIMITS: [Limit; 23] = [
+    limit(
+        "wheel_load_n",
+        "N",
+        [0.0, 1e7],
+        [1.0, 2e4],
+        &[("kN", 1e3), ("g", 9.81e-3), ("kg", 9.81)],
+    ),
+    limit(
+        "sled_speed_m_s",
+        "m/s",
+        [0.0, 1e3],
+        [1e-4, 2.0],
+        &[("mm/s", 1e-3), ("cm/s", 1e-2), ("km/s", 1e3)],
+    ),
+    limit("slip", "1", [-1.0, 1.0], [-1.0, 1.0], &[("per cent", 1e-2)]),
+    limit("radius_m", "m", [0.0, 10.0], [0.01, 1.0], LENGTHS),
+    limit("width_m", "m", [0.0, 10.0], [0.003, 1.0], LENGTHS),
+    limit("rig_radius_m", "m", [0.0, 10.0], [0.01, 1.0], LENGTHS),
+    limit("wheel_radius_m", "m", [0.0, 100.0], [0.01, 1.0], LENGTHS),
+    limit("grouser_height_m", "m", [0.0, 1.0], [0.0, 0.1], LENGTHS),
+    limit("grouser_thickness_m", "m", [0.0, 1.0], [0.0, 0.1], LENGTHS),
+    limit(
+        "gravity_m_s2",
+        "m/s^2",
+        [0.0, 3e3],
+        [0.1, 30.0],
+        &[("cm/s^2", 1e-2)],
+    ),
+    limit("bin_length_m", "m", [0.0, 1e4], [0.1, 100.0], LENGTHS),
+    limit(
+        "density_kg_m3",
+        "kg/m^3",
+        [0.0, 2.5e4],
+        [200.0, 5e3],
+        &[("g/cm^3", 1e3)],
+    ),
+    limit("repose_angle_deg", "deg", [0.0, 90.0], [10.0, 60.0], ANGLES),
+    limit("plate_radius_m", "m", [0.0, 1.0], [0.005, 0.5], LENGTHS),
+    limit(
+        "pressure_pa",
+        "Pa",
+        [-1e9, 1e9],
+        [-1e4, 1e7],
+        &[("MPa", 1e6), ("kPa", 1e3)],
+    ),
+    limit("friction_angle_deg", "deg", [0.0, 89.0], [8.0, 60.0], ANGLES),
+    limit("cohesion_pa", "Pa", [0.0, ANY], [0.0, 1e5], &[]),
+    limit("log10_p_ref", "log10 Pa", [-3.0, 12.0], [1.0, 7.0], &[]),
+    limit("n", "1", [0.01, 10.0], [0.1, 3.0], &[]),
+    limit(
+        "shear_velocity_m_s",
+        "m/s",
+        [0.0, ANY],
+        [0.0, 1.0],
+        &[("mm/s", 1e-3)],
+    ),
+    limit("dem_spacing_m", "m", [0.0, 1.0], [2e-4, 0.05], LENGTHS),
+    limit("travel_step_m", "m", [0.0, 1.0], [1e-6, 0.02], LENGTHS),
+    limit("steady_travel_m", "m", [0.0, 1e4], [0.01, 100.0], LENGTHS),
+];
+
+/// The limits of a quantity by its name.
+pub fn of(name: &str) -> Option<&'static Limit> {
+    LIMITS.iter().find(|limit| limit.name == name)
+}
+
+/// What is wrong with a value that no rig has: `125 m must be at most 10 m: was it typed in mm (0.125 m)?`.
+pub fn impossible(name: &str, value: f64) -> Option<String> {
+    let limit = of(name)?;
+    let outside = limit.outside(limit.possible, value)?;
+    Some(format!("{outside}{}", limit.question(value)))
+}
+
+impl Limit {
+    /// What is odd about a value: `0.06 N must be at least 1 N …`; none of a usual one.
+    pub fn unusual(&self, value: f64) -> Option<String> {
+        let [least, most] = self.usual;
+        let side = match value {
+            value if value < least => format!("below {}", self.amount(least)),
+            value if value > most => format!("above {}", self.amount(most)),
+            _ => return None,
+        };
+        Some(format!(
+            "{} is {side}{}",
+            self.amount(value),
+            self.question(value)
+        ))
+    }
+
+    /// Whether any value between two is usual.
+    pub fn is_usual_within(&self, low: f64, high: f64) -> bool {
+        let [least, most] = self.usual;
+        low <= most && high >= least
+    }
+
+    fn outside(&self, [least, most]: [f64; 2], value: f64) -> Option<String> {
+        let bound = match value {
+            value if value < least => format!("at least {}", self.amount(least)),
+            value if value > most => format!("at most {}", self.amount(most)),
+            _ => return None,
+        };
+        Some(format!("{} must be {bound}", self.amount(value)))
+    }
+
+    fn amount(&self, value: f64) -> String {
+        match self.unit {
+            "1" => number(value),
+            unit => format!("{} {unit}", number(value)),
+        }
+    }
+
+    /// The units that were probably typed: those in which the value is a usual one.
+    fn question(&self, value: f64) -> String {
+        let [least, most] = self.usual;
+        let typed: Vec<String> = self
+            .mistaken
+            .iter()
+            .filter(|(_, size)| (least..=most).contains(&(value * size)))
+            .map(|(unit, size)| format!("{unit} ({})", self.amount(value * size)))
+            .collect();
+        match typed.is_empty() {
+            true => String::new(),
+            false => format!(": was it typed in {}?", typed.join(" or ")),
+        }
+    }
+}
+
+/// A number with at most six figures, without an exponent where it is short.
+pub fn number(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    match rounded.abs() {
+        0.0 => "0".into(),
+        size if (1e-6..1e7).contains(&size) => format!("{rounded}"),
+        _ => format!("{rounded:e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_in_another_unit_is_asked_about_in_it() {
+        let unusual = |name: &str, value: f64| of(name).unwrap().unusual(value);
+        for (name, value, question) in [
+            (
+                "wheel_load_n",
+                0.06,
+                "0.06 N is below 1 N: was it typed in kN (60 N)?",
+            ),
+            (
+                "wheel_load_n",
+                60_000.0,
+                "60000 N is above 20000 N: was it typed in g (588.6 N)?",
+            ),
+            (
+                "sled_speed_m_s",
+                9.5,
+                "9.5 m/s is above 2 m/s: was it typed in mm/s (0.0095 m/s) or cm/s (0.095 m/s)?",
+            ),
+            (
+                "friction_angle_deg",
+                0.52,
+                "0.52 deg is below 8 deg: was it typed in rad (29.7938 deg)?",
+            ),
+            ("cohesion_pa", 2e10, "2e10 Pa is above 100000 Pa"),
+        ] {
+            assert_eq!(unusual(name, value).unwrap(), question);
+        }
+        assert_eq!(unusual("wheel_load_n", 60.0), None);
+        assert_eq!(
+            impossible("radius_m", 125.0).unwrap(),
+            "125 m must be at most 10 m: was it typed in mm (0.125 m)?"
+        );
+        assert_eq!(
+            impossible("dem_spacing_m", 1e300).unwrap(),
+            "1e300 m must be at most 1 m"
+        );
+        assert_eq!(impossible("nobody_knows_it", 1e300), None);
+    }
+
+    #[test]
+    fn what_is_usual_is_possible() {
+        for (place, limit) in LIMITS.iter().enumerate() {
+            let ([least, most], [low, high]) = (limit.possible, limit.usual);
+            assert!(least <= low && low < high && high <= most, "{}", limit.name);
+            assert!(LIMITS[..place].iter().all(|other| other.name != limit.name));
+        }
+    }
+}
