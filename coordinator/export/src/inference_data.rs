@@ -17,12 +17,12 @@ pub struct InferenceData {
     /// What is said of the whole: calibration, model, evidence.
     pub attrs: BTreeMap<String, String>,
     /// The groups.
-    pub groups: Vec<Group>,
+    pub groups: Vec<VariableGroup>,
 }
 
 /// Variables that belong together.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Group {
+pub struct VariableGroup {
     /// Its name, as `posterior`.
     pub name: String,
     /// The labels of its dimensions.
@@ -31,7 +31,7 @@ pub struct Group {
     pub data_vars: Vec<Variable>,
 }
 
-impl Group {
+impl VariableGroup {
     /// Labels and variables.
     pub fn variables(&self) -> impl Iterator<Item = &Variable> {
         self.coords.iter().chain(&self.data_vars)
@@ -43,7 +43,7 @@ impl InferenceData {
     ///
     /// # Errors
     /// [`ExportError::Group`].
-    pub fn group(&self, name: &'static str) -> Result<&Group, ExportError> {
+    pub fn group(&self, name: &'static str) -> Result<&VariableGroup, ExportError> {
         let found = self.groups.iter().find(|group| group.name == name);
         found.ok_or(ExportError::Group(name))
     }
@@ -53,7 +53,7 @@ impl InferenceData {
     /// # Errors
     /// [`ExportError::Shape`].
     pub fn check(&self) -> Result<(), ExportError> {
-        let mut variables = self.groups.iter().flat_map(Group::variables);
+        let mut variables = self.groups.iter().flat_map(VariableGroup::variables);
         variables.try_for_each(Variable::check)
     }
 }

@@ -20,5 +20,5 @@ mod variable;
 pub use content::inference_data;
 pub use draw_table::DrawTable;
 pub use error::ExportError;
-pub use inference_data::{Group, InferenceData};
+pub use inference_data::{InferenceData, VariableGroup};
 pub use variable::{Values, Variable};

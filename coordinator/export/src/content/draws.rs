@@ -3,7 +3,7 @@
 use record::{Sample, StageRow};
 use result::FinishedCalibration;
 
-use crate::inference_data::Group;
+use crate::inference_data::VariableGroup;
 use crate::variable::{Values, Variable};
 
 /// Chains of a population: its draws are exchangeable.
@@ -27,7 +27,7 @@ fn parameters<'a>(
     name: &str,
     calibration: &FinishedCalibration,
     draws: impl ExactSizeIterator<Item = &'a [f64]> + Clone,
-) -> Group {
+) -> VariableGroup {
     let count = draws.len();
     let parameters = calibration.spec.parameters.iter().enumerate();
     let variable = |(k, parameter): (usize, &job::FreeParameter)| {
@@ -35,7 +35,7 @@ fn parameters<'a>(
         let dims = [("chain", CHAINS), ("draw", count)];
         Variable::new(&parameter.name, &dims, &parameter.unit, "", Values::Real(values))
     };
-    Group {
+    VariableGroup {
         name: name.to_owned(),
         coords: draw_labels(numbers(count)),
         data_vars: parameters.map(variable).collect(),
@@ -43,19 +43,19 @@ fn parameters<'a>(
 }
 
 /// The equally weighted draws of the posterior.
-pub(super) fn posterior(calibration: &FinishedCalibration) -> Group {
+pub(super) fn posterior(calibration: &FinishedCalibration) -> VariableGroup {
     let draws = calibration.posterior.iter().map(|sample| sample.theta.as_slice());
     parameters("posterior", calibration, draws)
 }
 
 /// The draws from the prior that the sampler began with; none of a normal approximation.
-pub(super) fn prior(calibration: &FinishedCalibration) -> Group {
+pub(super) fn prior(calibration: &FinishedCalibration) -> VariableGroup {
     let draws = calibration.prior_draws.iter().map(|draw| draw.theta.as_slice());
     parameters("prior", calibration, draws)
 }
 
 /// The density of each draw, and the stages of the sampler.
-pub(super) fn sample_stats(calibration: &FinishedCalibration) -> Group {
+pub(super) fn sample_stats(calibration: &FinishedCalibration) -> VariableGroup {
     let draws = &calibration.posterior;
     let dims = [("chain", CHAINS), ("draw", draws.len())];
     let of_draw = |name: &str, meaning: &str, value: &dyn Fn(&Sample) -> f64| {
@@ -72,7 +72,7 @@ pub(super) fn sample_stats(calibration: &FinishedCalibration) -> Group {
     let mut coords = draw_labels(numbers(draws.len()));
     let stage_numbers = stages.iter().map(|stage| i64::from(stage.stage)).collect();
     coords.push(Variable::labels("stage", Values::Whole(stage_numbers)));
-    Group {
+    VariableGroup {
         name: "sample_stats".to_owned(),
         coords,
         data_vars: vec![

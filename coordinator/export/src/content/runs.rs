@@ -9,7 +9,7 @@ use statistics::ErrorLaw;
 use statistics::rng::Stream;
 
 use super::draws::{draw_labels, numbers};
-use crate::inference_data::Group;
+use crate::inference_data::VariableGroup;
 use crate::variable::{Values, Variable};
 
 /// The name that measured values, their predictions and their log-likelihoods share.
@@ -78,7 +78,11 @@ impl<'a> Part<'a> {
     }
 
     /// Variables over the simulated draws, runs and channels.
-    fn over_draws<const N: usize>(&self, group: &str, variables: [(&str, &str, Vec<f64>); N]) -> Group {
+    fn over_draws<const N: usize>(
+        &self,
+        group: &str,
+        variables: [(&str, &str, Vec<f64>); N],
+    ) -> VariableGroup {
         let draws = self.calibration.predictive_draws();
         let [run, channel] = self.dims();
         let dims = [("chain", 1), ("draw", draws.len()), run, channel];
@@ -87,7 +91,7 @@ impl<'a> Part<'a> {
         let variable = |(name, meaning, values): (&str, &str, Vec<f64>)| {
             Variable::new(name, &dims, "", meaning, Values::Real(values))
         };
-        Group {
+        VariableGroup {
             name: group.to_owned(),
             coords,
             data_vars: variables.map(variable).into(),
@@ -95,7 +99,7 @@ impl<'a> Part<'a> {
     }
 
     /// What the model says, and new measurements with the errors that the calibration found; NaN where it rejects a draw.
-    pub(super) fn predictive(&self, group: &str) -> Group {
+    pub(super) fn predictive(&self, group: &str) -> VariableGroup {
         let law = self.calibration.spec.likelihood.law();
         let seed = self.calibration.spec.algorithm.seed();
         let new = NewMeasurements::of(self.calibration);
@@ -125,7 +129,7 @@ impl<'a> Part<'a> {
     }
 
     /// The log-density of each fitted measurement by itself.
-    pub(super) fn log_likelihood(&self) -> Group {
+    pub(super) fn log_likelihood(&self) -> VariableGroup {
         let spec = &self.calibration.spec;
         let mut values = Vec::new();
         for draw in self.calibration.predictive_draws() {
@@ -154,14 +158,14 @@ impl<'a> Part<'a> {
     }
 
     /// What was measured; NaN where nothing was.
-    pub(super) fn measured(&self, group: &str) -> Group {
+    pub(super) fn measured(&self, group: &str) -> VariableGroup {
         let of_run = |run: &&TestRun| -> Vec<f64> {
             let value = |channel: &Channel| run.measured[channel.index()].unwrap_or(f64::NAN);
             self.channels.iter().map(value).collect()
         };
         let values = self.runs.iter().flat_map(of_run).collect();
         let meaning = "measured value, in the unit of the channel";
-        Group {
+        VariableGroup {
             name: group.to_owned(),
             coords: self.labels(),
             data_vars: vec![Variable::new(
@@ -175,7 +179,7 @@ impl<'a> Part<'a> {
     }
 
     /// What the rig was set to.
-    pub(super) fn conditions(&self, group: &str) -> Group {
+    pub(super) fn conditions(&self, group: &str) -> VariableGroup {
         let [run, channel] = self.dims();
         let real = |name: &str, unit: &str, of: fn(&TestRun) -> f64| {
             let values = self.runs.iter().map(|run| of(run)).collect();
@@ -184,7 +188,7 @@ impl<'a> Part<'a> {
         let text = |name: &str, values| Variable::new(name, &[run], "", "", Values::Text(values));
         let passes = self.runs.iter().map(|run| i64::from(run.pass)).collect();
         let units = self.channels.iter().map(|channel| channel.unit().to_owned());
-        Group {
+        VariableGroup {
             name: group.to_owned(),
             coords: self.labels(),
             data_vars: vec![

@@ -196,13 +196,13 @@ fn pad(bytes: &mut Vec<u8>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inference_data::Group;
+    use crate::inference_data::VariableGroup;
 
     #[test]
     fn a_file_has_the_bytes_of_the_specification() {
         let data = InferenceData {
             attrs: BTreeMap::new(),
-            groups: vec![Group {
+            groups: vec![VariableGroup {
                 name: "g".into(),
                 coords: vec![Variable::labels("d", Values::Whole(vec![7]))],
                 data_vars: vec![Variable::new("e", &[("d", 0)], "", "", Values::Real(vec![]))],

@@ -113,14 +113,14 @@ fn length(count: usize) -> Result<[u8; 4], ExportError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inference_data::Group;
+    use crate::inference_data::VariableGroup;
 
     #[test]
     fn values_stand_in_one_chunk_behind_their_metadata() {
         let dims = [("chain", 1), ("draw", 2)];
         let data = InferenceData {
             attrs: BTreeMap::from([("name".into(), "sand".into())]),
-            groups: vec![Group {
+            groups: vec![VariableGroup {
                 name: "posterior".into(),
                 coords: vec![Variable::labels(
                     "run",

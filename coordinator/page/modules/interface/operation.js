@@ -2,7 +2,7 @@
 
 import { html, useState } from "../html.js";
 import { Table } from "../part/table.js";
-import { Kind, Words } from "./text.js";
+import { Json, Kind, Words } from "./text.js";
 import { Trial } from "./trial.js";
 
 const kindOf = (/** @type {any} */ parameter) => (parameter.in === "path" ? "in the path" : `in the query${parameter.required ? "" : ", optional"}`);
@@ -17,7 +17,7 @@ const Parameters = ({ parameters, label }) => html`
 const Body = ({ body }) => Object.entries(body.content).map(([type, content]) => html`
   <h4>Body</h4>
   <p><code>${type}</code>: <${Kind} of=${content.schema} /></p>
-  ${content.example && html`<pre tabindex="0" aria-label="an example of the body">${JSON.stringify(content.example, null, 2)}</pre>`}`);
+  ${content.example && html`<pre tabindex="0" aria-label="an example of the body"><${Json} text=${JSON.stringify(content.example, null, 2)} /></pre>`}`);
 
 /** What an answer holds. */
 const held = (/** @type {any} */ response) => Object.entries(response.content ?? {}).map(([type, { schema }], k) => html`

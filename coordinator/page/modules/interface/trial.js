@@ -5,6 +5,7 @@ import { Failure } from "../part/message.js";
 import { request } from "../rest/answers.js";
 import { token } from "../rest/token.js";
 import { curl, filled } from "./document.js";
+import { Json } from "./text.js";
 
 /** So much of an answer is shown. */
 const MOST_CHARACTERS = 20_000;
@@ -48,6 +49,6 @@ export function Trial({ operation }) {
       <${Failure} error=${state.error} />
       ${state.answer && html`
         <p class="note" role="status">${state.answer.status} after ${state.answer.ms} ms, ${state.answer.text.length} characters</p>
-        <pre class="answer" tabindex="0" aria-label="the answer">${state.answer.text.slice(0, MOST_CHARACTERS)}${state.answer.text.length > MOST_CHARACTERS && "\n…"}</pre>`}
+        <pre class="answer" tabindex="0" aria-label="the answer"><${Json} text=${state.answer.text.slice(0, MOST_CHARACTERS)} />${state.answer.text.length > MOST_CHARACTERS && "\n…"}</pre>`}
     </form>`;
 }
