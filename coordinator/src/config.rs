@@ -6,6 +6,8 @@ use clap::{Args, Parser, Subcommand};
 use shared::bearer::{BearerToken, BearerTokenError};
 use tracing_subscriber::filter::{LevelFilter, Targets};
 
+use crate::embedded::WorkerConfig;
+
 /// Finds the physics that a wheel-soil model is missing.
 #[derive(Debug, Parser)]
 #[command(version, name = "coordinator")]
@@ -63,6 +65,9 @@ pub enum CoordinatorCommand {
     /// Add, list and revoke the tokens that a service asks for.
     #[command(subcommand)]
     Token(TokenCommand),
+    /// Do what the program `worker` does: serve a coordinator, or simulate.
+    #[command(args_conflicts_with_subcommands = true)]
+    Worker(WorkerConfig),
 }
 
 /// A job file and additional effects.
@@ -449,7 +454,9 @@ impl CoordinatorCommand {
     pub fn log_filter(&self) -> Targets {
         let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
         let (journal, of_workers) = match self {
-            CoordinatorCommand::Serve(_) => (LevelFilter::INFO, LevelFilter::INFO),
+            CoordinatorCommand::Serve(_) | CoordinatorCommand::Worker(_) => {
+                (LevelFilter::INFO, LevelFilter::INFO)
+            }
             _ => (LevelFilter::OFF, LevelFilter::WARN),
         };
         stated.unwrap_or_else(|| {

@@ -1,4 +1,4 @@
-//! Local workers in this process; the only place that knows the worker.
+//! Local workers in this process, and the program `worker` as a verb; the only place that knows the worker.
 
 use std::future::Future;
 use std::sync::Arc;
@@ -13,12 +13,23 @@ use worker::pull::{Coordinator, ExchangeError, PullSettings, run};
 
 use crate::farm::dispatch::Dispatcher;
 
+pub use worker::config::WorkerConfig;
+pub use worker::program::ProgramError as WorkerError;
+
 /// Whether this machine can run what was built; asked before anything else.
 ///
 /// # Errors
 /// A sentence that says how to build for this machine.
 pub fn check_processor() -> Result<(), String> {
     worker::processor::check().map_err(|e| e.to_string())
+}
+
+/// Does what the program `worker` does.
+///
+/// # Errors
+/// [`WorkerError`].
+pub async fn work(config: WorkerConfig) -> Result<(), WorkerError> {
+    worker::program::execute(config).await
 }
 
 /// The farm as a worker in the same process sees it.

@@ -7,6 +7,7 @@
 //! - [`client`]: HTTP client of the coordinator.
 //! - [`simulate`]: forward runs of an experiment without a coordinator.
 //! - [`processor`]: whether this machine can run what was built.
+//! - [`program`]: the command line, executed.
 //! - [`config`]: command line and environment.
 
 pub mod client;
@@ -14,6 +15,7 @@ pub mod config;
 pub mod evaluator;
 pub mod model;
 pub mod processor;
+pub mod program;
 pub mod pull;
 pub mod simulate;
 

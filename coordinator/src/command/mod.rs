@@ -48,5 +48,6 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Delete(study) => verbs::delete(&study).await,
         CoordinatorCommand::Backup(config) => backup::backup(&config).await,
         CoordinatorCommand::Token(command) => token::token(&command).await,
+        CoordinatorCommand::Worker(config) => Ok(crate::embedded::work(config).await?),
     }
 }
