@@ -66,7 +66,7 @@ pub enum CoordinatorCommand {
     #[command(subcommand)]
     Token(TokenCommand),
     /// Do what the program `worker` does: serve a coordinator, or simulate.
-    #[command(args_conflicts_with_subcommands = true)]
+    #[command(display_name = "worker", args_conflicts_with_subcommands = true)]
     Worker(WorkerConfig),
 }
 

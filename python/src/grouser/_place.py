@@ -1,0 +1,125 @@
+"""Where studies are kept: at a service, or in the output folder of a run."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from . import _program
+from ._client import Client
+from ._progress import OnProgress, of_line
+
+Query = str | int | bool | None
+
+
+class ServicePlace:
+    """A service: it computes on its own, and requests return at once."""
+
+    #: Whether a request that makes a study grow returns before the study is over.
+    is_remote = True
+
+    def __init__(self, client: Client) -> None:
+        self.client = client
+
+    def get(self, path: str, **query: Query) -> Any:
+        return self.client.get(path, **query)
+
+    def text(self, path: str, **query: Query) -> str:
+        return self.client.text(path, **query)
+
+    def extend(
+        self, calibration: int, effect: str | None, effect_file: Path | None, wheel: str | None, tell: OnProgress | None
+    ) -> None:
+        body: dict[str, Any] = {"effect": effect, "wheel": wheel}
+        if effect_file is not None:
+            body = {"effect_file": {"name": effect_file.name, "text": effect_file.read_text(encoding="utf-8")}}
+        self.client.post(f"calibrations/{calibration}/extend", {k: v for k, v in body.items() if v is not None})
+
+    def discover(self, calibration: int, tell: OnProgress | None) -> None:
+        self.client.post(f"calibrations/{calibration}/discovery")
+
+    def add_runs(self, study: int, calibration: int, runs: str, tell: OnProgress | None) -> None:
+        self.client.post(f"studies/{study}/runs", {"runs": runs, "calibration": calibration})
+
+    def __str__(self) -> str:
+        return self.client.url
+
+
+class FolderPlace:
+    """The folder of a run: read through a service of its own, worked on by the program's verbs."""
+
+    is_remote = False
+
+    def __init__(self, folder: Path, local_workers: int | None = None) -> None:
+        self.folder = folder
+        self.local_workers = local_workers
+        self._service: _program.FolderService | None = None
+        self._client: Client | None = None
+
+    @property
+    def client(self) -> Client:
+        if self._client is None:
+            self._service = _program.FolderService(self.folder)
+            self._client = Client(self._service.url)
+        return self._client
+
+    def get(self, path: str, **query: Query) -> Any:
+        return self.client.get(path, **query)
+
+    def text(self, path: str, **query: Query) -> str:
+        return self.client.text(path, **query)
+
+    def extend(
+        self, calibration: int, effect: str | None, effect_file: Path | None, wheel: str | None, tell: OnProgress | None
+    ) -> None:
+        what = ["--effect", effect] if effect is not None else ["--effect-file", str(effect_file)]
+        self._grow(["extend", str(calibration), *what, *(["--wheel", wheel] if wheel else [])], tell)
+
+    def discover(self, calibration: int, tell: OnProgress | None) -> None:
+        self._grow(["discover", str(calibration)], tell)
+
+    def add_runs(self, study: int, calibration: int, runs: str, tell: OnProgress | None) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "runs.csv"
+            file.write_text(runs, encoding="utf-8")
+            self._grow(["add-runs", str(calibration), str(file)], tell)
+
+    def _grow(self, arguments: list[str], tell: OnProgress | None) -> None:
+        # The next request starts a service that sees what is new.
+        self.close()
+        run(
+            [*arguments, "--out", os.fspath(self.folder)],
+            self.local_workers,
+            tell,
+        )
+
+    def close(self) -> None:
+        if self._service is not None:
+            self._service.close()
+        self._service = self._client = None
+
+    def __str__(self) -> str:
+        return str(self.folder)
+
+
+Place = ServicePlace | FolderPlace
+
+
+def run(arguments: list[str], local_workers: int | None, tell: OnProgress | None) -> str:
+    """Runs a verb that works in a folder, and returns what it prints.
+
+    Args:
+        arguments: verb and options.
+        local_workers: threads that simulate; by default, one per core.
+        tell: told how far the study has come.
+    """
+
+    def on_line(line: str) -> None:
+        progress = of_line(line)
+        if progress is not None and tell is not None:
+            tell(progress)
+
+    workers = [] if local_workers is None else ["--local-workers", str(local_workers)]
+    return _program.call([*arguments, *workers], on_line=on_line)

@@ -1,0 +1,80 @@
+"""A study at a service, for code that waits and for asyncio."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+
+import pytest
+
+import grouser
+from grouser import aio
+
+from .conftest import Asked, Served, changed_example
+
+
+@pytest.fixture(scope="module")
+def service(served: Served) -> grouser.Service:
+    return grouser.Service(served.url, token=served.token)
+
+
+def test_a_submitted_study_has_the_bits_of_a_run_and_grows(service: grouser.Service, served: Served, asked: Asked) -> None:
+    study = service.submit(asked.job)
+    seen = [progress.text for progress in study.watch()]
+    assert any("evaluations" in text for text in seen)
+    local = grouser.Study.load(asked.folder)
+    here, there = study.current.posterior(), local.current.posterior()
+    assert here.rows == there.rows and all((here[name] == there[name]).all() for name in there)
+    local.close()
+    assert study.missing_effect is not None and not study.missing_effect.is_added
+    extended = study.add(study.missing_effect, progress=False)
+    assert extended.state == "finished" and study.current.id == extended.id
+    again = grouser.Study.load(served.url, study.id, token=served.token)
+    assert again.ledger()["effects"].tolist() == ["base", "janosi_hanamoto"]
+    assert service.studies().where(id=study.id)["effects"].tolist() == ["janosi_hanamoto"]
+
+
+def test_the_coordinator_s_message_is_the_error_s(service: grouser.Service, served: Served) -> None:
+    with pytest.raises(grouser.ServiceError, match="token") as raised:
+        grouser.Service(served.url, token="wrong").studies()
+    assert (raised.value.kind, raised.value.status) == ("unauthorized", 401)
+    with pytest.raises(grouser.ServiceError, match=r"no answer from http://127\.0\.0\.1:9") as raised:
+        grouser.Service("http://127.0.0.1:9").studies()
+    assert raised.value.kind == "unreachable"
+    with pytest.raises(ValueError, match="not an http or https URL"):
+        grouser.Service("coordinator:7070")
+    assert "janosi_hanamoto" in service.effects()["name"]
+
+
+def test_waiting_ends_when_the_time_is_up_or_the_calibration_is_cancelled(service: grouser.Service, tmp_path: Path) -> None:
+    # Long enough that it is not over when it is cancelled.
+    job = changed_example(tmp_path, {"job.toml": {"seed = 1": "seed = 1\nparticles = 50000"}})
+    study = service.submit(job)
+    with pytest.raises(TimeoutError, match="not over after 0 s"):
+        study.wait(0.0, progress=False)
+    service._place.client.post(f"calibrations/{study.calibrations[0].id}/cancel")
+    with pytest.raises(grouser.CalibrationStopped, match="cancelled") as raised:
+        study.wait(progress=False)
+    assert raised.value.state == "cancelled"
+
+
+def test_coroutines_do_the_same_beside_other_work(served: Served, folder: Path, tmp_path: Path) -> None:
+    job = changed_example(tmp_path, {"job.toml": {"seed = 1": "seed = 1\nparticles = 50", '"auto"': '"off"'}})
+
+    async def both() -> None:
+        service = aio.Service(served.url, token=served.token)
+        # Two studies at a time: one at the service, one in a folder.
+        submitted, local = await asyncio.gather(service.submit(job), aio.Study.load(folder))
+        seen = [progress async for progress in submitted.watch()]
+        assert seen and submitted.state == "finished"
+        missing, none = await asyncio.gather(local.missing_effect(), submitted.missing_effect())
+        assert missing is not None and missing.name == "janosi_hanamoto" and none is None
+        posterior, comparison = await asyncio.gather(local.current.posterior(), submitted.current.comparison())
+        assert posterior.rows == 1000 and comparison.rows == 120
+        extended = await submitted.add(missing)
+        assert extended.effects == ("janosi_hanamoto",)
+        with pytest.raises(grouser.GrouserError, match="unknown effect"):
+            await local.add("no_such_effect")
+        local.close()
+
+    asyncio.run(both())
