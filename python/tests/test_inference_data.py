@@ -79,7 +79,7 @@ def test_arviz_reads_it(data: Any, tmp_path: Path) -> None:
 
 
 def test_what_cannot_be_made_exactly_is_left_out_with_the_reason(tmp_path: Path) -> None:
-    few = {'"auto"': '"off"', "seed = 1": 'seed = 1\nparticles = 50\n[likelihood]\nkind = "student_t"\n'}
+    few = {'"auto"': '"off"', "seed = 1": "seed = 1\nparticles = 50\n[likelihood]\ndiscrepancy = 1.0\n"}
     unknown = {"torque_n_m = 0.15": 'torque_n_m = "unknown"'}
     job = changed_example(tmp_path, {"job.toml": few, "experiment.toml": unknown})
     study = grouser.run(job, tmp_path / "out", progress=False)

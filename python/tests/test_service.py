@@ -46,35 +46,49 @@ def test_the_coordinator_s_message_is_the_error_s(service: grouser.Service, serv
     assert "janosi_hanamoto" in service.effects()["name"]
 
 
-def test_waiting_ends_when_the_time_is_up_or_the_calibration_is_cancelled(service: grouser.Service, tmp_path: Path) -> None:
-    # Long enough that it is not over when it is cancelled.
-    job = changed_example(tmp_path, {"job.toml": {"seed = 1": "seed = 1\nparticles = 50000"}})
-    study = service.submit(job)
+@pytest.fixture(scope="module")
+def long_job(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A job that is not over when it is cancelled."""
+    place = tmp_path_factory.mktemp("long")
+    return changed_example(place, {"job.toml": {"seed = 1": "seed = 1\nparticles = 50000"}})
+
+
+def cancel(study: grouser.Study) -> None:
+    """Cancels the first calibration."""
+    study._place.client.post(f"calibrations/{study.calibrations[0].id}/cancel")
+
+
+def test_waiting_ends_when_the_time_is_up_or_the_calibration_is_cancelled(service: grouser.Service, long_job: Path) -> None:
+    study = service.submit(long_job)
     with pytest.raises(TimeoutError, match="not over after 0 s"):
         study.wait(0.0, progress=False)
-    service._place.client.post(f"calibrations/{study.calibrations[0].id}/cancel")
+    cancel(study)
     with pytest.raises(grouser.CalibrationStopped, match="cancelled") as raised:
         study.wait(progress=False)
     assert raised.value.state == "cancelled"
 
 
-def test_coroutines_do_the_same_beside_other_work(served: Served, folder: Path, tmp_path: Path) -> None:
-    job = changed_example(tmp_path, {"job.toml": {"seed = 1": "seed = 1\nparticles = 50", '"auto"': '"off"'}})
-
+def test_coroutines_do_the_same_beside_other_work(served: Served, folder: Path, long_job: Path) -> None:
     async def both() -> None:
         service = aio.Service(served.url, token=served.token)
         # Two studies at a time: one at the service, one in a folder.
-        submitted, local = await asyncio.gather(service.submit(job), aio.Study.load(folder))
-        seen = [progress async for progress in submitted.watch()]
-        assert seen and submitted.state == "finished"
-        missing, none = await asyncio.gather(local.missing_effect(), submitted.missing_effect())
-        assert missing is not None and missing.name == "janosi_hanamoto" and none is None
-        posterior, comparison = await asyncio.gather(local.current.posterior(), submitted.current.comparison())
-        assert posterior.rows == 1000 and comparison.rows == 120
-        extended = await submitted.add(missing)
-        assert extended.effects == ("janosi_hanamoto",)
+        submitted, local = await asyncio.gather(service.submit(long_job), aio.Study.load(folder))
+        missing, posterior = await asyncio.gather(local.missing_effect(), local.current.posterior())
+        assert missing is not None and missing.name == "janosi_hanamoto" and posterior.rows == 1000
         with pytest.raises(grouser.GrouserError, match="unknown effect"):
             await local.add("no_such_effect")
         local.close()
+        seen: list[str] = []
+        with pytest.raises(grouser.CalibrationStopped, match="cancelled"):
+            async for progress in submitted.watch():
+                seen.append(progress.text)
+                if "evaluations" in progress.text:
+                    await asyncio.to_thread(cancel, submitted.sync)
+        assert any("evaluations" in text for text in seen)
+        # A coroutine that is given up stops waiting.
+        longer = await service.submit(long_job)
+        with pytest.raises(asyncio.TimeoutError):
+            await asyncio.wait_for(longer.wait(), 0.1)
+        await asyncio.to_thread(cancel, longer.sync)
 
     asyncio.run(both())

@@ -103,8 +103,8 @@ class Calibration:
 
         Groups: ``posterior``, ``sample_stats``, ``prior``, ``observed_data``, ``constant_data``, and, of models of the kind
         ``quasi_static`` with independent normal noise, ``posterior_predictive`` and ``log_likelihood``. A group that cannot
-        be made exactly is left out with a ``UserWarning`` that says why. There is one chain: the draws are equally weighted and
-        have no order in time, so ``r_hat`` does not apply; :meth:`diagnostics` has the checks of the sampler.
+        be made exactly is left out with a ``UserWarning`` that says why. There is one chain: the draws are equally weighted
+        and have no order in time, so ``r_hat`` does not apply; :meth:`diagnostics` has the checks of the sampler.
 
         Args:
             draws: most draws, equally spaced ones of the posterior; by default, all.

@@ -1,14 +1,16 @@
 """Pictures of a study, with Matplotlib. Needs ``grouser[figures]``.
 
-Each function returns a ``matplotlib.figure.Figure``, which a notebook shows and ``figure.savefig("name.png")`` writes. Axes
-carry the units of what they show.
+Each function returns a ``matplotlib.figure.Figure``, which a notebook shows as it is, and
+``figure.savefig("name.png")`` writes. Axes carry the units of what they show.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import io
+from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from ._table import Table
 
@@ -27,11 +29,17 @@ CHANNELS = {
 FIT, HOLDOUT, GREY = "#0072B2", "#D55E00", "#8c8c8c"
 
 
-def _figure(width: float, height: float) -> Any:
-    # No pyplot: its global state keeps every figure alive.
-    from matplotlib.figure import Figure
+class Picture(Figure):
+    """A figure that a notebook shows without ``pyplot``, whose global state would keep every figure alive."""
 
-    return Figure(figsize=(width, height), layout="constrained")
+    def _repr_png_(self) -> bytes:
+        written = io.BytesIO()
+        self.savefig(written, format="png", dpi=100)
+        return written.getvalue()
+
+
+def _figure(width_in: float, height_in: float) -> Picture:
+    return Picture(figsize=(width_in, height_in), layout="constrained")
 
 
 def _channels(rows: Table) -> list[str]:
@@ -39,7 +47,7 @@ def _channels(rows: Table) -> list[str]:
     return [channel for channel in CHANNELS if channel in present]
 
 
-def comparison(calibration: Calibration) -> Any:
+def comparison(calibration: Calibration) -> Figure:
     """Model against measurement: predicted over measured with 90 % intervals above, residuals in noise sds over slip below.
 
     A model that explains the measurements to within the noise has its points on the diagonal above, and two thirds of its
@@ -74,7 +82,7 @@ def comparison(calibration: Calibration) -> Any:
     return figure
 
 
-def ledger(study: Study) -> Any:
+def ledger(study: Study) -> Figure:
     """The ledger of errors: root mean square errors of each model in noise sds, on fitted and on held-out runs.
 
     A correct model scores about 1, the dashed line.
@@ -102,7 +110,7 @@ def ledger(study: Study) -> Any:
     return figure
 
 
-def posterior(calibration: Calibration, parameters: list[str] | None = None) -> Any:
+def posterior(calibration: Calibration, parameters: list[str] | None = None) -> Figure:
     """The posterior in pairs: draws of each pair of parameters, and each parameter's marginal on the diagonal.
 
     Args:
@@ -141,7 +149,7 @@ def _label(name: str, unit: str) -> str:
     return words if unit in ("", "1") else f"{words} [{unit}]"
 
 
-def explanations(calibration: Calibration, most: int = 10) -> Any:
+def explanations(calibration: Calibration, most: int = 10) -> Figure:
     """What the search weighed: log Bayes factors over the searched model, each with its probability P.
 
     Args:
