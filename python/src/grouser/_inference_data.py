@@ -71,7 +71,8 @@ def build(calibration: Calibration, draws: int | None, predictions: bool, prior_
 def _container(groups: Mapping[str, Any]) -> Any:
     import arviz
 
-    if hasattr(arviz, "InferenceData"):
+    # ArviZ 1.x answers to the name InferenceData, too, but with another class.
+    if arviz.__version__.startswith("0."):
         return arviz.InferenceData(**groups)
     import xarray
 
