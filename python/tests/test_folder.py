@@ -95,6 +95,16 @@ def test_a_malformed_file_is_named_with_its_line(tmp_path: Path) -> None:
         grouser.check(tmp_path)
 
 
+def test_an_example_is_written_as_it_is_carried(tmp_path: Path) -> None:
+    job = grouser.example("hidden-effect", tmp_path / "new")
+    for file in ("job.toml", "experiment.toml", "runs.csv"):
+        assert (job.parent / file).read_bytes() == (EXAMPLE / file).read_bytes()
+    with pytest.raises(grouser.ServiceError, match='there is no example "hiden-effect"'):
+        grouser.example("hiden-effect", tmp_path / "other")
+    with pytest.raises(FileExistsError):
+        grouser.example("hidden-effect", tmp_path / "new")
+
+
 def test_a_check_says_what_a_job_costs() -> None:
     assert "evaluations" in grouser.check(EXAMPLE)
 

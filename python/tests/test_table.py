@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import grouser
-from grouser import _prior, _progress
+from grouser import _prior, _progress, _story
 
 
 @pytest.fixture
@@ -39,6 +39,11 @@ def test_arrow_carries_values_and_units(table: grouser.Table) -> None:
     pytest.importorskip("pandas")
     frame = table.to_pandas()
     assert frame["pull_n"].isna().tolist() == [False, True] and frame.attrs["units"]["pull_n"] == "N"
+
+
+def test_a_next_run_keeps_its_units() -> None:
+    told = {"slip": 0.4, "wheel_load_n": 60, "sled_speed_m_s": 0.02, "separates": ["a", "b"], "information_nats": 0.3}
+    assert _story.next_run(told) == grouser.NextRun(0.4, 60.0, 0.02, ("a", "b"), 0.3)
 
 
 def test_progress_is_read_from_the_lines_of_the_program() -> None:

@@ -1,7 +1,7 @@
 """Grouser: calibrates wheel-soil contact models and finds the physics that they are missing.
 
 Layout:
-    run, check: calibrations on this machine.
+    run, check, example: calibrations on this machine.
     Service: a coordinator at a URL: submit jobs, list studies.
     Study: a line of calibrations: its story, its missing effect, its error ledger; how it grows.
     Calibration: posterior, model against measurement, explanations; its data for ArviZ.
@@ -16,7 +16,7 @@ tables' ``units``.
 from ._calibration import Calibration
 from ._error import CalibrationStopped, GrouserError, ProgramError, ServiceError
 from ._progress import Progress
-from ._run import check, run
+from ._run import check, example, run
 from ._service import Service
 from ._story import ChannelError, MissingEffect, NextRun, Step, Story
 from ._study import Study
@@ -38,5 +38,6 @@ __all__ = [
     "Study",
     "Table",
     "check",
+    "example",
     "run",
 ]

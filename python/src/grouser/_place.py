@@ -9,6 +9,7 @@ from typing import Any
 
 from . import _program
 from ._client import Client
+from ._error import GrouserError
 from ._progress import OnProgress, of_line
 
 Query = str | int | bool | None
@@ -52,17 +53,22 @@ class FolderPlace:
 
     is_remote = False
 
-    def __init__(self, folder: Path, local_workers: int | None = None) -> None:
+    def __init__(self, folder: Path, local_workers: int | None = None, token: str | None = None) -> None:
         self.folder = folder
         self.local_workers = local_workers
-        self._service: _program.FolderService | None = None
+        # Asked for where the store is that of a service with tokens.
+        self.token = token
+        self._service: _program.LocalService | None = None
         self._client: Client | None = None
 
     @property
     def client(self) -> Client:
         if self._client is None:
-            self._service = _program.FolderService(self.folder)
-            self._client = Client(self._service.url)
+            store = self.folder / "grouser.db"
+            if not store.is_file():
+                raise GrouserError(f"{self.folder}: no grouser.db, so no output folder of a run")
+            self._service = _program.LocalService(store, read_only=True)
+            self._client = Client(self._service.url, self.token)
         return self._client
 
     def get(self, path: str, **query: Query) -> Any:

@@ -97,21 +97,22 @@ def _reason(said: Sequence[str]) -> str:
     return "\n".join(said[starts[-1] :]).removeprefix("error:").strip()
 
 
-class FolderService:
-    """A service on this machine alone that shows what a folder's store holds and changes nothing.
+class LocalService:
+    """A service on this machine alone, at a free port of the loopback address; it ends with this object or with Python.
 
-    It takes a free port of the loopback address, and ends with this object or with Python. While it is there, every user of
-    this machine can read the results through that port.
+    While it is there, every user of this machine can use it through that port.
+
+    Args:
+        store: its SQLite file.
+        read_only: it shows what the store holds and changes nothing.
 
     Attributes:
         url: its address.
     """
 
-    def __init__(self, folder: Path) -> None:
-        store = folder / "grouser.db"
-        if not store.is_file():
-            raise GrouserError(f"{folder}: no grouser.db, so no output folder of a run")
-        command = [str(find()), "serve", "--read-only", "--listen", "127.0.0.1:0", "--store", f"sqlite://{store}"]
+    def __init__(self, store: Path, *, read_only: bool) -> None:
+        command = [str(find()), "serve", "--listen", "127.0.0.1:0", "--store", f"sqlite://{store}"]
+        command += ["--read-only"] if read_only else []
         # Settings of another service in the environment do not count, and the address is read from the log.
         environment = {k: v for k, v in os.environ.items() if not k.startswith("GROUSER_")}
         process = subprocess.Popen(

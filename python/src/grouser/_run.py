@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import os
+import tempfile
+import urllib.parse
 from pathlib import Path
 
 from . import _place, _program
+from ._client import Client
 from ._progress import OnProgress
 from ._study import Study, shown
 
@@ -50,6 +53,30 @@ def check(job: str | os.PathLike[str]) -> str:
         GrouserError: a file is malformed; the message names file, line and what was expected.
     """
     return _program.call(["check", str(job_file(job))])
+
+
+def example(name: str, folder: str | os.PathLike[str] | None = None) -> Path:
+    """Writes an example that the program carries, and returns the path of its job.
+
+    Args:
+        name: as in ``"hidden-effect"``.
+        folder: a new folder for its files; by default, ``NAME`` below the working directory.
+
+    Raises:
+        GrouserError: there is no such example; the message is the coordinator's.
+    """
+    with tempfile.TemporaryDirectory() as place:
+        service = _program.LocalService(Path(place) / "grouser.db", read_only=False)
+        try:
+            files = Client(service.url).get(f"examples/{urllib.parse.quote(name, safe='')}")
+        finally:
+            service.close()
+    path = Path(name if folder is None else folder)
+    path.mkdir(parents=True)
+    named = {file["name"]: file["text"] for file in (files["job"], files["experiment"])}
+    for file, text in {**named, **files["files"]}.items():
+        (path / Path(file).name).write_text(text, encoding="utf-8")
+    return path / str(files["job"]["name"])
 
 
 def job_file(job: str | os.PathLike[str]) -> Path:

@@ -363,13 +363,17 @@ def _place(
     text = os.fspath(source)
     if text.startswith(("http://", "https://")):
         return ServicePlace(client(text, token, ca_certificate))
-    return FolderPlace(Path(text), local_workers)
+    return FolderPlace(Path(text), local_workers, _token(token))
 
 
 def client(url: str, token: str | None, ca_certificate: str | None) -> Client:
     """A client with what is stated, else with the settings of the environment."""
+    return Client(url, _token(token), ca_certificate or os.environ.get("GROUSER_CA_CERTIFICATE"))
+
+
+def _token(token: str | None) -> str | None:
     token = token or os.environ.get("GROUSER_TOKEN")
-    return Client(url, token and token.strip(), ca_certificate or os.environ.get("GROUSER_CA_CERTIFICATE"))
+    return token and token.strip()
 
 
 def _log_bayes_factor(found: dict[str, Any] | None, name: str) -> float | None:
