@@ -68,7 +68,9 @@ def test_a_study_that_asks_grows_by_the_effect_that_is_missing(asked: Asked, tmp
     assert missing is not None and not missing.is_added
     with pytest.raises(grouser.GrouserError, match=r'unknown effect "janosi_hanamotto".*janosi_hanamoto'):
         study.add("janosi_hanamotto", progress=False)
-    extended = study.add(missing, progress=False)
+    step = study.story().steps[0]
+    assert step.kind == "add_effect" and step.effect == missing.name
+    extended = study.add(step, progress=False)
     assert extended.effects == ("janosi_hanamoto",)
     assert study.current.id == extended.id and study.missing_effect is not None and study.missing_effect.is_added
     assert study.ledger()["holdout_rmse_sigma"][1] < 1.2

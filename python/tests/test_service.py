@@ -10,7 +10,7 @@ import pytest
 import grouser
 from grouser import aio
 
-from .conftest import Asked, Served, changed_example
+from .conftest import Served, changed_example
 
 
 @pytest.fixture(scope="module")
@@ -18,20 +18,44 @@ def service(served: Served) -> grouser.Service:
     return grouser.Service(served.url, token=served.token)
 
 
-def test_a_submitted_study_has_the_bits_of_a_run_and_grows(service: grouser.Service, served: Served, asked: Asked) -> None:
-    study = service.submit(asked.job)
+def test_a_submitted_study_has_the_bits_of_a_run_and_grows(service: grouser.Service, served: Served, tmp_path: Path) -> None:
+    few = {"seed = 1": "seed = 1\nparticles = 100", '"auto"': '"off"'}
+    job = changed_example(tmp_path, {"job.toml": few})
+    study = service.submit(job)
     seen = [progress.text for progress in study.watch()]
     assert any("evaluations" in text for text in seen)
-    local = grouser.Study.load(asked.folder)
+    local = grouser.run(job, tmp_path / "out", progress=False)
     here, there = study.current.posterior(), local.current.posterior()
-    assert here.rows == there.rows and all((here[name] == there[name]).all() for name in there)
+    assert here.rows == there.rows == 100 and all((here[name] == there[name]).all() for name in there)
     local.close()
-    assert study.missing_effect is not None and not study.missing_effect.is_added
-    extended = study.add(study.missing_effect, progress=False)
+    assert study.missing_effect is None
+    extended = study.add("janosi_hanamoto", progress=False)
     assert extended.state == "finished" and study.current.id == extended.id
     again = grouser.Study.load(served.url, study.id, token=served.token)
     assert again.ledger()["effects"].tolist() == ["base", "janosi_hanamoto"]
     assert service.studies().where(id=study.id)["effects"].tolist() == ["janosi_hanamoto"]
+    # An effect file is another guess in the same ledger.
+    weaker = """name = "weaker_when_slow"
+summary = "the shear stress is weaker where the rim slides slowly"
+source = "a guess"
+shear = "tau * (1 - a * exp(-v_t / v_a))"
+
+[parameters.a]
+unit = "1"
+neutral = 0.0
+prior = { uniform = [0.0, 1.0] }
+
+[parameters.v_a]
+unit = "m/s"
+prior = { lognormal = [0.01, 3.0] }
+"""
+    (tmp_path / "weaker_when_slow.toml").write_text(weaker, encoding="utf-8")
+    base = study.calibrations[0].id
+    guess = study.add(tmp_path / "weaker_when_slow.toml", calibration=base, progress=False)
+    assert guess.effects == ("weaker_when_slow",) and study.current.id == extended.id
+    assert study.search(wait=False) is None
+    assert study.wait(progress=False).state == "finished"
+    assert study.current.explanations()["name"][0] == "none"
 
 
 def test_the_coordinator_s_message_is_the_error_s(service: grouser.Service, served: Served) -> None:
@@ -54,8 +78,8 @@ def long_job(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def cancel(study: grouser.Study) -> None:
-    """Cancels the first calibration."""
-    study._place.client.post(f"calibrations/{study.calibrations[0].id}/cancel")
+    """Cancels the last member."""
+    study._place.client.post(f"calibrations/{study._overview['members'][-1]['id']}/cancel")
 
 
 def test_waiting_ends_when_the_time_is_up_or_the_calibration_is_cancelled(service: grouser.Service, long_job: Path) -> None:

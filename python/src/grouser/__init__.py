@@ -18,7 +18,7 @@ from ._error import CalibrationStopped, GrouserError, ProgramError, ServiceError
 from ._progress import Progress
 from ._run import check, example, run
 from ._service import Service
-from ._story import ChannelError, MissingEffect, NextRun, Step, Story
+from ._story import ChannelError, EffectFile, MissingEffect, NextRun, Step, Story
 from ._study import Study
 from ._table import Table
 
@@ -26,6 +26,7 @@ __all__ = [
     "Calibration",
     "CalibrationStopped",
     "ChannelError",
+    "EffectFile",
     "GrouserError",
     "MissingEffect",
     "NextRun",

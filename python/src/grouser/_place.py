@@ -11,6 +11,7 @@ from . import _program
 from ._client import Client
 from ._error import GrouserError
 from ._progress import OnProgress, of_line
+from ._story import EffectFile
 
 Query = str | int | bool | None
 
@@ -30,13 +31,11 @@ class ServicePlace:
     def text(self, path: str, **query: Query) -> str:
         return self.client.text(path, **query)
 
-    def extend(
-        self, calibration: int, effect: str | None, effect_file: Path | None, wheel: str | None, tell: OnProgress | None
-    ) -> None:
-        body: dict[str, Any] = {"effect": effect, "wheel": wheel}
-        if effect_file is not None:
-            body = {"effect_file": {"name": effect_file.name, "text": effect_file.read_text(encoding="utf-8")}}
-        self.client.post(f"calibrations/{calibration}/extend", {k: v for k, v in body.items() if v is not None})
+    def extend(self, calibration: int, effect: str | EffectFile, wheel: str | None, tell: OnProgress | None) -> None:
+        body: dict[str, Any] = {"effect": effect, "wheel": wheel} if wheel else {"effect": effect}
+        if isinstance(effect, EffectFile):
+            body = {"effect_file": {"name": effect.name, "text": effect.text}}
+        self.client.post(f"calibrations/{calibration}/extend", body)
 
     def discover(self, calibration: int, tell: OnProgress | None) -> None:
         self.client.post(f"calibrations/{calibration}/discovery")
@@ -77,11 +76,15 @@ class FolderPlace:
     def text(self, path: str, **query: Query) -> str:
         return self.client.text(path, **query)
 
-    def extend(
-        self, calibration: int, effect: str | None, effect_file: Path | None, wheel: str | None, tell: OnProgress | None
-    ) -> None:
-        what = ["--effect", effect] if effect is not None else ["--effect-file", str(effect_file)]
-        self._grow(["extend", str(calibration), *what, *(["--wheel", wheel] if wheel else [])], tell)
+    def extend(self, calibration: int, effect: str | EffectFile, wheel: str | None, tell: OnProgress | None) -> None:
+        if isinstance(effect, str):
+            on_wheel = ["--wheel", wheel] if wheel else []
+            self._grow(["extend", str(calibration), "--effect", effect, *on_wheel], tell)
+            return
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / Path(effect.name).name
+            file.write_text(effect.text, encoding="utf-8")
+            self._grow(["extend", str(calibration), "--effect-file", str(file)], tell)
 
     def discover(self, calibration: int, tell: OnProgress | None) -> None:
         self._grow(["discover", str(calibration)], tell)

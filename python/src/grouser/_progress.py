@@ -5,7 +5,8 @@ from __future__ import annotations
 import html
 import re
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -81,6 +82,19 @@ class Display:
             self._handle = display(HTML(text), display_id=True)
         else:
             self._handle.update(HTML(text))
+
+
+@contextmanager
+def shown(progress: bool | OnProgress) -> Iterator[OnProgress | None]:
+    """Where progress is told to: a display that is taken away at the end, a function of the caller, or nowhere."""
+    if progress is True:
+        display = Display()
+        try:
+            yield display
+        finally:
+            display.close()
+    else:
+        yield progress if callable(progress) else None
 
 
 def _in_notebook() -> bool:

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from . import _place, _program
 from ._client import Client
-from ._progress import OnProgress
-from ._study import Study, shown
+from ._progress import OnProgress, shown
+from ._study import Study
 
 
 def run(

@@ -40,15 +40,30 @@ class NextRun:
 
 
 @dataclass(frozen=True)
-class Step:
-    """A step to take."""
+class EffectFile:
+    """The file of an effect that the library lacks, as a search wrote it."""
 
+    name: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step to take; :meth:`grouser.Study.add` takes one that adds an effect."""
+
+    #: ``"add_effect"``, ``"add_effect_file"``, ``"discover"``, ``"make_runs"``, ``"measure_other"``,
+    #: ``"state_in_experiment"`` or ``"predict"``.
     kind: str
+    #: What to do, in a sentence.
     text: str
     #: Arguments of the program ``coordinator``; ``None`` of what no command does.
     command: str | None
     #: The effect to add, or that the runs would tell apart.
     effect: str | None
+    #: The wheel that alone has the effect; ``None`` where all have.
+    wheel: str | None
+    #: The effect file to add.
+    effect_file: EffectFile | None
     runs: tuple[NextRun, ...]
 
 
@@ -127,6 +142,8 @@ def story(told: Mapping[str, Any]) -> Story:
             text=step["text"],
             command=step.get("command"),
             effect=step.get("effect"),
+            wheel=step.get("wheel"),
+            effect_file=EffectFile(**step["effect_file"]) if step.get("effect_file") else None,
             runs=tuple(next_run(run) for run in step["runs"]),
         )
         for step in told["next"]["steps"]

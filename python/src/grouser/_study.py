@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +12,8 @@ from ._calibration import Calibration
 from ._client import Client
 from ._error import CalibrationStopped, GrouserError
 from ._place import FolderPlace, Place, ServicePlace
-from ._progress import Display, OnProgress, Progress, of_status
-from ._story import MissingEffect, NextRun, Story, next_run, story
+from ._progress import OnProgress, Progress, of_status, shown
+from ._story import EffectFile, MissingEffect, NextRun, Step, Story, next_run, story
 from ._table import Table
 
 CHANNEL_UNITS = {"drawbar_pull": "N", "torque": "N m", "sinkage": "m", "lateral_force": "N"}
@@ -133,8 +133,9 @@ class Study:
         if told["named"]:
             named = told["named"][0]
             found = self._search(current)
-            factor = _log_bayes_factor(found, named["name"])
-            probability = _probability(found, named["name"])
+            explanation = f"{named['name']}.{named['wheel']}" if named["wheel"] else named["name"]
+            factor = _log_bayes_factor(found, explanation)
+            probability = _probability(found, explanation)
             return MissingEffect(named["name"], named["wheel"], probability, factor, False, told["text"])
         if told["already_added"]:
             added = told["already_added"][-1]
@@ -157,7 +158,7 @@ class Study:
         for member in reversed(self._overview["members"]):
             if member["searches"] is not None:
                 found = self._search(member["searches"])
-                if found and found["extension"] and name in found["extension"].values():
+                if found and found["extension"] and _extension_name(found["extension"]) == name:
                     return found
         return None
 
@@ -210,7 +211,7 @@ class Study:
 
     def add(
         self,
-        effect: str | MissingEffect | os.PathLike[str],
+        effect: str | MissingEffect | Step | os.PathLike[str],
         *,
         wheel: str | None = None,
         calibration: int | None = None,
@@ -220,7 +221,8 @@ class Study:
         """Adds a calibration with one more effect to the study, and returns it.
 
         Args:
-            effect: the name of an effect of the catalogue, what :attr:`missing_effect` gives, or the path of an effect file.
+            effect: the name of an effect of the catalogue, what :attr:`missing_effect` gives, a step of :meth:`story` that
+                adds one, or the path of an effect file.
             wheel: lets the effect act on this wheel alone, of several.
             calibration: the calibration to extend; by default, that of the current model.
             wait: waits until the study is over; in a folder it always does.
@@ -229,17 +231,10 @@ class Study:
         Raises:
             GrouserError: the effect is unknown or there already; the message is the coordinator's.
         """
-        file: Path | None = None
-        name: str | None = None
-        if isinstance(effect, MissingEffect):
-            name, wheel = effect.name, wheel or effect.wheel
-        elif isinstance(effect, str):
-            name = effect
-        else:
-            file = Path(effect)
+        what, on_wheel = _addition(effect)
         base = self.current.id if calibration is None else calibration
         before = {member.id for member in self.calibrations}
-        self._grow(lambda tell: self._place.extend(base, name, file, wheel, tell), wait, progress)
+        self._grow(lambda tell: self._place.extend(base, what, wheel or on_wheel, tell), wait, progress)
         return next(member for member in self.calibrations if member.id not in before)
 
     def search(
@@ -278,7 +273,7 @@ class Study:
         self._grow(lambda tell: self._place.add_runs(self.id, base, text, tell), wait, progress)
         return next(member for member in self.calibrations if member.id not in before)
 
-    def _grow(self, request: Any, wait: bool, progress: bool | OnProgress) -> None:
+    def _grow(self, request: Callable[[OnProgress | None], None], wait: bool, progress: bool | OnProgress) -> None:
         with shown(progress) as tell:
             request(tell)
         self.refresh()
@@ -342,21 +337,6 @@ class Study:
         return f"Study({str(self._place)!r}, {self.id}): {self.name}, {self.state}"
 
 
-class shown:
-    """Where progress is told to: a display that is closed at the end, a function of the caller, or nowhere."""
-
-    def __init__(self, progress: bool | OnProgress) -> None:
-        self._display = Display() if progress is True else None
-        self._tell = self._display if progress is True else progress if callable(progress) else None
-
-    def __enter__(self) -> OnProgress | None:
-        return self._tell
-
-    def __exit__(self, *error: object) -> None:
-        if self._display is not None:
-            self._display.close()
-
-
 def _place(
     source: str | os.PathLike[str], token: str | None, ca_certificate: str | None, local_workers: int | None
 ) -> Place:
@@ -374,6 +354,30 @@ def client(url: str, token: str | None, ca_certificate: str | None) -> Client:
 def _token(token: str | None) -> str | None:
     token = token or os.environ.get("GROUSER_TOKEN")
     return token and token.strip()
+
+
+def _addition(effect: str | MissingEffect | Step | os.PathLike[str]) -> tuple[str | EffectFile, str | None]:
+    """What is added, and the wheel that alone gets it."""
+    match effect:
+        case str():
+            return effect, None
+        case MissingEffect():
+            return effect.name, effect.wheel
+        case Step():
+            what = effect.effect_file or effect.effect
+            if what is None or not effect.kind.startswith("add_effect"):
+                raise GrouserError(f"the step {effect.text!r} adds no effect")
+            return what, effect.wheel
+        case _:
+            file = Path(effect)
+            return EffectFile(file.name, file.read_text(encoding="utf-8")), None
+
+
+def _extension_name(extension: dict[str, Any]) -> str | None:
+    """What a search would add, as explanations are named; ``None`` of an effect file."""
+    if "on_wheel" in extension:
+        return f"{extension['on_wheel']['effect']}.{extension['on_wheel']['wheel']}"
+    return extension.get("effect")
 
 
 def _log_bayes_factor(found: dict[str, Any] | None, name: str) -> float | None:

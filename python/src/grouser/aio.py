@@ -23,7 +23,7 @@ from typing import Any
 from . import _run, _service, _study
 from ._calibration import Calibration as SyncCalibration
 from ._progress import OnProgress, Progress
-from ._story import MissingEffect, NextRun, Story
+from ._story import MissingEffect, NextRun, Step, Story
 from ._study import LOOK_S
 from ._table import Table
 
@@ -165,7 +165,7 @@ class Study:
 
     async def add(
         self,
-        effect: str | MissingEffect | os.PathLike[str],
+        effect: str | MissingEffect | Step | os.PathLike[str],
         *,
         wheel: str | None = None,
         calibration: int | None = None,

@@ -104,6 +104,7 @@ def ledger(study: Study) -> Figure:
         axes.bar_label(bars, [f"{error:.2g}" for error in errors], padding=2, fontsize="small", bbox=plain)
     axes.axhline(1, color="black", linewidth=1, linestyle="--", zorder=0)
     axes.set_xticks(np.arange(table.rows), labels)
+    axes.margins(y=0.12)
     axes.set(ylabel="root mean square error [noise sd]")
     axes.legend(frameon=False)
     figure.suptitle(f"{study.name}: ledger of errors")
