@@ -78,6 +78,18 @@ def test_a_study_that_asks_grows_by_the_effect_that_is_missing(asked: Asked, tmp
     study.close()
 
 
+def test_a_run_that_is_interrupted_goes_on_with_the_same_bits(asked: Asked, tmp_path: Path) -> None:
+    def interrupt(progress: grouser.Progress) -> None:
+        if progress.share is not None and progress.share > 0.1:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        grouser.run(asked.job, tmp_path, progress=interrupt)
+    assert not (tmp_path / "posterior.csv").exists()
+    grouser.run(asked.job, tmp_path, progress=False).close()
+    assert (tmp_path / "posterior.csv").read_bytes() == (asked.folder / "posterior.csv").read_bytes()
+
+
 def test_measurements_are_added_to_a_study(asked: Asked, tmp_path: Path) -> None:
     shutil.copytree(asked.folder, tmp_path / "out")
     lines = [line for line in (EXAMPLE / "runs.csv").read_text(encoding="utf-8").splitlines() if line[0] != "#"]
