@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 14] = [
+const CRATES: [&str; 15] = [
     "shared",
     "shared/formula",
     "shared/signal",
@@ -16,6 +16,7 @@ const CRATES: [&str; 14] = [
     "coordinator",
     "coordinator/inference",
     "coordinator/discovery",
+    "coordinator/import",
     "coordinator/job",
     "coordinator/page",
     "coordinator/record",
@@ -24,7 +25,7 @@ const CRATES: [&str; 14] = [
     "worker/scm",
     "tests",
 ];
-const OURS: [&str; 14] = [
+const OURS: [&str; 15] = [
     "shared",
     "formula",
     "signal",
@@ -32,6 +33,7 @@ const OURS: [&str; 14] = [
     "coordinator",
     "inference",
     "discovery",
+    "import",
     "job",
     "page",
     "record",
@@ -147,6 +149,7 @@ fn manifests_keep_the_direction_of_dependencies() {
     assert_eq!(ours("worker/scm"), set(&["formula", "signal"]));
     assert_eq!(ours("coordinator/inference"), set(&["statistics"]));
     assert_eq!(ours("coordinator/discovery"), set(&["inference", "statistics"]));
+    assert_eq!(ours("coordinator/import"), set(&["formula", "shared"]));
     assert_eq!(
         ours("coordinator/job"),
         set(&["formula", "inference", "shared", "statistics"])
@@ -178,6 +181,7 @@ fn manifests_keep_the_direction_of_dependencies() {
         set(&[
             "discovery",
             "formula",
+            "import",
             "inference",
             "job",
             "page",
@@ -215,6 +219,7 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         "worker/scm",
         "coordinator/inference",
         "coordinator/discovery",
+        "coordinator/import",
         "coordinator/job",
         "coordinator/page",
         "coordinator/record",
@@ -332,6 +337,7 @@ fn pure_rooms_read_no_clock() {
         "shared/statistics/src",
         "coordinator/src/calibration",
         "coordinator/src/lease",
+        "coordinator/import/src",
         "coordinator/job/src",
         "coordinator/result/src",
         "coordinator/src/effect",
