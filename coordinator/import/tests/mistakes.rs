@@ -117,6 +117,11 @@ fn units_are_stated_or_refused() {
             "a formula gives SI units, angles in rad: leave `unit` out",
         ),
         (
+            "column = \"pull\", unit = \"N\"",
+            "formula = \"drawbar_pull_n\"",
+            "drawbar_pull_n has a formula itself: write it out",
+        ),
+        (
             "slip\", unit = \"1\"",
             "slip\", unit = \"1\", value = 3",
             "line 5: [columns.slip] must have one of column, value and formula",

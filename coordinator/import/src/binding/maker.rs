@@ -244,35 +244,26 @@ impl Maker<'_> {
         if entry.unit.is_some() {
             self.complain(entry, "a formula gives SI units, angles in rad: leave `unit` out");
         }
-        // A name that could not be bound has its own complaint.
-        let is_unbound = |name: &String| !names.iter().any(|(known, _)| known == name);
-        let unbound: Vec<&String> = self
-            .map
-            .quantities
-            .iter()
-            .chain(&self.map.columns)
-            .map(|entry| &entry.name)
-            .filter(|name| is_unbound(name))
+        let words: Vec<&str> = text
+            .split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
             .collect();
-        let words = |text: &str| -> Vec<String> {
-            text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
-                .map(str::to_owned)
-                .collect()
-        };
-        if words(text)
+        let entries = self.map.quantities.iter().chain(&self.map.columns);
+        let unbound = entries.filter(|other| {
+            words.contains(&other.name.as_str()) && !names.iter().any(|(known, _)| *known == other.name)
+        });
+        let unbound: Vec<&Entry> = unbound.collect();
+        if let Some(other) = unbound
             .iter()
-            .any(|word| unbound.contains(&word) && *word != entry.name)
+            .find(|other| matches!(other.origin, Origin::Formula(_)))
         {
-            self.complaints.add(Complaint {
-                file: self.map_file.to_owned(),
-                line: Some(entry.line),
-                field: Some(entry.name.clone()),
-                message: format!(
-                    "{}: the formula needs a name whose own table has a mistake or a formula",
-                    entry.name
-                ),
-                ..Complaint::default()
-            });
+            let message = format!(
+                "formula \"{text}\": {} has a formula itself: write it out",
+                other.name
+            );
+            self.complain(entry, message);
+        }
+        if !unbound.is_empty() {
+            // What else is not bound has a complaint of its own.
             return None;
         }
         let expected = dimension(quantity);
