@@ -27,6 +27,8 @@ pub enum CoordinatorCommand {
     Run(RunArguments),
     /// Validate a job and estimate its cost.
     Check(JobArguments),
+    /// Convert a table of measurements (text, .xlsx, .ods, .xls, .mat) to runs.csv by a map, or propose the map.
+    Import(ImportArguments),
     /// Run the service: REST interface and endpoint for workers.
     Serve(ServeArguments),
     /// Submit a job to a service.
@@ -99,6 +101,30 @@ pub struct JobArguments {
     /// Accepts what looks odd as meant, by the name that the question has; may be repeated.
     #[arg(long, value_name = "NAME")]
     pub accept: Vec<String>,
+}
+
+/// Convert a table of measurements to runs.csv, or propose the map for it.
+#[derive(Debug, Args)]
+pub struct ImportArguments {
+    /// The table: text with any separator, a spreadsheet, or a MATLAB file.
+    pub file: PathBuf,
+    /// Where each column of runs.csv comes from.
+    #[arg(
+        long,
+        value_name = "MAP",
+        requires = "output",
+        required_unless_present = "guess"
+    )]
+    pub map: Option<PathBuf>,
+    /// The file of runs that is written; notes and histories go beside it.
+    #[arg(long, value_name = "RUNS", requires = "map")]
+    pub output: Option<PathBuf>,
+    /// Prints a proposed map; what the file does not state is marked with "?".
+    #[arg(long, conflicts_with_all = ["map", "output"])]
+    pub guess: bool,
+    /// The sheet to propose a map for, or the struct of a MATLAB file; by default, the largest one.
+    #[arg(long, value_name = "NAME", requires = "guess")]
+    pub sheet: Option<String>,
 }
 
 /// List the effects of the catalogue, or show one.

@@ -13,6 +13,7 @@ mod effects;
 mod end_to_end;
 mod forward;
 mod histories;
+mod import;
 mod leases;
 mod likelihood;
 mod mesh;

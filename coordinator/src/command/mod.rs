@@ -8,6 +8,7 @@ mod export_file;
 mod exposure;
 mod folder;
 mod growth;
+mod import;
 mod job_on_disk;
 mod output;
 mod progress;
@@ -31,6 +32,7 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
     match command {
         CoordinatorCommand::Run(run) => run::run(run).await,
         CoordinatorCommand::Check(file) => check::check(&file).await,
+        CoordinatorCommand::Import(config) => import::import(&config),
         CoordinatorCommand::Serve(serve) => serve::serve(serve).await,
         CoordinatorCommand::Submit(submit) => verbs::submit(&submit).await,
         CoordinatorCommand::List(config) => verbs::list(&config).await,

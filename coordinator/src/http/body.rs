@@ -16,13 +16,14 @@ const EXCHANGE: &str = "/v1/work/exchange";
 /// A body must have arrived after this time.
 const BODY_TIME: Duration = Duration::from_secs(120);
 
-/// Largest body of a route `[bytes]`: the results of a large batch or the files of a large experiment; a job with the
-/// draws that it names; the rows of further runs; an effect file that joins a job; names of runs; else next to nothing, as an effect of the
+/// Largest body of a route `[bytes]`: the results of a large batch or the files of a large experiment; a table of
+/// measurements; a job with the draws that it names; the rows of further runs; an effect file that joins a job; names of runs; else next to nothing, as an effect of the
 /// catalogue needs.
 fn limit(path: &str) -> usize {
     match path.rsplit('/').next() {
         _ if path == EXCHANGE => 64 << 20,
         Some("experiments") => 64 << 20,
+        Some("import" | "guess") => 32 << 20,
         Some("calibrations" | "runs") => 16 << 20,
         Some("extend" | "what-if") => 1 << 20,
         _ => 64 << 10,

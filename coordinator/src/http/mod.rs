@@ -16,6 +16,7 @@ mod experiments;
 mod gate;
 mod growth;
 mod host;
+mod import;
 mod metrics;
 mod page;
 mod request_example;
@@ -71,6 +72,7 @@ fn router(service: Service, gate: Gate) -> Router {
                 .merge(experiments::routes())
                 .merge(examples::routes())
                 .merge(effects::routes())
+                .merge(import::routes())
                 .merge(calibrations::routes())
                 .merge(events::routes())
                 .merge(studies::routes())

@@ -8,6 +8,7 @@
 //! - [`mod@unit`]: units, and the dimensions behind them.
 //!
 //! From text to numbers:
+//! - [`expression`]: one formula over names that its user declares.
 //! - `syntax`: from the text of a formula to operations, with a check of units.
 //! - `evaluation`: from operations to numbers: [`program`] is a compiled formula, [`block`] evaluates it at many points.
 //! - [`nesting`]: whether a file is too deep to be parsed.
@@ -106,6 +107,7 @@
 pub mod catalogue;
 pub mod effect;
 mod evaluation;
+pub mod expression;
 pub mod hook;
 pub mod nesting;
 mod syntax;

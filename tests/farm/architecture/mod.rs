@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 15] = [
+const CRATES: [&str; 16] = [
     "shared",
     "shared/formula",
     "shared/signal",
@@ -17,6 +17,7 @@ const CRATES: [&str; 15] = [
     "coordinator/inference",
     "coordinator/discovery",
     "coordinator/export",
+    "coordinator/import",
     "coordinator/job",
     "coordinator/page",
     "coordinator/record",
@@ -25,7 +26,7 @@ const CRATES: [&str; 15] = [
     "worker/scm",
     "tests",
 ];
-const OURS: [&str; 15] = [
+const OURS: [&str; 16] = [
     "shared",
     "formula",
     "signal",
@@ -34,6 +35,7 @@ const OURS: [&str; 15] = [
     "inference",
     "discovery",
     "export",
+    "import",
     "job",
     "page",
     "record",
@@ -149,6 +151,7 @@ fn manifests_keep_the_direction_of_dependencies() {
     assert_eq!(ours("worker/scm"), set(&["formula", "signal"]));
     assert_eq!(ours("coordinator/inference"), set(&["statistics"]));
     assert_eq!(ours("coordinator/discovery"), set(&["inference", "statistics"]));
+    assert_eq!(ours("coordinator/import"), set(&["formula", "shared"]));
     assert_eq!(
         ours("coordinator/job"),
         set(&["formula", "inference", "shared", "statistics"])
@@ -185,6 +188,7 @@ fn manifests_keep_the_direction_of_dependencies() {
             "discovery",
             "export",
             "formula",
+            "import",
             "inference",
             "job",
             "page",
@@ -223,6 +227,7 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         "coordinator/inference",
         "coordinator/discovery",
         "coordinator/export",
+        "coordinator/import",
         "coordinator/job",
         "coordinator/page",
         "coordinator/record",
@@ -340,6 +345,7 @@ fn pure_rooms_read_no_clock() {
         "shared/statistics/src",
         "coordinator/src/calibration",
         "coordinator/src/lease",
+        "coordinator/import/src",
         "coordinator/job/src",
         "coordinator/result/src",
         "coordinator/export/src",

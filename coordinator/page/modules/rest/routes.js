@@ -52,3 +52,9 @@ export const addExperiment = (/** @type {Schemas["NewExperiment"]} */ experiment
 
 /** @returns {Promise<Schemas["CalibrationCreated"]>} */
 export const submit = (/** @type {Schemas["NewCalibration"]} */ job) => post("/v1/calibrations", job);
+
+/** @returns {Promise<Schemas["Guess"]>} */
+export const guessImport = (/** @type {Schemas["GuessRequest"]} */ table) => post("/v1/import/guess", table);
+
+/** @returns {Promise<Schemas["Converted"]>} */
+export const importTable = (/** @type {Schemas["ImportRequest"]} */ table) => post("/v1/import", table);

@@ -2,9 +2,9 @@
 
 import { experimentOf, fileOf, find, kindOf, missing, named, requests } from "../draft.js";
 import { html, useEffect, useState } from "../html.js";
-import { ColumnMapping } from "../part/column_mapping.js";
 import { DropZone } from "../part/drop_zone.js";
 import { FileCard } from "../part/file_card.js";
+import { ImportTable } from "../part/import_table.js";
 import { Failure } from "../part/message.js";
 import { RigForm } from "../part/rig_form.js";
 import { addExperiment, get, path, submit } from "../rest/routes.js";
@@ -16,6 +16,8 @@ import { address } from "../route.js";
 /** @param {{ query: Record<string, string> }} properties query.example: the example to begin with */
 export function NewCalibration({ query }) {
   const [files, setFiles] = useState(/** @type {Files} */ ({}));
+  // The bytes of what was dropped: a table is read from these.
+  const [bytes, setBytes] = useState(/** @type {Record<string, Uint8Array>} */ ({}));
   const [asked, setJob] = useState(/** @type {string | null} */ (null));
   const [name, setName] = useState("");
   const [failure, setFailure] = useState(/** @type {any} */ (null));
@@ -30,7 +32,15 @@ export function NewCalibration({ query }) {
     setFailure(null);
   };
   const add = (/** @type {Files} */ more) => change({ ...files, ...more });
-  const remove = (/** @type {string} */ own) => change(Object.fromEntries(Object.entries(files).filter(([key]) => key !== own)));
+  const without = (/** @type {any} */ all, /** @type {string} */ own) => Object.fromEntries(Object.entries(all).filter(([key]) => key !== own));
+  const remove = (/** @type {string} */ own) => {
+    change(without(files, own));
+    setBytes(without(bytes, own));
+  };
+  const take = (/** @type {import("../part/drop_zone.js").Read} */ read) => {
+    add(read.texts);
+    setBytes({ ...bytes, ...read.bytes });
+  };
   const open = async (/** @type {string} */ example) => {
     try {
       const answer = await get(`${path.examples}/${encodeURIComponent(example)}`);
@@ -58,20 +68,20 @@ export function NewCalibration({ query }) {
   const absent = missing(files, job);
   const list = job === null ? null : named(files, job, experiment);
   const used = list === null ? null : new Set([job, experiment, ...[...list.job, ...list.experiment].map((one) => find(files, one.name))]);
-  const table = of("table")[0];
+  const table = Object.keys(bytes).find((own) => !(own in files)) ?? of("table")[0];
   const runs = find(files, "runs.csv");
   const isRuns = runs !== null && kinds[runs] === "runs";
   const place = failure && fileOf(failure.message, files, job, experiment);
-  const isEmpty = Object.keys(files).length === 0;
+  const isEmpty = Object.keys(files).length === 0 && !table;
   return html`
     <h1>New calibration</h1>
-    <${DropZone} onFiles=${add} />
+    <${DropZone} onFiles=${take} />
     ${examples.answer?.length > 0 && html`<div class="actions"><span>Or begin with an example:</span>
       ${examples.answer.map((/** @type {any} */ e) => html`<button type="button" onClick=${() => open(e.name)}>${e.name}</button>`)}</div>`}
-    ${table && html`<${ColumnMapping} key=${table} name=${table} source=${files[table]}
-      onRuns=${(/** @type {string} */ text) => change({ ...Object.fromEntries(Object.entries(files).filter(([own]) => own !== table)), "runs.csv": text })} />`}
+    ${table && html`<${ImportTable} key=${table} name=${table} bytes=${bytes[table] ?? new TextEncoder().encode(files[table])} onRemove=${() => remove(table)}
+      onFiles=${(/** @type {Files} */ made) => { change({ ...without(files, table), ...made }); setBytes(without(bytes, table)); }} />`}
     ${isRuns && job === null && of("experiment").length === 0 && html`<${RigForm} runs=${files[runs]} onFiles=${add} />`}
-    ${Object.keys(files).map((own) => html`<${FileCard} key=${own} name=${own} text=${files[own]} kind=${kinds[own]} isUsed=${used === null || used.has(own)}
+    ${Object.keys(files).filter((own) => own !== table).map((own) => html`<${FileCard} key=${own} name=${own} text=${files[own]} kind=${kinds[own]} isUsed=${used === null || used.has(own)}
       error=${place === own ? failure : null} onText=${(/** @type {string} */ text) => add({ [own]: text })} onRemove=${() => remove(own)} />`)}
     ${of("job").length > 1 && html`<p><label>Job <select value=${job} onChange=${(/** @type {any} */ e) => setJob(e.target.value)}>
       ${of("job").map((own) => html`<option value=${own} selected=${own === job}>${own}</option>`)}</select></label></p>`}

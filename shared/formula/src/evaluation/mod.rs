@@ -6,7 +6,7 @@
 //! - [`elementary`]: `exp`, `ln` and powers that vectorise and give the same bits on every machine.
 
 mod address;
-mod arithmetic;
+pub(crate) mod arithmetic;
 pub mod block;
 pub mod elementary;
 pub mod program;

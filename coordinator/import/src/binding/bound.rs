@@ -1,0 +1,229 @@
+//! A map bound to a table: the numbers and texts of each row.
+
+use std::collections::BTreeSet;
+
+use formula::unit::Unit as Dimension;
+
+use super::maker::{Maker, dimension};
+use super::source::{From, Input, Output, Source};
+use crate::complaint::{Complaint, Complaints};
+use crate::field::Field;
+use crate::map::{Map, Origin};
+use crate::number;
+use crate::table::{Cell, Row};
+use crate::title::Titled;
+
+/// A map bound to a table.
+#[derive(Debug)]
+pub(crate) struct Binding {
+    inputs: Vec<Input>,
+    pub(crate) outputs: Vec<Output>,
+    /// The columns that runs.csv has as they are, up to their units.
+    pub(crate) mapped: BTreeSet<usize>,
+    missing: Vec<String>,
+}
+
+/// The cells above, where blank ones count as these.
+#[derive(Debug, Default)]
+pub(crate) struct Above(Vec<Option<Cell>>);
+
+impl Above {
+    fn cell<'a>(&'a mut self, row: &'a Row, column: usize, fills_down: bool) -> &'a Cell {
+        let cell = row.cell(column);
+        if !fills_down {
+            return cell;
+        }
+        if self.0.len() <= column {
+            self.0.resize(column + 1, None);
+        }
+        if !cell.is_blank() {
+            self.0[column] = Some(cell.clone());
+        }
+        self.0[column].as_ref().unwrap_or(&Cell::Blank)
+    }
+}
+
+impl Binding {
+    pub(crate) fn new(
+        (map_file, map): (&str, &Map),
+        titled: &Titled,
+        fields: &[Field],
+        remarks: &mut Vec<String>,
+        complaints: &mut Complaints,
+    ) -> Self {
+        let mut maker = Maker {
+            map,
+            map_file,
+            titled,
+            remarks,
+            complaints,
+        };
+        let mut binding = Binding {
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+            mapped: BTreeSet::new(),
+            missing: map.missing.clone(),
+        };
+        let mut names: Vec<(String, Dimension)> = Vec::new();
+        for entry in &map.quantities {
+            if let Some((input, dimension)) = maker.quantity(entry) {
+                names.push((entry.name.clone(), dimension));
+                binding.inputs.push(input);
+            }
+        }
+        let by_name = |field: &Field| map.columns.iter().find(|entry| entry.name == field.name);
+        let mut formulas = Vec::new();
+        for (field, entry) in fields.iter().filter_map(|field| Some((field, by_name(field)?))) {
+            let source = match (&entry.origin, field.quantity()) {
+                (Origin::Formula(text), Some(quantity)) => {
+                    formulas.push((field, entry, text, quantity));
+                    continue;
+                }
+                (Origin::Formula(_), None) => {
+                    maker.complain(
+                        entry,
+                        format!("{} is no quantity: a formula cannot give it", field.name),
+                    );
+                    continue;
+                }
+                (_, Some(quantity)) => match maker.input(entry, Some(quantity)) {
+                    Some((input, _)) => {
+                        names.push((field.name.clone(), dimension(quantity)));
+                        binding.inputs.push(input);
+                        Source::Input(binding.inputs.len() - 1)
+                    }
+                    None => continue,
+                },
+                (_, None) => match maker.text(entry) {
+                    Some(from) => Source::Text(from),
+                    None => continue,
+                },
+            };
+            if let Origin::Column(title) = &entry.origin
+                && let Ok(column) = titled.column(title)
+            {
+                binding.mapped.insert(column);
+            }
+            binding.outputs.push(Output {
+                field: field.clone(),
+                source,
+            });
+        }
+        for (field, entry, text, quantity) in formulas {
+            if let Some(expression) = maker.formula(entry, text, quantity, &names) {
+                binding.outputs.push(Output {
+                    field: field.clone(),
+                    source: Source::Formula(expression),
+                });
+            }
+        }
+        let place = |output: &Output| fields.iter().position(|field| field.name == output.field.name);
+        binding.outputs.sort_by_key(place);
+        maker.settle_decimals(&mut binding.inputs);
+        binding
+    }
+
+    /// The numbers of a row in SI units, in the order of the names of formulas; `None` where the cell is blank.
+    pub(crate) fn numbers(
+        &self,
+        titled: &Titled,
+        row: &Row,
+        above: &mut Above,
+        complaints: &mut Complaints,
+    ) -> Vec<Option<f64>> {
+        let read = |input: &Input| match &input.from {
+            From::Fixed(_) => Some(input.fixed),
+            From::Column {
+                column,
+                fills_down,
+                with,
+            } => {
+                let cell = above.cell(row, *column, *fills_down);
+                let found = match cell {
+                    Cell::Blank => None,
+                    Cell::Number(value) if value.is_finite() => Some(Ok(*value)),
+                    Cell::Number(value) => Some(Err(format!("{value} is no finite number"))),
+                    Cell::Text(text) if self.missing.contains(text) => None,
+                    Cell::Text(text) => with.writing.map(|writing| number::read(text, writing)),
+                    Cell::NoResult => Some(Err("the formula of this cell has no stored result: open the file in its program, let it compute, and save it again".into())),
+                };
+                match found? {
+                    Ok(value) => Some(value * with.si),
+                    Err(message) => {
+                        complaints.add_cell(of_cell(titled, row, *column, &input.name, message));
+                        None
+                    }
+                }
+            }
+        };
+        self.inputs.iter().map(read).collect()
+    }
+
+    /// The text of a row for a column of names; `None` where the cell is blank.
+    pub(crate) fn text(&self, output: &Output, row: &Row, above: &mut Above) -> Option<String> {
+        let Source::Text(from) = &output.source else {
+            return None;
+        };
+        match from {
+            From::Fixed(text) => Some(text.clone()),
+            From::Column {
+                column, fills_down, ..
+            } => {
+                let text = above.cell(row, *column, *fills_down).shown();
+                (!text.is_empty() && !self.missing.contains(&text)).then_some(text)
+            }
+        }
+    }
+
+    /// The value of a column of runs.csv in its unit, from the numbers of a row; `None` where one that it needs is blank.
+    pub(crate) fn value(&self, output: &Output, numbers: &[Option<f64>]) -> Option<f64> {
+        let si = match &output.source {
+            Source::Input(input) => numbers.get(*input).copied().flatten()?,
+            Source::Formula(expression) => {
+                let is_there = |place: &usize| numbers.get(*place).is_some_and(Option::is_some);
+                if !expression.used().iter().all(is_there) {
+                    return None;
+                }
+                let values: Vec<f64> = numbers.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
+                expression.value(&values)
+            }
+            Source::Text(_) => return None,
+        };
+        Some(si / output.field.si_per_unit())
+    }
+
+    /// A complaint about what a row gives for a column of runs.csv: at its cell, where it comes from one.
+    pub(crate) fn complaint(
+        &self,
+        titled: &Titled,
+        row: &Row,
+        output: &Output,
+        message: String,
+    ) -> Complaint {
+        let column = match &output.source {
+            Source::Input(input) => match self.inputs.get(*input).map(|input| &input.from) {
+                Some(From::Column { column, .. }) => Some(*column),
+                _ => None,
+            },
+            Source::Text(From::Column { column, .. }) => Some(*column),
+            Source::Formula(_) | Source::Text(From::Fixed(_)) => None,
+        };
+        match column {
+            Some(column) => of_cell(titled, row, column, &output.field.name, message),
+            None => Complaint {
+                line: Some(row.line),
+                field: Some(output.field.name.clone()),
+                ..titled.table.complaint(message)
+            },
+        }
+    }
+}
+
+/// A complaint about a cell.
+fn of_cell(titled: &Titled, row: &Row, column: usize, field: &str, message: String) -> Complaint {
+    Complaint {
+        column: titled.titles.get(column).map(|title| title.text.clone()),
+        field: Some(field.to_owned()),
+        ..titled.table.complaint_at(row.line, column, message)
+    }
+}

@@ -1,0 +1,339 @@
+//! Entries of a map, bound to the columns of a table, with every mistake.
+
+use formula::expression::Expression;
+use formula::unit::Unit as Dimension;
+
+use super::source::{From, Input, Reading};
+use crate::complaint::{Complaint, Complaints};
+use crate::map::{Entry, Map, Origin, quantity_of};
+use crate::number::{self, Decimal, Evidence, Writing};
+use crate::table::Cell;
+use crate::title::{Stated, Titled};
+use crate::unit::{self, Quantity, Unit};
+
+/// The mark of a question in a map.
+const QUESTION: &str = "?";
+
+/// What the binding is made from.
+pub(super) struct Maker<'a> {
+    pub(super) map: &'a Map,
+    pub(super) map_file: &'a str,
+    pub(super) titled: &'a Titled,
+    pub(super) remarks: &'a mut Vec<String>,
+    pub(super) complaints: &'a mut Complaints,
+}
+
+fn column_name(entry: &Entry) -> &str {
+    match &entry.origin {
+        Origin::Column(name) => name,
+        Origin::Value(_) | Origin::Formula(_) => "",
+    }
+}
+
+/// The dimension that formulas know a quantity by.
+pub(super) fn dimension(quantity: Quantity) -> Dimension {
+    Dimension::parse(quantity.si()).unwrap_or(Dimension::ONE)
+}
+
+impl Maker<'_> {
+    pub(super) fn complain(&mut self, entry: &Entry, message: impl Into<String>) {
+        self.complaints.add(Complaint {
+            file: self.map_file.to_owned(),
+            line: Some(entry.line),
+            field: Some(entry.name.clone()),
+            message: format!("{}: {}", entry.name, message.into()),
+            ..Complaint::default()
+        });
+    }
+
+    /// The column of an entry.
+    fn column(&mut self, entry: &Entry) -> Option<usize> {
+        let found = self.titled.column(column_name(entry));
+        found.map_err(|message| self.complain(entry, message)).ok()
+    }
+
+    /// The unit: as the map states it, else as the title does.
+    fn unit(
+        &mut self,
+        entry: &Entry,
+        column: Option<usize>,
+        quantity: Option<Quantity>,
+    ) -> Option<&'static Unit> {
+        let title = column.and_then(|column| self.titled.titles.get(column)).cloned();
+        let stated = match title.as_ref().map(|title| title.stated) {
+            Some(Stated::Unit(unit)) => Some(unit),
+            _ => None,
+        };
+        let choices = || {
+            quantity.map_or_else(
+                || "a unit".to_owned(),
+                |quantity| quantity.units().collect::<Vec<_>>().join(", "),
+            )
+        };
+        let read = |text: &str| match quantity.or_else(|| quantity_of(text)) {
+            Some(quantity) => unit::read(text, quantity),
+            None => Err(format!("unknown unit \"{text}\"")),
+        };
+        let found = match (&entry.unit, stated, &title) {
+            (Some(text), _, _) if text == QUESTION => Err(format!(
+                "unit = \"?\" asks for an answer, which the file does not state: one of {}",
+                choices()
+            )),
+            (Some(text), _, _) => read(text),
+            (None, Some(stated), _) => read(stated.name),
+            (None, None, Some(title)) => Err(match &title.unknown {
+                Some(said) => format!(
+                    "the title says \"{said}\"; {}; state `unit` in the map",
+                    read(said).err().unwrap_or_default()
+                ),
+                None => format!(
+                    "the title \"{}\" states no unit: state `unit` in the map, one of {}",
+                    title.text,
+                    choices()
+                ),
+            }),
+            (None, None, None) => Err(format!(
+                "a value needs its unit: state `unit`, one of {}",
+                choices()
+            )),
+        };
+        match found {
+            Ok(found) => {
+                if let (Some(stated), Some(title)) = (stated, title)
+                    && stated.name != found.name
+                {
+                    self.remarks.push(format!(
+                        "\"{}\" is read in {}, as the map says",
+                        title.text, found.name
+                    ));
+                }
+                Some(found)
+            }
+            Err(message) => {
+                self.complain(entry, message);
+                None
+            }
+        }
+    }
+
+    /// Where a number is read, and its unit.
+    pub(super) fn input(
+        &mut self,
+        entry: &Entry,
+        quantity: Option<Quantity>,
+    ) -> Option<(Input, &'static Unit)> {
+        let input = |from, fixed| Input {
+            name: entry.name.clone(),
+            from,
+            fixed,
+        };
+        match &entry.origin {
+            Origin::Column(_) => {
+                let column = self.column(entry)?;
+                let unit = self.unit(entry, Some(column), quantity)?;
+                let reading = Reading {
+                    writing: None,
+                    stated_decimal: entry.decimal,
+                    si: unit.si,
+                };
+                Some((
+                    input(
+                        From::Column {
+                            column,
+                            fills_down: entry.fills_down,
+                            with: reading,
+                        },
+                        0.0,
+                    ),
+                    unit,
+                ))
+            }
+            Origin::Value(text) if text == QUESTION => {
+                self.complain(
+                    entry,
+                    "value = \"?\" asks for an answer: the value that all rows have, with its unit",
+                );
+                None
+            }
+            Origin::Value(text) => {
+                let unit = self.unit(entry, None, quantity);
+                // A value in TOML is a number; one in quotes may be written as in the file.
+                let decimal = entry.decimal.or(self.map.decimal).unwrap_or(Decimal::Point);
+                let value = text
+                    .parse::<f64>()
+                    .ok()
+                    .filter(|value| value.is_finite())
+                    .map_or_else(
+                        || {
+                            number::read(
+                                text,
+                                Writing {
+                                    decimal,
+                                    has_thousands: false,
+                                },
+                            )
+                        },
+                        Ok,
+                    );
+                match (unit, value) {
+                    (Some(unit), Ok(value)) => {
+                        Some((input(From::Fixed(text.clone()), value * unit.si), unit))
+                    }
+                    (_, Err(message)) => {
+                        self.complain(entry, message);
+                        None
+                    }
+                    (None, Ok(_)) => None,
+                }
+            }
+            Origin::Formula(_) => {
+                self.complain(
+                    entry,
+                    "a quantity must have column or value; formulas stand in [columns]",
+                );
+                None
+            }
+        }
+    }
+
+    pub(super) fn quantity(&mut self, entry: &Entry) -> Option<(Input, Dimension)> {
+        let is_name = entry.name.chars().next().is_some_and(|c| c.is_ascii_alphabetic())
+            && entry.name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        if !is_name || Expression::read(&entry.name, &[]).is_ok() {
+            self.complain(
+                entry,
+                "the name of a quantity must be of letters, digits and _, and mean nothing else in formulas",
+            );
+            return None;
+        }
+        let (input, unit) = self.input(entry, None)?;
+        Some((input, dimension(unit.quantity)))
+    }
+
+    pub(super) fn text(&mut self, entry: &Entry) -> Option<From<()>> {
+        if entry.unit.is_some() {
+            self.complain(
+                entry,
+                "a name or a number without unit has no unit: leave `unit` out",
+            );
+        }
+        match &entry.origin {
+            Origin::Value(text) if text == QUESTION => {
+                self.complain(entry, "value = \"?\" asks for an answer: the value that all rows have, as experiment.toml names it");
+                None
+            }
+            Origin::Value(text) => Some(From::Fixed(text.clone())),
+            Origin::Column(_) | Origin::Formula(_) => {
+                let column = self.column(entry)?;
+                Some(From::Column {
+                    column,
+                    fills_down: entry.fills_down,
+                    with: (),
+                })
+            }
+        }
+    }
+
+    pub(super) fn formula(
+        &mut self,
+        entry: &Entry,
+        text: &str,
+        quantity: Quantity,
+        names: &[(String, Dimension)],
+    ) -> Option<Expression> {
+        if entry.unit.is_some() {
+            self.complain(entry, "a formula gives SI units, angles in rad: leave `unit` out");
+        }
+        let words: Vec<&str> = text
+            .split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
+            .collect();
+        let entries = self.map.quantities.iter().chain(&self.map.columns);
+        let unbound = entries.filter(|other| {
+            words.contains(&other.name.as_str()) && !names.iter().any(|(known, _)| *known == other.name)
+        });
+        let unbound: Vec<&Entry> = unbound.collect();
+        if let Some(other) = unbound
+            .iter()
+            .find(|other| matches!(other.origin, Origin::Formula(_)))
+        {
+            let message = format!(
+                "formula \"{text}\": {} has a formula itself: write it out",
+                other.name
+            );
+            self.complain(entry, message);
+        }
+        if !unbound.is_empty() {
+            // What else is not bound has a complaint of its own.
+            return None;
+        }
+        let expected = dimension(quantity);
+        match Expression::read(text, names) {
+            Err(message) => {
+                self.complain(entry, format!("formula \"{text}\": {message}"));
+                None
+            }
+            Ok(expression) if expression.unit().is_some_and(|unit| unit != expected) => {
+                let unit = expression.unit().unwrap_or(Dimension::ONE);
+                self.complain(
+                    entry,
+                    format!(
+                        "formula \"{text}\" gives {unit}, and {} in {} is expected",
+                        quantity.words(),
+                        quantity.si()
+                    ),
+                );
+                None
+            }
+            Ok(expression) => Some(expression),
+        }
+    }
+
+    /// How numbers are written: as the map states, else as the texts of all columns tell.
+    pub(super) fn settle_decimals(&mut self, inputs: &mut [Input]) {
+        let stated = self.map.decimal;
+        let columns: Vec<usize> = inputs
+            .iter()
+            .filter_map(|input| match &input.from {
+                From::Column { column, with, .. } if with.stated_decimal.is_none() => Some(*column),
+                _ => None,
+            })
+            .collect();
+        let texts = || {
+            self.titled
+                .data()
+                .flat_map(|row| columns.iter().map(move |&column| row.cell(column)))
+                .filter_map(|cell| match cell {
+                    Cell::Text(text) => Some(text.as_str()),
+                    _ => None,
+                })
+        };
+        let found = match stated {
+            Some(decimal) => Some(decimal),
+            None => match number::decimal_of(texts()) {
+                Evidence::Found(decimal) => Some(decimal),
+                Evidence::None => Some(Decimal::Point),
+                Evidence::Ambiguous => None,
+            },
+        };
+        if found.is_none() {
+            let example = texts()
+                .find(|text| text.contains([',', '.']))
+                .unwrap_or_default()
+                .to_owned();
+            self.complaints.add(Complaint {
+                file: self.map_file.to_owned(),
+                message: format!("all numbers are like \"{example}\", which can be read in two ways: state `decimal = \",\"` or `decimal = \".\"` in the map"),
+                ..Complaint::default()
+            });
+        }
+        for input in inputs {
+            if let From::Column { with, .. } = &mut input.from {
+                let has_thousands = self.map.has_thousands && with.stated_decimal.is_none();
+                with.writing = with.stated_decimal.or(found).map(|decimal| Writing {
+                    decimal,
+                    has_thousands,
+                });
+            }
+        }
+    }
+}

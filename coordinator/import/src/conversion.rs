@@ -1,0 +1,262 @@
+//! A file and its map to runs.csv, with every mistake at once.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::binding::Binding;
+use crate::complaint::{Complaint, Complaints};
+use crate::field::{Field, fields};
+use crate::map::{self, Map};
+use crate::read::{self, SourceFile};
+use crate::recording::Knife;
+use crate::rows;
+use crate::run::{noted, notes_csv, runs_csv};
+use crate::table::{Cell, Form, Row};
+use crate::title::{self, Titled};
+
+/// Most runs, as runs.csv may have.
+const MOST_RUNS: usize = 10_000;
+
+/// What comes of an import.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, utoipa::ToSchema)]
+pub struct Converted {
+    /// The text of runs.csv; null where there are complaints.
+    pub runs: Option<String>,
+    /// The columns that runs.csv does not have, by run, as CSV; null where there are none.
+    pub notes: Option<String>,
+    /// The texts of the histories, by the names that runs.csv has.
+    pub histories: BTreeMap<String, String>,
+    /// How many runs there are.
+    pub run_count: usize,
+    /// What a user should know: what was found out, left out, or read otherwise than the file says.
+    pub remarks: Vec<String>,
+    /// Everything that is wrong.
+    pub complaints: Vec<Complaint>,
+}
+
+/// Converts a file by a map.
+///
+/// `map` is the name and the text of the map; `stem` is what the names of histories begin with, as that of runs.csv. Nothing is
+/// written unless nothing is wrong. Mistakes of the map do not hide those of cells, where both can be judged.
+/// Checked by `tests/mistakes.rs`.
+pub fn convert(source: &SourceFile<'_>, map: (&str, &str), stem: &str) -> Converted {
+    let mut complaints = Complaints::default();
+    let mut converted = Converted::default();
+    let fields = fields();
+    let (map_file, map_text) = map;
+    let map = map::read(map_file, map_text, &fields, &mut complaints);
+    let titled =
+        read::read(source, &map.hints).and_then(|table| title::find(table, (map.titles, map.units), &fields));
+    match titled {
+        Ok(titled) => judge(
+            &titled,
+            (map_file, &map),
+            &fields,
+            stem,
+            &mut converted,
+            &mut complaints,
+        ),
+        Err(complaint) => complaints.add(*complaint),
+    }
+    converted.complaints = complaints.into_all();
+    if !converted.complaints.is_empty() {
+        (converted.runs, converted.notes) = (None, None);
+        converted.histories.clear();
+    }
+    converted
+}
+
+fn judge(
+    titled: &Titled,
+    (map_file, map): (&str, &Map),
+    fields: &[Field],
+    stem: &str,
+    converted: &mut Converted,
+    complaints: &mut Complaints,
+) {
+    converted.remarks.clone_from(&titled.table.remarks);
+    complain_of_missing(titled, (map_file, map), fields, complaints);
+    let rows = chosen(titled, (map_file, map), converted, complaints);
+    check_width(titled, &rows, complaints);
+    let binding = Binding::new(
+        (map_file, map),
+        titled,
+        fields,
+        &mut converted.remarks,
+        complaints,
+    );
+    let order = || fields.iter().map(|field| field.name.clone());
+    let runs = match &map.recording {
+        Some(recording) => {
+            let knife = Knife {
+                titled,
+                binding: &binding,
+                recording,
+                map_file,
+                decimal: map.decimal,
+                stem,
+            };
+            let (runs, histories) = knife.cut(&rows, &mut converted.remarks, complaints);
+            converted.histories = histories;
+            runs
+        }
+        None => rows::runs(titled, &rows, &binding, complaints),
+    };
+    converted.run_count = runs.len();
+    if runs.is_empty() {
+        complaints.add(titled.table.complaint("there is no row of data below the titles"));
+    }
+    if runs.len() > MOST_RUNS {
+        complaints.add(titled.table.complaint(format!(
+            "{} runs must be at most {MOST_RUNS}; for a recording of several runs the map needs [recording]",
+            runs.len()
+        )));
+    }
+    converted.runs = Some(runs_csv(&runs, order()));
+    let kept = noted(titled, &binding.mapped);
+    if map.recording.is_none() && !kept.is_empty() {
+        let titles: Vec<String> = kept
+            .iter()
+            .map(|&column| titled.titles[column].text.clone())
+            .collect();
+        converted.remarks.push(format!(
+            "kept as notes, no columns of runs.csv: {}",
+            titles.join(", ")
+        ));
+        converted.notes = Some(notes_csv(&runs, titles));
+    } else if !kept.is_empty() {
+        let titles: Vec<&str> = kept
+            .iter()
+            .map(|&column| titled.titles[column].text.as_str())
+            .collect();
+        converted.remarks.push(format!(
+            "columns of the recording that runs.csv does not take as they are: {}",
+            titles.join(", ")
+        ));
+    }
+    if map.recording.is_none() && !map.columns.iter().any(|entry| entry.name == "run") {
+        converted
+            .remarks
+            .push("the runs are numbered, r1 and so on: the map has no [columns.run]".into());
+    }
+}
+
+/// The rows that are runs or samples: not skipped, no comments.
+fn chosen<'a>(
+    titled: &'a Titled,
+    (map_file, map): (&str, &Map),
+    converted: &mut Converted,
+    complaints: &mut Complaints,
+) -> Vec<&'a Row> {
+    for line in &map.skip {
+        if !titled.data().any(|row| row.line == *line) {
+            let message = format!(
+                "skip has {line}, and {} is no row of data",
+                titled.table.place(*line)
+            );
+            complaints.add(Complaint {
+                file: map_file.to_owned(),
+                message,
+                ..Complaint::default()
+            });
+        }
+    }
+    let is_comment = |row: &Row| {
+        titled.table.form == Form::Lines && matches!(row.cell(0), Cell::Text(text) if text.starts_with('#'))
+    };
+    let (kept, comments): (Vec<&Row>, Vec<&Row>) = titled
+        .data()
+        .filter(|row| !map.skip.contains(&row.line))
+        .partition(|row| !is_comment(row));
+    let lines = |rows: &mut dyn Iterator<Item = usize>| {
+        rows.map(|line| line.to_string()).collect::<Vec<_>>().join(", ")
+    };
+    if !comments.is_empty() {
+        converted.remarks.push(format!(
+            "comments, left out: lines {}",
+            lines(&mut comments.iter().map(|row| row.line))
+        ));
+    }
+    if !map.skip.is_empty() {
+        converted.remarks.push(format!(
+            "left out, as the map says: {}",
+            lines(&mut map.skip.iter().copied())
+        ));
+    }
+    kept
+}
+
+/// Rows of a text that have more or fewer fields than there are titles.
+fn check_width(titled: &Titled, rows: &[&Row], complaints: &mut Complaints) {
+    if titled.table.form != Form::Lines || titled.title_line == 0 {
+        return;
+    }
+    let title_row = titled.table.rows.iter().find(|row| row.line == titled.title_line);
+    let width = title_row.map_or(0, |row| row.cells.len());
+    for row in rows {
+        let filled = row
+            .cells
+            .iter()
+            .rposition(|cell| !cell.is_blank())
+            .map_or(0, |k| k + 1);
+        if filled > width || row.cells.len() < width {
+            let message = format!(
+                "{} fields where the titles have {width}: is a decimal comma taken for a separator? Put such fields in quotes, or state `separator` in the map",
+                row.cells.len()
+            );
+            complaints.add_cell(Complaint {
+                line: Some(row.line),
+                ..titled.table.complaint(message)
+            });
+        }
+    }
+}
+
+/// Columns that runs.csv needs and the map does not have.
+fn complain_of_missing(
+    titled: &Titled,
+    (map_file, map): (&str, &Map),
+    fields: &[Field],
+    complaints: &mut Complaints,
+) {
+    let has = |name: &str| map.columns.iter().any(|entry| entry.name == name);
+    for field in fields
+        .iter()
+        .filter(|field| field.is_needed && !has(&field.name) && !complaints.concerns(&field.name))
+        .collect::<Vec<_>>()
+    {
+        let near = titled.titles.iter().find(|title| {
+            field
+                .titles
+                .iter()
+                .any(|known| *known == title.name.to_lowercase())
+        });
+        let fix = near.map_or_else(
+            || format!("add `[columns.{}]` with column, value or formula", field.name),
+            |near| {
+                format!(
+                    "did you mean `[columns.{}]` with `column = \"{}\"`",
+                    field.name, near.text
+                )
+            },
+        );
+        complaints.add(Complaint {
+            file: map_file.to_owned(),
+            field: Some(field.name.clone()),
+            message: format!("the map has no {}, which every run needs: {fix}", field.words),
+            ..Complaint::default()
+        });
+    }
+    let channels = shared::channel::Channel::ALL.map(|channel| channel.column());
+    if !channels.iter().any(|name| has(name) || complaints.concerns(name)) {
+        complaints.add(Complaint {
+            file: map_file.to_owned(),
+            message: format!(
+                "the map has no measured channel: at least one of {} is needed",
+                channels.join(", ")
+            ),
+            ..Complaint::default()
+        });
+    }
+}

@@ -1,0 +1,226 @@
+//! The columns of runs.csv, as an import fills them.
+
+use shared::channel::Channel;
+
+use crate::unit::Quantity;
+
+/// What a column of runs.csv holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// A name, as it is.
+    Name,
+    /// A whole number of at least so much.
+    Whole(i64),
+    /// `fit` or `holdout`.
+    Use,
+    /// A quantity; the column is in its SI unit, angles in degrees.
+    Measured(Quantity),
+}
+
+/// A column of runs.csv.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Field {
+    pub(crate) name: String,
+    /// Words for people.
+    pub(crate) words: String,
+    pub(crate) kind: Kind,
+    pub(crate) is_needed: bool,
+    /// What the title of its column begins with, or has as a word, in lower case.
+    pub(crate) titles: Vec<String>,
+}
+
+impl Field {
+    /// One of the column's unit in SI units.
+    pub(crate) fn si_per_unit(&self) -> f64 {
+        match self.kind {
+            Kind::Measured(Quantity::Angle) => std::f64::consts::PI / 180.0,
+            _ => 1.0,
+        }
+    }
+
+    pub(crate) fn quantity(&self) -> Option<Quantity> {
+        match self.kind {
+            Kind::Measured(quantity) => Some(quantity),
+            _ => None,
+        }
+    }
+}
+
+/// Name, words, kind, whether it is needed, titles.
+type Entry = (&'static str, &'static str, Kind, bool, &'static [&'static str]);
+
+const CONDITIONS: [Entry; 8] = [
+    (
+        "run",
+        "run",
+        Kind::Name,
+        false,
+        &[
+            "run", "test", "versuch", "id", "nr", "no", "name", "lauf", "trial",
+        ],
+    ),
+    ("wheel", "wheel", Kind::Name, true, &["wheel", "rad"]),
+    ("soil", "soil", Kind::Name, true, &["soil", "sand", "boden"]),
+    (
+        "slip",
+        "slip",
+        Kind::Measured(Quantity::Ratio),
+        true,
+        &["slip", "schlupf", "slip ratio"],
+    ),
+    (
+        "wheel_load_n",
+        "wheel load",
+        Kind::Measured(Quantity::Force),
+        true,
+        &[
+            "load",
+            "wheel load",
+            "radlast",
+            "last",
+            "vertical load",
+            "normal load",
+            "normal force",
+            "normalkraft",
+            "fz",
+        ],
+    ),
+    (
+        "sled_speed_m_s",
+        "sled speed",
+        Kind::Measured(Quantity::Speed),
+        true,
+        &[
+            "speed",
+            "sled speed",
+            "velocity",
+            "geschwindigkeit",
+            "fahrgeschwindigkeit",
+            "vorschub",
+            "v",
+            "vx",
+        ],
+    ),
+    (
+        "slip_angle_deg",
+        "slip angle",
+        Kind::Measured(Quantity::Angle),
+        false,
+        &[
+            "slip angle",
+            "angle",
+            "schraeglaufwinkel",
+            "winkel",
+            "steering angle",
+            "beta",
+        ],
+    ),
+    ("pass", "pass", Kind::Whole(1), false, &["pass", "ueberfahrt"]),
+];
+
+const OTHERS: [Entry; 4] = [
+    (
+        "order",
+        "order in time",
+        Kind::Whole(i32::MIN as i64),
+        false,
+        &["order", "reihenfolge"],
+    ),
+    (
+        "prepared",
+        "soil preparation",
+        Kind::Name,
+        false,
+        &["prepared", "preparation", "aufbereitung"],
+    ),
+    ("history", "recording", Kind::Name, false, &["history"]),
+    (
+        "use",
+        "use (fit or holdout)",
+        Kind::Use,
+        false,
+        &["use", "verwendung"],
+    ),
+];
+
+/// What the titles of a channel's column are, in the order of [`Channel::ALL`].
+const CHANNEL_TITLES: [&[&str]; 4] = [
+    &["drawbar pull", "drawbar", "pull", "zugkraft", "dp", "fx"],
+    &["torque", "wheel torque", "drehmoment", "moment", "antriebsmoment"],
+    &["sinkage", "depth", "einsinkung", "einsinktiefe", "eindringtiefe"],
+    &[
+        "lateral force",
+        "lateral",
+        "side force",
+        "seitenkraft",
+        "querkraft",
+        "fy",
+    ],
+];
+
+/// Every column of runs.csv, in the order of the file.
+pub(crate) fn fields() -> Vec<Field> {
+    let entry = |&(name, words, kind, is_needed, titles): &Entry| Field {
+        name: name.into(),
+        words: words.into(),
+        kind,
+        is_needed,
+        titles: titles.iter().map(|&title| title.to_owned()).collect(),
+    };
+    let quantity = |channel| match channel {
+        Channel::DrawbarPull | Channel::LateralForce => Quantity::Force,
+        Channel::Torque => Quantity::Torque,
+        Channel::Sinkage => Quantity::Length,
+    };
+    let channel = |channel: Channel| Field {
+        name: channel.column().into(),
+        words: channel.words().into(),
+        kind: Kind::Measured(quantity(channel)),
+        is_needed: false,
+        titles: CHANNEL_TITLES[channel.index()]
+            .iter()
+            .map(|&title| title.to_owned())
+            .collect(),
+    };
+    let sd = |channel: Channel| {
+        let about = |title: &&str| {
+            ["sd", "std", "sigma", "stdabw"]
+                .map(|word| [format!("{title} {word}"), format!("{word} {title}")])
+        };
+        Field {
+            name: format!("{}_sd", channel.column()),
+            words: format!("sd of the {}", channel.words()),
+            kind: Kind::Measured(quantity(channel)),
+            is_needed: false,
+            titles: CHANNEL_TITLES[channel.index()]
+                .iter()
+                .flat_map(about)
+                .flatten()
+                .collect(),
+        }
+    };
+    let channels = Channel::ALL.map(channel).into_iter().chain(Channel::ALL.map(sd));
+    CONDITIONS
+        .iter()
+        .map(entry)
+        .chain(channels)
+        .chain(OTHERS.iter().map(entry))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_field_is_a_column_of_runs_csv() {
+        // What the program reads complains about no column of a file that has them all.
+        let header: Vec<String> = fields().into_iter().map(|field| field.name).collect();
+        let files = shared::file::FileSet {
+            toml: "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.1\nwidth_m = 0.1\n[soil.s]\n".into(),
+            files: [("runs.csv".to_owned(), format!("{}\n", header.join(",")))].into(),
+        };
+        let error = shared::experiment::Experiment::parse("experiment.toml", &files).unwrap_err();
+        assert_eq!(error.to_string(), "runs.csv: the file has no test run");
+    }
+}

@@ -1,0 +1,191 @@
+//! Keys of a table of a map, read with all their mistakes.
+
+use shared::file::unknown_word;
+use toml_edit::{Item, TableLike};
+
+use crate::complaint::{Complaint, Complaints};
+
+/// The text of a map, for lines.
+pub(super) struct Source<'a> {
+    pub(super) file: &'a str,
+    pub(super) text: &'a str,
+}
+
+impl Source<'_> {
+    pub(super) fn line(&self, byte: usize) -> usize {
+        self.text.bytes().take(byte).filter(|&b| b == b'\n').count() + 1
+    }
+
+    pub(super) fn complaint(
+        &self,
+        byte: Option<usize>,
+        field: Option<&str>,
+        message: impl Into<String>,
+    ) -> Complaint {
+        Complaint {
+            file: self.file.to_owned(),
+            line: byte.map(|byte| self.line(byte)),
+            field: field.map(str::to_owned),
+            message: message.into(),
+            ..Complaint::default()
+        }
+    }
+}
+
+/// A table of a map; every key that is asked for is known.
+pub(super) struct Keys<'a> {
+    source: &'a Source<'a>,
+    table: &'a dyn TableLike,
+    /// `[columns.slip]`; blank for the map itself.
+    name: String,
+    field: Option<String>,
+    known: Vec<&'static str>,
+    pub(super) is_right: bool,
+}
+
+impl<'a> Keys<'a> {
+    pub(super) fn new(
+        source: &'a Source<'a>,
+        table: &'a dyn TableLike,
+        name: &str,
+        field: Option<&str>,
+    ) -> Self {
+        Keys {
+            source,
+            table,
+            name: name.to_owned(),
+            field: field.map(str::to_owned),
+            known: Vec::new(),
+            is_right: true,
+        }
+    }
+
+    fn wrong(&mut self, complaints: &mut Complaints, item: Option<&Item>, message: String) {
+        let place = if self.name.is_empty() {
+            String::new()
+        } else {
+            format!("{}: ", self.name)
+        };
+        let byte = item.and_then(Item::span).map(|span| span.start);
+        self.is_right = false;
+        complaints.add(
+            self.source
+                .complaint(byte, self.field.as_deref(), place + &message),
+        );
+    }
+
+    fn item(&mut self, key: &'static str) -> Option<&'a Item> {
+        self.known.push(key);
+        self.table.get(key)
+    }
+
+    /// A text.
+    pub(super) fn text(&mut self, complaints: &mut Complaints, key: &'static str) -> Option<String> {
+        let item = self.item(key)?;
+        let found = item.as_str();
+        if found.is_none() {
+            self.wrong(complaints, Some(item), format!("{key} must be a text in quotes"));
+        }
+        found.map(str::to_owned)
+    }
+
+    /// A text, a number or a whole number, as a text.
+    pub(super) fn scalar(&mut self, complaints: &mut Complaints, key: &'static str) -> Option<String> {
+        let item = self.item(key)?;
+        let found = scalar(item);
+        if found.is_none() {
+            self.wrong(
+                complaints,
+                Some(item),
+                format!("{key} must be a number or a text in quotes"),
+            );
+        }
+        found
+    }
+
+    pub(super) fn flag(&mut self, complaints: &mut Complaints, key: &'static str) -> bool {
+        let Some(item) = self.item(key) else {
+            return false;
+        };
+        let found = item.as_bool();
+        if found.is_none() {
+            self.wrong(complaints, Some(item), format!("{key} must be true or false"));
+        }
+        found.unwrap_or(false)
+    }
+
+    pub(super) fn line_number(&mut self, complaints: &mut Complaints, key: &'static str) -> Option<usize> {
+        let item = self.item(key)?;
+        let found = item.as_integer().and_then(|number| usize::try_from(number).ok());
+        if found.is_none() {
+            self.wrong(
+                complaints,
+                Some(item),
+                format!("{key} must be the number of a line, 0 where there is none"),
+            );
+        }
+        found
+    }
+
+    /// A list of numbers or texts, as texts.
+    pub(super) fn list(&mut self, complaints: &mut Complaints, key: &'static str) -> Vec<String> {
+        let Some(item) = self.item(key) else {
+            return Vec::new();
+        };
+        let found: Option<Vec<String>> = item.as_array().and_then(|list| {
+            list.iter()
+                .map(|value| scalar(&Item::Value(value.clone())))
+                .collect()
+        });
+        if found.is_none() {
+            self.wrong(
+                complaints,
+                Some(item),
+                format!("{key} must be a list of numbers or texts"),
+            );
+        }
+        found.unwrap_or_default()
+    }
+
+    /// A table within it, with the byte at which it begins.
+    pub(super) fn table(
+        &mut self,
+        complaints: &mut Complaints,
+        key: &'static str,
+    ) -> Option<&'a dyn TableLike> {
+        let item = self.item(key)?;
+        let found = item.as_table_like();
+        if found.is_none() {
+            self.wrong(complaints, Some(item), format!("{key} must be a table"));
+        }
+        found
+    }
+
+    /// A complaint about a key that is there, or about the table.
+    pub(super) fn complain(&mut self, complaints: &mut Complaints, key: &str, message: impl Into<String>) {
+        let item = self.table.get(key);
+        self.wrong(complaints, item, message.into());
+    }
+
+    /// Complains about all keys that nobody has asked for.
+    pub(super) fn end(&mut self, complaints: &mut Complaints) {
+        for (key, item) in self.table.iter() {
+            if !self.known.contains(&key) {
+                self.wrong(
+                    complaints,
+                    Some(item),
+                    unknown_word("key", key, self.known.clone()),
+                );
+            }
+        }
+    }
+}
+
+/// A number or a text as a text.
+fn scalar(item: &Item) -> Option<String> {
+    let number = || item.as_float().map(|value| value.to_string());
+    item.as_str()
+        .map(str::to_owned)
+        .or_else(|| item.as_integer().map(|value| value.to_string()))
+        .or_else(number)
+}

@@ -1,0 +1,219 @@
+//! The text of a map to a [`Map`].
+
+use formula::nesting::too_deep;
+use shared::file::unknown_word;
+use toml_edit::{Document, TableLike};
+
+use super::entry::{Keys, Source};
+use super::{Entry, Map, Origin, Recording};
+use crate::complaint::Complaints;
+use crate::field::Field;
+use crate::number::Decimal;
+use crate::read::Hints;
+
+/// Deepest nesting of brackets; a map needs three.
+const DEEPEST: usize = 16;
+/// Largest map `[bytes]`.
+const LARGEST: usize = 1 << 20;
+
+/// Reads a map, with all its mistakes; what is wrong is left out of it.
+pub(crate) fn read(file: &str, text: &str, fields: &[Field], complaints: &mut Complaints) -> Map {
+    let source = Source { file, text };
+    let mut map = Map::default();
+    if text.len() > LARGEST || too_deep(text, DEEPEST).is_some() {
+        let message =
+            format!("a map must have at most {LARGEST} bytes, and brackets nested at most {DEEPEST} deep");
+        complaints.add(source.complaint(None, None, message));
+        return map;
+    }
+    let document = match Document::parse(text) {
+        Ok(document) => document,
+        Err(error) => {
+            let byte = error.span().map(|span| span.start);
+            complaints.add(source.complaint(byte, None, error.message().trim_end().replace('\n', " ")));
+            return map;
+        }
+    };
+    let mut keys = Keys::new(&source, document.as_table(), "", None);
+    map.hints = Hints {
+        sheet: keys.scalar(complaints, "sheet"),
+        encoding: keys.text(complaints, "encoding"),
+        separator: keys.text(complaints, "separator"),
+        takes_largest: false,
+    };
+    map.titles = keys.line_number(complaints, "titles");
+    map.units = keys.line_number(complaints, "units");
+    map.decimal = decimal(&mut keys, complaints);
+    map.has_thousands = thousands(&mut keys, complaints, map.decimal);
+    for line in keys.list(complaints, "skip") {
+        match line.parse() {
+            Ok(line) => map.skip.push(line),
+            Err(_) => keys.complain(
+                complaints,
+                "skip",
+                format!("skip has \"{line}\", and numbers of lines are expected"),
+            ),
+        }
+    }
+    map.missing = keys.list(complaints, "missing");
+    if let Some(columns) = keys.table(complaints, "columns") {
+        map.columns = entries(&source, columns, "columns", complaints, Some(fields));
+    }
+    if let Some(quantities) = keys.table(complaints, "quantities") {
+        map.quantities = entries(&source, quantities, "quantities", complaints, None);
+    }
+    if let Some(recording) = keys.table(complaints, "recording") {
+        map.recording = read_recording(&source, recording, complaints);
+    }
+    keys.end(complaints);
+    map
+}
+
+fn decimal(keys: &mut Keys<'_>, complaints: &mut Complaints) -> Option<Decimal> {
+    let mark = keys.text(complaints, "decimal")?;
+    let found = Decimal::of(&mark);
+    if mark == "?" {
+        keys.complain(complaints, "decimal", "decimal = \"?\" asks for an answer: write \",\" where 1,234 is a little more than one, \".\" where it is more than a thousand");
+    } else if found.is_none() {
+        keys.complain(
+            complaints,
+            "decimal",
+            format!("decimal \"{mark}\" must be \".\" or \",\""),
+        );
+    }
+    found
+}
+
+fn thousands(keys: &mut Keys<'_>, complaints: &mut Complaints, decimal: Option<Decimal>) -> bool {
+    let Some(mark) = keys.text(complaints, "thousands") else {
+        return false;
+    };
+    let expected = match decimal.unwrap_or(Decimal::Point) {
+        Decimal::Point => ",",
+        Decimal::Comma => ".",
+    };
+    if mark != expected {
+        keys.complain(complaints, "thousands", format!("thousands \"{mark}\" must be \"{expected}\", the mark that is not the decimals'; spaces and apostrophes need no statement"));
+    }
+    mark == expected
+}
+
+/// The tables of `[columns]` or `[quantities]`.
+fn entries(
+    source: &Source<'_>,
+    tables: &dyn TableLike,
+    of: &str,
+    complaints: &mut Complaints,
+    fields: Option<&[Field]>,
+) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    for (name, item) in tables.iter() {
+        let byte = item.span().map(|span| span.start);
+        let place = format!("[{of}.{name}]");
+        if let Some(fields) = fields
+            && !fields.iter().any(|field| field.name == name)
+        {
+            let known = fields.iter().map(|field| field.name.as_str());
+            complaints.add(source.complaint(
+                byte,
+                None,
+                format!("{place}: {}", unknown_word("column of runs.csv", name, known)),
+            ));
+            continue;
+        }
+        let Some(table) = item.as_table_like() else {
+            complaints.add(source.complaint(
+                byte,
+                Some(name),
+                format!("{place} must be a table, as {{ column = \"slip [%]\", unit = \"%\" }}"),
+            ));
+            continue;
+        };
+        let mut keys = Keys::new(source, table, &place, Some(name));
+        let column = keys.text(complaints, "column").map(Origin::Column);
+        let value = keys.scalar(complaints, "value").map(Origin::Value);
+        let formula = keys.text(complaints, "formula").map(Origin::Formula);
+        let unit = keys.text(complaints, "unit");
+        let decimal = decimal(&mut keys, complaints);
+        let fills_down = keys.flag(complaints, "fill_down");
+        keys.end(complaints);
+        let mut origins = [column, value, formula].into_iter().flatten();
+        match (origins.next(), origins.next()) {
+            (Some(origin), None) if keys.is_right => {
+                let line = byte.map_or(1, |byte| source.line(byte));
+                entries.push(Entry {
+                    name: name.to_owned(),
+                    line,
+                    origin,
+                    unit,
+                    decimal,
+                    fills_down,
+                });
+            }
+            (Some(_), None) => {}
+            (None, _) if !keys.is_right => {}
+            _ => complaints.add(source.complaint(
+                byte,
+                Some(name),
+                format!("{place} must have one of column, value and formula"),
+            )),
+        }
+    }
+    entries
+}
+
+fn read_recording(
+    source: &Source<'_>,
+    table: &dyn TableLike,
+    complaints: &mut Complaints,
+) -> Option<Recording> {
+    let mut keys = Keys::new(source, table, "[recording]", Some("recording"));
+    let time = keys.text(complaints, "time");
+    let time_unit = keys.text(complaints, "time_unit");
+    let marker = keys.text(complaints, "marker");
+    let between = keys.list(complaints, "between");
+    let window = keys.list(complaints, "window_s");
+    let histories = keys.flag(complaints, "histories");
+    keys.end(complaints);
+    let window_s = match window.as_slice() {
+        [] => None,
+        [from, to] => match (from.parse(), to.parse()) {
+            (Ok(from), Ok(to)) if 0.0 <= from && from < to => Some((from, to)),
+            _ => {
+                keys.complain(
+                    complaints,
+                    "window_s",
+                    format!("[{from}, {to}] must be two times in s, the second after the first"),
+                );
+                None
+            }
+        },
+        _ => {
+            keys.complain(
+                complaints,
+                "window_s",
+                "window_s must be two times in s, as [20, 60]",
+            );
+            None
+        }
+    };
+    let (Some(time), Some(time_unit), Some(marker)) = (time, time_unit, marker) else {
+        let message = "a recording needs time (a column), time_unit and marker (the column that changes from run to run)";
+        keys.complain(complaints, "", message);
+        return None;
+    };
+    let line = table
+        .iter()
+        .next()
+        .and_then(|(_, item)| item.span())
+        .map_or(1, |span| source.line(span.start));
+    keys.is_right.then_some(Recording {
+        line,
+        time,
+        time_unit,
+        marker,
+        between,
+        window_s,
+        histories,
+    })
+}

@@ -1,0 +1,306 @@
+//! Numbers as people type them: decimal commas, thousands, signs of typesetters.
+
+/// What stands before the decimals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Decimal {
+    Point,
+    Comma,
+}
+
+impl Decimal {
+    pub(crate) fn mark(self) -> char {
+        match self {
+            Decimal::Point => '.',
+            Decimal::Comma => ',',
+        }
+    }
+
+    /// The mark that the other convention has for decimals, and this one between thousands.
+    fn other(self) -> char {
+        match self {
+            Decimal::Point => ',',
+            Decimal::Comma => '.',
+        }
+    }
+
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Decimal::Point => "decimal point",
+            Decimal::Comma => "decimal comma",
+        }
+    }
+
+    pub(crate) fn of(mark: &str) -> Option<Decimal> {
+        match mark {
+            "." => Some(Decimal::Point),
+            "," => Some(Decimal::Comma),
+            _ => None,
+        }
+    }
+}
+
+/// How the numbers of a column are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Writing {
+    pub(crate) decimal: Decimal,
+    /// Whether the map states that the other mark stands between thousands: `1,234` alone could be either.
+    pub(crate) has_thousands: bool,
+}
+
+fn is_gap(c: char) -> bool {
+    matches!(c, ' ' | '\u{a0}' | '\u{2009}' | '\u{202f}' | '\'' | '\u{2019}')
+}
+
+/// The parts of a number: sign, digits in their groups, the marks between these, what follows the decimal mark.
+struct Parts {
+    is_negative: bool,
+    /// Digits and marks of the mantissa.
+    mantissa: String,
+    exponent: Option<i32>,
+}
+
+/// Whether a text is written like a number.
+pub(crate) fn is_number(text: &str) -> bool {
+    parts(text).is_some()
+}
+
+fn parts(text: &str) -> Option<Parts> {
+    let text = text.trim();
+    let (is_negative, rest) = match text.chars().next()? {
+        '-' | '−' | '–' => (true, text.chars().skip(1).collect::<String>()),
+        '+' => (false, text.chars().skip(1).collect()),
+        _ => (false, text.to_owned()),
+    };
+    let (mantissa, exponent) = match rest.split_once(['e', 'E']) {
+        Some((mantissa, exponent)) => (
+            mantissa.to_owned(),
+            Some(exponent.replace('−', "-").parse().ok()?),
+        ),
+        None => (rest, None),
+    };
+    let known = |c: char| c.is_ascii_digit() || c == '.' || c == ',' || is_gap(c);
+    let begins = mantissa
+        .chars()
+        .next()
+        .is_some_and(|c| c.is_ascii_digit() || c == '.' || c == ',');
+    let ends = mantissa.chars().next_back().is_some_and(|c| !is_gap(c));
+    let is_number =
+        begins && ends && mantissa.chars().all(known) && mantissa.contains(|c: char| c.is_ascii_digit());
+    is_number.then_some(Parts {
+        is_negative,
+        mantissa,
+        exponent,
+    })
+}
+
+/// A number, or in words what was expected and the nearest fix.
+pub(crate) fn read(text: &str, writing: Writing) -> Result<f64, String> {
+    let Writing {
+        decimal,
+        has_thousands,
+    } = writing;
+    let Some(Parts {
+        is_negative,
+        mantissa,
+        exponent,
+    }) = parts(text)
+    else {
+        return Err(no_number(text, decimal));
+    };
+    let (whole, decimals) = match mantissa.split_once(decimal.mark()) {
+        Some((whole, decimals)) => (whole, Some(decimals)),
+        None => (mantissa.as_str(), None),
+    };
+    if decimals.is_some_and(|digits| !digits.chars().all(|c| c.is_ascii_digit())) {
+        return Err(no_number(text, decimal));
+    }
+    let (mark, other) = (decimal.mark(), decimal.other());
+    let groups: Vec<&str> = whole.split(|c: char| c == other || is_gap(c)).collect();
+    let are_thousands = groups.len() == 1
+        || (groups[1..].iter().all(|group| group.len() == 3) && (1..=3).contains(&groups[0].len()));
+    if !are_thousands {
+        let swapped: String = text.chars().map(|c| if c == other { mark } else { c }).collect();
+        return Err(format!(
+            "\"{text}\" has a \"{other}\" where the numbers have a {}: write {swapped}, or state `decimal` of this column in the map",
+            decimal.words()
+        ));
+    }
+    if groups.len() == 2 && decimals.is_none() && whole.contains(other) && !has_thousands {
+        let plain: String = whole.chars().filter(|&c| c != other).collect();
+        let swapped = whole.replace(other, &mark.to_string());
+        return Err(format!(
+            "\"{text}\" can mean {plain} or {swapped}: write it without \"{other}\", or state `thousands = \"{other}\"` in the map"
+        ));
+    }
+    let digits = groups.concat();
+    let digits = if digits.is_empty() { "0" } else { &digits };
+    let plain = format!(
+        "{}{digits}.{}e{}",
+        if is_negative { "-" } else { "" },
+        decimals.filter(|d| !d.is_empty()).unwrap_or("0"),
+        exponent.unwrap_or(0)
+    );
+    match plain.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!(
+            "\"{text}\" is beyond the numbers that a program can hold"
+        )),
+    }
+}
+
+fn no_number(text: &str, decimal: Decimal) -> String {
+    let expected = match decimal {
+        Decimal::Point => "1.5",
+        Decimal::Comma => "1,5",
+    };
+    // Letters that people type for digits, or a unit or remark behind the number.
+    let mended: String = text
+        .chars()
+        .map(|c| match c {
+            'O' | 'o' => '0',
+            'l' | 'I' => '1',
+            c => c,
+        })
+        .collect();
+    let beginning: String = text
+        .chars()
+        .take_while(|c| c.is_ascii_digit() || ".,-−+".contains(*c))
+        .collect();
+    let fix = if mended != text && parts(&mended).is_some() {
+        format!("; did you mean {mended}")
+    } else if !beginning.is_empty() && parts(&beginning).is_some() {
+        format!("; did you mean {beginning}")
+    } else {
+        "; leave the cell blank where nothing was measured, or name the word under `missing` in the map"
+            .into()
+    };
+    format!("\"{text}\" is no number: a number like {expected} is expected{fix}")
+}
+
+/// What the texts of a file tell about their decimal mark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Evidence {
+    /// Nothing is written with either mark.
+    None,
+    /// Every number with a mark can be read both ways, as `1,234`.
+    Ambiguous,
+    /// This one; of some numbers with each, that of the most.
+    Found(Decimal),
+}
+
+/// The decimal mark of texts.
+pub(crate) fn decimal_of<'a>(texts: impl Iterator<Item = &'a str>) -> Evidence {
+    let (mut points, mut commas, mut unclear) = (0, 0, 0);
+    for text in texts {
+        let Some(Parts { mantissa, .. }) = parts(text) else {
+            continue;
+        };
+        let last = mantissa.rfind(['.', ',']);
+        let Some(at) = last else { continue };
+        let mark = &mantissa[at..=at];
+        let (before, after) = (&mantissa[..at], &mantissa[at + 1..]);
+        let is_comma = mark == ",";
+        if before.contains(mark) {
+            // 1.234.567: the mark stands between thousands.
+            if is_comma { points += 1 } else { commas += 1 }
+        } else if before.contains(['.', ','])
+            || after.len() != 3
+            || before.starts_with('0')
+            || !(1..=3).contains(&before.len())
+        {
+            if is_comma { commas += 1 } else { points += 1 }
+        } else {
+            unclear += 1;
+        }
+    }
+    match (points, commas, unclear) {
+        (0, 0, 0) => Evidence::None,
+        (0, 0, _) => Evidence::Ambiguous,
+        (points, commas, _) if commas > points => Evidence::Found(Decimal::Comma),
+        _ => Evidence::Found(Decimal::Point),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn comma(text: &str) -> Result<f64, String> {
+        read(
+            text,
+            Writing {
+                decimal: Decimal::Comma,
+                has_thousands: false,
+            },
+        )
+    }
+
+    fn point(text: &str) -> Result<f64, String> {
+        read(
+            text,
+            Writing {
+                decimal: Decimal::Point,
+                has_thousands: false,
+            },
+        )
+    }
+
+    #[test]
+    fn numbers_are_read_as_people_type_them() {
+        for (text, value) in [
+            ("1,5", 1.5),
+            ("−2,25", -2.25),
+            ("1.234,5", 1234.5),
+            ("1.234.567", 1_234_567.0),
+            ("12 000,5", 12000.5),
+            (",5", 0.5),
+            ("3,2E-3", 0.0032),
+            ("+7", 7.0),
+        ] {
+            assert_eq!(comma(text), Ok(value), "{text}");
+        }
+        for (text, value) in [
+            ("1.5", 1.5),
+            ("1,234.5", 1234.5),
+            ("1'234.5", 1234.5),
+            ("5.", 5.0),
+            ("1e3", 1000.0),
+        ] {
+            assert_eq!(point(text), Ok(value), "{text}");
+        }
+        let stated = Writing {
+            decimal: Decimal::Point,
+            has_thousands: true,
+        };
+        assert_eq!(read("1,234", stated), Ok(1234.0));
+    }
+
+    #[test]
+    fn what_could_mean_two_things_is_refused() {
+        for (said, part) in [
+            (point("1,234"), "can mean 1234 or 1.234"),
+            (comma("1.234"), "can mean 1234 or 1,234"),
+            (comma("2.5"), "write 2,5, or state `decimal`"),
+            (point("2,5"), "write 2.5, or state `decimal`"),
+            (comma("1O,5"), "did you mean 10,5"),
+            (point("12.5 N"), "did you mean 12.5"),
+            (point("n/a"), "leave the cell blank"),
+            (point("1e999"), "beyond"),
+            (point("1 2"), "write"),
+        ] {
+            let said = said.unwrap_err();
+            assert!(said.contains(part), "{said}");
+        }
+    }
+
+    #[test]
+    fn the_decimal_mark_is_found_or_left_open() {
+        let found = |texts: &[&str]| decimal_of(texts.iter().copied());
+        assert_eq!(found(&["1,5", "1,234"]), Evidence::Found(Decimal::Comma));
+        assert_eq!(found(&["0,125"]), Evidence::Found(Decimal::Comma));
+        assert_eq!(found(&["1.234,5"]), Evidence::Found(Decimal::Comma));
+        assert_eq!(found(&["1,234,567"]), Evidence::Found(Decimal::Point));
+        assert_eq!(found(&["1,234", "5,678"]), Evidence::Ambiguous);
+        assert_eq!(found(&["12", "x"]), Evidence::None);
+    }
+}

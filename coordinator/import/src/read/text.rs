@@ -1,0 +1,42 @@
+//! Text with separators.
+
+use super::encoding::decode;
+use super::separator::Separator;
+use super::{Hints, SourceFile};
+use crate::complaint::Complaint;
+use crate::table::{Cell, Form, Row, Table};
+
+pub(super) fn read(source: &SourceFile<'_>, hints: &Hints) -> Result<Table, Box<Complaint>> {
+    let mut table = Table {
+        file: source.name.to_owned(),
+        sheet: None,
+        sheets: Vec::new(),
+        form: Form::Lines,
+        rows: Vec::new(),
+        remarks: Vec::new(),
+    };
+    let (text, remark) = decode(source.bytes, hints.encoding.as_deref()).map_err(|e| table.complaint(e))?;
+    table.remarks.extend(remark);
+    let stated = hints.separator.as_deref().map(Separator::named).transpose();
+    let separator = match stated.map_err(|e| table.complaint(e))? {
+        Some(separator) => separator,
+        None => Separator::found(&text).ok_or_else(|| {
+            table.complaint("no line has two fields or more: a table with , ; | tab or spaces between its columns is expected")
+        })?,
+    };
+    // Excel writes the separator into the first line; it is no row.
+    let is_statement = |line: &str| line.trim().to_lowercase().starts_with("sep=");
+    let fields = separator.fields(&text).map_err(|(line, message)| Complaint {
+        line: Some(line),
+        ..table.complaint(message)
+    })?;
+    table.rows = fields
+        .into_iter()
+        .filter(|(line, fields)| !(*line == 1 && fields.first().is_some_and(|field| is_statement(field))))
+        .map(|(line, fields)| Row {
+            line,
+            cells: fields.iter().map(|field| Cell::of_text(field)).collect(),
+        })
+        .collect();
+    Ok(table)
+}

@@ -1,0 +1,221 @@
+//! The variables of a MATLAB file, as a table with their names as titles.
+
+use super::Hints;
+use crate::complaint::Complaint;
+use crate::table::{Cell, Form, Row, Table};
+
+/// A value of MATLAB's.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Value {
+    /// A matrix, column after column.
+    Numbers {
+        rows: usize,
+        columns: usize,
+        values: Vec<f64>,
+    },
+    /// A list of texts: a char matrix, or a cell array of texts.
+    Texts(Vec<String>),
+    /// A struct: values by the names of its fields; several elements of a struct array in one list.
+    Fields(Vec<(String, Vec<Value>)>),
+    /// What has no place in a table, in words.
+    Other(&'static str),
+}
+
+/// Variables by name.
+pub(super) type Variables = Vec<(String, Value)>;
+
+/// A column with its title.
+type Column = (String, Vec<Cell>);
+
+/// The columns of a value.
+fn columns(name: &str, value: &Value) -> Result<Vec<Column>, String> {
+    let number = |value: &f64| {
+        if value.is_nan() {
+            Cell::Blank
+        } else {
+            Cell::Number(*value)
+        }
+    };
+    match value {
+        Value::Numbers {
+            rows,
+            columns,
+            values,
+        } if *rows == 1 || *columns == 1 => Ok(vec![(name.to_owned(), values.iter().map(number).collect())]),
+        Value::Numbers { rows, values, .. } => {
+            let column = |(k, part): (usize, &[f64])| {
+                (format!("{name}(:,{})", k + 1), part.iter().map(number).collect())
+            };
+            Ok(values.chunks((*rows).max(1)).enumerate().map(column).collect())
+        }
+        Value::Texts(texts) => Ok(vec![(
+            name.to_owned(),
+            texts.iter().map(|text| Cell::of_text(text)).collect(),
+        )]),
+        Value::Fields(_) => Err("a struct within a struct".into()),
+        Value::Other(words) => Err((*words).to_owned()),
+    }
+}
+
+/// The columns of a struct array: an element is a row.
+fn columns_of_elements(field: &str, values: &[Value]) -> Result<Column, String> {
+    let cell = |value: &Value| match value {
+        Value::Numbers { values, .. } if values.is_empty() => Ok(Cell::Blank),
+        Value::Numbers { values, .. } if values.len() == 1 => Ok(Cell::Number(values[0])),
+        Value::Texts(texts) if texts.len() <= 1 => {
+            Ok(texts.first().map_or(Cell::Blank, |text| Cell::of_text(text)))
+        }
+        Value::Other(words) => Err((*words).to_owned()),
+        _ => Err("a list in an element of a struct array".to_owned()),
+    };
+    Ok((
+        field.to_owned(),
+        values.iter().map(cell).collect::<Result<_, _>>()?,
+    ))
+}
+
+/// Columns that make a table, by the name of the struct that they stand in; `""` outside of structs.
+struct Group {
+    name: String,
+    columns: Vec<Column>,
+    left_out: Vec<String>,
+}
+
+impl Group {
+    fn new(name: &str) -> Self {
+        Group {
+            name: name.to_owned(),
+            columns: Vec::new(),
+            left_out: Vec::new(),
+        }
+    }
+
+    fn take(&mut self, name: &str, found: Result<Vec<Column>, String>) {
+        match found {
+            Ok(columns) => self.columns.extend(columns),
+            Err(words) => self.left_out.push(format!("{name} ({words})")),
+        }
+    }
+
+    fn length(&self) -> usize {
+        self.columns
+            .iter()
+            .map(|(_, cells)| cells.len())
+            .max()
+            .unwrap_or(0)
+    }
+}
+
+fn groups(variables: &Variables) -> Vec<Group> {
+    let mut top = Group::new("");
+    let mut all = Vec::new();
+    for (name, value) in variables {
+        let Value::Fields(fields) = value else {
+            top.take(name, columns(name, value));
+            continue;
+        };
+        let mut group = Group::new(name);
+        for (field, values) in fields {
+            match values.as_slice() {
+                [one] => group.take(field, columns(field, one)),
+                many => group.take(field, columns_of_elements(field, many).map(|column| vec![column])),
+            }
+        }
+        all.push(group);
+    }
+    all.insert(0, top);
+    all.retain(|group| !group.columns.is_empty());
+    all
+}
+
+/// The table of variables as long as each other; a scalar counts for every row.
+pub(super) fn table(
+    file: &str,
+    variables: Result<Variables, String>,
+    hints: &Hints,
+) -> Result<Table, Box<Complaint>> {
+    let mut table = Table {
+        file: file.to_owned(),
+        sheet: None,
+        sheets: Vec::new(),
+        form: Form::Variables,
+        rows: Vec::new(),
+        remarks: Vec::new(),
+    };
+    let mut groups = groups(&variables.map_err(|e| table.complaint(e))?);
+    table.sheets = groups.iter().map(|group| group.name.clone()).collect();
+    let chosen = match &hints.sheet {
+        Some(stated) => groups
+            .iter()
+            .position(|group| group.name == *stated)
+            .ok_or_else(|| {
+                let known = groups.iter().map(|group| group.name.as_str());
+                table.complaint(shared::file::unknown_word("struct", stated, known))
+            })?,
+        None => {
+            let long = groups.iter().filter(|group| group.length() > 1).count();
+            if long > 1 && !hints.takes_largest {
+                let names: Vec<String> = table.sheets.iter().map(|name| format!("\"{name}\"")).collect();
+                let message = format!(
+                    "several structs have columns (\"\" is outside of all): state `sheet = ` in the map, one of {}",
+                    names.join(", ")
+                );
+                return Err(table.refusal(message));
+            }
+            let largest = (0..groups.len())
+                .rev()
+                .max_by_key(|&k| (groups[k].length().min(2), groups[k].columns.len()));
+            largest.ok_or_else(|| table.complaint("the file has no variable with numbers or texts: save the columns as vectors, or a struct of vectors (a MATLAB table as table2struct(t, 'ToScalar', true))"))?
+        }
+    };
+    let mut group = groups.swap_remove(chosen);
+    table.sheet = (!group.name.is_empty()).then(|| group.name.clone());
+    // The length that most columns have, the longer of two; scalars do not vote.
+    let lengths = |length: usize| {
+        group
+            .columns
+            .iter()
+            .filter(|(_, cells)| cells.len() == length)
+            .count()
+    };
+    let rows = group
+        .columns
+        .iter()
+        .map(|(_, cells)| cells.len())
+        .filter(|&n| n > 1)
+        .max_by_key(|&n| (lengths(n), n))
+        .unwrap_or(1);
+    let (fitting, others): (Vec<Column>, Vec<Column>) = group
+        .columns
+        .into_iter()
+        .partition(|(_, cells)| cells.len() == rows || cells.len() == 1);
+    group.left_out.extend(
+        others
+            .iter()
+            .map(|(name, cells)| format!("{name} ({} values where the others have {rows})", cells.len())),
+    );
+    if !group.left_out.is_empty() {
+        table.remarks.push(format!(
+            "left out, no columns of this table: {}",
+            group.left_out.join(", ")
+        ));
+    }
+    table.rows.push(Row {
+        line: 0,
+        cells: fitting.iter().map(|(name, _)| Cell::Text(name.clone())).collect(),
+    });
+    for row in 0..rows {
+        let cell = |(_, cells): &Column| {
+            cells
+                .get(row)
+                .or(cells.first().filter(|_| cells.len() == 1))
+                .cloned()
+                .unwrap_or(Cell::Blank)
+        };
+        table.rows.push(Row {
+            line: row + 1,
+            cells: fitting.iter().map(cell).collect(),
+        });
+    }
+    Ok(table)
+}

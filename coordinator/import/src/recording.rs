@@ -1,0 +1,428 @@
+//! Runs cut from one long recording, where a marker changes.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use shared::channel::Channel;
+
+use crate::binding::{Above, Binding, Output, is_text};
+use crate::complaint::{Complaint, Complaints};
+use crate::map::Recording;
+use crate::number::{self, Decimal, Writing};
+use crate::rule;
+use crate::run::{Run, csv, shown};
+use crate::table::{Cell, Row};
+use crate::title::Titled;
+use crate::unit::{self, Quantity};
+
+/// A step of time may differ from the first by this share of it, as in a history.
+const UNEVEN: f64 = 0.01;
+/// Least samples of a history.
+const LEAST_SAMPLES: usize = 3;
+
+/// The runs of a recording, and the texts of their histories by the names of their files.
+pub(crate) type Cut = (Vec<Run>, BTreeMap<String, String>);
+
+/// One row of the recording.
+struct Sample<'a> {
+    row: &'a Row,
+    t_s: f64,
+    numbers: Vec<Option<f64>>,
+}
+
+/// The rows between two changes of the marker.
+struct Segment<'a> {
+    name: String,
+    samples: Vec<Sample<'a>>,
+}
+
+/// What is cut by what.
+pub(crate) struct Knife<'a> {
+    pub(crate) titled: &'a Titled,
+    pub(crate) binding: &'a Binding,
+    pub(crate) recording: &'a Recording,
+    pub(crate) map_file: &'a str,
+    pub(crate) decimal: Option<Decimal>,
+    /// What the names of the histories begin with.
+    pub(crate) stem: &'a str,
+}
+
+impl Knife<'_> {
+    pub(crate) fn cut(&self, rows: &[&Row], remarks: &mut Vec<String>, complaints: &mut Complaints) -> Cut {
+        let Some((time, seconds, marker)) = self.columns(complaints) else {
+            return Cut::default();
+        };
+        let segments = self.segments(rows, (time, seconds), marker, remarks, complaints);
+        if segments.is_empty() {
+            complaints.add(self.titled.table.complaint("the marker never marks a run"));
+        }
+        let (mut runs, mut histories) = Cut::default();
+        for segment in &segments {
+            let run = self.run(segment, &mut histories, complaints);
+            runs.push(run);
+        }
+        (runs, histories)
+    }
+
+    fn complain(&self, complaints: &mut Complaints, message: String) {
+        complaints.add(Complaint {
+            file: self.map_file.to_owned(),
+            line: Some(self.recording.line),
+            field: Some("recording".into()),
+            message: format!("[recording]: {message}"),
+            ..Complaint::default()
+        });
+    }
+
+    /// The columns of time and marker, and one of the time's unit in seconds.
+    fn columns(&self, complaints: &mut Complaints) -> Option<(usize, f64, usize)> {
+        let time = self.titled.column(&self.recording.time);
+        let marker = self.titled.column(&self.recording.marker);
+        let unit = unit::read(&self.recording.time_unit, Quantity::Time);
+        if self
+            .binding
+            .outputs
+            .iter()
+            .any(|output| output.field.name == "run")
+        {
+            self.complain(
+                complaints,
+                "the marker names the runs: leave [columns.run] out".into(),
+            );
+        }
+        for message in [time.as_ref().err(), unit.as_ref().err(), marker.as_ref().err()]
+            .into_iter()
+            .flatten()
+        {
+            self.complain(complaints, message.clone());
+        }
+        Some((time.ok()?, unit.ok()?.si, marker.ok()?))
+    }
+
+    fn segments<'a>(
+        &self,
+        rows: &[&'a Row],
+        (time, seconds): (usize, f64),
+        marker: usize,
+        remarks: &mut Vec<String>,
+        complaints: &mut Complaints,
+    ) -> Vec<Segment<'a>> {
+        let writing = Writing {
+            decimal: self.decimal.unwrap_or(Decimal::Point),
+            has_thousands: false,
+        };
+        let mut above = Above::default();
+        let mut segments: Vec<Segment<'a>> = Vec::new();
+        let (mut last, mut between) = (None, 0);
+        for &row in rows {
+            let mark = row.cell(marker).shown();
+            let is_same = last.as_ref() == Some(&mark);
+            last = Some(mark.clone());
+            if mark.is_empty() || self.recording.between.contains(&mark) {
+                between += 1;
+                continue;
+            }
+            let t = match row.cell(time) {
+                Cell::Number(value) => Ok(*value),
+                Cell::Text(text) => number::read(text, writing),
+                Cell::Blank | Cell::NoResult => Err("the time is blank".into()),
+            };
+            let t_s = match t {
+                Ok(t) => t * seconds,
+                Err(message) => {
+                    let field = Some("recording".into());
+                    complaints.add_cell(Complaint {
+                        field,
+                        ..self.titled.table.complaint_at(row.line, time, message)
+                    });
+                    continue;
+                }
+            };
+            let numbers = self.binding.numbers(self.titled, row, &mut above, complaints);
+            let sample = Sample { row, t_s, numbers };
+            match segments.last_mut().filter(|_| is_same) {
+                Some(segment) => segment.samples.push(sample),
+                None => segments.push(Segment {
+                    name: mark,
+                    samples: vec![sample],
+                }),
+            }
+        }
+        if between > 0 {
+            remarks.push(format!(
+                "{between} of {} rows lie between runs and are left out",
+                rows.len()
+            ));
+        }
+        number_repeated(&mut segments, remarks);
+        segments
+    }
+
+    /// The samples of a segment whose time lies in the window.
+    fn window<'a, 'b>(&self, segment: &'b Segment<'a>, complaints: &mut Complaints) -> &'b [Sample<'a>] {
+        let samples = segment.samples.as_slice();
+        let (Some((from, to)), [first, .., last]) = (self.recording.window_s, samples) else {
+            return samples;
+        };
+        let length = last.t_s - first.t_s;
+        if to > length * (1.0 + UNEVEN) {
+            let message = format!(
+                "run \"{}\" lasts {length:.6} s, and window_s ends at {to} s",
+                segment.name
+            );
+            complaints.add_cell(Complaint {
+                field: Some("recording".into()),
+                line: Some(first.row.line),
+                ..self.titled.table.complaint(message)
+            });
+        }
+        let begin = samples.partition_point(|sample| sample.t_s - first.t_s < from);
+        let end = samples.partition_point(|sample| sample.t_s - first.t_s <= to);
+        samples
+            .get(begin..end)
+            .filter(|chosen| !chosen.is_empty())
+            .unwrap_or(samples)
+    }
+
+    fn run(
+        &self,
+        segment: &Segment<'_>,
+        histories: &mut BTreeMap<String, String>,
+        complaints: &mut Complaints,
+    ) -> Run {
+        let Some(first) = segment.samples.first() else {
+            return Run::default();
+        };
+        for pair in segment.samples.windows(2) {
+            if pair[1].t_s <= pair[0].t_s {
+                let message = format!(
+                    "the time {} s must lie after {} s",
+                    shown(pair[1].t_s),
+                    shown(pair[0].t_s)
+                );
+                let field = Some("recording".into());
+                complaints.add_cell(Complaint {
+                    line: Some(pair[1].row.line),
+                    field,
+                    ..self.titled.table.complaint(message)
+                });
+                break;
+            }
+        }
+        let chosen = self.window(segment, complaints);
+        let mut run = Run {
+            line: first.row.line,
+            name: segment.name.clone(),
+            ..Run::default()
+        };
+        let means = means(chosen);
+        let (mut kept, channels): (Vec<&Output>, Vec<&Output>) = self
+            .binding
+            .outputs
+            .iter()
+            .partition(|output| !(self.recording.histories && is_channel(output)));
+        kept.retain(|output| output.field.name != "run");
+        for output in kept {
+            let text = if is_text(output) {
+                self.constant(output, chosen, complaints)
+            } else {
+                // What is measured is averaged; what formulas make of conditions, of their averages.
+                let value = if is_channel(output) {
+                    self.mean(output, chosen)
+                } else {
+                    self.binding.value(output, &means)
+                };
+                value.map(|value| rule::of_number(&output.field, value).map(|()| shown(value)))
+            };
+            match text {
+                Some(Ok(text)) => {
+                    run.cells.insert(output.field.name.clone(), text);
+                }
+                Some(Err(message)) => complaints.add_cell(self.binding.complaint(
+                    self.titled,
+                    first.row,
+                    output,
+                    format!("run \"{}\": {message}", run.name),
+                )),
+                None if output.field.is_needed => {
+                    let message = format!("run \"{}\": {} is blank", run.name, output.field.words);
+                    complaints.add_cell(self.binding.complaint(self.titled, first.row, output, message));
+                }
+                None => {}
+            }
+        }
+        if self.recording.histories
+            && let Some(text) = self.history(segment, &channels, complaints)
+        {
+            let file = self.free_name(&run.name, histories);
+            run.cells.insert("history".into(), file.clone());
+            histories.insert(file, text);
+        }
+        run
+    }
+
+    /// The text that all samples have.
+    fn constant(
+        &self,
+        output: &Output,
+        samples: &[Sample<'_>],
+        complaints: &mut Complaints,
+    ) -> Option<Result<String, String>> {
+        let mut above = Above::default();
+        let mut found: Option<String> = None;
+        for sample in samples {
+            let text = self.binding.text(output, sample.row, &mut above);
+            match (&found, text) {
+                (None, text) => found = text,
+                (Some(known), Some(text)) if *known != text => {
+                    let message = format!(
+                        "{} changes from \"{known}\" to \"{text}\" within a run",
+                        output.field.words
+                    );
+                    complaints.add_cell(self.binding.complaint(self.titled, sample.row, output, message));
+                    break;
+                }
+                _ => {}
+            }
+        }
+        found.map(|text| rule::of_text(&output.field, &text))
+    }
+
+    fn mean(&self, output: &Output, samples: &[Sample<'_>]) -> Option<f64> {
+        let values: Vec<f64> = samples
+            .iter()
+            .filter_map(|sample| self.binding.value(output, &sample.numbers))
+            .collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    }
+
+    /// The history of a run: times from its beginning, each the end of its interval.
+    fn history(
+        &self,
+        segment: &Segment<'_>,
+        channels: &[&Output],
+        complaints: &mut Complaints,
+    ) -> Option<String> {
+        let samples = &segment.samples;
+        let complain = |complaints: &mut Complaints, row: &Row, message: String| {
+            let field = Some("recording".into());
+            complaints.add_cell(Complaint {
+                line: Some(row.line),
+                field,
+                ..self
+                    .titled
+                    .table
+                    .complaint(format!("run \"{}\": {message}", segment.name))
+            });
+        };
+        let [first, second, ..] = samples.as_slice() else {
+            complain(
+                complaints,
+                samples.first()?.row,
+                format!(
+                    "{} samples are too few for a history: at least {LEAST_SAMPLES}",
+                    samples.len()
+                ),
+            );
+            return None;
+        };
+        if samples.len() < LEAST_SAMPLES {
+            complain(
+                complaints,
+                first.row,
+                format!(
+                    "{} samples are too few for a history: at least {LEAST_SAMPLES}",
+                    samples.len()
+                ),
+            );
+        }
+        let step = second.t_s - first.t_s;
+        let uneven = samples
+            .windows(2)
+            .find(|pair| (pair[1].t_s - pair[0].t_s - step).abs() > UNEVEN * step);
+        if let Some(pair) = uneven {
+            let message = format!(
+                "the time {} s comes {:.6} s after the one before, the first two are {step:.6} s apart: a history needs equal steps",
+                shown(pair[1].t_s),
+                pair[1].t_s - pair[0].t_s
+            );
+            complain(complaints, pair[1].row, message);
+        }
+        let header = std::iter::once("t_s".to_owned())
+            .chain(channels.iter().map(|output| output.field.name.clone()))
+            .collect();
+        let mut rows = vec![header];
+        for sample in samples {
+            let mut row = vec![shown(sample.t_s - first.t_s + step)];
+            for output in channels {
+                match self.binding.value(output, &sample.numbers) {
+                    Some(value) => row.push(shown(value)),
+                    None => {
+                        row.push(String::new());
+                        if !complaints.is_said(sample.row.line, &output.field.name) {
+                            let message = format!(
+                                "{} is blank within a run, and a history has no gaps",
+                                output.field.words
+                            );
+                            complaints.add_cell(self.binding.complaint(
+                                self.titled,
+                                sample.row,
+                                output,
+                                message,
+                            ));
+                        }
+                    }
+                }
+            }
+            rows.push(row);
+        }
+        Some(csv(rows.into_iter()))
+    }
+
+    /// A name for a history that no other has.
+    fn free_name(&self, run: &str, taken: &BTreeMap<String, String>) -> String {
+        let plain: String = run
+            .chars()
+            .map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' })
+            .take(60)
+            .collect();
+        let names = std::iter::once(String::new()).chain((2..).map(|number| format!("-{number}")));
+        let mut names = names.map(|number| format!("{}-{plain}{number}.csv", self.stem));
+        names.find(|name| !taken.contains_key(name)).unwrap_or_default()
+    }
+}
+
+/// Runs whose marker comes again are numbered: a marker may only count on and off.
+fn number_repeated(segments: &mut [Segment<'_>], remarks: &mut Vec<String>) {
+    let names: Vec<String> = segments.iter().map(|segment| segment.name.clone()).collect();
+    for name in names.iter().collect::<BTreeSet<_>>() {
+        let count = names.iter().filter(|other| *other == name).count();
+        if count > 1 {
+            remarks.push(format!(
+                "the marker \"{name}\" comes {count} times: its runs are named {name}-1 to {name}-{count}"
+            ));
+            let own = segments.iter_mut().zip(&names).filter(|(_, own)| *own == name);
+            for (number, (segment, _)) in own.enumerate() {
+                segment.name = format!("{name}-{}", number + 1);
+            }
+        }
+    }
+}
+
+fn is_channel(output: &Output) -> bool {
+    Channel::ALL
+        .iter()
+        .any(|channel| channel.column() == output.field.name)
+}
+
+/// The averages of all numbers.
+fn means(samples: &[Sample<'_>]) -> Vec<Option<f64>> {
+    let width = samples.first().map_or(0, |sample| sample.numbers.len());
+    let mean = |input: usize| {
+        let values: Vec<f64> = samples
+            .iter()
+            .filter_map(|sample| sample.numbers.get(input).copied().flatten())
+            .collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    };
+    (0..width).map(mean).collect()
+}

@@ -1,0 +1,151 @@
+//! A table of cells with their places, as every kind of file gives it.
+
+use crate::complaint::Complaint;
+
+/// What a cell holds.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Cell {
+    Blank,
+    Number(f64),
+    Text(String),
+    /// A formula whose result the file does not have.
+    NoResult,
+}
+
+impl Cell {
+    /// A cell of a text without the spaces around it.
+    pub(crate) fn of_text(text: &str) -> Cell {
+        match text.trim() {
+            "" => Cell::Blank,
+            text => Cell::Text(text.to_owned()),
+        }
+    }
+
+    pub(crate) fn is_blank(&self) -> bool {
+        *self == Cell::Blank
+    }
+
+    /// What people read in it.
+    pub(crate) fn shown(&self) -> String {
+        match self {
+            Cell::Blank => String::new(),
+            Cell::Number(value) => value.to_string(),
+            Cell::Text(text) => text.clone(),
+            Cell::NoResult => "=…".into(),
+        }
+    }
+}
+
+/// How the places of a file are named.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// Lines of a text.
+    Lines,
+    /// Cells of a sheet: `C7`.
+    Cells,
+    /// Rows of variables; the titles are their names.
+    Variables,
+}
+
+/// One row.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Row {
+    /// Line of the text or row of the sheet, counted from 1; row 0 of variables has their names.
+    pub(crate) line: usize,
+    pub(crate) cells: Vec<Cell>,
+}
+
+impl Row {
+    pub(crate) fn cell(&self, column: usize) -> &Cell {
+        self.cells.get(column).unwrap_or(&Cell::Blank)
+    }
+
+    pub(crate) fn is_blank(&self) -> bool {
+        self.cells.iter().all(Cell::is_blank)
+    }
+}
+
+/// A table of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Table {
+    pub(crate) file: String,
+    pub(crate) sheet: Option<String>,
+    /// The names of all sheets, or of all groups of variables.
+    pub(crate) sheets: Vec<String>,
+    pub(crate) form: Form,
+    pub(crate) rows: Vec<Row>,
+    /// What was found out about the file, in words.
+    pub(crate) remarks: Vec<String>,
+}
+
+impl Table {
+    /// A complaint about the whole table.
+    pub(crate) fn complaint(&self, message: impl Into<String>) -> Complaint {
+        Complaint {
+            file: self.file.clone(),
+            sheet: self.sheet.clone(),
+            message: message.into(),
+            ..Complaint::default()
+        }
+    }
+
+    /// The same, to refuse the table with.
+    pub(crate) fn refusal(&self, message: impl Into<String>) -> Box<Complaint> {
+        Box::new(self.complaint(message))
+    }
+
+    /// A complaint about a cell.
+    pub(crate) fn complaint_at(&self, line: usize, column: usize, message: impl Into<String>) -> Complaint {
+        let cell = (self.form == Form::Cells).then(|| format!("{}{line}", letter(column)));
+        Complaint {
+            line: Some(line),
+            cell,
+            ..self.complaint(message)
+        }
+    }
+
+    /// Where a row stands, in words.
+    pub(crate) fn place(&self, line: usize) -> String {
+        match self.form {
+            Form::Lines => format!("line {line}"),
+            Form::Cells | Form::Variables => format!("row {line}"),
+        }
+    }
+}
+
+/// The letters of a column, as spreadsheets name it: `A`, `Z`, `AA`.
+pub(crate) fn letter(column: usize) -> String {
+    let (rest, last) = (column / 26, (column % 26) as u8);
+    let before = if rest == 0 {
+        String::new()
+    } else {
+        letter(rest - 1)
+    };
+    format!("{before}{}", char::from(b'A' + last))
+}
+
+/// The column that letters name; `None` where they name none.
+pub(crate) fn column_of(letters: &str) -> Option<usize> {
+    if letters.is_empty() || letters.len() > 3 || !letters.bytes().all(|b| b.is_ascii_uppercase()) {
+        return None;
+    }
+    let number = letters
+        .bytes()
+        .fold(0, |number, b| number * 26 + usize::from(b - b'A') + 1);
+    Some(number - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_name_columns_and_back() {
+        for (column, letters) in [(0, "A"), (25, "Z"), (26, "AA"), (51, "AZ"), (702, "AAA")] {
+            assert_eq!(letter(column), letters);
+            assert_eq!(column_of(letters), Some(column));
+        }
+        assert_eq!(column_of("Slip"), None);
+        assert_eq!(column_of("ABCD"), None);
+    }
+}

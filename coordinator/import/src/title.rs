@@ -1,0 +1,329 @@
+//! The titles of a table: where they stand, and the units that they state.
+
+use crate::complaint::Complaint;
+use crate::field::Field;
+use crate::number;
+use crate::table::{Cell, Form, Row, Table, column_of, letter};
+use crate::unit::{self, Unit};
+
+/// What a title, or the row of units, says about the unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Stated {
+    Nothing,
+    Unit(&'static Unit),
+}
+
+/// The title of a column.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Title {
+    /// As it stands in the file; the letters of the column where the file has none.
+    pub(crate) text: String,
+    /// Without its unit.
+    pub(crate) name: String,
+    pub(crate) stated: Stated,
+    /// What stands in brackets or in the row of units and is no unit that is known.
+    pub(crate) unknown: Option<String>,
+}
+
+/// A table with its titles and its rows of data.
+#[derive(Debug)]
+pub(crate) struct Titled {
+    pub(crate) table: Table,
+    pub(crate) titles: Vec<Title>,
+    /// The line of the titles; 0 where there are none.
+    pub(crate) title_line: usize,
+    pub(crate) unit_line: Option<usize>,
+    /// Position of the first row of data.
+    first: usize,
+}
+
+impl Titled {
+    /// The rows below the titles, blank ones left out.
+    pub(crate) fn data(&self) -> impl Iterator<Item = &Row> {
+        self.table.rows[self.first..].iter().filter(|row| !row.is_blank())
+    }
+
+    /// The column that a map means: by its title, else by its letters.
+    pub(crate) fn column(&self, meant: &str) -> Result<usize, String> {
+        let is_meant = |title: &&Title| spaced(&title.text) == spaced(meant);
+        let found: Vec<usize> = (0..self.titles.len())
+            .filter(|&k| is_meant(&&self.titles[k]))
+            .collect();
+        match found[..] {
+            [one] => Ok(one),
+            [] => match column_of(meant).filter(|&column| column < self.titles.len()) {
+                Some(column) => Ok(column),
+                None => Err(self.unknown_column(meant)),
+            },
+            _ => {
+                let letters: Vec<String> = found.iter().map(|&k| letter(k)).collect();
+                Err(format!(
+                    "several columns have the title \"{meant}\": name the one that is meant by its letter, {}",
+                    letters.join(" or ")
+                ))
+            }
+        }
+    }
+
+    fn unknown_column(&self, meant: &str) -> String {
+        let sought = meant.to_lowercase();
+        let is_near = |title: &&Title| {
+            let (text, name) = (title.text.to_lowercase(), title.name.to_lowercase());
+            let distance =
+                strsim::damerau_levenshtein(&name, &sought).min(strsim::damerau_levenshtein(&text, &sought));
+            text == sought
+                || name == sought
+                || (!name.is_empty() && distance <= sought.chars().count().max(name.chars().count()) / 3)
+        };
+        let begins =
+            |title: &&Title| sought.chars().count() > 2 && title.text.to_lowercase().starts_with(&sought);
+        let near = self
+            .titles
+            .iter()
+            .find(is_near)
+            .or_else(|| self.titles.iter().find(begins));
+        let known = || {
+            self.titles
+                .iter()
+                .map(|title| title.text.as_str())
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        match near {
+            Some(near) => format!(
+                "no column has the title \"{meant}\"; did you mean \"{}\"",
+                near.text
+            ),
+            None => format!("no column has the title \"{meant}\"; the titles are {}", known()),
+        }
+    }
+}
+
+/// A title with its spaces and line breaks counted as one each.
+fn spaced(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Finds the titles; `stated` are the lines of titles and units as the map has them, 0 for none.
+pub(crate) fn find(
+    table: Table,
+    stated: (Option<usize>, Option<usize>),
+    fields: &[Field],
+) -> Result<Titled, Box<Complaint>> {
+    let (titles_at, units_at) = stated;
+    let position = |line: usize| {
+        let at = table
+            .rows
+            .iter()
+            .position(|row| row.line == line && !row.is_blank());
+        at.ok_or_else(|| {
+            table.refusal(format!(
+                "{} of the map's titles or units is blank or not there",
+                table.place(line)
+            ))
+        })
+    };
+    let at = match (titles_at, table.form) {
+        (_, Form::Variables) => Some(0),
+        (Some(0), _) => None,
+        (Some(line), _) => Some(position(line)?),
+        (None, _) => guessed(&table)?,
+    };
+    let units = match (units_at, at) {
+        (Some(0), _) | (None, None) => None,
+        (Some(line), _) => Some(position(line)?),
+        (None, Some(at)) => table.rows[at + 1..]
+            .iter()
+            .position(|row| !row.is_blank())
+            .map(|k| at + 1 + k)
+            .filter(|&k| is_units(&table.rows[k])),
+    };
+    let first = at.max(units).map_or(0, |k| k + 1);
+    let width = table.rows[first..]
+        .iter()
+        .chain(at.map(|k| &table.rows[k]))
+        .map(|row| row.cells.len())
+        .max()
+        .unwrap_or(0);
+    // `slip` names no unit, except beside names of runs.csv that do.
+    let is_own = at.is_some_and(|k| {
+        table.rows[k]
+            .cells
+            .iter()
+            .any(|cell| cell.shown() == "wheel_load_n")
+    });
+    let own: Vec<&Field> = fields
+        .iter()
+        .filter(|field| is_own || field.name != "slip")
+        .collect();
+    let titles = (0..width)
+        .map(|column| {
+            let text = at
+                .map(|k| spaced(&table.rows[k].cell(column).shown()))
+                .unwrap_or_default();
+            let text = if column == 0 {
+                text.trim_start_matches('#').trim_start().to_owned()
+            } else {
+                text
+            };
+            let below = units
+                .map(|k| table.rows[k].cell(column).shown())
+                .filter(|text| !text.is_empty());
+            title(&text, column, below, &own)
+        })
+        .collect();
+    Ok(Titled {
+        title_line: at.map_or(0, |k| table.rows[k].line),
+        unit_line: units.map(|k| table.rows[k].line),
+        titles,
+        first,
+        table,
+    })
+}
+
+fn is_number(cell: &Cell) -> bool {
+    match cell {
+        Cell::Number(_) => true,
+        Cell::Text(text) => number::is_number(text),
+        Cell::Blank | Cell::NoResult => false,
+    }
+}
+
+/// Whether a row below the titles has their units.
+fn is_units(row: &Row) -> bool {
+    let mut cells = row.cells.iter().filter(|cell| !cell.is_blank());
+    let is_like = |cell: &Cell| matches!(cell, Cell::Text(text) if unit::is_like_a_unit(text));
+    cells.clone().any(is_like) && cells.all(is_like)
+}
+
+/// The position of the titles: the last row with words above the first row with as many numbers as the table has.
+fn guessed(table: &Table) -> Result<Option<usize>, Box<Complaint>> {
+    let numbers = |row: &Row| row.cells.iter().filter(|cell| is_number(cell)).count();
+    let most = table.rows.iter().map(numbers).max().unwrap_or(0);
+    if most == 0 {
+        return Err(table
+            .refusal("no row has a number: a table with a row of titles and rows of numbers is expected"));
+    }
+    let Some(data) = table.rows.iter().position(|row| numbers(row) * 10 >= most * 6) else {
+        return Ok(None);
+    };
+    let above = table.rows[..data]
+        .iter()
+        .rposition(|row| !row.is_blank() && !is_units(row));
+    Ok(above.filter(|&at| {
+        let row = &table.rows[at];
+        let words = row
+            .cells
+            .iter()
+            .filter(|cell| !cell.is_blank() && !is_number(cell))
+            .count();
+        words * 2 > row.cells.iter().filter(|cell| !cell.is_blank()).count()
+    }))
+}
+
+/// What a title says; `below` is the cell of the row of units.
+fn title(text: &str, column: usize, below: Option<String>, fields: &[&Field]) -> Title {
+    let shown = if text.is_empty() {
+        letter(column)
+    } else {
+        text.to_owned()
+    };
+    let (name, said) = apart(text);
+    // The names of runs.csv have their units.
+    let own = fields
+        .iter()
+        .find(|field| field.name == text)
+        .and_then(|field| field.quantity());
+    let own = own.and_then(|quantity| {
+        unit::find(if quantity.si() == "rad" {
+            "deg"
+        } else {
+            quantity.si()
+        })
+    });
+    let below = below.map(|text| text.trim_matches(['[', ']', '(', ')']).trim().to_owned());
+    let (stated, unknown) = match (below, own, said) {
+        (Some(below), _, _) => (unit::find(&below), Some(below)),
+        (None, Some(own), _) => (Some(own), None),
+        (None, None, Some(said)) => (unit::find(&said), Some(said)),
+        (None, None, None) => (None, None),
+    };
+    Title {
+        text: shown,
+        name,
+        stated: stated.map_or(Stated::Nothing, Stated::Unit),
+        unknown: unknown.filter(|_| stated.is_none()),
+    }
+}
+
+/// Units that may stand behind a title without brackets: no word of a language, no sign of a mean or a number.
+const BARE: [&str; 26] = [
+    "N", "kN", "mm", "cm", "%", "rpm", "deg", "°", "ms", "kgf", "lbf", "Nm", "Ncm", "Nmm", "mm/s", "cm/s",
+    "m/s", "km/h", "m/h", "rad/s", "deg/s", "U/min", "1/min", "mm/min", "kp", "daN",
+];
+
+/// The name and the unit of a title: `load [kN]`, `load (kN)`, `load / kN`, `load in kN`, `load_kN`, `load kN`.
+fn apart(text: &str) -> (String, Option<String>) {
+    for (open, close) in [('[', ']'), ('(', ')')] {
+        if let Some((name, rest)) = text.rsplit_once(open)
+            && let Some((inside, after)) = rest.split_once(close)
+            && after.trim().is_empty()
+            && !inside.trim().is_empty()
+        {
+            return (name.trim().to_owned(), Some(inside.trim().to_owned()));
+        }
+    }
+    for between in [" / ", " in ", "/ "] {
+        if let Some((name, said)) = text.rsplit_once(between)
+            && unit::find(said).is_some()
+        {
+            return (name.trim().to_owned(), Some(said.trim().to_owned()));
+        }
+    }
+    if let Some((name, said)) = text.rsplit_once([' ', '_'])
+        && BARE.contains(&said)
+    {
+        return (name.trim().to_owned(), Some(said.to_owned()));
+    }
+    (text.to_owned(), None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::fields;
+
+    #[test]
+    fn a_title_states_its_unit_in_many_ways() {
+        let fields = fields();
+        let own: Vec<&Field> = fields.iter().collect();
+        for (text, name, unit) in [
+            ("Radlast [kN]", "Radlast", Some("kN")),
+            ("load (kgf)", "load", Some("kgf")),
+            ("pull / N", "pull", Some("N")),
+            ("Zugkraft in daN", "Zugkraft", Some("daN")),
+            ("sinkage_mm", "sinkage", Some("mm")),
+            ("Schlupf %", "Schlupf", Some("%")),
+            ("Drehzahl [U/min]", "Drehzahl", Some("rpm")),
+            ("slip [-]", "slip", Some("1")),
+            ("slip_m", "slip_m", None),
+            ("pull_min", "pull_min", None),
+            ("slip ratio", "slip ratio", None),
+            ("load [kg]", "load", None),
+            ("sinkage_m", "sinkage_m", Some("m")),
+            ("wheel_load_n", "wheel_load_n", Some("N")),
+        ] {
+            let found = title(text, 0, None, &own);
+            let stated = match found.stated {
+                Stated::Unit(unit) => Some(unit.name),
+                Stated::Nothing => None,
+            };
+            assert_eq!((found.name.as_str(), stated), (name, unit), "{text}");
+        }
+        assert_eq!(title("load [kg]", 0, None, &own).unknown.as_deref(), Some("kg"));
+        assert_eq!(
+            title("load", 0, Some("(N)".into()), &own).stated,
+            Stated::Unit(unit::find("N").unwrap())
+        );
+    }
+}

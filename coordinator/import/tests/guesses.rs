@@ -1,0 +1,128 @@
+//! Maps that are proposed: what is stated is taken, what is not is asked.
+
+use import::{Guess, SourceFile, guess};
+
+use super::{complaints, runs};
+
+fn guessed(name: &str, bytes: &[u8]) -> Guess {
+    guess(
+        &SourceFile {
+            name,
+            bytes,
+            is_own: true,
+        },
+        None,
+    )
+    .expect("a table")
+}
+
+const GERMAN: &str = "Versuch;Radlast [kN];Schlupf [%];Geschwindigkeit (mm/s);Zugkraft [N];Drehmoment [Ncm];Einsinkung mm;Bediener\n\
+A;0,1;20;8;35,2;590;5,6;Ada\nB;0,1;40;8;;660;;Ada\n";
+
+#[test]
+fn german_titles_with_units_need_no_more_than_wheel_and_soil() {
+    let found = guessed("Sand.csv", GERMAN.as_bytes());
+    let open: Vec<&str> = found
+        .fields
+        .iter()
+        .filter(|field| field.question.is_some())
+        .map(|field| field.name.as_str())
+        .collect();
+    assert_eq!(open, ["wheel", "soil"]);
+    assert_eq!(found.decimal.as_deref(), Some(","));
+    assert!(
+        found.map.ends_with("# Kept as notes: \"Bediener\"\n"),
+        "{}",
+        found.map
+    );
+    // The proposal is refused as it is, and does what it says once it is answered.
+    let said = complaints("Sand.csv", GERMAN.as_bytes(), &found.map);
+    assert_eq!(said.len(), 2, "{said:#?}");
+    let answered = found.map.replace("value = \"?\"", "value = \"x\"");
+    assert_eq!(
+        runs("Sand.csv", GERMAN.as_bytes(), &answered),
+        "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,torque_n_m,sinkage_m\nA,x,x,0.2,100,0.008,35.2,5.9,0.0056\nB,x,x,0.4,100,0.008,,6.6,\n"
+    );
+}
+
+#[test]
+fn a_unit_that_is_not_stated_is_a_question() {
+    let text =
+        "run,wheel,soil,slip,load,speed [mm/s],sinkage,torque [kg]\na,w,s,20,100,8,5,1\nb,w,s,30,100,8,6,2\n";
+    let found = guessed("a.csv", text.as_bytes());
+    let questions: Vec<&str> = found
+        .fields
+        .iter()
+        .filter_map(|field| field.question.as_deref())
+        .collect();
+    assert_eq!(
+        questions,
+        ["slip", "load", "torque [kg]", "sinkage"]
+            .map(|title| format!("in which unit is \"{title}\"? The file does not state it"))
+    );
+    let said = complaints("a.csv", text.as_bytes(), &found.map);
+    assert_eq!(said.len(), 4, "{said:#?}");
+    assert!(
+        said.iter()
+            .all(|line| line.contains("unit = \"?\" asks for an answer")),
+        "{said:#?}"
+    );
+}
+
+#[test]
+fn slip_from_rotation_is_proposed_with_the_radius_as_a_question() {
+    let text = "run;wheel;soil;load [N];speed [mm/s];rotation [rpm];pull [N]\na;w;s;100;8;1;12,5\nb;w;s;100;8;1,2;13,5\n";
+    let found = guessed("a.csv", text.as_bytes());
+    assert!(
+        found
+            .map
+            .contains("[columns.slip]\nformula = \"(omega * r - sled_speed_m_s)"),
+        "{}",
+        found.map
+    );
+    let said = complaints("a.csv", text.as_bytes(), &found.map).join("\n");
+    assert!(said.contains("r: value = \"?\" asks for an answer"), "{said}");
+    let answered = found
+        .map
+        .replace("value = \"?\"", "value = 125")
+        .replace("unit = \"?\"", "unit = \"mm\"");
+    assert!(runs("a.csv", text.as_bytes(), &answered).contains("\na,w,s,0.388845018"));
+}
+
+#[test]
+fn what_can_be_read_in_two_ways_is_asked() {
+    let text = "run;wheel;soil;slip [%];load [N];speed [mm/s];pull [N]\na;w;s;20;1,234;8;1,500\nb;w;s;20;1,235;8;1,750\n";
+    let found = guessed("a.csv", text.as_bytes());
+    assert_eq!(found.decimal.as_deref(), Some("?"));
+    let said = complaints("a.csv", text.as_bytes(), &found.map).join("\n");
+    assert!(said.contains("decimal = \"?\" asks for an answer"), "{said}");
+    assert!(
+        runs(
+            "a.csv",
+            text.as_bytes(),
+            &found.map.replace("decimal = \"?\"", "decimal = \",\"")
+        )
+        .contains("\na,w,s,0.2,1.234,0.008,1.5\n")
+    );
+}
+
+#[test]
+fn names_of_runs_csv_are_taken_as_they_are_and_sheets_are_listed() {
+    let own = "# made by hand\nrun,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,sinkage_m\na,w,s,0.2,100,0.008,15,0.005\n";
+    let found = guessed("a.csv", own.as_bytes());
+    assert_eq!(
+        runs("a.csv", own.as_bytes(), &found.map),
+        own.split_once('\n').unwrap().1
+    );
+    let book = guessed("b.xlsx", include_bytes!("files/awkward.xlsx"));
+    assert_eq!((book.sheet.as_deref(), book.title_line), (Some("Runs"), 3));
+    assert_eq!(book.sheets, ["Runs", "Notes"]);
+    assert_eq!(book.columns[4].sample[0], "12,5");
+    let variables = guessed("c.mat", include_bytes!("files/vectors-v73.mat"));
+    assert_eq!(variables.sheet.as_deref(), Some("data"));
+    assert!(
+        variables.columns.iter().any(|column| column.title == "sinkage"),
+        "{:?}",
+        variables.columns
+    );
+}

@@ -1,0 +1,35 @@
+//! Every kind of file, mistakes, guesses and recordings.
+
+mod files;
+mod guesses;
+mod mistakes;
+mod properties;
+mod recordings;
+mod texts;
+
+use import::{Converted, SourceFile, convert};
+
+/// Converts the bytes of a file of the user's own.
+fn converted(name: &str, bytes: &[u8], map: &str) -> Converted {
+    let source = SourceFile {
+        name,
+        bytes,
+        is_own: true,
+    };
+    convert(&source, ("map.toml", map), "runs")
+}
+
+/// The complaints about a file, as they are printed.
+fn complaints(name: &str, bytes: &[u8], map: &str) -> Vec<String> {
+    let found = converted(name, bytes, map);
+    assert!(found.runs.is_none() || found.complaints.is_empty(), "{found:?}");
+    found.complaints.iter().map(ToString::to_string).collect()
+}
+
+/// The text of runs.csv.
+#[track_caller]
+fn runs(name: &str, bytes: &[u8], map: &str) -> String {
+    let found = converted(name, bytes, map);
+    let said: Vec<String> = found.complaints.iter().map(ToString::to_string).collect();
+    found.runs.unwrap_or_else(|| panic!("{}", said.join("\n")))
+}

@@ -1,0 +1,130 @@
+// A person's table in their own columns and units: the guessed columns are shown, chosen by clicking, and become runs.csv.
+
+import { save } from "../chart/download.js";
+import { html, useEffect, useMemo, useState } from "../html.js";
+import { byField, mapOf, proposed, words } from "../import_map.js";
+import { guessImport, importTable } from "../rest/routes.js";
+import { Failure } from "./message.js";
+import { Table } from "./table.js";
+
+/** @typedef {import("../import_map.js").Choice} Choice */
+
+/** A change is asked about after so long without another [ms]. */
+const PAUSE_MS = 250;
+/** What the rows have where a column is absent. @type {Record<string, string>} */
+const ABSENT = { run: "(numbered)", slip_angle_deg: "(0: straight ahead)", use: "(all rows are fitted)" };
+/** What is shown before a person asks for all columns of runs.csv. */
+const USUAL = ["run", "wheel", "soil", "slip", "wheel_load_n", "sled_speed_m_s", "slip_angle_deg", "drawbar_pull_n", "torque_n_m", "sinkage_m", "lateral_force_n", "use"];
+
+/**
+ * @param {{ name: string, bytes: Uint8Array, onFiles: (files: Record<string, string>) => void, onRemove: () => void }} properties
+ *   onFiles: runs.csv and its histories
+ */
+export function ImportTable({ name, bytes, onFiles, onRemove }) {
+  const content = useMemo(() => base64(bytes), [bytes]);
+  const [guess, setGuess] = useState(/** @type {any} */ (null));
+  const [choices, setChoices] = useState(/** @type {import("../import_map.js").Choices | null} */ (null));
+  const [answer, setAnswer] = useState(/** @type {any} */ (null));
+  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [isAll, setAll] = useState(false);
+  const look = async (/** @type {string | null} */ sheet) => {
+    setFailure(null);
+    try {
+      const found = await guessImport({ name, content_base64: content, sheet });
+      setGuess(found);
+      setChoices(proposed(found));
+    } catch (error) {
+      setFailure(error);
+    }
+  };
+  useEffect(() => void look(null), [content]);
+  const map = guess && choices ? mapOf(guess, choices) : null;
+  useEffect(() => {
+    if (map === null) return undefined;
+    let isOver = false;
+    setAnswer(null);
+    const timer = setTimeout(async () => {
+      try {
+        const found = await importTable({ name, content_base64: content, map });
+        if (!isOver) setAnswer(found);
+      } catch (error) {
+        if (!isOver) setFailure(error);
+      }
+    }, PAUSE_MS);
+    return () => {
+      isOver = true;
+      clearTimeout(timer);
+    };
+  }, [map, content]);
+  const heading = html`<div class="actions"><h2>The columns of ${name}</h2><button type="button" onClick=${onRemove} aria-label=${`remove ${name}`}>Remove</button></div>`;
+  if (!guess || !choices) return html`<div class="card mapping">${heading}<${Failure} error=${failure} />${!failure && html`<p class="empty" aria-busy="true">The table is being read.</p>`}</div>`;
+  const isShown = (/** @type {any} */ field) => isAll || USUAL.includes(field.name) || choices.fields[field.name].column !== null;
+  const fields = guess.fields.filter(isShown);
+  const isUsed = Object.values(choices.fields).some((choice) => choice.formula !== "" && choice.column === null);
+  const quantities = isUsed ? guess.quantities : [];
+  const said = byField(answer?.complaints ?? [], [...fields, ...quantities].map((/** @type {any} */ field) => field.name));
+  const set = (/** @type {"fields" | "quantities"} */ kind, /** @type {string} */ own, /** @type {Partial<Choice>} */ change) =>
+    setChoices({ ...choices, [kind]: { ...choices[kind], [own]: { ...choices[kind][own], ...change } } });
+  const row = (/** @type {any} */ field, /** @type {"fields" | "quantities"} */ kind) =>
+    cells(field, choices[kind][field.name], guess.columns, said.of(field.name), (change) => set(kind, field.name, change));
+  const titles = guess.columns.map((/** @type {any} */ column) => column.title);
+  const samples = (guess.columns[0]?.sample ?? []).map((/** @type {string} */ _, /** @type {number} */ k) => guess.columns.map((/** @type {any} */ column) => column.sample[k] ?? ""));
+  const isRight = answer !== null && answer.complaints.length === 0;
+  return html`
+    <div class="card mapping">
+      ${heading}
+      <p>Choose for each quantity the column of ${name} and its unit. Blank fields stay unmeasured.</p>
+      <div class="actions">
+        ${guess.sheets.length > 1 && html`<label>Sheet <select value=${guess.sheet ?? ""} onChange=${(/** @type {any} */ e) => look(e.target.value)}>
+          ${guess.sheets.map((/** @type {string} */ sheet) => html`<option value=${sheet} selected=${sheet === (guess.sheet ?? "")}>${sheet || "(outside of structs)"}</option>`)}</select></label>`}
+        ${choices.decimal !== null && html`<label>Decimal mark <select value=${choices.decimal} onChange=${(/** @type {any} */ e) => setChoices({ ...choices, decimal: e.target.value })}>
+          ${choices.decimal === "?" && html`<option value="?" selected>choose: is 1,234 more than a thousand?</option>`}
+          ${[[",", "comma: 1,5"], [".", "point: 1.5"]].map(([mark, text]) => html`<option value=${mark} selected=${mark === choices.decimal}>${text}</option>`)}</select></label>`}
+      </div>
+      <${Table} label=${`First rows of ${name}`} head=${titles} rows=${samples} />
+      <${Table} label=${`Columns of ${name}`} head=${["quantity", "column", "unit", "or the same in all rows"]}
+        rows=${[...fields.map((/** @type {any} */ field) => row(field, "fields")), ...quantities.map((/** @type {any} */ field) => row(field, "quantities"))]} />
+      ${!isAll && html`<p><button type="button" onClick=${() => setAll(true)}>Show all columns of runs.csv</button></p>`}
+      ${said.others.map((/** @type {any} */ complaint) => html`<p class="error">${words(complaint)}</p>`)}
+      <${Failure} error=${failure} />
+      ${(answer?.remarks ?? []).map((/** @type {string} */ remark) => html`<p class="note">${remark}</p>`)}
+      <div class="actions">
+        <button class="main" type="button" disabled=${!isRight} onClick=${() => onFiles({ "runs.csv": answer.runs, ...answer.histories })}>${isRight ? `Use these ${answer.run_count} runs` : answer === null ? "The table is being judged" : "Use these columns: answer what is marked"}</button>
+        <button type="button" onClick=${() => keep("map.toml", /** @type {string} */ (map))}>Save the map</button>
+        ${isRight && html`<button type="button" onClick=${() => keep("runs.csv", answer.runs)}>Save runs.csv</button>`}
+        ${isRight && answer.notes && html`<button type="button" onClick=${() => keep("runs-notes.csv", answer.notes)}>Save the notes</button>`}
+      </div>
+    </div>`;
+}
+
+/**
+ * The cells of a field: where it comes from, in which unit, and what is wrong with it.
+ * @returns {unknown[]}
+ */
+function cells(/** @type {any} */ field, /** @type {Choice} */ choice, /** @type {any[]} */ columns, /** @type {any[]} */ complaints, /** @type {(change: Partial<Choice>) => void} */ onChange) {
+  const absent = ABSENT[field.name] ?? (choice.formula !== "" ? choice.formula : field.is_needed ? "(none)" : "(not measured)");
+  const isOpen = choice.unit === "" && (choice.column !== null || choice.value !== "");
+  return [
+    html`${field.words}${complaints.map((complaint) => html`<p class="error" data-field=${field.name}>${words(complaint)}</p>`)}`,
+    html`<select aria-label=${`column of ${field.words}`} aria-invalid=${complaints.length > 0} value=${choice.column ?? ""}
+      onChange=${(/** @type {any} */ e) => onChange(e.target.value === "" ? { column: null } : { column: e.target.value, unit: columns.find((column) => column.name === e.target.value && field.units.includes(column.unit))?.unit ?? "" })}>
+      <option value="" selected=${choice.column === null}>${absent}</option>
+      ${columns.map((column) => html`<option value=${column.name} selected=${choice.column === column.name}>${column.title}</option>`)}
+    </select>`,
+    field.units.length === 0 || (choice.formula !== "" && choice.column === null) ? "" : html`<select aria-label=${`unit of ${field.words}`} aria-invalid=${isOpen} value=${choice.unit} onChange=${(/** @type {any} */ e) => onChange({ unit: e.target.value })}>
+      <option value="" selected=${choice.unit === ""}>choose</option>
+      ${field.units.map((/** @type {string} */ unit) => html`<option value=${unit} selected=${choice.unit === unit}>${unit}</option>`)}
+    </select>`,
+    choice.column !== null || field.name === "run" || choice.formula !== "" ? "" : html`<input size="10" aria-label=${`${field.words} of all rows`} value=${choice.value} onInput=${(/** @type {any} */ e) => onChange({ value: e.target.value })} />`,
+  ];
+}
+
+const keep = (/** @type {string} */ name, /** @type {string} */ text) => save(name, new Blob([text], { type: "text/plain" }));
+
+/** Bytes in base64; a call takes so many arguments only. */
+function base64(/** @type {Uint8Array} */ bytes) {
+  const PART = 0x8000;
+  let text = "";
+  for (let k = 0; k < bytes.length; k += PART) text += String.fromCharCode(...bytes.subarray(k, k + PART));
+  return btoa(text);
+}

@@ -1,0 +1,228 @@
+//! Users' files by the command line and by REST: from a spreadsheet to a calibration.
+
+use std::path::{Path, PathBuf};
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use farm_tests::programs::{coordinator, run};
+use farm_tests::service::Service;
+use farm_tests::workspace::root;
+use serde_json::{Value, json};
+
+fn example(file: &str) -> PathBuf {
+    root().join("examples/import-german").join(file)
+}
+
+fn shown(path: &Path) -> String {
+    path.display().to_string()
+}
+
+/// Imports the German example by a map into a folder.
+fn import(map: &Path, folder: &Path) -> farm_tests::programs::Ended {
+    let (file, output) = (
+        shown(&example("Messung_Sand.xlsx")),
+        shown(&folder.join("runs.csv")),
+    );
+    run(coordinator([
+        "import",
+        &file,
+        "--map",
+        &shown(map),
+        "--output",
+        &output,
+    ]))
+}
+
+fn text(path: &Path) -> String {
+    std::fs::read_to_string(path).expect("a text")
+}
+
+#[test]
+fn a_german_spreadsheet_becomes_the_runs_that_it_was_made_from() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let said = import(&example("map.toml"), folder.path()).success();
+    assert!(said.ends_with("runs.csv: 40 runs\n"), "{said}");
+    assert!(
+        said.contains("kept as notes, no columns of runs.csv: Drehzahl [U/min], Bediener, Bemerkung"),
+        "{said}"
+    );
+    let runs = text(&folder.path().join("runs.csv"));
+    assert_eq!(
+        runs,
+        text(&example("runs.csv")),
+        "the committed runs.csv is that of the map"
+    );
+    let notes = text(&folder.path().join("runs-notes.csv"));
+    assert!(
+        notes.starts_with(
+            "run,Drehzahl [U/min],Bediener,Bemerkung\nV01,0.76394373,K. Weber,Sand neu aufbereitet\n"
+        ),
+        "{notes}"
+    );
+    // The numbers are those of the data that the spreadsheet was made from, to their digits.
+    let made_from = text(&root().join("examples/hidden-effect/runs.csv"));
+    let made_from: Vec<&str> = made_from.lines().filter(|line| line.starts_with('r')).collect();
+    let columns = |text: &str| -> Vec<String> { text.split(',').map(str::to_owned).collect() };
+    let (header, expected) = (
+        columns(made_from[0]),
+        made_from[1..].iter().map(|line| columns(line)),
+    );
+    let mut lines = runs.lines().map(columns);
+    let own = lines.next().expect("a header");
+    let mut compared = 0;
+    for (found, expected) in lines.zip(expected) {
+        for name in [
+            "slip",
+            "wheel_load_n",
+            "sled_speed_m_s",
+            "drawbar_pull_n",
+            "torque_n_m",
+            "sinkage_m",
+        ] {
+            let number = |header: &[String], row: &[String]| -> f64 {
+                let at = header
+                    .iter()
+                    .position(|column| column == name)
+                    .expect("the column");
+                row[at].parse().expect("a number")
+            };
+            let (a, b) = (number(&own, &found), number(&header, &expected));
+            assert!(
+                (a - b).abs() <= 1e-6 * b.abs(),
+                "{name} of {}: {a}, {b}",
+                found[0]
+            );
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 240);
+    // What is written is what the program reads.
+    for file in ["experiment.toml", "job.toml"] {
+        std::fs::copy(example(file), folder.path().join(file)).expect("a copy");
+    }
+    let job = text(&folder.path().join("job.toml")).replace("[sampler]", "[sampler]\nalgorithm = \"lm\"");
+    std::fs::write(folder.path().join("job.toml"), job).expect("written");
+    let checked = run(coordinator(["check", &shown(&folder.path().join("job.toml"))])).success();
+    assert!(checked.contains("24 fit runs with 72 measurements"), "{checked}");
+}
+
+#[test]
+fn what_is_guessed_is_refused_until_its_questions_are_answered() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let map = folder.path().join("map.toml");
+    let guessed = run(coordinator([
+        "import",
+        &shown(&example("Messung_Sand.xlsx")),
+        "--guess",
+    ]))
+    .success();
+    std::fs::write(&map, &guessed).expect("written");
+    let refused = import(&map, folder.path());
+    for part in [
+        "wheel: value = \"?\" asks for an answer",
+        "soil: value = \"?\" asks for an answer",
+        "r: value = \"?\" asks for an answer",
+        "error: 3 mistakes; ",
+    ] {
+        assert!(refused.stderr.contains(part), "{part} in\n{}", refused.stderr);
+    }
+    assert!(!folder.path().join("runs.csv").exists());
+    refused.refusal();
+    let answered = guessed
+        .replacen("value = \"?\"", "value = \"w\"", 1)
+        .replacen("value = \"?\"", "value = \"s\"", 1)
+        .replacen("value = \"?\"", "value = 12.5", 1)
+        .replacen("unit = \"?\"", "unit = \"cm\"", 1);
+    std::fs::write(&map, answered).expect("written");
+    import(&map, folder.path()).success();
+    assert_eq!(text(&folder.path().join("runs.csv")), text(&example("runs.csv")));
+}
+
+#[test]
+fn every_mistake_is_printed_with_its_cell_and_nothing_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let map = folder.path().join("map.toml");
+    let wrong = text(&example("map.toml"))
+        .replace("\"Schlupf [%]\"", "\"Schlupf\"")
+        .replace("unit = \"kN\"", "unit = \"KN\"")
+        .replace("\"Zugkraft [N]\"", "\"Bemerkung\"");
+    std::fs::write(&map, wrong).expect("written");
+    let ended = import(&map, folder.path());
+    for part in [
+        "no column has the title \"Schlupf\"; did you mean \"Schlupf [%]\"",
+        "unknown unit \"KN\"; did you mean \"kN\"",
+        "Messung_Sand.xlsx, sheet \"Messung\", cell J5, column \"Bemerkung\": \"Sand neu aufbereitet\" is no number",
+    ] {
+        assert!(ended.stderr.contains(part), "{part} in\n{}", ended.stderr);
+    }
+    assert!(!folder.path().join("runs.csv").exists());
+    ended.refusal();
+    let absent = run(coordinator(["import", "nowhere.csv", "--guess"])).refusal();
+    assert!(absent.starts_with("nowhere.csv: No such file"), "{absent}");
+}
+
+#[test]
+fn a_service_imports_and_guesses_and_its_examples_hold() {
+    let service = Service::start(&[]);
+    let content = BASE64_STANDARD.encode(std::fs::read(example("Messung_Sand.xlsx")).expect("the file"));
+    let guess = service.client.post(
+        "/v1/import/guess",
+        &json!({"name": "Messung_Sand.xlsx", "content_base64": content}),
+    );
+    assert_eq!(guess.status, 200, "{}", guess.json());
+    let guess = guess.json();
+    assert_eq!(
+        (&guess["sheet"], &guess["decimal"]),
+        (&json!("Messung"), &json!(","))
+    );
+    let ask = |map: &str| {
+        let asked = json!({"name": "Messung_Sand.xlsx", "content_base64": content, "map": map});
+        let answer = service.client.post("/v1/import", &asked);
+        assert_eq!(answer.status, 200);
+        answer.json()
+    };
+    let open = ask(guess["map"].as_str().expect("a map"));
+    assert_eq!(open["runs"], Value::Null);
+    let fields: Vec<&str> = open["complaints"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .filter_map(|c| c["field"].as_str())
+        .collect();
+    assert!(fields.contains(&"wheel") && fields.contains(&"r"), "{fields:?}");
+    let right = ask(&text(&example("map.toml")));
+    assert_eq!(right["runs"].as_str(), Some(text(&example("runs.csv")).as_str()));
+    let bad = service.client.post(
+        "/v1/import",
+        &json!({"name": "a", "content_base64": "*", "map": ""}),
+    );
+    assert_eq!(
+        (bad.status, &bad.json()["error"]["type"]),
+        (422, &json!("invalid_file"))
+    );
+    // The examples of the document are requests that work, and every route says what it does.
+    let document = service.client.json("/openapi.json");
+    for (path, id) in [
+        ("/v1/import", "import_table"),
+        ("/v1/import/guess", "guess_import_map"),
+    ] {
+        let operation = &document["paths"][path]["post"];
+        assert_eq!(
+            (&operation["operationId"], &operation["tags"]),
+            (&json!(id), &json!(["import"]))
+        );
+        assert!(
+            operation["summary"].is_string() && operation["description"].is_string(),
+            "{operation}"
+        );
+        let body = &operation["requestBody"]["content"]["application/json"]["example"];
+        let answer = service.client.post(path, body);
+        assert_eq!(answer.status, 200, "{}", answer.json());
+        assert_eq!(
+            answer.json()["complaints"].as_array().map_or(0, Vec::len),
+            0,
+            "{}",
+            answer.json()
+        );
+    }
+}

@@ -1,0 +1,89 @@
+// A German spreadsheet, from the drop to a calibration, by clicking.
+
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { after, before, test } from "node:test";
+
+import { findings, open, shot, sideways } from "./browser.js";
+import { Service } from "./service.js";
+
+const FILE = "examples/import-german/Messung_Sand.xlsx";
+let service, tab, page;
+
+before(async () => {
+  service = await Service.start();
+  tab = await open({ url: service.url });
+  page = tab.page;
+});
+after(async () => {
+  await tab?.close();
+  await service?.stop();
+});
+
+const choose = (label, value) => page.getByLabel(label, { exact: true }).selectOption(value);
+const files = async (...given) => page.locator('input[type="file"]').setInputFiles(given);
+const buffer = (name, text) => ({ name, mimeType: "text/csv", buffer: Buffer.from(text, "latin1") });
+
+test("what the file does not state is marked at its field", async () => {
+  await page.goto(`${service.url}/#/new`);
+  await page.getByRole("link", { name: "New calibration" }).first().click();
+  await files({ name: "Messung_Sand.xlsx", mimeType: "application/octet-stream", buffer: await readFile(FILE) });
+  const card = page.locator(".card.mapping");
+  await card.getByText("The columns of Messung_Sand.xlsx").waitFor();
+  assert.equal(await page.getByLabel("unit of wheel load", { exact: true }).inputValue(), "kN");
+  assert.equal(await page.getByLabel("unit of torque", { exact: true }).inputValue(), "N cm");
+  assert.equal(await page.getByLabel("column of slip", { exact: true }).inputValue(), "Schlupf [%]");
+  await card.locator('[data-field="wheel"]').waitFor();
+  await card.locator('[data-field="r"]').first().waitFor();
+  assert.ok(await page.getByRole("button", { name: /Use these columns/ }).isDisabled());
+  assert.deepEqual(await findings(page), []);
+  assert.equal(await sideways(page), 0);
+  await shot(page, "import-questions");
+});
+
+test("a wrong unit is complained about at its field, with the cell", async () => {
+  await page.getByLabel("wheel of all rows", { exact: true }).fill("w");
+  await page.getByLabel("soil of all rows", { exact: true }).fill("s");
+  await page.getByLabel("radius with which the rig converts slip to rim speed of all rows", { exact: true }).fill("125");
+  await choose("unit of radius with which the rig converts slip to rim speed", "mm");
+  await page.getByRole("button", { name: "Use these 40 runs" }).waitFor();
+  await choose("unit of slip", "1");
+  const said = page.locator('[data-field="slip"]').first();
+  await said.waitFor();
+  assert.match(await said.textContent(), /cell C5: slip 5 must lie in \[-1, 1\)/);
+  await choose("unit of slip", "%");
+  await page.getByRole("button", { name: "Use these 40 runs" }).waitFor();
+  assert.equal(await page.locator('[data-field="slip"]').count(), 0);
+  await page.getByText("kept as notes, no columns of runs.csv: Drehzahl [U/min], Bediener, Bemerkung").waitFor();
+  await shot(page, "import-answered");
+});
+
+test("the runs are those of the command, and become a calibration", async () => {
+  const saved = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Save runs.csv" }).click();
+  const expected = await readFile("examples/import-german/runs.csv", "utf8");
+  assert.equal(await readFile(await (await saved).path(), "utf8"), expected);
+  await page.getByRole("button", { name: "Use these 40 runs" }).click();
+  await page.getByText("Wheel and noise").waitFor();
+  await page.getByLabel("radius of wheel w [mm]").fill("125");
+  await page.getByLabel("width of wheel w [mm]").fill("112");
+  await page.getByRole("button", { name: "Write experiment.toml and job.toml" }).click();
+  await page.getByRole("button", { name: "Start the calibration" }).click();
+  await page.waitForURL(/studies\/\d+\/live/);
+  const [experiment] = await service.get("/v1/experiments");
+  assert.equal((await service.get(`/v1/experiments/${experiment.id}`)).files["runs.csv"], expected);
+});
+
+test("a text in another encoding keeps its letters, and a file that is no table says so", async () => {
+  await page.getByRole("link", { name: "New calibration" }).first().click();
+  await files(buffer("Sand.csv", "Versuch;Schlupf [%];Last [N];Geschwindigkeit [mm/s];Einsinkung [mm];Prüfer\nA;20;100;8;5,5;Jürgen\nB;30;100;8;6,5;Zoë\n"));
+  await page.getByLabel("wheel of all rows", { exact: true }).fill("w");
+  await page.getByLabel("soil of all rows", { exact: true }).fill("s");
+  await page.getByText("kept as notes, no columns of runs.csv: Prüfer").waitFor();
+  await page.getByRole("button", { name: "remove Sand.csv" }).click();
+  await files({ name: "broken.xlsx", mimeType: "application/octet-stream", buffer: Buffer.from("PK\x03\x04rubbish") });
+  await page.locator(".card.mapping .error").first().waitFor();
+  assert.match(await page.locator(".card.mapping .error").first().textContent(), /broken\.xlsx: the file is damaged/);
+});
+
+test("nothing went wrong on the way", () => assert.deepEqual(tab.faults, []));
