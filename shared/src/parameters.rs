@@ -19,8 +19,10 @@ pub struct BaseParameter {
     pub lower: f64,
     /// Largest admissible value.
     pub upper: f64,
-    /// Value where the job gives none; `None` = the job must give one.
+    /// Value where the job gives none.
     pub default: Option<f64>,
+    /// Prior where the job gives none, as a line of `[priors]`; without default and prior the job must say something.
+    pub prior: Option<&'static str>,
 }
 
 const fn base(
@@ -36,6 +38,20 @@ const fn base(
         lower,
         upper,
         default,
+        prior: None,
+    }
+}
+
+const fn inferred(
+    name: &'static str,
+    unit: &'static str,
+    lower: f64,
+    upper: f64,
+    prior: &'static str,
+) -> BaseParameter {
+    BaseParameter {
+        prior: Some(prior),
+        ..base(name, unit, lower, upper, None)
     }
 }
 
@@ -59,6 +75,52 @@ pub const SPATIAL: [BaseParameter; 3] = [
     base("flow_fraction", "1", 0.0, 1.0, Some(0.25)),
     base("bearing_credit", "1", 0.0, 1.0, Some(0.3)),
 ];
+
+/// Parameters of `wong_reece` that other models lack or hold at another value.
+///
+/// Priors: c1 and c2 of published sands lie in 0.18 to 0.43 and
+/// 0.32 to 0.41 (Wong & Reece 1967), shear moduli of sands from 5 to 25 mm. gamma and the law of the slip velocity are no part of it
+/// unless a job asks for them.
+pub const WONG_REECE: [BaseParameter; 5] = [
+    inferred(
+        "c1",
+        "1",
+        -1.0,
+        1.0,
+        "{ normal = [0.35, 0.1], bounds = [0.0, 0.8] }",
+    ),
+    inferred(
+        "c2",
+        "1",
+        -1.0,
+        2.0,
+        "{ normal = [0.3, 0.15], bounds = [-0.2, 1.0] }",
+    ),
+    inferred(
+        "shear_modulus_m",
+        "m",
+        0.0,
+        f64::INFINITY,
+        "{ lognormal = [0.01, 2.0] }",
+    ),
+    base("shear_velocity_m_s", "m/s", 0.0, f64::INFINITY, Some(0.0)),
+    base("gamma_exponent", "1", 0.0, 100.0, Some(0.0)),
+];
+
+/// Parameters of `rft`, which has those of no other model but the wheel's radius. Priors: `xi_n` from loose to dense dry sand, by far;
+/// friction from polished metal to glued sand.
+pub const RFT: [BaseParameter; 2] = [
+    inferred("xi_n_pa_m", "Pa/m", 1.0, 1e12, "{ loguniform = [1e4, 1e8] }"),
+    inferred("surface_friction", "1", 0.0, 10.0, "{ uniform = [0.1, 0.9] }"),
+];
+
+/// The one base parameter that every model has.
+pub const WHEEL_RADIUS: &str = "wheel_radius_m";
+
+/// The parameters of every model; one that two of them hold at different values appears twice.
+pub fn of_models() -> impl Iterator<Item = &'static BaseParameter> + Clone {
+    BASE.iter().chain(&SPATIAL).chain(&WONG_REECE).chain(&RFT)
+}
 
 /// Unit and physical bounds of a parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,7 +146,7 @@ impl From<&BaseParameter> for ParameterBounds {
 /// Whether a name already has a meaning in jobs, so that no effect may have it.
 pub(crate) fn is_taken(name: &str) -> bool {
     // "none" is the absence of effects in results
-    ["none", "noise", "bevameter"].contains(&name) || BASE.iter().chain(&SPATIAL).any(|p| p.name == name)
+    ["none", "noise", "bevameter"].contains(&name) || of_models().any(|p| p.name == name)
 }
 
 /// Natural logarithm of the ratio of tan(phi) under a ring to tan(phi) under the wheel, which share all else; a

@@ -10,6 +10,7 @@ use crate::plausibility::question::Question;
 use crate::table::algorithm_settings::AlgorithmSettings;
 use crate::table::discovery_settings::{DiscoverySettings, RawDiscovery};
 use crate::table::likelihood_settings::{LikelihoodSettings, RawLikelihood};
+use crate::table::model_entry::{ModelEntry, model_entries};
 use crate::table::posterior_prior::PosteriorPrior;
 use crate::table::prior_entry::PriorEntry;
 use crate::table::sampler_table::RawSampler;
@@ -21,8 +22,12 @@ pub struct JobFile {
     pub experiment: Option<String>,
     /// Names of the questions that are answered: what looks odd, and is meant.
     pub accepted: Vec<String>,
-    /// Which forward model, with its fixed parameters.
+    /// Which forward model, with its fixed parameters; of several that are compared, this one.
     pub model: ModelSettings,
+    /// How many models the job compares; 1 where it has a table `[model]`.
+    pub models: usize,
+    /// Line of its `[[models]]`; `None` of a table `[model]`.
+    pub line: Option<usize>,
     /// The priors in the order of the file.
     pub priors: Vec<PriorEntry>,
     /// The posterior that is the prior of what the entries leave unsaid.
@@ -37,6 +42,17 @@ pub struct JobFile {
     pub likelihood: LikelihoodSettings,
     /// Whether its study looks for missing effects.
     pub discovery: DiscoverySettings,
+    /// Effect files of the other models.
+    also_named: Vec<String>,
+}
+
+/// A job as written, once for each model that it compares.
+#[derive(Debug)]
+pub struct JobModels {
+    /// The first model, or the only one.
+    pub first: JobFile,
+    /// The others, in the order of the file.
+    pub others: Vec<JobFile>,
 }
 
 #[derive(Deserialize)]
@@ -45,7 +61,9 @@ struct RawJob {
     experiment: Option<String>,
     #[serde(default)]
     accept: Vec<String>,
-    model: toml::Table,
+    model: Option<toml::Table>,
+    #[serde(default)]
+    models: Vec<toml::Table>,
     #[serde(default)]
     priors: BTreeMap<String, toml::Spanned<toml::Value>>,
     #[serde(default)]
@@ -64,12 +82,34 @@ struct RawFigures {
     reference: BTreeMap<String, f64>,
 }
 
+impl JobModels {
+    /// Answers a question, for every model.
+    ///
+    /// # Errors
+    /// No question has this name; the sentence has the nearest.
+    pub fn accept(&mut self, name: &str) -> Result<(), String> {
+        Question::check_name(name)?;
+        for job in std::iter::once(&mut self.first).chain(&mut self.others) {
+            job.accepted.push(name.to_owned());
+        }
+        Ok(())
+    }
+}
+
 impl JobFile {
     /// Parses a job file; `name` is how messages call it.
     ///
     /// # Errors
     /// [`FileError`] with the line, or with the table and key.
     pub fn parse(name: &str, toml: &str) -> Result<JobFile, FileError> {
+        Ok(JobFile::parse_models(name, toml)?.first)
+    }
+
+    /// The same with the other models that it compares.
+    ///
+    /// # Errors
+    /// As those of [`JobFile::parse`]; of a model with its line.
+    pub fn parse_models(name: &str, toml: &str) -> Result<JobModels, FileError> {
         let mut raw: RawJob = parse_toml(name, toml)?;
         let fail = |message: String| FileError::whole(name, message);
         for name in &raw.accept {
@@ -79,7 +119,6 @@ impl JobFile {
             .likelihood
             .settings()
             .map_err(|e| fail(format!("[likelihood] {e}")))?;
-        let model = ModelSettings::from_table(&raw.model).map_err(|e| fail(format!("[model] {e}")))?;
         let algorithm = raw
             .sampler
             .algorithm()
@@ -92,47 +131,44 @@ impl JobFile {
             .map_err(|e| fail(format!("[discovery] {e}")))?;
         let posterior = PosteriorPrior::take(|key| raw.priors.remove(key).map(toml::Spanned::into_inner))
             .map_err(|e| fail(format!("[priors] {e}")))?;
-        let mut priors: Vec<_> = raw.priors.into_iter().collect();
-        priors.sort_by_key(|(_, value)| value.span().start);
-        let priors = priors
-            .into_iter()
-            .map(|(key, value)| {
-                let line = toml[..value.span().start].matches('\n').count() + 1;
-                PriorEntry {
-                    name: key,
-                    line,
-                    value: value.into_inner(),
-                }
-            })
+        let (first, others) = model_entries(name, toml, raw.model, raw.models, raw.priors)?;
+        let models = 1 + others.len();
+        if models > 1 {
+            check_comparison(&algorithm, &point_estimates, posterior.is_some()).map_err(&fail)?;
+        }
+        let also_named: Vec<String> = others
+            .iter()
+            .flat_map(|other| other.settings.effect_files.iter().cloned())
             .collect();
-        Ok(JobFile {
-            experiment: raw.experiment,
-            accepted: raw.accept,
-            model,
-            priors,
-            posterior,
+        let job = |entry: ModelEntry| JobFile {
+            experiment: raw.experiment.clone(),
+            accepted: raw.accept.clone(),
+            model: entry.settings,
+            models,
+            line: entry.line,
+            priors: entry.priors,
+            posterior: posterior.clone(),
             algorithm,
-            point_estimates,
-            reference: raw.figures.reference,
+            point_estimates: point_estimates.clone(),
+            reference: raw.figures.reference.clone(),
             likelihood,
             discovery,
+            also_named: also_named.clone(),
+        };
+        Ok(JobModels {
+            first: job(first),
+            others: others.into_iter().map(job).collect(),
         })
-    }
-
-    /// Answers a question.
-    ///
-    /// # Errors
-    /// No question has this name; the sentence has the nearest.
-    pub fn accept(&mut self, name: &str) -> Result<(), String> {
-        Question::check_name(name)?;
-        self.accepted.push(name.to_owned());
-        Ok(())
     }
 
     /// The files that the job names beside its experiment.
     pub fn named_files(&self) -> Vec<String> {
         let posterior = self.posterior.as_ref().map(|p| p.file.clone());
-        self.model.effect_files.iter().cloned().chain(posterior).collect()
+        let own = self.model.effect_files.iter();
+        let mut named: Vec<String> = own.chain(&self.also_named).cloned().chain(posterior).collect();
+        named.sort();
+        named.dedup();
+        named
     }
 
     /// Checks that no file came along that the job does not name; `name` is how messages call it.
@@ -149,4 +185,25 @@ impl JobFile {
             }
         }
     }
+}
+
+/// What a comparison of models asks of the rest of the job, a sentence where it is not there.
+fn check_comparison(
+    algorithm: &AlgorithmSettings,
+    point_estimates: &[AlgorithmSettings],
+    has_posterior_prior: bool,
+) -> Result<(), String> {
+    if !algorithm.has_posterior() {
+        return Err(format!(
+            "[sampler] algorithm = \"{}\" has no evidence, by which [[models]] are compared; tmcmc has",
+            algorithm.name()
+        ));
+    }
+    if !point_estimates.is_empty() {
+        return Err("[sampler] point_estimates belong to a job with one [model], not to [[models]]".into());
+    }
+    if has_posterior_prior {
+        return Err("[priors] posterior belongs to a job with one [model], not to [[models]]".into());
+    }
+    Ok(())
 }

@@ -29,9 +29,10 @@ pub use derived::discovery_job::{
     continued_job, discovery_job, effect_name, is_discovery, model_kind, searched_job, without_effects,
 };
 pub use derived::extended_job::{extended_job, with_free, with_setting};
+pub use derived::one_model::model_job;
 pub use derived::own_effects::{OwnEffect, foreign_effects, with_own_effects, without_own_effects};
 pub use derived::point_job::point_job;
-pub use job_file::JobFile;
+pub use job_file::{JobFile, JobModels};
 pub use model_switch::{MODEL_SWITCHES, ModelSwitch};
 pub use plain_parameter::{PLAIN_PARAMETERS, PlainParameter};
 pub use plausibility::{Question, Unanswered, check_accepted, questions};

@@ -1,7 +1,6 @@
 //! Parameters of the model itself that a job may hold fixed though they are not: candidates of a search, as effects are.
 
-use shared::model::ModelKind;
-use shared::parameters::{BASE, SPATIAL};
+use shared::parameters::of_models;
 use statistics::Marginal;
 
 use crate::model_switch::MODEL_SWITCHES;
@@ -80,7 +79,7 @@ impl PlainParameter {
     pub fn prior(&self) -> Option<(toml::Value, Marginal)> {
         let table: toml::Table = format!("prior = {}", self.prior).parse().ok()?;
         let value = table.get("prior")?.clone();
-        let known = BASE.iter().chain(&SPATIAL).find(|p| p.name == self.name)?;
+        let known = of_models().find(|p| p.name == self.name)?;
         let density = marginal(&value, &known.into()).ok()?;
         Some((value, density))
     }
@@ -89,13 +88,11 @@ impl PlainParameter {
     /// where its value lies outside its prior, or where an effect is the candidate in its place.
     pub fn held_by(&self, spec: &Spec) -> Option<(f64, Marginal)> {
         let is_free = spec.parameters.iter().any(|p| p.name == self.name);
-        let is_spatial = SPATIAL.iter().any(|p| p.name == self.name);
-        let is_missing = is_spatial && spec.model.kind != ModelKind::Scm;
-        if is_free || is_missing || self.covered_by.is_some() || spec.fit_variant.conditions.is_empty() {
+        let known = spec.model.kind.parameters().find(|p| p.name == self.name)?;
+        if is_free || self.covered_by.is_some() || spec.fit_variant.conditions.is_empty() {
             return None;
         }
-        let default = BASE.iter().chain(&SPATIAL).find(|p| p.name == self.name)?.default;
-        let value = spec.model.fixed.get(self.name).copied().or(default)?;
+        let value = spec.model.fixed.get(self.name).copied().or(known.default)?;
         let (_, density) = self.prior()?;
         let (lower, upper) = density.support();
         (lower..=upper).contains(&value).then_some((value, density))
@@ -133,11 +130,7 @@ mod tests {
     fn every_one_is_a_parameter_whose_default_its_prior_holds() {
         for plain in &PLAIN_PARAMETERS {
             let (_, density) = plain.prior().unwrap_or_else(|| panic!("{}", plain.name));
-            let known = BASE
-                .iter()
-                .chain(&SPATIAL)
-                .find(|p| p.name == plain.name)
-                .unwrap();
+            let known = of_models().find(|p| p.name == plain.name).unwrap();
             let (lower, upper) = density.support();
             assert!(
                 (lower..=upper).contains(&known.default.unwrap()),

@@ -16,7 +16,7 @@ use crate::data::likelihood::likelihood;
 use crate::data::noise;
 use crate::data::predicted_values::predicted_values;
 use crate::data::soil_scatter::{BY_STIFFNESS, SoilScatter};
-use crate::job_file::JobFile;
+use crate::job_file::{JobFile, JobModels};
 use crate::table::algorithm_settings::AlgorithmSettings;
 use crate::table::discovery_settings::DiscoverySettings;
 use crate::table::likelihood_settings::LikelihoodSettings;
@@ -62,6 +62,8 @@ pub struct Spec {
     pub discovery: DiscoverySettings,
     /// Names of the questions that its job answers: what looks odd, and is meant.
     pub accepted: Vec<String>,
+    /// How many models the job compares, of which this is one; 1 where it has a table `[model]`.
+    pub models: usize,
 }
 
 /// A calibration was begun with other files of its effects than this program has.
@@ -154,6 +156,13 @@ impl Spec {
                 ParsedPrior::Free(parameter) => parameters.push(parameter),
             }
         }
+        for own in model.kind.parameters() {
+            let said = parameters.iter().any(|p| p.name == own.name) || model.fixed.contains_key(own.name);
+            if let Some(prior) = own.prior.filter(|_| !said) {
+                let usual = ParsedPrior::usual(own, prior).map_err(|e| in_job(e.to_string()))?;
+                parameters.push(usual);
+            }
+        }
         for (name, &value) in &job.reference {
             shared::model::lookup(name, &wheels, &effects)
                 .and_then(|quantity| Ok(parameters::check_value(&quantity, name, value)?))
@@ -205,6 +214,13 @@ impl Spec {
             Ok(variant)
         };
         let mut fit_variant = variant(&fit_runs)?;
+        let readings = experiment.plates.len() + experiment.shear.len();
+        if readings > 0 && !model.kind.has_soil_laws() {
+            return Err(in_job(format!(
+                "kind = \"{}\" predicts no plates and rings: leave plates and shear out of the experiment",
+                model.kind.name()
+            )));
+        }
         bevameter.ask(&mut fit_variant);
         let radius = |&i: &usize| experiment.wheels[&experiment.runs[i].wheel].radius_m;
         let radii_m: Vec<f64> = fit_runs.iter().map(radius).collect();
@@ -219,7 +235,7 @@ impl Spec {
             }
         }
         if job.algorithm.has_metamodel() {
-            if model.kind == ModelKind::QuasiStatic {
+            if model.kind != ModelKind::Scm {
                 return Err(in_job(
                     "metamodel_moves under [sampler]: the metamodel is made of quasi_static, and needs kind = \"scm\" to save runs of"
                         .into(),
@@ -255,7 +271,37 @@ impl Spec {
             bevameter,
             discovery: job.discovery,
             accepted: job.accepted,
+            models: job.models,
         })
+    }
+
+    /// The specifications of every model that a job compares, in the order of the job.
+    ///
+    /// # Errors
+    /// As those of [`Spec::new`]; what a model gets wrong as a whole has the line of its `[[models]]`.
+    pub fn of_models(
+        job_name: &str,
+        models: JobModels,
+        texts: &BTreeMap<String, String>,
+        experiment_name: &str,
+        files: &FileSet,
+    ) -> Result<Vec<Spec>, FileError> {
+        let spec = |job: JobFile| {
+            let (line, kind) = (job.line, job.model.kind.name());
+            let spec = Spec::of(job_name, job, texts, experiment_name, files);
+            spec.map_err(
+                |error| match line.filter(|_| error.line.is_none() && error.file == job_name) {
+                    Some(line) => {
+                        FileError::at(job_name, line, format!("[[models]] {kind}: {}", error.message))
+                    }
+                    None => error,
+                },
+            )
+        };
+        std::iter::once(models.first)
+            .chain(models.others)
+            .map(spec)
+            .collect()
     }
 
     /// What workers evaluate while sampling: the fitted runs, and of them the channels that the likelihood takes.

@@ -8,6 +8,7 @@
 //! - `table`: model against measurement, errors, intervals, the posterior's draws.
 //! - [`diagnostics`]: how far the posterior can be trusted. `flag`: warnings in words.
 //!   `diagnosis`: both, computed once.
+//! - `model_comparison`: the models that a job compares, by evidence and by prediction.
 //! - `overview`, `study_member`: a study as the page shows it. `summary`: `summary.json`. `discovery`: its block on missing effects.
 //! - [`figure`]: the numbers of the source paper's figures.
 //! - [`report`]: one document with everything. [`terminal`]: text for a terminal.
@@ -24,6 +25,7 @@ mod finished_calibration;
 #[cfg(test)]
 mod fixture;
 mod flag;
+mod model_comparison;
 mod overview;
 mod provenance;
 pub mod report;
@@ -42,6 +44,7 @@ pub use figure::{CalibrationFigures, ChannelHistory, MeasuredSeries, ModelSeries
 pub use finished_calibration::{FinishedCalibration, first_population, likeliest};
 pub use flag::kind::{Flag, FlagKind};
 pub use flag::model_limit::model_limits;
+pub use model_comparison::{ComparedModel, LeftOutBy, ModelComparison};
 pub use overview::{MemberOverview, StudyFlag, StudyListItem, StudyOverview, StudyVerdict};
 pub use provenance::Provenance;
 pub use story::Story;

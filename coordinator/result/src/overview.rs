@@ -7,6 +7,7 @@ use shared::api::{CalibrationState, Progress};
 
 use crate::diagnostics::trends::TrendVariable;
 use crate::flag::kind::{Flag, FlagKind};
+use crate::model_comparison::ModelComparison;
 use crate::story::Story;
 use crate::study::Study;
 use crate::study_member::StudyMember;
@@ -43,6 +44,8 @@ pub struct StudyOverview {
     pub fixed_sigma: BTreeMap<String, FixedSigma>,
     /// Deterministic fits.
     pub point_estimates: Vec<PointEstimate>,
+    /// The models that the job compares; null where it has one, and until all are finished.
+    pub models: Option<ModelComparison>,
     /// The flags.
     pub flags: Vec<StudyFlag>,
     /// The verdict of the search of the current model, else of the last search; null where none is finished.
@@ -137,6 +140,7 @@ impl StudyOverview {
             ledger: Vec::new(),
             fixed_sigma: BTreeMap::new(),
             point_estimates: Vec::new(),
+            models: None,
             flags: Vec::new(),
             verdict: None,
         }
@@ -186,6 +190,7 @@ impl Study {
             ledger: self.ledger_summaries(&sigmas),
             point_estimates: self.point_estimate_summaries(&sigmas),
             fixed_sigma: sigmas.by_name(),
+            models: self.model_comparison(),
             flags: self
                 .flags_by_calibration()
                 .into_iter()

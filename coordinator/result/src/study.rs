@@ -11,8 +11,12 @@ use crate::study_member::StudyMember;
 pub struct Study {
     /// State of the study: finished where no further step follows, else the state of its first unfinished calibration.
     pub state: CalibrationState,
-    /// The first: the job as it was submitted.
+    /// How many models the job compares; 1 where it has one.
+    pub models: usize,
+    /// The job as it was submitted; of the models that it compares, the one with the most evidence.
     pub lead: FinishedCalibration,
+    /// The others of these models, oldest first.
+    pub others: Vec<FinishedCalibration>,
     /// The point estimates that the job asks for, of the same model and measurements.
     pub point_estimates: Vec<FinishedCalibration>,
     /// Those of other models or measurements: extended by effects, or by runs.
@@ -29,9 +33,14 @@ impl Study {
         std::iter::once(&self.lead).chain(&self.point_estimates)
     }
 
-    /// Every finished calibration: the submitted one, its point estimates, then the extensions.
-    pub fn calibrations(&self) -> impl Iterator<Item = &FinishedCalibration> {
+    /// Every finished calibration of the line that the study goes on with: the submitted one, its point estimates, then the extensions.
+    pub fn line(&self) -> impl Iterator<Item = &FinishedCalibration> {
         self.submitted().chain(&self.extensions)
+    }
+
+    /// Every finished calibration: that line, after the other models that the job compares.
+    pub fn calibrations(&self) -> impl Iterator<Item = &FinishedCalibration> {
+        self.others.iter().chain(self.line())
     }
 
     /// The plain parameters of the model that the study freed since the submitted job.
@@ -50,7 +59,7 @@ impl Study {
     /// with draws, which those of earlier versions are given when they go on.
     pub fn ledger(&self) -> impl Iterator<Item = &FinishedCalibration> {
         let approximates = self.lead.approximated.is_some();
-        self.calibrations().filter(move |calibration| {
+        self.line().filter(move |calibration| {
             calibration.estimate.is_none() && (approximates || calibration.approximated.is_none())
         })
     }
@@ -69,7 +78,9 @@ impl From<FinishedCalibration> for Study {
     fn from(lead: FinishedCalibration) -> Self {
         Study {
             state: lead.row.state,
+            models: 1,
             lead,
+            others: Vec::new(),
             point_estimates: Vec::new(),
             extensions: Vec::new(),
             rounds: Vec::new(),

@@ -10,7 +10,7 @@ use crate::calibration::{Calibration, CalibrationEngine, CalibrationIdentity, Si
 use crate::config::JobArguments;
 use crate::embedded::Evaluate;
 use crate::missing_effect::untried::additions;
-use job::{AlgorithmSettings, confounded_orders};
+use job::{AlgorithmSettings, Spec, confounded_orders};
 use result::{model_limits, terminal};
 
 /// Particles of the pilot: enough to fit what stages are drawn from, and to find their number, which hardly depends on them.
@@ -20,9 +20,21 @@ const PILOT_S: f64 = 30.0;
 
 pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(file, &[])?;
-    let mut text = terminal::specification(&job.spec);
-    for note in model_limits(&job.spec) {
-        text += &format!("note: {note}\n");
+    let models: Vec<Spec> = std::iter::once(job.spec.clone()).chain(job.others).collect();
+    let mut text = String::new();
+    for (number, spec) in models.iter().enumerate() {
+        if models.len() > 1 {
+            text += &format!(
+                "{}model {} of {}\n",
+                ["\n", ""][usize::from(number == 0)],
+                number + 1,
+                models.len()
+            );
+        }
+        text += &terminal::specification(spec);
+        for note in model_limits(spec) {
+            text += &format!("note: {note}\n");
+        }
     }
     if !job.spec.fit_variant.conditions.is_empty() {
         for line in additions(&job.job, &job.experiment, job.spec.model.kind)? {
@@ -33,9 +45,31 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
         text += &format!("warning: {}\n", order.words());
     }
     say(&text)?;
-    let algorithm = job.spec.algorithm;
-    let beside = job.spec.point_estimates.clone();
-    let pilot = tokio::task::spawn_blocking(move || pilot(job.spec)).await??;
+    let several = models.len() > 1;
+    let mut core_s = 0.0;
+    for spec in models {
+        let kind = spec.model.kind.name();
+        let (text, own_s) = cost(spec).await?;
+        core_s += own_s;
+        let heading = if several {
+            format!("\n{kind}:")
+        } else {
+            String::new()
+        };
+        say(&(heading + &text))?;
+    }
+    if several {
+        let hours = core_s / 3600.0;
+        say(&format!("\nall models: {hours:.3} expected core hours\n"))?;
+    }
+    Ok(())
+}
+
+/// What a calibration is expected to cost: in words, and in seconds of a core.
+async fn cost(spec: Spec) -> anyhow::Result<(String, f64)> {
+    let algorithm = spec.algorithm;
+    let beside = spec.point_estimates.clone();
+    let pilot = tokio::task::spawn_blocking(move || pilot(spec)).await??;
     let evaluations = pilot.expected(algorithm);
     let simulations = evaluations * pilot.runs as f64;
     let core_s = evaluations * pilot.seconds_per_evaluation;
@@ -98,7 +132,7 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
             100.0 * pilot.rejected_share
         );
     }
-    Ok(say(&text)?)
+    Ok((text, core_s))
 }
 
 struct Pilot {
@@ -129,7 +163,7 @@ impl Pilot {
 }
 
 /// The same calibration in memory, a sampler in small.
-fn pilot(mut spec: job::Spec) -> anyhow::Result<Pilot> {
+fn pilot(mut spec: Spec) -> anyhow::Result<Pilot> {
     let least = PILOT_PARTICLES.max(2 * spec.parameters.len() + 2);
     if let AlgorithmSettings::Sample(settings) = &mut spec.algorithm {
         settings.particles = settings.particles.min(least);

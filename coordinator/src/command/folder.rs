@@ -294,10 +294,11 @@ async fn watch_until_over(
 async fn expected_members(study: i64, service: &Service) -> anyhow::Result<usize> {
     let rows = service.store().reader().study(study).await?;
     let Some(first) = rows.first() else { return Ok(0) };
-    let to_come = match service.spec_of(first).await?.discovery.apply {
+    let spec = service.spec_of(first).await?;
+    let to_come = match spec.discovery.apply {
         Apply::Off => 0,
         Apply::Ask => 1,
         Apply::Auto => 3,
     };
-    Ok(rows.len().max(1 + to_come))
+    Ok(rows.len().max(spec.models + to_come))
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use import::{Converted, SourceFile, convert, guess};
-use shared::file::read_text;
+use shared::text_file::read_text;
 
 use super::output::{note, say};
 use crate::config::ImportArguments;

@@ -21,8 +21,10 @@ pub(super) struct JobOnDisk {
     pub(super) job: FileSet,
     /// Its experiment.
     pub(super) experiment: FileSet,
-    /// What they mean.
+    /// What they mean; of several models that the job compares, the first.
     pub(super) spec: Spec,
+    /// The same with each of the other models.
+    pub(super) others: Vec<Spec>,
 }
 
 /// Reads and validates a job and its experiment. Of the effects that it lists, `own` are in the catalogue of a service.
@@ -30,9 +32,14 @@ pub(super) fn read(file: &JobArguments, own: &[OwnEffect]) -> Result<JobOnDisk, 
     let path = &file.job;
     let job_name = path.display().to_string();
     let written = read_text(path)?;
-    let mut job = JobFile::parse(&job_name, &without_own_effects(&job_name, &written, own)?)?;
+    let mut models = JobFile::parse_models(&job_name, &without_own_effects(&job_name, &written, own)?)?;
     for name in &file.accept {
-        job.accept(name).map_err(|e| FileError::whole(&job_name, e))?;
+        models.accept(name).map_err(|e| FileError::whole(&job_name, e))?;
+    }
+    let job = &mut models.first;
+    if job.models > 1 && !(file.effect.is_empty() && file.effect_file.is_empty()) {
+        let message = "--effect adds to one model: write effects under the [[models]] that is to have them";
+        return Err(FileError::whole(&job_name, message));
     }
     let named = job.experiment.as_deref();
     let named =
@@ -53,8 +60,12 @@ pub(super) fn read(file: &JobArguments, own: &[OwnEffect]) -> Result<JobOnDisk, 
     let toml = extended_job(&job_name, &written, &file.effect, &names, &[])?;
     let toml = accepting_job(&job_name, &toml, &file.accept)?;
     let kept = with_own_effects(&job_name, FileSet { toml, files }, own)?;
-    let spec = Spec::of(&job_name, job, &kept.files, &experiment_name, &experiment)?;
-    check_accepted(&spec).map_err(|e| FileError::whole(&job_name, e.to_string()))?;
+    let mut specs = Spec::of_models(&job_name, models, &kept.files, &experiment_name, &experiment)?;
+    for spec in &specs {
+        check_accepted(spec).map_err(|e| FileError::whole(&job_name, e.to_string()))?;
+    }
+    let others = specs.split_off(1);
+    let spec = specs.remove(0);
     // An extension has a folder of its own beside its base's.
     let mut name = name(path);
     for more in file
@@ -70,6 +81,7 @@ pub(super) fn read(file: &JobArguments, own: &[OwnEffect]) -> Result<JobOnDisk, 
         job: kept,
         experiment,
         spec,
+        others,
     })
 }
 

@@ -10,11 +10,15 @@ use super::folder::{Details, Folder};
 use super::job_on_disk::{self, JobOnDisk};
 use super::output::note;
 use crate::config::RunArguments;
+use job::Spec;
 use result::model_limits;
 
 pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file, &[])?;
-    for text in model_limits(&job.spec) {
+    for text in std::iter::once(&job.spec)
+        .chain(&job.others)
+        .flat_map(model_limits)
+    {
         note(&format!("note: {text}"));
     }
     let out = config
@@ -51,7 +55,8 @@ pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
 async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
     let service = &folder.service;
     let rows = service.store().reader().calibrations().await?;
-    let Some((_, first)) = rows.into_iter().next() else {
+    let mut rows = rows.into_iter().map(|(_, row)| row);
+    let Some(first) = rows.next() else {
         let experiment = NewExperiment {
             toml: job.experiment.toml.clone(),
             files: job.experiment.files.clone(),
@@ -68,8 +73,12 @@ async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
     };
     // The others of the study follow from the first, or are added to it by the user.
     let first = first?;
-    let stored = service.spec_of(&first).await?;
-    if !stored.same_as(&job.spec) {
+    let mut is_same = service.spec_of(&first).await?.same_as(&job.spec);
+    for (row, spec) in rows.zip(&job.others) {
+        let row = row?;
+        is_same = is_same && same_model(service.spec_of(&row).await?, spec);
+    }
+    if !is_same {
         let differs =
             |(name, text): (&String, &String)| job.job.files.get(name).is_some_and(|now| now != text);
         let changed = first.job.files.iter().find(|&file| differs(file));
@@ -84,4 +93,10 @@ async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
     }
     folder.go_on(first.study).await?;
     Ok(first.study)
+}
+
+/// Whether a stored calibration is of one of the models that a job compares; its own job is of that model alone.
+fn same_model(mut stored: Spec, of_job: &Spec) -> bool {
+    (stored.models, stored.discovery) = (of_job.models, of_job.discovery);
+    stored.same_as(of_job)
 }

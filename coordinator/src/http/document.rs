@@ -20,6 +20,7 @@ use super::request_example::request_example;
     servers((url = "/", description = "the service that this document comes from")),
     tags(
         (name = "examples", description = "Jobs that the program carries, to try it with."),
+        (name = "import", description = "Tables of other forms: workbooks, MATLAB files, text with decimal commas."),
         (name = "experiments", description = "Measured data sets: rig, wheels, soils, runs."),
         (name = "calibrations", description = "Jobs: submit, watch, pause, resume, cancel."),
         (name = "results", description = "What a calibration found. Of one that is not finished, most answer 409."),

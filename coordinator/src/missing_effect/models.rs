@@ -178,7 +178,9 @@ impl SearchModels {
                 starts: Starts::Even(STARTS),
                 seed: base.algorithm.seed(),
                 least_difference: match base.model.kind {
-                    ModelKind::QuasiStatic => SearchSettings::default().least_difference,
+                    ModelKind::QuasiStatic | ModelKind::WongReece | ModelKind::Rft => {
+                        SearchSettings::default().least_difference
+                    }
                     ModelKind::Scm => ROUGH,
                 },
                 has_numerical_noise: base.model.kind == ModelKind::Scm,

@@ -7,7 +7,8 @@ use super::stored_calibration::spec_of;
 use super::study_members::{searched_by, study_members};
 use super::study_step::next_step_from;
 use crate::store::Reader;
-use job::{AlgorithmSettings, is_discovery};
+use crate::study::most_probable;
+use job::{AlgorithmSettings, JobFile, is_discovery};
 use record::CalibrationRow;
 use result::{DiscoveryRound, FinishedCalibration, Study, first_population, likeliest};
 
@@ -111,11 +112,20 @@ pub(super) async fn finished_study_of(
 ) -> Result<Study, ServiceError> {
     let unfinished = rows.iter().find(|r| r.state != CalibrationState::Finished);
     let finished = rows.iter().filter(|r| r.state == CalibrationState::Finished);
-    let mut calibrations = finished.filter(|r| !is_discovery(&r.job.toml));
+    let calibrations: Vec<_> = finished.filter(|r| !is_discovery(&r.job.toml)).collect();
+    let models = models(rows)?;
+    let compared = |row: &CalibrationRow| models > 1 && rows[..models].iter().any(|other| other.id == row.id);
+    let of_models: Vec<_> = calibrations.iter().filter(|row| compared(row)).collect();
+    let best = most_probable(of_models.iter().map(|row| row.log_evidence)).map(|i| of_models[i]);
     // Without any, the calibration that was asked for says why there is nothing to show.
-    let lead = finished_calibration(reader, calibrations.next().unwrap_or(row)).await?;
-    let (mut point_estimates, mut extensions) = (Vec::new(), Vec::new());
-    for row in calibrations {
+    let lead = best.or(calibrations.first()).copied().unwrap_or(row);
+    let lead = finished_calibration(reader, lead).await?;
+    let (mut others, mut point_estimates, mut extensions) = (Vec::new(), Vec::new(), Vec::new());
+    for row in calibrations.into_iter().filter(|row| row.id != lead.row.id) {
+        if compared(row) {
+            others.push(finished_calibration(reader, row).await?);
+            continue;
+        }
         let outcome = finished_calibration(reader, row).await?;
         let is_same = outcome.row.experiment == lead.row.experiment
             && outcome.effects() == lead.effects()
@@ -135,12 +145,33 @@ pub(super) async fn finished_study_of(
     };
     Ok(Study {
         state,
+        models,
         lead,
+        others,
         point_estimates,
         extensions,
         rounds: search_rounds(reader, rows).await?,
         members: study_members(reader, rows).await?,
     })
+}
+
+/// How many models a study begins with: its first members are of those that its job compares.
+pub(super) fn models(rows: &[CalibrationRow]) -> Result<usize, ServiceError> {
+    let Some(lead) = rows.first() else { return Ok(1) };
+    let job = JobFile::parse("job.toml", &lead.job.toml)?;
+    Ok(job.models.min(rows.len()))
+}
+
+/// The compared models that a study does not go on with.
+pub(super) fn passed_over(rows: &[CalibrationRow]) -> Result<Vec<i64>, ServiceError> {
+    let models = models(rows)?;
+    if models == 1 {
+        return Ok(Vec::new());
+    }
+    let best = most_probable(rows[..models].iter().map(|row| row.log_evidence));
+    let others = rows[..models].iter().enumerate();
+    let others = others.filter(|(number, _)| Some(*number) != best);
+    Ok(others.map(|(_, row)| row.id).collect())
 }
 
 /// The finished searches of a study.

@@ -10,6 +10,7 @@ use shared::file::FileSet;
 
 use super::clock::now_ms;
 use super::error::ServiceError;
+use super::finished_study::passed_over;
 use super::handle::Service;
 use super::stored_calibration::has_posterior;
 use super::study_step::{next_step_of, search_of};
@@ -78,7 +79,11 @@ impl Service {
         let _growing = self.growing.lock().await;
         let rows = self.store().reader().study(study).await?;
         let (mut ledger, mut beside) = (None, None);
-        let meant = |row: &&CalibrationRow| calibration.is_none_or(|id| id == row.id);
+        let passed_over = passed_over(&rows)?;
+        let meant = |row: &&CalibrationRow| match calibration {
+            Some(id) => id == row.id,
+            None => !passed_over.contains(&row.id),
+        };
         for row in rows
             .iter()
             .filter(|row| !is_discovery(&row.job.toml))

@@ -1,6 +1,7 @@
 //! The members of a study as its overview shows them.
 
 use super::error::ServiceError;
+use super::finished_study::models;
 use super::stored_calibration::spec_of;
 use super::study_step::is_search_of;
 use crate::store::Reader;
@@ -18,6 +19,8 @@ pub(super) async fn study_members(
 ) -> Result<Vec<StudyMember>, ServiceError> {
     let mut members: Vec<StudyMember> = Vec::new();
     let mut submitted = Vec::new();
+    // A job that this version does not understand compares nothing.
+    let models = models(rows).unwrap_or(1);
     for row in rows.iter().filter(|row| !is_discovery(&row.job.toml)) {
         // A job that this version does not understand stays in the list, with nothing said of its model.
         let (kind, parts) = match spec_of(reader, row).await {
@@ -29,8 +32,9 @@ pub(super) async fn study_members(
             Err(ServiceError::File(_)) => (MemberKind::Sample, Vec::new()),
             Err(error) => return Err(error),
         };
-        if members.is_empty() {
-            submitted.clone_from(&parts);
+        // A model to compare has nothing beyond the submitted job: it is part of it.
+        if members.len() < models {
+            submitted.extend(parts.iter().cloned());
         }
         let effects = parts.into_iter().filter(|part| !submitted.contains(part));
         members.push(member(row, kind, effects.collect(), None));

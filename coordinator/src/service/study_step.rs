@@ -26,7 +26,8 @@ pub(super) async fn next_step_from(
     rows: &[CalibrationRow],
 ) -> Result<Option<StudyStep>, ServiceError> {
     let Some(lead) = rows.first() else { return Ok(None) };
-    let settings = JobFile::parse("job.toml", &lead.job.toml)?.discovery;
+    let job = JobFile::parse("job.toml", &lead.job.toml)?;
+    let settings = job.discovery;
     // Most studies grow by their users alone, and reading every member's files is work.
     if settings.apply == Apply::Off || rows.iter().any(|row| row.state != CalibrationState::Finished) {
         return Ok(None);
@@ -39,7 +40,7 @@ pub(super) async fn next_step_from(
             part: part(reader, row, rows).await?,
         });
     }
-    Ok(next_step(settings, &members))
+    Ok(next_step(settings, job.models, &members))
 }
 
 async fn part(
@@ -61,6 +62,7 @@ async fn part(
                 .chain(spec.freed())
                 .collect(),
             search: find_search(row, study)?.map(|row| row.id),
+            log_evidence: row.log_evidence,
         },
         false => StudyRole::Beside,
     })

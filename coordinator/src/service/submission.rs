@@ -13,7 +13,7 @@ use crate::calibration::{Calibration, CalibrationIdentity};
 use crate::farm::dispatch::Stopped;
 use crate::store::{NewCalibrationRow, NewStudy, StudyIds};
 use job::{
-    AlgorithmSettings, JobFile, OwnEffect, Spec, check_accepted, point_job, with_own_effects,
+    AlgorithmSettings, JobFile, OwnEffect, Spec, check_accepted, model_job, point_job, with_own_effects,
     without_own_effects,
 };
 
@@ -88,8 +88,8 @@ impl Service {
     }
 }
 
-/// The calibrations that a job begins its study with, each with its own job: the job itself, then the point estimates
-/// that it asks for. Effects of the service's catalogue that the job lists become files of it.
+/// The calibrations that a job begins its study with, each with its own job: the job itself, then the other models that it compares, or
+/// the point estimates that it asks for. Effects of the service's catalogue that the job lists become files of it.
 fn members(
     identity: &CalibrationIdentity,
     job: FileSet,
@@ -98,20 +98,33 @@ fn members(
 ) -> Result<Vec<(Calibration, FileSet)>, ServiceError> {
     let file = "job.toml";
     // Messages name the lines of the file as it is; what is kept has the files of own effects.
-    let mut parsed = JobFile::parse(file, &without_own_effects(file, &job.toml, own)?)?;
-    parsed.check_files(file, &job.files)?;
+    let mut parsed = JobFile::parse_models(file, &without_own_effects(file, &job.toml, own)?)?;
+    parsed.first.check_files(file, &job.files)?;
     let names: Vec<String> = own.iter().map(|own| own.file.clone()).collect();
-    let added = parsed.model.add_effects(&[], &names);
+    let added = parsed.first.model.add_effects(&[], &names);
     added.map_err(|e| FileError::whole(file, e))?;
     let job = with_own_effects(file, job, own)?;
-    let spec = Spec::of(file, parsed, &job.files, "experiment.toml", experiment)?;
-    check_accepted(&spec).map_err(|e| FileError::whole(file, e.to_string()))?;
+    let mut specs = Spec::of_models(file, parsed, &job.files, "experiment.toml", experiment)?;
+    for spec in &specs {
+        check_accepted(spec).map_err(|e| FileError::whole(file, e.to_string()))?;
+    }
+    let others = specs.split_off(1);
+    let spec = specs.remove(0);
     if matches!(spec.algorithm, AlgorithmSettings::Discover { .. }) {
         let message = "[sampler] algorithm = \"discovery\" is a search that a study starts by itself: set apply = \"ask\" or \"auto\" under [discovery]";
         return Err(FileError::whole(file, message).into());
     }
     let point_estimates = spec.point_estimates.clone();
     let mut members = vec![(Calibration::new(identity.clone(), Arc::new(spec))?, job.clone())];
+    for (number, spec) in others.into_iter().enumerate() {
+        let alone = model_job(file, &job, number + 1)?;
+        let identity = CalibrationIdentity {
+            name: format!("{} ({})", identity.name, spec.model.kind.name()),
+            ..identity.clone()
+        };
+        let spec = Spec::new(file, &alone, "experiment.toml", experiment)?;
+        members.push((Calibration::new(identity, Arc::new(spec))?, alone));
+    }
     for algorithm in &point_estimates {
         let job = FileSet {
             toml: point_job(file, &job.toml, algorithm)?,

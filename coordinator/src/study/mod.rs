@@ -5,4 +5,4 @@
 
 mod next_step;
 
-pub use next_step::{StudyMember, StudyRole, StudyStep, next_step};
+pub use next_step::{StudyMember, StudyRole, StudyStep, most_probable, next_step};

@@ -28,6 +28,8 @@ pub enum StudyRole {
         effects: Vec<String>,
         /// The search of its model, if there is one.
         search: Option<i64>,
+        /// Its log-evidence, once it is finished.
+        log_evidence: Option<f64>,
     },
     /// A point estimate.
     Beside,
@@ -46,19 +48,36 @@ pub enum StudyStep {
     Drop(i64, Vec<String>),
 }
 
+/// Which of several models has the most evidence, the first of equals; `None` without any.
+pub fn most_probable(log_evidences: impl Iterator<Item = Option<f64>>) -> Option<usize> {
+    let known = log_evidences.enumerate().filter_map(|(i, log)| Some((i, log?)));
+    let best = known.reduce(|best, own| if own.1 > best.1 { own } else { best })?;
+    Some(best.0)
+}
+
 /// The next step of a study; `None` where it is complete or a member is unfinished.
 ///
 /// A failed or cancelled member ends it. With `ask` the last calibration of the ledger is searched, and the user decides. With
 /// `auto` it is extended by the effect that its search names, up to the allowed number of effects beyond those of the first
-/// member; an effect that was dropped is neither added nor dropped again.
-pub fn next_step(settings: DiscoverySettings, members: &[StudyMember]) -> Option<StudyStep> {
+/// member; an effect that was dropped is neither added nor dropped again. Where the first `models` members are models to compare, the
+/// study goes on with the one of most evidence.
+pub fn next_step(settings: DiscoverySettings, models: usize, members: &[StudyMember]) -> Option<StudyStep> {
     if settings.apply == Apply::Off || members.iter().any(|m| m.state != CalibrationState::Finished) {
         return None;
     }
-    let ledger: Vec<(i64, BTreeSet<&str>, Option<i64>)> = members
-        .iter()
+    let (compared, later) = members.split_at_checked(models)?;
+    let best = most_probable(compared.iter().map(|member| match &member.part {
+        StudyRole::Ledger { log_evidence, .. } => *log_evidence,
+        StudyRole::Beside | StudyRole::Search(_) => None,
+    }));
+    let first = match models {
+        1 => &compared[0],
+        _ => &compared[best?],
+    };
+    let ledger: Vec<(i64, BTreeSet<&str>, Option<i64>)> = std::iter::once(first)
+        .chain(later)
         .filter_map(|member| match &member.part {
-            StudyRole::Ledger { effects, search } => {
+            StudyRole::Ledger { effects, search, .. } => {
                 Some((member.id, effects.iter().map(String::as_str).collect(), *search))
             }
             StudyRole::Beside | StudyRole::Search(_) => None,
@@ -111,6 +130,7 @@ mod tests {
             part: StudyRole::Ledger {
                 effects: effects.iter().map(|&e| e.to_owned()).collect(),
                 search,
+                log_evidence: None,
             },
         }
     }
@@ -146,11 +166,46 @@ mod tests {
             max_effects: 2,
             other_kind: false,
         };
-        next_step(settings, members)
+        next_step(settings, 1, members)
     }
 
     fn extend(id: i64, effect: &str) -> Option<StudyStep> {
         Some(StudyStep::Extend(id, Extension::Effect(effect.to_owned())))
+    }
+
+    #[test]
+    fn of_several_models_the_one_with_the_most_evidence_is_searched_and_extended() {
+        let model = |id, log: f64, search| {
+            let StudyMember { state, part, .. } = ledger(id, &[], search);
+            let StudyRole::Ledger { effects, search, .. } = part else {
+                unreachable!("a line of the ledger")
+            };
+            let log_evidence = Some(log);
+            let part = StudyRole::Ledger {
+                effects,
+                search,
+                log_evidence,
+            };
+            StudyMember { id, state, part }
+        };
+        let settings = DiscoverySettings {
+            apply: Apply::Auto,
+            max_effects: 2,
+            other_kind: false,
+        };
+        let mut members = vec![
+            model(1, -30.0, None),
+            model(2, -20.0, None),
+            model(3, -20.0, None),
+        ];
+        assert_eq!(next_step(settings, 3, &members), Some(StudyStep::Search(2)));
+        members[1] = model(2, -20.0, Some(4));
+        members.push(search(4, Some("a"), &[]));
+        assert_eq!(next_step(settings, 3, &members), extend(2, "a"));
+        members.push(ledger(5, &["a"], None));
+        assert_eq!(next_step(settings, 3, &members), Some(StudyStep::Search(5)));
+        assert_eq!(most_probable([None, None].into_iter()), None);
+        assert_eq!(next_step(settings, 9, &members), None, "not all are there");
     }
 
     #[test]

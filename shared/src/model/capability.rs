@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use formula::effect::Mechanism;
-use formula::{Hook, Variable};
+use formula::{Effect, Hook, Variable};
 
 use super::effects::EffectSet;
 use super::error::ModelError;
@@ -33,24 +33,38 @@ impl ModelVariant {
         let meshes: BTreeSet<&str> = self.conditions.iter().map(|c| c.wheel.as_str()).collect();
         let meshes: BTreeSet<&str> = meshes.into_iter().filter(|wheel| self.has_mesh(wheel)).collect();
         let names: BTreeSet<&str> = self.names().collect();
-        match self.kind {
-            ModelKind::Scm => self.check_meshes(effects, &names, &meshes),
-            ModelKind::QuasiStatic => {
-                if let Some(name) = names
-                    .iter()
-                    .find(|n| parameters::SPATIAL.iter().any(|p| p.name == **n))
-                {
-                    return Err(ModelError::Inexpressible(format!(
-                        "{name}: quasi_static has no terrain that deforms; use kind = \"scm\""
-                    )));
-                }
-                match meshes.first() {
-                    Some(wheel) => Err(ModelError::Inexpressible(format!(
-                        "wheel {wheel} is a surface mesh: quasi_static rolls a smooth cylinder; use kind = \"scm\""
-                    ))),
-                    None => Ok(()),
-                }
-            }
+        let terrain = names
+            .iter()
+            .find(|n| parameters::SPATIAL.iter().any(|p| p.name == **n));
+        let kind = self.kind.name();
+        if let Some(name) = terrain.filter(|_| self.kind != ModelKind::Scm) {
+            return Err(ModelError::Inexpressible(format!(
+                "{name}: {kind} has no terrain that deforms; use kind = \"scm\""
+            )));
+        }
+        self.check_effects(effects)?;
+        match meshes.first() {
+            Some(wheel) if self.kind.is_smooth() => Err(ModelError::Inexpressible(format!(
+                "wheel {wheel} is a surface mesh: {kind} rolls a smooth cylinder; use kind = \"scm\""
+            ))),
+            _ => self.check_meshes(effects, &names, &meshes),
+        }
+    }
+
+    /// Checks that the model has a form of every effect.
+    fn check_effects(&self, effects: &EffectSet) -> Result<(), ModelError> {
+        let has_form = |effect: &Effect| match self.kind {
+            ModelKind::QuasiStatic | ModelKind::Scm => true,
+            ModelKind::WongReece => effect.hooks().next().is_some(),
+            ModelKind::Rft => effect.hooks().next().is_some() && !effect.needs_soil_laws(),
+        };
+        match effects.iter().find(|effect| !has_form(effect)) {
+            None => Ok(()),
+            Some(effect) => Err(ModelError::Inexpressible(format!(
+                "effect {} has no form in {}",
+                effect.name,
+                self.kind.name()
+            ))),
         }
     }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::parameters::{BASE, BaseParameter, SPATIAL};
+use crate::parameters::{BASE, BaseParameter, RFT, SPATIAL, WHEEL_RADIUS, WONG_REECE};
 
 /// A forward model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -13,23 +13,80 @@ pub enum ModelKind {
     QuasiStatic,
     /// The three-dimensional Soil Contact Model: a wheel that rolls over deformable terrain.
     Scm,
+    /// The smooth wheel of Wong & Reece: the pressure peaks ahead of the axle, shear builds up with displacement.
+    WongReece,
+    /// Three-dimensional resistive force theory of granular soil.
+    Rft,
 }
 
 impl ModelKind {
+    /// Every model.
+    pub const ALL: [ModelKind; 4] = [
+        ModelKind::QuasiStatic,
+        ModelKind::Scm,
+        ModelKind::WongReece,
+        ModelKind::Rft,
+    ];
+
     /// Name in files and results.
     pub fn name(self) -> &'static str {
         match self {
             ModelKind::QuasiStatic => "quasi_static",
             ModelKind::Scm => "scm",
+            ModelKind::WongReece => "wong_reece",
+            ModelKind::Rft => "rft",
         }
+    }
+
+    /// The model of a name.
+    pub fn find(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
     /// The base parameters that a model of this kind has.
     pub fn parameters(self) -> impl Iterator<Item = &'static BaseParameter> {
-        let spatial: &[BaseParameter] = match self {
+        let own: &[BaseParameter] = match self {
             ModelKind::QuasiStatic => &[],
             ModelKind::Scm => &SPATIAL,
+            ModelKind::WongReece => &WONG_REECE,
+            ModelKind::Rft => &RFT,
         };
-        BASE.iter().chain(spatial)
+        let shared = BASE.iter().filter(move |p| match self {
+            ModelKind::Rft => p.name == WHEEL_RADIUS,
+            _ => own.iter().all(|own| own.name != p.name),
+        });
+        shared.chain(own)
+    }
+
+    /// Whether it knows the laws of a soil at a point, by Bekker, Mohr and Coulomb: those of plates and rings, and of effects that
+    /// enter there.
+    pub fn has_soil_laws(self) -> bool {
+        self != ModelKind::Rft
+    }
+
+    /// Whether its wheel is a smooth cylinder, whatever grousers are declared.
+    pub fn is_smooth(self) -> bool {
+        matches!(self, ModelKind::QuasiStatic | ModelKind::WongReece)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn a_model_has_each_of_its_parameters_once() {
+        for kind in ModelKind::ALL {
+            assert_eq!(ModelKind::find(kind.name()), Some(kind));
+            let names: Vec<&str> = kind.parameters().map(|p| p.name).collect();
+            let set: BTreeSet<&str> = names.iter().copied().collect();
+            assert_eq!(names.len(), set.len(), "{}", kind.name());
+            assert!(set.contains(WHEEL_RADIUS));
+        }
+        let gamma = ModelKind::WongReece
+            .parameters()
+            .find(|p| p.name == "gamma_exponent");
+        assert_eq!(gamma.unwrap().default, Some(0.0));
     }
 }

@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use super::effects::EffectSet;
 use super::error::ModelError;
+use super::kind::ModelKind;
 use crate::file::unknown_word;
-use crate::parameters::{BASE, ParameterBounds, RING_TRANSFER, SPATIAL};
+use crate::parameters::{ParameterBounds, RING_TRANSFER, SPATIAL, WHEEL_RADIUS, of_models};
 
 /// Unit and bounds of a parameter by name: of the model, of one of its wheels, of an effect.
 ///
@@ -26,10 +27,10 @@ pub fn lookup(
     let (stem, wheel) = name
         .split_once('.')
         .map_or((name, None), |(stem, wheel)| (stem, Some(wheel)));
-    let found = BASE.iter().chain(&SPATIAL).find(|p| p.name == stem);
+    let found = of_models().find(|p| p.name == stem);
     match (found, wheel) {
         (Some(p), None) => Ok(p.into()),
-        (Some(p), Some(w)) if p.name == "wheel_radius_m" => {
+        (Some(p), Some(w)) if p.name == WHEEL_RADIUS => {
             if wheels.contains(w) {
                 Ok(p.into())
             } else {
@@ -42,28 +43,37 @@ pub fn lookup(
             p.name
         ))),
         (None, _) => effects.lookup(name, wheels).unwrap_or_else(|| {
-            let known = BASE.iter().chain(&SPATIAL).map(|p| p.name);
+            let known = of_models().map(|p| p.name);
             Err(ModelError::Unknown(unknown_word("parameter", name, known)))
         }),
     }
 }
 
-/// Checks that a set of names determines a model: one way to state the stiffness, `n` and the friction
-/// angle present, every parameter of every effect given, nothing given both for one wheel and for all.
+/// Checks that a set of names determines a model.
+///
+/// One way to state the stiffness, `n` and the friction angle present where the model has them, as are its own parameters; every
+/// parameter of every effect given, nothing given both for one wheel and for all.
 ///
 /// # Errors
-/// [`ModelError`] names what is missing or given twice.
+/// [`ModelError`] names what is missing or given twice, or belongs to another model.
 pub fn check_complete(
+    kind: ModelKind,
     names: &BTreeSet<&str>,
     wheels: &BTreeSet<&str>,
     effects: &EffectSet,
 ) -> Result<(), ModelError> {
     for name in names {
         lookup(name, wheels, effects)?;
+        check_kind(kind, name)?;
     }
     let incomplete = |message: &str| Err(ModelError::Incomplete(message.to_owned()));
     let has = |name| names.contains(name);
-    match (has("k_c") && has("k_phi"), has("log10_p_ref") && has("kappa")) {
+    if let Some(own) = kind.parameters().find(|p| p.prior.is_some() && !has(p.name)) {
+        return Err(ModelError::Unset(own.name.to_owned()));
+    }
+    let stiffness = (has("k_c") && has("k_phi"), has("log10_p_ref") && has("kappa"));
+    match stiffness {
+        _ if !kind.has_soil_laws() => {}
         (true, false) if has("log10_p_ref") || has("kappa") => return incomplete(BOTH_STIFFNESSES),
         (false, true) if has("k_c") || has("k_phi") => return incomplete(BOTH_STIFFNESSES),
         (true, true) => return incomplete(BOTH_STIFFNESSES),
@@ -71,7 +81,7 @@ pub fn check_complete(
         _ => {}
     }
     for name in ["n", "friction_angle_deg"] {
-        if !has(name) {
+        if kind.has_soil_laws() && !has(name) {
             return Err(ModelError::Unset(name.to_owned()));
         }
     }
@@ -80,6 +90,25 @@ pub fn check_complete(
         return incomplete("wheel_radius_m is given both for all wheels and for one wheel");
     }
     effects.check_complete(names, wheels)
+}
+
+/// Checks that a base parameter is one of the model's; those of a terrain are refused where it is known whether a wheel rolls.
+fn check_kind(kind: ModelKind, name: &str) -> Result<(), ModelError> {
+    let stem = name.split_once('.').map_or(name, |(stem, _)| stem);
+    let is_base = of_models().any(|p| p.name == stem) && SPATIAL.iter().all(|p| p.name != stem);
+    if !is_base || kind.parameters().any(|p| p.name == stem) {
+        return Ok(());
+    }
+    let having = ModelKind::ALL.into_iter();
+    let having = having.filter(|kind| kind.parameters().any(|p| p.name == stem));
+    let having: Vec<&str> = having.map(ModelKind::name).collect();
+    let own: Vec<&str> = kind.parameters().map(|p| p.name).collect();
+    Err(ModelError::Inexpressible(format!(
+        "{name} is a parameter of {}, not of {}, which has {}",
+        having.join(", "),
+        kind.name(),
+        own.join(", ")
+    )))
 }
 
 const BOTH_STIFFNESSES: &str = "the stiffness is given twice: k_c and k_phi exclude log10_p_ref and kappa";
@@ -91,7 +120,41 @@ mod tests {
 
     fn check(names: &[&str]) -> Result<(), ModelError> {
         let (wheels, none) = (BTreeSet::from(["smooth"]), EffectSet::default());
-        check_complete(&names.iter().copied().collect(), &wheels, &none)
+        check_complete(
+            ModelKind::QuasiStatic,
+            &names.iter().copied().collect(),
+            &wheels,
+            &none,
+        )
+    }
+
+    #[test]
+    fn a_model_needs_its_own_parameters_and_no_other_s() {
+        let none = (BTreeSet::from(["smooth"]), EffectSet::default());
+        let check = |kind, names: &[&str]| {
+            let names = names.iter().copied().collect();
+            check_complete(kind, &names, &none.0, &none.1).map_err(|e| e.to_string())
+        };
+        let rft = ["xi_n_pa_m", "surface_friction", "wheel_radius_m.smooth"];
+        assert_eq!(check(ModelKind::Rft, &rft), Ok(()));
+        assert_eq!(
+            check(ModelKind::Rft, &rft[1..]).unwrap_err(),
+            "parameter xi_n_pa_m has neither a prior nor a fixed value"
+        );
+        assert_eq!(
+            check(ModelKind::Rft, &["n", "xi_n_pa_m", "surface_friction"]).unwrap_err(),
+            "n is a parameter of quasi_static, scm, wong_reece, not of rft, which has wheel_radius_m, xi_n_pa_m, surface_friction"
+        );
+        let laws = ["k_c", "k_phi", "n", "friction_angle_deg", "c1", "c2"];
+        assert_eq!(
+            check(ModelKind::WongReece, &laws).unwrap_err(),
+            "parameter shear_modulus_m has neither a prior nor a fixed value"
+        );
+        let refused = check(ModelKind::QuasiStatic, &laws).unwrap_err();
+        assert!(
+            refused.starts_with("c1 is a parameter of wong_reece, not of quasi_static"),
+            "{refused}"
+        );
     }
 
     #[test]

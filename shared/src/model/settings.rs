@@ -39,14 +39,9 @@ impl ModelSettings {
         for (key, value) in table {
             match (key.as_str(), value) {
                 ("kind", toml::Value::String(name)) => {
-                    kind = Some(match name.as_str() {
-                        "quasi_static" => ModelKind::QuasiStatic,
-                        "scm" => ModelKind::Scm,
-                        other => {
-                            let known = ["quasi_static", "scm"];
-                            return Err(ModelError::Unknown(unknown_word("kind", other, known)));
-                        }
-                    });
+                    let known = ModelKind::ALL.map(ModelKind::name);
+                    let unknown = || ModelError::Unknown(unknown_word("kind", name, known));
+                    kind = Some(ModelKind::find(name).ok_or_else(unknown)?);
                 }
                 ("effects", names) => effects = words("effects", names)?,
                 ("effect_files", names) => effect_files = words("effect_files", names)?,
@@ -58,14 +53,18 @@ impl ModelSettings {
                 }
             }
         }
-        let missing = || ModelError::Incomplete("kind is missing: \"quasi_static\" or \"scm\"".to_owned());
+        let missing = || {
+            let known = ModelKind::ALL.map(|kind| format!("\"{}\"", kind.name()));
+            ModelError::Incomplete(format!("kind is missing: {}", known.join(", ")))
+        };
         let kind = kind.ok_or_else(missing)?;
         let spatial = match kind {
             ModelKind::Scm => Some(SpatialSettings::from_table(spatial)?),
-            ModelKind::QuasiStatic => match spatial.keys().next() {
+            other => match spatial.keys().next() {
                 Some(key) => {
+                    let name = other.name();
                     return Err(ModelError::Invalid(format!(
-                        "{key}: quasi_static has no terrain of nodes; use kind = \"scm\""
+                        "{key}: {name} has no terrain of nodes; use kind = \"scm\""
                     )));
                 }
                 None => None,
@@ -137,10 +136,7 @@ fn fixed_parameter(key: &str, value: &toml::Value) -> Result<f64, ModelError> {
         )));
     }
     // the part before a dot may be an effect of a file that is read later
-    let base = parameters::BASE
-        .iter()
-        .chain(&parameters::SPATIAL)
-        .map(|p| p.name);
+    let base = parameters::of_models().map(|p| p.name);
     if !key.contains('.') && !base.clone().any(|name| name == key) {
         let names = base.chain(["kind", "effects", "effect_files"]);
         let names = names.chain(SpatialSettings::KEYS);

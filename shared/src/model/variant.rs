@@ -105,7 +105,7 @@ impl ModelVariant {
             .chain(fixed.keys())
             .map(String::as_str)
             .collect();
-        check_complete(&names, &wheels, effects)?;
+        check_complete(settings.kind, &names, &wheels, effects)?;
         check_grousers(effects, &names, experiment)?;
         let slides = settings.kind == ModelKind::Scm;
         let (weighing, walled, drifting) = (

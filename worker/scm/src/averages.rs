@@ -1,7 +1,7 @@
 //! The result of a run: steady means of the measured channels, and diagnostics of the contact.
 
 /// Steady averages of one run and the diagnostics of the contact behind them.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Averages {
     /// Drawbar pull F along the wheel's heading `[N]`; > 0: the wheel pulls.
     pub drawbar_pull_n: f64,

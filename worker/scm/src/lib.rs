@@ -6,6 +6,7 @@
 //! - [`pressure_sinkage`]: normal pressure from sinkage (Bekker).
 //! - [`pressure_distribution`]: gamma, the weight that takes the pressure to zero at the border.
 //! - [`footprint`]: the effective width `2 A / L` of a footprint.
+//! - [`wong_reece`]: where the pressure under a driven wheel peaks, and its shear by displacement.
 //! - [`shear`]: the Mohr–Coulomb limit and how much of it a slip velocity or a displacement mobilises.
 //!
 //! Boundary of the crate:
@@ -19,6 +20,7 @@
 //! Models:
 //! - [`quasi_static`]: a smooth wheel in steady motion, integrated along the rim.
 //! - [`spatial`]: a wheel with grousers, or any surface, that rolls over a terrain it deforms.
+//! - [`rft`]: a wheel in granular soil by resistive force theory, without the laws above.
 //! - [`bevameter`]: a plate pressed into the soil and a ring turned on it, by the same laws as the wheel.
 //!
 //! Numerics:
@@ -50,10 +52,12 @@ pub mod pressure_sinkage;
 mod quadrature;
 pub mod quasi_static;
 pub mod rejection;
+pub mod rft;
 pub mod shear;
 pub mod soil;
 pub mod spatial;
 pub mod wheel;
+pub mod wong_reece;
 
 pub use formula::elementary;
 
@@ -63,6 +67,7 @@ pub use effects::CompiledEffects;
 pub use rejection::Rejection;
 pub use soil::{Soil, bekker_moduli};
 pub use wheel::Wheel;
+pub use wong_reece::WongReece;
 
 /// Identifies the equations and numerics; bumped when any number changes.
 pub const MODEL_VERSION: &str = "scm-6";

@@ -45,6 +45,8 @@ impl EffectMap {
         let model = match variant.kind {
             ModelKind::QuasiStatic => ModelForm::QuasiStatic,
             ModelKind::Scm => ModelForm::Spatial,
+            ModelKind::WongReece => ModelForm::WongReece,
+            ModelKind::Rft => ModelForm::Rft,
         };
         let effects = CompiledEffects::compile(model, set.iter())?;
         let mut sources: Vec<Sources> = Vec::new();

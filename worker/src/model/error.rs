@@ -13,8 +13,11 @@ pub enum CompileError {
     #[error(transparent)]
     Effect(#[from] FormError),
     /// Histories of a steady-state model.
-    #[error("histories: quasi_static has only a steady state; use kind = \"scm\"")]
-    NoHistories,
+    #[error("histories: {0} has only a steady state; use kind = \"scm\"")]
+    NoHistories(&'static str),
+    /// A surface that no wheel can have.
+    #[error(transparent)]
+    Surface(#[from] scm::Rejection),
     /// A condition names a wheel that does not exist.
     #[error("unknown wheel \"{0}\"")]
     UnknownWheel(String),

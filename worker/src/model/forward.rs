@@ -1,7 +1,7 @@
 //! The forward model of a variant: shared names become the physics' types.
 
 use scm::spatial::SpatialRun;
-use scm::{Averages, Condition, Soil, Wheel, quasi_static};
+use scm::{Averages, Condition, Wheel};
 use shared::channel::Channel;
 use shared::model::{EffectSet, ModelKind, ModelVariant, PlateCondition, RingCondition};
 use shared::outcome::{Observables, Outcome, ParameterRejection};
@@ -9,20 +9,18 @@ use shared::outcome::{Observables, Outcome, ParameterRejection};
 use super::bevameter::CompiledBevameter;
 use super::effects::{ActiveEffects, EffectMap};
 use super::error::CompileError;
-use super::parameters::{Radius, SoilMap};
+use super::parameters::Radius;
+use super::physics::{Physics, Run, Settled, Simulated};
 use super::recording;
-use super::spatial::SpatialModel;
 
 /// The forward model of a variant, its names resolved, so that an evaluation looks up nothing.
 #[derive(Debug)]
 pub(super) struct ForwardModel {
     pub(super) dimension: usize,
-    soil: SoilMap,
+    physics: Physics,
     wheels: Vec<(Wheel, Radius)>,
     conditions: Vec<(usize, Condition)>,
     effects: EffectMap,
-    /// The three-dimensional model; `None`: the quasi-static one.
-    spatial: Option<SpatialModel>,
     /// The channels that are returned; empty: everything.
     channels: Vec<Channel>,
     stiffness_sensitivity: bool,
@@ -35,12 +33,6 @@ pub(super) struct ForwardModel {
 /// laws are smooth powers of the stiffness.
 const STIFFER: f64 = 0.05;
 
-/// What simulating one condition gives.
-enum Simulated {
-    Steady(Averages),
-    Rolled(Box<SpatialRun>),
-}
-
 impl ForwardModel {
     /// Resolves the names of a variant.
     ///
@@ -49,12 +41,11 @@ impl ForwardModel {
     pub(super) fn new(variant: &ModelVariant) -> Result<Self, CompileError> {
         let set = EffectSet::read(&variant.effects)?;
         variant.check_expressible(&set)?;
-        if variant.histories && variant.kind == ModelKind::QuasiStatic {
-            return Err(CompileError::NoHistories);
+        if variant.histories && variant.kind != ModelKind::Scm {
+            return Err(CompileError::NoHistories(variant.kind.name()));
         }
         let effects = EffectMap::new(variant, &set)?;
         let names: Vec<&str> = variant.wheels.keys().map(String::as_str).collect();
-        let soil = SoilMap::new(variant)?;
         let wheels = variant
             .wheels
             .iter()
@@ -85,14 +76,9 @@ impl ForwardModel {
                 Ok((wheel, condition))
             })
             .collect::<Result<_, CompileError>>()?;
-        let spatial = match variant.kind {
-            ModelKind::QuasiStatic => None,
-            ModelKind::Scm => Some(SpatialModel::new(variant)?),
-        };
         Ok(ForwardModel {
-            spatial,
             dimension: variant.parameters.len(),
-            soil,
+            physics: Physics::new(variant)?,
             wheels,
             conditions,
             effects,
@@ -118,14 +104,14 @@ impl ForwardModel {
     /// Simulates every condition at one parameter vector; the first rejection ends it. `keep` receives each run of a model that
     /// rolls in time, in the order of the conditions.
     pub(super) fn evaluate(&self, theta: &[f64], mut keep: impl FnMut(SpatialRun)) -> Outcome {
-        let soil = match self.soil_of(theta) {
-            Ok(soil) => soil,
+        let settled = match self.settle(theta) {
+            Ok(settled) => settled,
             Err(rejection) => return Outcome::Rejected(rejection),
         };
         let mut effects = self.effects.at(theta);
         let mut observables = Observables::with_capacity(self.runs());
         for position in 0..self.runs() {
-            match self.simulate(theta, &soil, &mut effects, position) {
+            match self.simulate(theta, &settled, &mut effects, position) {
                 Ok(Simulated::Steady(averages)) => push(&mut observables, &averages),
                 Ok(Simulated::Rolled(run)) => {
                     push(&mut observables, &run.averages);
@@ -144,7 +130,7 @@ impl ForwardModel {
             }
         }
         if self.stiffness_sensitivity
-            && let Err(rejection) = self.differentiate(theta, &soil, &mut effects, &mut observables)
+            && let Err(rejection) = self.differentiate(theta, &settled, &mut effects, &mut observables)
         {
             return Outcome::Rejected(rejection);
         }
@@ -161,15 +147,11 @@ impl ForwardModel {
     fn differentiate(
         &self,
         theta: &[f64],
-        soil: &Soil,
+        settled: &Settled,
         effects: &mut ActiveEffects,
         observables: &mut Observables,
     ) -> Result<(), ParameterRejection> {
-        let stiffer = Soil {
-            k_c: soil.k_c * (1.0 + STIFFER),
-            k_phi: soil.k_phi * (1.0 + STIFFER),
-            ..*soil
-        };
+        let stiffer = settled.stiffer(1.0 + STIFFER);
         let step = libm::log1p(STIFFER);
         for position in 0..self.runs() {
             let averages = match self.simulate(theta, &stiffer, effects, position) {
@@ -229,12 +211,12 @@ impl ForwardModel {
 
     /// Simulates every condition at one parameter vector; a refusal of one leaves the others.
     pub(super) fn each(&self, theta: &[f64]) -> Vec<Result<Averages, ParameterRejection>> {
-        let soil = match self.soil_of(theta) {
-            Ok(soil) => soil,
+        let settled = match self.settle(theta) {
+            Ok(settled) => settled,
             Err(rejection) => return vec![Err(rejection); self.runs()],
         };
         let mut effects = self.effects.at(theta);
-        let averages = |position| match self.simulate(theta, &soil, &mut effects, position) {
+        let averages = |position| match self.simulate(theta, &settled, &mut effects, position) {
             Ok(Simulated::Steady(averages)) => Ok(averages),
             Ok(Simulated::Rolled(run)) => Ok(run.averages),
             Err(rejection) => Err(refusal(rejection.kind(), position, rejection.to_string())),
@@ -242,7 +224,7 @@ impl ForwardModel {
         (0..self.runs()).map(averages).collect()
     }
 
-    fn soil_of(&self, theta: &[f64]) -> Result<Soil, ParameterRejection> {
+    fn settle(&self, theta: &[f64]) -> Result<Settled<'_>, ParameterRejection> {
         if theta.len() != self.dimension {
             let message = format!(
                 "theta has {} entries, the variant has {}",
@@ -251,14 +233,14 @@ impl ForwardModel {
             );
             return Err(refusal("invalid_parameter", 0, message));
         }
-        let soil = self.soil.soil(theta).checked();
-        soil.map_err(|rejection| refusal(rejection.kind(), 0, rejection.to_string()))
+        let settled = self.physics.at(theta);
+        settled.map_err(|rejection| refusal(rejection.kind(), 0, rejection.to_string()))
     }
 
     fn simulate(
         &self,
         theta: &[f64],
-        soil: &Soil,
+        settled: &Settled,
         effects: &mut ActiveEffects,
         position: usize,
     ) -> Result<Simulated, scm::Rejection> {
@@ -268,13 +250,15 @@ impl ForwardModel {
             radius_m: radius.value(theta).unwrap_or(wheel.radius_m),
             ..*wheel
         };
-        let (active, site) = (effects.on_wheel(*place), self.effects.site(position));
-        match &self.spatial {
-            None => quasi_static::simulate_with(soil, &wheel, condition, active, site).map(Simulated::Steady),
-            Some(model) => model
-                .run(theta, position, soil, (*place, &wheel), condition, (active, site))
-                .map(|run| Simulated::Rolled(Box::new(run))),
-        }
+        let run = Run {
+            theta,
+            position,
+            place: *place,
+            wheel: &wheel,
+            condition,
+            site: self.effects.site(position),
+        };
+        settled.simulate(&run, effects.on_wheel(*place))
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! # Layout
 //! - `variant`: [`CompiledVariant`], a forward model with its companion; `cache`: the compiled variants in memory.
-//! - `forward`: the forward model; `spatial`: what the three-dimensional one needs; `bevameter`: plates and rings.
+//! - `forward`: the forward model; `physics`: which equations it solves; `spatial`: what the three-dimensional one needs; `bevameter`:
+//!   plates and rings.
 //! - `companion`: the quasi-static model that a metamodel evaluates beside the three-dimensional one.
 //! - `error`: why a variant cannot be evaluated here.
 //! - `effects`: the effects, compiled, with the sources of their parameters.
@@ -16,6 +17,7 @@ mod effects;
 mod error;
 mod forward;
 mod parameters;
+mod physics;
 mod recording;
 mod spatial;
 mod variant;

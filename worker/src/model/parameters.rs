@@ -1,7 +1,8 @@
 //! Where each physical quantity comes from: a free parameter, or a fixed value.
 
+use scm::rft::RftSoil;
 use scm::spatial::Ground;
-use scm::{Soil, bekker_moduli};
+use scm::{Soil, WongReece, bekker_moduli};
 use shared::model::{ModelError, ModelVariant};
 
 /// The source of one quantity.
@@ -125,6 +126,55 @@ impl GroundMap {
             flow_fraction: self.flow_fraction.value(theta),
             bearing_credit: self.bearing_credit.value(theta),
             repose_angle_rad: repose_angle_deg.map_or(default.repose_angle_rad, f64::to_radians),
+        }
+    }
+}
+
+/// The sources of what Wong & Reece add to a soil.
+#[derive(Debug)]
+pub(super) struct WongReeceMap {
+    c1: ParameterSource,
+    c2: ParameterSource,
+    shear_modulus_m: ParameterSource,
+}
+
+impl WongReeceMap {
+    pub(super) fn new(variant: &ModelVariant) -> Result<Self, ModelError> {
+        Ok(WongReeceMap {
+            c1: ParameterSource::required(variant, "c1")?,
+            c2: ParameterSource::required(variant, "c2")?,
+            shear_modulus_m: ParameterSource::required(variant, "shear_modulus_m")?,
+        })
+    }
+
+    pub(super) fn law(&self, theta: &[f64]) -> WongReece {
+        WongReece {
+            c1: self.c1.value(theta),
+            c2: self.c2.value(theta),
+            shear_modulus_m: self.shear_modulus_m.value(theta),
+        }
+    }
+}
+
+/// The sources of a soil of resistive force theory.
+#[derive(Debug)]
+pub(super) struct RftMap {
+    xi_n_pa_m: ParameterSource,
+    surface_friction: ParameterSource,
+}
+
+impl RftMap {
+    pub(super) fn new(variant: &ModelVariant) -> Result<Self, ModelError> {
+        Ok(RftMap {
+            xi_n_pa_m: ParameterSource::required(variant, "xi_n_pa_m")?,
+            surface_friction: ParameterSource::required(variant, "surface_friction")?,
+        })
+    }
+
+    pub(super) fn soil(&self, theta: &[f64]) -> RftSoil {
+        RftSoil {
+            xi_n_pa_m: self.xi_n_pa_m.value(theta),
+            surface_friction: self.surface_friction.value(theta),
         }
     }
 }

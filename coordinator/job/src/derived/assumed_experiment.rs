@@ -77,7 +77,7 @@ impl AssumedExperiment {
             }
         }
         for (wheel, geometry) in &parsed.wheels {
-            if kind != ModelKind::QuasiStatic || geometry.mesh.is_some() {
+            if !kind.is_smooth() || geometry.mesh.is_some() {
                 continue;
             }
             if let Some(table) = table(document.get_mut("wheel"), wheel)

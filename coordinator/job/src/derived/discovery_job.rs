@@ -6,6 +6,7 @@ use shared::file::{FileError, FileSet};
 use shared::model::ModelKind;
 use toml_edit::{DocumentMut, Item, TableLike};
 
+use super::one_model::keep_model;
 use super::point_job::{edited, keep_candidates, with_algorithm};
 use crate::table::algorithm_settings::AlgorithmName;
 
@@ -15,7 +16,11 @@ use crate::table::algorithm_settings::AlgorithmName;
 /// [`FileError`] where the text is no job.
 pub fn discovery_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
     Ok(FileSet {
-        toml: with_algorithm(name, &job.toml, AlgorithmName::Discovery)?,
+        toml: with_algorithm(
+            name,
+            &edited(name, &job.toml, |d| keep_model(d, 0))?,
+            AlgorithmName::Discovery,
+        )?,
         files: job.files.clone(),
     })
 }
@@ -51,10 +56,12 @@ pub fn is_discovery(toml: &str) -> bool {
     sampler.and_then(|sampler| sampler.get("algorithm")?.as_str()) == Some(AlgorithmName::Discovery.name())
 }
 
-/// The model of a job; `None` where this version does not know it. Reads nothing else: lists ask this of every job.
+/// The model of a job, of several the first; `None` where this version does not know it. Reads nothing else: lists ask this of every job.
 pub fn model_kind(toml: &str) -> Option<ModelKind> {
     let job: toml::Table = toml.parse().ok()?;
-    job.get("model")?.get("kind")?.clone().try_into().ok()
+    let first = || job.get("models")?.as_array()?.first();
+    let model = job.get("model").or_else(first)?;
+    model.get("kind")?.clone().try_into().ok()
 }
 
 /// A job as its study goes on with it: it asks for no point estimates and no search of its own.
@@ -63,6 +70,7 @@ pub fn model_kind(toml: &str) -> Option<ModelKind> {
 /// [`FileError`] where the text is no job.
 pub fn continued_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
     let toml = edited(name, &job.toml, |document| {
+        keep_model(document, 0)?;
         if let Some(sampler) = table(document, "sampler") {
             sampler.remove("point_estimates");
         }
@@ -85,6 +93,7 @@ pub fn without_effects(name: &str, job: &FileSet, effects: &[String]) -> Result<
         effect.is_some_and(|effect| effects.contains(&effect))
     };
     let toml = edited(name, &job.toml, |document| {
+        keep_model(document, 0)?;
         let of_dropped = |key: &str| {
             key.split_once('.')
                 .is_some_and(|(effect, _)| effects.iter().any(|e| e == effect))

@@ -4,11 +4,16 @@ use shared::file::FileError;
 use shared::model::SpatialSettings;
 use shared::parameters::SPATIAL;
 
+use super::one_model::keep_model;
 use crate::model_switch::ModelSwitch;
 
+/// A job to be changed: of several models that it compares, the first.
 fn document(name: &str, toml: &str) -> Result<toml_edit::DocumentMut, FileError> {
-    toml.parse()
-        .map_err(|e: toml_edit::TomlError| FileError::whole(name, e.to_string()))
+    let document = toml.parse();
+    let mut document: toml_edit::DocumentMut =
+        document.map_err(|e: toml_edit::TomlError| FileError::whole(name, e.to_string()))?;
+    keep_model(&mut document, 0).map_err(|e| FileError::whole(name, e))?;
+    Ok(document)
 }
 
 /// The text of a job with further effects and effect files under `[model]` and further lines under `[priors]`; everything

@@ -5,5 +5,6 @@ pub(crate) mod accepting_job;
 pub(crate) mod assumed_experiment;
 pub(crate) mod discovery_job;
 pub(crate) mod extended_job;
+pub(crate) mod one_model;
 pub(crate) mod own_effects;
 pub(crate) mod point_job;

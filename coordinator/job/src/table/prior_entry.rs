@@ -8,7 +8,7 @@ use shared::experiment::Scatter;
 use shared::file::{FileError, number, unknown_word};
 use shared::model::EffectSet;
 use shared::model::effects::parameter_name;
-use shared::parameters::{self, NOISE_PREFIX, ParameterBounds, behind};
+use shared::parameters::{self, BaseParameter, NOISE_PREFIX, ParameterBounds, behind};
 use statistics::{Distribution, Marginal};
 
 use super::prior_entry_error::{DISTRIBUTIONS, PriorEntryError};
@@ -25,7 +25,7 @@ pub struct FreeParameter {
 }
 
 /// One line of `[priors]`, as written.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct PriorEntry {
     /// The parameter.
     pub name: String,
@@ -91,6 +91,19 @@ impl PriorEntry {
 }
 
 impl ParsedPrior {
+    /// The prior of a model's own parameter that the job does not mention.
+    pub(crate) fn usual(own: &BaseParameter, prior: &str) -> Result<FreeParameter, PriorEntryError> {
+        let value: Option<toml::Value> = prior.parse().ok();
+        let quantity = ParameterBounds::from(own);
+        let value = value.unwrap_or_else(|| toml::Value::String(prior.to_owned()));
+        let marginal = marginal(&value, &quantity).map_err(|e| e.of(own.name))?;
+        Ok(FreeParameter {
+            name: own.name.to_owned(),
+            unit: quantity.unit,
+            marginal,
+        })
+    }
+
     /// What the file of an effect says of a parameter that the job does not mention, but for its name there.
     pub(crate) fn of_effect(name: &str, parameter: &Parameter) -> Result<ParsedPrior, PriorEntryError> {
         if let Some(value) = number(&parameter.prior) {

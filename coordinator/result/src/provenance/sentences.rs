@@ -4,7 +4,6 @@ use inference::diagnostics::mean_and_sd;
 use job::repeat_scatter;
 use shared::channel::Channel;
 use shared::experiment::{RunUse, WheelGeometry};
-use shared::model::ModelKind;
 use shared::parameters::noise_parameter;
 
 use crate::finished_calibration::FinishedCalibration;
@@ -274,8 +273,7 @@ pub(super) fn notes(calibration: &FinishedCalibration) -> Vec<String> {
         notes.push(format!("What looks odd was accepted as meant: {accepted}."));
     }
     // where grousers are declared, the notes of the job name their wheels
-    let quasi_static = calibration.spec.model.kind == ModelKind::QuasiStatic;
-    if quasi_static
+    if calibration.spec.model.kind.is_smooth()
         && !calibration
             .spec
             .experiment

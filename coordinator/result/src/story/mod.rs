@@ -21,6 +21,8 @@ pub use wrong::{ChannelFailure, Wrong};
 pub struct Story {
     /// The calibration.
     pub calibration: i64,
+    /// Which of the models that the job compares it is, in a sentence; null where the job has one.
+    pub model: Option<String>,
     /// What its model gets wrong.
     pub wrong: Wrong,
     /// What is missing, and how sure that is.
@@ -35,6 +37,7 @@ impl Story {
         let wrong = Wrong::of(study, calibration);
         Story {
             calibration: calibration.row.id,
+            model: study.model_comparison().map(|comparison| comparison.text),
             missing: Missing::of(study, calibration),
             next: Next::of(study, calibration, wrong.is_within_noise()),
             wrong,

@@ -157,7 +157,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool
 /// Whether the study has a calibration with all that this one has, and the effect.
 fn is_made(study: &Study, calibration: &FinishedCalibration, effect: &String) -> bool {
     let parts = study.parts(calibration);
-    let mut others = study.calibrations().map(|other| study.parts(other));
+    let mut others = study.line().map(|other| study.parts(other));
     others.any(|other| other.contains(effect) && parts.iter().all(|part| other.contains(part)))
 }
 

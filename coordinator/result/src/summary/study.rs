@@ -7,6 +7,7 @@ use super::point_estimate::PointEstimate;
 use crate::discovery::DiscoverySummary;
 use crate::finished_calibration::FinishedCalibration;
 use crate::flag::kind::Flag;
+use crate::model_comparison::ModelComparison;
 use crate::study::Study;
 use crate::table::fixed_sigma::{FixedSigma, FixedSigmas};
 
@@ -19,7 +20,7 @@ pub struct StudySummary {
     pub seed: u64,
     /// Version of the equations and the effects.
     pub model_version: String,
-    /// `quasi_static` or `scm`.
+    /// Kind of the model; of several that are compared, the most probable.
     pub model_kind: String,
     /// State of the study.
     pub status: String,
@@ -29,6 +30,8 @@ pub struct StudySummary {
     pub fixed_sigma: BTreeMap<String, FixedSigma>,
     /// Deterministic fits.
     pub point_estimates: Vec<PointEstimate>,
+    /// The models that the job compares; null where it has one, and until all are finished.
+    pub models: Option<ModelComparison>,
     /// The flags.
     pub flags: Vec<Flag>,
     /// Missing effects; null where no search is finished.
@@ -62,7 +65,7 @@ impl Study {
 
     /// The point estimates of every model.
     pub(crate) fn point_estimate_summaries(&self, sigmas: &FixedSigmas) -> Vec<PointEstimate> {
-        self.calibrations()
+        self.line()
             .filter_map(|calibration| Some(calibration.point_estimate()?.in_fixed_sigmas(sigmas)))
             .collect()
     }
@@ -80,6 +83,7 @@ impl Study {
             calibrations: self.ledger_summaries(&sigmas),
             point_estimates: self.point_estimate_summaries(&sigmas),
             fixed_sigma: sigmas.by_name(),
+            models: self.model_comparison(),
             flags: self.flags(),
             discovery: DiscoverySummary::of(&self.rounds, self.added()),
         }

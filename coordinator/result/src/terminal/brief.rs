@@ -6,6 +6,7 @@ use record::{Verdict, effect_of};
 
 use super::calibration::headline;
 use super::ledger::ledger;
+use super::models::models;
 use crate::discovery::word;
 use crate::flag::kind::FlagKind;
 use crate::study::Study;
@@ -29,7 +30,7 @@ pub fn brief(study: &Study) -> String {
     for doubt in doubts(study) {
         let _ = writeln!(text, "caution: {doubt}");
     }
-    text + &ledger(study)
+    text + &models(study) + &ledger(study)
 }
 
 /// Why the numbers themselves may be wrong: of the study and of its current model.

@@ -14,6 +14,7 @@ mod comparison;
 mod diagnostics;
 pub mod discovery;
 mod ledger;
+mod models;
 mod specification;
 mod status;
 mod story;

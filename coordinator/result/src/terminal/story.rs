@@ -14,7 +14,9 @@ const STEPS: usize = 3;
 /// # Arguments
 /// - `place`: the argument that locates the study. `folder`: of effect files.
 pub fn story(story: &Story, place: &str, folder: &Path) -> String {
-    let mut text = labelled("wrong:", &story.wrong.text) + &labelled("missing:", &story.missing.text);
+    let model = story.model.as_ref();
+    let mut text = model.map_or_else(String::new, |model| labelled("model:", model));
+    text += &(labelled("wrong:", &story.wrong.text) + &labelled("missing:", &story.missing.text));
     for (number, step) in story.next.steps.iter().take(STEPS).enumerate() {
         let label = if number == 0 { "next:" } else { "  then:" };
         text += &labelled(label, &step.text);

@@ -155,6 +155,25 @@ impl Effect {
         uses.fold(Variables::default(), Variables::union)
     }
 
+    /// Whether it needs the laws of a soil at a point, by Bekker, Mohr and Coulomb: it enters where they do, or asks for their
+    /// parameters. A model without these laws cannot express it.
+    pub fn needs_soil_laws(&self) -> bool {
+        const HOOKS: [Hook; 4] = [
+            Hook::SinkageExponent,
+            Hook::Pressure,
+            Hook::ShearLimit,
+            Hook::Shear,
+        ];
+        const PARAMETERS: [Variable; 5] = [
+            Variable::FrictionAngle,
+            Variable::Cohesion,
+            Variable::N,
+            Variable::ShearVelocity,
+            Variable::KStar,
+        ];
+        self.hooks().any(|hook| HOOKS.contains(&hook)) || self.uses().meets(Variables::of(&PARAMETERS))
+    }
+
     /// Position of a parameter.
     pub fn parameter(&self, name: &str) -> Option<usize> {
         self.parameters.iter().position(|p| p.name == name)

@@ -3,12 +3,38 @@
 use formula::{Hook, Variable};
 
 use super::Active;
-use crate::Rejection;
+use crate::{Averages, Rejection};
 
 impl Active<'_> {
     /// Whether any effect changes what is measured.
     pub(crate) fn change_channels(&self) -> bool {
         Hook::CHANNELS.into_iter().any(|hook| self.enter(hook))
+    }
+
+    /// Replace the channels of a steady run by what the rig measures of them, at this k* of the contact `[N/m^(n+2)]`.
+    pub(crate) fn measure_averages(
+        &self,
+        variables: &mut [f64; Variable::COUNT],
+        modulus: f64,
+        averages: &mut Averages,
+    ) -> Result<(), Rejection> {
+        let channels = [
+            (Variable::DrawbarPull, &mut averages.drawbar_pull_n),
+            (Variable::Torque, &mut averages.torque_n_m),
+            (Variable::Sinkage, &mut averages.sinkage_m),
+            (Variable::LateralForce, &mut averages.lateral_force_n),
+        ];
+        variables[Variable::ContactLength as usize] = averages.contact_length_m;
+        variables[Variable::BEff as usize] = averages.b_eff_m;
+        variables[Variable::KStar as usize] = modulus;
+        for (variable, channel) in &channels {
+            variables[*variable as usize] = **channel;
+        }
+        self.measure(variables)?;
+        for (variable, channel) in channels {
+            *channel = variables[variable as usize];
+        }
+        Ok(())
     }
 
     /// Replace the channels by their measured values. The formulas of one effect all see the channels as they are after the

@@ -31,6 +31,10 @@ use law::{Law, formulas_at};
 pub enum ModelForm {
     /// [`quasi_static`](crate::quasi_static): the footprint is one, so its modulus and width are the same at all nodes.
     QuasiStatic,
+    /// [`quasi_static`](crate::quasi_static) with the stresses of [`WongReece`](crate::WongReece), which have neither flat nor rebound.
+    WongReece,
+    /// [`rft`](crate::rft): stresses follow from motion and depth alone, so that no formula enters at a node.
+    Rft,
     /// [`spatial`](crate::spatial): patches of the footprint have their own.
     Spatial,
 }
@@ -40,6 +44,8 @@ impl ModelForm {
     fn name(self) -> &'static str {
         match self {
             ModelForm::QuasiStatic => "quasi_static",
+            ModelForm::WongReece => "wong_reece",
+            ModelForm::Rft => "rft",
             ModelForm::Spatial => "scm",
         }
     }
@@ -48,6 +54,7 @@ impl ModelForm {
     fn mechanisms(self) -> &'static [Mechanism] {
         match self {
             ModelForm::QuasiStatic => &[Mechanism::Rebound, Mechanism::FlatPatch],
+            ModelForm::WongReece | ModelForm::Rft => &[],
             ModelForm::Spatial => &Mechanism::ALL,
         }
     }
@@ -57,7 +64,7 @@ impl ModelForm {
         use Variable::{BEff, J, KStar, P, Position, Tau, TauMax, Vn, Vt, Z};
         let both = Variables::of(&[P, Z, Vn, Vt, J, Position, TauMax, Tau]);
         match self {
-            ModelForm::QuasiStatic => both,
+            ModelForm::QuasiStatic | ModelForm::WongReece | ModelForm::Rft => both,
             ModelForm::Spatial => both.with(KStar).with(BEff),
         }
     }
@@ -111,7 +118,8 @@ impl CompiledEffects {
     ) -> Result<Self, FormError> {
         let law = |effect: &Effect| {
             let mechanism = effect.mechanism.filter(|m| model.mechanisms().contains(m));
-            if mechanism.is_none() && effect.hooks().next().is_none() {
+            let without_laws = model == ModelForm::Rft && effect.needs_soil_laws();
+            if without_laws || mechanism.is_none() && effect.hooks().next().is_none() {
                 let (effect, model) = (effect.name.clone(), model.name());
                 return Err(FormError::NoForm { effect, model });
             }

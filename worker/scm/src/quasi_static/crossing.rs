@@ -30,6 +30,10 @@ pub(super) fn rises_up_to(rim: &Rim, contact_length: f64) -> bool {
     if rim.motion.drives_everywhere() {
         return pressure_slope > 0.0;
     }
+    // the bound below is one of a pressure that is on average no farther ahead than half the contact
+    if rim.peaked.is_some() {
+        return false;
+    }
     let cos_squared = (1.0 - contact_length / rim.radius) * (1.0 + contact_length / rim.radius);
     let secant_squared = 1.0 / cos_squared;
     let at_front = rim.tan_friction_angle * contact_length / (rim.radius * cos_squared.sqrt());

@@ -22,7 +22,7 @@ impl Footing<'_, '_> {
         let Some(reshaping) = &mut self.reshaping else {
             return Ok(self.rim.react(contact_length));
         };
-        let reaction = if reshaping.changes_stresses() {
+        let reaction = if self.rim.peaked.is_some() || reshaping.changes_stresses() {
             reshaping.react(&self.rim, contact_length)?
         } else {
             self.rim.react(contact_length)

@@ -32,7 +32,7 @@ use rim::Rim;
 use crate::effects::{Active, Site};
 use crate::pressure_sinkage::k_star;
 use crate::rejection::require;
-use crate::{Averages, Condition, Rejection, Soil, Wheel};
+use crate::{Averages, Condition, Rejection, Soil, Wheel, WongReece};
 
 /// Steady forces, torque and sinkage of a smooth rigid wheel on plastic soil.
 ///
@@ -127,8 +127,56 @@ pub fn simulate_with(
     effects: &mut Active,
     site: &Site,
 ) -> Result<Averages, Rejection> {
+    roll(soil, wheel, condition, None, effects, site)
+}
+
+/// The same with the stresses of [`WongReece`] in place of the base's.
+///
+/// # Arguments
+/// - `law`: where the pressure peaks, and the shear modulus; at the slip that the effects leave.
+/// - `effects`: compiled for [`ModelForm::WongReece`](crate::effects::ModelForm::WongReece).
+///
+/// # Errors
+/// Those of [`simulate_with`], and [`Rejection::InvalidParameter`] where `c1 + c2 slip` lies outside [0, 1).
+///
+/// # Validity
+/// As [`WongReece`]: neither rebound nor a flat, which the model does not have.
+///
+/// # Example
+/// ```
+/// use scm::effects::{Active, Site};
+/// use scm::{Condition, Soil, Wheel, WongReece, quasi_static};
+/// let soil = Soil { k_c: 0.0, k_phi: 1e7, n: 1.1, cohesion_pa: 0.0, friction_angle_rad: 30f64.to_radians(),
+///     shear_velocity_m_s: 1e-3, gamma_exponent: 0.5 };
+/// let wheel = Wheel { radius_m: 0.125, width_m: 0.112, rig_radius_m: 0.125 };
+/// let condition = Condition { slip: 0.2, wheel_load_n: 150.0, sled_speed_m_s: 0.008, slip_angle_rad: 0.0, pass: 1 };
+/// let law = WongReece { c1: 0.4, c2: 0.0, shear_modulus_m: 0.0 };
+/// let (mut none, site) = (Active::default(), Site::default());
+/// let averages = quasi_static::simulate_wong_reece(&soil, &wheel, &condition, &law, &mut none, &site)?;
+/// assert!((averages.drawbar_pull_n - 46.0).abs() < 0.1 && (averages.sinkage_m - 8.35e-3).abs() < 1e-5);
+/// # Ok::<(), scm::Rejection>(())
+/// ```
+pub fn simulate_wong_reece(
+    soil: &Soil,
+    wheel: &Wheel,
+    condition: &Condition,
+    law: &WongReece,
+    effects: &mut Active,
+    site: &Site,
+) -> Result<Averages, Rejection> {
+    roll(soil, wheel, condition, Some(law), effects, site)
+}
+
+fn roll(
+    soil: &Soil,
+    wheel: &Wheel,
+    condition: &Condition,
+    law: Option<&WongReece>,
+    effects: &mut Active,
+    site: &Site,
+) -> Result<Averages, Rejection> {
     let (soil, wheel, condition) = (soil.checked()?, wheel.checked()?, condition.checked()?);
-    if effects.is_empty() {
+    if effects.is_empty() && law.is_none() {
         let mut base = Footing {
             rim: Rim::new(&soil, &wheel, &condition),
             reshaping: None,
@@ -141,6 +189,7 @@ pub fn simulate_with(
     let mechanics = Mechanics::new(effects, &case)?;
     let mut rim = Rim::new(&soil, &wheel, &condition);
     rim.flat = mechanics.flat(rim.radius);
+    rim.peaked = law.map(|law| law.at(condition.slip)).transpose()?;
     // lent to the rim, for the next run to use again: nothing may fail between here and their return
     let laws = effects.nodes.take();
     let mut panels = Panels::default();
@@ -154,7 +203,8 @@ pub fn simulate_with(
     let (mut averages, load_n) = averages?;
     if effects.change_channels() {
         variables[Variable::WheelLoad as usize] = load_n;
-        measure(effects, &soil, &mut variables, &mut averages)?;
+        let modulus = k_star(&soil, averages.b_eff_m);
+        effects.measure_averages(&mut variables, modulus, &mut averages)?;
         // a channel that reports the wheel in the soil up to its hub describes no test
         require(
             averages.sinkage_m < wheel.radius_m,
@@ -165,32 +215,6 @@ pub fn simulate_with(
         )?;
     }
     Ok(averages)
-}
-
-/// Replace the channels by what the rig measures of them.
-fn measure(
-    effects: &Active,
-    soil: &Soil,
-    variables: &mut [f64; Variable::COUNT],
-    averages: &mut Averages,
-) -> Result<(), Rejection> {
-    let channels = [
-        (Variable::DrawbarPull, &mut averages.drawbar_pull_n),
-        (Variable::Torque, &mut averages.torque_n_m),
-        (Variable::Sinkage, &mut averages.sinkage_m),
-        (Variable::LateralForce, &mut averages.lateral_force_n),
-    ];
-    variables[Variable::ContactLength as usize] = averages.contact_length_m;
-    variables[Variable::BEff as usize] = averages.b_eff_m;
-    variables[Variable::KStar as usize] = k_star(soil, averages.b_eff_m);
-    for (variable, channel) in &channels {
-        variables[*variable as usize] = **channel;
-    }
-    effects.measure(variables)?;
-    for (variable, channel) in channels {
-        *channel = variables[variable as usize];
-    }
-    Ok(())
 }
 
 /// Balance the wheel load; gives the load carried, too.

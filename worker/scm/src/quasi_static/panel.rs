@@ -4,6 +4,7 @@ use super::rim::Rim;
 use crate::elementary::fraction_pow;
 use crate::pressure_distribution::RectangleDistribution;
 use crate::quadrature::{NODES, PLACE, WEIGHT, place_from_end};
+use crate::wong_reece::Peak;
 
 /// The contact at one trial: what its panels share.
 #[derive(Debug, Clone, Copy)]
@@ -52,6 +53,19 @@ impl Panel {
         for i in 0..NODES {
             self.pressure[i] *=
                 contact.pressure_at_bottom * fraction_pow(self.relative_sinkage[i], rim.soil.n);
+        }
+    }
+
+    /// A piece of the round rim where the pressure peaks ahead of the axle: behind the peak other depths count.
+    pub(super) fn about(&mut self, rim: &Rim, contact: &Contact, start: f64, end: f64, peak: &Peak) {
+        self.place(rim, contact, start, end);
+        for i in 0..NODES {
+            let depth = if self.x[i] < peak.x {
+                peak.relative_depth(self.x[i])
+            } else {
+                self.relative_sinkage[i]
+            };
+            self.pressure[i] *= contact.pressure_at_bottom * fraction_pow(depth, rim.soil.n);
         }
     }
 

@@ -16,6 +16,7 @@ use crate::pressure_sinkage::{k_star, pressure};
 use crate::quadrature::NODES;
 use crate::rejection::require;
 use crate::shear::strength;
+use crate::wong_reece::Peak;
 
 /// Parts of a panel where formulas have kinks or jumps between nodes.
 const PARTS: usize = 4;
@@ -40,7 +41,7 @@ pub(super) struct Reshaping<'r, 'e> {
     deflection: f64,
     /// Way by which the soil springs back under a unit of pressure `[m/Pa]`.
     compliance: f64,
-    /// None where no formula asks for it.
+    /// None where no law asks for it.
     slide: Option<Slide>,
     /// Panels of the contact, and how many of them are in use.
     panels: &'r mut Panels,
@@ -63,6 +64,8 @@ struct Shape {
     recovered: f64,
     k_star: f64,
     b_eff: f64,
+    /// Where the pressure peaks, if that is ahead of the axle.
+    peak: Option<Peak>,
 }
 
 /// What the load does to the rim, and its pressure to the soil.
@@ -133,7 +136,8 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         }
         let slides = laws.as_ref().is_some_and(|laws| laws.use_variable(Variable::J));
         Self {
-            slide: slides.then(|| Slide::new(rim.radius, &rim.motion, rim.flat, rim.radius - deflection)),
+            slide: (slides || rim.peaked.is_some())
+                .then(|| Slide::new(rim.radius, &rim.motion, rim.flat, rim.radius - deflection)),
             laws,
             load_follows: active.load_follows_reaction(),
             load_jumps: active.load_jumps(),
@@ -209,7 +213,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         let kinked = self.laws.as_ref().is_some_and(NodeLaws::are_kinked);
         let parts = if kinked { PARTS } else { 1 };
         let mut ends = [0.0; ENDS];
-        let count = if shape.rear > 0.0 {
+        let count = if shape.rear > 0.0 || shape.peak.is_some() {
             shape.panel_ends(rim, &mut ends)
         } else {
             let (plain, panels) = rim.panel_ends(front);
@@ -251,6 +255,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
             recovered: 0.0,
             k_star: 0.0,
             b_eff: 0.0,
+            peak: rim.peaked.map(|stresses| stresses.peak(radius, front)),
         };
         let passes = if self.compliance.abs() > 0.0 && sinkage > 0.0 {
             PASSES
@@ -298,6 +303,14 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         } else {
             for panel in panels.iter_mut() {
                 panel.shear = core::array::from_fn(|i| strength(panel, i) * share(panel, i));
+            }
+        }
+        if let (Some(stresses), Some(slide)) = (&rim.peaked, &self.slide) {
+            let entry = slide.enter(shape.front);
+            for panel in panels.iter_mut() {
+                let slid = slide.slid(&entry, panel.x);
+                panel.shear =
+                    core::array::from_fn(|i| panel.shear[i] * stresses.displacement.mobilised(slid[i]));
             }
         }
         if let Some(laws) = &mut self.laws
@@ -363,6 +376,7 @@ impl Shape {
             self.front - inner,
             -rim.sign_change,
             rim.sign_change,
+            self.peak.map_or(self.front, |peak| peak.x),
             self.front,
         ];
         let mut count = 0;
@@ -383,7 +397,9 @@ impl Shape {
 
     fn lay(&self, panel: &mut Panel, rim: &Rim, contact: &Contact, [start, end]: [f64; 2]) {
         let middle = 0.5 * (start + end);
-        if middle > self.flat {
+        if let Some(peak) = &self.peak {
+            panel.about(rim, contact, start, end, peak);
+        } else if middle > self.flat {
             panel.on_arc(rim, contact, start, end);
         } else if middle < -self.flat {
             panel.behind(rim, contact, start, end, self.recovered);
@@ -419,7 +435,7 @@ impl Shape {
                 panel.x.map(|x| (x + self.rear) * per_length)
             });
         }
-        if let Some(slide) = slide {
+        if let Some(slide) = slide.filter(|_| laws.use_variable(Variable::J)) {
             let entry = slide.enter(self.front);
             write(laws, Variable::J, panels, |panel| slide.slid(&entry, panel.x));
         }

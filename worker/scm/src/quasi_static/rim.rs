@@ -3,6 +3,7 @@
 use super::kinematics::RimMotion;
 use crate::pressure_distribution::PressureDistribution;
 use crate::shear::ShearVelocity;
+use crate::wong_reece::PeakedStresses;
 use crate::{Condition, Soil, Wheel};
 
 /// The quantities of a run that do not depend on the sinkage.
@@ -19,6 +20,8 @@ pub(super) struct Rim {
     pub(super) sign_change: f64,
     /// Half length of the flat of a rim that its load flattens `[m]`; else 0.
     pub(super) flat: f64,
+    /// The stresses of Wong & Reece in place of the base's, where they are asked for.
+    pub(super) peaked: Option<PeakedStresses>,
 }
 
 impl Rim {
@@ -36,6 +39,7 @@ impl Rim {
                 .sign_change()
                 .map_or(f64::INFINITY, |sin_theta| wheel.radius_m * sin_theta),
             flat: 0.0,
+            peaked: None,
         }
     }
 }

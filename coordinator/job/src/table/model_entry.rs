@@ -1,0 +1,129 @@
+//! The forward models of a job: its table `[model]`, or each of `[[models]]` that it compares.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use shared::file::{FileError, parse_toml};
+use shared::model::{ModelKind, ModelSettings};
+use shared::parameters::of_models;
+
+use super::prior_entry::PriorEntry;
+
+/// Fewest and most models that a job compares.
+const COMPARED: std::ops::RangeInclusive<usize> = 2..=8;
+
+/// The values of a table with their places in the text.
+type Spanned = BTreeMap<String, toml::Spanned<toml::Value>>;
+
+/// A forward model as a job writes it.
+#[derive(Debug)]
+pub(crate) struct ModelEntry {
+    /// Line of its `[[models]]`; `None` of a table `[model]`.
+    pub(crate) line: Option<usize>,
+    pub(crate) settings: ModelSettings,
+    /// Its priors: those of all models that it has, then its own.
+    pub(crate) priors: Vec<PriorEntry>,
+}
+
+/// What is read once more for the lines.
+#[derive(Deserialize)]
+struct Lines {
+    #[serde(default)]
+    models: Vec<toml::Spanned<OwnPriors>>,
+}
+
+#[derive(Deserialize)]
+struct OwnPriors {
+    #[serde(default)]
+    priors: Spanned,
+}
+
+/// The models of a job, at least one.
+///
+/// # Arguments
+/// - `shared`: the table `[priors]`, which holds for every model that has the parameter; a model's own line comes before it.
+///
+/// # Errors
+/// [`FileError`] with the line of the model or of the prior.
+pub(crate) fn model_entries(
+    name: &str,
+    toml: &str,
+    model: Option<toml::Table>,
+    models: Vec<toml::Table>,
+    shared: Spanned,
+) -> Result<(ModelEntry, Vec<ModelEntry>), FileError> {
+    let line_at = |start: usize| toml[..start].matches('\n').count() + 1;
+    let entries = |table: Spanned| -> Vec<PriorEntry> {
+        let mut table: Vec<_> = table.into_iter().collect();
+        table.sort_by_key(|(_, value)| value.span().start);
+        let entry = |(name, value): (String, toml::Spanned<toml::Value>)| PriorEntry {
+            name,
+            line: line_at(value.span().start),
+            value: value.into_inner(),
+        };
+        table.into_iter().map(entry).collect()
+    };
+    let shared = entries(shared);
+    let whole = |message: &str| FileError::whole(name, message);
+    let Some(table) = model else {
+        if models.is_empty() {
+            return Err(whole("[model] is missing, or [[models]] for several to compare"));
+        }
+        if !COMPARED.contains(&models.len()) {
+            let (count, least, most) = (models.len(), COMPARED.start(), COMPARED.end());
+            return Err(FileError::whole(
+                name,
+                format!(
+                    "[[models]] has {count}; a comparison takes {least} to {most}, a single one is [model]"
+                ),
+            ));
+        }
+        let lines: Lines = parse_toml(name, toml)?;
+        let mut read = Vec::new();
+        for (mut table, spanned) in models.into_iter().zip(lines.models) {
+            let line = line_at(spanned.span().start);
+            table.remove("priors");
+            let settings = ModelSettings::from_table(&table)
+                .map_err(|e| FileError::at(name, line, format!("[[models]] {e}")))?;
+            let own = entries(spanned.into_inner().priors);
+            let inherited = shared
+                .iter()
+                .filter(|entry| is_shared_by(settings.kind, &entry.name))
+                .filter(|entry| own.iter().all(|own| own.name != entry.name))
+                .filter(|entry| !settings.fixed.contains_key(&entry.name));
+            let priors = inherited.map(PriorEntry::clone).chain(own.iter().cloned());
+            read.push(ModelEntry {
+                line: Some(line),
+                priors: priors.collect(),
+                settings,
+            });
+        }
+        let idle = |entry: &&PriorEntry| read.iter().all(|m| !is_shared_by(m.settings.kind, &entry.name));
+        if let Some(entry) = shared.iter().find(idle) {
+            let kinds: Vec<&str> = read.iter().map(|m| m.settings.kind.name()).collect();
+            let message = format!("{} is a parameter of none of {}", entry.name, kinds.join(", "));
+            return Err(FileError::at(name, entry.line, message));
+        }
+        let first = read.remove(0);
+        return Ok((first, read));
+    };
+    if !models.is_empty() {
+        return Err(whole(
+            "[model] and [[models]] exclude each other: a model to compare is one of [[models]]",
+        ));
+    }
+    let settings =
+        ModelSettings::from_table(&table).map_err(|e| FileError::whole(name, format!("[model] {e}")))?;
+    let entry = ModelEntry {
+        line: None,
+        settings,
+        priors: shared,
+    };
+    Ok((entry, Vec::new()))
+}
+
+/// Whether a line of `[priors]` concerns a model among several: a base parameter only where the model has it.
+pub(crate) fn is_shared_by(kind: ModelKind, name: &str) -> bool {
+    let stem = name.split_once('.').map_or(name, |(stem, _)| stem);
+    of_models().all(|p| p.name != stem) || kind.parameters().any(|p| p.name == stem)
+}

@@ -1,0 +1,136 @@
+//! Which equations a variant's wheel is simulated by, with the sources of their parameters.
+
+use scm::effects::{Active, Site};
+use scm::rft::{self, RftShape, RftSoil};
+use scm::spatial::{Grousers, SpatialRun, SurfaceMesh};
+use scm::{Averages, Condition, Rejection, Soil, Wheel, WongReece, quasi_static};
+use shared::experiment::WheelGeometry;
+use shared::model::{ModelKind, ModelVariant};
+
+use super::error::CompileError;
+use super::parameters::{RftMap, SoilMap, WongReeceMap};
+use super::spatial::SpatialModel;
+
+/// The equations of a variant.
+#[derive(Debug)]
+pub(super) enum Physics {
+    QuasiStatic(SoilMap),
+    WongReece(SoilMap, WongReeceMap),
+    Scm(SoilMap, Box<SpatialModel>),
+    /// With the shape of each wheel, in the variant's order.
+    Rft(RftMap, Vec<RftShape>),
+}
+
+/// The equations at one parameter vector.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Settled<'p> {
+    QuasiStatic(Soil),
+    WongReece(Soil, WongReece),
+    Scm(Soil, &'p SpatialModel),
+    Rft(RftSoil, &'p [RftShape]),
+}
+
+/// What simulating one condition gives.
+pub(super) enum Simulated {
+    Steady(Averages),
+    Rolled(Box<SpatialRun>),
+}
+
+/// One condition to simulate.
+pub(super) struct Run<'r> {
+    pub(super) theta: &'r [f64],
+    /// Of the condition in the variant, and of its wheel.
+    pub(super) position: usize,
+    pub(super) place: usize,
+    pub(super) wheel: &'r Wheel,
+    pub(super) condition: &'r Condition,
+    pub(super) site: &'r Site,
+}
+
+impl Physics {
+    /// Resolves the names of a variant.
+    ///
+    /// # Errors
+    /// [`CompileError`] names what is missing or cannot be expressed.
+    pub(super) fn new(variant: &ModelVariant) -> Result<Self, CompileError> {
+        Ok(match variant.kind {
+            ModelKind::QuasiStatic => Physics::QuasiStatic(SoilMap::new(variant)?),
+            ModelKind::WongReece => Physics::WongReece(SoilMap::new(variant)?, WongReeceMap::new(variant)?),
+            ModelKind::Scm => Physics::Scm(SoilMap::new(variant)?, Box::new(SpatialModel::new(variant)?)),
+            ModelKind::Rft => {
+                let shapes = variant.wheels.values().map(rft_shape).collect::<Result<_, _>>()?;
+                Physics::Rft(RftMap::new(variant)?, shapes)
+            }
+        })
+    }
+
+    /// The equations at a parameter vector.
+    ///
+    /// # Errors
+    /// [`Rejection::InvalidParameter`].
+    pub(super) fn at(&self, theta: &[f64]) -> Result<Settled<'_>, Rejection> {
+        Ok(match self {
+            Physics::QuasiStatic(soil) => Settled::QuasiStatic(soil.soil(theta).checked()?),
+            Physics::WongReece(soil, law) => Settled::WongReece(soil.soil(theta).checked()?, law.law(theta)),
+            Physics::Scm(soil, model) => Settled::Scm(soil.soil(theta).checked()?, model),
+            Physics::Rft(soil, shapes) => Settled::Rft(soil.soil(theta).checked()?, shapes),
+        })
+    }
+}
+
+impl Settled<'_> {
+    /// Simulates one condition.
+    ///
+    /// # Errors
+    /// [`Rejection`]: the model has no answer for these parameters.
+    pub(super) fn simulate(&self, run: &Run, effects: &mut Active) -> Result<Simulated, Rejection> {
+        let (wheel, condition, site) = (run.wheel, run.condition, run.site);
+        let averages = match self {
+            Settled::QuasiStatic(soil) => quasi_static::simulate_with(soil, wheel, condition, effects, site),
+            Settled::WongReece(soil, law) => {
+                quasi_static::simulate_wong_reece(soil, wheel, condition, law, effects, site)
+            }
+            Settled::Rft(soil, shapes) => {
+                rft::simulate(soil, wheel, &shapes[run.place], condition, effects, site)
+            }
+            Settled::Scm(soil, model) => {
+                let (on, with) = ((run.place, wheel), (&*effects, site));
+                let rolled = model.run(run.theta, run.position, soil, on, condition, with)?;
+                return Ok(Simulated::Rolled(Box::new(rolled)));
+            }
+        };
+        averages.map(Simulated::Steady)
+    }
+
+    /// The same on a soil that presses so many times as hard at the same depth.
+    pub(super) fn stiffer(&self, factor: f64) -> Self {
+        let stiffer = |soil: &Soil| Soil {
+            k_c: soil.k_c * factor,
+            k_phi: soil.k_phi * factor,
+            ..*soil
+        };
+        match *self {
+            Settled::QuasiStatic(ref soil) => Settled::QuasiStatic(stiffer(soil)),
+            Settled::WongReece(ref soil, law) => Settled::WongReece(stiffer(soil), law),
+            Settled::Scm(ref soil, model) => Settled::Scm(stiffer(soil), model),
+            Settled::Rft(soil, shapes) => {
+                let xi_n_pa_m = soil.xi_n_pa_m * factor;
+                Settled::Rft(RftSoil { xi_n_pa_m, ..soil }, shapes)
+            }
+        }
+    }
+}
+
+fn rft_shape(wheel: &WheelGeometry) -> Result<RftShape, Rejection> {
+    match &wheel.mesh {
+        Some(mesh) => RftShape::mesh(&SurfaceMesh {
+            vertices_m: mesh.vertices_m.clone(),
+            triangles: mesh.triangles.clone(),
+        }),
+        None => Ok(RftShape::rim(Grousers {
+            count: wheel.grouser_count,
+            height_m: wheel.grouser_height_m,
+            thickness_m: wheel.grouser_thickness_m,
+        })),
+    }
+}
