@@ -1,6 +1,5 @@
 // The map of an import as a person clicks it together: its text, and which field a complaint belongs to.
 
-/** @typedef {import("../types/api").components["schemas"]} Schemas */
 /** @typedef {{ column: string | null, value: string, unit: string, formula: string }} Choice blank: absent */
 /** @typedef {{ sheet: string | null, titleLine: number, unitLine: number | null, decimal: string | null, fields: Record<string, Choice>, quantities: Record<string, Choice> }} Choices */
 

@@ -4,8 +4,8 @@ use formula::nesting::too_deep;
 use shared::file::unknown_word;
 use toml_edit::{Document, TableLike};
 
+use super::content::{Entry, Map, Origin, Recording};
 use super::entry::{Keys, Source};
-use super::{Entry, Map, Origin, Recording};
 use crate::complaint::Complaints;
 use crate::field::Field;
 use crate::number::Decimal;

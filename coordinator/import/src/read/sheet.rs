@@ -5,7 +5,8 @@ use std::io::Cursor;
 
 use calamine::{Data, DataRef, Dimensions, Ods, Range, Reader, Xls, Xlsx};
 
-use super::{Hints, SourceFile, archive};
+use super::archive;
+use super::source_file::{Hints, SourceFile};
 use crate::complaint::Complaint;
 use crate::table::{Cell, Form, Row, Table};
 

@@ -2,7 +2,7 @@
 
 use super::encoding::decode;
 use super::separator::Separator;
-use super::{Hints, SourceFile};
+use super::source_file::{Hints, SourceFile};
 use crate::complaint::Complaint;
 use crate::table::{Cell, Form, Row, Table};
 

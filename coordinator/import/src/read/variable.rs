@@ -1,6 +1,6 @@
 //! The variables of a MATLAB file, as a table with their names as titles.
 
-use super::Hints;
+use super::source_file::Hints;
 use crate::complaint::Complaint;
 use crate::table::{Cell, Form, Row, Table};
 
