@@ -17,6 +17,7 @@ mod leases;
 mod likelihood;
 mod mesh;
 mod metamodel;
+mod models;
 mod not_tried;
 mod older_store;
 mod operation;

@@ -2,19 +2,23 @@
 //!
 //! # Layout
 //! - [`model`]: a variant compiled for evaluation.
+//! - [`external`]: models that are not ours, as far as the operator allows them.
 //! - [`evaluator`]: a pool of threads that evaluates leases and counts the time it simulates.
 //! - [`pull`]: the loop of a worker: exchange, evaluate, resend, renew, give back.
 //! - [`client`]: HTTP client of the coordinator.
 //! - [`simulate`]: forward runs of an experiment without a coordinator.
+//! - [`serve`]: our models by UM-Bridge.
 //! - [`processor`]: whether this machine can run what was built.
 //! - [`config`]: command line and environment.
 
 pub mod client;
 pub mod config;
 pub mod evaluator;
+pub mod external;
 pub mod model;
 pub mod processor;
 pub mod pull;
+pub mod serve;
 pub mod simulate;
 
 /// Version of the equations that this worker computes.

@@ -1,6 +1,7 @@
 //! The program `worker`: parse, connect, run.
 
 use std::io::Write as _;
+use std::net::SocketAddr;
 use std::sync::Arc;
 
 use anyhow::Context;
@@ -10,8 +11,9 @@ use tracing_subscriber::Layer as _;
 use tracing_subscriber::layer::SubscriberExt as _;
 use tracing_subscriber::util::SubscriberInitExt as _;
 use worker::client::HttpCoordinator;
-use worker::config::{PullArguments, WorkerCommand, WorkerConfig};
+use worker::config::{PullArguments, ServeModels, WorkerCommand, WorkerConfig};
 use worker::evaluator::SimulationClock;
+use worker::external::allowed::AllowedModels;
 use worker::pull::{PullSettings, run};
 
 fn main() -> std::process::ExitCode {
@@ -28,9 +30,8 @@ fn main() -> std::process::ExitCode {
         .init();
     let config = WorkerConfig::parse();
     let done = match (config.command, config.serve) {
-        (Some(WorkerCommand::Simulate(command)), _) => {
-            worker::simulate::simulate(&command).map_err(Into::into)
-        }
+        (Some(WorkerCommand::Simulate(command)), _) => simulate(&command),
+        (Some(WorkerCommand::Serve(command)), _) => serve(&command),
         (None, Some(serve)) => pull(&serve),
         (None, None) => Err(anyhow::anyhow!("--coordinator URL is missing")),
     };
@@ -44,6 +45,27 @@ fn main() -> std::process::ExitCode {
 fn refuse(error: impl std::fmt::Display) -> std::process::ExitCode {
     let _ = writeln!(std::io::stderr(), "error: {error}");
     std::process::ExitCode::FAILURE
+}
+
+/// A server is talked to on a runtime, by a thread that waits.
+fn simulate(command: &worker::config::Simulate) -> anyhow::Result<()> {
+    let runtime = tokio::runtime::Runtime::new()?;
+    let models = AllowedModels::new(&command.allow_model, runtime.handle())?;
+    Ok(worker::simulate::simulate(command, &Arc::new(models))?)
+}
+
+#[tokio::main]
+async fn serve(command: &ServeModels) -> anyhow::Result<()> {
+    let address = SocketAddr::new(command.address, command.port);
+    let listener = tokio::net::TcpListener::bind(address).await;
+    let listener = listener.with_context(|| format!("--port {address}"))?;
+    let cores = std::thread::available_parallelism().map_or(1, Into::into);
+    let threads = command.threads.map_or(cores, Into::into);
+    // A script that asked for a free port reads it here.
+    writeln!(std::io::stdout(), "http://{}", listener.local_addr()?)?;
+    worker::serve::serve(listener, threads, stop_signal()?)
+        .await
+        .context("serve")
 }
 
 #[tokio::main]
@@ -64,10 +86,15 @@ async fn pull(serve: &PullArguments) -> anyhow::Result<()> {
         model = worker::model_version(),
         "worker"
     );
+    let models = AllowedModels::new(&serve.allow_model, &tokio::runtime::Handle::current())?;
     let clock = Arc::new(SimulationClock::default());
     run(
         Arc::new(coordinator),
-        PullSettings { name, threads },
+        PullSettings {
+            name,
+            threads,
+            models: Arc::new(models),
+        },
         clock,
         stop_signal()?,
     )

@@ -90,7 +90,10 @@ impl PlainParameter {
     pub fn held_by(&self, spec: &Spec) -> Option<(f64, Marginal)> {
         let is_free = spec.parameters.iter().any(|p| p.name == self.name);
         let is_spatial = SPATIAL.iter().any(|p| p.name == self.name);
-        let is_missing = is_spatial && spec.model.kind != ModelKind::Scm;
+        let is_missing = match &spec.model.external {
+            None => is_spatial && spec.model.kind != ModelKind::Scm,
+            Some(model) => !model.shares(self.name),
+        };
         if is_free || is_missing || self.covered_by.is_some() || spec.fit_variant.conditions.is_empty() {
             return None;
         }

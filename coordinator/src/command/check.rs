@@ -7,8 +7,8 @@ use std::time::Instant;
 use super::job_on_disk;
 use super::output::say;
 use crate::calibration::{Calibration, CalibrationEngine, CalibrationIdentity, SimulationResult, result_of};
-use crate::config::JobArguments;
-use crate::embedded::Evaluate;
+use crate::config::CheckArguments;
+use crate::embedded::{Evaluate, LocalModels};
 use crate::missing_effect::untried::additions;
 use job::{AlgorithmSettings, confounded_orders};
 use result::{model_limits, terminal};
@@ -18,8 +18,9 @@ const PILOT_PARTICLES: usize = 300;
 /// The pilot ends after so long; what it has seen by then is extrapolated `[s]`.
 const PILOT_S: f64 = 30.0;
 
-pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
-    let job = job_on_disk::read(file, &[])?;
+pub(super) async fn check(config: &CheckArguments) -> anyhow::Result<()> {
+    let job = job_on_disk::read(&config.file, &[])?;
+    let models = LocalModels::new(&config.models.allow_model).map_err(anyhow::Error::msg)?;
     let mut text = terminal::specification(&job.spec);
     for note in model_limits(&job.spec) {
         text += &format!("note: {note}\n");
@@ -33,9 +34,15 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
         text += &format!("warning: {}\n", order.words());
     }
     say(&text)?;
+    if job.spec.model.external.is_some() && config.models.allow_model.is_empty() {
+        say(
+            "\nThe model is not ours: --allow-model lets a pilot run it, to estimate evaluations and hours.\n",
+        )?;
+        return Ok(());
+    }
     let algorithm = job.spec.algorithm;
     let beside = job.spec.point_estimates.clone();
-    let pilot = tokio::task::spawn_blocking(move || pilot(job.spec)).await??;
+    let pilot = tokio::task::spawn_blocking(move || pilot(job.spec, &models)).await??;
     let evaluations = pilot.expected(algorithm);
     let simulations = evaluations * pilot.runs as f64;
     let core_s = evaluations * pilot.seconds_per_evaluation;
@@ -129,7 +136,7 @@ impl Pilot {
 }
 
 /// The same calibration in memory, a sampler in small.
-fn pilot(mut spec: job::Spec) -> anyhow::Result<Pilot> {
+fn pilot(mut spec: job::Spec, models: &LocalModels) -> anyhow::Result<Pilot> {
     let least = PILOT_PARTICLES.max(2 * spec.parameters.len() + 2);
     if let AlgorithmSettings::Sample(settings) = &mut spec.algorithm {
         settings.particles = settings.particles.min(least);
@@ -142,7 +149,7 @@ fn pilot(mut spec: job::Spec) -> anyhow::Result<Pilot> {
         } else {
             1
         };
-    let mut models: BTreeMap<String, Evaluate> = BTreeMap::new();
+    let mut compiled: BTreeMap<String, Evaluate> = BTreeMap::new();
     let identity = CalibrationIdentity {
         id: 0,
         name: "pilot".into(),
@@ -160,13 +167,13 @@ fn pilot(mut spec: job::Spec) -> anyhow::Result<Pilot> {
             let Some(question) = calibration.question(evaluation) else {
                 break;
             };
-            if !models.contains_key(question.variant)
+            if !compiled.contains_key(question.variant)
                 && let Some(variant) = calibration.variant(question.variant)
             {
-                let model = Evaluate::new(variant).map_err(anyhow::Error::msg)?;
-                models.insert(question.variant.to_owned(), model);
+                let model = Evaluate::with(variant, models).map_err(anyhow::Error::msg)?;
+                compiled.insert(question.variant.to_owned(), model);
             }
-            let Some(model) = models.get(question.variant) else {
+            let Some(model) = compiled.get(question.variant) else {
                 break;
             };
             let start = Instant::now();

@@ -33,8 +33,15 @@ impl ModelVariant {
         let meshes: BTreeSet<&str> = self.conditions.iter().map(|c| c.wheel.as_str()).collect();
         let meshes: BTreeSet<&str> = meshes.into_iter().filter(|wheel| self.has_mesh(wheel)).collect();
         let names: BTreeSet<&str> = self.names().collect();
+        if let Some(model) = &self.external {
+            return model.check_expressible(effects, &names);
+        }
         match self.kind {
             ModelKind::Scm => self.check_meshes(effects, &names, &meshes),
+            ModelKind::Command | ModelKind::Umbridge => Err(ModelError::Incomplete(format!(
+                "kind = \"{}\" comes without its description",
+                self.kind.name()
+            ))),
             ModelKind::QuasiStatic => {
                 if let Some(name) = names
                     .iter()

@@ -13,23 +13,43 @@ pub enum ModelKind {
     QuasiStatic,
     /// The three-dimensional Soil Contact Model: a wheel that rolls over deformable terrain.
     Scm,
+    /// A program that a worker's operator allows.
+    Command,
+    /// A model of a UM-Bridge server that a worker's operator allows.
+    Umbridge,
 }
 
 impl ModelKind {
+    /// Every kind.
+    pub const ALL: [ModelKind; 4] = [
+        ModelKind::QuasiStatic,
+        ModelKind::Scm,
+        ModelKind::Command,
+        ModelKind::Umbridge,
+    ];
+
     /// Name in files and results.
     pub fn name(self) -> &'static str {
         match self {
             ModelKind::QuasiStatic => "quasi_static",
             ModelKind::Scm => "scm",
+            ModelKind::Command => "command",
+            ModelKind::Umbridge => "umbridge",
         }
     }
 
-    /// The base parameters that a model of this kind has.
+    /// Whether the model is not ours: its parameters stand in the job.
+    pub fn is_external(self) -> bool {
+        matches!(self, ModelKind::Command | ModelKind::Umbridge)
+    }
+
+    /// The base parameters that a model of this kind has; of one that is not ours, its job says.
     pub fn parameters(self) -> impl Iterator<Item = &'static BaseParameter> {
-        let spatial: &[BaseParameter] = match self {
-            ModelKind::QuasiStatic => &[],
-            ModelKind::Scm => &SPATIAL,
+        let (base, spatial): (&[BaseParameter], &[BaseParameter]) = match self {
+            ModelKind::QuasiStatic => (&BASE, &[]),
+            ModelKind::Scm => (&BASE, &SPATIAL),
+            ModelKind::Command | ModelKind::Umbridge => (&[], &[]),
         };
-        BASE.iter().chain(spatial)
+        base.iter().chain(spatial)
     }
 }

@@ -4,18 +4,53 @@ use std::collections::BTreeSet;
 
 use super::effects::EffectSet;
 use super::error::ModelError;
+use super::external::ExternalModel;
 use crate::file::unknown_word;
 use crate::parameters::{BASE, ParameterBounds, RING_TRANSFER, SPATIAL};
+
+/// What gives the names of parameters their meaning.
+#[derive(Debug, Clone, Copy)]
+pub struct ParameterScope<'a> {
+    /// The wheels of the experiment.
+    pub wheels: &'a BTreeSet<&'a str>,
+    /// The effects of the job.
+    pub effects: &'a EffectSet,
+    /// The model, where it is not ours: then it has its own parameters.
+    pub external: Option<&'a ExternalModel>,
+}
+
+impl ParameterScope<'_> {
+    /// A parameter of the model itself.
+    fn of_model(&self, name: &str) -> Option<ParameterBounds> {
+        let Some(model) = self.external else {
+            let mut ours = BASE.iter().chain(&SPATIAL);
+            return ours.find(|p| p.name == name).map(ParameterBounds::from);
+        };
+        // the radius of the rim, in place of the experiment's
+        let radius = BASE.iter().filter(|p| p.name == RADIUS);
+        let mut radius = radius.filter(|p| p.name == name).map(ParameterBounds::from);
+        let own = model.parameter(name).map(|parameter| parameter.bounds());
+        own.or_else(|| radius.next())
+    }
+
+    fn unknown(&self, name: &str) -> ModelError {
+        let known: Vec<&str> = match self.external {
+            None => BASE.iter().chain(&SPATIAL).map(|p| p.name).collect(),
+            Some(model) => model.parameters.iter().map(|p| p.name.as_str()).collect(),
+        };
+        ModelError::Unknown(unknown_word("parameter", name, known))
+    }
+}
+
+/// The parameter that one wheel of several may have for itself.
+const RADIUS: &str = "wheel_radius_m";
 
 /// Unit and bounds of a parameter by name: of the model, of one of its wheels, of an effect.
 ///
 /// # Errors
 /// [`ModelError`] names the unknown name and the nearest known one.
-pub fn lookup(
-    name: &str,
-    wheels: &BTreeSet<&str>,
-    effects: &EffectSet,
-) -> Result<ParameterBounds, ModelError> {
+pub fn lookup(name: &str, scope: &ParameterScope) -> Result<ParameterBounds, ModelError> {
+    let wheels = scope.wheels;
     if name == RING_TRANSFER {
         return Ok(ParameterBounds {
             unit: "1".to_owned(),
@@ -26,41 +61,56 @@ pub fn lookup(
     let (stem, wheel) = name
         .split_once('.')
         .map_or((name, None), |(stem, wheel)| (stem, Some(wheel)));
-    let found = BASE.iter().chain(&SPATIAL).find(|p| p.name == stem);
-    match (found, wheel) {
-        (Some(p), None) => Ok(p.into()),
-        (Some(p), Some(w)) if p.name == "wheel_radius_m" => {
+    match (scope.of_model(stem), wheel) {
+        (Some(found), None) => Ok(found),
+        (Some(found), Some(w)) if stem == RADIUS => {
             if wheels.contains(w) {
-                Ok(p.into())
+                Ok(found)
             } else {
                 let known = wheels.iter().copied();
                 Err(ModelError::Unknown(unknown_word("wheel", w, known)))
             }
         }
-        (Some(p), Some(_)) => Err(ModelError::Invalid(format!(
-            "parameter {} belongs to the soil, not to one wheel: \"{name}\"",
-            p.name
+        (Some(_), Some(_)) => Err(ModelError::Invalid(format!(
+            "parameter {stem} belongs to the soil, not to one wheel: \"{name}\""
         ))),
-        (None, _) => effects.lookup(name, wheels).unwrap_or_else(|| {
-            let known = BASE.iter().chain(&SPATIAL).map(|p| p.name);
-            Err(ModelError::Unknown(unknown_word("parameter", name, known)))
-        }),
+        (None, _) => {
+            let of_effect = scope.effects.lookup(name, wheels);
+            of_effect.unwrap_or_else(|| Err(scope.unknown(name)))
+        }
     }
 }
 
-/// Checks that a set of names determines a model: one way to state the stiffness, `n` and the friction
-/// angle present, every parameter of every effect given, nothing given both for one wheel and for all.
+/// Checks that a set of names determines a model.
+///
+/// One way to state the stiffness, `n` and the friction angle present, or all parameters of a model that is not ours; every parameter of
+/// every effect given, nothing given both for one wheel and for all.
 ///
 /// # Errors
 /// [`ModelError`] names what is missing or given twice.
-pub fn check_complete(
-    names: &BTreeSet<&str>,
-    wheels: &BTreeSet<&str>,
-    effects: &EffectSet,
-) -> Result<(), ModelError> {
+pub fn check_complete(names: &BTreeSet<&str>, scope: &ParameterScope) -> Result<(), ModelError> {
     for name in names {
-        lookup(name, wheels, effects)?;
+        lookup(name, scope)?;
     }
+    match scope.external {
+        None => check_soil(names)?,
+        Some(model) => {
+            let mut own = model.parameters.iter();
+            if let Some(unset) = own.find(|p| !names.contains(p.name.as_str())) {
+                return Err(ModelError::Unset(unset.name.clone()));
+            }
+        }
+    }
+    let per_wheel = names.iter().any(|n| n.starts_with("wheel_radius_m."));
+    if names.contains(RADIUS) && per_wheel {
+        let message = "wheel_radius_m is given both for all wheels and for one wheel";
+        return Err(ModelError::Incomplete(message.to_owned()));
+    }
+    scope.effects.check_complete(names, scope.wheels)
+}
+
+/// Checks that names determine the soil of our models.
+fn check_soil(names: &BTreeSet<&str>) -> Result<(), ModelError> {
     let incomplete = |message: &str| Err(ModelError::Incomplete(message.to_owned()));
     let has = |name| names.contains(name);
     match (has("k_c") && has("k_phi"), has("log10_p_ref") && has("kappa")) {
@@ -75,11 +125,7 @@ pub fn check_complete(
             return Err(ModelError::Unset(name.to_owned()));
         }
     }
-    let per_wheel = names.iter().any(|n| n.starts_with("wheel_radius_m."));
-    if has("wheel_radius_m") && per_wheel {
-        return incomplete("wheel_radius_m is given both for all wheels and for one wheel");
-    }
-    effects.check_complete(names, wheels)
+    Ok(())
 }
 
 const BOTH_STIFFNESSES: &str = "the stiffness is given twice: k_c and k_phi exclude log10_p_ref and kappa";
@@ -89,9 +135,17 @@ mod tests {
     use super::*;
     use crate::parameters::check_value;
 
+    fn scope<'a>(wheels: &'a BTreeSet<&'a str>, effects: &'a EffectSet) -> ParameterScope<'a> {
+        ParameterScope {
+            wheels,
+            effects,
+            external: None,
+        }
+    }
+
     fn check(names: &[&str]) -> Result<(), ModelError> {
         let (wheels, none) = (BTreeSet::from(["smooth"]), EffectSet::default());
-        check_complete(&names.iter().copied().collect(), &wheels, &none)
+        check_complete(&names.iter().copied().collect(), &scope(&wheels, &none))
     }
 
     #[test]
@@ -119,8 +173,7 @@ mod tests {
     fn a_radius_of_an_unknown_wheel_names_the_nearest() {
         let error = lookup(
             "wheel_radius_m.smoth",
-            &BTreeSet::from(["smooth"]),
-            &EffectSet::default(),
+            &scope(&BTreeSet::from(["smooth"]), &EffectSet::default()),
         )
         .unwrap_err();
         assert_eq!(
@@ -133,7 +186,7 @@ mod tests {
     fn a_parameter_of_an_effect_has_a_unit_and_a_bound() {
         let name = "janosi_hanamoto.shear_modulus_m";
         let effects = EffectSet::choose("job.toml", (&[], &[]), [name], &Default::default()).unwrap();
-        let lookup = |name: &str| lookup(name, &BTreeSet::from(["w"]), &effects);
+        let lookup = |name: &str| lookup(name, &scope(&BTreeSet::from(["w"]), &effects));
         assert_eq!(
             check_value(&lookup(name).unwrap(), name, -0.01)
                 .unwrap_err()
@@ -153,13 +206,14 @@ mod tests {
 
     #[test]
     fn a_value_outside_its_bounds_names_value_unit_and_bound() {
-        let phi = lookup("friction_angle_deg", &BTreeSet::new(), &EffectSet::default()).unwrap();
+        let (wheels, none) = (BTreeSet::new(), EffectSet::default());
+        let phi = lookup("friction_angle_deg", &scope(&wheels, &none)).unwrap();
         let error = check_value(&phi, "friction_angle_deg", 95.0).unwrap_err();
         assert_eq!(
             error.to_string(),
             "friction_angle_deg = 95 deg lies outside [0, 89] deg"
         );
-        let n = lookup("n", &BTreeSet::new(), &EffectSet::default()).unwrap();
+        let n = lookup("n", &scope(&wheels, &none)).unwrap();
         let error = check_value(&n, "n", -1.0).unwrap_err();
         assert_eq!(error.to_string(), "n = -1 lies outside [0.01, 10]");
     }

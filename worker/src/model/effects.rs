@@ -45,6 +45,7 @@ impl EffectMap {
         let model = match variant.kind {
             ModelKind::QuasiStatic => ModelForm::QuasiStatic,
             ModelKind::Scm => ModelForm::Spatial,
+            ModelKind::Command | ModelKind::Umbridge => ModelForm::Outside,
         };
         let effects = CompiledEffects::compile(model, set.iter())?;
         let mut sources: Vec<Sources> = Vec::new();

@@ -12,8 +12,8 @@ pub enum CompileError {
     /// The model of this worker has no form of an effect.
     #[error(transparent)]
     Effect(#[from] FormError),
-    /// Histories of a steady-state model.
-    #[error("histories: quasi_static has only a steady state; use kind = \"scm\"")]
+    /// Histories of a model that has none.
+    #[error("histories: only kind = \"scm\" has them")]
     NoHistories,
     /// A condition names a wheel that does not exist.
     #[error("unknown wheel \"{0}\"")]
@@ -21,6 +21,9 @@ pub enum CompileError {
     /// The three-dimensional model comes without its settings.
     #[error("kind = \"scm\" comes without its settings")]
     NoSettings,
+    /// A model that is not ours comes without its description.
+    #[error("a model that is not ours comes without its description")]
+    NoDescription,
     /// A variant was asked for by another hash than it has.
     #[error("variant {asked} came with hash {own}: coordinator and worker read it differently")]
     OtherHash {

@@ -3,7 +3,7 @@
 use scm::spatial::SpatialRun;
 use scm::{Averages, Condition, Soil, Wheel, quasi_static};
 use shared::channel::Channel;
-use shared::model::{EffectSet, ModelKind, ModelVariant, PlateCondition, RingCondition};
+use shared::model::{EffectSet, ModelKind, ModelVariant, PlateCondition, RingCondition, RunCondition};
 use shared::outcome::{Observables, Outcome, ParameterRejection};
 
 use super::bevameter::CompiledBevameter;
@@ -49,7 +49,7 @@ impl ForwardModel {
     pub(super) fn new(variant: &ModelVariant) -> Result<Self, CompileError> {
         let set = EffectSet::read(&variant.effects)?;
         variant.check_expressible(&set)?;
-        if variant.histories && variant.kind == ModelKind::QuasiStatic {
+        if variant.histories && variant.kind != ModelKind::Scm {
             return Err(CompileError::NoHistories);
         }
         let effects = EffectMap::new(variant, &set)?;
@@ -75,18 +75,12 @@ impl ForwardModel {
                     .iter()
                     .position(|n| *n == c.wheel)
                     .ok_or_else(|| CompileError::UnknownWheel(c.wheel.clone()))?;
-                let condition = Condition {
-                    slip: c.slip,
-                    wheel_load_n: c.wheel_load_n,
-                    sled_speed_m_s: c.sled_speed_m_s,
-                    slip_angle_rad: c.slip_angle_deg.to_radians(),
-                    pass: c.pass,
-                };
-                Ok((wheel, condition))
+                Ok((wheel, condition(c)))
             })
             .collect::<Result<_, CompileError>>()?;
         let spatial = match variant.kind {
             ModelKind::QuasiStatic => None,
+            ModelKind::Command | ModelKind::Umbridge => return Err(CompileError::NoDescription),
             ModelKind::Scm => Some(SpatialModel::new(variant)?),
         };
         Ok(ForwardModel {
@@ -275,6 +269,17 @@ impl ForwardModel {
                 .run(theta, position, soil, (*place, &wheel), condition, (active, site))
                 .map(|run| Simulated::Rolled(Box::new(run))),
         }
+    }
+}
+
+/// A condition of a variant as the physics has it.
+pub(super) fn condition(c: &RunCondition) -> Condition {
+    Condition {
+        slip: c.slip,
+        wheel_load_n: c.wheel_load_n,
+        sled_speed_m_s: c.sled_speed_m_s,
+        slip_angle_rad: c.slip_angle_deg.to_radians(),
+        pass: c.pass,
     }
 }
 

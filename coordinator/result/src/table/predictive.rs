@@ -70,7 +70,8 @@ pub(crate) fn predictive(
             ErrorSd::Inferred { parameter } => theta[parameter],
         });
         sds.extend(sd);
-        let mean = observables.channel(channel)[position];
+        // A model that is not ours may lack the channel.
+        let mean = *observables.channel(channel).get(position)?;
         let soil = spec
             .scatters
             .iter()

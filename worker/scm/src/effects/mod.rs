@@ -7,6 +7,7 @@
 //! - `law`: an effect as one model knows it.
 //! - `node`: pressure, strength and stress at many nodes.
 //! - `channel`: what the rig measures.
+//! - `outside`: effects around a model that is not of this crate.
 //!
 //! Effects follow each other at a hook in the order in which they were compiled; hooks follow each other in the order of
 //! [`Hook::ALL`]. Without an active effect a model runs its base code, bit for bit.
@@ -16,9 +17,11 @@ mod channel;
 mod error;
 mod law;
 mod node;
+mod outside;
 
 pub use error::FormError;
 pub(crate) use node::NodeLaws;
+pub use outside::OutsideRun;
 
 use formula::effect::Mechanism;
 use formula::variable::Variables;
@@ -33,6 +36,8 @@ pub enum ModelForm {
     QuasiStatic,
     /// [`spatial`](crate::spatial): patches of the footprint have their own.
     Spatial,
+    /// A model that is not of this crate: effects act on what it is given and on what it answers, see [`OutsideRun`].
+    Outside,
 }
 
 impl ModelForm {
@@ -41,6 +46,7 @@ impl ModelForm {
         match self {
             ModelForm::QuasiStatic => "quasi_static",
             ModelForm::Spatial => "scm",
+            ModelForm::Outside => "a model that is not ours",
         }
     }
 
@@ -49,6 +55,7 @@ impl ModelForm {
         match self {
             ModelForm::QuasiStatic => &[Mechanism::Rebound, Mechanism::FlatPatch],
             ModelForm::Spatial => &Mechanism::ALL,
+            ModelForm::Outside => &[],
         }
     }
 
@@ -57,7 +64,7 @@ impl ModelForm {
         use Variable::{BEff, J, KStar, P, Position, Tau, TauMax, Vn, Vt, Z};
         let both = Variables::of(&[P, Z, Vn, Vt, J, Position, TauMax, Tau]);
         match self {
-            ModelForm::QuasiStatic => both,
+            ModelForm::QuasiStatic | ModelForm::Outside => both,
             ModelForm::Spatial => both.with(KStar).with(BEff),
         }
     }
