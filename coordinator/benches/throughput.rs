@@ -231,6 +231,7 @@ async fn work(
             worker: format!("bench-{number}"),
             protocol: PROTOCOL_VERSION,
             model_version: "bench".into(),
+            models: Default::default(),
             results: std::mem::take(&mut results),
             holding: Vec::new(),
             returned: Vec::new(),
@@ -259,6 +260,7 @@ async fn work(
                 seal: l.seal,
                 end: None,
                 outcome: Some(outcome.clone()),
+                repeated: None,
             })
             .collect();
     }

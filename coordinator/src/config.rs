@@ -26,7 +26,7 @@ pub enum CoordinatorCommand {
     /// Calibrate in one process with local workers; results go to a folder. Run again to resume.
     Run(RunArguments),
     /// Validate a job and estimate its cost.
-    Check(JobArguments),
+    Check(CheckArguments),
     /// Convert a table of measurements (text, .xlsx, .ods, .xls, .mat) to runs.csv by a map, or propose the map.
     Import(ImportArguments),
     /// Run the service: REST interface and endpoint for workers.
@@ -127,6 +127,20 @@ pub struct ImportArguments {
     pub sheet: Option<String>,
 }
 
+/// The models that are not ours that this process runs.
+#[derive(Debug, Args)]
+pub struct ModelArguments {
+    /// Runs this model for jobs that name it: the file of a program (kind = "command"), or the URL of a UM-Bridge server (kind =
+    /// "umbridge"); may be repeated, or several between commas. By default no job starts a program here.
+    #[arg(
+        long,
+        value_name = "FILE_OR_URL",
+        env = "GROUSER_ALLOW_MODEL",
+        value_delimiter = ','
+    )]
+    pub allow_model: Vec<String>,
+}
+
 /// List the effects of the catalogue, or show one.
 #[derive(Debug, Args)]
 pub struct EffectsArguments {
@@ -151,6 +165,17 @@ pub enum ModelChoice {
     Scm,
 }
 
+/// Validate a job and estimate its cost.
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    /// The job.
+    #[command(flatten)]
+    pub file: JobArguments,
+    /// The models that are not ours that its pilot runs.
+    #[command(flatten)]
+    pub models: ModelArguments,
+}
+
 /// Calibrate in one process.
 #[derive(Debug, Args)]
 pub struct RunArguments {
@@ -163,6 +188,9 @@ pub struct RunArguments {
     /// Number of simulation threads in this process; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
+    /// The models that are not ours that they run.
+    #[command(flatten)]
+    pub models: ModelArguments,
     /// Prints tables, flags and explanations too.
     #[arg(long)]
     pub verbose: bool,
@@ -213,6 +241,9 @@ pub struct ServeArguments {
     /// Number of simulation threads in this process.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS", default_value_t = 0)]
     pub local_workers: usize,
+    /// The models that are not ours that they run.
+    #[command(flatten)]
+    pub models: ModelArguments,
     /// Duration of a lease without renewal `[ms]`.
     #[arg(long, env = "GROUSER_LEASE_MS", default_value_t = crate::service::LEASE_MS)]
     pub lease_ms: u64,
@@ -466,6 +497,9 @@ pub struct DiscoverArguments {
     /// Number of simulation threads in this process, with --out; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
+    /// The models that are not ours that they run.
+    #[command(flatten)]
+    pub models: ModelArguments,
     /// Prints tables, flags and explanations too.
     #[arg(long)]
     pub verbose: bool,
@@ -494,6 +528,9 @@ pub struct ExtendArguments {
     /// Number of simulation threads in this process, with --out; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
+    /// The models that are not ours that they run.
+    #[command(flatten)]
+    pub models: ModelArguments,
     /// Prints tables, flags and explanations too.
     #[arg(long)]
     pub verbose: bool,
@@ -512,6 +549,9 @@ pub struct AddRunsArguments {
     /// Number of simulation threads in this process, with --out; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
+    /// The models that are not ours that they run.
+    #[command(flatten)]
+    pub models: ModelArguments,
     /// Prints tables, flags and explanations too.
     #[arg(long)]
     pub verbose: bool,

@@ -4,11 +4,12 @@ use std::future::Future;
 use std::sync::Arc;
 
 use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
-use shared::model::ModelVariant;
+use shared::model::{ExternalModel, ModelVariant};
 use shared::outcome::Outcome;
 use statistics::{Subchain, SubchainEnd};
 use tokio::sync::watch;
 use worker::evaluator::SimulationClock;
+use worker::external::allowed::AllowedModels;
 use worker::pull::{Coordinator, ExchangeError, PullSettings, run};
 
 use crate::farm::dispatch::Dispatcher;
@@ -67,9 +68,32 @@ pub struct LocalWorkers {
     task: tokio::task::JoinHandle<()>,
 }
 
-/// Version of the equations that local workers compute.
-pub fn model_version() -> &'static str {
-    worker::model_version()
+/// The models that are not ours that local workers run, as their operator allows.
+#[derive(Debug, Clone, Default)]
+pub struct LocalModels(Arc<AllowedModels>);
+
+impl LocalModels {
+    /// Reads what the operator allows; to be called on a runtime.
+    ///
+    /// # Errors
+    /// A sentence that names the argument.
+    pub fn new(allowed: &[String]) -> Result<Self, String> {
+        let models = AllowedModels::new(allowed, &tokio::runtime::Handle::current());
+        models
+            .map(|models| LocalModels(Arc::new(models)))
+            .map_err(|e| e.to_string())
+    }
+
+    /// Version of the equations that local workers compute for a model: of ours, or that of one that is not; asks it, and blocks.
+    ///
+    /// # Errors
+    /// A sentence: the model is not allowed here, or does not answer.
+    pub fn equations(&self, external: Option<&ExternalModel>) -> Result<String, String> {
+        match external {
+            None => Ok(worker::model_version().to_owned()),
+            Some(model) => self.0.identify(&model.source),
+        }
+    }
 }
 
 /// Process and time: fresh for every process, also where each is the first of its container.
@@ -87,12 +111,14 @@ impl LocalWorkers {
     pub fn start(
         dispatcher: Dispatcher,
         threads: usize,
+        models: &LocalModels,
         shutdown: impl Future<Output = ()> + Send + 'static,
     ) -> Self {
         let clock = Arc::new(SimulationClock::default());
         let settings = PullSettings {
             name: local_name(),
             threads,
+            models: models.0.clone(),
         };
         let work = run(Arc::new(InProcess(dispatcher)), settings, clock.clone(), shutdown);
         let (failed, failure) = watch::channel(None);
@@ -141,12 +167,20 @@ impl LocalWorkers {
 pub struct Evaluate(worker::model::CompiledVariant);
 
 impl Evaluate {
-    /// Makes a variant ready.
+    /// Makes a variant of one of our models ready.
     ///
     /// # Errors
     /// A sentence that names what is not known.
     pub fn new(variant: &ModelVariant) -> Result<Self, String> {
-        worker::model::CompiledVariant::new(variant)
+        Self::with(variant, &LocalModels::default())
+    }
+
+    /// The same of any model that is allowed here.
+    ///
+    /// # Errors
+    /// A sentence that names what is not known.
+    pub fn with(variant: &ModelVariant, models: &LocalModels) -> Result<Self, String> {
+        worker::model::CompiledVariant::new(variant, &models.0)
             .map(Evaluate)
             .map_err(|e| e.to_string())
     }

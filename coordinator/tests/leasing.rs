@@ -28,6 +28,7 @@ fn request(worker: &str, want: u32) -> ExchangeRequest {
         worker: worker.into(),
         protocol: PROTOCOL_VERSION,
         model_version: EQUATIONS.into(),
+        models: Default::default(),
         results: Vec::new(),
         holding: Vec::new(),
         returned: Vec::new(),
@@ -51,6 +52,7 @@ fn answer(lease: &Lease, outcome: Option<Outcome>) -> WorkResult {
         seal: lease.seal.clone(),
         end: None,
         outcome,
+        repeated: None,
     }
 }
 

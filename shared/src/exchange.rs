@@ -1,13 +1,16 @@
 //! The messages between worker and coordinator: one long-polled exchange, and the fetch of a variant.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 use statistics::{Subchain, SubchainEnd};
 use utoipa::ToSchema;
 
-use crate::outcome::Outcome;
+use crate::channel::Channel;
+use crate::outcome::{Observables, Outcome};
 
 /// Version of these messages; a coordinator answers any other version with 426.
-pub const PROTOCOL_VERSION: u32 = 9;
+pub const PROTOCOL_VERSION: u32 = 10;
 
 /// `POST /v1/work/exchange`: results of finished leases, and how many more are wanted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -19,6 +22,10 @@ pub struct ExchangeRequest {
     pub protocol: u32,
     /// Version of the equations that the worker computes.
     pub model_version: String,
+    /// The models that are not ours that the worker runs: the version of each by its name, see
+    /// [`ExternalSource::name`](crate::model::ExternalSource::name).
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub models: BTreeMap<String, String>,
     /// Results, in any order. Acknowledged by the response; resent until then.
     pub results: Vec<WorkResult>,
     /// Leases still held, renewed by this message.
@@ -55,6 +62,73 @@ pub struct WorkResult {
     /// The outcome; of a subchain, at its end. Absent where none of its moves was accepted, so that there was nothing to evaluate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outcome: Option<Outcome>,
+    /// How far a second answer of the same worker differs from the outcome, where a model that is not ours was asked twice.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repeated: Option<RepeatedAnswer>,
+}
+
+/// How far two answers of a model to one question differ: the largest difference over the runs.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RepeatedAnswer {
+    /// Of the drawbar pull `[N]`.
+    pub drawbar_pull_n: f64,
+    /// Of the torque \[N m\].
+    pub torque_n_m: f64,
+    /// Of the sinkage `[m]`.
+    pub sinkage_m: f64,
+    /// Of the lateral force `[N]`.
+    pub lateral_force_n: f64,
+    /// Whether the model refused the second time.
+    pub is_refused: bool,
+}
+
+impl RepeatedAnswer {
+    /// Compares two answers of the same shape.
+    pub fn new(first: &Observables, second: &Observables) -> Self {
+        let of = |channel: Channel| {
+            let pairs = first.channel(channel).iter().zip(second.channel(channel));
+            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
+        RepeatedAnswer {
+            drawbar_pull_n: of(Channel::DrawbarPull),
+            torque_n_m: of(Channel::Torque),
+            sinkage_m: of(Channel::Sinkage),
+            lateral_force_n: of(Channel::LateralForce),
+            is_refused: false,
+        }
+    }
+
+    /// The model refused the second time.
+    pub fn refused() -> Self {
+        RepeatedAnswer {
+            is_refused: true,
+            ..RepeatedAnswer::default()
+        }
+    }
+
+    /// The difference of a channel.
+    pub fn channel(&self, channel: Channel) -> f64 {
+        match channel {
+            Channel::DrawbarPull => self.drawbar_pull_n,
+            Channel::Torque => self.torque_n_m,
+            Channel::Sinkage => self.sinkage_m,
+            Channel::LateralForce => self.lateral_force_n,
+        }
+    }
+
+    /// Whether the answers differ.
+    pub fn differs(&self) -> bool {
+        self.is_refused || Channel::ALL.iter().any(|&channel| self.channel(channel) > 0.0)
+    }
+
+    /// Whether every difference is a finite number, not below 0.
+    pub fn is_valid(&self) -> bool {
+        Channel::ALL.iter().all(|&channel| {
+            let difference = self.channel(channel);
+            difference.is_finite() && difference >= 0.0
+        })
+    }
 }
 
 /// The answer: results are durable, and here is more work.

@@ -140,6 +140,16 @@ impl Observables {
         }
     }
 
+    /// The same, to be filled.
+    pub fn channel_mut(&mut self, channel: Channel) -> &mut Vec<f64> {
+        match channel {
+            Channel::DrawbarPull => &mut self.drawbar_pull_n,
+            Channel::Torque => &mut self.torque_n_m,
+            Channel::Sinkage => &mut self.sinkage_m,
+            Channel::LateralForce => &mut self.lateral_force_n,
+        }
+    }
+
     /// Change of a channel with ln k*, by run; empty unless the variant asks for it.
     pub fn sensitivity(&self, channel: Channel) -> &[f64] {
         match channel {
@@ -225,7 +235,8 @@ impl Observables {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterRejection {
-    /// Stable word: `no_support`, `no_convergence`, `not_finite`, `energy_gained`, `protocol`, `formula`, `invalid_parameter`.
+    /// Stable word: `no_support`, `no_convergence`, `not_finite`, `energy_gained`, `protocol`, `formula`, `invalid_parameter`; of a model that is
+    /// not ours `not_finite`, `model`, `model_error`, `time_limit`, too.
     pub kind: String,
     /// Position of the rejected condition; plates are counted after the runs, and rings after the plates.
     pub condition: u32,

@@ -128,7 +128,7 @@ impl ExchangeRequest {
                 Some(Outcome::Evaluated(observables)) => observables.is_finite(),
                 Some(Outcome::Rejected(_) | Outcome::Fault(_)) | None => true,
             };
-            if !outcome {
+            if !outcome || result.repeated.is_some_and(|repeated| !repeated.is_valid()) {
                 return Err(WireError::NotFinite { lease: result.lease });
             }
         }
@@ -182,6 +182,7 @@ mod tests {
             worker: "w".into(),
             protocol: PROTOCOL_VERSION,
             model_version: "scm".into(),
+            models: Default::default(),
             results: vec![WorkResult {
                 lease: u64::MAX,
                 calibration: -1,
@@ -189,6 +190,7 @@ mod tests {
                 seal: "0a".into(),
                 end: None,
                 outcome: Some(Outcome::Evaluated(observables)),
+                repeated: None,
             }],
             holding: vec![9],
             returned: Vec::new(),

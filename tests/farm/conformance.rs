@@ -8,7 +8,7 @@ use shared::api::{
     CalibrationState, CalibrationStatus, ErrorBody, ErrorDetail, ErrorKind, NewCalibration, Progress,
 };
 use shared::channel::Channel;
-use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
+use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, RepeatedAnswer, WorkResult};
 use shared::experiment::WheelGeometry;
 use shared::model::{
     EffectText, ModelKind, ModelVariant, PlateCondition, RingCondition, RunCondition, SpatialSettings,
@@ -95,6 +95,7 @@ fn an_exchange_request_has_one_form() {
         seal: "0a1b".into(),
         end: None,
         outcome: Some(outcome),
+        repeated: None,
     };
     let stayed = WorkResult {
         lease: 4,
@@ -110,11 +111,16 @@ fn an_exchange_request_has_one_form() {
             scaled_accepted: 0,
         }),
         outcome: None,
+        repeated: Some(RepeatedAnswer {
+            torque_n_m: 0.25,
+            ..RepeatedAnswer::default()
+        }),
     };
     let request = ExchangeRequest {
         worker: "host-1".into(),
         protocol: 1,
         model_version: "1".into(),
+        models: [("wheel.py".to_owned(), "command-0a1b".to_owned())].into(),
         results: vec![
             result(4_294_967_297, Outcome::Evaluated(observables())),
             result(2, Outcome::Rejected(rejection)),
@@ -136,7 +142,7 @@ fn an_exchange_request_has_one_form() {
     golden(
         &request,
         &json!({
-            "worker": "host-1", "protocol": 1, "model_version": "1",
+            "worker": "host-1", "protocol": 1, "model_version": "1", "models": {"wheel.py": "command-0a1b"},
             "results": [
                 {"lease": 4_294_967_297_u64, "calibration": 1, "evaluation": 7, "seal": "0a1b",
                  "outcome": {"evaluated": observables_json()}},
@@ -144,7 +150,9 @@ fn an_exchange_request_has_one_form() {
                  "outcome": {"rejected": {"kind": "no_support", "condition": 3, "message": "sinkage 0.2 m"}}},
                 {"lease": 3, "calibration": 1, "evaluation": 7, "seal": "0a1b", "outcome": {"fault": {"message": "disk full"}}},
                 {"lease": 4, "calibration": 1, "evaluation": 8, "seal": "2c3d", "end": {"theta": [1.5], "log_gain": 0.25, "moves": 20,
-                 "accepted": 0, "scaled": 17, "scaled_accepted": 0}},
+                 "accepted": 0, "scaled": 17, "scaled_accepted": 0},
+                 "repeated": {"drawbar_pull_n": 0.0, "torque_n_m": 0.25, "sinkage_m": 0.0, "lateral_force_n": 0.0,
+                              "is_refused": false}},
             ],
             "holding": [9], "returned": [10, 11], "started": [9], "received": 11, "want": 16, "wait_ms": 20_000,
         }),
@@ -211,6 +219,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
     let variant = ModelVariant {
         kind: ModelKind::QuasiStatic,
         spatial: None,
+        external: None,
         effects: Vec::new(),
         parameters: vec!["n".into()],
         fixed: [("kappa".to_owned(), 0.0)].into(),
@@ -223,6 +232,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         stiffness_sensitivity: false,
         histories: false,
         plates: Vec::new(),
+        probe: Vec::new(),
         companion: None,
         rings: Vec::new(),
     };

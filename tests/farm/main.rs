@@ -19,6 +19,7 @@ mod likelihood;
 mod mesh;
 mod metamodel;
 mod mistakes;
+mod models;
 mod not_tried;
 mod older_store;
 mod openapi;

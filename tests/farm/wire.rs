@@ -18,6 +18,7 @@ fn request(want: u32, results: Vec<WorkResult>) -> ExchangeRequest {
         worker: "typed".into(),
         protocol: PROTOCOL,
         model_version: "fake-1".into(),
+        models: Default::default(),
         results,
         holding: Vec::new(),
         returned: Vec::new(),
@@ -36,6 +37,7 @@ fn result(lease: &Lease, observables: Observables) -> WorkResult {
         seal: lease.seal.clone(),
         end: None,
         outcome: Some(Outcome::Evaluated(observables)),
+        repeated: None,
     }
 }
 

@@ -7,6 +7,7 @@
 //! - [`http`]: a small blocking client.
 //! - [`fake_worker`]: a worker that a test plays by hand.
 //! - [`lying_proxy`]: makes a liar of an honest worker.
+//! - [`umbridge_server`]: a UM-Bridge server that does what a test says.
 //! - [`cylinder`]: the surface of a wheel as a mesh file.
 //! - [`job`]: the files of a small job, and ways to change them.
 //! - [`workspace`]: the workspace's own files.
@@ -28,5 +29,6 @@ pub mod programs;
 pub mod random;
 pub mod service;
 pub mod text;
+pub mod umbridge_server;
 pub mod wait;
 pub mod workspace;

@@ -96,6 +96,7 @@ fn command<S: AsRef<std::ffi::OsStr>>(name: &str, arguments: impl IntoIterator<I
         "GROUSER_TLS_KEY",
         "GROUSER_VERIFY_PERCENT",
         "GROUSER_WEBHOOK_HOST",
+        "GROUSER_ALLOW_MODEL",
         "RUST_LOG",
     ] {
         command.env_remove(variable);

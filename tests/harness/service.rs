@@ -122,6 +122,21 @@ impl Service {
         )
     }
 
+    /// Starts a worker that runs a model that is not ours: the file of a program, or the URL of a server.
+    pub fn worker_of(&self, name: &str, threads: usize, model: &str) -> Process {
+        let (url, threads) = (self.url(), threads.to_string());
+        let arguments = [
+            "--coordinator",
+            &url,
+            "--threads",
+            &threads,
+            "--allow-model",
+            model,
+        ];
+        let log = self.folder.path().join(format!("{name}.log"));
+        Process::start(crate::programs::worker(arguments), &log)
+    }
+
     /// Starts a worker of one thread that says JSON.
     pub fn json_worker(&self, name: &str) -> Process {
         self.json_worker_at(&self.url(), name)

@@ -36,6 +36,15 @@ pub struct PullArguments {
     /// Trusts a coordinator at an https URL by this certificate of its authority, a PEM file, in place of those of this machine.
     #[arg(long, value_name = "PEM", env = "GROUSER_CA_CERTIFICATE")]
     pub ca_certificate: Option<PathBuf>,
+    /// Runs this model for jobs that name it: the file of a program (kind = "command"), or the URL of a UM-Bridge server (kind =
+    /// "umbridge"); may be repeated, or several between commas. By default no job starts a program here.
+    #[arg(
+        long,
+        value_name = "FILE_OR_URL",
+        env = "GROUSER_ALLOW_MODEL",
+        value_delimiter = ','
+    )]
+    pub allow_model: Vec<String>,
 }
 
 impl PullArguments {
@@ -53,6 +62,8 @@ impl PullArguments {
 pub enum WorkerCommand {
     /// Forward runs of an experiment, without a coordinator.
     Simulate(Simulate),
+    /// Serves our models to other programs.
+    Serve(ServeModels),
     /// Print completions of the command line for a shell.
     Completions {
         /// The shell.
@@ -63,6 +74,23 @@ pub enum WorkerCommand {
         /// The folder; it is made where there is none.
         folder: PathBuf,
     },
+}
+
+/// Serves our models to other programs.
+#[derive(Debug, clap::Args)]
+pub struct ServeModels {
+    /// By UM-Bridge, protocol 1.0: `quasi_static` and `scm`.
+    #[arg(long, required = true)]
+    pub umbridge: bool,
+    /// Port to listen on; 0 takes a free one, which is printed.
+    #[arg(long, default_value_t = 4242)]
+    pub port: u16,
+    /// Address to listen on; whoever reaches it may have models evaluated.
+    #[arg(long, default_value = "127.0.0.1")]
+    pub address: std::net::IpAddr,
+    /// Threads that simulate; by default, one for each core.
+    #[arg(long, env = "GROUSER_THREADS")]
+    pub threads: Option<std::num::NonZeroUsize>,
 }
 
 /// Forward runs of an experiment; at least one of `--out`, `--plates` and `--shear` must be given, one for each table.
@@ -90,6 +118,14 @@ pub struct Simulate {
     /// Where to write the pressures under the experiment's plates, with the columns of plates.csv.
     #[arg(long, value_name = "CSV")]
     pub plates: Option<PathBuf>,
+    /// Runs this model, if it is that of the job: the file of a program, or the URL of a UM-Bridge server.
+    #[arg(
+        long,
+        value_name = "FILE_OR_URL",
+        env = "GROUSER_ALLOW_MODEL",
+        value_delimiter = ','
+    )]
+    pub allow_model: Vec<String>,
     /// Where to write the shear stresses under the experiment's rings, with the columns of shear.csv.
     #[arg(long, value_name = "CSV")]
     pub shear: Option<PathBuf>,

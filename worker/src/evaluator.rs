@@ -12,6 +12,9 @@ use tokio::sync::Notify;
 
 use crate::model::CompiledVariant;
 
+/// Of so many evaluations of a model that is not ours, one is asked for twice: whether it gives the same again, nobody else knows.
+const REPEATED: u64 = 20;
+
 /// Time and number of evaluations, over all threads.
 #[derive(Debug, Default)]
 pub struct SimulationClock {
@@ -139,6 +142,13 @@ fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) ->
         };
         (Some(Outcome::Fault(fault)), None)
     });
+    // Chosen by its number, so that it does not matter who evaluates it.
+    let is_repeated = lease.subchain.is_none() && lease.evaluation.is_multiple_of(REPEATED);
+    let again = AssertUnwindSafe(|| variant.repeat(&lease.theta, outcome.as_ref()?));
+    let repeated = match is_repeated {
+        true => std::panic::catch_unwind(again).unwrap_or_default(),
+        false => None,
+    };
     let elapsed = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);
     clock.simulated_ns.fetch_add(elapsed, Ordering::Relaxed);
     clock.evaluations.fetch_add(1, Ordering::Relaxed);
@@ -156,5 +166,6 @@ fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) ->
         seal,
         end,
         outcome,
+        repeated,
     }
 }

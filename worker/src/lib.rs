@@ -2,10 +2,12 @@
 //!
 //! # Layout
 //! - [`model`]: a variant compiled for evaluation.
+//! - [`external`]: models that are not ours, as far as the operator allows them.
 //! - [`evaluator`]: a pool of threads that evaluates leases and counts the time it simulates.
 //! - [`pull`]: the loop of a worker: exchange, evaluate, resend, renew, give back.
 //! - [`client`]: HTTP client of the coordinator.
 //! - [`simulate`]: forward runs of an experiment without a coordinator.
+//! - [`serve`]: our models by UM-Bridge.
 //! - [`processor`]: whether this machine can run what was built.
 //! - [`program`]: the command line, executed.
 //! - [`config`]: command line and environment. [`shell`]: completions and man pages.
@@ -13,10 +15,12 @@
 pub mod client;
 pub mod config;
 pub mod evaluator;
+pub mod external;
 pub mod model;
 pub mod processor;
 pub mod program;
 pub mod pull;
+pub mod serve;
 pub mod shell;
 pub mod simulate;
 

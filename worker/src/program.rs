@@ -1,13 +1,16 @@
 //! What the program `worker` does with its command line, for that program and for the verb of the coordinator.
 
-use std::io;
+use std::io::{self, Write as _};
+use std::net::SocketAddr;
 use std::sync::Arc;
 
 use shared::bearer::BearerTokenError;
+use tokio::runtime::Handle;
 
 use crate::client::{ClientError, HttpCoordinator};
-use crate::config::{PullArguments, WorkerCommand, WorkerConfig};
+use crate::config::{PullArguments, ServeModels, WorkerCommand, WorkerConfig};
 use crate::evaluator::SimulationClock;
+use crate::external::allowed::{AllowedModelError, AllowedModels};
 use crate::pull::{ExchangeError, PullSettings, run};
 use crate::shell;
 use crate::simulate::{SimulateError, simulate};
@@ -42,6 +45,24 @@ pub enum ProgramError {
         #[source]
         cause: io::Error,
     },
+    /// A model that is not ours cannot be run.
+    #[error(transparent)]
+    Model(#[from] AllowedModelError),
+    /// Models cannot be served.
+    #[error("serve")]
+    Serve(#[source] io::Error),
+    /// The port cannot be listened on.
+    #[error("--port {address}")]
+    Port {
+        /// Address and port.
+        address: SocketAddr,
+        /// Why not.
+        #[source]
+        cause: io::Error,
+    },
+    /// The thread of the forward runs ended early.
+    #[error("forward runs")]
+    Thread(#[source] tokio::task::JoinError),
     /// There are no forward runs.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
@@ -53,7 +74,12 @@ pub enum ProgramError {
 /// [`ProgramError`].
 pub async fn execute(config: WorkerConfig) -> Result<(), ProgramError> {
     match (config.command, config.serve) {
-        (Some(WorkerCommand::Simulate(command)), _) => Ok(simulate(&command)?),
+        (Some(WorkerCommand::Simulate(command)), _) => {
+            let models = AllowedModels::new(&command.allow_model, &Handle::current())?;
+            let done = tokio::task::spawn_blocking(move || simulate(&command, &Arc::new(models)));
+            Ok(done.await.map_err(ProgramError::Thread)??)
+        }
+        (Some(WorkerCommand::Serve(command)), _) => serve(&command).await,
         (Some(WorkerCommand::Completions { shell }), _) => {
             shell::completions(shell, &mut io::stdout()).map_err(ProgramError::Output)
         }
@@ -64,6 +90,21 @@ pub async fn execute(config: WorkerConfig) -> Result<(), ProgramError> {
         (None, Some(serve)) => pull(&serve).await,
         (None, None) => Err(ProgramError::NoCoordinator),
     }
+}
+
+async fn serve(command: &ServeModels) -> Result<(), ProgramError> {
+    let address = SocketAddr::new(command.address, command.port);
+    let on_port = |cause| ProgramError::Port { address, cause };
+    let listener = tokio::net::TcpListener::bind(address).await.map_err(on_port)?;
+    let cores = std::thread::available_parallelism().map_or(1, Into::into);
+    let threads = command.threads.map_or(cores, Into::into);
+    // A script that asked for a free port reads it here.
+    let bound = listener.local_addr().map_err(on_port)?;
+    writeln!(io::stdout(), "http://{bound}").map_err(ProgramError::Output)?;
+    let stop = stop_signal().map_err(ProgramError::Signals)?;
+    crate::serve::serve(listener, threads, stop)
+        .await
+        .map_err(ProgramError::Serve)
 }
 
 async fn pull(serve: &PullArguments) -> Result<(), ProgramError> {
@@ -85,7 +126,12 @@ async fn pull(serve: &PullArguments) -> Result<(), ProgramError> {
     );
     let clock = Arc::new(SimulationClock::default());
     let stop = stop_signal().map_err(ProgramError::Signals)?;
-    Ok(run(Arc::new(coordinator), PullSettings { name, threads }, clock, stop).await?)
+    let settings = PullSettings {
+        name,
+        threads,
+        models: Arc::new(AllowedModels::new(&serve.allow_model, &Handle::current())?),
+    };
+    Ok(run(Arc::new(coordinator), settings, clock, stop).await?)
 }
 
 /// Host, process and time: fresh for every process, so a dead worker's leases are never taken for a new one's.

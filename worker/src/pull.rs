@@ -13,6 +13,7 @@ use shared::model::ModelVariant;
 use shared::outcome::{Fault, Outcome};
 
 use crate::evaluator::{Evaluator, SimulationClock};
+use crate::external::allowed::AllowedModels;
 use crate::model::{CompiledVariant, VariantCache};
 
 /// A worker holds about so much work `[s]`.
@@ -33,6 +34,9 @@ const FAREWELL: Duration = Duration::from_millis(1500);
 const PARTING: Duration = Duration::from_millis(300);
 /// Pauses between attempts to reach a coordinator that is away: doubled from the first to the last.
 const BACK_OFF: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(5)];
+
+/// How often models that are not ours are asked what they are.
+const ASK: Duration = Duration::from_secs(5);
 
 /// Why an exchange failed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -65,6 +69,8 @@ pub struct PullSettings {
     pub name: String,
     /// Threads that simulate.
     pub threads: usize,
+    /// The models that are not ours that it runs.
+    pub models: Arc<AllowedModels>,
 }
 
 /// Runs until `shutdown` is ready; then, within 5 s, gives back the leases that are not finished.
@@ -83,8 +89,9 @@ pub async fn run<C: Coordinator>(
         coordinator,
         evaluator,
         clock,
+        variants: VariantCache::new(settings.models.clone()),
+        asked: None,
         settings,
-        variants: VariantCache::default(),
         held: BTreeSet::new(),
         outbox: Vec::new(),
         returned: Vec::new(),
@@ -129,6 +136,8 @@ struct Worker<C> {
     clock: Arc<SimulationClock>,
     settings: PullSettings,
     variants: VariantCache,
+    /// When the models that are not ours were last asked what they are.
+    asked: Option<Instant>,
     /// Leases whose result is not there yet.
     held: BTreeSet<u64>,
     /// Results that the coordinator has not acknowledged.
@@ -160,6 +169,7 @@ impl<C: Coordinator> Worker<C> {
                 }
                 continue;
             }
+            self.ask_models().await;
             let request = self.request();
             let coordinator = self.coordinator.clone();
             let exchange = coordinator.exchange(request);
@@ -211,6 +221,18 @@ impl<C: Coordinator> Worker<C> {
                 Err((refused, _)) => return Err(refused),
             }
         }
+    }
+
+    /// Asks the models that are not ours what they are, every now and then: one may have been started, or replaced.
+    async fn ask_models(&mut self) {
+        let is_due = self.asked.is_none_or(|asked| asked.elapsed() >= ASK);
+        if self.settings.models.is_empty() || !is_due {
+            return;
+        }
+        let models = self.settings.models.clone();
+        // A panic has been logged where it happened; the models are then not announced.
+        let _ = tokio::task::spawn_blocking(move || models.refresh()).await;
+        self.asked = Some(Instant::now());
     }
 
     /// Collects the results of the threads.
@@ -281,6 +303,7 @@ impl<C: Coordinator> Worker<C> {
             worker: self.settings.name.clone(),
             protocol: PROTOCOL_VERSION,
             model_version: crate::model_version().to_owned(),
+            models: self.settings.models.announced(),
             results: std::mem::take(&mut self.outbox),
             holding: if renew {
                 self.held.iter().copied().collect()
@@ -302,6 +325,7 @@ impl<C: Coordinator> Worker<C> {
             worker: self.settings.name.clone(),
             protocol: PROTOCOL_VERSION,
             model_version: crate::model_version().to_owned(),
+            models: self.settings.models.announced(),
             results: Vec::new(),
             holding: self.held.iter().copied().collect(),
             returned: Vec::new(),
@@ -395,6 +419,7 @@ impl<C: Coordinator> Worker<C> {
             seal,
             end: None,
             outcome: Some(outcome),
+            repeated: None,
         });
     }
 

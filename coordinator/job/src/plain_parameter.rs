@@ -88,7 +88,11 @@ impl PlainParameter {
     /// where its value lies outside its prior, or where an effect is the candidate in its place.
     pub fn held_by(&self, spec: &Spec) -> Option<(f64, Marginal)> {
         let is_free = spec.parameters.iter().any(|p| p.name == self.name);
-        let known = spec.model.kind.parameters().find(|p| p.name == self.name)?;
+        let known = match &spec.model.external {
+            None => spec.model.kind.parameters().find(|p| p.name == self.name)?,
+            Some(model) if model.shares(self.name) => of_models().find(|p| p.name == self.name)?,
+            Some(_) => return None,
+        };
         if is_free || self.covered_by.is_some() || spec.fit_variant.conditions.is_empty() {
             return None;
         }

@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use shared::experiment::{Experiment, RunUse};
 use shared::file::{FileError, FileSet, number};
-use shared::model::{Companion, EffectSet, ModelKind, ModelSettings, ModelVariant, equations_of};
+use shared::model::{
+    Companion, EffectSet, ModelKind, ModelSettings, ModelVariant, ParameterScope, equations_of,
+};
 use shared::outcome::Observables;
 use shared::parameters;
 use shared::predicted::PredictedValue;
@@ -14,6 +16,7 @@ use crate::data::bevameter_readings::{BevameterReadings, PLATE};
 use crate::data::error::DataError;
 use crate::data::likelihood::likelihood;
 use crate::data::noise;
+use crate::data::outside_model;
 use crate::data::predicted_values::predicted_values;
 use crate::data::soil_scatter::{BY_STIFFNESS, SoilScatter};
 use crate::job_file::{JobFile, JobModels};
@@ -123,6 +126,12 @@ impl Spec {
             .chain(fixed)
             .filter(|name| *name != parameters::RING_TRANSFER);
         let effects = EffectSet::choose(job_name, (&model.effects, &model.effect_files), of_effects, texts)?;
+        let external = model.external.clone();
+        let scope = ParameterScope {
+            wheels: &wheels,
+            effects: &effects,
+            external: external.as_ref(),
+        };
         let mut parameters = Vec::new();
         let mut joint_prior = None;
         if let Some(posterior) = job.posterior {
@@ -135,13 +144,13 @@ impl Spec {
                 model.fixed.get(name).copied().or_else(stated)
             };
             let is_said = |name: &str| entry(name).is_some() || model.fixed.contains_key(name);
-            let (joint, covered) = posterior.fit(text, fixed, is_said, &wheels, &effects)?;
+            let (joint, covered) = posterior.fit(text, fixed, is_said, &scope)?;
             joint_prior = Some(joint);
             parameters = covered;
         }
         for entry in job.priors {
             match entry
-                .parse(&wheels, &effects)
+                .parse(&scope)
                 .map_err(|e| FileError::at(job_name, entry.line, e.to_string()))?
             {
                 ParsedPrior::Fixed(value) => {
@@ -164,7 +173,7 @@ impl Spec {
             }
         }
         for (name, &value) in &job.reference {
-            shared::model::lookup(name, &wheels, &effects)
+            shared::model::lookup(name, &scope)
                 .and_then(|quantity| Ok(parameters::check_value(&quantity, name, value)?))
                 .map_err(|e| in_job(format!("[figures] reference: {e}")))?;
         }
@@ -204,11 +213,20 @@ impl Spec {
             .filter(|p| !p.name.starts_with(parameters::NOISE_PREFIX))
             .map(|p| p.name.clone())
             .collect();
+        if let Some(external) = &external {
+            outside_model::check(external, &experiment, &fit_runs, &likelihood).map_err(in_job)?;
+        }
+        let medians = |names: &[String]| {
+            let free = parameters.iter().filter(|p| names.contains(&p.name));
+            free.map(|p| p.marginal.quantile(0.5)).collect::<Vec<f64>>()
+        };
+        let probe = external.as_ref().map(|_| medians(&model_parameters));
         let variant = |runs: &[usize]| {
             let runs = runs.iter().map(|&i| &experiment.runs[i]);
             let mut variant =
                 ModelVariant::new(&experiment, &model, &effects, model_parameters.clone(), runs)
                     .map_err(|e| in_job(e.to_string()))?;
+            variant.probe = probe.clone().unwrap_or_default();
             let mut sensitive = likelihood.sensitive().iter();
             variant.stiffness_sensitivity = sensitive.any(|own| own.derivative == BY_STIFFNESS);
             Ok(variant)

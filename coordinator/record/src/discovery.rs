@@ -207,7 +207,7 @@ fn fits() -> f64 {
     1.0
 }
 
-/// An effect that needs what the experiment does not state.
+/// An effect that needs what the experiment, or a model that is not ours, does not state.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct NotTried {
     /// The effect, `EFFECT.WHEEL` on one wheel of several.
@@ -216,6 +216,16 @@ pub struct NotTried {
     pub why: String,
     /// The line of the experiment that would state it.
     pub needs: String,
+}
+
+impl NotTried {
+    /// What an effect needs that no line of an experiment states: a model that shows its contact.
+    pub const OUR_MODEL: &str = "kind = \"quasi_static\" or \"scm\" under [model]";
+
+    /// Whether a line of the experiment would state what it needs.
+    pub fn lacks_line(&self) -> bool {
+        self.needs != Self::OUR_MODEL
+    }
 }
 
 /// A law outside the library.

@@ -3,6 +3,7 @@
 use inference::point_estimate::ModeEstimate;
 use inference::{PosteriorSample, StageRecord};
 use shared::api::CalibrationState;
+use shared::exchange::RepeatedAnswer;
 use shared::outcome::Observables;
 use statistics::SubchainEnd;
 
@@ -96,6 +97,13 @@ pub enum Fact {
         worker: String,
         /// Evaluations of a round.
         width: usize,
+    },
+    /// A model that is not ours was asked the same twice.
+    Repeated {
+        /// The calibration.
+        calibration: i64,
+        /// How far its answers differ.
+        repeated: RepeatedAnswer,
     },
     /// The first result pinned the version of the equations, and of the effects.
     ModelVersion {

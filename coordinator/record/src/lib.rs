@@ -27,4 +27,4 @@ pub use evaluation_key::{EvaluationKey, LIKELIEST, PREDICTIONS_FROM};
 pub use fact::{Dispute, EvaluationRow, Fact, Fingerprint, Kept};
 pub use replay::{Stored, StoredEvaluation};
 pub use sample::{Prediction, PriorDraw, RejectionReason, Sample, StageRow, Subchains};
-pub use verification::{Quarantine, Verified};
+pub use verification::{Quarantine, Repeats, Verified};

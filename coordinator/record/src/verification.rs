@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use shared::exchange::RepeatedAnswer;
+
 /// A worker that computes wrongly.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Quarantine {
@@ -26,4 +28,15 @@ pub struct Verified {
     pub resting_on: BTreeMap<String, u64>,
     /// Results of workers that were quarantined, which were computed again.
     pub computed_again: BTreeMap<String, u64>,
+}
+
+/// How a model that is not ours answered what it was asked twice.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Repeats {
+    /// Evaluations that were asked for twice.
+    pub evaluations: u64,
+    /// Of these, answered in two ways.
+    pub differing: u64,
+    /// The largest differences.
+    pub largest: RepeatedAnswer,
 }

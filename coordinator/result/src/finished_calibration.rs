@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use job::Spec;
 use record::{
-    CalibrationRow, Dispute, EstimateRow, Prediction, PriorDraw, Sample, StageRow, Subchains, Verified,
+    CalibrationRow, Dispute, EstimateRow, Prediction, PriorDraw, Repeats, Sample, StageRow, Subchains,
+    Verified,
 };
 use shared::outcome::SimulatedHistory;
 use statistics::Marginal;
@@ -48,6 +49,8 @@ pub struct FinishedCalibration {
     pub disputes: Vec<Dispute>,
     /// How far the results are verified by second workers.
     pub verified: Verified,
+    /// How a model that is not ours answered what it was asked twice.
+    pub repeats: Repeats,
 }
 
 impl FinishedCalibration {

@@ -6,7 +6,8 @@ use inference::evolution::{EvolutionSettings, GaSettings};
 use inference::point_estimate::{Generation, StopReason};
 use job::{AlgorithmSettings, Spec};
 use record::{
-    CalibrationRow, EstimateRow, Outside, Prediction, PriorDraw, RejectionReason, Sample, StageRow, Verified,
+    CalibrationRow, EstimateRow, Outside, Prediction, PriorDraw, RejectionReason, Repeats, Sample, StageRow,
+    Verified,
 };
 use shared::api::CalibrationState;
 use shared::file::FileSet;
@@ -305,6 +306,7 @@ fn build(runs: &str) -> FinishedCalibration {
         given_up: 0,
         disputes: Vec::new(),
         verified: Verified::default(),
+        repeats: Repeats::default(),
         spec,
     }
 }

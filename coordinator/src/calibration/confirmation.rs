@@ -108,6 +108,15 @@ impl Calibration {
         }
     }
 
+    /// The share of the evaluations that a second worker computes as well, of the share that is asked for. A model that is not ours
+    /// may answer in two ways on honest machines: it is asked twice on one, and nobody is blamed.
+    pub fn verified_share(&self, asked: f64) -> f64 {
+        match &self.spec.model.external {
+            None => asked,
+            Some(_) => 0.0,
+        }
+    }
+
     /// Asks nobody beside a lease that is out no more, or one of a suspect, which is alone wherever it is. An evaluation that has
     /// been leased anew is not slow yet.
     pub fn drop_idle_seconds(&mut self) {

@@ -7,8 +7,8 @@ use std::time::Instant;
 use super::job_on_disk;
 use super::output::say;
 use crate::calibration::{Calibration, CalibrationEngine, CalibrationIdentity, SimulationResult, result_of};
-use crate::config::JobArguments;
-use crate::embedded::Evaluate;
+use crate::config::CheckArguments;
+use crate::embedded::{Evaluate, LocalModels};
 use crate::missing_effect::untried::additions;
 use job::{AlgorithmSettings, Spec, confounded_orders};
 use result::{model_limits, terminal};
@@ -18,8 +18,9 @@ const PILOT_PARTICLES: usize = 300;
 /// The pilot ends after so long; what it has seen by then is extrapolated `[s]`.
 const PILOT_S: f64 = 30.0;
 
-pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
-    let job = job_on_disk::read(file, &[])?;
+pub(super) async fn check(config: &CheckArguments) -> anyhow::Result<()> {
+    let job = job_on_disk::read(&config.file, &[])?;
+    let allowed = Arc::new(LocalModels::new(&config.models.allow_model).map_err(anyhow::Error::msg)?);
     let models: Vec<Spec> = std::iter::once(job.spec.clone()).chain(job.others).collect();
     let mut text = String::new();
     for (number, spec) in models.iter().enumerate() {
@@ -49,7 +50,13 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
     let mut core_s = 0.0;
     for spec in models {
         let kind = spec.model.kind.name();
-        let (text, own_s) = cost(spec).await?;
+        if spec.model.external.is_some() && config.models.allow_model.is_empty() {
+            say(&format!(
+                "\n{kind}: the model is not ours; --allow-model lets a pilot run it, to estimate evaluations and hours\n"
+            ))?;
+            continue;
+        }
+        let (text, own_s) = cost(spec, Arc::clone(&allowed)).await?;
         core_s += own_s;
         let heading = if several {
             format!("\n{kind}:")
@@ -66,10 +73,10 @@ pub(super) async fn check(file: &JobArguments) -> anyhow::Result<()> {
 }
 
 /// What a calibration is expected to cost: in words, and in seconds of a core.
-async fn cost(spec: Spec) -> anyhow::Result<(String, f64)> {
+async fn cost(spec: Spec, models: Arc<LocalModels>) -> anyhow::Result<(String, f64)> {
     let algorithm = spec.algorithm;
     let beside = spec.point_estimates.clone();
-    let pilot = tokio::task::spawn_blocking(move || pilot(spec)).await??;
+    let pilot = tokio::task::spawn_blocking(move || pilot(spec, &models)).await??;
     let evaluations = pilot.expected(algorithm);
     let simulations = evaluations * pilot.runs as f64;
     let core_s = evaluations * pilot.seconds_per_evaluation;
@@ -163,7 +170,7 @@ impl Pilot {
 }
 
 /// The same calibration in memory, a sampler in small.
-fn pilot(mut spec: Spec) -> anyhow::Result<Pilot> {
+fn pilot(mut spec: Spec, models: &LocalModels) -> anyhow::Result<Pilot> {
     let least = PILOT_PARTICLES.max(2 * spec.parameters.len() + 2);
     if let AlgorithmSettings::Sample(settings) = &mut spec.algorithm {
         settings.particles = settings.particles.min(least);
@@ -176,7 +183,7 @@ fn pilot(mut spec: Spec) -> anyhow::Result<Pilot> {
         } else {
             1
         };
-    let mut models: BTreeMap<String, Evaluate> = BTreeMap::new();
+    let mut compiled: BTreeMap<String, Evaluate> = BTreeMap::new();
     let identity = CalibrationIdentity {
         id: 0,
         name: "pilot".into(),
@@ -194,13 +201,13 @@ fn pilot(mut spec: Spec) -> anyhow::Result<Pilot> {
             let Some(question) = calibration.question(evaluation) else {
                 break;
             };
-            if !models.contains_key(question.variant)
+            if !compiled.contains_key(question.variant)
                 && let Some(variant) = calibration.variant(question.variant)
             {
-                let model = Evaluate::new(variant).map_err(anyhow::Error::msg)?;
-                models.insert(question.variant.to_owned(), model);
+                let model = Evaluate::with(variant, models).map_err(anyhow::Error::msg)?;
+                compiled.insert(question.variant.to_owned(), model);
             }
-            let Some(model) = models.get(question.variant) else {
+            let Some(model) = compiled.get(question.variant) else {
                 break;
             };
             let start = Instant::now();

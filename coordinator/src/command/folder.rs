@@ -12,8 +12,8 @@ use super::exposure::exposure;
 use super::output::{note, say};
 use super::progress::Display;
 use super::shutdown::{Shutdown, Stopped, stop_signal};
-use crate::config::ExposureArguments;
-use crate::embedded::{LocalWorkers, model_version};
+use crate::config::{ExposureArguments, ModelArguments};
+use crate::embedded::{LocalModels, LocalWorkers};
 use crate::farm::Control;
 use crate::http::Exposure;
 use crate::service::{FarmSettings, LEASE_MS, Service, VERIFIED_PERCENT, next_step_of, search_rounds};
@@ -53,6 +53,7 @@ pub(super) struct Folder {
     /// Its store, and a farm for it.
     pub(super) service: Service,
     local_workers: Option<usize>,
+    models: LocalModels,
     server: Option<(TcpListener, Exposure)>,
 }
 
@@ -61,8 +62,10 @@ impl Folder {
     pub(super) async fn open(
         out: &Path,
         local_workers: Option<usize>,
+        models: &ModelArguments,
         listener: Option<(TcpListener, &ExposureArguments)>,
     ) -> anyhow::Result<Folder> {
+        let models = LocalModels::new(&models.allow_model).map_err(anyhow::Error::msg)?;
         let store = out.join("grouser.db").display().to_string();
         // Without a listener there is one worker: this program.
         let verified_share = listener.as_ref().map_or(0.0, |_| VERIFIED_PERCENT / 100.0);
@@ -83,6 +86,7 @@ impl Folder {
             out: out.to_owned(),
             service,
             local_workers,
+            models,
             server,
         })
     }
@@ -103,17 +107,8 @@ impl Folder {
                 out.display()
             );
         }
-        if let Some(pinned) = row
-            .model_version
-            .as_deref()
-            .map(equations_of)
-            .filter(|v| *v != model_version() && !row.state.is_final())
-        {
-            bail!(
-                "{} holds a calibration started with model version {pinned}, but this program computes {}: give another --out, or finish it with the older program",
-                out.display(),
-                model_version()
-            );
+        if !row.state.is_final() {
+            self.check_equations(row).await?;
         }
         if row.state == CalibrationState::Paused {
             service
@@ -121,6 +116,27 @@ impl Folder {
                 .await?;
         }
         Ok(())
+    }
+
+    /// Checks that local workers can go on with a calibration: that they run its model, and in the version that it is pinned to.
+    async fn check_equations(&self, row: &CalibrationRow) -> anyhow::Result<()> {
+        let external = self.service.spec_of(row).await?.model.external;
+        let models = self.models.clone();
+        let is_alone = self.server.is_none();
+        let known = tokio::task::spawn_blocking(move || models.equations(external.as_ref())).await?;
+        let equations = match known {
+            Ok(equations) => equations,
+            Err(message) if is_alone => bail!(message),
+            // Workers that join may run it.
+            Err(_) => return Ok(()),
+        };
+        match row.model_version.as_deref().map(equations_of) {
+            Some(pinned) if pinned != equations => bail!(
+                "{} holds a calibration started with model version {pinned}, but this program computes {equations}: give another --out, or finish it with the older one",
+                self.out.display()
+            ),
+            _ => Ok(()),
+        }
     }
 
     /// Brings a study to its end, writes its results and prints them.
@@ -203,8 +219,8 @@ impl Folder {
             bail!("--local-workers 0 needs --listen: there would be no worker");
         }
         let began = Instant::now();
-        let workers =
-            (threads > 0).then(|| LocalWorkers::start(service.dispatcher().clone(), threads, stop.wait()));
+        let workers = (threads > 0)
+            .then(|| LocalWorkers::start(service.dispatcher().clone(), threads, &self.models, stop.wait()));
         let failure = workers.as_ref().map(LocalWorkers::failure);
         let end = watch_until_over(study, service, failure).await;
         let wall_s = began.elapsed().as_secs_f64();

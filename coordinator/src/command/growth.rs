@@ -13,7 +13,7 @@ use shared::text_file::read_text;
 use super::folder::{Details, Folder};
 use super::output::{note, say};
 use super::source::{CalibrationSource, ServiceClient};
-use crate::config::{AddRunsArguments, DiscoverArguments, ExtendArguments};
+use crate::config::{AddRunsArguments, DiscoverArguments, ExtendArguments, ModelArguments};
 use crate::service::{Service, ServiceError};
 use record::{Discovery, Extension};
 use result::discovery::effect_file;
@@ -28,9 +28,13 @@ pub(super) async fn discover(config: &DiscoverArguments) -> anyhow::Result<()> {
     let client = match (&config.target.source.out, place) {
         (Some(out), _) => {
             let details = Details::new(config.verbose, Some(id));
-            return grow(out, id, config.local_workers, details, async |service| {
-                service.discover(id).await.map(drop)
-            })
+            return grow(
+                out,
+                id,
+                (config.local_workers, &config.models),
+                details,
+                async |service| service.discover(id).await.map(drop),
+            )
             .await;
         }
         (None, CalibrationSource::Service(client)) => client,
@@ -75,14 +79,20 @@ pub(super) async fn extend(config: &ExtendArguments) -> anyhow::Result<()> {
             (None, _, None) => bail!("--effect or --effect-file is missing"),
         };
         let details = Details::new(config.verbose, Some(id));
-        return grow(out, id, config.local_workers, details, async |service| {
-            let before = service.store().reader().calibrations().await?.len();
-            let created = service.extend(id, extension.clone()).await?;
-            if service.store().reader().calibrations().await?.len() == before {
-                note(&format!("calibration {} has it already", created.id));
-            }
-            Ok(())
-        })
+        return grow(
+            out,
+            id,
+            (config.local_workers, &config.models),
+            details,
+            async |service| {
+                let before = service.store().reader().calibrations().await?.len();
+                let created = service.extend(id, extension.clone()).await?;
+                if service.store().reader().calibrations().await?.len() == before {
+                    note(&format!("calibration {} has it already", created.id));
+                }
+                Ok(())
+            },
+        )
         .await;
     }
     let new = NewExtension {
@@ -113,10 +123,16 @@ pub(super) async fn add_runs(config: &AddRunsArguments) -> anyhow::Result<()> {
     let study = CalibrationSource::open(source).await?.status(*id).await?.study;
     if let Some(out) = &source.out {
         let details = Details::new(config.verbose, Some(*id));
-        return grow(out, *id, config.local_workers, details, async |service| {
-            let last = Some(*id);
-            service.add_runs(study, runs.clone(), last).await.map(drop)
-        })
+        return grow(
+            out,
+            *id,
+            (config.local_workers, &config.models),
+            details,
+            async |service| {
+                let last = Some(*id);
+                service.add_runs(study, runs.clone(), last).await.map(drop)
+            },
+        )
         .await;
     }
     let added: RunsAdded = ServiceClient::new(&source.url(), &source.client)?
@@ -138,11 +154,11 @@ pub(super) async fn add_runs(config: &AddRunsArguments) -> anyhow::Result<()> {
 async fn grow(
     out: &Path,
     id: i64,
-    local_workers: Option<usize>,
+    (local_workers, models): (Option<usize>, &ModelArguments),
     details: Details,
     add: impl AsyncFn(&Service) -> Result<(), ServiceError>,
 ) -> anyhow::Result<()> {
-    let folder = Folder::open(out, local_workers, None).await?;
+    let folder = Folder::open(out, local_workers, models, None).await?;
     let service = folder.service.clone();
     let result = async {
         let study = folder.service.calibration_row(id).await?.study;

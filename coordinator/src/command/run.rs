@@ -38,6 +38,7 @@ pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
     let folder = Folder::open(
         &out,
         config.local_workers,
+        &config.models,
         listener.map(|l| (l, &config.exposure)),
     )
     .await?;

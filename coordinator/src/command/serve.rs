@@ -8,7 +8,7 @@ use tokio::net::TcpListener;
 use super::exposure::exposure;
 use super::shutdown::{Shutdown, stop_signal};
 use crate::config::ServeArguments;
-use crate::embedded::LocalWorkers;
+use crate::embedded::{LocalModels, LocalWorkers};
 use crate::service::{FarmSettings, Service};
 
 /// Durations that a lease may have `[ms]`: what a network may take, to a day.
@@ -28,6 +28,7 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
             config.verify_percent
         );
     }
+    let models = LocalModels::new(&config.models.allow_model).map_err(anyhow::Error::msg)?;
     let listener = TcpListener::bind(config.listen)
         .await
         .with_context(|| format!("--listen {}", config.listen))?;
@@ -47,8 +48,14 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     tracing::info!(%address, store, tls, read_only = config.read_only, "serving");
 
     let stop = Shutdown::new();
-    let workers = (config.local_workers > 0 && !config.read_only)
-        .then(|| LocalWorkers::start(service.dispatcher().clone(), config.local_workers, stop.wait()));
+    let workers = (config.local_workers > 0 && !config.read_only).then(|| {
+        LocalWorkers::start(
+            service.dispatcher().clone(),
+            config.local_workers,
+            &models,
+            stop.wait(),
+        )
+    });
     let server = tokio::spawn(crate::http::serve(
         listener,
         service.clone(),

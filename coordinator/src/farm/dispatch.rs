@@ -301,6 +301,7 @@ impl Thread {
         let question = ExchangeRequest {
             worker: request.worker.clone(),
             model_version: request.model_version.clone(),
+            models: request.models.clone(),
             results: Vec::new(),
             holding: Vec::new(),
             returned: Vec::new(),

@@ -64,13 +64,7 @@ impl Farm {
     }
 
     /// Leases up to `want` evaluations.
-    pub(super) fn lease(
-        &mut self,
-        worker: &str,
-        version: &str,
-        want: usize,
-        now_ms: u64,
-    ) -> (Vec<Lease>, Option<String>) {
+    pub(super) fn lease(&mut self, worker: &str, want: usize, now_ms: u64) -> (Vec<Lease>, Option<String>) {
         let mut leases = Vec::new();
         let mut refused = None;
         let expires_ms = now_ms + self.lease_ms;
@@ -88,20 +82,34 @@ impl Farm {
                 continue;
             };
             let calibration = &mut entry.calibration;
+            let record = self.workers.get(worker);
+            let Some(version) = record
+                .and_then(|own| own.equations_for(calibration))
+                .map(str::to_owned)
+            else {
+                let external = calibration.spec.model.external.as_ref();
+                let model = external.map(|model| model.source.name()).unwrap_or_default();
+                refused = Some(format!(
+                    "calibration {id} is of the model {model}, which worker {worker} does not run: its operator allows it by --allow-model, and it must answer"
+                ));
+                continue;
+            };
             // The files of effects travel with the variant: a worker need not know them.
             let pinned = calibration.model_version.as_deref().map(equations_of);
-            if let Some(pinned) = pinned.filter(|pinned| *pinned != equations_of(version)) {
+            if let Some(pinned) = pinned.filter(|pinned| *pinned != equations_of(&version)) {
                 refused = Some(format!(
                     "calibration {id} was begun with model version {pinned}, worker {worker} computes {version}"
                 ));
                 continue;
             }
+            let external = calibration.spec.model.external.as_ref().map(|m| m.source.name());
             let lease_numbers = &mut self.lease_numbers;
             let next_lease = || lease_numbers.next_number();
             let (workers, quarantine) = (&self.workers, &self.quarantine);
             let has_other = |failed: &[String]| {
                 workers.iter().any(|(name, other)| {
-                    let is_able = equations_of(&other.model_version) == equations_of(version);
+                    let theirs = other.equations_of_model(external.as_deref());
+                    let is_able = theirs.map(equations_of) == Some(equations_of(&version));
                     is_able && !failed.contains(name) && !quarantine.contains_key(name)
                 })
             };
@@ -135,7 +143,7 @@ impl Farm {
                     worker,
                     calibration: id,
                     evaluation,
-                    model_version: &model_version(calibration, version),
+                    model_version: &model_version(calibration, &version),
                 };
                 leases.push(Lease {
                     lease,

@@ -170,6 +170,7 @@ impl Farm {
             .entry(worker.clone())
             .or_insert_with(|| WorkerRecord {
                 model_version: request.model_version.clone(),
+                models: request.models.clone(),
                 holds: 0,
                 completed: 0,
                 faults: 0,
@@ -181,6 +182,7 @@ impl Farm {
         record.last_seen_ms = now_ms;
         // The last message tells: what waits for a worker of its version must not wait for one that has become another.
         record.model_version.clone_from(&request.model_version);
+        record.models.clone_from(&request.models);
         // An answer to this worker was lost: it speaks again without having received its last leases.
         let lost = request.received < record.given;
         record.given = record.given.min(request.received);
@@ -192,7 +194,7 @@ impl Farm {
                 refused_leases.push(lease);
                 continue;
             }
-            match self.take_result(&worker, &request.model_version, result, now_ms) {
+            match self.take_result(&worker, result, now_ms) {
                 Taken::New => {}
                 Taken::Duplicate => duplicates += 1,
                 Taken::Refused => refused_leases.push(lease),
@@ -232,7 +234,7 @@ impl Farm {
         // It may have been quarantined for what it has just said.
         let (leases, refused) = match self.quarantine.get(&worker) {
             Some(reason) => (Vec::new(), Some(reason.clone())),
-            None => self.lease(&worker, &request.model_version, request.want as usize, now_ms),
+            None => self.lease(&worker, request.want as usize, now_ms),
         };
         ExchangeResponse {
             leases,
@@ -248,8 +250,9 @@ impl Farm {
         }
     }
 
-    /// Takes a result from a worker that computes a version of the equations. The first that counts pins its calibration to it.
-    fn take_result(&mut self, worker: &str, version: &str, result: WorkResult, now_ms: u64) -> Taken {
+    /// Takes a result from a worker that has said which version of the equations it computes. The first that counts pins its
+    /// calibration to it.
+    fn take_result(&mut self, worker: &str, result: WorkResult, now_ms: u64) -> Taken {
         let (id, lease, evaluation) = (result.calibration, result.lease, result.evaluation);
         if let Some(closed) = self.closed(id) {
             return self.compare_late(worker, result, &closed);
@@ -265,6 +268,11 @@ impl Farm {
             return Taken::Duplicate;
         };
         let calibration = &mut entry.calibration;
+        let record = self.workers.get(worker);
+        let Some(version) = record.and_then(|own| own.equations_for(calibration)) else {
+            // It ran the model when it took the lease; what it runs now is not known.
+            return Taken::Refused;
+        };
         let model_version = model_version(calibration, version);
         let question = calibration.question(evaluation);
         let question = question.or_else(|| calibration.second.question(evaluation));
@@ -282,6 +290,7 @@ impl Farm {
         if let Some(age_ms) = calibration.queue.age_ms(lease, worker, now_ms) {
             entry.pace.count_lease(age_ms);
         }
+        let repeated = result.repeated;
         let completed = SimulationResult::of(result).and_then(|computed| {
             if is_new {
                 calibration.verify(evaluation);
@@ -293,9 +302,13 @@ impl Farm {
             if let Some(version) = pin.filter(|_| counted) {
                 let is_other = |name: &str| {
                     let other = self.workers.get(name);
-                    other.is_none_or(|o| equations_of(&o.model_version) != equations_of(&version))
+                    let theirs = other.and_then(|other| other.equations_for(calibration));
+                    theirs.is_none_or(|theirs| equations_of(theirs) != equations_of(&version))
                 };
-                calibration.queue.take_back_of(is_other);
+                let others: Vec<&String> = self.workers.keys().filter(|name| is_other(name)).collect();
+                calibration
+                    .queue
+                    .take_back_of(|name| others.iter().any(|other| *other == name));
                 calibration.model_version = Some(version.clone());
                 let calibration = id;
                 self.facts.push(Fact::ModelVersion { calibration, version });
@@ -303,6 +316,13 @@ impl Farm {
             let is_confirmation = |fact: &&Fact| matches!(fact, Fact::Confirmed { .. });
             self.counters.confirmed += facts.iter().filter(is_confirmation).count() as u64;
             self.facts.extend(facts);
+            if let Some(repeated) = repeated.filter(|_| counted) {
+                let calibration = id;
+                self.facts.push(Fact::Repeated {
+                    calibration,
+                    repeated,
+                });
+            }
             entry.pace.count(calibration.evaluations, now_ms);
             counted
         });

@@ -97,10 +97,11 @@ impl Farm {
         }
         let calibration = &mut entry.calibration;
         let version = calibration.model_version.as_deref().map(equations_of);
+        let external = calibration.spec.model.external.as_ref().map(|m| m.source.name());
         let (workers, quarantine, patience_ms) = (&self.workers, &self.quarantine, self.lease_ms);
         let can_answer = |answers: &[Answer]| {
             workers.iter().any(|(name, worker)| {
-                let is_able = version == Some(equations_of(&worker.model_version));
+                let is_able = version == worker.equations_of_model(external.as_deref()).map(equations_of);
                 let is_there = now_ms.saturating_sub(worker.last_seen_ms) < patience_ms;
                 let has_answered = answers.iter().any(|answer| answer.worker == *name);
                 is_able && is_there && !has_answered && !quarantine.contains_key(name)

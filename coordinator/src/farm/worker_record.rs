@@ -1,13 +1,20 @@
 //! What is known of a worker process.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 use utoipa::ToSchema;
+
+use crate::calibration::Calibration;
 
 /// What is known of a worker process.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct WorkerRecord {
     /// Version of the equations that it computes.
     pub model_version: String,
+    /// The models that are not ours that it runs: the version of each by its name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub models: BTreeMap<String, String>,
     /// Leases that it holds.
     pub holds: u64,
     /// Results that counted.
@@ -23,4 +30,21 @@ pub struct WorkerRecord {
     /// The highest number of a lease given to it and not known to be lost.
     #[serde(skip)]
     pub(super) given: u64,
+}
+
+impl WorkerRecord {
+    /// Version of the equations that it computes for a calibration: its own, or that of the model that is not ours; `None` where it
+    /// does not run that.
+    pub(super) fn equations_for(&self, calibration: &Calibration) -> Option<&str> {
+        let external = calibration.spec.model.external.as_ref();
+        self.equations_of_model(external.map(|model| model.source.name()).as_deref())
+    }
+
+    /// The same of a model by its name; without one, of ours.
+    pub(super) fn equations_of_model(&self, external: Option<&str>) -> Option<&str> {
+        match external {
+            None => Some(self.model_version.as_str()),
+            Some(name) => self.models.get(name).map(String::as_str),
+        }
+    }
 }

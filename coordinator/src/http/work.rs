@@ -25,6 +25,10 @@ const LONGEST_WAIT_MS: u64 = 30_000;
 const MOST_WANTED: u32 = 10_000;
 /// Longest name of a worker, or of the version of its equations `[bytes]`.
 const LONGEST_NAME: usize = 200;
+/// Longest name of a model that is not ours: a URL, and a name there `[bytes]`.
+const LONGEST_MODEL: usize = 400;
+/// Most of them that a worker runs.
+const MOST_MODELS: usize = 100;
 /// Longest message of an outcome `[bytes]`.
 const LONGEST_MESSAGE: usize = 10_000;
 
@@ -80,6 +84,14 @@ fn check_texts(request: &ExchangeRequest) -> Result<(), HttpError> {
     };
     check("worker", &request.worker, LONGEST_NAME)?;
     check("model_version", &request.model_version, LONGEST_NAME)?;
+    if request.models.len() > MOST_MODELS {
+        let message = format!("models: {} must be at most {MOST_MODELS}", request.models.len());
+        return Err(HttpError::new(ErrorKind::InvalidBody, message));
+    }
+    for (name, version) in &request.models {
+        check("models: name", name, LONGEST_MODEL)?;
+        check("models: version", version, LONGEST_NAME)?;
+    }
     for result in &request.results {
         match &result.outcome {
             Some(Outcome::Rejected(rejection)) => {

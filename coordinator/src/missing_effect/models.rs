@@ -6,15 +6,16 @@ use discovery::{
     LawCandidate, ProposedRuns, QueriedModel, Query, Reduction, SearchSettings, SearchTask, Starts,
 };
 use formula::Effect;
+use formula::catalogue::catalogue;
 use shared::channel::Channel;
 use shared::file::{FileError, FileSet};
-use shared::model::{ModelKind, ModelVariant, RunCondition};
+use shared::model::{ExternalModel, ModelKind, ModelVariant, RunCondition};
 use shared::outcome::Observables;
 
 use super::candidate::{CandidateEffect, JOB, candidate_of, extended, library, spec};
 use super::design;
 use super::entry::{CandidateEntry, LawEntry};
-use super::law::dependence::dependences;
+use super::law::dependence::{Dependence, dependences};
 use super::law::form::LawForm;
 use super::untried::untried;
 use job::{FreeParameter, MODEL_SWITCHES, PLAIN_PARAMETERS, Spec, free_parameters, without_effects};
@@ -36,8 +37,9 @@ pub struct SearchModels {
     assumed: FileSet,
     pub(super) base: Spec,
     pub(super) library: Vec<CandidateEntry>,
-    /// The other kind of model, where the job asks for it and cannot have it.
-    kinds_not_tried: Vec<NotTried>,
+    /// The other kind of model, where the job asks for it and cannot have it, and effects inside the contact of a model that does not
+    /// show it.
+    not_tried: Vec<NotTried>,
     pub(super) laws: Vec<LawEntry>,
     /// The base's own effects, each with the names of the parameters that remain without it.
     pub(super) reductions: Vec<(String, Vec<String>)>,
@@ -78,18 +80,22 @@ impl SearchModels {
                 .iter()
                 .filter_map(|plain| CandidateEntry::plain(plain, &base)),
         );
-        let mut kinds_not_tried = Vec::new();
+        let external = base.model.external.iter();
+        let mut not_tried: Vec<NotTried> = external.flat_map(out_of_reach).collect();
         for switch in &MODEL_SWITCHES {
             match CandidateEntry::switch(switch, &base, job, experiment) {
                 Ok(own) => entries.extend(own),
                 // A setting that the model cannot have is none of the job's alternatives; another kind was asked for.
-                Err(why) => kinds_not_tried.extend(switch.is_kind().then_some(why)),
+                Err(why) => not_tried.extend(switch.is_kind().then_some(why)),
             }
         }
         for own in untried {
-            let not_tried = Some(own.record());
+            let needing = Some(own.record());
             let own = entry(own.effect, &assumed)?;
-            entries.extend(own.map(|own| CandidateEntry { not_tried, ..own }));
+            entries.extend(own.map(|own| CandidateEntry {
+                not_tried: needing,
+                ..own
+            }));
         }
         let of_file = |law: CandidateEffect| -> Result<CandidateEntry, FileError> {
             let name = law.name.clone();
@@ -102,7 +108,8 @@ impl SearchModels {
             entry.ok_or_else(|| fail(format!("{name} has no strength")))
         };
         let mut laws = Vec::new();
-        for dependence in dependences(&base.experiment) {
+        let of_model = |dependence: &Dependence| dependence.is_shown_by(base.model.external.as_ref());
+        for dependence in dependences(&base.experiment).into_iter().filter(of_model) {
             let forms = LawForm::ALL
                 .iter()
                 .map(|form| Ok((*form, of_file(form.of(&dependence))?)))
@@ -133,7 +140,7 @@ impl SearchModels {
             experiment: experiment.clone(),
             assumed,
             library: entries,
-            kinds_not_tried,
+            not_tried,
             laws,
             reductions,
             variants: BTreeMap::new(),
@@ -142,10 +149,11 @@ impl SearchModels {
         })
     }
 
-    /// What is not tried: effects that need what the experiment does not state, and another kind that the job cannot have.
+    /// What is not tried: effects that need what the experiment does not state, those that need what a model that is not ours does not
+    /// show, and another kind that the job cannot have.
     pub fn not_tried(&self) -> impl Iterator<Item = &NotTried> {
         let effects = self.library.iter().filter_map(|entry| entry.not_tried.as_ref());
-        effects.chain(&self.kinds_not_tried)
+        effects.chain(&self.not_tried)
     }
 
     /// The task of the search.
@@ -181,9 +189,10 @@ impl SearchModels {
                     ModelKind::QuasiStatic | ModelKind::WongReece | ModelKind::Rft => {
                         SearchSettings::default().least_difference
                     }
-                    ModelKind::Scm => ROUGH,
+                    // Whether another model has a grid, nobody has said.
+                    ModelKind::Scm | ModelKind::Command | ModelKind::Umbridge => ROUGH,
                 },
-                has_numerical_noise: base.model.kind == ModelKind::Scm,
+                has_numerical_noise: base.model.kind != ModelKind::QuasiStatic,
             },
         }
     }
@@ -286,6 +295,18 @@ impl SearchModels {
         };
         (0..self.design.len()).flat_map(channel).collect()
     }
+}
+
+/// The effects of the catalogue that cannot act around a model that is not ours.
+fn out_of_reach(model: &ExternalModel) -> impl Iterator<Item = NotTried> {
+    let record = |effect: &Effect| {
+        Some(NotTried {
+            name: effect.name.clone(),
+            why: model.why_not(effect)?,
+            needs: NotTried::OUR_MODEL.to_owned(),
+        })
+    };
+    catalogue().iter().filter_map(record)
 }
 
 /// The model with its effects in the order of the candidates.

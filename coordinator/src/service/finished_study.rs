@@ -91,6 +91,7 @@ pub async fn finished_calibration(
         given_up: reader.given_up(row.id).await?,
         disputes: reader.disputes(row.id).await?,
         verified: reader.verified(row.id).await?,
+        repeats: reader.repeats(row.id).await?,
         stages,
         row: row.clone(),
     })

@@ -127,7 +127,7 @@ impl Service {
     pub(super) async fn take_in_hand(&self, mut calibration: Calibration) -> Result<(), ServiceError> {
         let key = self.store.reader().seal_key(calibration.identity.id).await?;
         calibration.verification = Verification {
-            share: self.verified_share,
+            share: calibration.verified_share(self.verified_share),
             key,
         };
         Ok(self.dispatcher.add(calibration, key, Vec::new()).await?)

@@ -70,7 +70,7 @@ async fn take_up(
     let replayed = tokio::task::spawn_blocking(move || {
         let mut calibration = Calibration::of(identity, spec, &row.job, &experiment)?;
         calibration.verification = Verification {
-            share: verified_share,
+            share: calibration.verified_share(verified_share),
             key,
         };
         let facts = calibration.replay(stored)?;

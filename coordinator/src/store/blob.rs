@@ -4,6 +4,8 @@
 //! `settled_to`: then a not-a-number ends the bytes. The third holds anything more: then an infinity ends them, with
 //! what there is before it. No observable is either. The fourth form is any of these with histories behind it: then a negative
 //! infinity ends the bytes, before it the number of runs and of the samples of each.
+//!
+//! A model that is not ours has channels alone, and not all of them: their vectors, and one byte that has a bit for each.
 
 use shared::channel::Channel;
 use shared::outcome::{Observables, SimulatedHistory};
@@ -24,6 +26,9 @@ pub(super) fn encode(values: &[f64]) -> Vec<u8> {
 
 /// The bytes of observables.
 pub(super) fn encode_whole(o: &Observables) -> Vec<u8> {
+    if o.simulated_travel_m.is_empty() && Channel::ALL.iter().any(|c| !o.channel(*c).is_empty()) {
+        return encode_channels(o);
+    }
     let mut bytes = encode_averages(o);
     if o.histories.is_empty() {
         return bytes;
@@ -39,6 +44,31 @@ pub(super) fn encode_whole(o: &Observables) -> Vec<u8> {
         &samples.chain([runs, f64::NEG_INFINITY]).collect::<Vec<_>>(),
     ));
     bytes
+}
+
+/// The bytes of channels without anything else.
+fn encode_channels(o: &Observables) -> Vec<u8> {
+    let there = |c: &Channel| !o.channel(*c).is_empty();
+    let vectors = Channel::ALL.iter().filter(|c| there(c));
+    let mut bytes: Vec<u8> = vectors.flat_map(|c| encode(o.channel(*c))).collect();
+    let bit = |c: &Channel| u8::from(there(c)) << c.index();
+    bytes.push(Channel::ALL.iter().map(bit).sum());
+    bytes
+}
+
+/// The channels of bytes that end with the byte of which are there.
+fn decode_channels(words: &[[u8; 8]], there: u8) -> Option<Observables> {
+    let mut o = Observables::default();
+    let channels = Channel::ALL.into_iter().filter(|c| there & (1 << c.index()) != 0);
+    let count = channels.clone().count();
+    if count == 0 || there >= 1 << Channel::ALL.len() || !words.len().is_multiple_of(count) {
+        return None;
+    }
+    let runs = words.len() / count;
+    for (channel, vector) in channels.zip(words.chunks(runs.max(1))) {
+        *o.channel_mut(channel) = vector.iter().map(|word| f64::from_le_bytes(*word)).collect();
+    }
+    Some(o)
 }
 
 /// The bytes of everything but histories.
@@ -148,6 +178,10 @@ impl Extent {
 
 /// The observables of bytes.
 pub(super) fn decode(bytes: &[u8]) -> Result<Observables, StoreError> {
+    if let (words, &[there]) = bytes.as_chunks::<8>() {
+        let corrupt = || StoreError::Corrupt(format!("channels of {} bytes", bytes.len()));
+        return decode_channels(words, there).ok_or_else(corrupt);
+    }
     let corrupt = || StoreError::Corrupt(format!("observables of {} bytes", bytes.len()));
     let words = decode_values(bytes).map_err(|_| corrupt())?;
     let (words, histories) = split_histories(&words).ok_or_else(corrupt)?;

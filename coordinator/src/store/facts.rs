@@ -9,6 +9,7 @@ use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 use super::blob;
 use super::health::StoreHealth;
 use super::json::json;
+use super::repeats;
 use super::verification;
 use record::fact::{Fact, Fingerprint};
 
@@ -97,6 +98,10 @@ pub(super) async fn write(
             worker,
             width,
         } => verification::rewind(connection, calibration, &worker, width).await,
+        Fact::Repeated {
+            calibration,
+            repeated,
+        } => repeats::add(connection, calibration, &repeated).await,
         Fact::ModelVersion { calibration, version } => {
             sqlx::query("UPDATE calibrations SET model_version = ? WHERE id = ?")
                 .bind(version)

@@ -6,7 +6,7 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 /// Number, name and text of each file of `migrations/`.
 ///
 /// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
-const FILES: [(i64, &str, &str); 18] = [
+const FILES: [(i64, &str, &str); 19] = [
     (
         1,
         "experiments",
@@ -92,6 +92,11 @@ const FILES: [(i64, &str, &str); 18] = [
         18,
         "verification",
         include_str!("../../../migrations/0018_verification.sql"),
+    ),
+    (
+        19,
+        "repeats",
+        include_str!("../../../migrations/0019_repeats.sql"),
     ),
 ];
 

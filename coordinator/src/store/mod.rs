@@ -21,6 +21,7 @@ mod read;
 mod reader;
 mod recovery;
 mod removal;
+mod repeats;
 mod results;
 mod theta;
 mod tokens;

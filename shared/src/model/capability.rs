@@ -33,6 +33,15 @@ impl ModelVariant {
         let meshes: BTreeSet<&str> = self.conditions.iter().map(|c| c.wheel.as_str()).collect();
         let meshes: BTreeSet<&str> = meshes.into_iter().filter(|wheel| self.has_mesh(wheel)).collect();
         let names: BTreeSet<&str> = self.names().collect();
+        if let Some(model) = &self.external {
+            return model.check_expressible(effects, &names);
+        }
+        if self.kind.is_external() {
+            return Err(ModelError::Incomplete(format!(
+                "kind = \"{}\" comes without its description",
+                self.kind.name()
+            )));
+        }
         let terrain = names
             .iter()
             .find(|n| parameters::SPATIAL.iter().any(|p| p.name == **n));
@@ -54,7 +63,7 @@ impl ModelVariant {
     /// Checks that the model has a form of every effect.
     fn check_effects(&self, effects: &EffectSet) -> Result<(), ModelError> {
         let has_form = |effect: &Effect| match self.kind {
-            ModelKind::QuasiStatic | ModelKind::Scm => true,
+            ModelKind::QuasiStatic | ModelKind::Scm | ModelKind::Command | ModelKind::Umbridge => true,
             ModelKind::WongReece => effect.hooks().next().is_some(),
             ModelKind::Rft => effect.hooks().next().is_some() && !effect.needs_soil_laws(),
         };

@@ -17,15 +17,21 @@ pub enum ModelKind {
     WongReece,
     /// Three-dimensional resistive force theory of granular soil.
     Rft,
+    /// A program that a worker's operator allows.
+    Command,
+    /// A model of a UM-Bridge server that a worker's operator allows.
+    Umbridge,
 }
 
 impl ModelKind {
-    /// Every model.
-    pub const ALL: [ModelKind; 4] = [
+    /// Every kind.
+    pub const ALL: [ModelKind; 6] = [
         ModelKind::QuasiStatic,
         ModelKind::Scm,
         ModelKind::WongReece,
         ModelKind::Rft,
+        ModelKind::Command,
+        ModelKind::Umbridge,
     ];
 
     /// Name in files and results.
@@ -35,7 +41,14 @@ impl ModelKind {
             ModelKind::Scm => "scm",
             ModelKind::WongReece => "wong_reece",
             ModelKind::Rft => "rft",
+            ModelKind::Command => "command",
+            ModelKind::Umbridge => "umbridge",
         }
+    }
+
+    /// Whether the model is not ours: its parameters stand in the job.
+    pub fn is_external(self) -> bool {
+        matches!(self, ModelKind::Command | ModelKind::Umbridge)
     }
 
     /// The model of a name.
@@ -43,16 +56,17 @@ impl ModelKind {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// The base parameters that a model of this kind has.
+    /// The base parameters that a model of this kind has; of one that is not ours, its job says.
     pub fn parameters(self) -> impl Iterator<Item = &'static BaseParameter> {
         let own: &[BaseParameter] = match self {
-            ModelKind::QuasiStatic => &[],
+            ModelKind::QuasiStatic | ModelKind::Command | ModelKind::Umbridge => &[],
             ModelKind::Scm => &SPATIAL,
             ModelKind::WongReece => &WONG_REECE,
             ModelKind::Rft => &RFT,
         };
         let shared = BASE.iter().filter(move |p| match self {
             ModelKind::Rft => p.name == WHEEL_RADIUS,
+            ModelKind::Command | ModelKind::Umbridge => false,
             _ => own.iter().all(|own| own.name != p.name),
         });
         shared.chain(own)
@@ -61,7 +75,7 @@ impl ModelKind {
     /// Whether it knows the laws of a soil at a point, by Bekker, Mohr and Coulomb: those of plates and rings, and of effects that
     /// enter there.
     pub fn has_soil_laws(self) -> bool {
-        self != ModelKind::Rft
+        !matches!(self, ModelKind::Rft | ModelKind::Command | ModelKind::Umbridge)
     }
 
     /// Whether its wheel is a smooth cylinder, whatever grousers are declared.
@@ -82,7 +96,7 @@ mod tests {
             let names: Vec<&str> = kind.parameters().map(|p| p.name).collect();
             let set: BTreeSet<&str> = names.iter().copied().collect();
             assert_eq!(names.len(), set.len(), "{}", kind.name());
-            assert!(set.contains(WHEEL_RADIUS));
+            assert_eq!(set.contains(WHEEL_RADIUS), !kind.is_external());
         }
         let gamma = ModelKind::WongReece
             .parameters()

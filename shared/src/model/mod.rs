@@ -2,7 +2,8 @@
 //!
 //! # Layout
 //! - `kind`: the models by name; [`settings`]: the table `[model]` of a job; [`spatial`]: settings of the
-//!   three-dimensional model.
+//!   three-dimensional model; `external`, `external_table`, `external_effects`: models
+//!   that are not ours.
 //! - [`effects`]: the effects of a job, their order and their parameters.
 //! - `error`: why a model cannot be set up.
 //! - `names`: what parameter names mean, and whether a set of them is complete.
@@ -15,6 +16,9 @@ mod companion;
 mod condition;
 pub mod effects;
 mod error;
+mod external;
+mod external_effects;
+mod external_table;
 mod kind;
 mod metamodel;
 mod names;
@@ -26,8 +30,9 @@ pub use companion::Companion;
 pub use condition::{PlateCondition, RingCondition, RunCondition};
 pub use effects::{EffectSet, EffectText};
 pub use error::ModelError;
+pub use external::{ExternalModel, ExternalParameter, ExternalSource, RunInput};
 pub use kind::ModelKind;
-pub use names::{check_complete, lookup};
+pub use names::{ParameterScope, check_complete, lookup};
 pub use settings::ModelSettings;
 pub use spatial::SpatialSettings;
 pub use variant::{ModelVariant, equations_of};

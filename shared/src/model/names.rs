@@ -4,19 +4,50 @@ use std::collections::BTreeSet;
 
 use super::effects::EffectSet;
 use super::error::ModelError;
+use super::external::ExternalModel;
 use super::kind::ModelKind;
 use crate::file::unknown_word;
-use crate::parameters::{ParameterBounds, RING_TRANSFER, SPATIAL, WHEEL_RADIUS, of_models};
+use crate::parameters::{BASE, ParameterBounds, RING_TRANSFER, SPATIAL, WHEEL_RADIUS, of_models};
+
+/// What gives the names of parameters their meaning.
+#[derive(Debug, Clone, Copy)]
+pub struct ParameterScope<'a> {
+    /// The wheels of the experiment.
+    pub wheels: &'a BTreeSet<&'a str>,
+    /// The effects of the job.
+    pub effects: &'a EffectSet,
+    /// The model, where it is not ours: then it has its own parameters.
+    pub external: Option<&'a ExternalModel>,
+}
+
+impl ParameterScope<'_> {
+    /// A parameter of the model itself.
+    fn of_model(&self, name: &str) -> Option<ParameterBounds> {
+        let Some(model) = self.external else {
+            return of_models().find(|p| p.name == name).map(ParameterBounds::from);
+        };
+        // the radius of the rim, in place of the experiment's
+        let radius = BASE.iter().filter(|p| p.name == WHEEL_RADIUS);
+        let mut radius = radius.filter(|p| p.name == name).map(ParameterBounds::from);
+        let own = model.parameter(name).map(|parameter| parameter.bounds());
+        own.or_else(|| radius.next())
+    }
+
+    fn unknown(&self, name: &str) -> ModelError {
+        let known: Vec<&str> = match self.external {
+            None => of_models().map(|p| p.name).collect(),
+            Some(model) => model.parameters.iter().map(|p| p.name.as_str()).collect(),
+        };
+        ModelError::Unknown(unknown_word("parameter", name, known))
+    }
+}
 
 /// Unit and bounds of a parameter by name: of the model, of one of its wheels, of an effect.
 ///
 /// # Errors
 /// [`ModelError`] names the unknown name and the nearest known one.
-pub fn lookup(
-    name: &str,
-    wheels: &BTreeSet<&str>,
-    effects: &EffectSet,
-) -> Result<ParameterBounds, ModelError> {
+pub fn lookup(name: &str, scope: &ParameterScope) -> Result<ParameterBounds, ModelError> {
+    let wheels = scope.wheels;
     if name == RING_TRANSFER {
         return Ok(ParameterBounds {
             unit: "1".to_owned(),
@@ -27,25 +58,23 @@ pub fn lookup(
     let (stem, wheel) = name
         .split_once('.')
         .map_or((name, None), |(stem, wheel)| (stem, Some(wheel)));
-    let found = of_models().find(|p| p.name == stem);
-    match (found, wheel) {
-        (Some(p), None) => Ok(p.into()),
-        (Some(p), Some(w)) if p.name == WHEEL_RADIUS => {
+    match (scope.of_model(stem), wheel) {
+        (Some(found), None) => Ok(found),
+        (Some(found), Some(w)) if stem == WHEEL_RADIUS => {
             if wheels.contains(w) {
-                Ok(p.into())
+                Ok(found)
             } else {
                 let known = wheels.iter().copied();
                 Err(ModelError::Unknown(unknown_word("wheel", w, known)))
             }
         }
-        (Some(p), Some(_)) => Err(ModelError::Invalid(format!(
-            "parameter {} belongs to the soil, not to one wheel: \"{name}\"",
-            p.name
+        (Some(_), Some(_)) => Err(ModelError::Invalid(format!(
+            "parameter {stem} belongs to the soil, not to one wheel: \"{name}\""
         ))),
-        (None, _) => effects.lookup(name, wheels).unwrap_or_else(|| {
-            let known = of_models().map(|p| p.name);
-            Err(ModelError::Unknown(unknown_word("parameter", name, known)))
-        }),
+        (None, _) => {
+            let of_effect = scope.effects.lookup(name, wheels);
+            of_effect.unwrap_or_else(|| Err(scope.unknown(name)))
+        }
     }
 }
 
@@ -59,13 +88,33 @@ pub fn lookup(
 pub fn check_complete(
     kind: ModelKind,
     names: &BTreeSet<&str>,
-    wheels: &BTreeSet<&str>,
-    effects: &EffectSet,
+    scope: &ParameterScope,
 ) -> Result<(), ModelError> {
     for name in names {
-        lookup(name, wheels, effects)?;
-        check_kind(kind, name)?;
+        lookup(name, scope)?;
+        if scope.external.is_none() {
+            check_kind(kind, name)?;
+        }
     }
+    match scope.external {
+        None => check_soil(kind, names)?,
+        Some(model) => {
+            let mut own = model.parameters.iter();
+            if let Some(unset) = own.find(|p| !names.contains(p.name.as_str())) {
+                return Err(ModelError::Unset(unset.name.clone()));
+            }
+        }
+    }
+    let per_wheel = names.iter().any(|n| n.starts_with("wheel_radius_m."));
+    if names.contains(WHEEL_RADIUS) && per_wheel {
+        let message = "wheel_radius_m is given both for all wheels and for one wheel";
+        return Err(ModelError::Incomplete(message.to_owned()));
+    }
+    scope.effects.check_complete(names, scope.wheels)
+}
+
+/// Checks that names determine the soil of our models.
+fn check_soil(kind: ModelKind, names: &BTreeSet<&str>) -> Result<(), ModelError> {
     let incomplete = |message: &str| Err(ModelError::Incomplete(message.to_owned()));
     let has = |name| names.contains(name);
     if let Some(own) = kind.parameters().find(|p| p.prior.is_some() && !has(p.name)) {
@@ -85,11 +134,7 @@ pub fn check_complete(
             return Err(ModelError::Unset(name.to_owned()));
         }
     }
-    let per_wheel = names.iter().any(|n| n.starts_with("wheel_radius_m."));
-    if has("wheel_radius_m") && per_wheel {
-        return incomplete("wheel_radius_m is given both for all wheels and for one wheel");
-    }
-    effects.check_complete(names, wheels)
+    Ok(())
 }
 
 /// Checks that a base parameter is one of the model's; those of a terrain are refused where it is known whether a wheel rolls.
@@ -118,13 +163,20 @@ mod tests {
     use super::*;
     use crate::parameters::check_value;
 
+    fn scope<'a>(wheels: &'a BTreeSet<&'a str>, effects: &'a EffectSet) -> ParameterScope<'a> {
+        ParameterScope {
+            wheels,
+            effects,
+            external: None,
+        }
+    }
+
     fn check(names: &[&str]) -> Result<(), ModelError> {
         let (wheels, none) = (BTreeSet::from(["smooth"]), EffectSet::default());
         check_complete(
             ModelKind::QuasiStatic,
             &names.iter().copied().collect(),
-            &wheels,
-            &none,
+            &scope(&wheels, &none),
         )
     }
 
@@ -132,7 +184,7 @@ mod tests {
     fn a_model_needs_its_own_parameters_and_no_other_s() {
         let none = (BTreeSet::from(["smooth"]), EffectSet::default());
         let check = |kind, names: &[&str]| {
-            let names = names.iter().copied().collect();
+            let names: BTreeSet<&str> = names.iter().copied().collect();
             check_complete(kind, &names, &none.0, &none.1).map_err(|e| e.to_string())
         };
         let rft = ["xi_n_pa_m", "surface_friction", "wheel_radius_m.smooth"];
@@ -182,8 +234,7 @@ mod tests {
     fn a_radius_of_an_unknown_wheel_names_the_nearest() {
         let error = lookup(
             "wheel_radius_m.smoth",
-            &BTreeSet::from(["smooth"]),
-            &EffectSet::default(),
+            &scope(&BTreeSet::from(["smooth"]), &EffectSet::default()),
         )
         .unwrap_err();
         assert_eq!(
@@ -196,7 +247,7 @@ mod tests {
     fn a_parameter_of_an_effect_has_a_unit_and_a_bound() {
         let name = "janosi_hanamoto.shear_modulus_m";
         let effects = EffectSet::choose("job.toml", (&[], &[]), [name], &Default::default()).unwrap();
-        let lookup = |name: &str| lookup(name, &BTreeSet::from(["w"]), &effects);
+        let lookup = |name: &str| lookup(name, &scope(&BTreeSet::from(["w"]), &effects));
         assert_eq!(
             check_value(&lookup(name).unwrap(), name, -0.01)
                 .unwrap_err()
@@ -216,13 +267,14 @@ mod tests {
 
     #[test]
     fn a_value_outside_its_bounds_names_value_unit_and_bound() {
-        let phi = lookup("friction_angle_deg", &BTreeSet::new(), &EffectSet::default()).unwrap();
+        let (wheels, none) = (BTreeSet::new(), EffectSet::default());
+        let phi = lookup("friction_angle_deg", &scope(&wheels, &none)).unwrap();
         let error = check_value(&phi, "friction_angle_deg", 95.0).unwrap_err();
         assert_eq!(
             error.to_string(),
             "friction_angle_deg = 95 deg lies outside [0, 89] deg"
         );
-        let n = lookup("n", &BTreeSet::new(), &EffectSet::default()).unwrap();
+        let n = lookup("n", &scope(&wheels, &none)).unwrap();
         let error = check_value(&n, "n", -1.0).unwrap_err();
         assert_eq!(error.to_string(), "n = -1 lies outside [0.01, 10]");
     }

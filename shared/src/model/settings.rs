@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use super::effects::EffectSet;
 use super::error::ModelError;
+use super::external::ExternalModel;
+use super::external_table;
 use super::kind::ModelKind;
 use super::spatial::SpatialSettings;
 use formula::catalogue;
@@ -18,6 +20,8 @@ pub struct ModelSettings {
     pub kind: ModelKind,
     /// Settings of the three-dimensional model.
     pub spatial: Option<SpatialSettings>,
+    /// The model, where it is not ours.
+    pub external: Option<ExternalModel>,
     /// Parameters that are fixed.
     pub fixed: BTreeMap<String, f64>,
     /// Effects of the catalogue that are listed.
@@ -32,47 +36,46 @@ impl ModelSettings {
     /// # Errors
     /// [`ModelError`] names the key, the value and what is allowed.
     pub fn from_table(table: &toml::Table) -> Result<Self, ModelError> {
-        let mut kind = None;
-        let mut fixed = BTreeMap::new();
-        let mut spatial = toml::Table::new();
+        let kind = kind_of(table)?;
+        let (mut spatial, mut own) = (toml::Table::new(), toml::Table::new());
+        let mut others = Vec::new();
         let (mut effects, mut effect_files) = (Vec::new(), Vec::new());
         for (key, value) in table {
-            match (key.as_str(), value) {
-                ("kind", toml::Value::String(name)) => {
-                    let known = ModelKind::ALL.map(ModelKind::name);
-                    let unknown = || ModelError::Unknown(unknown_word("kind", name, known));
-                    kind = Some(ModelKind::find(name).ok_or_else(unknown)?);
+            match key.as_str() {
+                "kind" => {}
+                "effects" => effects = words("effects", value)?,
+                "effect_files" => effect_files = words("effect_files", value)?,
+                key if kind.is_external() && external_table::KEYS.contains(&key) => {
+                    own.insert(key.to_owned(), value.clone());
                 }
-                ("effects", names) => effects = words("effects", names)?,
-                ("effect_files", names) => effect_files = words("effect_files", names)?,
-                (key, value) if SpatialSettings::KEYS.contains(&key) => {
+                key if SpatialSettings::KEYS.contains(&key) => {
                     spatial.insert(key.to_owned(), value.clone());
                 }
-                (key, value) => {
-                    fixed.insert(key.to_owned(), fixed_parameter(key, value)?);
-                }
+                key => others.push((key, value)),
             }
         }
-        let missing = || {
-            let known = ModelKind::ALL.map(|kind| format!("\"{}\"", kind.name()));
-            ModelError::Incomplete(format!("kind is missing: {}", known.join(", ")))
+        let external = match kind.is_external() {
+            true => Some(external_table::external(kind, &own)?),
+            false => None,
         };
-        let kind = kind.ok_or_else(missing)?;
-        let spatial = match kind {
-            ModelKind::Scm => Some(SpatialSettings::from_table(spatial)?),
-            other => match spatial.keys().next() {
-                Some(key) => {
-                    let name = other.name();
-                    return Err(ModelError::Invalid(format!(
-                        "{key}: {name} has no terrain of nodes; use kind = \"scm\""
-                    )));
-                }
-                None => None,
-            },
+        let mut fixed = BTreeMap::new();
+        for (key, value) in others {
+            fixed.insert(key.to_owned(), fixed_parameter(key, value, external.as_ref())?);
+        }
+        let spatial = match (kind, spatial.keys().next()) {
+            (ModelKind::Scm, _) => Some(SpatialSettings::from_table(spatial)?),
+            (_, None) => None,
+            (kind, Some(key)) => {
+                return Err(ModelError::Invalid(format!(
+                    "{key}: {} has no terrain of nodes; use kind = \"scm\"",
+                    kind.name()
+                )));
+            }
         };
         let mut settings = ModelSettings {
             kind,
             spatial,
+            external,
             fixed,
             effects: Vec::new(),
             effect_files: Vec::new(),
@@ -129,17 +132,47 @@ pub fn unknown_effect(name: &str) -> String {
     )
 }
 
-fn fixed_parameter(key: &str, value: &toml::Value) -> Result<f64, ModelError> {
+/// The value of `kind`.
+fn kind_of(table: &toml::Table) -> Result<ModelKind, ModelError> {
+    let known = ModelKind::ALL.map(ModelKind::name);
+    let list = known.map(|name| format!("\"{name}\"")).join(", ");
+    match table.get("kind") {
+        Some(toml::Value::String(name)) => {
+            let found = ModelKind::ALL.into_iter().find(|kind| kind.name() == name);
+            found.ok_or_else(|| ModelError::Unknown(unknown_word("kind", name, known)))
+        }
+        Some(other) => Err(ModelError::Invalid(format!(
+            "kind = {other} must be one of {list}"
+        ))),
+        None => Err(ModelError::Incomplete(format!("kind is missing: one of {list}"))),
+    }
+}
+
+fn fixed_parameter(
+    key: &str,
+    value: &toml::Value,
+    external: Option<&ExternalModel>,
+) -> Result<f64, ModelError> {
     if let Some(within) = value.as_table().and_then(|table| table.keys().next()) {
         return Err(ModelError::Invalid(format!(
             "write the name in quotes: \"{key}.{within}\""
         )));
     }
     // the part before a dot may be an effect of a file that is read later
-    let base = parameters::of_models().map(|p| p.name);
-    if !key.contains('.') && !base.clone().any(|name| name == key) {
-        let names = base.chain(["kind", "effects", "effect_files"]);
-        let names = names.chain(SpatialSettings::KEYS);
+    let base: Vec<&str> = match external {
+        None => parameters::of_models().map(|p| p.name).collect(),
+        Some(model) => {
+            let own = model.parameters.iter().map(|p| p.name.as_str());
+            own.chain(["wheel_radius_m"]).collect()
+        }
+    };
+    if !key.contains('.') && !base.contains(&key) {
+        let keys: &[&str] = match external {
+            None => &SpatialSettings::KEYS,
+            Some(_) => &external_table::KEYS,
+        };
+        let names = base.into_iter().chain(["kind", "effects", "effect_files"]);
+        let names = names.chain(keys.iter().copied());
         return Err(ModelError::Unknown(unknown_word("key", key, names)));
     }
     number(value).ok_or_else(|| ModelError::Invalid(format!("{key} must be a number, not {value}")))

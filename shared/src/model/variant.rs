@@ -11,8 +11,9 @@ use super::companion::Companion;
 use super::condition::{PlateCondition, RingCondition, RunCondition};
 use super::effects::{EffectSet, EffectText};
 use super::error::ModelError;
+use super::external::ExternalModel;
 use super::kind::ModelKind;
-use super::names::{check_complete, lookup};
+use super::names::{ParameterScope, check_complete, lookup};
 use super::settings::ModelSettings;
 use super::spatial::SpatialSettings;
 use crate::channel::Channel;
@@ -29,6 +30,9 @@ pub struct ModelVariant {
     /// Settings of the three-dimensional model; absent for the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spatial: Option<SpatialSettings>,
+    /// The model, where it is not ours.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub external: Option<ExternalModel>,
     /// The effects, in the order of their evaluation.
     pub effects: Vec<EffectText>,
     /// Names of the free parameters, in the order of every parameter vector.
@@ -64,6 +68,9 @@ pub struct ModelVariant {
     /// Readings of rings to predict as well.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rings: Vec<RingCondition>,
+    /// Parameters at which a model that is not ours must answer: where it fails, they tell whether the machine is at fault.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub probe: Vec<f64>,
     /// The quasi-static model for a metamodel, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub companion: Option<Companion>,
@@ -83,8 +90,15 @@ impl ModelVariant {
         runs: impl IntoIterator<Item = &'a TestRun>,
     ) -> Result<Self, ModelError> {
         let wheels = experiment.wheel_names();
+        let scope = ParameterScope {
+            wheels: &wheels,
+            effects,
+            external: settings.external.as_ref(),
+        };
         let mut fixed = settings.fixed.clone();
-        for parameter in settings.kind.parameters() {
+        let of_job = settings.external.iter().flat_map(|model| &model.parameters);
+        let of_job = of_job.filter_map(|p| p.known().filter(|known| known.unit == p.unit));
+        for parameter in settings.kind.parameters().chain(of_job) {
             let Some(default) = parameter.default else {
                 continue;
             };
@@ -93,7 +107,7 @@ impl ModelVariant {
             }
         }
         for (name, &value) in &fixed {
-            check_value(&lookup(name, &wheels, effects)?, name, value)?;
+            check_value(&lookup(name, &scope)?, name, value)?;
         }
         if let Some(twice) = parameters.iter().find(|p| fixed.contains_key(*p)) {
             return Err(ModelError::Incomplete(format!(
@@ -105,7 +119,7 @@ impl ModelVariant {
             .chain(fixed.keys())
             .map(String::as_str)
             .collect();
-        check_complete(settings.kind, &names, &wheels, effects)?;
+        check_complete(settings.kind, &names, &scope)?;
         check_grousers(effects, &names, experiment)?;
         let slides = settings.kind == ModelKind::Scm;
         let (weighing, walled, drifting) = (
@@ -147,6 +161,7 @@ impl ModelVariant {
         let variant = ModelVariant {
             kind: settings.kind,
             spatial: settings.spatial,
+            external: settings.external.clone(),
             effects: effects.texts(),
             parameters,
             fixed,
@@ -155,11 +170,13 @@ impl ModelVariant {
             bin_length_m,
             conditions,
             protocol: experiment.protocol.clone(),
-            channels: Vec::new(),
+            // all that the model has
+            channels: settings.external.iter().flat_map(|m| m.outputs.clone()).collect(),
             stiffness_sensitivity: false,
             histories: false,
             plates: Vec::new(),
             rings: Vec::new(),
+            probe: Vec::new(),
             companion: None,
         };
         variant.check_expressible(effects)?;
@@ -184,10 +201,16 @@ impl ModelVariant {
             .map(String::as_str)
     }
 
-    /// Version of the model that a worker with these equations computes: that of the equations and that of the effects. A
-    /// calibration is pinned to both; [`equations_of`] is the part that a worker knows.
+    /// Version of the model that a worker with these equations computes: that of the equations, that which the job states of a
+    /// model that is not ours, and that of the effects. A calibration is pinned to all; [`equations_of`] is the part that a
+    /// worker knows.
     pub fn model_version(&self, equations: &str) -> String {
-        format!("{equations}{}", EffectSet::version(&self.effects))
+        let stated = self
+            .external
+            .as_ref()
+            .map(|model| format!("+version.{}", model.version));
+        let stated = stated.unwrap_or_default();
+        format!("{equations}{stated}{}", EffectSet::version(&self.effects))
     }
 
     /// Name of the variant on the wire: the first 128 bits of the SHA-256 of its JSON, in hex.

@@ -19,7 +19,7 @@ fn another_protocol_is_refused_with_426() {
     assert_eq!(response.json()["error"]["type"], "protocol_mismatch");
     assert_eq!(
         response.json()["error"]["message"],
-        "worker old speaks protocol 10, this coordinator 9"
+        "worker old speaks protocol 11, this coordinator 10"
     );
     assert_eq!(service.metric("grouser_leases_given_total"), 0);
 }

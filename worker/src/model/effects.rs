@@ -47,6 +47,7 @@ impl EffectMap {
             ModelKind::Scm => ModelForm::Spatial,
             ModelKind::WongReece => ModelForm::WongReece,
             ModelKind::Rft => ModelForm::Rft,
+            ModelKind::Command | ModelKind::Umbridge => ModelForm::Outside,
         };
         let effects = CompiledEffects::compile(model, set.iter())?;
         let mut sources: Vec<Sources> = Vec::new();

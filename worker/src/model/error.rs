@@ -24,6 +24,9 @@ pub enum CompileError {
     /// The three-dimensional model comes without its settings.
     #[error("kind = \"scm\" comes without its settings")]
     NoSettings,
+    /// A model that is not ours comes without its description.
+    #[error("a model that is not ours comes without its description")]
+    NoDescription,
     /// A variant was asked for by another hash than it has.
     #[error("variant {asked} came with hash {own}: coordinator and worker read it differently")]
     OtherHash {

@@ -3,7 +3,7 @@
 use scm::spatial::SpatialRun;
 use scm::{Averages, Condition, Wheel};
 use shared::channel::Channel;
-use shared::model::{EffectSet, ModelKind, ModelVariant, PlateCondition, RingCondition};
+use shared::model::{EffectSet, ModelKind, ModelVariant, PlateCondition, RingCondition, RunCondition};
 use shared::outcome::{Observables, Outcome, ParameterRejection};
 
 use super::bevameter::CompiledBevameter;
@@ -66,14 +66,7 @@ impl ForwardModel {
                     .iter()
                     .position(|n| *n == c.wheel)
                     .ok_or_else(|| CompileError::UnknownWheel(c.wheel.clone()))?;
-                let condition = Condition {
-                    slip: c.slip,
-                    wheel_load_n: c.wheel_load_n,
-                    sled_speed_m_s: c.sled_speed_m_s,
-                    slip_angle_rad: c.slip_angle_deg.to_radians(),
-                    pass: c.pass,
-                };
-                Ok((wheel, condition))
+                Ok((wheel, condition(c)))
             })
             .collect::<Result<_, CompileError>>()?;
         Ok(ForwardModel {
@@ -259,6 +252,17 @@ impl ForwardModel {
             site: self.effects.site(position),
         };
         settled.simulate(&run, effects.on_wheel(*place))
+    }
+}
+
+/// A condition of a variant as the physics has it.
+pub(super) fn condition(c: &RunCondition) -> Condition {
+    Condition {
+        slip: c.slip,
+        wheel_load_n: c.wheel_load_n,
+        sled_speed_m_s: c.sled_speed_m_s,
+        slip_angle_rad: c.slip_angle_deg.to_radians(),
+        pass: c.pass,
     }
 }
 

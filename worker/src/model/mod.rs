@@ -4,6 +4,7 @@
 //! - `variant`: [`CompiledVariant`], a forward model with its companion; `cache`: the compiled variants in memory.
 //! - `forward`: the forward model; `physics`: which equations it solves; `spatial`: what the three-dimensional one needs; `bevameter`:
 //!   plates and rings.
+//! - `external`: a model that is not ours, with the effects around it.
 //! - `companion`: the quasi-static model that a metamodel evaluates beside the three-dimensional one.
 //! - `error`: why a variant cannot be evaluated here.
 //! - `effects`: the effects, compiled, with the sources of their parameters.
@@ -15,6 +16,7 @@ mod cache;
 mod companion;
 mod effects;
 mod error;
+mod external;
 mod forward;
 mod parameters;
 mod physics;

@@ -55,6 +55,7 @@ impl Physics {
     pub(super) fn new(variant: &ModelVariant) -> Result<Self, CompileError> {
         Ok(match variant.kind {
             ModelKind::QuasiStatic => Physics::QuasiStatic(SoilMap::new(variant)?),
+            ModelKind::Command | ModelKind::Umbridge => return Err(CompileError::NoDescription),
             ModelKind::WongReece => Physics::WongReece(SoilMap::new(variant)?, WongReeceMap::new(variant)?),
             ModelKind::Scm => Physics::Scm(SoilMap::new(variant)?, Box::new(SpatialModel::new(variant)?)),
             ModelKind::Rft => {

@@ -1,38 +1,57 @@
 //! A variant, compiled: its forward model, and the companion of a metamodel.
 
+use std::sync::Arc;
+
 use scm::Averages;
 use scm::spatial::SpatialRun;
+use shared::exchange::RepeatedAnswer;
 use shared::model::ModelVariant;
 use shared::outcome::{Fault, Outcome, ParameterRejection};
 use statistics::{Subchain, SubchainEnd};
 
 use super::companion::CompiledCompanion;
 use super::error::CompileError;
+use super::external::OutsideModel;
 use super::forward::ForwardModel;
+use crate::external::allowed::AllowedModels;
 
 /// A variant ready to evaluate.
 #[derive(Debug)]
 pub struct CompiledVariant {
-    forward: ForwardModel,
+    model: Model,
     /// The quasi-static model for a metamodel, where there is one.
     companion: Option<CompiledCompanion>,
 }
 
+/// Whose model a variant has.
+#[derive(Debug)]
+enum Model {
+    Ours(Box<ForwardModel>),
+    Outside(Box<OutsideModel>),
+}
+
 impl CompiledVariant {
-    /// Resolves the names of a variant.
+    /// Resolves the names of a variant; `models` are those that are not ours and may be run.
     ///
     /// # Errors
     /// [`CompileError`] names what this worker does not know or cannot express.
-    pub fn new(variant: &ModelVariant) -> Result<Self, CompileError> {
+    pub fn new(variant: &ModelVariant, models: &Arc<AllowedModels>) -> Result<Self, CompileError> {
+        let model = match &variant.external {
+            None => Model::Ours(Box::new(ForwardModel::new(variant)?)),
+            Some(description) => Model::Outside(Box::new(OutsideModel::new(variant, description, models)?)),
+        };
         Ok(CompiledVariant {
-            forward: ForwardModel::new(variant)?,
+            model,
             companion: CompiledCompanion::new(variant)?,
         })
     }
 
     /// Number of conditions that an evaluation simulates.
     pub fn runs(&self) -> usize {
-        self.forward.runs()
+        match &self.model {
+            Model::Ours(forward) => forward.runs(),
+            Model::Outside(model) => model.runs(),
+        }
     }
 
     /// Simulates every condition at one parameter vector; the first rejection ends it.
@@ -42,7 +61,10 @@ impl CompiledVariant {
 
     /// The same, handing over each run of a model that rolls in time, in the order of the conditions.
     pub fn evaluate_and_keep(&self, theta: &[f64], keep: impl FnMut(SpatialRun)) -> Outcome {
-        let mut outcome = self.forward.evaluate(theta, keep);
+        let mut outcome = match &self.model {
+            Model::Ours(forward) => forward.evaluate(theta, keep),
+            Model::Outside(model) => model.evaluate(theta),
+        };
         if let (Outcome::Evaluated(observables), Some(companion)) = (&mut outcome, &self.companion) {
             observables.coarse = companion.values(theta);
         }
@@ -51,7 +73,18 @@ impl CompiledVariant {
 
     /// Simulates every condition at one parameter vector; a rejection of one leaves the others.
     pub fn each(&self, theta: &[f64]) -> Vec<Result<Averages, ParameterRejection>> {
-        self.forward.each(theta)
+        match &self.model {
+            Model::Ours(forward) => forward.each(theta),
+            Model::Outside(model) => vec![Err(model.no_single_runs()); model.runs()],
+        }
+    }
+
+    /// Asks a model that is not ours the same once more, and tells how far the answers differ: ours give the same bits.
+    pub fn repeat(&self, theta: &[f64], first: &Outcome) -> Option<RepeatedAnswer> {
+        match (&self.model, first) {
+            (Model::Outside(model), Outcome::Evaluated(observables)) => model.repeat(theta, observables),
+            _ => None,
+        }
     }
 
     /// Evaluates what a lease asks for: the model at `theta`, or at the end of a subchain that starts there, unless that
@@ -65,15 +98,18 @@ impl CompiledVariant {
             return (Some(self.evaluate(theta)), None);
         };
         let fault = |message: String| (Some(Outcome::Fault(Fault { message })), None);
+        let Model::Ours(forward) = &self.model else {
+            return fault("a subchain was asked of a model that is not ours".into());
+        };
         let companion = self.companion.as_ref();
         let Some((companion, metamodel)) = companion.and_then(|c| Some((c, c.metamodel.as_ref()?))) else {
             return fault("a subchain was asked of a variant without a metamodel".into());
         };
-        if theta.len() < self.forward.dimension {
-            let (given, needed) = (theta.len(), self.forward.dimension);
+        if theta.len() < forward.dimension {
+            let (given, needed) = (theta.len(), forward.dimension);
             return fault(format!("theta has {given} entries, the variant has {needed}"));
         }
-        let model = |theta: &[f64]| theta[..self.forward.dimension].to_vec();
+        let model = |theta: &[f64]| theta[..forward.dimension].to_vec();
         match metamodel.run(subchain, theta, |theta| companion.values(&model(theta))) {
             Ok(end) if end.accepted == 0 => (None, Some(end)),
             Ok(end) => (Some(self.evaluate(&model(&end.theta))), Some(end)),

@@ -13,6 +13,7 @@ pub use error::SimulateError;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use rand::{RngExt, SeedableRng};
 use scm::spatial::History;
@@ -24,6 +25,7 @@ use shared::outcome::{Observables, Outcome};
 use shared::text_file::{read_beside, read_text};
 
 use crate::config::Simulate;
+use crate::external::allowed::AllowedModels;
 use crate::model::{CompiledBevameter, CompiledVariant, without_action};
 
 /// Simulates an experiment and writes each table that is asked for as CSV.
@@ -33,7 +35,7 @@ use crate::model::{CompiledBevameter, CompiledVariant, without_action};
 ///
 /// # Errors
 /// [`SimulateError`].
-pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
+pub fn simulate(command: &Simulate, models: &Arc<AllowedModels>) -> Result<(), SimulateError> {
     let name = command.experiment.display().to_string();
     let experiment = Experiment::parse(&name, &Experiment::read_files(&command.experiment)?)?;
     for (flag, key, asked, rows) in [
@@ -51,7 +53,7 @@ pub fn simulate(command: &Simulate) -> Result<(), SimulateError> {
     let variant = variant(&experiment, runs, &command.model, &command.parameters)?;
     let mut tables: Vec<(PathBuf, Vec<u8>)> = Vec::new();
     if let Some(path) = &command.out {
-        let compiled = CompiledVariant::new(&variant)
+        let compiled = CompiledVariant::new(&variant, models)
             .map_err(|e| FileError::whole(&command.model.display().to_string(), e.to_string()))?;
         let mut rolled = Vec::new();
         let runs = wheel_runs(&experiment, &variant, &compiled, command, &mut rolled)?;
@@ -257,7 +259,9 @@ fn table(
             [run.slip, run.wheel_load_n, run.sled_speed_m_s, run.slip_angle_deg].map(|x| x.to_string()),
         );
         row.push(run.pass.to_string());
-        row.extend(Channel::ALL.map(|c| (observables.channel(c)[i] + noise[i][c.index()]).to_string()));
+        // A model that is not ours may lack a channel: then it is not measured.
+        let noisy = |c: Channel| Some((observables.channel(c).get(i)? + noise[i][c.index()]).to_string());
+        row.extend(Channel::ALL.map(|c| noisy(c).unwrap_or_default()));
         row.push(run.usage.name().to_owned());
         writer.write_record(&row)?;
     }

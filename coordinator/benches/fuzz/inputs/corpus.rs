@@ -106,12 +106,14 @@ fn messages() -> Vec<ExchangeRequest> {
         seal: "0123456789abcdef0123456789abcdef".into(),
         end: None,
         outcome,
+        repeated: None,
     };
     let message = "out of memory".to_owned();
     let full = ExchangeRequest {
         worker: "lab-3".into(),
         protocol: PROTOCOL_VERSION,
         model_version: "scm-6".into(),
+        models: [("wheel.py".to_owned(), "command-0123456789abcdef".to_owned())].into(),
         results: vec![
             result(Some(Outcome::Evaluated(observables))),
             result(Some(Outcome::Fault(Fault { message }))),

@@ -417,6 +417,7 @@ impl Coordinator<'_> {
                 worker: worker.to_owned(),
                 protocol: shared::exchange::PROTOCOL_VERSION,
                 model_version: EQUATIONS.into(),
+                models: Default::default(),
                 results: Vec::new(),
                 holding: vec![lease],
                 returned: Vec::new(),

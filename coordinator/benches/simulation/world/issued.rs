@@ -37,6 +37,7 @@ impl Issued<'_> {
             seal: self.lease.seal.clone(),
             end: self.answered.end.clone(),
             outcome: self.answered.outcome.clone(),
+            repeated: None,
         }
     }
 }

@@ -118,6 +118,8 @@ impl<'a> Table<'a> {
                 self.message.clone_from(message);
                 self.busy_ms = *busy_ms;
             }
+            // Of our models nothing is asked for twice by one worker.
+            Fact::Repeated { .. } => {}
             Fact::ModelVersion { version, .. } => self.model_version = Some(version.clone()),
             Fact::Fault {
                 evaluation,
@@ -226,6 +228,7 @@ pub(crate) fn calibration_of(fact: &Fact) -> i64 {
         | Fact::Discovery { calibration, .. }
         | Fact::State { calibration, .. }
         | Fact::ModelVersion { calibration, .. }
+        | Fact::Repeated { calibration, .. }
         | Fact::Confirmed { calibration, .. }
         | Fact::Quarantined { calibration, .. }
         | Fact::Rewound { calibration, .. }

@@ -516,6 +516,7 @@ fn bare(worker: String, version: &str) -> ExchangeRequest {
         worker,
         protocol: PROTOCOL_VERSION,
         model_version: version.into(),
+        models: Default::default(),
         results: Vec::new(),
         holding: Vec::new(),
         returned: Vec::new(),

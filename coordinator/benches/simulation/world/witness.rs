@@ -177,6 +177,8 @@ impl<'a> Witness<'a> {
                 })
             }
             Fact::State { state, message, .. } => self.state(id, table, *state, message.as_deref(), source),
+            // Of our models nothing is asked for twice by one worker.
+            Fact::Repeated { .. } => Ok(()),
             Fact::ModelVersion { version, .. } => {
                 let equations = equations_of(version);
                 self.live

@@ -172,6 +172,7 @@ impl Worker {
             worker: self.name.clone(),
             protocol: PROTOCOL_VERSION,
             model_version: self.version.to_owned(),
+            models: Default::default(),
             results: results.clone(),
             holding,
             returned: std::mem::take(&mut self.returned),

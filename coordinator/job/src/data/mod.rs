@@ -5,5 +5,6 @@ pub(crate) mod confounded_order;
 pub(crate) mod error;
 pub(crate) mod likelihood;
 pub(crate) mod noise;
+pub(crate) mod outside_model;
 pub(crate) mod predicted_values;
 pub(crate) mod soil_scatter;

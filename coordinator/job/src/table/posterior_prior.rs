@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use inference::diagnostics::mean_and_sd;
 use shared::file::{FileError, number, unknown_word};
-use shared::model::EffectSet;
+use shared::model::ParameterScope;
 use shared::parameters::{NOISE_PREFIX, RING_TRANSFER, bekker_moduli};
 use statistics::{Distribution, Marginal};
 
@@ -114,8 +114,7 @@ impl PosteriorPrior {
         text: &str,
         fixed: impl Fn(&str) -> Option<f64>,
         is_said: impl Fn(&str) -> bool,
-        wheels: &BTreeSet<&str>,
-        effects: &EffectSet,
+        scope: &ParameterScope,
     ) -> Result<(JointPrior, Vec<FreeParameter>), FileError> {
         let file = self.file.clone();
         let whole = |message: String| FileError::whole(&file, message);
@@ -130,7 +129,7 @@ impl PosteriorPrior {
             if of_errors || ["log_likelihood", "log_prior"].contains(&name.as_str()) {
                 continue;
             }
-            match shared::model::lookup(name, wheels, effects) {
+            match shared::model::lookup(name, scope) {
                 Ok(quantity) if !is_said(name) => covered.push((position, name.clone(), quantity)),
                 _ => unused.push(name.clone()),
             }

@@ -6,8 +6,8 @@ use formula::{Effect, Parameter};
 use shared::channel::Channel;
 use shared::experiment::Scatter;
 use shared::file::{FileError, number, unknown_word};
-use shared::model::EffectSet;
 use shared::model::effects::parameter_name;
+use shared::model::{EffectSet, ParameterScope};
 use shared::parameters::{self, BaseParameter, NOISE_PREFIX, ParameterBounds, behind};
 use statistics::{Distribution, Marginal};
 
@@ -43,13 +43,9 @@ pub(crate) enum ParsedPrior {
 
 impl PriorEntry {
     /// Reads the entry and checks it against the parameter's physical bounds.
-    pub(crate) fn parse(
-        &self,
-        wheels: &BTreeSet<&str>,
-        effects: &EffectSet,
-    ) -> Result<ParsedPrior, PriorEntryError> {
-        self.check_quotes(wheels, effects)?;
-        let quantity = quantity(&self.name, wheels, effects)?;
+    pub(crate) fn parse(&self, scope: &ParameterScope) -> Result<ParsedPrior, PriorEntryError> {
+        self.check_quotes(scope.wheels, scope.effects)?;
+        let quantity = quantity(&self.name, scope)?;
         if let Some(value) = number(&self.value) {
             if self.name.starts_with(NOISE_PREFIX) {
                 return Err(PriorEntryError::FixedNoise(self.name.clone()));
@@ -190,13 +186,9 @@ pub(crate) fn marginal(value: &toml::Value, quantity: &ParameterBounds) -> Resul
 }
 
 /// Unit and physical bounds of a parameter.
-fn quantity(
-    name: &str,
-    wheels: &BTreeSet<&str>,
-    effects: &EffectSet,
-) -> Result<ParameterBounds, PriorEntryError> {
+fn quantity(name: &str, scope: &ParameterScope) -> Result<ParameterBounds, PriorEntryError> {
     let Some(column) = name.strip_prefix(NOISE_PREFIX) else {
-        return Ok(shared::model::lookup(name, wheels, effects)?);
+        return Ok(shared::model::lookup(name, scope)?);
     };
     let unit = match Channel::ALL.into_iter().find(|c| c.column() == column) {
         Some(channel) => channel.unit(),

@@ -26,6 +26,7 @@ impl FinishedCalibration {
             .disputed()
             .into_iter()
             .chain(self.quarantined())
+            .chain(self.not_deterministic())
             .chain(self.unbalanced())
             .collect();
         flags.extend(findings_that_alarm(diagnostics));

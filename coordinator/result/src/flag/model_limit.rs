@@ -2,8 +2,8 @@
 
 use formula::Variable;
 use job::Spec;
-use shared::model::EffectSet;
-use shared::model::ModelKind;
+use shared::experiment::TestRun;
+use shared::model::{EffectSet, ExternalModel, ModelKind, RunInput};
 
 /// What the model leaves out of this job, a sentence each.
 pub fn model_limits(spec: &Spec) -> Vec<String> {
@@ -36,10 +36,36 @@ pub fn model_limits(spec: &Spec) -> Vec<String> {
         ModelKind::Rft => limits.push(
             "rft knows neither cohesion nor memory: every pass is predicted like the first, and no part of the wheel shades another".into(),
         ),
+        ModelKind::Command | ModelKind::Umbridge => {}
         ModelKind::Scm if lugged.is_empty() => {}
         ModelKind::Scm => limits.push(format!(
             "scm includes the grousers of {lugged}, but a height field cannot represent their flanks: thrust beyond their sheared tips is left out"
         )),
     }
+    if let Some(model) = &spec.fit_variant.external {
+        limits.extend(of_external(spec, model));
+    }
     limits
+}
+
+/// What varies in the runs and does not reach a model that is not ours.
+fn of_external(spec: &Spec, model: &ExternalModel) -> Vec<String> {
+    let runs = &spec.experiment.runs;
+    let mut unseen = Vec::new();
+    let mut varies = |inputs: &[RunInput], of: fn(&TestRun) -> f64| {
+        let mut values = runs.iter().map(of);
+        let first = values.next().unwrap_or_default();
+        if values.any(|value| value.to_bits() != first.to_bits()) && !inputs.iter().any(|i| model.takes(*i)) {
+            unseen.extend(inputs.first().map(|input| input.name()));
+        }
+    };
+    let speeds = [RunInput::SledSpeedMS, RunInput::AngularVelocityRadS];
+    varies(&[RunInput::Slip, RunInput::AngularVelocityRadS], |run| run.slip);
+    varies(&[RunInput::WheelLoadN], |run| run.wheel_load_n);
+    varies(&speeds, |run| run.sled_speed_m_s);
+    varies(&[RunInput::Pass], |run| f64::from(run.pass));
+    let name = model.source.name();
+    let sentence =
+        |input: &str| format!("{input} differs between runs, but is not among the inputs of {name}");
+    unseen.into_iter().map(sentence).collect()
 }

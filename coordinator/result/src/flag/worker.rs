@@ -1,5 +1,7 @@
 //! Flags of what workers did wrong.
 
+use shared::channel::Channel;
+
 use super::kind::{Flag, FlagKind};
 use crate::finished_calibration::FinishedCalibration;
 use crate::words::number;
@@ -17,6 +19,13 @@ impl FinishedCalibration {
             1 => String::new(),
             n => format!(", and {} more", n - 1),
         };
+        if self.spec.model.kind.is_external() {
+            let text = format!(
+                "evaluation {} was answered {who} with different results{more}: the model is not deterministic, or its machines differ",
+                first.evaluation
+            );
+            return Some(Flag::plain(FlagKind::Worker, text));
+        }
         let text = format!(
             "evaluation {} was answered {who} with different results{more}: a machine computes wrongly, and no number of this calibration can be trusted; find the machine and repeat the calibration without it",
             first.evaluation
@@ -49,6 +58,28 @@ impl FinishedCalibration {
             .collect()
     }
 
+    /// A model that is not ours and answers the same question in two ways.
+    pub(super) fn not_deterministic(&self) -> Option<Flag> {
+        let repeats = &self.repeats;
+        let sizes: Vec<String> = Channel::ALL
+            .into_iter()
+            .filter(|&channel| repeats.largest.channel(channel) > 0.0)
+            .map(|channel| {
+                let size = number::significant(repeats.largest.channel(channel), 2);
+                format!("{size} {} of {}", channel.unit(), channel.words())
+            })
+            .collect();
+        let refused = repeats.largest.is_refused.then(|| "a refusal".to_owned());
+        let sizes: Vec<String> = sizes.into_iter().chain(refused).collect();
+        let text = format!(
+            "the model is not deterministic: {} of {} evaluations that were asked for twice were answered in two ways, up to {}; add its scatter to the noise, and expect no equal bits of a repeated calibration",
+            repeats.differing,
+            repeats.evaluations,
+            number::list(&sizes)
+        );
+        (repeats.differing > 0).then(|| Flag::plain(FlagKind::Worker, text))
+    }
+
     /// Evaluations that no worker came back from.
     pub(super) fn given_up(&self) -> Option<Flag> {
         let count = number::count(usize::try_from(self.given_up).ok()?, "evaluation");
@@ -65,6 +96,23 @@ mod tests {
 
     use super::*;
     use crate::fixture;
+
+    #[test]
+    fn a_model_that_answers_in_two_ways_is_said_with_the_size_of_it() {
+        let mut calibration = fixture::calibration();
+        assert_eq!(calibration.not_deterministic(), None);
+        calibration.repeats.evaluations = 50;
+        assert_eq!(calibration.not_deterministic(), None);
+        calibration.repeats.differing = 3;
+        calibration.repeats.largest.torque_n_m = 0.0625;
+        let flag = calibration.not_deterministic().unwrap();
+        assert!(flag.text.contains("3 of 50 evaluations"), "{}", flag.text);
+        assert!(
+            flag.text.contains("up to 0.063 N m of torque;") || flag.text.contains("0.062 N m of torque"),
+            "{}",
+            flag.text
+        );
+    }
 
     #[test]
     fn given_up_evaluations_are_counted() {

@@ -132,6 +132,17 @@ impl Missing {
                 not_tried.join(", ")
             ));
         }
+        let outside = record
+            .not_tried
+            .iter()
+            .filter(|effect| !effect.lacks_line())
+            .count();
+        if outside > 0 {
+            text.push(format!(
+                "not judged: {}, of whose cause this model shows nothing",
+                number::count(outside, "effect")
+            ));
+        }
         Missing {
             verdict: Some(record.verdict),
             named,
@@ -229,7 +240,7 @@ fn label(effect: &NamedEffect) -> String {
 /// The effects that were not tried, without the wheels.
 fn folded(record: &Discovery) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for effect in &record.not_tried {
+    for effect in record.not_tried.iter().filter(|effect| effect.lacks_line()) {
         let name = split(&effect.name).name;
         if !names.contains(&name) {
             names.push(name);

@@ -134,6 +134,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool
     let needs: BTreeSet<&str> = record
         .not_tried
         .iter()
+        .filter(|effect| effect.lacks_line())
         .map(|effect| effect.needs.as_str())
         .collect();
     steps.extend(needs.into_iter().map(|needs| {

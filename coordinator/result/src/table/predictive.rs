@@ -124,7 +124,8 @@ fn new_measurements(
             ErrorSd::Known(sd) => sd,
             ErrorSd::Inferred { parameter } => theta[parameter],
         });
-        let mean = observables.channel(channel)[position];
+        // A model that is not ours may lack the channel.
+        let mean = *observables.channel(channel).get(position)?;
         let soil = spec
             .scatters
             .iter()
@@ -134,13 +135,13 @@ fn new_measurements(
             let scale = noise_sd.map(|sd| widened(sd, [m * sd, soil]));
             Component { mean, scale, weight }
         };
-        NewMeasurement {
+        Some(NewMeasurement {
             draw,
             noise_sd,
             components: levels.0[draw][channel.index()].iter().map(component).collect(),
-        }
+        })
     };
-    Some(accepted(calibration, place).map(of_draw).collect())
+    Some(accepted(calibration, place).filter_map(of_draw).collect())
 }
 
 /// One draw of the posterior with one value of the discrepancy.

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use formula::{Hook, Variable};
 use shared::channel::Channel;
 use shared::experiment::{Experiment, RunUse, TestRun};
+use shared::model::ExternalModel;
 
 use super::range::{DependsOn, KNOTS, VariableRange, measured, ranges, rounded};
 use crate::missing_effect::candidate::CandidateEffect;
@@ -136,6 +137,16 @@ fn root_mean_square(runs: &[&TestRun], channel: Channel) -> f64 {
 }
 
 impl Dependence {
+    /// Whether a model shows it: one that is not ours has no stresses, and only the channels that it gives.
+    pub(crate) fn is_shown_by(&self, external: Option<&ExternalModel>) -> bool {
+        let Some(model) = external else {
+            return true;
+        };
+        let has = |channel: Channel| model.outputs.contains(&channel);
+        let knows_variable = self.depends_on != DependsOn::Sinkage || has(Channel::Sinkage);
+        self.acts_on.channel().is_some_and(has) && knows_variable
+    }
+
     /// Name in results: `pressure_z`.
     pub(crate) fn name(&self) -> String {
         format!("{}_{}", self.acts_on.name(), self.depends_on.name())

@@ -7,6 +7,7 @@
 //! - `law`: an effect as one model knows it.
 //! - `node`: pressure, strength and stress at many nodes.
 //! - `channel`: what the rig measures.
+//! - `outside`: effects around a model that is not of this crate.
 //!
 //! Effects follow each other at a hook in the order in which they were compiled; hooks follow each other in the order of
 //! [`Hook::ALL`]. Without an active effect a model runs its base code, bit for bit.
@@ -16,9 +17,11 @@ mod channel;
 mod error;
 mod law;
 mod node;
+mod outside;
 
 pub use error::FormError;
 pub(crate) use node::NodeLaws;
+pub use outside::OutsideRun;
 
 use formula::effect::Mechanism;
 use formula::variable::Variables;
@@ -37,6 +40,8 @@ pub enum ModelForm {
     Rft,
     /// [`spatial`](crate::spatial): patches of the footprint have their own.
     Spatial,
+    /// A model that is not of this crate: effects act on what it is given and on what it answers, see [`OutsideRun`].
+    Outside,
 }
 
 impl ModelForm {
@@ -47,6 +52,7 @@ impl ModelForm {
             ModelForm::WongReece => "wong_reece",
             ModelForm::Rft => "rft",
             ModelForm::Spatial => "scm",
+            ModelForm::Outside => "a model that is not ours",
         }
     }
 
@@ -56,6 +62,7 @@ impl ModelForm {
             ModelForm::QuasiStatic => &[Mechanism::Rebound, Mechanism::FlatPatch],
             ModelForm::WongReece | ModelForm::Rft => &[],
             ModelForm::Spatial => &Mechanism::ALL,
+            ModelForm::Outside => &[],
         }
     }
 
@@ -64,7 +71,7 @@ impl ModelForm {
         use Variable::{BEff, J, KStar, P, Position, Tau, TauMax, Vn, Vt, Z};
         let both = Variables::of(&[P, Z, Vn, Vt, J, Position, TauMax, Tau]);
         match self {
-            ModelForm::QuasiStatic | ModelForm::WongReece | ModelForm::Rft => both,
+            ModelForm::QuasiStatic | ModelForm::WongReece | ModelForm::Rft | ModelForm::Outside => both,
             ModelForm::Spatial => both.with(KStar).with(BEff),
         }
     }

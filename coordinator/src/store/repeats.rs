@@ -1,0 +1,68 @@
+//! How models that are not ours answer what they are asked twice.
+
+use shared::exchange::RepeatedAnswer;
+use sqlx::SqliteConnection;
+
+use super::error::StoreError;
+use super::reader::Reader;
+use record::Repeats;
+
+/// Adds two answers to the count of a calibration.
+pub(super) async fn add(
+    connection: &mut SqliteConnection,
+    calibration: i64,
+    repeated: &RepeatedAnswer,
+) -> Result<(), sqlx::Error> {
+    sqlx::query(
+        "INSERT INTO repeats (calibration, evaluations, differing, refused,
+         drawbar_pull_n, torque_n_m, sinkage_m, lateral_force_n) VALUES (?, 1, ?, ?, ?, ?, ?, ?)
+         ON CONFLICT DO UPDATE SET evaluations = evaluations + 1, differing = differing + excluded.differing,
+         refused = max(refused, excluded.refused), drawbar_pull_n = max(drawbar_pull_n, excluded.drawbar_pull_n),
+         torque_n_m = max(torque_n_m, excluded.torque_n_m), sinkage_m = max(sinkage_m, excluded.sinkage_m),
+         lateral_force_n = max(lateral_force_n, excluded.lateral_force_n)",
+    )
+    .bind(calibration)
+    .bind(repeated.differs())
+    .bind(repeated.is_refused)
+    .bind(repeated.drawbar_pull_n)
+    .bind(repeated.torque_n_m)
+    .bind(repeated.sinkage_m)
+    .bind(repeated.lateral_force_n)
+    .execute(connection)
+    .await
+    .map(drop)
+}
+
+impl Reader {
+    /// How the model of a calibration answered what it was asked twice; nothing was where it is ours. A store of before migration
+    /// 19, which only reading leaves as it is, knows of none.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn repeats(&self, calibration: i64) -> Result<Repeats, StoreError> {
+        if !self.has_table("repeats").await? {
+            return Ok(Repeats::default());
+        }
+        let row: Option<(i64, i64, bool, f64, f64, f64, f64)> = sqlx::query_as(
+            "SELECT evaluations, differing, refused, drawbar_pull_n, torque_n_m, sinkage_m, lateral_force_n
+             FROM repeats WHERE calibration = ?",
+        )
+        .bind(calibration)
+        .fetch_optional(&self.pool)
+        .await?;
+        let repeats = row.map(
+            |(evaluations, differing, is_refused, pull, torque, sinkage, lateral)| Repeats {
+                evaluations: evaluations.unsigned_abs(),
+                differing: differing.unsigned_abs(),
+                largest: RepeatedAnswer {
+                    drawbar_pull_n: pull,
+                    torque_n_m: torque,
+                    sinkage_m: sinkage,
+                    lateral_force_n: lateral,
+                    is_refused,
+                },
+            },
+        );
+        Ok(repeats.unwrap_or_default())
+    }
+}

@@ -1,0 +1,225 @@
+//! A model of a UM-Bridge server, protocol 1.0, <https://um-bridge-benchmarks.readthedocs.io>.
+//!
+//! An evaluation is one request for each run: the properties of the run and the parameters, as two vectors or as one, whichever the
+//! server's input sizes ask for; its outputs, in however many vectors, are the channels.
+
+use std::sync::Mutex;
+use std::sync::PoisonError;
+use std::time::Duration;
+
+use reqwest::{Client, RequestBuilder, StatusCode};
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+use shared::model::ExternalModel;
+use tokio::runtime::Handle;
+
+use super::ExternalRun;
+use super::answer::{beginning, json, outputs, shortened};
+use super::failure::ExternalFailure;
+
+/// Longest that a server may take to say what it is.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// The protocol that is spoken.
+const PROTOCOL: f64 = 1.0;
+
+/// A server that the operator allows.
+#[derive(Debug)]
+pub(super) struct UmbridgeServer {
+    url: String,
+    client: Client,
+    /// The rayon threads that evaluate have no runtime of their own.
+    runtime: Handle,
+    /// Input sizes that were found to fit, by model: asked for once.
+    layouts: Mutex<Vec<(String, Layout)>>,
+}
+
+/// How a run goes into the inputs of a model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Layout {
+    /// One vector: properties, then parameters.
+    One,
+    /// Two vectors.
+    Two,
+}
+
+/// Why a server gives no answer.
+enum CallError {
+    /// It took too long.
+    Slow,
+    /// It says that it failed, with status 500.
+    Failed(String),
+    /// Anything else.
+    Other(String),
+}
+
+impl UmbridgeServer {
+    pub(super) fn new(url: &str, runtime: Handle) -> Result<Self, String> {
+        let client = match url.starts_with("https:") {
+            true => Client::builder(),
+            // Without TLS no certificate is read: a machine may have none.
+            false => Client::builder().tls_certs_only([]),
+        };
+        Ok(UmbridgeServer {
+            url: url.trim_end_matches('/').to_owned(),
+            client: client.build().map_err(|e| e.to_string())?,
+            runtime,
+            layouts: Mutex::default(),
+        })
+    }
+
+    pub(super) fn url(&self) -> &str {
+        &self.url
+    }
+
+    /// The models of the server, each with its identity: a digest of what the server says of itself and of the model.
+    pub(super) fn identities(&self) -> Result<Vec<(String, String)>, String> {
+        let info = self.call(self.client.get(format!("{}/Info", self.url)), PATIENCE);
+        let info = info.map_err(|e| e.words(&self.url))?;
+        if info.get("protocolVersion").and_then(Value::as_f64) != Some(PROTOCOL) {
+            return Err(format!(
+                "{}: the protocol must be {PROTOCOL}, and is {}",
+                self.url,
+                info.get("protocolVersion").unwrap_or(&Value::Null)
+            ));
+        }
+        let names = info.get("models").and_then(Value::as_array).into_iter().flatten();
+        let mut models = Vec::new();
+        for name in names.filter_map(Value::as_str) {
+            let about = self.ask("ModelInfo", &json!({ "name": name }), PATIENCE);
+            let about = about.map_err(|e| e.words(&self.url))?;
+            // keys are in order, so equal answers have equal texts
+            let digest = Sha256::digest(format!("{info}\n{name}\n{about}"));
+            let hex: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
+            models.push((name.to_owned(), format!("umbridge-{hex}")));
+        }
+        Ok(models)
+    }
+
+    /// Evaluates all runs, one after the other.
+    ///
+    /// # Errors
+    /// [`ExternalFailure`].
+    pub(super) fn evaluate(
+        &self,
+        name: &str,
+        model: &ExternalModel,
+        runs: &[ExternalRun],
+    ) -> Result<Vec<Vec<f64>>, ExternalFailure> {
+        let layout = self.layout(name, model)?;
+        let limit = Duration::from_secs_f64(model.time_s);
+        let one = |(run, asked): (usize, &ExternalRun)| {
+            let input = match layout {
+                Layout::Two => json!([asked.inputs, asked.parameters]),
+                Layout::One => {
+                    let all = [asked.inputs.as_slice(), &asked.parameters].concat();
+                    json!([all])
+                }
+            };
+            let question = json!({ "name": name, "input": input, "config": {} });
+            let answer = self
+                .ask("Evaluate", &question, limit)
+                .map_err(|error| match error {
+                    CallError::Slow => {
+                        let message = format!("{} takes longer than {} s", self.url, model.time_s);
+                        ExternalFailure::broke("time_limit", run, message)
+                    }
+                    CallError::Failed(message) => ExternalFailure::broke("model_error", run, message),
+                    CallError::Other(message) => self.machine(&message),
+                })?;
+            let lists = answer.get("output").and_then(Value::as_array);
+            let values: Option<Vec<&Value>> = lists.and_then(|lists| {
+                let lists: Option<Vec<&Vec<Value>>> = lists.iter().map(Value::as_array).collect();
+                Some(lists?.into_iter().flatten().collect())
+            });
+            match values.filter(|values| values.len() == model.outputs.len()) {
+                Some(values) => outputs(run, &model.outputs, |place, _| values.get(place).copied()),
+                None => Err(self.machine(&format!(
+                    "model {name} must answer {} outputs, and answers {}",
+                    model.outputs.len(),
+                    shortened(&answer)
+                ))),
+            }
+        };
+        runs.iter().enumerate().map(one).collect()
+    }
+
+    /// How a run goes into the inputs of a model.
+    fn layout(&self, name: &str, model: &ExternalModel) -> Result<Layout, ExternalFailure> {
+        let (inputs, parameters) = (model.inputs.len(), model.parameters.len());
+        let mut known = self.layouts.lock().unwrap_or_else(PoisonError::into_inner);
+        let key = format!("{name} {inputs} {parameters}");
+        if let Some((_, layout)) = known.iter().find(|(own, _)| *own == key) {
+            return Ok(*layout);
+        }
+        let question = json!({ "name": name, "config": {} });
+        let answer = self.ask("InputSizes", &question, PATIENCE);
+        let answer = answer.map_err(|e| self.machine(&e.words(&self.url)))?;
+        let sizes = answer.get("inputSizes").unwrap_or(&Value::Null);
+        let layout = if *sizes == json!([inputs, parameters]) {
+            Layout::Two
+        } else if *sizes == json!([inputs + parameters]) {
+            Layout::One
+        } else {
+            return Err(self.machine(&format!(
+                "model {name} takes inputs of the sizes {sizes}; the job has {inputs} inputs and {parameters} parameters: [{inputs}, {parameters}] or [{}]",
+                inputs + parameters
+            )));
+        };
+        known.push((key, layout));
+        Ok(layout)
+    }
+
+    fn machine(&self, message: &str) -> ExternalFailure {
+        match message.starts_with(&self.url) {
+            true => ExternalFailure::Machine(message.to_owned()),
+            false => ExternalFailure::Machine(format!("{}: {message}", self.url)),
+        }
+    }
+
+    fn ask(&self, route: &str, question: &Value, limit: Duration) -> Result<Value, CallError> {
+        let post = self.client.post(format!("{}/{route}", self.url));
+        self.call(post.json(question), limit)
+    }
+
+    fn call(&self, request: RequestBuilder, limit: Duration) -> Result<Value, CallError> {
+        let away = |error: reqwest::Error| match error.is_timeout() {
+            true => CallError::Slow,
+            false => CallError::Other(root_cause(&error)),
+        };
+        let (status, text) = self.runtime.block_on(async {
+            let response = request.timeout(limit).send().await.map_err(away)?;
+            let status = response.status();
+            response.text().await.map(|text| (status, text)).map_err(away)
+        })?;
+        if status == StatusCode::INTERNAL_SERVER_ERROR {
+            return Err(CallError::Failed(said(&text)));
+        }
+        if !status.is_success() {
+            return Err(CallError::Other(format!("status {status}: {}", said(&text))));
+        }
+        let answer = json(&text);
+        answer.map_err(|e| CallError::Other(format!("the answer is not JSON: {e}: \"{}\"", beginning(&text))))
+    }
+}
+
+impl CallError {
+    fn words(self, url: &str) -> String {
+        match self {
+            CallError::Slow => format!("{url} does not answer"),
+            CallError::Failed(message) | CallError::Other(message) => format!("{url}: {message}"),
+        }
+    }
+}
+
+/// What the body of an error says.
+fn said(text: &str) -> String {
+    let body: Option<Value> = json(text).ok();
+    let message = body
+        .as_ref()
+        .and_then(|body| body.get("error")?.get("message")?.as_str());
+    message.map_or_else(|| beginning(text), beginning)
+}
+
+fn root_cause(error: &dyn std::error::Error) -> String {
+    error.source().map_or_else(|| error.to_string(), root_cause)
+}
