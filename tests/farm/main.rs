@@ -38,4 +38,5 @@ mod store;
 mod stored_results;
 mod study;
 mod summary_contract;
+mod which_model;
 mod wire;

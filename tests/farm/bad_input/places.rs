@@ -253,7 +253,7 @@ fn forward_runs_refuse_wrong_models_and_parameters() {
     };
     assert_eq!(
         simulate("", &theta),
-        "model.toml: kind is missing: one of \"quasi_static\", \"scm\", \"command\", \"umbridge\""
+        "model.toml: kind is missing: one of \"quasi_static\", \"scm\", \"wong_reece\", \"rft\", \"command\", \"umbridge\""
     );
     assert_eq!(
         simulate("kind = \"quasi-static\"\n", &theta),
