@@ -273,6 +273,12 @@ impl Farm {
             // It ran the model when it took the lease; what it runs now is not known.
             return Taken::Refused;
         };
+        let pinned = calibration.model_version.as_deref();
+        let is_other = pinned.is_some_and(|pinned| equations_of(pinned) != equations_of(version));
+        if is_other && calibration.spec.model.external.is_some() {
+            // The model has become another one since the lease.
+            return Taken::Refused;
+        }
         let model_version = model_version(calibration, version);
         let question = calibration.question(evaluation);
         let question = question.or_else(|| calibration.second.question(evaluation));

@@ -1,7 +1,6 @@
 //! Models that are not ours: programs and UM-Bridge servers.
 
 mod answers;
-mod bits;
 mod served;
 mod version;
 
