@@ -68,6 +68,11 @@ pub struct LocalWorkers {
     task: tokio::task::JoinHandle<()>,
 }
 
+/// Version of the equations of our models that local workers compute.
+pub fn model_version() -> &'static str {
+    worker::model_version()
+}
+
 /// The models that are not ours that local workers run, as their operator allows.
 #[derive(Debug, Clone, Default)]
 pub struct LocalModels(Arc<AllowedModels>);
@@ -90,7 +95,7 @@ impl LocalModels {
     /// A sentence: the model is not allowed here, or does not answer.
     pub fn equations(&self, external: Option<&ExternalModel>) -> Result<String, String> {
         match external {
-            None => Ok(worker::model_version().to_owned()),
+            None => Ok(model_version().to_owned()),
             Some(model) => self.0.identify(&model.source),
         }
     }
