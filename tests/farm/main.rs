@@ -37,4 +37,5 @@ mod store;
 mod stored_results;
 mod study;
 mod summary_contract;
+mod which_model;
 mod wire;

@@ -2,13 +2,14 @@
 
 use shared::api::CalibrationState;
 
+use super::compared_models::models;
 use super::error::ServiceError;
 use super::stored_calibration::spec_of;
 use super::study_members::{searched_by, study_members};
 use super::study_step::next_step_from;
 use crate::store::Reader;
 use crate::study::most_probable;
-use job::{AlgorithmSettings, JobFile, is_discovery};
+use job::{AlgorithmSettings, is_discovery};
 use record::CalibrationRow;
 use result::{DiscoveryRound, FinishedCalibration, Study, first_population, likeliest};
 
@@ -153,25 +154,6 @@ pub(super) async fn finished_study_of(
         rounds: search_rounds(reader, rows).await?,
         members: study_members(reader, rows).await?,
     })
-}
-
-/// How many models a study begins with: its first members are of those that its job compares.
-pub(super) fn models(rows: &[CalibrationRow]) -> Result<usize, ServiceError> {
-    let Some(lead) = rows.first() else { return Ok(1) };
-    let job = JobFile::parse("job.toml", &lead.job.toml)?;
-    Ok(job.models.min(rows.len()))
-}
-
-/// The compared models that a study does not go on with.
-pub(super) fn passed_over(rows: &[CalibrationRow]) -> Result<Vec<i64>, ServiceError> {
-    let models = models(rows)?;
-    if models == 1 {
-        return Ok(Vec::new());
-    }
-    let best = most_probable(rows[..models].iter().map(|row| row.log_evidence));
-    let others = rows[..models].iter().enumerate();
-    let others = others.filter(|(number, _)| Some(*number) != best);
-    Ok(others.map(|(_, row)| row.id).collect())
 }
 
 /// The finished searches of a study.

@@ -9,8 +9,8 @@ use shared::experiment::Experiment;
 use shared::file::FileSet;
 
 use super::clock::now_ms;
+use super::compared_models::passed_over;
 use super::error::ServiceError;
-use super::finished_study::passed_over;
 use super::handle::Service;
 use super::stored_calibration::has_posterior;
 use super::study_step::{next_step_of, search_of};

@@ -10,11 +10,12 @@
 //! - `announcement`: what web hooks are told.
 //! - `growth`: what is added to a study that is there. `what_if`: studies without some runs.
 //! - `stored_calibration`, `study_step`, `finished_study`: what is read from the store.
-//! - `study_members`: the members of a study. `study_overview`: studies as the page shows them, `overview_cache`: kept.
+//! - `compared_models`: the models with which a study begins. `study_members`: the members of a study. `study_overview`: studies as the page shows them, `overview_cache`: kept.
 //! - `study_results`: the files of a study, computed once.
 
 mod announcement;
 mod clock;
+mod compared_models;
 mod effects;
 mod error;
 mod farm_settings;

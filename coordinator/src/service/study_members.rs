@@ -1,7 +1,7 @@
 //! The members of a study as its overview shows them.
 
+use super::compared_models::models;
 use super::error::ServiceError;
-use super::finished_study::models;
 use super::stored_calibration::spec_of;
 use super::study_step::is_search_of;
 use crate::store::Reader;

@@ -253,7 +253,7 @@ fn forward_runs_refuse_wrong_models_and_parameters() {
     };
     assert_eq!(
         simulate("", &theta),
-        "model.toml: kind is missing: \"quasi_static\" or \"scm\""
+        "model.toml: kind is missing: \"quasi_static\", \"scm\", \"wong_reece\", \"rft\""
     );
     assert_eq!(
         simulate("kind = \"quasi-static\"\n", &theta),
