@@ -20,6 +20,9 @@ pub enum ExportError {
         /// Values that it should have.
         expected: usize,
     },
+    /// A name that would be a path, where a format makes folders of names.
+    #[error("{0:?} is no name of a group or a variable: it must have no / and no \\, and not be . or ..")]
+    Name(String),
     /// A group is missing.
     #[error("inference data without a group {0}")]
     Group(&'static str),

@@ -48,12 +48,49 @@ impl InferenceData {
         found.ok_or(ExportError::Group(name))
     }
 
-    /// Checks that every variable has a value for each place; what a service has sent may be anything.
+    /// Checks that every variable has a value for each place, and that no name leads out of a folder; what a service has sent may be
+    /// anything.
     ///
     /// # Errors
-    /// [`ExportError::Shape`].
+    /// [`ExportError::Shape`], [`ExportError::Name`].
     pub fn check(&self) -> Result<(), ExportError> {
-        let mut variables = self.groups.iter().flat_map(VariableGroup::variables);
-        variables.try_for_each(Variable::check)
+        let variables = || self.groups.iter().flat_map(VariableGroup::variables);
+        let names = variables().map(|variable| &variable.name);
+        for name in names.chain(self.groups.iter().map(|group| &group.name)) {
+            let is_path = name.contains(['/', '\\', '\0']) || ["", ".", ".."].contains(&name.as_str());
+            if is_path {
+                return Err(ExportError::Name(name.clone()));
+            }
+        }
+        variables().try_for_each(Variable::check)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::variable::Values;
+
+    #[test]
+    fn a_name_that_leads_out_of_the_folder_is_refused() {
+        let named = |group: &str, variable: &str| InferenceData {
+            attrs: BTreeMap::new(),
+            groups: vec![VariableGroup {
+                name: group.into(),
+                coords: Vec::new(),
+                data_vars: vec![Variable::labels(variable, Values::Whole(vec![1]))],
+            }],
+        };
+        for (group, variable) in [
+            ("../../x", "n"),
+            ("/x", "n"),
+            ("prior", ".."),
+            ("prior", "a\\b"),
+            ("", "n"),
+        ] {
+            let refused = named(group, variable).check().unwrap_err();
+            assert!(matches!(refused, ExportError::Name(_)), "{refused}");
+        }
+        named("prior", "bevameter.ln_transfer").check().unwrap();
     }
 }

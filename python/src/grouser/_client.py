@@ -58,7 +58,8 @@ class Client:
 
     def _send(self, request: urllib.request.Request) -> str:
         if self.token:
-            request.add_header("Authorization", f"Bearer {self.token}")
+            # Not for whom the service redirects to.
+            request.add_unredirected_header("Authorization", f"Bearer {self.token}")
         try:
             with self._opener.open(request, timeout=TIMEOUT_S) as answer:
                 text: str = answer.read().decode()

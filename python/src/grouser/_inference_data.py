@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._prediction import CHANNELS, NoPredictionError, predict
-from ._prior import UnstatedPriorError, draw
+from ._prior import UnstatedPriorError, check_moments, draw
 from ._table import CONDITIONS, Table
 
 if TYPE_CHECKING:
@@ -51,6 +51,7 @@ def build(calibration: Calibration, draws: int | None, predictions: bool, prior_
     }
     try:
         prior = draw(provenance, names, prior_draws, seed)
+        check_moments(prior, calibration._prior_moments())
         groups["prior"] = _draws(prior, posterior.units, attributes)
     except UnstatedPriorError as error:
         _left_out("prior", error)

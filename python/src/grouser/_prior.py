@@ -50,6 +50,21 @@ def draw(provenance: Mapping[str, Any], parameters: Sequence[str], count: int, s
     return drawn
 
 
+def check_moments(drawn: Mapping[str, Draws], stated: Mapping[str, tuple[float, float]]) -> None:
+    """Compares draws with the mean and the sd that the coordinator states: physical bounds that the job leaves unsaid cut a prior.
+
+    Raises:
+        UnstatedPriorError: names the parameter.
+    """
+    for name, values in drawn.items():
+        if name not in stated:
+            continue
+        mean, sd = stated[name]
+        error = sd / math.sqrt(len(values))
+        if abs(float(values.mean()) - mean) > 6 * error or not 0.7 < float(values.std()) / sd < 1.4:
+            raise UnstatedPriorError(f"the prior of {name} is cut by physical bounds that its job does not state")
+
+
 def _of_effects(effects: Sequence[Mapping[str, str]]) -> dict[str, Any]:
     files = [_toml.parse(effect["text"]) for effect in effects]
     return {

@@ -81,9 +81,9 @@ class Service:
         columns = ("name", "summary", "group", "origin", "source")
         return Table.from_rows(self._place.get("effects"), columns)
 
-    def workers(self) -> list[dict[str, Any]]:
-        """The workers heard of lately."""
-        workers: list[dict[str, Any]] = self._place.get("workers")
+    def workers(self) -> dict[str, dict[str, Any]]:
+        """The workers heard of lately, by name."""
+        workers: dict[str, dict[str, Any]] = self._place.get("workers")
         return workers
 
     def __repr__(self) -> str:

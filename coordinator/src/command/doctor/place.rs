@@ -80,13 +80,13 @@ async fn stored(store: &str, file: &Path) -> (Finding, bool) {
 fn writable(folder: &Path) -> Finding {
     let probe = folder.join(format!(".grouser-doctor-{}", std::process::id()));
     let begin = Instant::now();
-    let written = std::fs::File::create(&probe).and_then(|mut file| {
-        file.write_all(&[0; 4096])?;
-        file.sync_all()
+    // A file that is there, or a link of that name, is another's.
+    let made = std::fs::File::create_new(&probe);
+    let written = made.and_then(|mut file| {
+        let written = file.write_all(&[0; 4096]).and_then(|()| file.sync_all());
+        std::fs::remove_file(&probe).and(written)
     });
     let took = begin.elapsed();
-    // Where it was not made, there is nothing to remove.
-    let _ = std::fs::remove_file(&probe);
     let name = folder.display();
     match written {
         Ok(()) if took > SLOW => Finding::warn(
