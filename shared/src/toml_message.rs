@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use formula::word::unknown_word;
 
-/// A longer value is shown by its beginning [characters].
+/// A longer value is shown by its beginning \[characters\].
 const LONGEST: usize = 60;
 
 /// The message of a mistake; `span` is the passage of the file that is to blame.
