@@ -44,6 +44,9 @@ pub(crate) fn plain(text: &str, span: Option<Range<usize>>, message: &str) -> St
     if let Some(decimal) = place.decimal_comma() {
         return decimal;
     }
+    if first.starts_with("string values must be quoted") {
+        return "a value is neither a number nor a text in quotes; a number stands without its unit".into();
+    }
     match first.starts_with("unexpected key or value") {
         true => "unexpected text behind a value: a new line or a comment with # is expected".into(),
         false => first.replace('`', "\""),
@@ -206,7 +209,7 @@ mod tests {
             ),
             (
                 "size_m = 0.112 m",
-                "unexpected text behind a value: a new line or a comment with # is expected",
+                "a value is neither a number nor a text in quotes; a number stands without its unit",
             ),
             ("name = 5", "name = 5 must be a text in quotes"),
             ("moves = 4", "moves = 4 must be a list of 2 values"),
