@@ -76,6 +76,14 @@ def test_draws_of_a_prior_keep_its_bounds_and_median(
     assert abs(np.median(drawn) - median) < 2e-3 * max(1.0, abs(median))
 
 
+def test_a_prior_that_the_coordinator_cuts_at_physical_bounds_is_refused() -> None:
+    levels = np.linspace(0.0005, 0.9995, 1000)
+    drawn = {"friction_angle_deg": _prior._draw({"normal": [30.0, 40.0]}, levels)}
+    with pytest.raises(_prior.UnstatedPriorError, match="friction_angle_deg is cut"):
+        _prior.check_moments(drawn, {"friction_angle_deg": (39.48, 23.35)})
+    _prior.check_moments(drawn, {"friction_angle_deg": (30.0, 40.0)})
+
+
 def test_an_unknown_prior_is_refused() -> None:
     with pytest.raises(_prior.UnstatedPriorError, match="beta"):
         _prior._draw({"beta": [1.0, 2.0]}, np.array([0.5]))

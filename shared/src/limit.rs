@@ -97,7 +97,7 @@ pub const LIMITS: [Limit; 23] = [
         &[("mm/s", 1e-3)],
     ),
     limit("dem_spacing_m", "m", [0.0, 1.0], [2e-4, 0.05], LENGTHS),
-    limit("travel_step_m", "m", [0.0, 1.0], [1e-6, 0.02], LENGTHS),
+    limit("travel_step_m", "m", [0.0, 1.0], [1e-7, 0.02], LENGTHS),
     limit("steady_travel_m", "m", [0.0, 1e4], [0.01, 100.0], LENGTHS),
 ];
 

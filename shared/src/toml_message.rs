@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use formula::word::unknown_word;
 
-/// A longer value is shown by its beginning [characters].
+/// A longer value is shown by its beginning \[characters\].
 const LONGEST: usize = 60;
 
 /// The message of a mistake; `span` is the passage of the file that is to blame.
@@ -43,6 +43,9 @@ pub(crate) fn plain(text: &str, span: Option<Range<usize>>, message: &str) -> St
     }
     if let Some(decimal) = place.decimal_comma() {
         return decimal;
+    }
+    if first.starts_with("string values must be quoted") {
+        return "a value is neither a number nor a text in quotes; a number stands without its unit".into();
     }
     match first.starts_with("unexpected key or value") {
         true => "unexpected text behind a value: a new line or a comment with # is expected".into(),
@@ -206,7 +209,7 @@ mod tests {
             ),
             (
                 "size_m = 0.112 m",
-                "unexpected text behind a value: a new line or a comment with # is expected",
+                "a value is neither a number nor a text in quotes; a number stands without its unit",
             ),
             ("name = 5", "name = 5 must be a text in quotes"),
             ("moves = 4", "moves = 4 must be a list of 2 values"),

@@ -206,7 +206,7 @@ fn what_cannot_be_added_says_why() {
         runs.clone(),
         with("0.35,", "1.35,"),
         422,
-        "runs.csv line 3: slip 1.35 must lie in [-1, 1)",
+        "runs.csv line 3: slip 1.35 must be at most 1",
     );
     refused(
         runs.clone(),

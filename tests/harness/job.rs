@@ -186,7 +186,7 @@ seed = 1
 pub const GAIN: &str = r#"name = "my_gain"
 summary = "the sensor reads too much"
 source = "a guess"
-drawbar_pull = "drawbar_pull * (1 + gain) + shift_n"
+drawbar_pull = "drawbar_pull * (1 + gain) + gain * shift_n"
 [parameters.gain]
 unit = "1"
 neutral = 0.0

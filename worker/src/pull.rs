@@ -201,7 +201,11 @@ impl<C: Coordinator> Worker<C> {
                         tracing::info!(worker = self.settings.name, "the coordinator is back");
                     }
                     back_off = BACK_OFF[0];
-                    self.accept(response).await;
+                    tokio::select! {
+                        // What has been leased is held by now, and given back.
+                        () = &mut shutdown => return self.stop().await,
+                        () = self.accept(response) => {}
+                    }
                 }
                 Err((ExchangeError::Away(reason), results)) => {
                     if !std::mem::replace(&mut away, true) {
@@ -353,6 +357,7 @@ impl<C: Coordinator> Worker<C> {
         self.received = leases.fold(self.received, u64::max);
     }
 
+    /// Takes what an answer brings. May be dropped at any wait: every lease is then held or returned.
     async fn accept(&mut self, response: ExchangeResponse) {
         self.note_received(&response);
         // Their start is known now.
@@ -364,6 +369,7 @@ impl<C: Coordinator> Worker<C> {
             asked: response.leases.len() + self.held.len(),
             runs: self.known.runs,
         };
+        self.held.extend(response.leases.iter().map(|l| l.lease));
         if let Some(reason) = response.refused.filter(|_| response.leases.is_empty()) {
             tracing::error!(
                 worker = self.settings.name,
@@ -384,7 +390,6 @@ impl<C: Coordinator> Worker<C> {
         for lease in response.leases {
             match (self.variants.get(&lease.variant), missing.get(&lease.variant)) {
                 (Some(variant), _) => {
-                    self.held.insert(lease.lease);
                     self.known.runs = self.known.runs.max(variant.runs());
                     if lease.announce {
                         self.announced.push((lease, variant));
@@ -393,7 +398,10 @@ impl<C: Coordinator> Worker<C> {
                     }
                 }
                 (None, Some(Missing::Unusable(reason))) => self.refuse(lease, reason.clone()),
-                (None, _) => self.returned.push(lease.lease),
+                (None, _) => {
+                    self.held.remove(&lease.lease);
+                    self.returned.push(lease.lease);
+                }
             }
         }
         self.evaluator.start(batch);
@@ -471,5 +479,70 @@ impl<C: Coordinator> Worker<C> {
             ),
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+
+    /// A coordinator that leases two evaluations of a variant and never says what it is.
+    #[derive(Default)]
+    struct Silent {
+        returned: Mutex<Vec<u64>>,
+        is_asked: tokio::sync::Notify,
+    }
+
+    impl Coordinator for Silent {
+        async fn exchange(
+            &self,
+            request: ExchangeRequest,
+        ) -> Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)> {
+            let mut returned = self.returned.lock().unwrap();
+            returned.extend(&request.returned);
+            let lease = |lease| Lease {
+                lease,
+                calibration: 1,
+                evaluation: lease,
+                seal: String::new(),
+                variant: "unknown".into(),
+                theta: Vec::new(),
+                announce: false,
+                subchain: None,
+            };
+            Ok(ExchangeResponse {
+                leases: if request.want > 0 {
+                    vec![lease(7), lease(8)]
+                } else {
+                    Vec::new()
+                },
+                lease_ms: 60_000,
+                remaining: 2,
+                workers: 1,
+                duplicates: 0,
+                refused: None,
+            })
+        }
+
+        async fn variant(&self, _hash: &str) -> Result<Option<ModelVariant>, ExchangeError> {
+            self.is_asked.notify_one();
+            std::future::pending().await
+        }
+    }
+
+    #[tokio::test]
+    async fn a_worker_stops_while_a_variant_does_not_come_and_gives_its_leases_back() {
+        let silent = Arc::new(Silent::default());
+        let settings = PullSettings {
+            name: "test".into(),
+            threads: 1,
+        };
+        let stop = silent.is_asked.notified();
+        let ended = run(silent.clone(), settings, Arc::default(), stop);
+        let ended = tokio::time::timeout(Duration::from_secs(60), ended).await;
+        assert_eq!(ended, Ok(Ok(())));
+        assert_eq!(*silent.returned.lock().unwrap(), [7, 8]);
     }
 }

@@ -81,7 +81,13 @@ mod tests {
                 data_vars: vec![Variable::labels(variable, Values::Whole(vec![1]))],
             }],
         };
-        for (group, variable) in [("../../x", "n"), ("/x", "n"), ("prior", ".."), ("prior", "a\\b"), ("", "n")] {
+        for (group, variable) in [
+            ("../../x", "n"),
+            ("/x", "n"),
+            ("prior", ".."),
+            ("prior", "a\\b"),
+            ("", "n"),
+        ] {
             let refused = named(group, variable).check().unwrap_err();
             assert!(matches!(refused, ExportError::Name(_)), "{refused}");
         }

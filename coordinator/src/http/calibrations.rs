@@ -356,7 +356,7 @@ async fn figures(State(service): State<Service>, Id(id): Id) -> Result<impl Into
 #[utoipa::path(get, path = "/calibrations/{id}/report", operation_id = "get_report", tag = "results",
     params(("id" = i64, Path)), responses(
     (status = 200, description = "an HTML document", content_type = "text/html", body = String),
-    (status = 404, body = ErrorBody)))]
+    (status = 404, body = ErrorBody), (status = 409, body = ErrorBody)))]
 async fn report_page(State(service): State<Service>, Id(id): Id) -> Result<Html<String>, HttpError> {
     let report = service.study_file(id, StudyFile::Report).await?;
     Ok(Html(showing(&report, id)))

@@ -31,13 +31,23 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new().routes(routes!(events))
 }
 
+/// An event of the stream.
+#[derive(utoipa::ToSchema)]
+#[expect(dead_code, reason = "the form of the stream, for the document alone")]
+struct CalibrationEvent {
+    /// What has changed: `status` or `stage`.
+    event: String,
+    /// The content, JSON as text.
+    data: String,
+}
+
 /// Streams what happens to a calibration.
 ///
 /// Server-sent events: `status` has the content of `GET /v1/calibrations/{id}` whenever that has changed, `stage`
 /// each finished stage. The stream ends with the calibration.
 #[utoipa::path(get, path = "/calibrations/{id}/events", operation_id = "watch_calibration", tag = "calibrations",
     params(("id" = i64, Path)), responses(
-    (status = 200, content_type = "text/event-stream", body = String, description = "events: status, stage"),
+    (status = 200, content_type = "text/event-stream", body = CalibrationEvent, description = "events: status, stage"),
     (status = 404, body = ErrorBody)))]
 async fn events(
     State(service): State<Service>,

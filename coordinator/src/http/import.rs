@@ -51,11 +51,7 @@ struct GuessRequest {
 /// The answer has runs.csv, the notes and the histories, or every mistake of the file and the map with its place. Nothing is stored.
 /// The service does not read .xls files.
 #[utoipa::path(post, path = "/import", operation_id = "import_table", tag = "import",
-    request_body(content = ImportRequest, example = json!({
-        "name": "sand.csv",
-        "content_base64": "c2xpcCBbJV07bG9hZCBba05dO3B1bGwgW05dCjIwOzAsMTszNSwyCg==",
-        "map": "columns.wheel = { value = \"smooth\" }\ncolumns.soil = { value = \"sand\" }\ncolumns.slip = { column = \"slip [%]\", unit = \"%\" }\ncolumns.wheel_load_n = { column = \"load [kN]\", unit = \"kN\" }\ncolumns.sled_speed_m_s = { value = 8, unit = \"mm/s\" }\ncolumns.drawbar_pull_n = { column = \"pull [N]\", unit = \"N\" }\n"
-    })),
+    request_body = ImportRequest,
     responses(
         (status = 200, body = Converted, description = "the files, or every mistake"),
         (status = 422, body = ErrorBody, description = "the content is not base64, or no reader gets through it"),
@@ -78,11 +74,7 @@ async fn import_table(Body(asked): Body<ImportRequest>) -> Result<Json<Converted
 /// What the file states is taken: titles, units, the decimal mark. What it does not state is a question, and the map is refused
 /// until it is answered. Nothing is stored.
 #[utoipa::path(post, path = "/import/guess", operation_id = "guess_import_map", tag = "import",
-    request_body(content = GuessRequest, example = json!({
-        "name": "sand.csv",
-        "content_base64": "c2xpcCBbJV07bG9hZCBba05dO3B1bGwgW05dCjIwOzAsMTszNSwyCg==",
-        "sheet": null
-    })),
+    request_body = GuessRequest,
     responses(
         (status = 200, body = Guess, description = "a map, and what it is made from"),
         (status = 422, body = ErrorBody, description = "the content is not base64, or is no table"),

@@ -24,6 +24,18 @@ neutral = 0.0
 prior = { normal = [0.0, 0.2] }
 ";
 
+/// A table with semicolons and decimal commas: slip, load and pull of one run.
+const TABLE_BASE64: &str = "c2xpcCBbJV07bG9hZCBba05dO3B1bGwgW05dCjIwOzAsMTszNSwyCg==";
+
+/// Where its columns go.
+const MAP: &str = "columns.wheel = { value = \"smooth\" }
+columns.soil = { value = \"sand\" }
+columns.slip = { column = \"slip [%]\", unit = \"%\" }
+columns.wheel_load_n = { column = \"load [kN]\", unit = \"kN\" }
+columns.sled_speed_m_s = { value = 8, unit = \"mm/s\" }
+columns.drawbar_pull_n = { column = \"pull [N]\", unit = \"N\" }
+";
+
 /// A body that the operation of this id takes; `None` of one that takes none.
 pub(super) fn request_example(operation: &str) -> Option<Value> {
     let [
@@ -47,6 +59,8 @@ pub(super) fn request_example(operation: &str) -> Option<Value> {
         "create_what_if" => json!({"without": ["r00", "r01"]}),
         "add_runs" => json!({ "runs": FURTHER_RUNS }),
         "add_effect" => json!({ "text": EFFECT }),
+        "import_table" => json!({"name": "sand.csv", "content_base64": TABLE_BASE64, "map": MAP}),
+        "guess_import_map" => json!({"name": "sand.csv", "content_base64": TABLE_BASE64, "sheet": null}),
         "exchange_work" => json!({
             "worker": "rig-pc-1",
             "protocol": PROTOCOL_VERSION,

@@ -49,6 +49,13 @@ class Calibration:
     def _units(self) -> dict[str, str]:
         return {parameter["name"]: parameter["unit"] for parameter in self._get("diagnostics")["parameters"]}
 
+    def _prior_moments(self) -> dict[str, tuple[float, float]]:
+        """Mean and standard deviation of each parameter's prior, as the coordinator states them."""
+        study = self._place.get(f"calibrations/{self.id}")["study"]
+        lines = [line for line in self._place.get(f"studies/{study}")["ledger"] if line["calibration"] == self.id]
+        stated = {name: moments for line in lines for name, moments in line["parameters"].items()}
+        return {name: (moments["prior_mean"], moments["prior_sd"]) for name, moments in stated.items()}
+
     def comparison(self) -> Table:
         """Model against measurement: a row for each run and measured channel.
 

@@ -51,7 +51,7 @@ def build(calibration: Calibration, draws: int | None, predictions: bool, prior_
     }
     try:
         prior = draw(provenance, names, prior_draws, seed)
-        check_moments(prior, calibration.prior_moments())
+        check_moments(prior, calibration._prior_moments())
         groups["prior"] = _draws(prior, posterior.units, attributes)
     except UnstatedPriorError as error:
         _left_out("prior", error)

@@ -98,7 +98,7 @@ def _reason(said: Sequence[str]) -> str:
 
 
 class LocalService:
-    """A service on this machine alone, at a free port of the loopback address; it ends with this object or with Python.
+    """A service on this machine alone, at a free port of the loopback address; it ends with this object, or when Python ends orderly.
 
     While it is there, every user of this machine can use it through that port.
 

@@ -126,7 +126,7 @@ mod tests {
             ),
             (
                 MORE.replace("0.4,25", "1.4,25"),
-                "runs.csv line 4: slip 1.4 must lie in [-1, 1)",
+                "runs.csv line 4: slip 1.4 must be at most 1",
             ),
             (
                 MORE.replace("torque_n_m", "torque"),

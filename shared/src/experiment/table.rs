@@ -28,11 +28,9 @@ impl Columns<'_> {
     fn find(&self, header: &csv::StringRecord) -> Result<BTreeMap<String, usize>, ValueError> {
         let whole = header.iter().collect::<Vec<_>>().join(",");
         for (separator, name) in [(';', "semicolons"), ('\t', "tabs"), ('|', "bars")] {
-            if self
-                .required
-                .iter()
-                .all(|column| whole.split(separator).any(|word| word.trim() == *column))
-            {
+            let names: Vec<&str> = whole.split(separator).map(str::trim).collect();
+            let is_separator = names.len() > 1 && names.iter().all(|name| self.known.contains(name));
+            if is_separator {
                 let message = format!("columns are separated by {name}, commas are expected: {CONVERT}");
                 return Err(ValueError::Rule(message));
             }
