@@ -96,7 +96,7 @@ impl LocalModels {
     pub fn equations(&self, external: Option<&ExternalModel>) -> Result<String, String> {
         match external {
             None => Ok(model_version().to_owned()),
-            Some(model) => self.0.identify(&model.source),
+            Some(model) => self.0.identify(model),
         }
     }
 }

@@ -169,7 +169,10 @@ impl<C: Coordinator> Worker<C> {
                 }
                 continue;
             }
-            self.ask_models().await;
+            tokio::select! {
+                () = &mut shutdown => return self.stop().await,
+                () = self.ask_models() => {}
+            }
             let request = self.request();
             let coordinator = self.coordinator.clone();
             let exchange = coordinator.exchange(request);
@@ -233,9 +236,7 @@ impl<C: Coordinator> Worker<C> {
         if self.settings.models.is_empty() || !is_due {
             return;
         }
-        let models = self.settings.models.clone();
-        // A panic has been logged where it happened; the models are then not announced.
-        let _ = tokio::task::spawn_blocking(move || models.refresh()).await;
+        self.settings.models.refresh().await;
         self.asked = Some(Instant::now());
     }
 
@@ -470,6 +471,7 @@ impl<C: Coordinator> Worker<C> {
             ..self.request()
         };
         let (sent, returned) = (request.results.len(), request.returned.len());
+        self.settings.models.stop();
         let farewell = tokio::time::timeout(FAREWELL, self.coordinator.exchange(request)).await;
         match farewell {
             Ok(Ok(_)) => tracing::info!(worker = self.settings.name, sent, returned, "stopped"),
@@ -538,6 +540,7 @@ mod tests {
         let settings = PullSettings {
             name: "test".into(),
             threads: 1,
+            models: Arc::default(),
         };
         let stop = silent.is_asked.notified();
         let ended = run(silent.clone(), settings, Arc::default(), stop);

@@ -185,7 +185,7 @@ mod tests {
         let none = (BTreeSet::from(["smooth"]), EffectSet::default());
         let check = |kind, names: &[&str]| {
             let names: BTreeSet<&str> = names.iter().copied().collect();
-            check_complete(kind, &names, &none.0, &none.1).map_err(|e| e.to_string())
+            check_complete(kind, &names, &scope(&none.0, &none.1)).map_err(|e| e.to_string())
         };
         let rft = ["xi_n_pa_m", "surface_friction", "wheel_radius_m.smooth"];
         assert_eq!(check(ModelKind::Rft, &rft), Ok(()));

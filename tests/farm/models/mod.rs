@@ -1,6 +1,7 @@
 //! Models that are not ours: programs and UM-Bridge servers.
 
 mod answers;
+mod bits;
 mod served;
 mod version;
 
@@ -31,6 +32,12 @@ fn program_job() -> Job {
         "kind = \"umbridge\"\nurl = \"http://x\"\nmodel = \"wheel\"",
         "kind = \"command\"\nprogram = \"wheel.py\"",
     )
+}
+
+/// The same with fewer draws: a program takes some tens of milliseconds to start.
+fn short(job: Job) -> Job {
+    job.in_job("particles = 60", "particles = 20")
+        .in_job("moves = [2, 4]", "moves = [1, 2]")
 }
 
 const LAYOUT: &str = r#"version = "1"

@@ -1,9 +1,10 @@
-//! Who may run which model.
+//! Who may run which model, and which version of it a calibration is pinned to.
 
+use farm_tests::programs;
 use farm_tests::service::Service;
 use farm_tests::wait::until;
 
-use super::{program, program_job, write_program};
+use super::{honest, job, program, program_job, write_program};
 
 #[test]
 fn a_worker_runs_nothing_that_its_operator_has_not_allowed_and_says_so() {
@@ -20,4 +21,64 @@ fn a_worker_runs_nothing_that_its_operator_has_not_allowed_and_says_so() {
     assert_eq!(service.metric("grouser_leases_given_total"), 0);
     assert!(!mark.exists());
     assert_eq!(service.status(id)["state"], "queued");
+}
+
+#[test]
+fn another_version_gets_no_lease_and_a_run_refuses_to_go_on_with_it() {
+    let server = honest();
+    let mut service = Service::start(&["--lease-ms", "1000"]);
+    // Slow enough to be caught in the middle.
+    let id = service.submit(&job(&server.url).in_job("particles = 60", "particles = 2000"));
+    let worker = service.worker_of("worker", 1, &server.url);
+    until("progress", || service.evaluations(id).filter(|done| *done > 20));
+    let pinned = service.status(id)["model_version"]
+        .as_str()
+        .unwrap_or_default()
+        .to_owned();
+    assert!(
+        pinned.starts_with("umbridge-") && pinned.ends_with("+version.1"),
+        "{pinned}"
+    );
+    server.change_version();
+    let refusal = "was begun with model version umbridge-";
+    until("a word of the worker", || {
+        worker.log().contains(refusal).then_some(())
+    });
+    let done = service.evaluations(id);
+    service.kill();
+    service.restart();
+    let asked = server.evaluations();
+    until("a word of the worker", || {
+        (worker.log().matches(refusal).count() > 1).then_some(())
+    });
+    assert_eq!((service.evaluations(id), server.evaluations()), (done, asked));
+}
+
+#[test]
+fn a_program_is_its_file_and_a_folder_of_another_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = write_program(folder.path(), &program(""));
+    let job = program_job()
+        .write(&folder.path().join("job"))
+        .display()
+        .to_string();
+    let out = folder.path().join("out").display().to_string();
+    let run = |more: &[&str]| {
+        let arguments = ["run", &job, "--out", &out]
+            .into_iter()
+            .chain(more.iter().copied());
+        programs::run(programs::coordinator(arguments))
+    };
+    let message = run(&[]).refusal();
+    assert!(message.contains("this worker does not run wheel.py"), "{message}");
+    let first = run(&["--allow-model", &path]).success();
+    assert_eq!(
+        run(&["--allow-model", &path]).success().lines().last(),
+        first.lines().last()
+    );
+    let message = run(&["--allow-model", "nowhere.py"]).refusal();
+    assert!(
+        message.contains("--allow-model nowhere.py: no such file"),
+        "{message}"
+    );
 }

@@ -7,13 +7,18 @@ use std::collections::BTreeMap;
 use std::os::unix::fs::MetadataExt;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use sha2::{Digest, Sha256};
 use shared::model::{ExternalModel, ExternalSource};
 use tokio::runtime::Handle;
 
-use super::umbridge::UmbridgeServer;
+use super::group::ProcessGroups;
+use super::umbridge::{CallError, UmbridgeServer};
 use super::{ExternalFailure, ExternalRun, program};
+
+/// Shortest time that a server has to say what it is.
+const PATIENCE: Duration = Duration::from_secs(5);
 
 /// The models that are not ours that this worker runs.
 #[derive(Debug, Default)]
@@ -21,6 +26,8 @@ pub struct AllowedModels {
     /// By file name.
     programs: BTreeMap<String, PathBuf>,
     servers: Vec<UmbridgeServer>,
+    /// The programs that run.
+    groups: ProcessGroups,
     /// The identity of each model by its name, as last seen; absent where it cannot be asked.
     identities: Mutex<BTreeMap<String, String>>,
     /// What is known of a program's file: its contents are read again only where this differs.
@@ -86,8 +93,8 @@ impl AllowedModels {
         lock(&self.identities).clone()
     }
 
-    /// Asks every model for its identity again. Blocks.
-    pub fn refresh(&self) {
+    /// Asks every model for its identity again. A server that is too busy to say is taken for what it was.
+    pub async fn refresh(&self) {
         let mut seen = BTreeMap::new();
         for name in self.programs.keys() {
             match self.hash(name) {
@@ -96,28 +103,36 @@ impl AllowedModels {
             }
         }
         for server in &self.servers {
-            match server.identities() {
-                Ok(models) => seen.extend(
-                    models
-                        .into_iter()
-                        .map(|(model, identity)| (format!("{} {model}", server.url()), identity)),
-                ),
-                Err(reason) => tracing::warn!(reason, "a UM-Bridge server does not say what it is"),
+            let of = |model: &str| format!("{} {model}", server.url());
+            match server.identities(PATIENCE).await {
+                Ok(models) => seen.extend(models.into_iter().map(|(model, identity)| (of(&model), identity))),
+                Err(CallError::Slow) => {
+                    let known = lock(&self.identities);
+                    let own = known.iter().filter(|(name, _)| name.starts_with(&of("")));
+                    seen.extend(own.map(|(name, identity)| (name.clone(), identity.clone())));
+                }
+                Err(error) => {
+                    let reason = error.words(server.url());
+                    tracing::warn!(reason, "a UM-Bridge server does not say what it is");
+                }
             }
         }
         *lock(&self.identities) = seen;
     }
 
-    /// The identity of a model, asked for again.
+    /// The identity of a model, asked for again. A server may take as long for it as for a run: it may answer one request at a time.
     ///
     /// # Errors
     /// A sentence: it is not allowed, or cannot be asked.
-    pub fn identify(&self, source: &ExternalSource) -> Result<String, String> {
-        let name = source.name();
-        let identity = match source {
+    pub(crate) fn identify(&self, model: &ExternalModel) -> Result<String, String> {
+        let name = model.source.name();
+        let identity = match &model.source {
             ExternalSource::Command { program } => self.hash(program),
-            ExternalSource::Umbridge { url, model } => self.server(url).and_then(|server| {
-                let models = server.identities()?;
+            ExternalSource::Umbridge { url, model: own } => self.server(url).and_then(|server| {
+                let patience = PATIENCE.max(Duration::from_secs_f64(model.time_s));
+                let models = server.runtime().block_on(server.identities(patience));
+                let models = models.map_err(|error| error.words(url))?;
+                let model = own;
                 let own = models.into_iter().find(|(own, _)| own == model);
                 own.map(|(_, identity)| identity)
                     .ok_or_else(|| format!("{url} has no model {model}"))
@@ -143,13 +158,18 @@ impl AllowedModels {
         match &model.source {
             ExternalSource::Command { program } => {
                 let path = self.program(program).map_err(ExternalFailure::Machine)?;
-                program::evaluate(path, model, runs)
+                program::evaluate(path, model, runs, &self.groups)
             }
             ExternalSource::Umbridge { url, model: name } => {
                 let server = self.server(url).map_err(ExternalFailure::Machine)?;
                 server.evaluate(name, model, runs)
             }
         }
+    }
+
+    /// Kills the programs that run, and begins none any more.
+    pub fn stop(&self) {
+        self.groups.stop();
     }
 
     fn program(&self, name: &str) -> Result<&PathBuf, String> {

@@ -2,12 +2,13 @@
 //!
 //! # Layout
 //! - [`allowed`]: which of them this worker runs, and the identity of each.
-//! - `program`: a program, fed with JSON, within its limits. `umbridge`: a model of a UM-Bridge server.
+//! - `program`: a program, fed with JSON; `group`: its processes, within limits. `umbridge`: a model of a UM-Bridge server.
 //! - `answer`: what both answer, in numbers. `failure`: why they give none.
 
 pub mod allowed;
 mod answer;
 mod failure;
+mod group;
 mod program;
 mod umbridge;
 

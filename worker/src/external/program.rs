@@ -4,32 +4,27 @@
 //! one object, `{"runs": [{"slip": 0.2, ..., "n": 1.1}, ...]}`, with every input and parameter of every run by name, and writes
 //! one, `{"runs": [{"drawbar_pull_n": 20.1, ...}, ...]}`. A run that has no answer may be `{"rejected": "the reason"}`.
 //!
-//! The process leads a group of its own, which is killed when it ends, also where it has started others. Its limits are those of
-//! the system: address space by `RLIMIT_AS`, and CPU time by `RLIMIT_CPU`, so that it does not outlive a worker that is killed.
+//! The process leads a [group](super::group) of its own, which is killed when it ends, and has limits of memory and time.
 
 use std::io::{Read, Write};
 use std::os::unix::process::CommandExt;
 use std::path::Path;
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-use rustix::process::{
-    Pid, Resource, Rlimit, Signal, WaitId, WaitIdOptions, kill_process_group, prlimit, waitid,
-};
 use serde_json::{Map, Value, json};
 use shared::model::ExternalModel;
 
 use super::ExternalRun;
 use super::answer::{beginning, json, outputs, shortened};
 use super::failure::ExternalFailure;
+use super::group::ProcessGroups;
 
 /// Longest answer `[bytes]`.
 const MOST_BYTES: u64 = 64 << 20;
 /// How much of what the program says of its errors is kept `[bytes]`.
 const MOST_ERROR_BYTES: usize = 4000;
-/// How often the end of a program is looked for that has closed its output.
-const LOOK: Duration = Duration::from_millis(1);
 
 /// Evaluates all runs by a process of its own.
 ///
@@ -39,9 +34,10 @@ pub(super) fn evaluate(
     program: &Path,
     model: &ExternalModel,
     runs: &[ExternalRun],
+    groups: &ProcessGroups,
 ) -> Result<Vec<Vec<f64>>, ExternalFailure> {
     let limit = Duration::from_secs_f64(model.time_s * runs.len().max(1) as f64);
-    let text = run(program, &question(model, runs), limit, model.memory_mb)?;
+    let text = run(program, &question(model, runs), limit, model.memory_mb, groups)?;
     let machine = |message: String| ExternalFailure::Machine(format!("{}: {message}", program.display()));
     let answer =
         json(&text).map_err(|e| machine(format!("the answer is not JSON: {e}: \"{}\"", beginning(&text))))?;
@@ -80,60 +76,13 @@ fn question(model: &ExternalModel, runs: &[ExternalRun]) -> Vec<u8> {
     text
 }
 
-/// A process with its group, which is killed with it.
-struct Group {
-    child: Child,
-    id: Option<Pid>,
-}
-
-impl Group {
-    /// Kills every process of the group. Until its leader is waited for, the group's number is nobody else's.
-    fn kill(&self) {
-        if let Some(id) = self.id {
-            // It may have ended already.
-            let _ = kill_process_group(id, Signal::KILL);
-        }
-    }
-
-    /// Limits address space `[MB]` and CPU time. The program cannot have done anything yet: it has no question.
-    fn limit(&self, memory_mb: Option<u64>, time: Duration) -> Result<(), rustix::io::Errno> {
-        let set = |resource, most: u64| {
-            let limit = Rlimit {
-                current: Some(most),
-                maximum: Some(most),
-            };
-            prlimit(self.id, resource, limit).map(drop)
-        };
-        if let Some(memory_mb) = memory_mb {
-            set(Resource::As, memory_mb.saturating_mul(1_000_000))?;
-        }
-        set(Resource::Cpu, time.as_secs() + 2)
-    }
-
-    /// Waits for the end of the leader until a time, kills what is left of the group, and gives the leader's status; `None` where
-    /// the time came first.
-    fn end(&mut self, until: Instant) -> std::io::Result<Option<ExitStatus>> {
-        let seen = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
-        let mut has_ended = false;
-        while let Some(id) = self.id {
-            has_ended = waitid(WaitId::Pid(id), seen)?.is_some();
-            if has_ended || Instant::now() >= until {
-                break;
-            }
-            std::thread::sleep(LOOK);
-        }
-        self.kill();
-        let status = self.child.wait()?;
-        Ok(has_ended.then_some(status))
-    }
-}
-
 /// Starts the program, gives it the question, and gives what it has written by its end.
 fn run(
     program: &Path,
     question: &[u8],
     limit: Duration,
     memory_mb: Option<u64>,
+    groups: &ProcessGroups,
 ) -> Result<String, ExternalFailure> {
     let name = program.display();
     let machine = |what: &str, error: &dyn std::fmt::Display| {
@@ -150,12 +99,10 @@ fn run(
         .spawn()
         .map_err(|e| machine("cannot be started (it must be an executable file)", &e))?;
     let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
-    let id = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
-    let mut group = Group { child, id };
+    let mut group = groups.take(child).map_err(|e| machine("is not run", &e))?;
     if let Err(error) = group.limit(memory_mb, limit) {
-        group.kill();
         // The error that matters is the first.
-        let _ = group.child.wait();
+        let _ = group.end(Instant::now());
         return Err(machine("its limits cannot be set", &error));
     }
     let (Some(mut stdin), Some(stdout), Some(stderr)) = pipes else {

@@ -17,8 +17,6 @@ use super::ExternalRun;
 use super::answer::{beginning, json, outputs, shortened};
 use super::failure::ExternalFailure;
 
-/// Longest that a server may take to say what it is.
-const PATIENCE: Duration = Duration::from_secs(5);
 /// The protocol that is spoken.
 const PROTOCOL: f64 = 1.0;
 
@@ -43,7 +41,7 @@ enum Layout {
 }
 
 /// Why a server gives no answer.
-enum CallError {
+pub(super) enum CallError {
     /// It took too long.
     Slow,
     /// It says that it failed, with status 500.
@@ -71,22 +69,27 @@ impl UmbridgeServer {
         &self.url
     }
 
+    pub(super) fn runtime(&self) -> &Handle {
+        &self.runtime
+    }
+
     /// The models of the server, each with its identity: a digest of what the server says of itself and of the model.
-    pub(super) fn identities(&self) -> Result<Vec<(String, String)>, String> {
-        let info = self.call(self.client.get(format!("{}/Info", self.url)), PATIENCE);
-        let info = info.map_err(|e| e.words(&self.url))?;
+    ///
+    /// # Errors
+    /// [`CallError`].
+    pub(super) async fn identities(&self, patience: Duration) -> Result<Vec<(String, String)>, CallError> {
+        let info = self.client.get(format!("{}/Info", self.url));
+        let info = call(info, patience).await?;
         if info.get("protocolVersion").and_then(Value::as_f64) != Some(PROTOCOL) {
-            return Err(format!(
-                "{}: the protocol must be {PROTOCOL}, and is {}",
-                self.url,
+            return Err(CallError::Other(format!(
+                "the protocol must be {PROTOCOL}, and is {}",
                 info.get("protocolVersion").unwrap_or(&Value::Null)
-            ));
+            )));
         }
         let names = info.get("models").and_then(Value::as_array).into_iter().flatten();
         let mut models = Vec::new();
         for name in names.filter_map(Value::as_str) {
-            let about = self.ask("ModelInfo", &json!({ "name": name }), PATIENCE);
-            let about = about.map_err(|e| e.words(&self.url))?;
+            let about = self.ask("ModelInfo", &json!({ "name": name }), patience).await?;
             // keys are in order, so equal answers have equal texts
             let digest = Sha256::digest(format!("{info}\n{name}\n{about}"));
             let hex: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
@@ -117,7 +120,7 @@ impl UmbridgeServer {
             };
             let question = json!({ "name": name, "input": input, "config": {} });
             let answer = self
-                .ask("Evaluate", &question, limit)
+                .ask_blocking("Evaluate", &question, limit)
                 .map_err(|error| match error {
                     CallError::Slow => {
                         let message = format!("{} takes longer than {} s", self.url, model.time_s);
@@ -152,7 +155,7 @@ impl UmbridgeServer {
             return Ok(*layout);
         }
         let question = json!({ "name": name, "config": {} });
-        let answer = self.ask("InputSizes", &question, PATIENCE);
+        let answer = self.ask_blocking("InputSizes", &question, Duration::from_secs_f64(model.time_s));
         let answer = answer.map_err(|e| self.machine(&e.words(&self.url)))?;
         let sizes = answer.get("inputSizes").unwrap_or(&Value::Null);
         let layout = if *sizes == json!([inputs, parameters]) {
@@ -176,34 +179,36 @@ impl UmbridgeServer {
         }
     }
 
-    fn ask(&self, route: &str, question: &Value, limit: Duration) -> Result<Value, CallError> {
-        let post = self.client.post(format!("{}/{route}", self.url));
-        self.call(post.json(question), limit)
+    fn ask_blocking(&self, route: &str, question: &Value, limit: Duration) -> Result<Value, CallError> {
+        self.runtime.block_on(self.ask(route, question, limit))
     }
 
-    fn call(&self, request: RequestBuilder, limit: Duration) -> Result<Value, CallError> {
-        let away = |error: reqwest::Error| match error.is_timeout() {
-            true => CallError::Slow,
-            false => CallError::Other(root_cause(&error)),
-        };
-        let (status, text) = self.runtime.block_on(async {
-            let response = request.timeout(limit).send().await.map_err(away)?;
-            let status = response.status();
-            response.text().await.map(|text| (status, text)).map_err(away)
-        })?;
-        if status == StatusCode::INTERNAL_SERVER_ERROR {
-            return Err(CallError::Failed(said(&text)));
-        }
-        if !status.is_success() {
-            return Err(CallError::Other(format!("status {status}: {}", said(&text))));
-        }
-        let answer = json(&text);
-        answer.map_err(|e| CallError::Other(format!("the answer is not JSON: {e}: \"{}\"", beginning(&text))))
+    async fn ask(&self, route: &str, question: &Value, limit: Duration) -> Result<Value, CallError> {
+        let post = self.client.post(format!("{}/{route}", self.url));
+        call(post.json(question), limit).await
     }
 }
 
+async fn call(request: RequestBuilder, limit: Duration) -> Result<Value, CallError> {
+    let away = |error: reqwest::Error| match error.is_timeout() {
+        true => CallError::Slow,
+        false => CallError::Other(root_cause(&error)),
+    };
+    let response = request.timeout(limit).send().await.map_err(away)?;
+    let status = response.status();
+    let text = response.text().await.map_err(away)?;
+    if status == StatusCode::INTERNAL_SERVER_ERROR {
+        return Err(CallError::Failed(said(&text)));
+    }
+    if !status.is_success() {
+        return Err(CallError::Other(format!("status {status}: {}", said(&text))));
+    }
+    let answer = json(&text);
+    answer.map_err(|e| CallError::Other(format!("the answer is not JSON: {e}: \"{}\"", beginning(&text))))
+}
+
 impl CallError {
-    fn words(self, url: &str) -> String {
+    pub(super) fn words(self, url: &str) -> String {
         match self {
             CallError::Slow => format!("{url} does not answer"),
             CallError::Failed(message) | CallError::Other(message) => format!("{url}: {message}"),

@@ -111,7 +111,7 @@ impl OutsideModel {
         let source = &self.description.source;
         let before = match self.models.announced().remove(&source.name()) {
             Some(identity) => identity,
-            None => match self.models.identify(source) {
+            None => match self.models.identify(&self.description) {
                 Ok(identity) => identity,
                 Err(message) => return fault(message),
             },
@@ -133,7 +133,7 @@ impl OutsideModel {
                 Err(ExternalFailure::Machine(message)) => return fault(message),
             },
         };
-        match self.models.identify(source) {
+        match self.models.identify(&self.description) {
             Ok(after) if after == before => outcome,
             Ok(after) => fault(format!(
                 "{} has changed: it was {before}, and is {after}",
