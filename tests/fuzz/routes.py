@@ -59,7 +59,9 @@ def start(programs, folder):
     address = f"127.0.0.1:{free_port()}"
     log = open(pathlib.Path(folder, "log"), "w")
     serve = [coordinator, "serve", "--listen", address, "--store", f"sqlite://{store}/grouser.db"]
-    service = subprocess.Popen(serve, stdout=log, stderr=log)
+    # One arena, so that what grows is what the service holds: each of glibc's arenas keeps pieces that others cannot use, and
+    # which thread uses which is chance.
+    service = subprocess.Popen(serve, stdout=log, stderr=log, env=os.environ | {"MALLOC_ARENA_MAX": "1"})
     work = [pathlib.Path(programs, "worker"), "--coordinator", f"http://{address}", "--threads", "1"]
     worker = subprocess.Popen(work, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     for _ in range(100):
