@@ -5,6 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import requests
 import umbridge
 
 RUN = {"slip": 0.2, "wheel_load_n": 100.0, "sled_speed_m_s": 0.01, "slip_angle_deg": 0.0}
@@ -57,6 +58,12 @@ def changed(name: str, value: float) -> list[list[float]]:
 def check(url: str, worker: str, folder: Path) -> None:
     """Asks for all that the models are said to do."""
     assert umbridge.supported_models(url) == ["quasi_static", "scm"]
+    # The protocol allows no other keys; the version is a header.
+    info = requests.get(f"{url}/Info", timeout=60)
+    assert info.json().keys() == {"protocolVersion", "models"}, info.text
+    assert info.headers["model-version"].startswith("scm-"), info.headers
+    about = requests.post(f"{url}/ModelInfo", json={"name": "scm"}, timeout=60).json()
+    assert about.keys() == {"support"}, about
     for kind in ("quasi_static", "scm"):
         model = umbridge.HTTPModel(url, kind)
         assert model.get_input_sizes() == [len(side) for side in INPUT]

@@ -5,6 +5,7 @@ import shutil
 import socket
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 EXAMPLE = Path("examples/any-model")
@@ -42,6 +43,17 @@ def calibrated(coordinator: str, folder: Path, job: str, allowed: str) -> str:
     return (folder / "posterior.csv").read_text()
 
 
+def wait(server: subprocess.Popen[bytes], port: int) -> None:
+    """Waits until the server listens."""
+    for _ in range(600):
+        assert server.poll() is None, "the server has ended"
+        with socket.socket() as probe:
+            if probe.connect_ex(("127.0.0.1", port)) == 0:
+                return
+        time.sleep(0.1)
+    raise AssertionError("the server does not listen")
+
+
 def check(coordinator: str, folder: Path) -> None:
     """Calibrates by server and by program."""
     for file in EXAMPLE.iterdir():
@@ -56,6 +68,7 @@ def check(coordinator: str, folder: Path) -> None:
     log = open(folder / "server.log", "w", encoding="utf-8")
     server = subprocess.Popen([sys.executable, "by_package.py", str(port)], cwd=folder, stdout=log, stderr=log)
     try:
+        wait(server, port)
         by_server = calibrated(coordinator, folder, "job.toml", url)
     finally:
         server.kill()

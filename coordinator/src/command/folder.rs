@@ -17,7 +17,7 @@ use crate::embedded::{LocalModels, LocalWorkers};
 use crate::farm::Control;
 use crate::http::Exposure;
 use crate::service::{FarmSettings, LEASE_MS, Service, VERIFIED_PERCENT, next_step_of, search_rounds};
-use job::Apply;
+use job::{Apply, Spec};
 use record::CalibrationRow;
 use result::discovery::effect_file;
 use result::{DiscoveryRound, StudyFile, terminal};
@@ -118,17 +118,26 @@ impl Folder {
         Ok(())
     }
 
+    /// Version of the equations that local workers compute of a job's model; none where they do not run it, but others may join who
+    /// do.
+    ///
+    /// # Errors
+    /// Nobody would run it.
+    pub(super) async fn equations_of(&self, spec: &Spec) -> anyhow::Result<Option<String>> {
+        let external = spec.model.external.clone();
+        let models = self.models.clone();
+        match tokio::task::spawn_blocking(move || models.equations(external.as_ref())).await? {
+            Ok(equations) => Ok(Some(equations)),
+            Err(message) if self.server.is_none() => bail!(message),
+            Err(_) => Ok(None),
+        }
+    }
+
     /// Checks that local workers can go on with a calibration: that they run its model, and in the version that it is pinned to.
     async fn check_equations(&self, row: &CalibrationRow) -> anyhow::Result<()> {
-        let external = self.service.spec_of(row).await?.model.external;
-        let models = self.models.clone();
-        let is_alone = self.server.is_none();
-        let known = tokio::task::spawn_blocking(move || models.equations(external.as_ref())).await?;
-        let equations = match known {
-            Ok(equations) => equations,
-            Err(message) if is_alone => bail!(message),
-            // Workers that join may run it.
-            Err(_) => return Ok(()),
+        let spec = self.service.spec_of(row).await?;
+        let Some(equations) = self.equations_of(&spec).await? else {
+            return Ok(());
         };
         match row.model_version.as_deref().map(equations_of) {
             Some(pinned) if pinned != equations => bail!(

@@ -58,6 +58,9 @@ async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
     let rows = service.store().reader().calibrations().await?;
     let mut rows = rows.into_iter().map(|(_, row)| row);
     let Some(first) = rows.next() else {
+        for spec in std::iter::once(&job.spec).chain(&job.others) {
+            folder.equations_of(spec).await?;
+        }
         let experiment = NewExperiment {
             toml: job.experiment.toml.clone(),
             files: job.experiment.files.clone(),

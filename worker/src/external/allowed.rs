@@ -124,7 +124,7 @@ impl AllowedModels {
     ///
     /// # Errors
     /// A sentence: it is not allowed, or cannot be asked.
-    pub(crate) fn identify(&self, model: &ExternalModel) -> Result<String, String> {
+    pub fn identify(&self, model: &ExternalModel) -> Result<String, String> {
         let name = model.source.name();
         let identity = match &model.source {
             ExternalSource::Command { program } => self.hash(program),

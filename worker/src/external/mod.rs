@@ -14,6 +14,9 @@ mod umbridge;
 
 pub(crate) use failure::ExternalFailure;
 
+/// Header of the answer to `/Info` by which a server may tell the version of its models.
+pub(crate) const MODEL_VERSION: &str = "model-version";
+
 /// A run as a model that is not ours is given it: its properties and the parameters, in the model's order.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ExternalRun {

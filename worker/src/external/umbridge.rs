@@ -13,9 +13,9 @@ use sha2::{Digest, Sha256};
 use shared::model::ExternalModel;
 use tokio::runtime::Handle;
 
-use super::ExternalRun;
 use super::answer::{beginning, json, outputs, shortened};
 use super::failure::ExternalFailure;
+use super::{ExternalRun, MODEL_VERSION};
 
 /// The protocol that is spoken.
 const PROTOCOL: f64 = 1.0;
@@ -79,7 +79,7 @@ impl UmbridgeServer {
     /// [`CallError`].
     pub(super) async fn identities(&self, patience: Duration) -> Result<Vec<(String, String)>, CallError> {
         let info = self.client.get(format!("{}/Info", self.url));
-        let info = call(info, patience).await?;
+        let (info, version) = call(info, patience).await?;
         if info.get("protocolVersion").and_then(Value::as_f64) != Some(PROTOCOL) {
             return Err(CallError::Other(format!(
                 "the protocol must be {PROTOCOL}, and is {}",
@@ -91,7 +91,7 @@ impl UmbridgeServer {
         for name in names.filter_map(Value::as_str) {
             let about = self.ask("ModelInfo", &json!({ "name": name }), patience).await?;
             // keys are in order, so equal answers have equal texts
-            let digest = Sha256::digest(format!("{info}\n{name}\n{about}"));
+            let digest = Sha256::digest(format!("{info}\n{name}\n{about}\n{version}"));
             let hex: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
             models.push((name.to_owned(), format!("umbridge-{hex}")));
         }
@@ -185,17 +185,23 @@ impl UmbridgeServer {
 
     async fn ask(&self, route: &str, question: &Value, limit: Duration) -> Result<Value, CallError> {
         let post = self.client.post(format!("{}/{route}", self.url));
-        call(post.json(question), limit).await
+        call(post.json(question), limit).await.map(|(answer, _)| answer)
     }
 }
 
-async fn call(request: RequestBuilder, limit: Duration) -> Result<Value, CallError> {
+/// The answer to a request, and the version of the server's models if it tells one.
+async fn call(request: RequestBuilder, limit: Duration) -> Result<(Value, String), CallError> {
     let away = |error: reqwest::Error| match error.is_timeout() {
         true => CallError::Slow,
         false => CallError::Other(root_cause(&error)),
     };
     let response = request.timeout(limit).send().await.map_err(away)?;
     let status = response.status();
+    let version = response.headers().get(MODEL_VERSION);
+    let version = version
+        .and_then(|version| version.to_str().ok())
+        .unwrap_or_default()
+        .to_owned();
     let text = response.text().await.map_err(away)?;
     if status == StatusCode::INTERNAL_SERVER_ERROR {
         return Err(CallError::Failed(said(&text)));
@@ -203,8 +209,15 @@ async fn call(request: RequestBuilder, limit: Duration) -> Result<Value, CallErr
     if !status.is_success() {
         return Err(CallError::Other(format!("status {status}: {}", said(&text))));
     }
-    let answer = json(&text);
-    answer.map_err(|e| CallError::Other(format!("the answer is not JSON: {e}: \"{}\"", beginning(&text))))
+    match json(&text) {
+        Ok(answer) => Ok((answer, version)),
+        Err(e) => {
+            let said = beginning(&text);
+            Err(CallError::Other(format!(
+                "the answer is not JSON: {e}: \"{said}\""
+            )))
+        }
+    }
 }
 
 impl CallError {

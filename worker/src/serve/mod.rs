@@ -22,6 +22,7 @@ use shared::model::ModelKind;
 use tokio::net::TcpListener;
 use tokio::sync::Semaphore;
 
+use crate::external::MODEL_VERSION;
 use model::{INPUTS, OUTPUTS, PARAMETERS, ServedError, evaluate};
 
 /// The models that are served.
@@ -87,21 +88,17 @@ pub async fn serve(
         .await
 }
 
-async fn info() -> Json<Value> {
-    Json(
-        json!({ "protocolVersion": 1.0, "models": MODELS.map(ModelKind::name), "version": crate::model_version() }),
-    )
+/// The protocol allows no key for a version.
+async fn info() -> ([(&'static str, &'static str); 1], Json<Value>) {
+    let models = json!({ "protocolVersion": 1.0, "models": MODELS.map(ModelKind::name) });
+    ([(MODEL_VERSION, crate::model_version())], Json(models))
 }
 
 async fn model_info(body: Bytes) -> Result<Json<Value>, ProtocolError> {
     read(&body)?;
     let support =
         json!({ "Evaluate": true, "Gradient": false, "ApplyJacobian": false, "ApplyHessian": false });
-    let inputs = [INPUTS.map(|input| input.name()).as_slice(), &PARAMETERS].concat();
-    let outputs = OUTPUTS.map(|channel| channel.column());
-    Ok(Json(
-        json!({ "support": support, "inputs": inputs, "outputs": outputs }),
-    ))
+    Ok(Json(json!({ "support": support })))
 }
 
 async fn input_sizes(body: Bytes) -> Result<Json<Value>, ProtocolError> {
