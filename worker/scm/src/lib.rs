@@ -21,6 +21,7 @@
 //! - [`quasi_static`]: a smooth wheel in steady motion, integrated along the rim.
 //! - [`spatial`]: a wheel with grousers, or any surface, that rolls over a terrain it deforms.
 //! - [`rft`]: a wheel in granular soil by resistive force theory, without the laws above.
+//! - [`outside`]: effects around a model that is not of this crate.
 //! - [`bevameter`]: a plate pressed into the soil and a ring turned on it, by the same laws as the wheel.
 //!
 //! Numerics:
@@ -47,6 +48,7 @@ pub mod bevameter;
 pub mod condition;
 pub mod effects;
 pub mod footprint;
+pub mod outside;
 pub mod pressure_distribution;
 pub mod pressure_sinkage;
 mod quadrature;

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use scm::effects::{Active, OutsideRun};
+use scm::effects::Active;
+use scm::outside::OutsideRun;
 use scm::{Condition, Soil, Wheel};
 use shared::channel::Channel;
 use shared::exchange::RepeatedAnswer;

@@ -7,7 +7,6 @@
 //! - `law`: an effect as one model knows it.
 //! - `node`: pressure, strength and stress at many nodes.
 //! - `channel`: what the rig measures.
-//! - `outside`: effects around a model that is not of this crate.
 //!
 //! Effects follow each other at a hook in the order in which they were compiled; hooks follow each other in the order of
 //! [`Hook::ALL`]. Without an active effect a model runs its base code, bit for bit.
@@ -17,11 +16,9 @@ mod channel;
 mod error;
 mod law;
 mod node;
-mod outside;
 
 pub use error::FormError;
 pub(crate) use node::NodeLaws;
-pub use outside::OutsideRun;
 
 use formula::effect::Mechanism;
 use formula::variable::Variables;
@@ -40,7 +37,7 @@ pub enum ModelForm {
     Rft,
     /// [`spatial`](crate::spatial): patches of the footprint have their own.
     Spatial,
-    /// A model that is not of this crate: effects act on what it is given and on what it answers, see [`OutsideRun`].
+    /// A model that is not of this crate: effects act on what it is given and on what it answers, see [`OutsideRun`](crate::outside::OutsideRun).
     Outside,
 }
 

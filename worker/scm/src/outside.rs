@@ -2,8 +2,8 @@
 
 use formula::Variable;
 
-use super::case::Case;
-use super::{Active, Site};
+use crate::effects::case::Case;
+use crate::effects::{Active, Site};
 use crate::{Condition, Rejection, Soil, Wheel};
 
 /// A run as a model that is not of this crate is given it.
@@ -23,7 +23,7 @@ impl OutsideRun {
     ///
     /// # Arguments
     /// - `soil`: what formulas may use of the parameters; NaN where the model has none, which no effect may then use.
-    /// - `effects`: compiled for [`ModelForm::Outside`](super::ModelForm::Outside); the load does not depend on pull or torque.
+    /// - `effects`: compiled for [`ModelForm::Outside`](crate::effects::ModelForm::Outside); the load does not depend on pull or torque.
     ///
     /// # Errors
     /// [`Rejection::InvalidParameter`]: a field of wheel or condition is outside its bounds. [`Rejection::Formula`]: a formula
