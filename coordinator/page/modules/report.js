@@ -6,7 +6,7 @@ import { Guarded } from "./part/guarded.js";
 import { Pending } from "./part/message.js";
 import { path } from "./rest/routes.js";
 import { useAnswer } from "./rest/use_answer.js";
-import { VIEWS, modelName, modelOf } from "./view/study.js";
+import { VIEWS, modelName, modelOf, models } from "./view/study.js";
 
 /** Which study, and which of its calibrations, the file is about. */
 const shown = JSON.parse(document.getElementById("shown")?.textContent ?? "{}");
@@ -18,7 +18,7 @@ function Report() {
   return html`
     <header class="heading">
       <h1>${study.name}</h1>
-      <p class="note">${study.model_kind}, ${model ? modelName(study, model) : "no model"}${study.members.length > 1 ? html`; models: ${study.members.filter((/** @type {any} */ m) => m.kind !== "search").map((/** @type {any} */ m) => modelName(study, m)).join(" → ")}` : null}</p>
+      <p class="note">${[...new Set([study.model_kind, model ? modelName(study, model) : "no model"])].join(", ")}${lineage(study)}</p>
       <nav class="views" aria-label="Sections">${VIEWS.map((v) => html`<a href=${`#${v.name}`}>${v.title}</a>`)}</nav>
     </header>
     ${VIEWS.map((v) => html`
@@ -27,6 +27,18 @@ function Report() {
         <${Guarded} title=${v.title}><${v.view} study=${study} model=${model} query=${{}} /><//>
       </section>`)}
     <${ChosenRuns} study=${study} model=${model} />`;
+}
+
+/** The models that were compared, and those that one of them grew into. */
+function lineage(/** @type {any} */ study) {
+  const names = (/** @type {any[]} */ members) => members.map((member) => modelName(study, member));
+  const isOther = (/** @type {any} */ member) => member.id !== study.models?.best && study.models?.models.some((/** @type {any} */ m) => m.calibration === member.id);
+  const compared = models(study).filter((/** @type {any} */ m) => m.id === study.models?.best || isOther(m));
+  const line = models(study).filter((/** @type {any} */ m) => !isOther(m));
+  return [
+    compared.length > 1 ? `; compared: ${names(compared).join(", ")}` : "",
+    study.members.length > 1 && line.length > (compared.length > 1 ? 1 : 0) ? `; models: ${names(line).join(" → ")}` : "",
+  ].join("");
 }
 
 const place = /** @type {HTMLElement} */ (document.getElementById("page"));

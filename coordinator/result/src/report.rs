@@ -77,6 +77,28 @@ mod tests {
     }
 
     #[test]
+    fn the_models_that_a_job_compares_are_in_the_report() {
+        let mut other = fixture::calibration();
+        other.row.id = 2;
+        let study = Study {
+            models: 2,
+            others: vec![other],
+            ..Study::from(fixture::calibration())
+        };
+        let answers = answers(&study);
+        let models = &answers[&format!("/v1/studies/{}", study.lead.row.study)]["models"];
+        assert_eq!(models["best"], study.lead.row.id);
+        assert_eq!(models["models"].as_array().map(Vec::len), Some(2));
+        assert_eq!(
+            answers
+                .keys()
+                .filter(|path| path.ends_with("/comparison"))
+                .count(),
+            2
+        );
+    }
+
+    #[test]
     fn names_of_users_are_escaped() {
         let document = document(&fixture::study());
         assert!(document.contains("\\u003cscript>") && document.contains("&lt;script&gt;"));

@@ -1,9 +1,11 @@
-// The story of a study in three sentences: what the model gets wrong, what is missing, what to do next; then how the error fell.
+// The story of a study in three sentences: what the model gets wrong, what is missing, what to do next; then which model it is of
+// several, and how the error fell.
 
 import { html, useState } from "../html.js";
 import { LedgerCharts } from "../chart/ledger_chart.js";
 import { Flags } from "../part/flags.js";
 import { Failure } from "../part/message.js";
+import { ModelTable } from "../part/model_table.js";
 import { isReport } from "../rest/answers.js";
 import { discover, extend } from "../rest/routes.js";
 import { address } from "../route.js";
@@ -21,6 +23,7 @@ export function Story({ study, model, reload }) {
   const isAtWork = !isReport && ["queued", "running"].includes(study.state);
   const to = (/** @type {string} */ view) => (isReport ? `#${view}` : address(["studies", study.id, view], { model: model.id }));
   return html`
+    ${study.models && html`<p class=${`verdict ${study.models.none_of_these ? "doubt" : ""}`}>${sentence(signed(study.models.text))}</p>`}
     <div class="three">
       <section class="card"><h2>What the model gets wrong</h2>
         <p class=${story.wrong.channels.every((/** @type {any} */ c) => c.is_within_noise) ? "calm" : "alarm"}>${sentence(story.wrong.text)}</p>
@@ -34,11 +37,15 @@ export function Story({ study, model, reload }) {
         <ol>${(isAtWork ? [] : story.next.steps).map((/** @type {any} */ step) => html`<li><${Step} step=${step} study=${study} model=${model} reload=${reload} /></li>`)}</ol>
         ${isReport && story.next.steps.some((/** @type {any} */ step) => step.command) && html`<p class="note">Commands run in the folder of this report.</p>`}</section>
     </div>
+    ${study.models && html`<${ModelTable} comparison=${study.models} />`}
     ${lines.length > 0 && html`<h2>How the error falls</h2><${LedgerCharts} study=${study} lines=${lines} />`}
     <${Flags} study=${study} />`;
 }
 
 const sentence = (/** @type {string} */ text) => capital(/[.!?]$/.test(text) ? text : `${text}.`);
+
+/** With the sign that people write before numbers. */
+const signed = (/** @type {string} */ text) => text.replace(/(?<=\s)-(?=\d)/g, "−");
 
 /** A step with the button that takes it; a report has the command. */
 function Step(/** @type {{ step: any, study: any, model: any, reload?: () => void }} */ { step, study, model, reload }) {

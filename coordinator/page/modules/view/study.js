@@ -35,8 +35,13 @@ export const VIEWS = [
   { name: "trust", title: "How far to trust it", view: Trust },
 ];
 
-/** The name of a model of a study: what it has beyond the submitted job, and, where another has the same, its calibration. */
+/**
+ * The name of a model of a study: that of the comparison where the job compares it; else what it has beyond the submitted job, and, where
+ * another has the same, its calibration.
+ */
 export function modelName(/** @type {any} */ study, /** @type {any} */ member) {
+  const compared = study.models?.models.find((/** @type {any} */ m) => m.calibration === member.id);
+  if (compared) return compared.name;
   const name = (/** @type {any} */ m) => (m.effects.length === 0 ? "base" : `with ${m.effects.join(", ")}`);
   const isShared = models(study).filter((/** @type {any} */ m) => name(m) === name(member)).length > 1;
   return isShared ? `${name(member)} (${member.name}, ${member.id})` : name(member);

@@ -1,0 +1,52 @@
+// The models that a job compares, as the words of a table.
+
+import { CHANNELS, digits, minus, probability, short, shown, unitOf } from "./quantity.js";
+
+/** Names in the order of falling evidence; a model without evidence comes last. */
+const byEvidence = (/** @type {any} */ a, /** @type {any} */ b) => (b.log_evidence ?? -Infinity) - (a.log_evidence ?? -Infinity);
+
+/**
+ * Head and rows of the comparison, the most probable model first.
+ * @param {any} comparison the `models` of a study
+ * @returns {{ head: string[], rows: string[][] }}
+ */
+export function comparedModels(comparison) {
+  const channels = CHANNELS.filter((channel) => comparison.models.some((/** @type {any} */ m) => m.left_out?.[channel]));
+  const head = ["model", "ln evidence", "probability", "p of chi-square", ...channels.map((c) => `${short(c)} ${shown(unitOf(c)).unit}`), "noise sds", "answer"];
+  const rows = [...comparison.models].sort(byEvidence).map((model) => [
+    model.name, evidence(model), probability(model.probability), model.chi_square_p === null ? "–" : probability(model.chi_square_p),
+    ...channels.map((c) => (model.left_out?.[c] ? digits(model.left_out[c].rmse * shown(unitOf(c)).scale) : "–")),
+    digits(model.left_out?.all.rmse_fixed_sigma),
+    answer(comparison, model),
+  ]);
+  return { head, rows };
+}
+
+/** Log-evidence and its standard error, both to the second digit of the error. */
+function evidence(/** @type {any} */ { log_evidence: log, log_evidence_se: se }) {
+  if (log === null) return "–";
+  if (!(se > 0)) return minus(log.toFixed(1));
+  const decimals = Math.max(0, 1 - Math.floor(Math.log10(se)));
+  return `${minus(log.toFixed(decimals))} ± ${se.toFixed(decimals)}`;
+}
+
+/** What is decided about a model. */
+function answer(/** @type {any} */ comparison, /** @type {any} */ model) {
+  const best = comparison.models.find((/** @type {any} */ m) => m.calibration === comparison.best);
+  const decided = model !== best ? behind(best, model)
+    : comparison.none_of_these ? "most probable, yet none of these"
+    : comparison.none_of_these === false ? "chosen"
+    : "chosen; none of these cannot be said";
+  return model.calibration === comparison.best_predicting ? `${decided}; predicts best` : decided;
+}
+
+/** How far a model stays behind the best one. */
+function behind(/** @type {any} */ best, /** @type {any} */ model) {
+  if (model.log_evidence === null || best?.log_evidence === null) return "no evidence";
+  return `${digits(best.log_evidence - model.log_evidence)} nats less`;
+}
+
+/** Which data the errors are of. */
+export const leftOutWords = (/** @type {any} */ comparison) => (comparison.models.some((/** @type {any} */ m) => m.left_out_by === "holdout")
+  ? "Errors are of the held-out runs, which are never fitted"
+  : "No runs are held out: errors are of each condition, predicted from the others by weighting the draws, exact enough to rank models alone");
