@@ -11,11 +11,12 @@ use tracing_subscriber::layer::SubscriberExt as _;
 use tracing_subscriber::util::SubscriberInitExt as _;
 
 fn main() -> std::process::ExitCode {
-    // The cryptography of every connection; only a second call would fail.
-    let _ = rustls::crypto::ring::default_provider().install_default();
+    // First of all: the processor may lack the instructions of whatever comes next.
     if let Err(error) = coordinator::embedded::check_processor() {
         return refuse(error);
     }
+    // The cryptography of every connection; only a second call would fail.
+    let _ = rustls::crypto::ring::default_provider().install_default();
     run()
 }
 

@@ -46,6 +46,25 @@ def test_log_likelihoods_of_the_measurements_add_up_to_those_of_the_draws(data: 
     np.testing.assert_allclose(total.values, data["sample_stats"]["log_likelihood"].values, rtol=1e-9)
 
 
+def test_each_log_likelihood_is_that_of_the_coordinator_s_export(study: grouser.Study) -> None:
+    current = study.current
+    exported = current._get("inference-data")
+    group = next(group for group in exported["groups"] if group["name"] == "log_likelihood")
+    labels = {label["name"]: next(iter(label["values"].values())) for label in group["coords"]}
+    [variable] = group["data_vars"]
+    values = np.array(variable["values"]["real"]).reshape(variable["shape"])[0]
+    # The coordinator keeps predictions of some draws; those of all are computed here.
+    places = labels["draw"]
+    assert values.shape == (len(places), 24, 3) and len(set(places)) > 150
+    whole = current.inference_data(prior_draws=1)
+    for name, own in whole["posterior"].data_vars.items():
+        np.testing.assert_array_equal(own.values[0], current.posterior()[str(name)])
+    for place, channel in enumerate(labels["channel"]):
+        terms = whole["log_likelihood"][channel]
+        assert list(terms["run"].values) == labels["run"]
+        np.testing.assert_allclose(terms.values[0][places], values[:, :, place], rtol=1e-9, atol=1e-9)
+
+
 def test_predictions_scatter_about_the_measurements_as_the_noise_says(data: Any) -> None:
     for channel in CHANNELS:
         predicted = data["posterior_predictive"][channel]

@@ -82,14 +82,30 @@ def cancel(study: grouser.Study) -> None:
     study._place.client.post(f"calibrations/{study._overview['members'][-1]['id']}/cancel")
 
 
-def test_waiting_ends_when_the_time_is_up_or_the_calibration_is_cancelled(service: grouser.Service, long_job: Path) -> None:
+def test_waiting_ends_when_the_time_is_up_or_the_calibration_is_paused(service: grouser.Service, long_job: Path) -> None:
     study = service.submit(long_job)
     with pytest.raises(TimeoutError, match="not over after 0 s"):
         study.wait(0.0, progress=False)
-    cancel(study)
-    with pytest.raises(grouser.CalibrationStopped, match="cancelled") as raised:
+    study._place.client.post(f"calibrations/{study.calibrations[0].id}/pause")
+    with pytest.raises(grouser.CalibrationStopped, match="paused") as raised:
         study.wait(progress=False)
-    assert raised.value.state == "cancelled"
+    assert raised.value.state == "paused"
+    cancel(study)
+
+
+def test_a_cancelled_calibration_is_an_outcome(service: grouser.Service, long_job: Path, tmp_path: Path) -> None:
+    study = service.submit(long_job)
+    cancel(study)
+    assert study.wait(progress=False).state == "cancelled"
+    assert [calibration.state for calibration in study.calibrations] == ["cancelled"]
+    assert list(study.watch()) == []
+    # Beside a finished one it takes nothing from that.
+    few = {"seed = 1": "seed = 1\nparticles = 100", '"auto"': '"off"'}
+    grown = service.submit(changed_example(tmp_path, {"job.toml": few})).wait(progress=False)
+    later = grown.add("janosi_hanamoto", wait=False)
+    cancel(grown)
+    assert grown.wait(progress=False).calibration(later.id).state in ("cancelled", "finished")
+    assert grown.calibrations[0].state == "finished" and grown.current.posterior().rows == 100
 
 
 def test_coroutines_do_the_same_beside_other_work(served: Served, folder: Path, long_job: Path) -> None:
@@ -103,12 +119,11 @@ def test_coroutines_do_the_same_beside_other_work(served: Served, folder: Path, 
             await local.add("no_such_effect")
         local.close()
         seen: list[str] = []
-        with pytest.raises(grouser.CalibrationStopped, match="cancelled"):
-            async for progress in submitted.watch():
-                seen.append(progress.text)
-                if "evaluations" in progress.text:
-                    await asyncio.to_thread(cancel, submitted.sync)
-        assert any("evaluations" in text for text in seen)
+        async for progress in submitted.watch():
+            seen.append(progress.text)
+            if "evaluations" in progress.text:
+                await asyncio.to_thread(cancel, submitted.sync)
+        assert any("evaluations" in text for text in seen) and submitted.state == "cancelled"
         # A coroutine that is given up stops waiting.
         longer = await service.submit(long_job)
         with pytest.raises(asyncio.TimeoutError):

@@ -10,11 +10,12 @@ use tracing_subscriber::util::SubscriberInitExt as _;
 use worker::config::WorkerConfig;
 
 fn main() -> std::process::ExitCode {
-    // The cryptography of every connection; only a second call would fail.
-    let _ = rustls::crypto::ring::default_provider().install_default();
+    // First of all: the processor may lack the instructions of whatever comes next.
     if let Err(error) = worker::processor::check() {
         return refuse(error);
     }
+    // The cryptography of every connection; only a second call would fail.
+    let _ = rustls::crypto::ring::default_provider().install_default();
     run()
 }
 

@@ -34,10 +34,10 @@ class ProgramError(GrouserError):
 
 
 class CalibrationStopped(GrouserError):
-    """A calibration that was waited for is paused, failed or cancelled.
+    """A calibration that was waited for is paused or failed.
 
     Attributes:
-        state: ``"paused"``, ``"failed"`` or ``"cancelled"``.
+        state: ``"paused"`` or ``"failed"``.
     """
 
     def __init__(self, message: str, state: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -59,22 +60,27 @@ class FolderPlace:
         self.token = token
         self._service: _program.LocalService | None = None
         self._client: Client | None = None
+        # Threads, as those of `grouser.aio`, share one service: none starts a second one, and none ends it while another asks.
+        self._lock = threading.RLock()
 
     @property
     def client(self) -> Client:
-        if self._client is None:
-            store = self.folder / "grouser.db"
-            if not store.is_file():
-                raise GrouserError(f"{self.folder}: no grouser.db, so no output folder of a run")
-            self._service = _program.LocalService(store, read_only=True)
-            self._client = Client(self._service.url, self.token)
-        return self._client
+        with self._lock:
+            if self._client is None:
+                store = self.folder / "grouser.db"
+                if not store.is_file():
+                    raise GrouserError(f"{self.folder}: no grouser.db, so no output folder of a run")
+                self._service = _program.LocalService(store, read_only=True)
+                self._client = Client(self._service.url, self.token)
+            return self._client
 
     def get(self, path: str, **query: Query) -> Any:
-        return self.client.get(path, **query)
+        with self._lock:
+            return self.client.get(path, **query)
 
     def text(self, path: str, **query: Query) -> str:
-        return self.client.text(path, **query)
+        with self._lock:
+            return self.client.text(path, **query)
 
     def extend(self, calibration: int, effect: str | EffectFile, wheel: str | None, tell: OnProgress | None) -> None:
         if isinstance(effect, str):
@@ -96,18 +102,18 @@ class FolderPlace:
             self._grow(["add-runs", str(calibration), str(file)], tell)
 
     def _grow(self, arguments: list[str], tell: OnProgress | None) -> None:
-        # The next request starts a service that sees what is new.
         self.close()
-        run(
-            [*arguments, "--out", os.fspath(self.folder)],
-            self.local_workers,
-            tell,
-        )
+        try:
+            run([*arguments, "--out", os.fspath(self.folder)], self.local_workers, tell)
+        finally:
+            # Another thread may have read meanwhile: the next request starts a service that sees what is new.
+            self.close()
 
     def close(self) -> None:
-        if self._service is not None:
-            self._service.close()
-        self._service = self._client = None
+        with self._lock:
+            if self._service is not None:
+                self._service.close()
+            self._service = self._client = None
 
     def __str__(self) -> str:
         return str(self.folder)

@@ -17,7 +17,8 @@ from ._story import EffectFile, MissingEffect, NextRun, Step, Story, next_run, s
 from ._table import Table
 
 CHANNEL_UNITS = {"drawbar_pull": "N", "torque": "N m", "sinkage": "m", "lateral_force": "N"}
-STOPPED = ("paused", "failed", "cancelled")
+STOPPED = ("paused", "failed")
+OVER = ("finished", "waiting", "cancelled")
 LOOK_S = 0.5
 
 
@@ -293,30 +294,33 @@ class Study:
             time.sleep(LOOK_S)
 
     def _look(self) -> Progress | None:
-        """Asks again; the progress of what is computed, ``None`` where nothing is.
+        """Asks again; the progress of what is computed, ``None`` where nothing is and nothing follows.
 
         Raises:
-            CalibrationStopped: a member is paused, failed or cancelled.
+            CalibrationStopped: a member is paused or failed.
         """
         self.refresh()
         for member in self._overview["members"]:
             if member["state"] in STOPPED:
                 reason = member["message"] or "no reason given"
                 raise CalibrationStopped(f"{member['name']} is {member['state']}: {reason}", member["state"])
-        if self.state in ("finished", "waiting"):
-            return None
+        # A cancelled member ends the study, but others may still be computed.
         going = [m["id"] for m in self._overview["members"] if m["state"] in ("running", "queued")]
-        return of_status(self._place.get(f"calibrations/{going[0]}")) if going else Progress(f"{self.name}: next step")
+        if going:
+            return of_status(self._place.get(f"calibrations/{going[0]}"))
+        return None if self.state in OVER else Progress(f"{self.name}: next step")
 
     def wait(self, timeout_s: float | None = None, *, progress: bool | OnProgress = True) -> Study:
         """Waits until the study is over or waits for a decision, and returns the study itself.
+
+        A study with a cancelled calibration is over, too: its ``state`` is ``cancelled``, as is that of the calibration.
 
         Args:
             timeout_s: longest time to wait [s]; by default, for ever.
             progress: shows how far it is, or is told.
 
         Raises:
-            CalibrationStopped: a calibration is paused, failed or cancelled; the message says why.
+            CalibrationStopped: a calibration is paused or failed; the message says why.
             TimeoutError: the time is up; the study goes on.
         """
         until = None if timeout_s is None else time.monotonic() + timeout_s

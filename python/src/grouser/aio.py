@@ -17,17 +17,19 @@ from __future__ import annotations
 
 import asyncio
 import os
+import time
 from collections.abc import AsyncIterator
+from pathlib import Path
 from typing import Any
 
 from . import _run, _service, _study
 from ._calibration import Calibration as SyncCalibration
-from ._progress import OnProgress, Progress
+from ._progress import OnProgress, Progress, shown
 from ._story import MissingEffect, NextRun, Step, Story
 from ._study import LOOK_S
 from ._table import Table
 
-__all__ = ["Calibration", "Service", "Study", "check", "run"]
+__all__ = ["Calibration", "Service", "Study", "check", "example", "run"]
 
 
 class Calibration:
@@ -64,6 +66,14 @@ class Calibration:
     async def diagnostics(self) -> dict[str, Any]:
         """As :meth:`grouser.Calibration.diagnostics`."""
         return await asyncio.to_thread(self.sync.diagnostics)
+
+    async def provenance(self) -> dict[str, Any]:
+        """As :meth:`grouser.Calibration.provenance`."""
+        return await asyncio.to_thread(self.sync.provenance)
+
+    async def experiment(self) -> dict[str, Any]:
+        """As :meth:`grouser.Calibration.experiment`."""
+        return await asyncio.to_thread(self.sync.experiment)
 
     async def inference_data(self, draws: int | None = None, *, predictions: bool = True, prior_draws: int = 1000) -> Any:
         """As :meth:`grouser.Calibration.inference_data`."""
@@ -163,6 +173,10 @@ class Study:
         """As :meth:`grouser.Study.summary`."""
         return await asyncio.to_thread(self.sync.summary)
 
+    async def report(self, file: str | os.PathLike[str]) -> Path:
+        """As :meth:`grouser.Study.report`."""
+        return await asyncio.to_thread(self.sync.report, file)
+
     async def add(
         self,
         effect: str | MissingEffect | Step | os.PathLike[str],
@@ -207,10 +221,15 @@ class Study:
                 last = progress
             await asyncio.sleep(LOOK_S)
 
-    async def wait(self) -> Study:
-        """As :meth:`grouser.Study.wait`; bound it by :func:`asyncio.timeout`."""
-        async for _ in self.watch():
-            pass
+    async def wait(self, timeout_s: float | None = None, *, progress: bool | OnProgress = False) -> Study:
+        """As :meth:`grouser.Study.wait`; a coroutine that is given up stops waiting."""
+        until = None if timeout_s is None else time.monotonic() + timeout_s
+        with shown(progress) as tell:
+            async for now in self.watch():
+                if tell is not None:
+                    tell(now)
+                if until is not None and time.monotonic() > until:
+                    raise TimeoutError(f"study {self.id} is not over after {timeout_s:g} s: {now.text}")
         return self
 
     def close(self) -> None:
@@ -227,6 +246,11 @@ class Service:
     def __init__(self, url: str | None = None, *, token: str | None = None, ca_certificate: str | None = None) -> None:
         self.sync = _service.Service(url, token=token, ca_certificate=ca_certificate)
 
+    @property
+    def url(self) -> str:
+        """Its address."""
+        return self.sync.url
+
     async def submit(self, job: str | os.PathLike[str], *, effects: tuple[str, ...] | list[str] = ()) -> Study:
         """As :meth:`grouser.Service.submit`."""
         return Study(await asyncio.to_thread(self.sync.submit, job, effects=effects))
@@ -242,6 +266,10 @@ class Service:
     async def effects(self) -> Table:
         """As :meth:`grouser.Service.effects`."""
         return await asyncio.to_thread(self.sync.effects)
+
+    async def workers(self) -> dict[str, dict[str, Any]]:
+        """As :meth:`grouser.Service.workers`."""
+        return await asyncio.to_thread(self.sync.workers)
 
     def __repr__(self) -> str:
         return f"aio.{self.sync!r}"
@@ -264,3 +292,8 @@ async def run(
 async def check(job: str | os.PathLike[str]) -> str:
     """As :func:`grouser.check`."""
     return await asyncio.to_thread(_run.check, job)
+
+
+async def example(name: str, folder: str | os.PathLike[str] | None = None) -> Path:
+    """As :func:`grouser.example`."""
+    return await asyncio.to_thread(_run.example, name, folder)

@@ -69,6 +69,12 @@ pub(super) fn sample_stats(calibration: &FinishedCalibration) -> VariableGroup {
         let values = stages.iter().map(value).collect();
         Variable::new(name, &along, "", meaning, Values::Real(values))
     };
+    let meaning = match calibration.approximated {
+        Some(_) => {
+            "log-likelihood of the linearised model, which the normal approximation is of; that of the model itself is in the group log_likelihood"
+        }
+        None => "log-likelihood",
+    };
     let mut coords = draw_labels(numbers(draws.len()));
     let stage_numbers = stages.iter().map(|stage| i64::from(stage.stage)).collect();
     coords.push(Variable::labels("stage", Values::Whole(stage_numbers)));
@@ -81,7 +87,7 @@ pub(super) fn sample_stats(calibration: &FinishedCalibration) -> VariableGroup {
                 "log-density of the posterior, without its constant",
                 &|draw| log_likelihood(draw) + draw.log_prior,
             ),
-            of_draw("log_likelihood", "log-likelihood", &log_likelihood),
+            of_draw("log_likelihood", meaning, &log_likelihood),
             of_draw("log_prior", "log-density of the prior", &|draw| draw.log_prior),
             of_stage("tempering_exponent", "power of the likelihood", &|stage| {
                 stage.tempering_exponent

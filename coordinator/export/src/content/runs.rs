@@ -15,6 +15,9 @@ use crate::variable::{Values, Variable};
 /// The name that measured values, their predictions and their log-likelihoods share.
 const MEASUREMENT: &str = "measurement";
 
+/// The dimension of measurements where not every run has every channel.
+const OBSERVATION: &str = "observation";
+
 /// Names the random numbers of new measurements among those of a seed: no sampler has so many stages.
 const NEW: u64 = u64::MAX;
 
@@ -27,6 +30,16 @@ pub(super) struct Part<'a> {
     /// The channels that some run of the experiment has measured.
     channels: Vec<Channel>,
     of: fn(&Prediction) -> Option<&Observables>,
+}
+
+/// A fitted measurement.
+struct Cell {
+    /// Its place in the data of the likelihood.
+    datum: usize,
+    /// Its run, as a position among the fitted runs.
+    run: usize,
+    /// Its channel, as a position among those exported.
+    channel: usize,
 }
 
 impl<'a> Part<'a> {
@@ -83,11 +96,21 @@ impl<'a> Part<'a> {
         group: &str,
         variables: [(&str, &str, Vec<f64>); N],
     ) -> VariableGroup {
+        self.over(group, &self.dims(), self.labels(), variables)
+    }
+
+    /// Variables over the simulated draws and other dimensions, with the labels of those.
+    fn over<const N: usize>(
+        &self,
+        group: &str,
+        others: &[(&str, usize)],
+        labels: Vec<Variable>,
+        variables: [(&str, &str, Vec<f64>); N],
+    ) -> VariableGroup {
         let draws = self.calibration.predictive_draws();
-        let [run, channel] = self.dims();
-        let dims = [("chain", 1), ("draw", draws.len()), run, channel];
+        let dims = [&[("chain", 1), ("draw", draws.len())], others].concat();
         let mut coords = draw_labels(places(self.calibration));
-        coords.extend(self.labels());
+        coords.extend(labels);
         let variable = |(name, meaning, values): (&str, &str, Vec<f64>)| {
             Variable::new(name, &dims, "", meaning, Values::Real(values))
         };
@@ -128,33 +151,63 @@ impl<'a> Part<'a> {
         )
     }
 
-    /// The log-density of each fitted measurement by itself.
+    /// The log-density of each fitted measurement by itself. Where a run lacks a channel, measurements have one dimension: sums
+    /// over runs and channels, as leave-one-out makes them, would be NaN.
     pub(super) fn log_likelihood(&self) -> VariableGroup {
-        let spec = &self.calibration.spec;
+        let likelihood = &self.calibration.spec.likelihood;
+        let cells = self.cells();
         let mut values = Vec::new();
         for draw in self.calibration.predictive_draws() {
-            let mut table = vec![f64::NAN; self.runs.len() * self.channels.len()];
-            let predicted = (self.of)(draw).map(|observables| spec.predicted_values(observables));
-            let densities = predicted.and_then(|p| spec.likelihood.log_densities(&p, &draw.theta).ok());
-            for (datum, density) in spec.likelihood.data().iter().zip(densities.unwrap_or_default()) {
-                let place = self
-                    .channels
-                    .iter()
-                    .position(|channel| channel.index() == datum.channel);
-                if let Some(place) = place {
-                    table[datum.run * self.channels.len() + place] = density;
-                }
-            }
-            values.extend(table);
+            let predicted =
+                (self.of)(draw).map(|observables| self.calibration.spec.predicted_values(observables));
+            let densities = predicted.and_then(|p| likelihood.log_densities(&p, &draw.theta).ok());
+            let of_cell = |cell: &Cell| densities.as_ref().map_or(f64::NAN, |all| all[cell.datum]);
+            values.extend(cells.iter().map(of_cell));
         }
-        let is_alone = (0..spec.likelihood.data().len()).all(|datum| spec.likelihood.is_alone(datum));
+        let is_alone = (0..likelihood.data().len()).all(|datum| likelihood.is_alone(datum));
         let meaning = match is_alone {
-            true => "log-density of the measurement",
+            true => "log-density of the measurement, by the model itself at the draw",
             false => {
-                "log-density of the measurement by itself: some errors are common to several, so that the sum is not the joint log-density"
+                "log-density of the measurement by itself, by the model itself at the draw: some errors are common to several, so that the sum is not the joint log-density"
             }
         };
-        self.over_draws("log_likelihood", [(MEASUREMENT, meaning, values)])
+        let variable = [(MEASUREMENT, meaning, values)];
+        if cells.len() == self.runs.len() * self.channels.len() {
+            return self.over_draws("log_likelihood", variable);
+        }
+        let label = |cell: &Cell| {
+            format!(
+                "{} {}",
+                self.runs[cell.run].name,
+                self.channels[cell.channel].column()
+            )
+        };
+        let labels = Variable::labels(OBSERVATION, Values::Text(cells.iter().map(label).collect()));
+        self.over(
+            "log_likelihood",
+            &[(OBSERVATION, cells.len())],
+            vec![labels],
+            variable,
+        )
+    }
+
+    /// The fitted measurements of these runs, by run and channel.
+    fn cells(&self) -> Vec<Cell> {
+        let data = self.calibration.spec.likelihood.data().iter().enumerate();
+        let cell = |(datum, of): (usize, &statistics::Datum)| {
+            let channel = self
+                .channels
+                .iter()
+                .position(|channel| channel.index() == of.channel)?;
+            Some(Cell {
+                datum,
+                run: of.run,
+                channel,
+            })
+        };
+        let mut cells: Vec<Cell> = data.filter_map(cell).collect();
+        cells.sort_by_key(|cell| (cell.run, cell.channel));
+        cells
     }
 
     /// What was measured; NaN where nothing was.
