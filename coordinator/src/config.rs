@@ -7,6 +7,7 @@ use shared::bearer::{BearerToken, BearerTokenError};
 use tracing_subscriber::filter::{LevelFilter, Targets};
 
 use crate::embedded::WorkerConfig;
+use crate::schema::FileKind;
 
 /// The processors that this program was built for.
 pub const ARCHITECTURE: &str = std::env::consts::ARCH;
@@ -79,6 +80,8 @@ pub enum CoordinatorCommand {
         /// The folder; it is made where there is none.
         folder: PathBuf,
     },
+    /// Print the JSON schema of a kind of file, or write all of them with the settings of Taplo, for editors.
+    Schema(SchemaArguments),
     /// Add, list and revoke the tokens that a service asks for.
     #[command(subcommand)]
     Token(TokenCommand),
@@ -125,6 +128,17 @@ pub struct ImportArguments {
     /// The sheet to propose a map for, or the struct of a MATLAB file; by default, the largest one.
     #[arg(long, value_name = "NAME", requires = "guess")]
     pub sheet: Option<String>,
+}
+
+/// Print the JSON schema of a kind of file, or write all of them.
+#[derive(Debug, Args)]
+pub struct SchemaArguments {
+    /// The kind of file.
+    #[arg(value_name = "KIND", required_unless_present = "output")]
+    pub kind: Option<FileKind>,
+    /// Writes the schemas of all kinds into this folder, and .taplo.toml, which says what files have them.
+    #[arg(long, value_name = "FOLDER", conflicts_with = "kind")]
+    pub output: Option<PathBuf>,
 }
 
 /// The models that are not ours that this process runs.

@@ -13,6 +13,7 @@
 //! - [`missing_effect`]: the search for a missing effect: candidates, and what is said in the end.
 //! - [`example`]: the examples that the program carries.
 //! - [`effect`]: the effects as users meet them: cards and signatures.
+//! - [`schema`]: schemas of the files that people write.
 //! - [`embedded`]: local workers in this process; the only place that knows the worker.
 //! - [`command`]: the verbs of the command line.
 //! - [`config`]: command line and environment.
@@ -27,6 +28,7 @@ pub mod farm;
 pub mod http;
 pub mod lease;
 pub mod missing_effect;
+pub mod schema;
 pub mod service;
 pub mod store;
 pub mod study;

@@ -158,7 +158,12 @@ const CHANNEL_TITLES: [&[&str]; 4] = [
     ],
 ];
 
-/// Every column of runs.csv, in the order of the file.
+/// The columns of runs.csv that a map may fill, in the order of the file: name, and words for people.
+pub fn columns() -> impl Iterator<Item = (String, String)> {
+    fields().into_iter().map(|field| (field.name, field.words))
+}
+
+/// The same with what an import knows of them.
 pub(crate) fn fields() -> Vec<Field> {
     let entry = |&(name, words, kind, is_needed, titles): &Entry| Field {
         name: name.into(),

@@ -29,5 +29,6 @@ mod unit;
 
 pub use complaint::Complaint;
 pub use conversion::{Converted, convert};
+pub use field::columns;
 pub use guess::{ColumnCard, FieldGuess, Guess, QuantityGuess, guess};
 pub use read::SourceFile;

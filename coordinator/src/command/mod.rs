@@ -13,6 +13,7 @@ mod job_on_disk;
 mod output;
 mod progress;
 mod run;
+mod schema;
 mod serve;
 mod shell;
 mod shutdown;
@@ -55,6 +56,7 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Doctor(config) => doctor::doctor(&config).await,
         CoordinatorCommand::Completions { shell } => shell::completions(shell),
         CoordinatorCommand::Man { folder } => shell::man(&folder),
+        CoordinatorCommand::Schema(config) => schema::schema(&config),
         CoordinatorCommand::Token(command) => token::token(&command).await,
         CoordinatorCommand::Worker(config) => Ok(crate::embedded::work(config).await?),
     }

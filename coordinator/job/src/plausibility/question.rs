@@ -1,5 +1,7 @@
 //! A question, and how it is answered.
 
+use std::collections::BTreeSet;
+
 use shared::channel::Channel;
 use shared::file::unknown_word;
 use shared::limit::LIMITS;
@@ -27,23 +29,29 @@ impl Question {
         Question { name, words }
     }
 
+    /// The names of all questions.
+    pub fn names() -> BTreeSet<String> {
+        let limited = LIMITS.iter().map(|limit| limit.name.to_owned());
+        let measured = Channel::ALL.map(|channel| channel.column().to_owned());
+        limited
+            .chain(Channel::ALL.map(noise_parameter))
+            .chain(measured)
+            .chain([DATA_FEW, NEUTRAL, SLIP_ANGLE].map(str::to_owned))
+            .collect()
+    }
+
     /// Whether there is a question of this name.
     ///
     /// # Errors
     /// The sentence with the nearest name.
     pub(crate) fn check_name(name: &str) -> Result<(), String> {
-        let noise = Channel::ALL.map(noise_parameter);
-        let measured = Channel::ALL.map(Channel::column);
-        let known: Vec<&str> = LIMITS
-            .iter()
-            .map(|limit| limit.name)
-            .chain(noise.iter().map(String::as_str))
-            .chain(measured)
-            .chain([DATA_FEW, NEUTRAL, SLIP_ANGLE])
-            .collect();
-        match known.contains(&name) {
+        let known = Question::names();
+        match known.contains(name) {
             true => Ok(()),
-            false => Err(unknown_word("name under accept", name, known)),
+            false => {
+                let known = known.iter().map(String::as_str);
+                Err(unknown_word("name under accept", name, known))
+            }
         }
     }
 }

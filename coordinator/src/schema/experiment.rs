@@ -1,0 +1,178 @@
+//! `experiment.toml`.
+
+use serde_json::{Value, json};
+use shared::channel::Channel;
+use shared::experiment::{AveragingProtocol, Rig, Scatter};
+
+use super::shape::{above, either, named, needing, number, one_of, table, text, usual, whole};
+
+const ANY: f64 = f64::INFINITY;
+
+/// The whole file.
+pub(super) fn experiment() -> Value {
+    let mut experiment = needing(
+        table(
+            "wheels, soils, rig and noise of a campaign",
+            [
+                ("runs", text("file of the test runs, beside the experiment")),
+                ("plates", text("file of plate-sinkage readings")),
+                ("shear", text("file of ring-shear readings")),
+                ("wheel", named("the wheels, each as [wheel.NAME]", wheel())),
+                ("soil", named("the soils, each as [soil.NAME]", soil())),
+                ("rig", rig()),
+                ("noise", noise()),
+                ("protocol", protocol()),
+            ],
+        ),
+        &["soil"],
+    );
+    experiment["properties"]["soil"]["minProperties"] = json!(1);
+    experiment["anyOf"] = json!([
+        { "required": ["runs", "wheel"] }, { "required": ["plates"] }, { "required": ["shear"] }
+    ]);
+    experiment
+}
+
+fn wheel() -> Value {
+    let not_negative = |words| usual(number(words, 0.0, ANY), 0.0);
+    let wheel = table(
+        "a rigid wheel",
+        [
+            (
+                "radius_m",
+                above(
+                    "radius of the rim [m]; beside a mesh, the radius that slip and sinkage refer to",
+                    0.0,
+                ),
+            ),
+            (
+                "width_m",
+                above("width of the rim [m]; beside a mesh, the width of the lane", 0.0),
+            ),
+            (
+                "grouser_count",
+                usual(
+                    whole("number of straight grousers", 0, Some(u64::from(u32::MAX))),
+                    0,
+                ),
+            ),
+            (
+                "grouser_height_m",
+                not_negative("height of a grouser above the rim [m]"),
+            ),
+            (
+                "grouser_thickness_m",
+                not_negative("thickness of a grouser along the rim [m]"),
+            ),
+            (
+                "rig_radius_m",
+                above(
+                    "radius with which the rig converts slip to rim speed [m]; radius_m where nothing is said",
+                    0.0,
+                ),
+            ),
+            (
+                "mesh",
+                text("surface in place of rim and grousers, STL or OBJ, for scm"),
+            ),
+        ],
+    );
+    needing(wheel, &["radius_m", "width_m"])
+}
+
+fn soil() -> Value {
+    let angle = json!({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 90 });
+    table(
+        "what is known of a soil besides the parameters",
+        [
+            ("density_kg_m3", above("bulk density [kg/m^3]", 0.0)),
+            (
+                "repose_angle_deg",
+                super::shape::said(angle, "angle of repose [deg]; 32 in scm where nothing is said"),
+            ),
+        ],
+    )
+}
+
+fn rig() -> Value {
+    let gravity = Rig::default().gravity_m_s2;
+    table(
+        "the test rig",
+        [
+            (
+                "gravity_m_s2",
+                usual(above("acceleration of gravity [m/s^2]", 0.0), gravity),
+            ),
+            (
+                "bin_length_m",
+                above("length of the soil bin along travel [m]", 0.0),
+            ),
+        ],
+    )
+}
+
+fn noise() -> Value {
+    let of_channel = |channel: Channel| {
+        let words = format!(
+            "standard deviation of the {} [{}]",
+            channel.words(),
+            channel.unit()
+        );
+        let word = one_of("pooled from the repeats, or inferred", ["replicates", "unknown"]);
+        (channel.column(), either(&words, vec![above("known", 0.0), word]))
+    };
+    let of_scatter = |scatter: Scatter| {
+        let shape = vec![number("known", 0.0, 1.0), one_of("inferred", ["unknown"])];
+        (scatter.key(), either("relative standard deviation", shape))
+    };
+    let channels = Channel::ALL.map(of_channel).into_iter();
+    table(
+        "how measurements scatter",
+        channels.chain(Scatter::ALL.map(of_scatter)),
+    )
+}
+
+fn protocol() -> Value {
+    let usual_protocol = AveragingProtocol::default();
+    let time = |words, value: f64| usual(number(words, 0.0, ANY), value);
+    table(
+        "how histories become averages",
+        [
+            (
+                "kind",
+                usual(
+                    one_of("when a simulated run ends", ["steady", "paper"]),
+                    usual_protocol.kind,
+                ),
+            ),
+            (
+                "measured_transient_s",
+                time(
+                    "cut from the start of a measured history [s]",
+                    usual_protocol.measured_transient_s,
+                ),
+            ),
+            (
+                "simulated_transient_force_s",
+                time(
+                    "cut from simulated forces and torque [s]",
+                    usual_protocol.simulated_transient_force_s,
+                ),
+            ),
+            (
+                "simulated_transient_sinkage_s",
+                time(
+                    "cut from the simulated sinkage [s]",
+                    usual_protocol.simulated_transient_sinkage_s,
+                ),
+            ),
+            (
+                "lowpass_hz",
+                time(
+                    "cut-off of the low-pass filter [Hz]; 0 is no filter",
+                    usual_protocol.lowpass_hz,
+                ),
+            ),
+        ],
+    )
+}
