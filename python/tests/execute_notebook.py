@@ -19,7 +19,7 @@ def main(source: Path, output: Path) -> None:
     nbformat.write(notebook, output)
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     pictures = sum("image/png" in output.get("data", {}) for output in outputs)
-    asked = sum("figures." in cell.source for cell in notebook.cells if cell.cell_type == "code")
+    asked = sum("figures." in cell.source or "az.plot_" in cell.source for cell in notebook.cells if cell.cell_type == "code")
     if pictures < asked:
         sys.exit(f"{source}: {pictures} pictures are shown where {asked} are asked for")
 
