@@ -10,7 +10,9 @@ use statistics::{Subchain, SubchainEnd};
 use tokio::sync::watch;
 use worker::evaluator::SimulationClock;
 use worker::external::allowed::AllowedModels;
-use worker::pull::{Coordinator, ExchangeError, PullSettings, run};
+use worker::pull::exchange::{Coordinator, ExchangeError};
+use worker::pull::limits::WorkerLimits;
+use worker::pull::{PullSettings, run};
 
 use crate::farm::dispatch::Dispatcher;
 
@@ -122,7 +124,9 @@ impl LocalWorkers {
         let clock = Arc::new(SimulationClock::default());
         let settings = PullSettings {
             name: local_name(),
+            queue_job: None,
             threads,
+            limits: WorkerLimits::default(),
             models: models.0.clone(),
         };
         let work = run(Arc::new(InProcess(dispatcher)), settings, clock.clone(), shutdown);

@@ -14,6 +14,7 @@
 //! - [`example`]: the examples that the program carries.
 //! - [`effect`]: the effects as users meet them: cards and signatures.
 //! - [`schema`]: schemas of the files that people write.
+//! - [`scale`]: how many workers Slurm, HyperQueue or Kubernetes should run, and how they are told.
 //! - [`embedded`]: local workers in this process; the only place that knows the worker.
 //! - [`command`]: the verbs of the command line.
 //! - [`config`]: command line and environment.
@@ -28,6 +29,7 @@ pub mod farm;
 pub mod http;
 pub mod lease;
 pub mod missing_effect;
+pub mod scale;
 pub mod schema;
 pub mod service;
 pub mod store;

@@ -36,7 +36,11 @@ async fn run() -> std::process::ExitCode {
                 let _ = writeln!(std::io::stderr(), "{stopped}");
                 std::process::ExitCode::from(stopped.exit_status())
             }
-            None => refuse(of_causes(error.chain())),
+            None => {
+                let said = refuse(of_causes(error.chain()));
+                let worker = error.downcast_ref::<coordinator::embedded::WorkerError>();
+                worker.map_or(said, |error| error.status().into())
+            }
         },
     }
 }

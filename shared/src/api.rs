@@ -249,6 +249,25 @@ pub struct Progress {
     pub remaining_s: Option<f64>,
 }
 
+/// `GET /v1/work/demand`: how much work there is, for whatever starts workers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct WorkDemand {
+    /// Evaluations that wait for a worker.
+    pub queued: u64,
+    /// Evaluations that workers hold.
+    pub leased: u64,
+    /// Evaluations until all calibrations are over, estimated: from the second stage of each on beyond the present round.
+    pub evaluations_left: u64,
+    /// Calibrations that are neither over nor paused.
+    pub in_hand: u64,
+    /// Workers heard of lately that are not quarantined.
+    pub workers: u64,
+    /// Their threads.
+    pub threads: u64,
+    /// Mean time of an evaluation on one of their threads `[s]`, once there has been one.
+    pub evaluation_s: Option<f64>,
+}
+
 /// Every error answer: `{"error": {"type": …, "message": …}}`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct ErrorBody {

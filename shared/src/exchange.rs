@@ -10,7 +10,7 @@ use crate::channel::Channel;
 use crate::outcome::{Observables, Outcome};
 
 /// Version of these messages; a coordinator answers any other version with 426.
-pub const PROTOCOL_VERSION: u32 = 10;
+pub const PROTOCOL_VERSION: u32 = 11;
 
 /// `POST /v1/work/exchange`: results of finished leases, and how many more are wanted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -26,6 +26,14 @@ pub struct ExchangeRequest {
     /// [`ExternalSource::name`](crate::model::ExternalSource::name).
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub models: BTreeMap<String, String>,
+    /// The job of a queue that started the worker, as in `slurm 1234_5`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub queue_job: Option<String>,
+    /// Threads that simulate.
+    pub threads: u32,
+    /// Mean time of its evaluations so far `[s]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub evaluation_s: Option<f64>,
     /// Results, in any order. Acknowledged by the response; resent until then.
     pub results: Vec<WorkResult>,
     /// Leases still held, renewed by this message.
@@ -141,6 +149,8 @@ pub struct ExchangeResponse {
     pub lease_ms: u64,
     /// Evaluations not yet leased in the active calibrations; bounds the next `want`.
     pub remaining: u64,
+    /// Calibrations that are neither over nor paused.
+    pub in_hand: u64,
     /// Workers active recently; bounds the next `want`.
     pub workers: u32,
     /// Results that changed nothing: late duplicates, of a calibration that ended, or refused for their seal.

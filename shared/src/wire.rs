@@ -183,6 +183,9 @@ mod tests {
             protocol: PROTOCOL_VERSION,
             model_version: "scm".into(),
             models: Default::default(),
+            queue_job: None,
+            threads: 1,
+            evaluation_s: None,
             results: vec![WorkResult {
                 lease: u64::MAX,
                 calibration: -1,
@@ -215,6 +218,7 @@ mod tests {
             }],
             lease_ms: 15_000,
             remaining: 5,
+            in_hand: 2,
             workers: 1,
             duplicates: 0,
             refused: None,

@@ -121,6 +121,9 @@ fn an_exchange_request_has_one_form() {
         protocol: 1,
         model_version: "1".into(),
         models: [("wheel.py".to_owned(), "command-0a1b".to_owned())].into(),
+        queue_job: Some("slurm 12_3".into()),
+        threads: 8,
+        evaluation_s: Some(0.25),
         results: vec![
             result(4_294_967_297, Outcome::Evaluated(observables())),
             result(2, Outcome::Rejected(rejection)),
@@ -143,6 +146,7 @@ fn an_exchange_request_has_one_form() {
         &request,
         &json!({
             "worker": "host-1", "protocol": 1, "model_version": "1", "models": {"wheel.py": "command-0a1b"},
+            "queue_job": "slurm 12_3", "threads": 8, "evaluation_s": 0.25,
             "results": [
                 {"lease": 4_294_967_297_u64, "calibration": 1, "evaluation": 7, "seal": "0a1b",
                  "outcome": {"evaluated": observables_json()}},
@@ -179,6 +183,7 @@ fn an_exchange_response_has_one_form() {
         leases: vec![lease],
         lease_ms: 15_000,
         remaining: 40,
+        in_hand: 2,
         workers: 3,
         duplicates: 1,
         refused: Some("another version".into()),
@@ -189,7 +194,7 @@ fn an_exchange_response_has_one_form() {
             "leases": [{"lease": 5, "calibration": 1, "evaluation": 7, "seal": "0a1b", "variant": "00ff", "theta": [4.5, 0.30000000000000004],
                         "announce": true,
                         "subchain": {"chain": 3, "step": 2, "scale": 0.75}}],
-            "lease_ms": 15_000, "remaining": 40, "workers": 3, "duplicates": 1, "refused": "another version",
+            "lease_ms": 15_000, "remaining": 40, "in_hand": 2, "workers": 3, "duplicates": 1, "refused": "another version",
         }),
     );
 }
@@ -416,7 +421,7 @@ fn a_living_coordinator_speaks_these_forms() {
         json!({
             "leases": [{"lease": "whole", "calibration": "whole", "evaluation": "whole", "seal": "text",
                         "variant": "text", "theta": ["number"], "announce": false}],
-            "lease_ms": "whole", "remaining": "whole", "workers": "whole", "duplicates": "whole", "refused": null,
+            "lease_ms": "whole", "remaining": "whole", "in_hand": "whole", "workers": "whole", "duplicates": "whole", "refused": null,
         })
     );
     let lease = &response["leases"][0];
@@ -456,7 +461,7 @@ fn a_living_coordinator_speaks_these_forms() {
     let workers = service.client.json("/v1/workers");
     assert_eq!(
         shape(&workers),
-        json!({"any": {"model_version": "text", "holds": "whole", "completed": "whole", "faults": "whole", "quarantined": null, "silent_ms": "whole"}})
+        json!({"any": {"model_version": "text", "threads": "whole", "holds": "whole", "completed": "whole", "faults": "whole", "quarantined": null, "silent_ms": "whole"}})
     );
 }
 

@@ -31,6 +31,7 @@ mod point_fit;
 mod posterior_prior;
 mod reference;
 mod rig;
+mod scale;
 mod search;
 mod spatial;
 mod square_root;

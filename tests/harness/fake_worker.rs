@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::http::{Client, Response};
 
 /// Version of the protocol.
-pub const PROTOCOL: u32 = 10;
+pub const PROTOCOL: u32 = 11;
 
 /// A worker by name; it does what a test says and nothing else.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ impl FakeWorker {
     /// An empty exchange.
     pub fn request(&self) -> Value {
         json!({
-            "worker": self.name, "protocol": PROTOCOL, "model_version": self.model_version,
+            "worker": self.name, "protocol": PROTOCOL, "model_version": self.model_version, "threads": 1,
             "results": [], "holding": [], "returned": [], "started": [], "received": self.received.load(Ordering::Relaxed),
             "want": 0, "wait_ms": 0,
         })

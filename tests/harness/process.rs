@@ -19,6 +19,8 @@ pub enum Signal {
     Stop,
     /// Goes on.
     Continue,
+    /// What a queue may send before it ends a job, SIGUSR1.
+    User,
 }
 
 /// A running program; killed when dropped.
@@ -69,6 +71,7 @@ impl Process {
             Signal::Interrupt => "INT",
             Signal::Stop => "STOP",
             Signal::Continue => "CONT",
+            Signal::User => "USR1",
         };
         let line = format!("kill -{name} {}", self.child.id());
         let sent = Command::new("sh")

@@ -11,7 +11,7 @@ use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
 use shared::model::ModelVariant;
 use shared::wire::WireForm;
 
-use crate::pull::{Coordinator, ExchangeError};
+use crate::pull::exchange::{Coordinator, ExchangeError};
 
 /// A coordinator at a URL.
 #[derive(Debug)]

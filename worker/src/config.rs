@@ -1,6 +1,7 @@
 //! Command line and environment of the worker.
 
 use std::path::PathBuf;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use shared::bearer::{BearerToken, BearerTokenError};
 use shared::wire::WireForm;
@@ -31,7 +32,7 @@ pub struct PullArguments {
     #[arg(long, env = "GROUSER_WIRE", default_value_t = WireForm::MessagePack)]
     pub wire: WireForm,
     /// File with the token that the coordinator asks for; by default, `GROUSER_TOKEN` from the environment.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", env = "GROUSER_TOKEN_FILE")]
     pub token_file: Option<PathBuf>,
     /// Trusts a coordinator at an https URL by this certificate of its authority, a PEM file, in place of those of this machine.
     #[arg(long, value_name = "PEM", env = "GROUSER_CA_CERTIFICATE")]
@@ -45,9 +46,55 @@ pub struct PullArguments {
         value_delimiter = ','
     )]
     pub allow_model: Vec<String>,
+    /// Ends after so long without work `[s]`.
+    #[arg(long, value_name = "SECONDS", env = "GROUSER_MAX_IDLE", value_parser = seconds)]
+    pub max_idle: Option<Duration>,
+    /// Gives back what it has not finished and ends after so long `[s]`; by default, 30 s before Slurm ends the job that it is part
+    /// of.
+    #[arg(long, value_name = "SECONDS", env = "GROUSER_MAX_LIFETIME", value_parser = seconds)]
+    pub max_lifetime: Option<Duration>,
+    /// Ends when no calibration is left that wants workers.
+    #[arg(long)]
+    pub once: bool,
+    /// Gives back what it has not finished and ends with status 75 when its process holds more `[MB]`.
+    #[arg(long, value_name = "MB", env = "GROUSER_MAX_MEMORY_MB")]
+    pub max_memory_mb: Option<u64>,
 }
 
+/// A time in seconds, 0 to 10 years.
+fn seconds(text: &str) -> Result<Duration, String> {
+    const MOST_S: f64 = 315_360_000.0;
+    match text.parse::<f64>() {
+        Ok(seconds) if (0.0..=MOST_S).contains(&seconds) => Ok(Duration::from_secs_f64(seconds)),
+        _ => Err(format!("must be a number of seconds in [0, {MOST_S}]")),
+    }
+}
+
+/// Variables by which queues tell a job its number: name of the queue, number of the job, number within an array.
+const QUEUES: [(&str, &str, &str); 4] = [
+    ("slurm", "SLURM_JOB_ID", ""),
+    ("hq", "HQ_JOB_ID", "HQ_TASK_ID"),
+    ("pbs", "PBS_JOBID", ""),
+    ("condor", "GROUSER_CONDOR_JOB", ""),
+];
+
 impl PullArguments {
+    /// The job of a queue that this process is part of, as in `slurm 1234_5`.
+    pub fn queue_job(&self) -> Option<String> {
+        queue_job(|name| std::env::var(name).ok())
+    }
+
+    /// When it ends by itself: after its lifetime, or before the end of its job of Slurm.
+    pub fn ends_in(&self) -> Option<Duration> {
+        /// Slurm's first signal may come so long before the end; a worker needs 5 s.
+        const EARLY: Duration = Duration::from_secs(30);
+        self.max_lifetime.or_else(|| {
+            let end: u64 = std::env::var("SLURM_JOB_END_TIME").ok()?.parse().ok()?;
+            let now = SystemTime::now().duration_since(UNIX_EPOCH).ok()?;
+            Some(Duration::from_secs(end).saturating_sub(now).saturating_sub(EARLY))
+        })
+    }
+
     /// The token: of the file, or else of the environment.
     ///
     /// # Errors
@@ -55,6 +102,24 @@ impl PullArguments {
     pub fn token(&self) -> Result<Option<BearerToken>, BearerTokenError> {
         BearerToken::find(self.token_file.as_deref(), std::env::var("GROUSER_TOKEN").ok())
     }
+}
+
+/// The job of a queue, of the variables of a process.
+fn queue_job(variable: impl Fn(&str) -> Option<String>) -> Option<String> {
+    let told = |name: &str| variable(name).filter(|value| !value.is_empty());
+    if let (Some(array), Some(task)) = (told("SLURM_ARRAY_JOB_ID"), told("SLURM_ARRAY_TASK_ID")) {
+        return Some(format!("slurm {array}_{task}"));
+    }
+    if told("KUBERNETES_SERVICE_HOST").is_some() {
+        return told("HOSTNAME").map(|pod| format!("kubernetes {pod}"));
+    }
+    QUEUES.iter().find_map(|(queue, job, task)| {
+        let job = told(job)?;
+        Some(match told(task) {
+            Some(task) => format!("{queue} {job}_{task}"),
+            None => format!("{queue} {job}"),
+        })
+    })
 }
 
 /// What a worker does besides serving a coordinator.
@@ -135,4 +200,37 @@ pub struct Simulate {
 pub fn log_filter() -> Targets {
     let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
     stated.unwrap_or_else(|| Targets::new().with_default(LevelFilter::INFO))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_job_of_each_queue_is_told() {
+        let of = |variables: &[(&str, &str)]| {
+            let found = |name: &str| variables.iter().find(|(own, _)| *own == name);
+            queue_job(|name| found(name).map(|(_, value)| (*value).to_owned()))
+        };
+        let job = |text: &str| Some(text.to_owned());
+        assert_eq!(of(&[("SLURM_JOB_ID", "7")]), job("slurm 7"));
+        let array = [
+            ("SLURM_JOB_ID", "9"),
+            ("SLURM_ARRAY_JOB_ID", "7"),
+            ("SLURM_ARRAY_TASK_ID", "2"),
+        ];
+        assert_eq!(of(&array), job("slurm 7_2"));
+        assert_eq!(of(&[("HQ_JOB_ID", "3"), ("HQ_TASK_ID", "0")]), job("hq 3_0"));
+        let pod = [("KUBERNETES_SERVICE_HOST", "10.0.0.1"), ("HOSTNAME", "worker-x")];
+        assert_eq!(of(&pod), job("kubernetes worker-x"));
+        assert_eq!(of(&[("HOSTNAME", "h"), ("PBS_JOBID", "")]), None);
+    }
+
+    #[test]
+    fn times_are_seconds_within_bounds() {
+        assert_eq!(seconds("2.5"), Ok(Duration::from_millis(2500)));
+        for wrong in ["-1", "nan", "1e300", "5 min"] {
+            assert!(seconds(wrong).unwrap_err().contains("seconds in [0,"), "{wrong}");
+        }
+    }
 }

@@ -29,7 +29,11 @@ async fn run() -> std::process::ExitCode {
         .init();
     match worker::program::execute(WorkerConfig::parse()).await {
         Ok(()) => std::process::ExitCode::SUCCESS,
-        Err(error) => refuse(of_causes(anyhow::Error::from(error).chain())),
+        Err(error) => {
+            let status = error.status();
+            refuse(of_causes(anyhow::Error::from(error).chain()));
+            status.into()
+        }
     }
 }
 

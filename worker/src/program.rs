@@ -3,6 +3,7 @@
 use std::io::{self, Write as _};
 use std::net::SocketAddr;
 use std::sync::Arc;
+use std::time::Instant;
 
 use shared::bearer::BearerTokenError;
 use tokio::runtime::Handle;
@@ -11,9 +12,16 @@ use crate::client::{ClientError, HttpCoordinator};
 use crate::config::{PullArguments, ServeModels, WorkerCommand, WorkerConfig};
 use crate::evaluator::SimulationClock;
 use crate::external::allowed::{AllowedModelError, AllowedModels};
-use crate::pull::{ExchangeError, PullSettings, run};
+use crate::pull::exchange::ExchangeError;
+use crate::pull::limits::{Ended, WorkerLimits};
+use crate::pull::{PullSettings, run};
 use crate::shell;
 use crate::simulate::{SimulateError, simulate};
+
+/// `EX_UNAVAILABLE` of sysexits(3): the coordinator refuses this worker, and would again.
+const REFUSED: u8 = 69;
+/// `EX_TEMPFAIL`: another process may go on.
+const TRY_AGAIN: u8 = 75;
 
 /// Why the program ends early.
 #[derive(Debug, thiserror::Error)]
@@ -33,6 +41,9 @@ pub enum ProgramError {
     /// The coordinator refuses the worker.
     #[error("worker")]
     Exchange(#[from] ExchangeError),
+    /// Its process has grown; what it had not finished is given back.
+    #[error("the process holds more than --max-memory-mb {0} MB")]
+    Memory(u64),
     /// Completions cannot be written.
     #[error("standard output")]
     Output(#[source] io::Error),
@@ -68,7 +79,18 @@ pub enum ProgramError {
     Simulate(#[from] SimulateError),
 }
 
-/// Serves a coordinator until ^C or SIGTERM, or simulates.
+impl ProgramError {
+    /// The exit status of a program that ends so.
+    pub fn status(&self) -> u8 {
+        match self {
+            ProgramError::Exchange(ExchangeError::Refused(_)) => REFUSED,
+            ProgramError::Memory(_) => TRY_AGAIN,
+            _ => 1,
+        }
+    }
+}
+
+/// Serves a coordinator until a signal or a limit ends it, or simulates.
 ///
 /// # Errors
 /// [`ProgramError`].
@@ -128,10 +150,20 @@ async fn pull(serve: &PullArguments) -> Result<(), ProgramError> {
     let stop = stop_signal().map_err(ProgramError::Signals)?;
     let settings = PullSettings {
         name,
+        queue_job: serve.queue_job(),
         threads,
+        limits: WorkerLimits {
+            max_idle: serve.max_idle,
+            ends_at: serve.ends_in().map(|time| Instant::now() + time),
+            once: serve.once,
+            max_memory_mb: serve.max_memory_mb,
+        },
         models: Arc::new(AllowedModels::new(&serve.allow_model, &Handle::current())?),
     };
-    Ok(run(Arc::new(coordinator), settings, clock, stop).await?)
+    match run(Arc::new(coordinator), settings, clock, stop).await? {
+        Ended::Memory => Err(ProgramError::Memory(serve.max_memory_mb.unwrap_or_default())),
+        Ended::Asked | Ended::Idle | Ended::Lifetime | Ended::NothingLeft => Ok(()),
+    }
 }
 
 /// Host, process and time: fresh for every process, so a dead worker's leases are never taken for a new one's.
@@ -148,13 +180,15 @@ fn name() -> String {
     )
 }
 
-/// Ready at ^C or SIGTERM.
+/// Ready at ^C, SIGTERM, or SIGUSR1, by which sites have Slurm announce the end of a job.
 fn stop_signal() -> io::Result<impl Future<Output = ()>> {
     use tokio::signal::unix::{SignalKind, signal};
     let mut terminate = signal(SignalKind::terminate())?;
+    let mut announced = signal(SignalKind::user_defined1())?;
     Ok(async move {
         tokio::select! {
             _ = terminate.recv() => {}
+            _ = announced.recv() => {}
             _ = tokio::signal::ctrl_c() => {}
         }
     })

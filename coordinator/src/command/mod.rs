@@ -13,6 +13,7 @@ mod job_on_disk;
 mod output;
 mod progress;
 mod run;
+mod scale;
 mod schema;
 mod serve;
 mod shell;
@@ -52,6 +53,7 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Archive(study) => verbs::archive(&study, "archive").await,
         CoordinatorCommand::Restore(study) => verbs::archive(&study, "restore").await,
         CoordinatorCommand::Delete(study) => verbs::delete(&study).await,
+        CoordinatorCommand::Scale(arguments) => scale::scale(&arguments).await,
         CoordinatorCommand::Backup(config) => backup::backup(&config).await,
         CoordinatorCommand::Doctor(config) => doctor::doctor(&config).await,
         CoordinatorCommand::Completions { shell } => shell::completions(shell),

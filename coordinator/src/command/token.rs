@@ -1,9 +1,11 @@
 //! `coordinator token`: who may use a service.
 
 use std::fmt::Write;
+use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::{Context, bail};
+use shared::bearer::BearerToken;
 
 use super::output::{note, say};
 use crate::config::{StoreArguments, TokenCommand};
@@ -12,10 +14,17 @@ use crate::token::{Role, Token, TokenHash, new_token};
 
 /// Longest name of a token.
 const LONGEST_NAME: usize = 64;
+/// Fewest characters of a token that was made elsewhere: 128 random bits in hexadecimal digits.
+const LEAST_SECRET: usize = 32;
 
 pub(super) async fn token(command: &TokenCommand) -> anyhow::Result<()> {
     match command {
-        TokenCommand::Add { name, role, store } => add(name, *role, store).await,
+        TokenCommand::Add {
+            name,
+            role,
+            from,
+            store,
+        } => add(name, *role, from.as_deref(), store).await,
         TokenCommand::List(store) => list(store).await,
         TokenCommand::Revoke { name, store } => revoke(name, store).await,
     }
@@ -26,12 +35,15 @@ fn now_ms() -> i64 {
     i64::try_from(since.as_millis()).unwrap_or(i64::MAX)
 }
 
-async fn add(name: &str, role: Role, store: &StoreArguments) -> anyhow::Result<()> {
+async fn add(name: &str, role: Role, from: Option<&Path>, store: &StoreArguments) -> anyhow::Result<()> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-@".contains(c);
     if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(is_plain) {
         bail!("name {name:?} must have 1 to {LONGEST_NAME} letters, digits, or any of . _ - @");
     }
-    let secret = new_token().context("no random bits")?;
+    let secret = match from {
+        Some(file) => secret_of(file)?,
+        None => new_token().context("no random bits")?,
+    };
     let token = Token {
         name: name.to_owned(),
         role,
@@ -41,15 +53,35 @@ async fn add(name: &str, role: Role, store: &StoreArguments) -> anyhow::Result<(
     };
     let mut table = TokenTable::open(&store.store).await?;
     let is_added = table.add(&token).await?;
+    let tokens = table.all().await?;
     table.close().await?;
-    if !is_added {
+    let is_there =
+        |own: &Token| own.name == name && own.role == role && !own.is_revoked && own.hash.is(&token.hash);
+    if !is_added && !tokens.iter().any(is_there) {
         bail!("{} has a token {name} already: revoke it first", store.store);
+    }
+    if from.is_some() {
+        return Ok(());
     }
     note(&format!(
         "token {name} with the role {}; it is not shown again:",
         role.name()
     ));
     Ok(say(&format!("{secret}\n"))?)
+}
+
+/// A token that was made elsewhere.
+fn secret_of(file: &Path) -> anyhow::Result<String> {
+    let token = BearerToken::find(Some(file), None)?;
+    let secret = token.as_ref().map(BearerToken::expose).unwrap_or_default();
+    if secret.len() < LEAST_SECRET {
+        bail!(
+            "{}: a token of {} characters must have at least {LEAST_SECRET}",
+            file.display(),
+            secret.len()
+        );
+    }
+    Ok(secret.to_owned())
 }
 
 async fn list(store: &StoreArguments) -> anyhow::Result<()> {

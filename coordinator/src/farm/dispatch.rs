@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use shared::api::{CalibrationState, CalibrationStatus};
+use shared::api::{CalibrationState, CalibrationStatus, WorkDemand};
 use shared::exchange::{ExchangeRequest, ExchangeResponse};
 use shared::model::ModelVariant;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
@@ -184,6 +184,14 @@ impl Dispatcher {
         self.look(move |farm, _| farm.variant(&hash)).await
     }
 
+    /// How much work there is.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn demand(&self) -> Result<WorkDemand, Stopped> {
+        self.look(|farm, _| farm.demand()).await
+    }
+
     /// Numbers for the metrics page.
     ///
     /// # Errors
@@ -302,6 +310,9 @@ impl Thread {
             worker: request.worker.clone(),
             model_version: request.model_version.clone(),
             models: request.models.clone(),
+            queue_job: request.queue_job.clone(),
+            threads: request.threads,
+            evaluation_s: request.evaluation_s,
             results: Vec::new(),
             holding: Vec::new(),
             returned: Vec::new(),

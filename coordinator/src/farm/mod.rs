@@ -6,6 +6,7 @@
 //! - `verification`: what follows where workers disagree, and who is asked beside a slow one.
 //! - [`dispatch`]: gives it a thread.
 //! - `control`: the commands of a user on a calibration.
+//! - `demand`: how much work there is.
 //! - `lease_numbers`: numbers of leases.
 //! - `share`: how calibrations share what a worker takes.
 //! - `seal`: binds a result to what was asked of whom.
@@ -13,6 +14,7 @@
 //! - `worker_record`, `metrics`: what is known of workers, and counted.
 
 mod control;
+mod demand;
 pub mod dispatch;
 mod lease_numbers;
 mod leasing;

@@ -113,9 +113,15 @@ fn waits(calibration: &Calibration) -> Option<String> {
     calibration.is_concluded().then(message)
 }
 
-/// Rough time to go: exponents grow by about a constant factor a stage, so the stages to come follow from the
-/// growth so far; each is taken to cost as much as the mean of the stages behind.
+/// Rough time to go.
 fn remaining_s(calibration: &Calibration, per_second: f64) -> Option<f64> {
+    let left = evaluations_left(calibration)?;
+    (per_second > 0.0).then_some(left / per_second)
+}
+
+/// How many evaluations a calibration still wants, roughly: exponents grow by about a constant factor a stage, so the stages to come
+/// follow from the growth so far; each is taken to cost as much as the mean of the stages behind. `None` before the second stage.
+pub(super) fn evaluations_left(calibration: &Calibration) -> Option<f64> {
     let exponents: Vec<f64> = calibration
         .engine()
         .stages()
@@ -124,11 +130,11 @@ fn remaining_s(calibration: &Calibration, per_second: f64) -> Option<f64> {
         .filter(|&b| b > 0.0)
         .collect();
     let (&first, &last) = (exponents.first()?, exponents.last()?);
-    if exponents.len() < 2 || per_second <= 0.0 {
+    if exponents.len() < 2 {
         return None;
     }
     let growth = (last / first).ln() / (exponents.len() - 1) as f64;
     let stages_to_go = (1.0 / last).ln() / growth.max(1e-3);
     let cost = calibration.evaluations as f64 / exponents.len() as f64;
-    Some(stages_to_go * cost / per_second)
+    Some(stages_to_go * cost)
 }

@@ -171,6 +171,9 @@ impl Farm {
             .or_insert_with(|| WorkerRecord {
                 model_version: request.model_version.clone(),
                 models: request.models.clone(),
+                queue_job: request.queue_job.clone(),
+                threads: request.threads,
+                evaluation_s: request.evaluation_s,
                 holds: 0,
                 completed: 0,
                 faults: 0,
@@ -183,6 +186,7 @@ impl Farm {
         // The last message tells: what waits for a worker of its version must not wait for one that has become another.
         record.model_version.clone_from(&request.model_version);
         record.models.clone_from(&request.models);
+        record.evaluation_s = request.evaluation_s;
         // An answer to this worker was lost: it speaks again without having received its last leases.
         let lost = request.received < record.given;
         record.given = record.given.min(request.received);
@@ -240,6 +244,11 @@ impl Farm {
             leases,
             lease_ms: self.lease_ms,
             remaining: self.remaining(),
+            in_hand: self
+                .calibrations
+                .values()
+                .filter(|e| e.calibration.is_open())
+                .count() as u64,
             workers: self
                 .workers
                 .keys()

@@ -15,6 +15,14 @@ pub struct WorkerRecord {
     /// The models that are not ours that it runs: the version of each by its name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub models: BTreeMap<String, String>,
+    /// The job of a queue that started it, as in `slurm 1234_5`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub queue_job: Option<String>,
+    /// Threads that simulate.
+    pub threads: u32,
+    /// Mean time of its evaluations so far `[s]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub evaluation_s: Option<f64>,
     /// Leases that it holds.
     pub holds: u64,
     /// Results that counted.

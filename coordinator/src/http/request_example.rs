@@ -65,6 +65,7 @@ pub(super) fn request_example(operation: &str) -> Option<Value> {
             "worker": "rig-pc-1",
             "protocol": PROTOCOL_VERSION,
             "model_version": "1",
+            "threads": 8,
             "results": [],
             "holding": [],
             "returned": [],

@@ -7,7 +7,7 @@ use axum::body::Bytes;
 use axum::extract::{FromRequest, Path, Request, State};
 use axum::http::header::{ACCEPT, CONTENT_TYPE, HeaderMap, HeaderValue};
 use axum::response::IntoResponse;
-use shared::api::{ErrorBody, ErrorKind};
+use shared::api::{ErrorBody, ErrorKind, WorkDemand};
 use shared::exchange::{ExchangeRequest, ExchangeResponse, PROTOCOL_VERSION};
 use shared::model::ModelVariant;
 use shared::outcome::Outcome;
@@ -36,6 +36,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new()
         .routes(routes!(exchange))
         .routes(routes!(variant))
+        .routes(routes!(demand))
         .routes(routes!(workers))
 }
 
@@ -84,6 +85,11 @@ fn check_texts(request: &ExchangeRequest) -> Result<(), HttpError> {
     };
     check("worker", &request.worker, LONGEST_NAME)?;
     check("model_version", &request.model_version, LONGEST_NAME)?;
+    check(
+        "queue_job",
+        request.queue_job.as_deref().unwrap_or_default(),
+        LONGEST_NAME,
+    )?;
     if request.models.len() > MOST_MODELS {
         let message = format!("models: {} must be at most {MOST_MODELS}", request.models.len());
         return Err(HttpError::new(ErrorKind::InvalidBody, message));
@@ -162,6 +168,15 @@ async fn variant(
             format!("no calibration in progress uses variant {hash}"),
         )
     })
+}
+
+/// How much work there is.
+///
+/// For whatever starts workers: evaluations, workers, and the mean time of an evaluation.
+#[utoipa::path(get, path = "/work/demand", operation_id = "get_work_demand", tag = "work",
+    responses((status = 200, description = "work and workers", body = WorkDemand)))]
+async fn demand(State(service): State<Service>) -> Result<Json<WorkDemand>, HttpError> {
+    Ok(Json(service.dispatcher().demand().await?))
 }
 
 /// Lists the workers.

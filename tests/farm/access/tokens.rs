@@ -199,3 +199,33 @@ fn the_description_of_the_interface_has_tokens_and_refusals() {
         }
     }
 }
+
+#[test]
+fn a_token_that_was_made_elsewhere_is_taken_once_and_again() {
+    let service = Service::start(&[]);
+    let store = format!("sqlite://{}", service.store().display());
+    let file = service.folder().join("farm.token");
+    let secret = "0123456789abcdef0123456789abcdef";
+    let add = |role: &str| {
+        let file = file.display().to_string();
+        let words = [
+            "token", "add", "farm", "--role", role, "--from", &file, "--store", &store,
+        ];
+        programs::run(programs::coordinator(words))
+    };
+    std::fs::write(&file, "short\n").expect("a file");
+    let refused = add("work").refusal();
+    assert!(
+        refused.contains("a token of 5 characters must have at least 32"),
+        "{refused}"
+    );
+    std::fs::write(&file, format!("{secret}\n")).expect("a file");
+    assert_eq!(add("work").success(), "");
+    assert_eq!(add("work").success(), "", "as when a pod starts again");
+    let refused = add("submit").refusal();
+    assert!(refused.contains("has a token farm already"), "{refused}");
+    until("the token", || {
+        let known = status(&service.client, "GET", "/v1/work/demand", Some(secret));
+        (known == 200).then_some(())
+    });
+}

@@ -12,7 +12,7 @@ use farm_tests::service::Service;
 use farm_tests::wait::until;
 
 /// A job of which an evaluation takes tens of seconds.
-fn long() -> Job {
+pub(super) fn long() -> Job {
     Job::small().in_job(
         "kind = \"quasi_static\"",
         "kind = \"scm\"\ndem_spacing_m = 0.008\ntravel_step_m = 0.0000005\nsteady_travel_m = 0.2",
@@ -20,7 +20,7 @@ fn long() -> Job {
 }
 
 /// Waits until the only worker holds a lease that it has begun.
-fn begun(service: &Service) {
+pub(super) fn begun(service: &Service) {
     until("a lease in hand", || {
         let holds = service.only_worker().and_then(|w| w["holds"].as_u64());
         holds.filter(|&holds| holds > 0)

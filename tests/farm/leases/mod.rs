@@ -4,6 +4,7 @@ mod busy;
 mod disputed;
 mod durable;
 mod faults;
+mod limits;
 mod lost;
 mod restored;
 mod tokens;

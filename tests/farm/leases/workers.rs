@@ -19,7 +19,10 @@ fn another_protocol_is_refused_with_426() {
     assert_eq!(response.json()["error"]["type"], "protocol_mismatch");
     assert_eq!(
         response.json()["error"]["message"],
-        "worker old speaks protocol 11, this coordinator 10"
+        format!(
+            "worker old speaks protocol {}, this coordinator {PROTOCOL}",
+            PROTOCOL + 1
+        )
     );
     assert_eq!(service.metric("grouser_leases_given_total"), 0);
 }

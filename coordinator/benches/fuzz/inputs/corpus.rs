@@ -114,6 +114,9 @@ fn messages() -> Vec<ExchangeRequest> {
         protocol: PROTOCOL_VERSION,
         model_version: "scm-6".into(),
         models: [("wheel.py".to_owned(), "command-0123456789abcdef".to_owned())].into(),
+        queue_job: Some("slurm 12_3".into()),
+        threads: 8,
+        evaluation_s: Some(0.25),
         results: vec![
             result(Some(Outcome::Evaluated(observables))),
             result(Some(Outcome::Fault(Fault { message }))),

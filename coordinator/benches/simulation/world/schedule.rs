@@ -259,7 +259,7 @@ impl Schedule<'_> {
             Act::Send(exchange, request) => {
                 self.journal.note(self.now_ms, || said(&request));
                 self.send(Message::Request(
-                    request,
+                    *request,
                     Return {
                         worker: place,
                         exchange,
@@ -517,6 +517,9 @@ fn bare(worker: String, version: &str) -> ExchangeRequest {
         protocol: PROTOCOL_VERSION,
         model_version: version.into(),
         models: Default::default(),
+        queue_job: None,
+        threads: 1,
+        evaluation_s: None,
         results: Vec::new(),
         holding: Vec::new(),
         returned: Vec::new(),

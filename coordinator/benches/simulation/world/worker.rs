@@ -38,7 +38,7 @@ pub(crate) enum Act {
     /// It computes, or waits.
     Nothing,
     /// It sends a request, by the number of its exchange.
-    Send(u64, ExchangeRequest),
+    Send(u64, Box<ExchangeRequest>),
     /// The process ends.
     Die,
 }
@@ -173,6 +173,9 @@ impl Worker {
             protocol: PROTOCOL_VERSION,
             model_version: self.version.to_owned(),
             models: Default::default(),
+            queue_job: None,
+            threads: 1,
+            evaluation_s: None,
             results: results.clone(),
             holding,
             returned: std::mem::take(&mut self.returned),
@@ -191,7 +194,7 @@ impl Worker {
             results,
             announced,
         });
-        Act::Send(self.exchanges, request)
+        Act::Send(self.exchanges, Box::new(request))
     }
 
     /// Takes an answer; one that it no longer waits for is thrown away, as that of a closed connection.

@@ -1,13 +1,22 @@
 //! Command line and environment of the coordinator.
+//!
+//! # Layout
+//! - `client`: what a service asks for.
+//! - `scale`: arguments of `coordinator scale`.
+
+mod client;
+mod scale;
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use shared::bearer::{BearerToken, BearerTokenError};
 use tracing_subscriber::filter::{LevelFilter, Targets};
 
 use crate::embedded::WorkerConfig;
 use crate::schema::FileKind;
+
+pub use client::ClientArguments;
+pub use scale::{EngineKind, ScaleArguments};
 
 /// The processors that this program was built for.
 pub const ARCHITECTURE: &str = std::env::consts::ARCH;
@@ -66,6 +75,8 @@ pub enum CoordinatorCommand {
     Restore(StudyArguments),
     /// Delete a study of a service, with its calibrations and results, for good.
     Delete(StudyArguments),
+    /// Start and end workers on machines of Slurm, HyperQueue or Kubernetes, by the work that a service has.
+    Scale(ScaleArguments),
     /// Copy a store, also one that a service is using, to a new file.
     Backup(BackupArguments),
     /// Check this machine, its store and a service, and say what to do where something is amiss.
@@ -322,6 +333,9 @@ pub enum TokenCommand {
         /// What its holder may do: read; read, submit and control; or work as a worker.
         #[arg(long, value_enum)]
         role: crate::token::Role,
+        /// Takes the token of this file, as of a secret of Kubernetes, and prints nothing; where it is there already, nothing changes.
+        #[arg(long, value_name = "FILE")]
+        from: Option<PathBuf>,
         /// Where it is kept.
         #[command(flatten)]
         store: StoreArguments,
@@ -349,27 +363,6 @@ pub struct StoreArguments {
         value_name = "sqlite://FILE"
     )]
     pub store: String,
-}
-
-/// What a service asks for: a token, and trust in its certificate. In the environment, `GROUSER_TOKEN` has the token itself.
-#[derive(Debug, Args)]
-pub struct ClientArguments {
-    /// File with the token that the service asks for; by default, `GROUSER_TOKEN` from the environment.
-    #[arg(long, value_name = "FILE")]
-    pub token_file: Option<PathBuf>,
-    /// Trusts a service at an https URL by this certificate of its authority, a PEM file, in place of those of this machine.
-    #[arg(long, value_name = "PEM", env = "GROUSER_CA_CERTIFICATE")]
-    pub ca_certificate: Option<PathBuf>,
-}
-
-impl ClientArguments {
-    /// The token: of the file, or else of the environment.
-    ///
-    /// # Errors
-    /// The file cannot be read, or the token has no form.
-    pub fn token(&self) -> Result<Option<BearerToken>, BearerTokenError> {
-        BearerToken::find(self.token_file.as_deref(), std::env::var("GROUSER_TOKEN").ok())
-    }
 }
 
 /// Submit a job to a service.

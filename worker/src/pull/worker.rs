@@ -9,11 +9,12 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, PROTOCOL_VERSION, WorkResult};
-use shared::model::ModelVariant;
 use shared::outcome::{Fault, Outcome};
 
+use super::exchange::{Coordinator, ExchangeError};
+use super::limits::Ended;
+use super::settings::PullSettings;
 use crate::evaluator::{Evaluator, SimulationClock};
-use crate::external::allowed::AllowedModels;
 use crate::model::{CompiledVariant, VariantCache};
 
 /// A worker holds about so much work `[s]`.
@@ -22,6 +23,10 @@ const WORK_S: f64 = 1.5;
 const LEAST_WORK_S: f64 = 5e-3;
 /// Longest wait of a long poll `[ms]`.
 const WAIT_MS: u64 = 20_000;
+/// The same of one that ends when nothing is left `[ms]`.
+const ONCE_WAIT_MS: u64 = 500;
+/// Between two calibrations of a study there is no work for less than so long.
+const LULL: Duration = Duration::from_secs(5);
 /// A worker holds at most so many runs, over all its leases: their results fit into one message.
 const MOST_RUNS: usize = 100_000;
 /// Results are sent at least so often, even while there is work left.
@@ -38,82 +43,12 @@ const BACK_OFF: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs
 /// How often models that are not ours are asked what they are.
 const ASK: Duration = Duration::from_secs(5);
 
-/// Why an exchange failed.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum ExchangeError {
-    /// The coordinator is away or busy: try again later.
-    #[error("the coordinator is away: {0}")]
-    Away(String),
-    /// The coordinator will never take this worker.
-    #[error("the coordinator refuses this worker: {0}")]
-    Refused(String),
-}
-
-/// A coordinator, over HTTP or in the same process.
-pub trait Coordinator: Send + Sync + 'static {
-    /// One exchange of results for leases; a failure gives the results back, to be sent again.
-    fn exchange(
-        &self,
-        request: ExchangeRequest,
-    ) -> impl Future<Output = Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)>> + Send;
-
-    /// The variant of a hash; `None` where no active calibration uses it.
-    fn variant(&self, hash: &str)
-    -> impl Future<Output = Result<Option<ModelVariant>, ExchangeError>> + Send;
-}
-
-/// Who the worker is and how it works.
-#[derive(Debug, Clone)]
-pub struct PullSettings {
-    /// Name of this worker process, fresh at every start.
-    pub name: String,
-    /// Threads that simulate.
-    pub threads: usize,
-    /// The models that are not ours that it runs.
-    pub models: Arc<AllowedModels>,
-}
-
-/// Runs until `shutdown` is ready; then, within 5 s, gives back the leases that are not finished.
-///
-/// # Errors
-/// [`ExchangeError::Refused`], also where the threads cannot be started, because retrying would not help.
-pub async fn run<C: Coordinator>(
-    coordinator: Arc<C>,
-    settings: PullSettings,
-    clock: Arc<SimulationClock>,
-    shutdown: impl Future<Output = ()>,
-) -> Result<(), ExchangeError> {
-    let evaluator = Evaluator::new(settings.threads, clock.clone())
-        .map_err(|e| ExchangeError::Refused(format!("no threads: {e}")))?;
-    let worker = Worker {
-        coordinator,
-        evaluator,
-        clock,
-        variants: VariantCache::new(settings.models.clone()),
-        asked: None,
-        settings,
-        held: BTreeSet::new(),
-        outbox: Vec::new(),
-        returned: Vec::new(),
-        announced: Vec::new(),
-        received: 0,
-        known: Known {
-            remaining: 0,
-            workers: 1,
-            lease_ms: WAIT_MS,
-            asked: 0,
-            runs: 1,
-        },
-        flushed: Instant::now(),
-        renewed: Instant::now(),
-    };
-    worker.run(shutdown).await
-}
-
 /// The state of the coordinator in its last answer.
 #[derive(Debug)]
 struct Known {
     remaining: u64,
+    /// Calibrations that want workers, once it is known.
+    in_hand: Option<u64>,
     workers: u32,
     lease_ms: u64,
     /// How many leases the last successful request brought.
@@ -130,7 +65,8 @@ enum Missing {
     Unusable(String),
 }
 
-struct Worker<C> {
+/// A worker.
+pub(super) struct Worker<C> {
     coordinator: Arc<C>,
     evaluator: Evaluator,
     clock: Arc<SimulationClock>,
@@ -151,18 +87,64 @@ struct Worker<C> {
     known: Known,
     flushed: Instant,
     renewed: Instant,
+    /// When it last held a lease, or started.
+    busy: Instant,
 }
 
 impl<C: Coordinator> Worker<C> {
-    async fn run(mut self, shutdown: impl Future<Output = ()>) -> Result<(), ExchangeError> {
+    /// A worker that holds nothing.
+    pub(super) fn new(
+        coordinator: Arc<C>,
+        settings: PullSettings,
+        evaluator: Evaluator,
+        clock: Arc<SimulationClock>,
+    ) -> Self {
+        Worker {
+            coordinator,
+            evaluator,
+            clock,
+            variants: VariantCache::new(settings.models.clone()),
+            asked: None,
+            settings,
+            held: BTreeSet::new(),
+            outbox: Vec::new(),
+            returned: Vec::new(),
+            announced: Vec::new(),
+            received: 0,
+            known: Known {
+                remaining: 0,
+                in_hand: None,
+                workers: 1,
+                lease_ms: WAIT_MS,
+                asked: 0,
+                runs: 1,
+            },
+            flushed: Instant::now(),
+            renewed: Instant::now(),
+            busy: Instant::now(),
+        }
+    }
+
+    /// Serves until `shutdown` is ready or a limit is reached.
+    ///
+    /// # Errors
+    /// [`ExchangeError::Refused`].
+    pub(super) async fn run(mut self, shutdown: impl Future<Output = ()>) -> Result<Ended, ExchangeError> {
         tokio::pin!(shutdown);
         let mut back_off = BACK_OFF[0];
         let mut away = false;
         loop {
             self.collect();
+            if let Some(ended) = self.has_ended() {
+                return self.stop(ended).await;
+            }
+            // Made anew in every round, because it follows from what is held.
+            let reached = self.settings.limits.reached(self.idle_since());
+            tokio::pin!(reached);
             if !self.is_time_to_exchange() {
                 tokio::select! {
-                    () = &mut shutdown => return self.stop().await,
+                    () = &mut shutdown => return self.stop(Ended::Asked).await,
+                    ended = &mut reached => return self.stop(ended).await,
                     () = self.evaluator.woken() => {}
                     // short leases are renewed more often
                     () = tokio::time::sleep(FLUSH.min(self.renewal_period())) => {}
@@ -170,7 +152,8 @@ impl<C: Coordinator> Worker<C> {
                 continue;
             }
             tokio::select! {
-                () = &mut shutdown => return self.stop().await,
+                () = &mut shutdown => return self.stop(Ended::Asked).await,
+                ended = &mut reached => return self.stop(ended).await,
                 () = self.ask_models() => {}
             }
             let request = self.request();
@@ -180,16 +163,12 @@ impl<C: Coordinator> Worker<C> {
             let answer = loop {
                 tokio::select! {
                     () = &mut shutdown => {
-                        // leases may be under way: wait briefly for the answer, to give them back too
-                        match tokio::time::timeout(PARTING, exchange).await {
-                            Ok(Ok(response)) => {
-                                self.held.extend(response.leases.iter().map(|l| l.lease));
-                                self.note_received(&response);
-                            }
-                            Ok(Err((_, results))) => self.outbox.extend(results),
-                            Err(_) => {}
-                        }
-                        return self.stop().await;
+                        self.part(exchange).await;
+                        return self.stop(Ended::Asked).await;
+                    }
+                    ended = &mut reached => {
+                        self.part(exchange).await;
+                        return self.stop(ended).await;
                     }
                     answer = &mut exchange => break answer,
                     // What is being evaluated must not be lost because an answer hangs.
@@ -206,7 +185,8 @@ impl<C: Coordinator> Worker<C> {
                     back_off = BACK_OFF[0];
                     tokio::select! {
                         // What has been leased is held by now, and given back.
-                        () = &mut shutdown => return self.stop().await,
+                        () = &mut shutdown => return self.stop(Ended::Asked).await,
+                        ended = &mut reached => return self.stop(ended).await,
                         () = self.accept(response) => {}
                     }
                 }
@@ -220,7 +200,8 @@ impl<C: Coordinator> Worker<C> {
                     }
                     self.outbox.splice(0..0, results);
                     tokio::select! {
-                        () = &mut shutdown => return self.stop().await,
+                        () = &mut shutdown => return self.stop(Ended::Asked).await,
+                        ended = &mut reached => return self.stop(ended).await,
                         () = tokio::time::sleep(back_off) => {}
                     }
                     back_off = (back_off * 2).min(BACK_OFF[1]);
@@ -228,6 +209,39 @@ impl<C: Coordinator> Worker<C> {
                 Err((refused, _)) => return Err(refused),
             }
         }
+    }
+
+    /// Leases may be under way to one that stops: it waits briefly for the answer, to give them back too.
+    async fn part(
+        &mut self,
+        exchange: impl Future<Output = Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)>>,
+    ) {
+        match tokio::time::timeout(PARTING, exchange).await {
+            Ok(Ok(response)) => {
+                self.held.extend(response.leases.iter().map(|l| l.lease));
+                self.note_received(&response);
+            }
+            Ok(Err((_, results))) => self.outbox.extend(results),
+            Err(_) => {}
+        }
+    }
+
+    /// Whether it has nothing to do, and since when.
+    fn idle_since(&self) -> Option<Instant> {
+        (self.held.is_empty() && self.outbox.is_empty()).then_some(self.busy)
+    }
+
+    /// Why it ends now, of the limits that are not a matter of time.
+    fn has_ended(&mut self) -> Option<Ended> {
+        if !self.held.is_empty() {
+            self.busy = Instant::now();
+        }
+        let limits = &self.settings.limits;
+        let is_idle = self.idle_since().is_some_and(|since| since.elapsed() >= LULL);
+        if limits.once && is_idle && self.known.in_hand == Some(0) {
+            return Some(Ended::NothingLeft);
+        }
+        limits.is_over_memory().then_some(Ended::Memory)
     }
 
     /// Asks the models that are not ours what they are, every now and then: one may have been started, or replaced.
@@ -309,6 +323,9 @@ impl<C: Coordinator> Worker<C> {
             protocol: PROTOCOL_VERSION,
             model_version: crate::model_version().to_owned(),
             models: self.settings.models.announced(),
+            queue_job: self.settings.queue_job.clone(),
+            threads: self.settings.threads as u32,
+            evaluation_s: self.clock.mean_s(),
             results: std::mem::take(&mut self.outbox),
             holding: if renew {
                 self.held.iter().copied().collect()
@@ -320,7 +337,16 @@ impl<C: Coordinator> Worker<C> {
             received: self.received,
             want: self.want().max(u32::from(idle)),
             // a worker that still holds work returns for more by itself
-            wait_ms: if idle { WAIT_MS } else { 0 },
+            wait_ms: if idle { self.patience_ms() } else { 0 },
+        }
+    }
+
+    /// How long the coordinator may wait for work before it answers one that is idle `[ms]`.
+    fn patience_ms(&self) -> u64 {
+        match self.settings.limits.once {
+            // It must hear soon that nothing is left.
+            true => ONCE_WAIT_MS,
+            false => WAIT_MS,
         }
     }
 
@@ -331,6 +357,9 @@ impl<C: Coordinator> Worker<C> {
             protocol: PROTOCOL_VERSION,
             model_version: crate::model_version().to_owned(),
             models: self.settings.models.announced(),
+            queue_job: self.settings.queue_job.clone(),
+            threads: self.settings.threads as u32,
+            evaluation_s: self.clock.mean_s(),
             results: Vec::new(),
             holding: self.held.iter().copied().collect(),
             returned: Vec::new(),
@@ -365,6 +394,7 @@ impl<C: Coordinator> Worker<C> {
         self.evaluator.start(std::mem::take(&mut self.announced));
         self.known = Known {
             remaining: response.remaining,
+            in_hand: Some(response.in_hand),
             workers: response.workers,
             lease_ms: response.lease_ms,
             asked: response.leases.len() + self.held.len(),
@@ -449,7 +479,7 @@ impl<C: Coordinator> Worker<C> {
     }
 
     /// Sends the finished results and gives back all other leases: those that have not begun, and those that take too long to wait for.
-    async fn stop(mut self) -> Result<(), ExchangeError> {
+    async fn stop(mut self, ended: Ended) -> Result<Ended, ExchangeError> {
         if tokio::time::timeout(GRACE, self.evaluator.cancel())
             .await
             .is_err()
@@ -474,13 +504,20 @@ impl<C: Coordinator> Worker<C> {
         self.settings.models.stop();
         let farewell = tokio::time::timeout(FAREWELL, self.coordinator.exchange(request)).await;
         match farewell {
-            Ok(Ok(_)) => tracing::info!(worker = self.settings.name, sent, returned, "stopped"),
+            Ok(Ok(_)) => tracing::info!(
+                worker = self.settings.name,
+                why = ended.words(),
+                sent,
+                returned,
+                "stopped"
+            ),
             _ => tracing::warn!(
                 worker = self.settings.name,
+                why = ended.words(),
                 "stopped; the coordinator could not be notified"
             ),
         }
-        Ok(())
+        Ok(ended)
     }
 }
 
@@ -488,7 +525,11 @@ impl<C: Coordinator> Worker<C> {
 mod tests {
     use std::sync::Mutex;
 
+    use shared::model::ModelVariant;
+
     use super::*;
+    use crate::pull::limits::WorkerLimits;
+    use crate::pull::run;
 
     /// A coordinator that leases two evaluations of a variant and never says what it is.
     #[derive(Default)]
@@ -522,6 +563,7 @@ mod tests {
                 },
                 lease_ms: 60_000,
                 remaining: 2,
+                in_hand: 1,
                 workers: 1,
                 duplicates: 0,
                 refused: None,
@@ -539,13 +581,15 @@ mod tests {
         let silent = Arc::new(Silent::default());
         let settings = PullSettings {
             name: "test".into(),
+            queue_job: None,
             threads: 1,
             models: Arc::default(),
+            limits: WorkerLimits::default(),
         };
         let stop = silent.is_asked.notified();
         let ended = run(silent.clone(), settings, Arc::default(), stop);
         let ended = tokio::time::timeout(Duration::from_secs(60), ended).await;
-        assert_eq!(ended, Ok(Ok(())));
+        assert_eq!(ended, Ok(Ok(Ended::Asked)));
         assert_eq!(*silent.returned.lock().unwrap(), [7, 8]);
     }
 }

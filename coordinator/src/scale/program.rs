@@ -1,0 +1,107 @@
+//! Runs a program of an engine.
+
+use std::io;
+use std::process::{ExitStatus, Stdio};
+use std::time::Duration;
+
+use tokio::io::AsyncWriteExt as _;
+use tokio::process::Command;
+
+/// A program that says nothing for so long is given up.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Why an engine was not told, or did not answer.
+#[derive(Debug, thiserror::Error)]
+pub enum ProgramError {
+    /// It cannot be run.
+    #[error("{program}: cannot be run; is it installed, and in PATH?")]
+    Run {
+        /// Its name.
+        program: &'static str,
+        /// The reason.
+        #[source]
+        source: io::Error,
+    },
+    /// It has not ended.
+    #[error("{program}: no answer within {} s", PATIENCE.as_secs())]
+    Silent {
+        /// Its name.
+        program: &'static str,
+    },
+    /// It failed.
+    #[error("{program}: {status}: {said}")]
+    Failed {
+        /// Its name.
+        program: &'static str,
+        /// How it ended.
+        status: ExitStatus,
+        /// What it said.
+        said: String,
+    },
+    /// It said something else than it does in the versions that are known.
+    #[error("{program}: unexpected answer {said:?}")]
+    Answer {
+        /// Its name.
+        program: &'static str,
+        /// What it said.
+        said: String,
+    },
+}
+
+/// A program with its arguments, environment and input.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Invocation {
+    pub(super) program: &'static str,
+    pub(super) arguments: Vec<String>,
+    pub(super) environment: Vec<(&'static str, String)>,
+    pub(super) input: String,
+}
+
+impl Invocation {
+    pub(super) fn new(program: &'static str, arguments: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        Invocation {
+            program,
+            arguments: arguments.into_iter().map(Into::into).collect(),
+            environment: Vec::new(),
+            input: String::new(),
+        }
+    }
+
+    /// What it prints.
+    ///
+    /// # Errors
+    /// [`ProgramError`], but for [`ProgramError::Answer`].
+    pub(super) async fn run(self) -> Result<String, ProgramError> {
+        let program = self.program;
+        let run = |source| ProgramError::Run { program, source };
+        let mut child = Command::new(program)
+            .args(self.arguments)
+            .envs(self.environment)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .kill_on_drop(true)
+            .spawn()
+            .map_err(run)?;
+        let stdin = child.stdin.take();
+        let answer = async {
+            if let Some(mut stdin) = stdin {
+                // One that reads no input may have closed it.
+                let _ = stdin.write_all(self.input.as_bytes()).await;
+            }
+            child.wait_with_output().await
+        };
+        let output = tokio::time::timeout(PATIENCE, answer).await;
+        let output = output
+            .map_err(|_| ProgramError::Silent { program })?
+            .map_err(run)?;
+        if output.status.success() {
+            return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
+        }
+        Err(ProgramError::Failed {
+            program,
+            status: output.status,
+            said: String::from_utf8_lossy(&output.stderr).trim().to_owned(),
+        })
+    }
+}

@@ -1,0 +1,149 @@
+//! `coordinator scale`, with programs that play Slurm: jobs are processes of this machine. `tests/engines` has the real one.
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+use std::process::Command;
+
+use farm_tests::job::Job;
+use farm_tests::process::{Process, Signal};
+use farm_tests::programs;
+use farm_tests::service::Service;
+use farm_tests::wait::until;
+
+/// Each job of the array is a process; its file has its number.
+const SBATCH: &str = r#"#!/bin/sh
+for option; do case $option in --array=0-*) last=${option#--array=0-} ;; esac; done
+cat >"$QUEUE/script"
+for task in $(seq 0 "$last"); do
+    SLURM_JOB_ID=$$ SLURM_ARRAY_JOB_ID=$$ SLURM_ARRAY_TASK_ID=$task SLURM_CPUS_PER_TASK=1 \
+        sh "$QUEUE/script" </dev/null >>"$QUEUE/pilots.log" 2>&1 &
+    echo $! >"$QUEUE/$$_$task.job"
+done
+echo $$
+"#;
+const SQUEUE: &str = r#"#!/bin/sh
+for job in "$QUEUE"/*.job; do
+    [ -e "$job" ] || exit 0
+    if kill -0 "$(cat "$job")" 2>/dev/null; then echo "$(basename "$job" .job) RUNNING"; else rm "$job"; fi
+done
+"#;
+const SCANCEL: &str = r#"#!/bin/sh
+for job; do kill "$(cat "$QUEUE/$job.job")"; done
+"#;
+
+/// `coordinator scale slurm` for a service, on a queue of its own.
+struct Scaled {
+    process: Process,
+    queue: tempfile::TempDir,
+}
+
+impl Scaled {
+    fn start(service: &Service, more: &[&str]) -> Scaled {
+        let queue = tempfile::tempdir().expect("a folder");
+        for (name, text) in [("sbatch", SBATCH), ("squeue", SQUEUE), ("scancel", SCANCEL)] {
+            let file = queue.path().join(name);
+            fs::write(&file, text).expect("a script");
+            fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).expect("permissions");
+        }
+        let url = format!("http://{}", service.client.0);
+        let own = [
+            "scale",
+            "slurm",
+            "--url",
+            &url,
+            "--max",
+            "2",
+            "--every",
+            "0.1",
+            "--finish-within",
+            "0.01",
+        ];
+        let mut command = programs::coordinator(own.into_iter().chain(more.iter().copied()));
+        with(&mut command, queue.path());
+        let process = Process::start(command, &queue.path().join("scale.log"));
+        Scaled { process, queue }
+    }
+
+    /// Numbers of the processes that play jobs.
+    fn jobs(&self) -> usize {
+        let mut command = Command::new(self.queue.path().join("squeue"));
+        with(&mut command, self.queue.path());
+        programs::run(command).success().lines().count()
+    }
+}
+
+/// Our queue comes first in PATH, and our program is the worker.
+fn with(command: &mut Command, queue: &Path) {
+    let worker = programs::worker([] as [&str; 0]);
+    let path = std::env::var("PATH").unwrap_or_default();
+    command
+        .env("PATH", format!("{}:{path}", queue.display()))
+        .env("QUEUE", queue)
+        .env("GROUSER_WORKER", worker.get_program());
+}
+
+#[test]
+fn pilots_come_with_the_work_and_go_when_it_is_done() {
+    let service = Service::start(&[]);
+    let mut scaled = Scaled::start(&service, &["--max-idle", "0.5"]);
+    let id = service.submit(&Job::rolling());
+    until("two pilots", || (scaled.jobs() == 2).then_some(()));
+    until("the end", || {
+        (service.status(id)["state"] == "finished").then_some(())
+    });
+    until("no pilot", || (scaled.jobs() == 0).then_some(()));
+    scaled.process.signal(Signal::Terminate);
+    assert!(scaled.process.wait().success(), "{}", scaled.process.log());
+}
+
+#[test]
+fn the_cap_of_cost_ends_all_pilots() {
+    let service = Service::start(&[]);
+    service.submit(&Job::rolling().sampler(5000, [2, 4], 1));
+    // three seconds of a thread
+    let mut scaled = Scaled::start(&service, &["--cost-cap-thread-h", "0.00083"]);
+    assert!(scaled.process.wait().success(), "{}", scaled.process.log());
+    let log = scaled.process.log();
+    assert!(log.contains("of 0.00083 thread-hours: all are ended"), "{log}");
+    until("no pilot", || (scaled.jobs() == 0).then_some(()));
+}
+
+#[test]
+fn pilots_that_end_without_a_word_are_not_started_again_and_again() {
+    let service = Service::start(&[]);
+    service.submit(&Job::rolling());
+    let mut scaled = Scaled::start(&service, &["--worker", "/bin/false"]);
+    until("the warning", || {
+        let log = scaled.process.log();
+        log.contains("ended before the service heard of a worker")
+            .then_some(())
+    });
+    assert!(
+        scaled.process.log().contains("started in 10 s"),
+        "{}",
+        scaled.process.log()
+    );
+    assert!(scaled.process.is_running());
+}
+
+#[test]
+fn what_cannot_be_done_is_said() {
+    let service = Service::start(&[]);
+    let url = format!("http://{}", service.client.0);
+    let refusal = |words: &[&str]| {
+        let own = ["scale", "--url", &url, "--once"];
+        let mut command = programs::coordinator(own.into_iter().chain(words.iter().copied()));
+        command.env("PATH", "/nowhere");
+        programs::run(command).refusal()
+    };
+    let missing = refusal(&["slurm", "--max", "2"]);
+    assert!(
+        missing.contains("squeue: cannot be run; is it installed, and in PATH?"),
+        "{missing}"
+    );
+    let bounds = refusal(&["slurm", "--min", "3", "--max", "2"]);
+    assert_eq!(bounds, "--min 3 must be at most --max 2");
+    let script = refusal(&["hyperqueue", "--max", "2", "--script", "x"]);
+    assert_eq!(script, "--script: only Slurm has batch scripts");
+}
