@@ -30,7 +30,7 @@ impl Farm {
             leased: metrics.leased as u64,
             evaluations_left: open().map(left).sum::<u64>().max(metrics.queued),
             in_hand: open().count() as u64,
-            workers: able.clone().count() as u64,
+            workers: self.able_workers() as u64,
             threads: able.map(|(_, worker)| u64::from(worker.threads)).sum(),
             evaluation_s: (count > 0.0).then_some(time_s / count),
         }

@@ -89,6 +89,7 @@ impl Dispatcher {
                 sink,
                 rewinds,
                 parked: VecDeque::new(),
+                parked_until_ms: u64::MAX,
                 began: Instant::now(),
             }
             .run(&receiver)
@@ -232,6 +233,8 @@ struct Thread {
     sink: FactSink,
     rewinds: UnboundedSender<Durable<i64>>,
     parked: VecDeque<Parked>,
+    /// When the first of them has waited long enough.
+    parked_until_ms: u64,
     began: Instant,
 }
 
@@ -324,6 +327,7 @@ impl Thread {
         let Some(fact) = self.flush() else { return };
         let may_wait = question.want > 0 && until_ms > now_ms;
         if response.leases.is_empty() && may_wait && response.refused.is_none() {
+            self.parked_until_ms = self.parked_until_ms.min(until_ms);
             self.parked.push_back(Parked {
                 request: question,
                 until_ms,
@@ -334,8 +338,18 @@ impl Thread {
         }
     }
 
-    /// Gives work, or the news that there is none, to those whose turn it is.
+    /// Gives work, or the news that there is none, to those whose turn it is. Thousands may be parked: without work nobody looks at
+    /// them before the first has waited long enough.
     fn serve_parked(&mut self, now_ms: u64) {
+        if !self.farm.has_work() && now_ms < self.parked_until_ms {
+            return;
+        }
+        self.serve_each(now_ms);
+        let until_ms = self.parked.iter().map(|parked| parked.until_ms);
+        self.parked_until_ms = until_ms.min().unwrap_or(u64::MAX);
+    }
+
+    fn serve_each(&mut self, now_ms: u64) {
         for _ in 0..self.parked.len() {
             let Some(parked) = self.parked.pop_front() else {
                 return;

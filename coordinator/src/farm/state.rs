@@ -157,6 +157,12 @@ impl Farm {
         self.remaining() > 0 || self.calibrations.values().any(second)
     }
 
+    /// Workers that are not quarantined. Counted over the few that are: every exchange asks, and there may be many workers.
+    pub(super) fn able_workers(&self) -> usize {
+        let is_known = |name: &&String| self.workers.contains_key(*name);
+        self.workers.len() - self.quarantine.keys().filter(is_known).count()
+    }
+
     fn remaining(&self) -> u64 {
         let open = self.calibrations.values().filter(|e| e.calibration.is_open());
         open.map(|e| e.calibration.queue.unleased() as u64).sum()
@@ -249,11 +255,7 @@ impl Farm {
                 .values()
                 .filter(|e| e.calibration.is_open())
                 .count() as u64,
-            workers: self
-                .workers
-                .keys()
-                .filter(|name| !self.quarantine.contains_key(*name))
-                .count() as u32,
+            workers: self.able_workers() as u32,
             duplicates: duplicates + refused_leases.len() as u32,
             refused,
         }

@@ -352,8 +352,13 @@ impl LeaseQueue {
                 Completion::First
             }
             State::Ready => {
-                self.ready.retain(|&e| e != evaluation);
-                self.suspects.retain(|&e| e != evaluation);
+                // A replay completes what is asked for in its order: no queue is searched for the first of it.
+                if self.ready.front() == Some(&evaluation) {
+                    self.ready.pop_front();
+                } else {
+                    self.ready.retain(|&e| e != evaluation);
+                    self.suspects.retain(|&e| e != evaluation);
+                }
                 Completion::First
             }
         }
