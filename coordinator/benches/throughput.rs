@@ -1,10 +1,11 @@
 //! Leased and durably completed evaluations per second, through real HTTP, with a model that costs nothing.
 //!
-//! `cargo bench -p coordinator --bench throughput`. A real `coordinator serve` on a real file; 32 connected
-//! workers in this process, each of which exchanges the results of its last batch for the next one; with and without
-//! verification on a second worker, by turns. At the end a swarm of a thousand workers.
+//! `cargo bench -p coordinator --bench throughput`; with `-- postgres://USER@HOST:PORT` in a database of that server, which is made anew.
+//! A real `coordinator serve` on a real store; 32 connected workers in this process, each of which exchanges the results of its last
+//! batch for the next one; with and without verification on a second worker, by turns. At the end a swarm of a thousand workers.
 
 use std::error::Error;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -14,6 +15,7 @@ use reqwest::Client;
 use serde_json::{Value, json};
 use shared::exchange::{ExchangeRequest, ExchangeResponse, PROTOCOL_VERSION, WorkResult};
 use shared::outcome::{Observables, Outcome};
+use sqlx::{Connection, Executor, PgConnection};
 
 type Anyhow<T> = Result<T, Box<dyn Error + Send + Sync>>;
 
@@ -43,7 +45,7 @@ const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull
 
 fn job() -> String {
     format!(
-        "[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = {{ uniform = [4.0, 5.6] }}\nkappa = 0.0\nn = {{ uniform = [0.8, 1.4] }}\nfriction_angle_deg = {{ uniform = [11.5, 37.3] }}\n[sampler]\nparticles = {PARTICLES}\n"
+        "accept = [\"data_few\"]\n[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = {{ uniform = [4.0, 5.6] }}\nkappa = 0.0\nn = {{ uniform = [0.8, 1.4] }}\nfriction_angle_deg = {{ uniform = [11.5, 37.3] }}\n[sampler]\nparticles = {PARTICLES}\n"
     )
 }
 
@@ -80,13 +82,17 @@ impl Server {
 async fn main() -> Anyhow<()> {
     // A client names its cryptography even where it speaks plain HTTP.
     let _ = rustls::crypto::ring::default_provider().install_default();
-    println!("{WORKERS} workers, {SECONDS} s each, durable before the answer (WAL, synchronous = FULL)\n");
+    let place = Place(std::env::args().find(|word| word.starts_with("postgres")));
+    println!(
+        "{WORKERS} workers, {SECONDS} s each, durable before the answer, in {}\n",
+        place.name()
+    );
     println!(
         "{:>6} {:>14} {:>9} {:>8} {:>8} {:>8} {:>16}",
         "batch", "evaluations/s", "goal", "p50 ms", "p99 ms", "goal", "coordinator us"
     );
     for (batch, goal) in BATCHES {
-        let m = measure(WORKERS, batch, "1").await?;
+        let m = measure(&place, WORKERS, batch, "1").await?;
         println!(
             "{batch:>6} {:>14.0} {goal:>9.0} {:>8.2} {:>8.2} {GOAL_P99_MS:>8.0} {:>8.1} of {GOAL_CPU_US:.0}",
             m.per_second, m.p50_ms, m.p99_ms, m.cpu_us
@@ -95,7 +101,7 @@ async fn main() -> Anyhow<()> {
     let mut rates = [0.0; 2];
     for _ in 0..TURNS {
         for (rate, percent) in rates.iter_mut().zip(VERIFIED_PERCENT) {
-            *rate += measure(WORKERS, 16, percent).await?.per_second / TURNS as f64;
+            *rate += measure(&place, WORKERS, 16, percent).await?.per_second / TURNS as f64;
         }
     }
     println!(
@@ -104,7 +110,7 @@ async fn main() -> Anyhow<()> {
         rates[0],
         100.0 * (1.0 - rates[1] / rates[0])
     );
-    let m = measure(SWARM, 16, "1").await?;
+    let m = measure(&place, SWARM, 16, "1").await?;
     println!(
         "{SWARM} workers at batch 16: {:.0} evaluations/s, p99 {:.0} ms, {:.1} us of the coordinator (at most {GOAL_SWARM_CPU_US}), {:.0} MB (at most {GOAL_SWARM_MB})",
         m.per_second, m.p99_ms, m.cpu_us, m.resident_mb
@@ -121,11 +127,33 @@ struct Measured {
     resident_mb: f64,
 }
 
-async fn measure(connected: usize, batch: u32, verify_percent: &str) -> Anyhow<Measured> {
+/// Where stores are: files, or databases of a server.
+struct Place(Option<String>);
+
+impl Place {
+    fn name(&self) -> &str {
+        self.0.as_deref().unwrap_or("a file")
+    }
+
+    /// An empty store.
+    async fn store(&self, folder: &Path) -> Anyhow<String> {
+        let Some(server) = &self.0 else {
+            return Ok(format!("sqlite://{}", folder.join("bench.db").display()));
+        };
+        let mut connection = PgConnection::connect(&format!("{server}/postgres")).await?;
+        connection
+            .execute("DROP DATABASE IF EXISTS grouser_bench WITH (FORCE)")
+            .await?;
+        connection.execute("CREATE DATABASE grouser_bench").await?;
+        Ok(format!("{server}/grouser_bench"))
+    }
+}
+
+async fn measure(place: &Place, connected: usize, batch: u32, verify_percent: &str) -> Anyhow<Measured> {
     let folder = tempfile::tempdir()?;
     let port = std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
     let url = format!("http://127.0.0.1:{port}");
-    let store = format!("sqlite://{}", folder.path().join("bench.db").display());
+    let store = place.store(folder.path()).await?;
     let server = Server(
         Command::new(env!("CARGO_BIN_EXE_coordinator"))
             .args([

@@ -4,7 +4,7 @@
 //! - [`calibration`]: a calibration in progress: the one place where sampler, likelihood and leases meet. Pure.
 //! - [`lease`]: the rules of leasing. Pure.
 //! - [`farm`]: all calibrations and workers at hand; [`farm::dispatch`] gives it a thread.
-//! - [`store`]: the SQLite file; the only place that knows SQL.
+//! - [`store`]: an SQLite file or a PostgreSQL database; the only place that knows SQL.
 //! - [`study`]: how a study grows: its next step from where it stands.
 //! - [`service`]: store and farm together: submit, recover, control, grow.
 //! - [`webhook`]: what is posted when a calibration pauses or ends.

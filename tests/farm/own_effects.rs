@@ -1,6 +1,5 @@
 //! Effects that users add to a service's catalogue: `POST /v1/effects`, and the jobs that name them.
 
-use farm_tests::database::Database;
 use farm_tests::http::Response;
 use farm_tests::job::{GAIN, Job};
 use farm_tests::programs;
@@ -37,7 +36,9 @@ fn job(effects: &str) -> Job {
 
 /// Text of the effect file of this name that is stored with a calibration.
 fn stored(service: &Service, id: i64, file: &str) -> String {
-    let files = Database::open(&service.store()).text("SELECT files FROM calibrations WHERE id = ?", id);
+    let files = service
+        .database()
+        .text(&format!("SELECT files FROM calibrations WHERE id = {id}"));
     let files: Value = serde_json::from_str(&files).expect("the files of a job");
     files[file]
         .as_str()
@@ -236,7 +237,7 @@ fn what_is_no_effect_of_one_s_own_is_refused_with_the_reason() {
 #[test]
 fn only_who_may_submit_adds_an_effect_and_the_store_says_who_did() {
     let mut service = Service::start(&[]);
-    let store = format!("sqlite://{}", service.store().display());
+    let store = service.store_name().to_owned();
     let token = |name: &str, role: &str| {
         let command = programs::coordinator(["token", "add", name, "--role", role, "--store", &store]);
         programs::run(command).success().trim().to_owned()

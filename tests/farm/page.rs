@@ -13,7 +13,6 @@ fn named(text: &str) -> impl Iterator<Item = &str> {
 #[test]
 fn the_page_needs_no_token_and_nothing_from_elsewhere() {
     let service = Service::start(&[]);
-    let store = service.store().display().to_string();
     let added = [
         "token",
         "add",
@@ -21,7 +20,7 @@ fn the_page_needs_no_token_and_nothing_from_elsewhere() {
         "--role",
         "read",
         "--store",
-        &format!("sqlite://{store}"),
+        service.store_name(),
     ];
     run(coordinator(added)).success();
     farm_tests::wait::until("tokens are asked for", || {

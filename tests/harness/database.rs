@@ -1,68 +1,64 @@
-//! The file of a store, opened beside the program as any SQLite client opens it.
+//! A store opened beside the program, as any client of SQLite or PostgreSQL opens it.
 
-use sqlx::sqlite::SqliteConnectOptions;
-use sqlx::{Connection, SqliteConnection};
-use std::path::Path;
+use sqlx::{AnyConnection, AssertSqlSafe, Connection};
 use tokio::runtime::Runtime;
 
 /// A connection of its own to a store.
 #[derive(Debug)]
 pub struct Database {
     runtime: Runtime,
-    connection: SqliteConnection,
+    connection: AnyConnection,
 }
 
 impl Database {
-    /// Opens the file of a store.
+    /// Opens a store by the name that `--store` takes.
     ///
     /// # Panics
     /// It is no database.
     #[track_caller]
-    pub fn open(file: &Path) -> Database {
+    pub fn open(store: &str) -> Database {
+        sqlx::any::install_default_drivers();
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
             .build()
             .expect("a runtime");
-        let options = SqliteConnectOptions::new().filename(file);
-        let connection = runtime.block_on(SqliteConnection::connect_with(&options));
+        let connection = runtime.block_on(AnyConnection::connect(store));
         Database {
             runtime,
             connection: connection.expect("a database"),
         }
     }
 
-    /// Executes a statement.
+    /// Executes statements.
     ///
     /// # Panics
-    /// SQLite refuses.
+    /// The database refuses.
     #[track_caller]
-    pub fn execute(&mut self, sql: &'static str) {
-        let done = self
-            .runtime
-            .block_on(sqlx::query(sql).execute(&mut self.connection));
+    pub fn execute(&mut self, sql: &str) {
+        let statements = sqlx::raw_sql(AssertSqlSafe(sql));
+        let done = self.runtime.block_on(statements.execute(&mut self.connection));
         done.unwrap_or_else(|e| panic!("{sql}: {e}"));
     }
 
     /// The number that a query gives.
     ///
     /// # Panics
-    /// SQLite refuses, or there is none.
+    /// The database refuses, or there is none.
     #[track_caller]
-    pub fn number(&mut self, sql: &'static str) -> i64 {
-        let number = self
-            .runtime
-            .block_on(sqlx::query_scalar(sql).fetch_one(&mut self.connection));
+    pub fn number(&mut self, sql: &str) -> i64 {
+        let query = sqlx::query_scalar(AssertSqlSafe(sql));
+        let number = self.runtime.block_on(query.fetch_one(&mut self.connection));
         number.unwrap_or_else(|e| panic!("{sql}: {e}"))
     }
 
-    /// The text that a query about a row gives.
+    /// The text that a query gives.
     ///
     /// # Panics
-    /// SQLite refuses, or there is none.
+    /// The database refuses, or there is none.
     #[track_caller]
-    pub fn text(&mut self, sql: &'static str, id: i64) -> String {
-        let text = sqlx::query_scalar(sql).bind(id);
-        let text = self.runtime.block_on(text.fetch_one(&mut self.connection));
+    pub fn text(&mut self, sql: &str) -> String {
+        let query = sqlx::query_scalar(AssertSqlSafe(sql));
+        let text = self.runtime.block_on(query.fetch_one(&mut self.connection));
         text.unwrap_or_else(|e| panic!("{sql}: {e}"))
     }
 }

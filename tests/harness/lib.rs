@@ -11,7 +11,7 @@
 //! - [`cylinder`]: the surface of a wheel as a mesh file.
 //! - [`job`]: the files of a small job, and ways to change them.
 //! - [`workspace`]: the workspace's own files.
-//! - [`database`]: a store opened by another client.
+//! - [`database`]: a store opened by another client. [`server`]: databases of a PostgreSQL server.
 //! - [`text`]: comparing long texts.
 //! - [`wait`]: waiting with a deadline.
 //! - [`random`]: seeded numbers.
@@ -27,6 +27,7 @@ pub mod lying_proxy;
 pub mod process;
 pub mod programs;
 pub mod random;
+pub mod server;
 pub mod service;
 pub mod text;
 pub mod umbridge_server;

@@ -1,4 +1,4 @@
-//! `coordinator serve` on a port and a store that outlive its process.
+//! `coordinator serve` on a port and a store that outlive its process: a file, or a database where the tests are told of a server.
 
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
@@ -7,10 +7,12 @@ use std::sync::atomic::{AtomicU16, Ordering};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
+use crate::database::Database;
 use crate::http::Client;
 use crate::job::Job;
 use crate::process::{Process, Signal};
 use crate::programs;
+use crate::server::ServerDatabase;
 use crate::wait::until;
 
 /// A service that can be killed and started again where it was.
@@ -19,6 +21,8 @@ pub struct Service {
     /// The client of its address.
     pub client: Client,
     folder: TempDir,
+    database: Option<ServerDatabase>,
+    store_name: String,
     arguments: Vec<String>,
     process: Option<Process>,
 }
@@ -36,9 +40,33 @@ impl Service {
     /// It does not start.
     pub fn start_at(address: String, more: &[&str]) -> Service {
         let folder = tempfile::tempdir().expect("a folder for the store");
-        let store = format!("sqlite://{}", folder.path().join("grouser.db").display());
-        let mut arguments: Vec<String> = vec!["serve".into(), "--listen".into(), address.clone()];
-        arguments.extend(["--store".into(), store]);
+        let database = ServerDatabase::new();
+        let store_name = match &database {
+            Some(database) => database.url(),
+            None => format!("sqlite://{}", folder.path().join("grouser.db").display()),
+        };
+        Service::of(address, folder, database, store_name, more)
+    }
+
+    /// Starts a service on a store that is there.
+    ///
+    /// # Panics
+    /// It does not start.
+    pub fn start_on(store_name: &str, more: &[&str]) -> Service {
+        let folder = tempfile::tempdir().expect("a folder for the log");
+        Service::of(free_address(), folder, None, store_name.to_owned(), more)
+    }
+
+    fn of(
+        address: String,
+        folder: TempDir,
+        database: Option<ServerDatabase>,
+        store_name: String,
+        more: &[&str],
+    ) -> Service {
+        let mut arguments = ["serve", "--listen", &address, "--store", &store_name]
+            .map(str::to_owned)
+            .to_vec();
         arguments.extend(more.iter().map(|&a| a.to_owned()));
         if !more.contains(&"--verify-percent") {
             arguments.extend(["--verify-percent", "0"].map(str::to_owned));
@@ -46,6 +74,8 @@ impl Service {
         let mut service = Service {
             client: Client(address),
             folder,
+            database,
+            store_name,
             arguments,
             process: None,
         };
@@ -86,6 +116,19 @@ impl Service {
         process.wait().success()
     }
 
+    /// Waits for its end; whether that was orderly.
+    ///
+    /// # Panics
+    /// It is not running, or does not end in time.
+    #[track_caller]
+    pub fn wait(&mut self) -> bool {
+        self.process
+            .take()
+            .expect("the service is running")
+            .wait()
+            .success()
+    }
+
     /// URL for workers and verbs.
     pub fn url(&self) -> String {
         format!("http://{}", self.client.0)
@@ -104,8 +147,44 @@ impl Service {
     }
 
     /// The file of its store.
+    ///
+    /// # Panics
+    /// Its store is in a server.
+    #[track_caller]
     pub fn store(&self) -> PathBuf {
-        self.folder.path().join("grouser.db")
+        let file = self.store_name.strip_prefix("sqlite://");
+        file.expect("this test is of stores in files").into()
+    }
+
+    /// Its store, as `--store` takes it.
+    pub fn store_name(&self) -> &str {
+        &self.store_name
+    }
+
+    /// Its store, opened beside it.
+    #[track_caller]
+    pub fn database(&self) -> Database {
+        Database::open(&self.store_name)
+    }
+
+    /// The database of its store.
+    ///
+    /// # Panics
+    /// Its store is a file.
+    #[track_caller]
+    pub fn server_database(&self) -> &ServerDatabase {
+        self.database
+            .as_ref()
+            .expect("GROUSER_TEST_POSTGRES names a server")
+    }
+
+    /// Starts another coordinator on the same store and address, which waits for the end of this one.
+    #[track_caller]
+    pub fn standby(&self, name: &str) -> Process {
+        let mut arguments = self.arguments.clone();
+        arguments.push("--standby".into());
+        let log = self.folder.path().join(format!("{name}.log"));
+        Process::start(programs::coordinator(&arguments), &log)
     }
 
     /// A folder for whatever a test writes.

@@ -2,6 +2,7 @@
 
 mod backup;
 mod check;
+mod copy_store;
 mod doctor;
 mod effects;
 mod export_file;
@@ -55,6 +56,7 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Delete(study) => verbs::delete(&study).await,
         CoordinatorCommand::Scale(arguments) => scale::scale(&arguments).await,
         CoordinatorCommand::Backup(config) => backup::backup(&config).await,
+        CoordinatorCommand::CopyStore(config) => copy_store::copy(&config).await,
         CoordinatorCommand::Doctor(config) => doctor::doctor(&config).await,
         CoordinatorCommand::Completions { shell } => shell::completions(shell),
         CoordinatorCommand::Man { folder } => shell::man(&folder),

@@ -1,6 +1,8 @@
 //! `coordinator serve`: the service.
 
 use std::ops::RangeInclusive;
+use std::pin::pin;
+use std::time::Duration;
 
 use anyhow::{Context, bail};
 use tokio::net::TcpListener;
@@ -9,10 +11,13 @@ use super::exposure::exposure;
 use super::shutdown::{Shutdown, stop_signal};
 use crate::config::ServeArguments;
 use crate::embedded::{LocalModels, LocalWorkers};
-use crate::service::{FarmSettings, Service};
+use crate::service::{FarmSettings, Service, ServiceError};
+use crate::store::{StoreError, name_of};
 
 /// Durations that a lease may have `[ms]`: what a network may take, to a day.
 const LEASE_MS: RangeInclusive<u64> = 100..=86_400_000;
+/// A standby asks so often whether the store is free.
+const STANDBY: Duration = Duration::from_secs(1);
 
 pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     if !LEASE_MS.contains(&config.lease_ms) {
@@ -29,23 +34,31 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
         );
     }
     let models = LocalModels::new(&config.models.allow_model).map_err(anyhow::Error::msg)?;
-    let listener = TcpListener::bind(config.listen)
-        .await
-        .with_context(|| format!("--listen {}", config.listen))?;
+    let bind = async || {
+        let bound = TcpListener::bind(config.listen).await;
+        bound.with_context(|| format!("--listen {}", config.listen))
+    };
     let store = &config.store.store;
     let settings = FarmSettings {
         lease_ms: config.lease_ms,
         verified_share: config.verify_percent / 100.0,
     };
-    let service = match config.read_only {
-        true => Service::open_read_only(store).await?,
-        false => Service::open(store, settings).await?,
+    let (listener, service) = match (config.read_only, config.standby) {
+        (true, _) => (bind().await?, Service::open_read_only(store).await?),
+        (false, false) => (bind().await?, Service::open(store, settings).await?),
+        // Whoever asks a standby gets no answer: what stands before several coordinators sends them to the one that serves.
+        (false, true) => {
+            let Some(service) = standby(store, settings).await? else {
+                return Ok(());
+            };
+            (bind().await?, service)
+        }
     };
     let service = service.with_webhook_hosts(config.webhook_host);
     let address = listener.local_addr()?;
     let exposure = exposure(address, &config.exposure, &service.store().reader(), store).await?;
     let tls = exposure.tls.is_some();
-    tracing::info!(%address, store, tls, read_only = config.read_only, "serving");
+    tracing::info!(%address, store = name_of(store), tls, read_only = config.read_only, "serving");
 
     let stop = Shutdown::new();
     let workers = (config.local_workers > 0 && !config.read_only).then(|| {
@@ -84,4 +97,26 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     service.close().await;
     server.abort();
     Ok(())
+}
+
+/// Opens a store as soon as no other coordinator holds it; `None` where this one is asked to stop before.
+async fn standby(store: &str, settings: FarmSettings) -> anyhow::Result<Option<Service>> {
+    let mut signal = pin!(stop_signal()?);
+    tracing::info!(store = name_of(store), "standing by");
+    let mut has_reached_it = false;
+    loop {
+        match Service::open(store, settings).await {
+            Ok(service) => return Ok(Some(service)),
+            Err(ServiceError::Store(StoreError::InUse(_))) => has_reached_it = true,
+            // A server that is started again may be away for a while; one that was never there is an error.
+            Err(ServiceError::Store(error @ StoreError::Database { .. })) if has_reached_it => {
+                tracing::warn!(%error, "standing by");
+            }
+            Err(error) => return Err(error.into()),
+        }
+        tokio::select! {
+            () = tokio::time::sleep(STANDBY) => {}
+            _ = &mut signal => return Ok(None),
+        }
+    }
 }

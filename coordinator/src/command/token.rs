@@ -9,7 +9,7 @@ use shared::bearer::BearerToken;
 
 use super::output::{note, say};
 use crate::config::{StoreArguments, TokenCommand};
-use crate::store::TokenTable;
+use crate::store::{TokenTable, name_of};
 use crate::token::{Role, Token, TokenHash, new_token};
 
 /// Longest name of a token.
@@ -58,7 +58,10 @@ async fn add(name: &str, role: Role, from: Option<&Path>, store: &StoreArguments
     let is_there =
         |own: &Token| own.name == name && own.role == role && !own.is_revoked && own.hash.is(&token.hash);
     if !is_added && !tokens.iter().any(is_there) {
-        bail!("{} has a token {name} already: revoke it first", store.store);
+        bail!(
+            "{} has a token {name} already: revoke it first",
+            name_of(&store.store)
+        );
     }
     if from.is_some() {
         return Ok(());
@@ -101,7 +104,7 @@ async fn revoke(name: &str, store: &StoreArguments) -> anyhow::Result<()> {
     let is_revoked = table.revoke(name, now_ms()).await?;
     table.close().await?;
     if !is_revoked {
-        bail!("{} has no token {name}", store.store);
+        bail!("{} has no token {name}", name_of(&store.store));
     }
     Ok(say(&format!("token {name} is revoked\n"))?)
 }

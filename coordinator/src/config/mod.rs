@@ -79,6 +79,8 @@ pub enum CoordinatorCommand {
     Scale(ScaleArguments),
     /// Copy a store, also one that a service is using, to a new file.
     Backup(BackupArguments),
+    /// Copy a store from an SQLite file to a PostgreSQL server, or from a server to a file.
+    CopyStore(CopyStoreArguments),
     /// Check this machine, its store and a service, and say what to do where something is amiss.
     Doctor(DoctorArguments),
     /// Print completions of the command line for a shell.
@@ -280,6 +282,10 @@ pub struct ServeArguments {
     /// service that uses the store, and where nothing can be written.
     #[arg(long)]
     pub read_only: bool,
+    /// Waits while another coordinator holds the store, and takes over as soon as it ends, by whatever death; until then it does not
+    /// listen.
+    #[arg(long, env = "GROUSER_STANDBY", conflicts_with = "read_only")]
+    pub standby: bool,
     /// Posts web hooks of jobs to this host; may be repeated, or several between commas. By default, to none.
     #[arg(
         long,
@@ -323,6 +329,17 @@ pub struct BackupArguments {
     pub store: StoreArguments,
 }
 
+/// Copy a store between a file and a server.
+#[derive(Debug, Args)]
+pub struct CopyStoreArguments {
+    /// What is copied, as it is at one moment: stop its service first, or what that stores afterwards is missing.
+    #[arg(value_name = "sqlite://FILE|postgres://URL")]
+    pub from: String,
+    /// Where it is copied to: a new file, or a database without tables.
+    #[arg(value_name = "postgres://URL|sqlite://FILE")]
+    pub to: String,
+}
+
 /// Add, list and revoke tokens; a running service follows within a second.
 #[derive(Debug, Subcommand)]
 pub enum TokenCommand {
@@ -355,12 +372,13 @@ pub enum TokenCommand {
 /// The store of a service.
 #[derive(Debug, Args)]
 pub struct StoreArguments {
-    /// The store, an SQLite file.
+    /// The store: an SQLite file, or a database of a PostgreSQL server.
     #[arg(
         long,
         env = "GROUSER_STORE",
+        hide_env_values = true,
         default_value = "sqlite://grouser.db",
-        value_name = "sqlite://FILE"
+        value_name = "sqlite://FILE|postgres://URL"
     )]
     pub store: String,
 }

@@ -166,10 +166,11 @@ async fn metrics(
         "Late duplicates that differed from what is stored",
         stored(&health.differing_duplicates),
     );
-    let sizes = service.store().sizes_bytes();
-    let [file, log] = sizes.map(|bytes| usize::try_from(bytes).unwrap_or(usize::MAX));
-    gauge(r, "store_bytes", "Size of the store", file);
-    gauge(r, "store_log_bytes", "Size of its write-ahead log", log);
+    if let Some(sizes) = service.store().sizes_bytes() {
+        let [file, log] = sizes.map(|bytes| usize::try_from(bytes).unwrap_or(usize::MAX));
+        gauge(r, "store_bytes", "Size of the store", file);
+        gauge(r, "store_log_bytes", "Size of its write-ahead log", log);
+    }
     let backlog = usize::try_from(service.store().writer().backlog()).unwrap_or(usize::MAX);
     gauge(r, "store_backlog_facts", "Facts that wait to be stored", backlog);
     gauge(

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::error::StoreError;
 use super::reader::Reader;
+use super::sql::query;
 
 /// Why there is no backup.
 #[derive(Debug, thiserror::Error)]
@@ -65,11 +66,7 @@ impl Reader {
 
     async fn copy_to(&self, file: &Path) -> Result<(), StoreError> {
         let name = file.display().to_string();
-        sqlx::query("VACUUM INTO ?")
-            .bind(&name)
-            .execute(&self.pool)
-            .await
-            .map(drop)
-            .map_err(|source| StoreError::of(&name, source))
+        let copied = query("VACUUM INTO ?").bind(&name).execute(&self.pool).await;
+        copied.map(drop).map_err(|source| StoreError::of(&name, source))
     }
 }

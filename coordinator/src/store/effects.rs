@@ -1,12 +1,11 @@
 //! Effects that users have added to the catalogue, by name and version.
 
 use serde::Serialize;
-use sqlx::sqlite::SqliteRow;
-use sqlx::{Row, SqliteConnection};
 use utoipa::ToSchema;
 
 use super::error::StoreError;
 use super::reader::Reader;
+use super::sql::{Connection, Row, query};
 
 /// An effect to store.
 #[derive(Debug, Clone)]
@@ -60,10 +59,10 @@ pub struct AddedEffect {
 
 /// Inserts the next version of an effect, unless one has the same text.
 pub(super) async fn insert_effect(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     new: NewEffect,
 ) -> Result<AddedEffect, sqlx::Error> {
-    let inserted = sqlx::query(
+    let inserted = query(
         "INSERT INTO effects (name, version, text, digest, created_at_ms, created_by)
          VALUES (?1, 1 + (SELECT coalesce(max(version), 0) FROM effects WHERE name = ?1), ?2, ?3, ?4, ?5)
          ON CONFLICT (name, digest) DO NOTHING",
@@ -75,7 +74,7 @@ pub(super) async fn insert_effect(
     .bind(new.created_by)
     .execute(&mut *connection)
     .await?;
-    let row = sqlx::query("SELECT * FROM effects WHERE name = ? AND digest = ?")
+    let row = query("SELECT * FROM effects WHERE name = ? AND digest = ?")
         .bind(&new.name)
         .bind(&new.digest)
         .fetch_one(connection)
@@ -83,7 +82,7 @@ pub(super) async fn insert_effect(
     Ok(AddedEffect {
         version: version(&row),
         name: new.name,
-        is_new: inserted.rows_affected() == 1,
+        is_new: inserted == 1,
     })
 }
 
@@ -98,7 +97,7 @@ impl Reader {
         }
         let last = "SELECT * FROM effects AS own
                     WHERE version = (SELECT max(version) FROM effects WHERE name = own.name) ORDER BY name";
-        let rows = sqlx::query(last).fetch_all(&self.pool).await?;
+        let rows = query(last).fetch_all(&self.pool).await?;
         Ok(rows.iter().map(stored).collect())
     }
 
@@ -110,13 +109,13 @@ impl Reader {
         if !self.has_table("effects").await? {
             return Ok(Vec::new());
         }
-        let all = sqlx::query("SELECT * FROM effects WHERE name = ? ORDER BY version");
+        let all = query("SELECT * FROM effects WHERE name = ? ORDER BY version");
         let rows = all.bind(name).fetch_all(&self.pool).await?;
         Ok(rows.iter().map(stored).collect())
     }
 }
 
-fn stored(row: &SqliteRow) -> StoredEffect {
+fn stored(row: &Row) -> StoredEffect {
     StoredEffect {
         name: row.get("name"),
         text: row.get("text"),
@@ -124,7 +123,7 @@ fn stored(row: &SqliteRow) -> StoredEffect {
     }
 }
 
-fn version(row: &SqliteRow) -> EffectVersion {
+fn version(row: &Row) -> EffectVersion {
     EffectVersion {
         version: row.get("version"),
         digest: row.get("digest"),

@@ -1,18 +1,21 @@
 //! Errors of the store.
 
+use sqlx::error::DatabaseError as _;
 use sqlx::migrate::MigrateError;
+use sqlx::sqlite::SqliteError;
 
 use super::health::PATIENCE;
+use super::place::{is_server, name_of};
 
 /// Why the store cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// SQLite refuses.
+    /// The database refuses.
     #[error("store {path}: {source}")]
-    Sqlite {
-        /// The file.
+    Database {
+        /// The file, or the server without its password.
         path: String,
-        /// What SQLite says.
+        /// What it says.
         source: sqlx::Error,
     },
     /// The file is of another version of the program.
@@ -53,8 +56,8 @@ pub enum StoreError {
         /// The file.
         path: String,
     },
-    /// Another coordinator has the file open.
-    #[error("store {0}: another coordinator is using this file")]
+    /// Another coordinator has it open.
+    #[error("store {0}: another coordinator is using {what}", what = if is_server(.0) { "it" } else { "this file" })]
     InUse(String),
     /// A row cannot be read back.
     #[error("store: {0}")]
@@ -82,17 +85,18 @@ pub(super) fn is_locked(error: &sqlx::Error) -> bool {
 
 /// The primary result code of SQLite.
 pub(super) fn primary_code(error: &sqlx::Error) -> Option<u32> {
-    let code = error.as_database_error()?.code()?;
+    let error = error.as_database_error()?.try_downcast_ref::<SqliteError>()?;
+    let code = error.code()?;
     code.parse::<u32>().ok().map(|code| code & 0xff)
 }
 
 impl StoreError {
     /// What SQLite says of a file.
     pub(super) fn of(path: &str, source: sqlx::Error) -> StoreError {
-        let path = path.to_owned();
+        let path = name_of(path);
         match is_locked(&source) {
             true => StoreError::Locked { path },
-            false => StoreError::Sqlite { path, source },
+            false => StoreError::Database { path, source },
         }
     }
 
@@ -105,7 +109,7 @@ impl StoreError {
                 StoreError::of(path, source)
             }
             source => StoreError::Migrate {
-                path: path.to_owned(),
+                path: name_of(path),
                 source,
             },
         }
@@ -115,7 +119,7 @@ impl StoreError {
     pub(super) fn within(self, place: &str) -> StoreError {
         match self {
             StoreError::Corrupt(what) => StoreError::Corrupt(format!("{place}: {what}")),
-            StoreError::Sqlite {
+            StoreError::Database {
                 source: source @ sqlx::Error::ColumnDecode { .. },
                 ..
             } => StoreError::Corrupt(format!("{place}: {source}")),
@@ -126,7 +130,7 @@ impl StoreError {
 
 impl From<sqlx::Error> for StoreError {
     fn from(source: sqlx::Error) -> Self {
-        StoreError::Sqlite {
+        StoreError::Database {
             path: "query".into(),
             source,
         }

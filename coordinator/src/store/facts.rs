@@ -4,21 +4,31 @@ use std::sync::atomic::Ordering;
 
 use inference::point_estimate::ModeEstimate;
 use inference::{Particle, StageRecord};
-use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 
 use super::blob;
 use super::health::StoreHealth;
 use super::json::json;
 use super::repeats;
+use super::sql::{Conflict, Connection, Value, insert, query, query_as, query_scalar};
 use super::verification;
 use record::fact::{Fact, Fingerprint};
 
 /// Most samples in one statement.
 const ROWS: usize = 4000;
+const SAMPLE: [&str; 6] = [
+    "calibration",
+    "stage",
+    "particle",
+    "theta",
+    "log_likelihood",
+    "log_prior",
+];
+/// Of tables with one row for each calibration.
+const ITS_OWN: Conflict<'static> = Conflict::Replace(&["calibration"]);
 
 /// Writes a fact within the present transaction. Stages and states may be told twice, after a restart.
 pub(super) async fn write(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     fact: Fact,
     health: &StoreHealth,
 ) -> Result<(), sqlx::Error> {
@@ -41,7 +51,7 @@ pub(super) async fn write(
         Fact::Posterior {
             calibration,
             posterior,
-        } => sqlx::query(
+        } => query(
             "UPDATE calibrations SET log_evidence = ?, log_evidence_se = ?, equilibrated = ?,
              evaluations = ?, rejected = ? WHERE id = ?",
         )
@@ -59,9 +69,8 @@ pub(super) async fn write(
             estimate,
         } => self::estimate(connection, calibration, &estimate).await,
         Fact::Discovery { calibration, record } => {
-            sqlx::query("INSERT OR REPLACE INTO discoveries (calibration, record) VALUES (?, ?)")
-                .bind(calibration)
-                .bind(json(&*record))
+            let row = vec![calibration.into(), json(&*record).into()];
+            insert("discoveries", &["calibration", "record"], vec![row], &ITS_OWN)
                 .execute(connection)
                 .await
                 .map(drop)
@@ -72,14 +81,13 @@ pub(super) async fn write(
             message,
             busy_ms,
         } => {
-            let name: Option<String> = sqlx::query_scalar(
-                "UPDATE calibrations SET state = ?, message = ? WHERE id = ? RETURNING name",
-            )
-            .bind(state.name())
-            .bind(&message)
-            .bind(calibration)
-            .fetch_optional(&mut *connection)
-            .await?;
+            let name: Option<String> =
+                query_scalar("UPDATE calibrations SET state = ?, message = ? WHERE id = ? RETURNING name")
+                    .bind(state.name())
+                    .bind(&message)
+                    .bind(calibration)
+                    .fetch_optional(&mut *connection)
+                    .await?;
             tracing::info!(target: "journal", calibration, name, reason = message, "{}", state.name());
             busy(connection, calibration, busy_ms).await
         }
@@ -103,7 +111,7 @@ pub(super) async fn write(
             repeated,
         } => repeats::add(connection, calibration, &repeated).await,
         Fact::ModelVersion { calibration, version } => {
-            sqlx::query("UPDATE calibrations SET model_version = ? WHERE id = ?")
+            query("UPDATE calibrations SET model_version = ? WHERE id = ?")
                 .bind(version)
                 .bind(calibration)
                 .execute(connection)
@@ -116,7 +124,7 @@ pub(super) async fn write(
             attempt,
             worker,
             message,
-        } => sqlx::query(
+        } => query(
             "INSERT INTO faults (calibration, evaluation, attempt, worker, message, at_ms)
              VALUES (?, ?, ?, ?, ?, unixepoch('subsec') * 1000)",
         )
@@ -131,8 +139,8 @@ pub(super) async fn write(
     }
 }
 
-async fn busy(connection: &mut SqliteConnection, calibration: i64, busy_ms: u64) -> Result<(), sqlx::Error> {
-    sqlx::query("UPDATE calibrations SET busy_ms = ? WHERE id = ?")
+async fn busy(connection: &mut Connection, calibration: i64, busy_ms: u64) -> Result<(), sqlx::Error> {
+    query("UPDATE calibrations SET busy_ms = ? WHERE id = ?")
         .bind(busy_ms as i64)
         .bind(calibration)
         .execute(connection)
@@ -140,60 +148,61 @@ async fn busy(connection: &mut SqliteConnection, calibration: i64, busy_ms: u64)
         .map(drop)
 }
 
-async fn stage(
-    connection: &mut SqliteConnection,
-    calibration: i64,
-    s: &StageRecord,
-) -> Result<(), sqlx::Error> {
-    sqlx::query(
-        "INSERT OR REPLACE INTO stages (calibration, stage, tempering_exponent, acceptance, drift_z, correlation,
-         steps, log_evidence_increment, weight_cov, ess, scale, evaluations, equilibrated)
-         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+async fn stage(connection: &mut Connection, calibration: i64, s: &StageRecord) -> Result<(), sqlx::Error> {
+    let columns = [
+        ("calibration", calibration.into()),
+        ("stage", (s.stage as i64).into()),
+        ("tempering_exponent", s.tempering_exponent.into()),
+        ("acceptance", s.acceptance.into()),
+        ("drift_z", s.drift_z.into()),
+        ("correlation", s.correlation.into()),
+        ("steps", (s.steps as i64).into()),
+        ("log_evidence_increment", s.log_evidence_increment.into()),
+        ("weight_cov", s.weight_cov.into()),
+        ("ess", s.ess.into()),
+        ("scale", s.scale.into()),
+        ("evaluations", (s.evaluations as i64).into()),
+        ("equilibrated", s.equilibrated.into()),
+    ];
+    let (names, row): (Vec<&str>, Vec<Value>) = columns.into_iter().unzip();
+    insert(
+        "stages",
+        &names,
+        vec![row],
+        &Conflict::Replace(&["calibration", "stage"]),
     )
-    .bind(calibration)
-    .bind(s.stage as i64)
-    .bind(s.tempering_exponent)
-    .bind(s.acceptance)
-    .bind(s.drift_z)
-    .bind(s.correlation)
-    .bind(s.steps as i64)
-    .bind(s.log_evidence_increment)
-    .bind(s.weight_cov)
-    .bind(s.ess)
-    .bind(s.scale)
-    .bind(s.evaluations as i64)
-    .bind(s.equilibrated)
     .execute(&mut *connection)
     .await?;
     samples(connection, (calibration, s.stage), &s.population).await
 }
 
 async fn samples(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     (calibration, stage): (i64, usize),
     population: &[Particle],
 ) -> Result<(), sqlx::Error> {
     for (part, particles) in population.chunks(ROWS).enumerate() {
-        let mut query: QueryBuilder<Sqlite> = QueryBuilder::new(
-            "INSERT OR REPLACE INTO samples (calibration, stage, particle, theta, log_likelihood, log_prior) ",
-        );
-        query.push_values(particles.iter().enumerate(), |mut values, (k, particle)| {
+        let rows = particles.iter().enumerate().map(|(k, particle)| {
             let log_likelihood = Some(particle.log_likelihood.value()).filter(|l| l.is_finite());
-            values
-                .push_bind(calibration)
-                .push_bind(stage as i64)
-                .push_bind((part * ROWS + k) as i64)
-                .push_bind(blob::encode(&particle.theta))
-                .push_bind(log_likelihood)
-                .push_bind(particle.log_prior);
+            vec![
+                calibration.into(),
+                (stage as i64).into(),
+                ((part * ROWS + k) as i64).into(),
+                blob::encode(&particle.theta).into(),
+                log_likelihood.into(),
+                particle.log_prior.into(),
+            ]
         });
-        query.build().persistent(false).execute(&mut *connection).await?;
+        let key = Conflict::Replace(&["calibration", "stage", "particle"]);
+        insert("samples", &SAMPLE, rows.collect(), &key)
+            .execute(&mut *connection)
+            .await?;
     }
     Ok(())
 }
 
 async fn estimate(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     calibration: i64,
     e: &ModeEstimate,
 ) -> Result<(), sqlx::Error> {
@@ -202,25 +211,25 @@ async fn estimate(
         .iter()
         .map(|g| (g.evaluations, g.best, g.mean))
         .collect();
-    sqlx::query(
-        "INSERT OR REPLACE INTO estimates (calibration, theta, log_likelihood, log_prior, sd, at_bound, stop, history)
-         VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
-    )
-    .bind(calibration)
-    .bind(json(&e.theta))
-    .bind(e.log_likelihood)
-    .bind(e.log_prior)
-    .bind(e.laplace.as_ref().map(|laplace| json(&laplace.sd)))
-    .bind(json(&e.at_bound))
-    .bind(e.stop.name())
-    .bind(json(&history))
-    .execute(&mut *connection)
-    .await?;
+    let columns = [
+        ("calibration", calibration.into()),
+        ("theta", json(&e.theta).into()),
+        ("log_likelihood", e.log_likelihood.into()),
+        ("log_prior", e.log_prior.into()),
+        ("sd", e.laplace.as_ref().map(|laplace| json(&laplace.sd)).into()),
+        ("at_bound", json(&e.at_bound).into()),
+        ("stop", e.stop.name().into()),
+        ("history", json(&history).into()),
+    ];
+    let (names, row): (Vec<&str>, Vec<Value>) = columns.into_iter().unzip();
+    insert("estimates", &names, vec![row], &ITS_OWN)
+        .execute(&mut *connection)
+        .await?;
     if let Some(approximation) = &e.approximation {
         // Draws that belong to no stage: there is no other population.
         samples(connection, (calibration, 0), &approximation.draws).await?;
     }
-    sqlx::query("UPDATE calibrations SET log_evidence = ?, evaluations = ?, rejected = ? WHERE id = ?")
+    query("UPDATE calibrations SET log_evidence = ?, evaluations = ?, rejected = ? WHERE id = ?")
         .bind(
             e.approximation
                 .as_ref()
@@ -236,20 +245,19 @@ async fn estimate(
 
 /// Compares a late duplicate with what is stored: two machines must give the same bits.
 async fn compare(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     calibration: i64,
     evaluation: u64,
     fingerprint: Fingerprint,
     second: &str,
     health: &StoreHealth,
 ) -> Result<(), sqlx::Error> {
-    let stored: Option<(i64, String)> = sqlx::query_as(
-        "SELECT fingerprint, worker FROM evaluations WHERE calibration = ? AND evaluation = ?",
-    )
-    .bind(calibration)
-    .bind(evaluation as i64)
-    .fetch_optional(&mut *connection)
-    .await?;
+    let stored: Option<(i64, String)> =
+        query_as("SELECT fingerprint, worker FROM evaluations WHERE calibration = ? AND evaluation = ?")
+            .bind(calibration)
+            .bind(evaluation as i64)
+            .fetch_optional(&mut *connection)
+            .await?;
     match stored {
         None => tracing::warn!(
             calibration,
@@ -269,9 +277,9 @@ async fn compare(
                 second,
                 "two workers returned different results for the same evaluation: the farm is not deterministic"
             );
-            sqlx::query(
-                "INSERT OR IGNORE INTO disputes (calibration, evaluation, first, second, at_ms)
-                 VALUES (?, ?, ?, ?, unixepoch('subsec') * 1000)",
+            query(
+                "INSERT INTO disputes (calibration, evaluation, first, second, at_ms)
+                 VALUES (?, ?, ?, ?, unixepoch('subsec') * 1000) ON CONFLICT DO NOTHING",
             )
             .bind(calibration)
             .bind(evaluation as i64)
@@ -280,7 +288,7 @@ async fn compare(
             .execute(&mut *connection)
             .await?;
             // What the study ended with says nothing of it yet.
-            sqlx::query("DELETE FROM results WHERE study = (SELECT study FROM calibrations WHERE id = ?)")
+            query("DELETE FROM results WHERE study = (SELECT study FROM calibrations WHERE id = ?)")
                 .bind(calibration)
                 .execute(&mut *connection)
                 .await?;

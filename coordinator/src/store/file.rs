@@ -4,12 +4,13 @@ use std::io::Read;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
-use sqlx::sqlite::{SqliteConnectOptions, SqlitePoolOptions};
-use sqlx::{SqliteConnection, SqlitePool};
+use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
+use sqlx::{Connection as _, SqliteConnection, SqlitePool};
 
 use super::error::StoreError;
 use super::health::PATIENCE;
 use super::migrations;
+use super::sql::Connection;
 
 /// The file's name without the scheme.
 pub(crate) fn file_of(path: &str) -> &str {
@@ -55,6 +56,21 @@ pub(super) async fn recognise(connection: &mut SqliteConnection, path: &str) -> 
         return Err(StoreError::Newer { path, found, known });
     }
     Ok(())
+}
+
+/// A connection that may write.
+pub(super) async fn connect(path: &str, may_create: bool) -> Result<Connection, StoreError> {
+    let options = writing(path).create_if_missing(may_create);
+    let connected = SqliteConnection::connect_with(&options).await;
+    let mut connection = connected.map_err(|source| StoreError::of(path, source))?;
+    recognise(&mut connection, path).await?;
+    Ok(Connection::Sqlite(connection))
+}
+
+fn writing(path: &str) -> SqliteConnectOptions {
+    options(path)
+        .journal_mode(SqliteJournalMode::Wal)
+        .synchronous(SqliteSynchronous::Full)
 }
 
 pub(super) async fn pool(options: SqliteConnectOptions) -> Result<SqlitePool, sqlx::Error> {
@@ -104,7 +120,7 @@ pub(super) fn lock(path: &str) -> Result<Option<std::fs::File>, StoreError> {
     if file.contains(":memory:") {
         return Ok(None);
     }
-    let io = |e: std::io::Error| StoreError::Sqlite {
+    let io = |e: std::io::Error| StoreError::Database {
         path: file.into(),
         source: sqlx::Error::Io(e),
     };

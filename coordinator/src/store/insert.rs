@@ -1,14 +1,27 @@
 //! Rows of new studies, calibrations and evaluations.
 
 use shared::file::FileSet;
-use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 
 use super::blob;
 use super::json::json;
+use super::sql::{Conflict, Connection, insert, query_scalar};
 use record::fact::{EvaluationRow, Kept};
 
-/// Most rows in one statement; SQLite takes 32,766 parameters.
+/// Most rows in one statement; SQLite takes 32,766 parameters, PostgreSQL 65,535.
 const ROWS: usize = 1000;
+const EVALUATION: [&str; 11] = [
+    "calibration",
+    "evaluation",
+    "theta",
+    "log_likelihood",
+    "rejection",
+    "fitted",
+    "observables",
+    "fingerprint",
+    "worker",
+    "subchain",
+    "coarse",
+];
 
 /// A study to store, with the calibrations that it begins with: all of them, or none.
 #[derive(Debug, Clone)]
@@ -43,11 +56,11 @@ pub struct NewCalibrationRow {
 
 /// Inserts an experiment; its id.
 pub(super) async fn insert_experiment(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     files: FileSet,
     now_ms: i64,
 ) -> Result<i64, sqlx::Error> {
-    sqlx::query_scalar(
+    query_scalar(
         "INSERT INTO experiments (id, toml, files, created_at_ms)
          VALUES (1 + max((SELECT coalesce(max(id), 0) FROM experiments),
                          (SELECT coalesce(max(last_experiment), 0) FROM deletions)), ?, ?, ?) RETURNING id",
@@ -61,10 +74,10 @@ pub(super) async fn insert_experiment(
 
 /// Inserts a study with its first calibrations.
 pub(super) async fn insert_study(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     new: NewStudy,
 ) -> Result<StudyIds, sqlx::Error> {
-    let study: i64 = sqlx::query_scalar(
+    let study: i64 = query_scalar(
         "INSERT INTO studies (id, experiment, webhook)
          VALUES (1 + max((SELECT coalesce(max(id), 0) FROM studies),
                          (SELECT coalesce(max(study), 0) FROM deletions)), ?, ?) RETURNING id",
@@ -83,13 +96,13 @@ pub(super) async fn insert_study(
 
 /// Inserts a calibration, on the experiment of its study where none is named.
 pub(super) async fn insert_calibration(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     study: i64,
     experiment: Option<i64>,
     row: NewCalibrationRow,
     now_ms: i64,
 ) -> Result<i64, sqlx::Error> {
-    sqlx::query_scalar(
+    query_scalar(
         "INSERT INTO calibrations (id, study, experiment, name, toml, files, state, created_at_ms, seal_key)
          VALUES (1 + max((SELECT coalesce(max(id), 0) FROM calibrations),
                          (SELECT coalesce(max(last_calibration), 0) FROM deletions)),
@@ -108,38 +121,37 @@ pub(super) async fn insert_calibration(
 
 /// Inserts evaluations, many rows to a statement: SQLite through sqlx costs by the statement.
 pub(super) async fn insert_evaluations(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     rows: &mut Vec<(i64, EvaluationRow)>,
 ) -> Result<(), sqlx::Error> {
     // By their numbers: pages are filled one after the other.
     rows.sort_by_key(|(calibration, row)| (*calibration, row.evaluation));
     while !rows.is_empty() {
         let part = rows.drain(..rows.len().min(ROWS));
-        let mut query: QueryBuilder<Sqlite> = QueryBuilder::new(
-            "INSERT OR IGNORE INTO evaluations
-             (calibration, evaluation, theta, log_likelihood, rejection, fitted, observables, fingerprint, worker, subchain, coarse) ",
-        );
-        query.push_values(part, |mut values, (calibration, row)| {
+        let rows = part.map(|(calibration, row)| {
             let (rejection, fitted, observables) = match row.kept {
                 Kept::Rejected(rejection) => (Some(rejection), None, None),
                 Kept::Scored => (None, Some(Vec::new()), None),
                 Kept::Fitted(values) => (None, Some(blob::encode(&values)), None),
                 Kept::Whole(observables) => (None, None, Some(blob::encode_whole(&observables))),
             };
-            values
-                .push_bind(calibration)
-                .push_bind(row.evaluation as i64)
-                .push_bind(blob::encode(&row.theta))
-                .push_bind(row.log_likelihood)
-                .push_bind(rejection)
-                .push_bind(fitted)
-                .push_bind(observables)
-                .push_bind(row.fingerprint.0)
-                .push_bind(row.worker)
-                .push_bind(row.end.as_ref().map(json))
-                .push_bind(row.coarse.as_deref().map(blob::encode));
+            vec![
+                calibration.into(),
+                (row.evaluation as i64).into(),
+                blob::encode(&row.theta).into(),
+                row.log_likelihood.into(),
+                rejection.into(),
+                fitted.into(),
+                observables.into(),
+                row.fingerprint.0.into(),
+                row.worker.into(),
+                row.end.as_ref().map(json).into(),
+                row.coarse.as_deref().map(blob::encode).into(),
+            ]
         });
-        query.build().persistent(false).execute(&mut *connection).await?;
+        insert("evaluations", &EVALUATION, rows.collect(), &Conflict::Keep)
+            .execute(&mut *connection)
+            .await?;
     }
     Ok(())
 }

@@ -100,12 +100,28 @@ const FILES: [(i64, &str, &str); 19] = [
     ),
 ];
 
+/// The same of `migrations/postgres/`: a server begins with the tables of version 19, and changes with the files of both.
+const SERVER_FILES: [(i64, &str, &str); 1] = [(
+    19,
+    "store",
+    include_str!("../../../migrations/postgres/0019_store.sql"),
+)];
+
 /// The version of the tables that this program writes.
 pub(super) const VERSION: i64 = FILES[FILES.len() - 1].0;
 
-/// Brings the tables of a store up to date.
+/// Brings the tables of a file up to date.
 pub(super) fn migrator() -> Migrator {
-    let migration = |(version, name, sql): (i64, &'static str, &'static str)| {
+    of(&FILES)
+}
+
+/// Brings those in a server up to date.
+pub(super) fn server_migrator() -> Migrator {
+    of(&SERVER_FILES)
+}
+
+fn of(files: &[(i64, &'static str, &'static str)]) -> Migrator {
+    let migration = |&(version, name, sql): &(i64, &'static str, &'static str)| {
         Migration::new(
             version,
             name.into(),
@@ -114,23 +130,32 @@ pub(super) fn migrator() -> Migrator {
             false,
         )
     };
-    Migrator::with_migrations(FILES.map(migration).to_vec())
+    Migrator::with_migrations(files.iter().map(migration).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn every_file_is_listed_under_its_number_and_name() {
-        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../migrations");
+    fn is_listed(folder: &str, listed: &[(i64, &str, &str)]) {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
         let mut files: Vec<String> = std::fs::read_dir(folder)
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
             .filter(|name| name.ends_with(".sql"))
             .collect();
         files.sort();
-        let listed = FILES.map(|(version, name, _)| format!("{version:04}_{}.sql", name.replace(' ', "_")));
+        let name =
+            |(version, name, _): &(i64, &str, &str)| format!("{version:04}_{}.sql", name.replace(' ', "_"));
+        let listed: Vec<String> = listed.iter().map(name).collect();
         assert_eq!(files, listed);
+    }
+
+    #[test]
+    fn every_file_is_listed_under_its_number_and_name() {
+        is_listed("../migrations", &FILES);
+        is_listed("../migrations/postgres", &SERVER_FILES);
+        let last = SERVER_FILES[SERVER_FILES.len() - 1].0;
+        assert_eq!(last, VERSION, "both databases have the same tables");
     }
 }

@@ -1,10 +1,11 @@
-//! The SQLite file: the only place that knows SQL.
+//! Everything that is kept, in an SQLite file or in a PostgreSQL server: the only place that knows SQL.
 //!
-//! One task writes (`writer`); everybody else reads through a pool of their own. What the tables mean stands
-//! in `migrations/README.md`.
+//! One task writes (`writer`); everybody else reads through a pool of their own. Statements are written once, in the SQL that both
+//! databases have (`sql`); what only one has stands in `file` and `server`. What the tables mean stands in `migrations/README.md`.
 
 mod backup;
 mod blob;
+mod copy;
 mod damage;
 mod effects;
 mod error;
@@ -16,6 +17,8 @@ mod health;
 mod insert;
 mod json;
 mod migrations;
+mod opening;
+mod place;
 mod prior;
 mod read;
 mod reader;
@@ -23,6 +26,8 @@ mod recovery;
 mod removal;
 mod repeats;
 mod results;
+mod server;
+mod sql;
 mod theta;
 mod tokens;
 mod verification;
@@ -30,78 +35,72 @@ mod writer;
 
 use std::path::PathBuf;
 
-use sqlx::sqlite::{SqliteJournalMode, SqliteSynchronous};
-use sqlx::{Connection, SqliteConnection, SqlitePool};
-
 pub use backup::BackupError;
+pub use copy::copy_store;
 pub use effects::{AddedEffect, EffectVersion, NewEffect, StoredEffect};
 pub use error::StoreError;
 pub(crate) use file::file_of;
-use file::{examine, lock, options, pool, recognise};
+use file::options;
 pub use health::StoreHealth;
 pub use insert::{NewCalibrationRow, NewStudy, StudyIds};
+pub(crate) use place::{is_server, name_of};
 pub use read::{StoredStudy, StoredWebhook};
 pub use reader::Reader;
 pub use results::StudyResults;
+use sql::{Connection, Pool, query_scalar};
 pub use tokens::TokenTable;
 pub use writer::{FactSink, StateChange, Writer};
 
 /// The store: a pool of readers and the way to the one writer.
 #[derive(Debug, Clone)]
 pub struct Store {
-    readers: SqlitePool,
+    readers: Pool,
     writer: Writer,
-    file: PathBuf,
+    /// The file of one that stands in a file.
+    file: Option<PathBuf>,
     epoch: u64,
     is_read_only: bool,
 }
 
 impl Store {
-    /// Opens the file, makes it if need be, brings its tables up to date, starts the writer and a new epoch.
+    /// Opens it, makes it if need be, brings its tables up to date, starts the writer and a new epoch.
     ///
     /// # Errors
-    /// [`StoreError`] with the file and SQLite's reason; [`StoreError::InUse`] where another coordinator holds it.
+    /// [`StoreError`] with the store and the database's reason; [`StoreError::InUse`] where another coordinator holds it.
     pub async fn open(path: &str, now_ms: i64) -> Result<Store, StoreError> {
         let wrap = |source| StoreError::of(path, source);
-        examine(path)?;
-        // The writer holds its lock file for as long as it lives; a second coordinator is turned away at once.
-        let lock = lock(path)?;
-        let options = options(path)
-            .create_if_missing(true)
-            .journal_mode(SqliteJournalMode::Wal)
-            .synchronous(SqliteSynchronous::Full);
-        let mut connection = SqliteConnection::connect_with(&options).await.map_err(wrap)?;
-        recognise(&mut connection, path).await?;
-        damage::check(&mut connection, path).await?;
-        let migrated = migrations::migrator().run(&mut connection).await;
-        migrated.map_err(|source| StoreError::of_migration(path, source))?;
+        let (mut connection, lock) = opening::to_write(path).await?;
         let epoch = begin_epoch(&mut connection, now_ms).await.map_err(wrap)?;
-        let readers = pool(options).await.map_err(wrap)?;
+        let readers = match is_server(path) {
+            true => Pool::Postgres(server::pool(path).await?),
+            false => Pool::Sqlite(file::pool(options(path)).await.map_err(wrap)?),
+        };
         let writer = Writer::start(connection, lock);
         Ok(Store {
             readers,
             writer,
-            file: file_of(path).into(),
+            file: (!is_server(path)).then(|| file_of(path).into()),
             epoch,
             is_read_only: false,
         })
     }
 
-    /// Opens the file for reading alone, also beside a coordinator that writes to it; whatever is told is refused.
+    /// Opens it for reading alone, also beside a coordinator that writes to it; whatever is told is refused.
     ///
     /// # Errors
     /// [`StoreError`]; damage is no error, but a warning of the log.
     pub async fn open_read_only(path: &str) -> Result<Store, StoreError> {
         let reader = Reader::open(path).await?;
-        let mut connection = reader.pool.acquire().await?;
-        if let Err(error) = damage::check(&mut connection, path).await {
-            tracing::warn!(%error, "what can be read is shown");
+        if let Pool::Sqlite(pool) = &reader.pool {
+            let mut connection = pool.acquire().await?;
+            if let Err(error) = damage::check(&mut connection, path).await {
+                tracing::warn!(%error, "what can be read is shown");
+            }
         }
-        drop(connection);
         Ok(Store {
             readers: reader.pool,
             writer: Writer::none(),
-            file: file_of(path).into(),
+            file: (!is_server(path)).then(|| file_of(path).into()),
             epoch: 0,
             is_read_only: true,
         })
@@ -124,10 +123,11 @@ impl Store {
         self.writer.close().await;
     }
 
-    /// Sizes of the file and of its write-ahead log `[bytes]`.
-    pub fn sizes_bytes(&self) -> [u64; 2] {
-        let log = PathBuf::from(format!("{}-wal", self.file.display()));
-        [&self.file, &log].map(|file| std::fs::metadata(file).map_or(0, |file| file.len()))
+    /// Sizes of the file and of its write-ahead log `[bytes]`; a server measures its own.
+    pub fn sizes_bytes(&self) -> Option<[u64; 2]> {
+        let file = self.file.as_ref()?;
+        let log = PathBuf::from(format!("{}-wal", file.display()));
+        Some([file, &log].map(|file| std::fs::metadata(file).map_or(0, |file| file.len())))
     }
 
     /// Number of the present start of the coordinator on this store.
@@ -147,8 +147,8 @@ impl Store {
 const EPOCHS_FROM_S: i64 = 1_767_225_600;
 
 /// Numbers this start by the clock, but above every start before.
-async fn begin_epoch(connection: &mut SqliteConnection, now_ms: i64) -> Result<u64, sqlx::Error> {
-    let epoch: i64 = sqlx::query_scalar(
+async fn begin_epoch(connection: &mut Connection, now_ms: i64) -> Result<u64, sqlx::Error> {
+    let epoch: i64 = query_scalar(
         "INSERT INTO epochs (epoch, started_at_ms)
          VALUES (max(?, 1 + (SELECT coalesce(max(epoch), 0) FROM epochs)), ?) RETURNING epoch",
     )

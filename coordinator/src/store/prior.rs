@@ -2,12 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use sqlx::Row;
-use sqlx::sqlite::SqliteRow;
-
 use super::blob;
 use super::error::StoreError;
 use super::reader::Reader;
+use super::sql::{Row, query, query_scalar};
 use super::theta::theta;
 use record::{Dispute, PriorDraw, RejectionReason};
 
@@ -20,7 +18,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn prior_draws(&self, calibration: i64, count: usize) -> Result<Vec<PriorDraw>, StoreError> {
-        let rows = sqlx::query(
+        let rows = query(
             "SELECT e.theta, e.rejection, e.fitted,
                (SELECT count(*) FROM faults f
                 WHERE f.calibration = e.calibration AND f.evaluation = e.evaluation AND f.attempt > 0) AS faults
@@ -34,11 +32,11 @@ impl Reader {
             .map(|row| {
                 Ok(PriorDraw {
                     theta: theta(row)?,
-                    result: match row.get::<Option<String>, _>("rejection") {
+                    result: match row.get::<Option<String>>("rejection") {
                         Some(reason) => Err(RejectionReason(reason)),
                         None => Ok(blob::decode_values(row.get("fitted"))?),
                     },
-                    faults: row.get::<i64, _>("faults").unsigned_abs(),
+                    faults: row.get::<i64>("faults").unsigned_abs(),
                 })
             })
             .collect()
@@ -49,7 +47,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn faults(&self, calibration: i64) -> Result<BTreeMap<String, u64>, StoreError> {
-        let rows = sqlx::query(
+        let rows = query(
             "SELECT message, count(*) AS n FROM faults WHERE calibration = ? AND attempt > 0 GROUP BY message",
         )
         .bind(calibration)
@@ -57,7 +55,7 @@ impl Reader {
         .await?;
         Ok(rows
             .iter()
-            .map(|row| (row.get("message"), row.get::<i64, _>("n").unsigned_abs()))
+            .map(|row| (row.get("message"), row.get::<i64>("n").unsigned_abs()))
             .collect())
     }
 
@@ -67,7 +65,7 @@ impl Reader {
     /// [`StoreError`].
     pub async fn given_up(&self, calibration: i64) -> Result<u64, StoreError> {
         let count: i64 =
-            sqlx::query_scalar("SELECT count(*) FROM evaluations WHERE calibration = ? AND worker = ''")
+            query_scalar("SELECT count(*) FROM evaluations WHERE calibration = ? AND worker = ''")
                 .bind(calibration)
                 .fetch_one(&self.pool)
                 .await?;
@@ -82,14 +80,14 @@ impl Reader {
         if !self.has_table("disputes").await? {
             return Ok(Vec::new());
         }
-        let rows = sqlx::query(
+        let rows = query(
             "SELECT evaluation, first, second FROM disputes WHERE calibration = ? ORDER BY evaluation, second",
         )
         .bind(calibration)
         .fetch_all(&self.pool)
         .await?;
-        let dispute = |row: &SqliteRow| Dispute {
-            evaluation: row.get::<i64, _>("evaluation").unsigned_abs(),
+        let dispute = |row: &Row| Dispute {
+            evaluation: row.get::<i64>("evaluation").unsigned_abs(),
             first: row.get("first"),
             second: row.get("second"),
         };

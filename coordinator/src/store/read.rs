@@ -6,13 +6,12 @@ use inference::point_estimate::{Generation, StopReason};
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
-use sqlx::Row;
-use sqlx::sqlite::SqliteRow;
 
 use super::blob;
 use super::error::StoreError;
 use super::json::{json, numbers};
 use super::reader::Reader;
+use super::sql::{Pool, Row, query, query_as, query_scalar};
 use super::theta::theta;
 use record::{
     CalibrationRow, Discovery, EstimateRow, EvaluationKey, ExperimentRow, LIKELIEST, PREDICTIONS_FROM,
@@ -50,7 +49,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn webhook(&self, calibration: i64) -> Result<Option<StoredWebhook>, StoreError> {
-        let row = sqlx::query(
+        let row = query(
             "SELECT s.id, c.name, s.webhook FROM calibrations c JOIN studies s ON s.id = c.study
              WHERE c.id = ? AND s.webhook IS NOT NULL",
         )
@@ -72,7 +71,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn states(&self) -> Result<Vec<(String, i64)>, StoreError> {
-        let states = sqlx::query_as("SELECT state, count(*) FROM calibrations GROUP BY state");
+        let states = query_as("SELECT state, count(*) FROM calibrations GROUP BY state");
         Ok(states.fetch_all(&self.pool).await?)
     }
 
@@ -81,7 +80,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn experiment(&self, id: i64) -> Result<Option<ExperimentRow>, StoreError> {
-        let row = sqlx::query("SELECT toml, files FROM experiments WHERE id = ?")
+        let row = query("SELECT toml, files FROM experiments WHERE id = ?")
             .bind(id)
             .fetch_optional(&self.pool)
             .await?;
@@ -103,14 +102,21 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn experiments(&self) -> Result<Vec<(i64, Vec<i64>)>, StoreError> {
-        let rows = sqlx::query(
-            "SELECT e.id, (SELECT json_group_array(DISTINCT c.study) FROM calibrations c JOIN studies s ON s.id = c.study
-             WHERE coalesce(c.experiment, s.experiment) = e.id) AS studies FROM experiments e ORDER BY e.id",
+        let rows: Vec<(i64, Option<i64>)> = query_as(
+            "SELECT e.id, m.study FROM experiments e LEFT JOIN
+             (SELECT DISTINCT coalesce(c.experiment, s.experiment) AS experiment, c.study
+              FROM calibrations c JOIN studies s ON s.id = c.study) m ON m.experiment = e.id ORDER BY e.id, m.study",
         )
         .fetch_all(&self.pool)
         .await?;
-        let row = |row: &SqliteRow| Ok((row.try_get("id")?, array(row.try_get("studies")?)?));
-        rows.iter().map(row).collect()
+        let mut experiments: Vec<(i64, Vec<i64>)> = Vec::new();
+        for (experiment, study) in rows {
+            match experiments.last_mut() {
+                Some((last, studies)) if *last == experiment => studies.extend(study),
+                _ => experiments.push((experiment, study.into_iter().collect())),
+            }
+        }
+        Ok(experiments)
     }
 
     /// A calibration.
@@ -118,8 +124,8 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn calibration(&self, id: i64) -> Result<Option<CalibrationRow>, StoreError> {
-        let query = format!("{CALIBRATION} WHERE c.id = ?");
-        let row = sqlx::query(sqlx::AssertSqlSafe(query))
+        let sql = format!("{CALIBRATION} WHERE c.id = ?");
+        let row = query(sqlx::AssertSqlSafe(sql))
             .bind(id)
             .fetch_optional(&self.pool)
             .await?;
@@ -131,11 +137,9 @@ impl Reader {
     /// # Errors
     /// [`StoreError`] where none can be read.
     pub async fn calibrations(&self) -> Result<Vec<(i64, Result<CalibrationRow, StoreError>)>, StoreError> {
-        let query = format!("{CALIBRATION} ORDER BY c.id");
-        let rows = sqlx::query(sqlx::AssertSqlSafe(query))
-            .fetch_all(&self.pool)
-            .await?;
-        let row = |row: &SqliteRow| Ok((row.try_get("id")?, calibration_row(row)));
+        let sql = format!("{CALIBRATION} ORDER BY c.id");
+        let rows = query(sqlx::AssertSqlSafe(sql)).fetch_all(&self.pool).await?;
+        let row = |row: &Row| Ok((row.try_get("id")?, calibration_row(row)));
         rows.iter().map(row).collect()
     }
 
@@ -144,8 +148,8 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn study(&self, id: i64) -> Result<Vec<CalibrationRow>, StoreError> {
-        let query = format!("{CALIBRATION} WHERE c.study = ? ORDER BY c.id");
-        let rows = sqlx::query(sqlx::AssertSqlSafe(query))
+        let sql = format!("{CALIBRATION} WHERE c.study = ? ORDER BY c.id");
+        let rows = query(sqlx::AssertSqlSafe(sql))
             .bind(id)
             .fetch_all(&self.pool)
             .await?;
@@ -157,24 +161,23 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn studies(&self) -> Result<Vec<StoredStudy>, StoreError> {
-        let rows = sqlx::query(
-            "SELECT s.id, s.experiment, json_group_array(c.id ORDER BY c.id) AS calibrations
-             FROM studies s JOIN calibrations c ON c.study = s.id GROUP BY s.id ORDER BY s.id",
+        let rows: Vec<(i64, i64, i64)> = query_as(
+            "SELECT s.id, s.experiment, c.id FROM studies s JOIN calibrations c ON c.study = s.id ORDER BY s.id, c.id",
         )
         .fetch_all(&self.pool)
         .await?;
-        rows.iter()
-            .map(|row| {
-                let list: String = row.get("calibrations");
-                let calibrations =
-                    serde_json::from_str(&list).map_err(|e| StoreError::Corrupt(e.to_string()))?;
-                Ok(StoredStudy {
-                    id: row.try_get("id")?,
-                    experiment: row.try_get("experiment")?,
-                    calibrations,
-                })
-            })
-            .collect()
+        let mut studies: Vec<StoredStudy> = Vec::new();
+        for (id, experiment, calibration) in rows {
+            match studies.last_mut() {
+                Some(last) if last.id == id => last.calibrations.push(calibration),
+                _ => studies.push(StoredStudy {
+                    id,
+                    experiment,
+                    calibrations: vec![calibration],
+                }),
+            }
+        }
+        Ok(studies)
     }
 
     /// Study, id and state of every calibration, oldest first.
@@ -182,10 +185,10 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn member_states(&self) -> Result<Vec<(i64, i64, CalibrationState)>, StoreError> {
-        let rows = sqlx::query("SELECT study, id, state FROM calibrations ORDER BY id");
+        let rows = query("SELECT study, id, state FROM calibrations ORDER BY id");
         let rows = rows.fetch_all(&self.pool).await?;
         // A state that cannot be read is reported where the calibration is asked for.
-        let known = |row: &SqliteRow| {
+        let known = |row: &Row| {
             let state = CalibrationState::from_name(row.try_get("state").ok()?)?;
             Some((row.try_get("study").ok()?, row.try_get("id").ok()?, state))
         };
@@ -197,10 +200,10 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn settled_studies(&self) -> Result<Vec<(i64, i64)>, StoreError> {
-        let rows = sqlx::query(
+        let rows = query(
             "SELECT study, count(*) AS members FROM calibrations c JOIN studies s ON s.id = c.study
              WHERE s.archived_at_ms IS NULL GROUP BY study
-             HAVING sum(state NOT IN ('finished', 'failed', 'cancelled')) = 0 ORDER BY study",
+             HAVING sum(CASE WHEN state IN ('finished', 'failed', 'cancelled') THEN 0 ELSE 1 END) = 0 ORDER BY study",
         )
         .fetch_all(&self.pool)
         .await?;
@@ -215,27 +218,27 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn stages(&self, calibration: i64) -> Result<Vec<StageRow>, StoreError> {
-        let rows = sqlx::query("SELECT * FROM stages WHERE calibration = ? ORDER BY stage")
+        let rows = query("SELECT * FROM stages WHERE calibration = ? ORDER BY stage")
             .bind(calibration)
             .fetch_all(&self.pool)
             .await?;
-        Ok(rows
-            .iter()
-            .map(|row| StageRow {
-                stage: row.get::<u32, _>("stage"),
+        let stage = |row: &Row| {
+            Ok(StageRow {
+                stage: small(row, "stage")?,
                 tempering_exponent: row.get("tempering_exponent"),
                 acceptance: row.get("acceptance"),
                 drift_z: row.get("drift_z"),
                 correlation: row.get("correlation"),
-                steps: row.get::<u32, _>("steps"),
+                steps: small(row, "steps")?,
                 log_evidence_increment: row.get("log_evidence_increment"),
                 weight_cov: row.get("weight_cov"),
                 ess: row.get("ess"),
                 scale: row.get("scale"),
-                evaluations: row.get::<i64, _>("evaluations").unsigned_abs(),
+                evaluations: row.get::<i64>("evaluations").unsigned_abs(),
                 equilibrated: row.get("equilibrated"),
             })
-            .collect())
+        };
+        rows.iter().map(stage).collect()
     }
 
     /// The population at the end of a stage, or of the last one.
@@ -243,7 +246,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn samples(&self, calibration: i64, stage: Option<u32>) -> Result<Vec<Sample>, StoreError> {
-        let rows = sqlx::query(
+        let rows = query(
             "SELECT theta, log_likelihood, log_prior FROM samples WHERE calibration = ?1
              AND stage = coalesce(?2, (SELECT max(stage) FROM samples WHERE calibration = ?1)) ORDER BY particle",
         )
@@ -269,7 +272,7 @@ impl Reader {
         let population = "FROM samples WHERE calibration = ?1
              AND stage = coalesce(?2, (SELECT max(stage) FROM samples WHERE calibration = ?1))";
         let count = format!("SELECT count(*) {population}");
-        let count: i64 = sqlx::query_scalar(sqlx::AssertSqlSafe(count))
+        let count: i64 = query_scalar(sqlx::AssertSqlSafe(count))
             .bind(calibration)
             .bind(stage)
             .fetch_one(&self.pool)
@@ -278,7 +281,7 @@ impl Reader {
             "SELECT theta, log_likelihood, log_prior {population}
              AND (particle + 1) * ?3 / ?4 > particle * ?3 / ?4 ORDER BY particle"
         );
-        let rows = sqlx::query(sqlx::AssertSqlSafe(taken))
+        let rows = query(sqlx::AssertSqlSafe(taken))
             .bind(calibration)
             .bind(stage)
             .bind(i64::from(most).min(count))
@@ -311,7 +314,11 @@ impl Reader {
         calibration: i64,
         theta: &[f64],
     ) -> Result<Option<Vec<f64>>, StoreError> {
-        let row = sqlx::query(
+        if let Pool::Postgres(_) = self.pool {
+            // A server has nothing that is so old.
+            return Ok(None);
+        }
+        let row = query(
             "SELECT fitted FROM evaluations
              WHERE calibration = ? AND theta = ? AND fitted IS NOT NULL ORDER BY evaluation LIMIT 1",
         )
@@ -327,7 +334,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn estimate(&self, calibration: i64) -> Result<Option<EstimateRow>, StoreError> {
-        let row = sqlx::query("SELECT * FROM estimates WHERE calibration = ?")
+        let row = query("SELECT * FROM estimates WHERE calibration = ?")
             .bind(calibration)
             .fetch_optional(&self.pool)
             .await?;
@@ -343,7 +350,7 @@ impl Reader {
                 theta: numbers(row.get("theta"))?,
                 log_likelihood: row.get("log_likelihood"),
                 log_prior: row.get("log_prior"),
-                sd: row.get::<Option<&str>, _>("sd").map(array).transpose()?,
+                sd: row.get::<Option<&str>>("sd").map(array).transpose()?,
                 at_bound: array(row.get("at_bound"))?,
                 stop: StopReason::from_name(stop)
                     .ok_or_else(|| StoreError::Corrupt(format!("stop {stop}")))?,
@@ -358,11 +365,10 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn discovery(&self, calibration: i64) -> Result<Option<Discovery>, StoreError> {
-        let record: Option<String> =
-            sqlx::query_scalar("SELECT record FROM discoveries WHERE calibration = ?")
-                .bind(calibration)
-                .fetch_optional(&self.pool)
-                .await?;
+        let record: Option<String> = query_scalar("SELECT record FROM discoveries WHERE calibration = ?")
+            .bind(calibration)
+            .fetch_optional(&self.pool)
+            .await?;
         let read = |json: String| {
             serde_json::from_str(&json)
                 .map_err(|e| StoreError::Corrupt(format!("record of search {calibration}: {e}")))
@@ -375,7 +381,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn predictions(&self, calibration: i64) -> Result<Vec<Prediction>, StoreError> {
-        let rows = sqlx::query(
+        let rows = query(
             "SELECT evaluation, theta, rejection, observables FROM evaluations
              WHERE calibration = ? AND evaluation >= ? AND evaluation < ? ORDER BY evaluation",
         )
@@ -386,11 +392,11 @@ impl Reader {
         .await?;
         let mut predictions: Vec<Prediction> = Vec::new();
         for row in &rows {
-            let result = match row.get::<Option<String>, _>("rejection") {
+            let result = match row.get::<Option<String>>("rejection") {
                 Some(rejection) => Err(RejectionReason(rejection)),
                 None => Ok(blob::decode(row.get("observables"))?),
             };
-            let number = row.get::<i64, _>("evaluation").unsigned_abs();
+            let number = row.get::<i64>("evaluation").unsigned_abs();
             match (EvaluationKey::of(number, 1), predictions.last_mut()) {
                 (EvaluationKey::Prediction { holdout: true, .. }, Some(last)) => last.holdout = Some(result),
                 _ => predictions.push(Prediction {
@@ -408,15 +414,15 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn subchains(&self, calibration: i64) -> Result<Option<Subchains>, StoreError> {
-        let row = sqlx::query(
-            "SELECT count(*) AS subchains, ifnull(sum(json_extract(subchain, '$.moves')), 0) AS moves,
-             ifnull(sum(json_extract(subchain, '$.accepted') > 0), 0) AS moved FROM evaluations
+        let row = query(
+            "SELECT count(*) AS subchains, CAST(coalesce(sum(json_extract(subchain, '$.moves')), 0) AS BIGINT) AS moves,
+             count(CASE WHEN json_extract(subchain, '$.accepted') > 0 THEN 1 END) AS moved FROM evaluations
              WHERE calibration = ? AND subchain IS NOT NULL",
         )
         .bind(calibration)
         .fetch_one(&self.pool)
         .await?;
-        let count = |column: &str| row.get::<i64, _>(column).unsigned_abs();
+        let count = |column: &str| row.get::<i64>(column).unsigned_abs();
         let subchains = Subchains {
             subchains: count("subchains"),
             moves: count("moves"),
@@ -431,7 +437,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn likeliest(&self, calibration: i64) -> Result<Option<Observables>, StoreError> {
-        let row = sqlx::query(
+        let row = query(
             "SELECT observables FROM evaluations WHERE calibration = ? AND evaluation = ? AND observables IS NOT NULL",
         )
         .bind(calibration)
@@ -446,7 +452,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn rejections(&self, calibration: i64) -> Result<BTreeMap<String, u64>, StoreError> {
-        let rows = sqlx::query(
+        let rows = query(
             "SELECT substr(rejection, 1, instr(rejection, ':') - 1) AS kind, count(*) AS n FROM evaluations
              WHERE calibration = ? AND rejection IS NOT NULL GROUP BY kind",
         )
@@ -455,12 +461,18 @@ impl Reader {
         .await?;
         Ok(rows
             .iter()
-            .map(|row| (row.get("kind"), row.get::<i64, _>("n").unsigned_abs()))
+            .map(|row| (row.get("kind"), row.get::<i64>("n").unsigned_abs()))
             .collect())
     }
 }
 
-fn sample(row: &SqliteRow) -> Result<Sample, StoreError> {
+/// A number that fits 32 bits.
+fn small(row: &Row, column: &str) -> Result<u32, StoreError> {
+    let value: i64 = row.try_get(column)?;
+    u32::try_from(value).map_err(|_| StoreError::Corrupt(format!("{column} {value}")))
+}
+
+fn sample(row: &Row) -> Result<Sample, StoreError> {
     Ok(Sample {
         theta: theta(row)?,
         log_likelihood: row.get("log_likelihood"),
@@ -477,15 +489,14 @@ fn file_map(json: &str) -> Result<BTreeMap<String, String>, StoreError> {
 }
 
 /// A calibration; what cannot be read is named with its id.
-fn calibration_row(row: &SqliteRow) -> Result<CalibrationRow, StoreError> {
+fn calibration_row(row: &Row) -> Result<CalibrationRow, StoreError> {
     let id: i64 = row.try_get("id")?;
     columns(id, row).map_err(|error| error.within(&format!("calibration {id}")))
 }
 
-fn columns(id: i64, row: &SqliteRow) -> Result<CalibrationRow, StoreError> {
+fn columns(id: i64, row: &Row) -> Result<CalibrationRow, StoreError> {
     let state: &str = row.try_get("state")?;
-    let unsigned =
-        |column| Ok::<_, StoreError>(row.try_get::<Option<i64>, _>(column)?.map(i64::unsigned_abs));
+    let unsigned = |column| Ok::<_, StoreError>(row.try_get::<Option<i64>>(column)?.map(i64::unsigned_abs));
     Ok(CalibrationRow {
         id,
         study: row.try_get("study")?,

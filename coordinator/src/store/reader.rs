@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use sqlx::SqlitePool;
 use sqlx::sqlite::SqliteConnectOptions;
 
 use super::error::{StoreError, primary_code};
 use super::file::{examine, file_of, options, pool, recognise};
+use super::place::is_server;
+use super::server;
+use super::sql::{Connection, Pool, query_scalar};
 
 /// SQLite's codes where it cannot make its index of the write-ahead log: read-only, failed, full, cannot open.
 const DENIED: [u32; 4] = [8, 10, 13, 14];
@@ -14,15 +16,23 @@ const DENIED: [u32; 4] = [8, 10, 13, 14];
 /// Reads a store, also one that another process is writing.
 #[derive(Debug, Clone)]
 pub struct Reader {
-    pub(super) pool: SqlitePool,
+    pub(super) pool: Pool,
 }
 
 impl Reader {
-    /// Opens an existing file for reading alone, also in a folder or on a disk that takes no further byte.
+    /// Opens an existing store for reading alone, a file also in a folder or on a disk that takes no further byte.
     ///
     /// # Errors
-    /// [`StoreError`] with the file and the reason.
+    /// [`StoreError`] with the store and the reason.
     pub async fn open(path: &str) -> Result<Reader, StoreError> {
+        if is_server(path) {
+            let pool = server::pool(path).await?;
+            let wrap = |source| StoreError::of(path, source);
+            let mut connection = Connection::Postgres(pool.acquire().await.map_err(wrap)?.detach());
+            server::recognise(&mut connection, path).await?;
+            let pool = Pool::Postgres(pool);
+            return Ok(Reader { pool });
+        }
         let file = file_of(path);
         if !Path::new(file).is_file() {
             return Err(StoreError::Missing(file.into()));
@@ -30,7 +40,7 @@ impl Reader {
         examine(path)?;
         let options = options(path).read_only(true);
         let denied = match Reader::with(options.clone(), path).await {
-            Err(StoreError::Sqlite { source, .. })
+            Err(StoreError::Database { source, .. })
                 if primary_code(&source).is_some_and(|code| DENIED.contains(&code)) =>
             {
                 source
@@ -55,13 +65,23 @@ impl Reader {
         self.pool.is_closed()
     }
 
+    /// Whether nothing has made its tables yet.
+    ///
+    /// # Errors
+    /// The store cannot be read.
+    pub async fn is_blank(&self) -> Result<bool, StoreError> {
+        Ok(!self.has_table("calibrations").await?)
+    }
+
     /// Whether the store has a table: one of an earlier version, which only reading leaves as it is, may lack it.
     pub(super) async fn has_table(&self, name: &str) -> Result<bool, StoreError> {
-        let tables: i64 =
-            sqlx::query_scalar("SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = ?")
-                .bind(name)
-                .fetch_one(&self.pool)
-                .await?;
+        let tables = match self.pool {
+            Pool::Sqlite(_) => "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = ?",
+            Pool::Postgres(_) => {
+                "SELECT count(*) FROM information_schema.tables WHERE table_schema = current_schema() AND table_name = ?"
+            }
+        };
+        let tables: i64 = query_scalar(tables).bind(name).fetch_one(&self.pool).await?;
         Ok(tables > 0)
     }
 
@@ -69,6 +89,8 @@ impl Reader {
         let wrap = |source| StoreError::of(path, source);
         let pool = pool(options).await.map_err(wrap)?;
         recognise(&mut *pool.acquire().await.map_err(wrap)?, path).await?;
-        Ok(Reader { pool })
+        Ok(Reader {
+            pool: Pool::Sqlite(pool),
+        })
     }
 }

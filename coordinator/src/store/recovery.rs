@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 
 use shared::api::CalibrationState;
-use sqlx::Row;
-use sqlx::sqlite::SqliteRow;
 use statistics::SubchainEnd;
 
 use super::blob;
 use super::error::StoreError;
 use super::reader::Reader;
+use super::sql::{Row, query, query_scalar};
 use super::theta::theta;
 use record::{Fingerprint, SealKey, Stored, StoredEvaluation};
 
@@ -22,7 +21,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn unfinished(&self) -> Result<Vec<i64>, StoreError> {
-        let ids = sqlx::query_scalar(
+        let ids = query_scalar(
             "SELECT id FROM calibrations WHERE state NOT IN ('finished', 'failed', 'cancelled') ORDER BY id",
         )
         .fetch_all(&self.pool)
@@ -35,7 +34,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`]; [`StoreError::Corrupt`] where the key does not have 16 bytes.
     pub async fn seal_key(&self, calibration: i64) -> Result<SealKey, StoreError> {
-        let key: Option<Vec<u8>> = sqlx::query_scalar("SELECT seal_key FROM calibrations WHERE id = ?")
+        let key: Option<Vec<u8>> = query_scalar("SELECT seal_key FROM calibrations WHERE id = ?")
             .bind(calibration)
             .fetch_one(&self.pool)
             .await?;
@@ -55,21 +54,21 @@ impl Reader {
     /// [`StoreError`].
     pub async fn stored(&self, calibration: i64, fitted: bool) -> Result<Stored, StoreError> {
         // One view of the store: results may be dropped meanwhile.
-        let mut view = self.pool.begin().await?;
-        let row = sqlx::query(
+        let mut view = self.pool.view().await?;
+        let row = query(
             "SELECT state, message, model_version, busy_ms,
              EXISTS (SELECT 1 FROM rewinds WHERE calibration = ?1 AND results > 0) AS is_rewound
              FROM calibrations WHERE id = ?1",
         )
         .bind(calibration)
-        .fetch_one(&mut *view)
+        .fetch_one(&mut view)
         .await?;
         let mut evaluations = BTreeMap::new();
         loop {
             let after = evaluations
                 .last_key_value()
                 .map_or(-1, |(&number, _)| number as i64);
-            let rows = sqlx::query(
+            let rows = query(
                 "SELECT evaluation, theta, log_likelihood, rejection IS NOT NULL AS rejected, worker, fingerprint,
                  confirmed_by IS NOT NULL AS is_confirmed,
                  CASE WHEN ?2 THEN fitted END AS fitted, CASE WHEN ?2 THEN coarse END AS coarse, subchain
@@ -79,10 +78,10 @@ impl Reader {
             .bind(fitted)
             .bind(after)
             .bind(PAGE as i64)
-            .fetch_all(&mut *view)
+            .fetch_all(&mut view)
             .await?;
             for row in &rows {
-                let number = row.try_get::<i64, _>("evaluation")?.unsigned_abs();
+                let number = row.try_get::<i64>("evaluation")?.unsigned_abs();
                 let named = |error: StoreError| {
                     error.within(&format!("calibration {calibration}, evaluation {number}"))
                 };
@@ -93,16 +92,17 @@ impl Reader {
             }
         }
         let faults =
-            sqlx::query("SELECT evaluation, attempt, worker FROM faults WHERE calibration = ? ORDER BY id")
+            query("SELECT evaluation, attempt, worker FROM faults WHERE calibration = ? ORDER BY id")
                 .bind(calibration)
-                .fetch_all(&mut *view)
+                .fetch_all(&mut view)
                 .await?;
+        view.close().await?;
         let mut failed: BTreeMap<u64, Vec<String>> = BTreeMap::new();
         for fault in &faults {
             let workers = failed
-                .entry(fault.try_get::<i64, _>("evaluation")?.unsigned_abs())
+                .entry(fault.try_get::<i64>("evaluation")?.unsigned_abs())
                 .or_default();
-            match fault.try_get::<u32, _>("attempt")? {
+            match fault.try_get::<i64>("attempt")? {
                 // a user granted new attempts
                 0 => workers.clear(),
                 _ => workers.push(fault.try_get("worker")?),
@@ -113,7 +113,7 @@ impl Reader {
             state: CalibrationState::from_name(row.try_get("state")?),
             message: row.try_get("message")?,
             model_version: row.try_get("model_version")?,
-            busy_ms: row.try_get::<i64, _>("busy_ms")?.unsigned_abs(),
+            busy_ms: row.try_get::<i64>("busy_ms")?.unsigned_abs(),
             evaluations,
             is_rewound: row.try_get("is_rewound")?,
             failed,
@@ -121,7 +121,7 @@ impl Reader {
     }
 }
 
-fn stored_evaluation(row: &SqliteRow) -> Result<StoredEvaluation, StoreError> {
+fn stored_evaluation(row: &Row) -> Result<StoredEvaluation, StoreError> {
     let values = |column: &str| {
         let bytes: Option<&[u8]> = row.try_get(column)?;
         bytes.map(blob::decode_values).transpose()
@@ -181,7 +181,7 @@ mod tests {
         });
         let fact = store.writer().sink().send(facts.collect()).unwrap();
         store.writer().durable(fact).await.unwrap();
-        sqlx::query(
+        query(
             "INSERT INTO evaluations (calibration, evaluation, theta, log_likelihood, fitted, fingerprint, worker)
              VALUES (?, ?, '[0.1,1e-300]', -1.5, x'', 0, 'older')",
         )

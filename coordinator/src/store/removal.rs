@@ -1,9 +1,10 @@
 //! Studies that are archived or deleted.
 
-use sqlx::{AssertSqlSafe, SqliteConnection};
+use sqlx::AssertSqlSafe;
 
 use super::error::StoreError;
 use super::reader::Reader;
+use super::sql::{Connection, query, query_as, query_scalar};
 
 /// Tables that have many rows of a calibration, with their keys.
 const LARGE: [(&str, &str); 2] = [
@@ -24,11 +25,11 @@ const SMALL: [&str; 6] = [
 
 /// Deletes a part of what belongs to a study alone, and the study itself at last; whether nothing is left.
 pub(super) async fn delete_part(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     study: i64,
     now_ms: i64,
 ) -> Result<bool, sqlx::Error> {
-    let experiments: Vec<i64> = sqlx::query_scalar(
+    let experiments: Vec<i64> = query_scalar(
         "SELECT experiment FROM studies WHERE id = ?1
          UNION SELECT experiment FROM calibrations WHERE study = ?1 AND experiment IS NOT NULL",
     )
@@ -36,24 +37,25 @@ pub(super) async fn delete_part(
     .fetch_all(&mut *connection)
     .await?;
     // From the first part on it is archived and its files are gone; a restart finds here what to go on with.
-    sqlx::query(
-        "INSERT OR IGNORE INTO deletions (study, last_calibration, last_experiment, deleted_at_ms)
-         SELECT id, (SELECT coalesce(max(id), 0) FROM calibrations WHERE study = ?1), ?2, ?3 FROM studies WHERE id = ?1",
+    query(
+        "INSERT INTO deletions (study, last_calibration, last_experiment, deleted_at_ms)
+         SELECT id, (SELECT coalesce(max(id), 0) FROM calibrations WHERE study = ?1), ?2, ?3 FROM studies WHERE id = ?1
+         ON CONFLICT DO NOTHING",
     )
     .bind(study)
-    .bind(experiments.iter().max())
+    .bind(experiments.iter().max().copied())
     .bind(now_ms)
     .execute(&mut *connection)
     .await?;
-    sqlx::query("UPDATE studies SET archived_at_ms = coalesce(archived_at_ms, ?2) WHERE id = ?1")
+    query("UPDATE studies SET archived_at_ms = coalesce(archived_at_ms, ?2) WHERE id = ?1")
         .bind(study)
         .bind(now_ms)
         .execute(&mut *connection)
         .await?;
     let mut delete = async |rows: String| {
-        let deleted = sqlx::query(AssertSqlSafe(format!("DELETE FROM {rows}")));
+        let deleted = query(AssertSqlSafe(format!("DELETE FROM {rows}")));
         let deleted = deleted.bind(study).execute(&mut *connection).await?;
-        Ok::<_, sqlx::Error>(deleted.rows_affected())
+        Ok::<_, sqlx::Error>(deleted)
     };
     let of_study = "calibration IN (SELECT id FROM calibrations WHERE study = ?)";
     delete("results WHERE study = ?".into()).await?;
@@ -69,7 +71,7 @@ pub(super) async fn delete_part(
     delete("calibrations WHERE study = ?".into()).await?;
     delete("studies WHERE id = ?".into()).await?;
     for experiment in experiments {
-        sqlx::query(
+        query(
             "DELETE FROM experiments WHERE id = ?1 AND NOT EXISTS (SELECT 1 FROM studies WHERE experiment = ?1)
              AND NOT EXISTS (SELECT 1 FROM calibrations WHERE experiment = ?1)",
         )
@@ -82,11 +84,11 @@ pub(super) async fn delete_part(
 
 /// Archives a study at a time, or takes it back where none is given.
 pub(super) async fn archive(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     study: i64,
     at_ms: Option<i64>,
 ) -> Result<(), sqlx::Error> {
-    sqlx::query("UPDATE studies SET archived_at_ms = ? WHERE id = ?")
+    query("UPDATE studies SET archived_at_ms = ? WHERE id = ?")
         .bind(at_ms)
         .bind(study)
         .execute(connection)
@@ -100,8 +102,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn half_deleted(&self) -> Result<Vec<i64>, StoreError> {
-        let studies =
-            sqlx::query_scalar("SELECT study FROM deletions WHERE study IN (SELECT id FROM studies)");
+        let studies = query_scalar("SELECT study FROM deletions WHERE study IN (SELECT id FROM studies)");
         Ok(studies.fetch_all(&self.pool).await?)
     }
 
@@ -111,15 +112,13 @@ impl Reader {
     /// # Errors
     /// [`StoreError`].
     pub async fn archived(&self) -> Result<Vec<(i64, i64)>, StoreError> {
-        let column = "SELECT count(*) FROM pragma_table_info('studies') WHERE name = 'archived_at_ms'";
-        let there: i64 = sqlx::query_scalar(column).fetch_one(&self.pool).await?;
-        if there == 0 {
+        // It came with the same migration.
+        if !self.has_table("deletions").await? {
             return Ok(Vec::new());
         }
-        let archived =
-            sqlx::query_as("SELECT id, archived_at_ms FROM studies WHERE archived_at_ms IS NOT NULL")
-                .fetch_all(&self.pool)
-                .await?;
+        let archived = query_as("SELECT id, archived_at_ms FROM studies WHERE archived_at_ms IS NOT NULL")
+            .fetch_all(&self.pool)
+            .await?;
         Ok(archived)
     }
 }

@@ -1,28 +1,30 @@
 //! How models that are not ours answer what they are asked twice.
 
 use shared::exchange::RepeatedAnswer;
-use sqlx::SqliteConnection;
 
 use super::error::StoreError;
 use super::reader::Reader;
+use super::sql::{Connection, query, query_as};
 use record::Repeats;
 
 /// Adds two answers to the count of a calibration.
 pub(super) async fn add(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     calibration: i64,
     repeated: &RepeatedAnswer,
 ) -> Result<(), sqlx::Error> {
-    sqlx::query(
+    query(
         "INSERT INTO repeats (calibration, evaluations, differing, refused,
          drawbar_pull_n, torque_n_m, sinkage_m, lateral_force_n) VALUES (?, 1, ?, ?, ?, ?, ?, ?)
-         ON CONFLICT DO UPDATE SET evaluations = evaluations + 1, differing = differing + excluded.differing,
-         refused = max(refused, excluded.refused), drawbar_pull_n = max(drawbar_pull_n, excluded.drawbar_pull_n),
-         torque_n_m = max(torque_n_m, excluded.torque_n_m), sinkage_m = max(sinkage_m, excluded.sinkage_m),
-         lateral_force_n = max(lateral_force_n, excluded.lateral_force_n)",
+         ON CONFLICT (calibration) DO UPDATE SET evaluations = repeats.evaluations + 1,
+         differing = repeats.differing + excluded.differing, refused = repeats.refused OR excluded.refused,
+         drawbar_pull_n = max(repeats.drawbar_pull_n, excluded.drawbar_pull_n),
+         torque_n_m = max(repeats.torque_n_m, excluded.torque_n_m),
+         sinkage_m = max(repeats.sinkage_m, excluded.sinkage_m),
+         lateral_force_n = max(repeats.lateral_force_n, excluded.lateral_force_n)",
     )
     .bind(calibration)
-    .bind(repeated.differs())
+    .bind(i64::from(repeated.differs()))
     .bind(repeated.is_refused)
     .bind(repeated.drawbar_pull_n)
     .bind(repeated.torque_n_m)
@@ -43,7 +45,7 @@ impl Reader {
         if !self.has_table("repeats").await? {
             return Ok(Repeats::default());
         }
-        let row: Option<(i64, i64, bool, f64, f64, f64, f64)> = sqlx::query_as(
+        let row: Option<(i64, i64, bool, f64, f64, f64, f64)> = query_as(
             "SELECT evaluations, differing, refused, drawbar_pull_n, torque_n_m, sinkage_m, lateral_force_n
              FROM repeats WHERE calibration = ?",
         )

@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use sqlx::SqliteConnection;
-
 use super::error::StoreError;
 use super::reader::Reader;
+use super::sql::{Connection, query, query_scalar};
 
 /// Files of a study, computed by one build of the program from one state of the study.
 #[derive(Debug, Clone)]
@@ -19,19 +18,17 @@ pub struct StudyResults {
 }
 
 /// Writes files of a study; those under another stamp are out of date and go. A study that is deleted meanwhile keeps nothing.
-pub(super) async fn write(
-    connection: &mut SqliteConnection,
-    results: StudyResults,
-) -> Result<(), sqlx::Error> {
-    sqlx::query("DELETE FROM results WHERE study = ? AND stamp <> ?")
+pub(super) async fn write(connection: &mut Connection, results: StudyResults) -> Result<(), sqlx::Error> {
+    query("DELETE FROM results WHERE study = ? AND stamp <> ?")
         .bind(results.study)
         .bind(&results.stamp)
         .execute(&mut *connection)
         .await?;
     for (name, body) in results.files {
-        sqlx::query(
-            "INSERT OR REPLACE INTO results (study, name, stamp, body) SELECT id, ?2, ?3, ?4 FROM studies
-             WHERE id = ?1 AND NOT EXISTS (SELECT 1 FROM deletions WHERE study = ?1)",
+        query(
+            "INSERT INTO results (study, name, stamp, body) SELECT id, ?2, ?3, ?4 FROM studies
+             WHERE id = ?1 AND NOT EXISTS (SELECT 1 FROM deletions WHERE study = ?1)
+             ON CONFLICT (study, name) DO UPDATE SET stamp = excluded.stamp, body = excluded.body",
         )
         .bind(results.study)
         .bind(name)
@@ -52,7 +49,7 @@ impl Reader {
         if !self.has_table("results").await? {
             return Ok(None);
         }
-        let body = sqlx::query_scalar("SELECT body FROM results WHERE study = ? AND name = ? AND stamp = ?")
+        let body = query_scalar("SELECT body FROM results WHERE study = ? AND name = ? AND stamp = ?")
             .bind(study)
             .bind(name)
             .bind(stamp)

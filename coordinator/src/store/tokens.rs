@@ -1,12 +1,9 @@
 //! Tokens in the store, which the command line changes while a coordinator may be running.
 
-use sqlx::sqlite::{SqliteJournalMode, SqliteSynchronous};
-use sqlx::{Connection, Row, SqliteConnection};
-
 use super::error::StoreError;
-use super::file::{examine, lock, options, recognise};
-use super::migrations;
+use super::opening;
 use super::reader::Reader;
+use super::sql::{Connection, Row, query};
 use crate::token::{Role, Token, TokenHash};
 
 const TOKENS: &str = "SELECT name, role, hash, created_at_ms, revoked_at_ms FROM tokens ORDER BY id";
@@ -20,12 +17,12 @@ impl Reader {
         if !self.has_table("tokens").await? {
             return Ok(Vec::new());
         }
-        let rows = sqlx::query(TOKENS).fetch_all(&self.pool).await?;
+        let rows = query(TOKENS).fetch_all(&self.pool).await?;
         rows.iter().map(token).collect()
     }
 }
 
-fn token(row: &sqlx::sqlite::SqliteRow) -> Result<Token, StoreError> {
+fn token(row: &Row) -> Result<Token, StoreError> {
     let (role, hash): (String, Vec<u8>) = (row.get("role"), row.get("hash"));
     let corrupt = |what: &str| StoreError::Corrupt(format!("tokens: {what}"));
     Ok(Token {
@@ -36,7 +33,7 @@ fn token(row: &sqlx::sqlite::SqliteRow) -> Result<Token, StoreError> {
                 .map_err(|_| corrupt("a hash is not of 32 bytes"))?,
         ),
         created_at_ms: row.get("created_at_ms"),
-        is_revoked: row.get::<Option<i64>, _>("revoked_at_ms").is_some(),
+        is_revoked: row.get::<Option<i64>>("revoked_at_ms").is_some(),
     })
 }
 
@@ -46,7 +43,7 @@ fn token(row: &sqlx::sqlite::SqliteRow) -> Result<Token, StoreError> {
 /// which the coordinator's writer waits.
 #[derive(Debug)]
 pub struct TokenTable {
-    connection: SqliteConnection,
+    connection: Connection,
     path: String,
     /// Keeps a coordinator from starting meanwhile; none where one is running.
     _lock: Option<std::fs::File>,
@@ -58,23 +55,7 @@ impl TokenTable {
     /// # Errors
     /// [`StoreError`].
     pub async fn open(path: &str) -> Result<TokenTable, StoreError> {
-        let wrap = |source| StoreError::of(path, source);
-        examine(path)?;
-        let (lock, is_free) = match lock(path) {
-            Ok(lock) => (lock, true),
-            Err(StoreError::InUse(_)) => (None, false),
-            Err(error) => return Err(error),
-        };
-        let options = options(path)
-            .create_if_missing(is_free)
-            .journal_mode(SqliteJournalMode::Wal)
-            .synchronous(SqliteSynchronous::Full);
-        let mut connection = SqliteConnection::connect_with(&options).await.map_err(wrap)?;
-        recognise(&mut connection, path).await?;
-        if is_free {
-            let migrated = migrations::migrator().run(&mut connection).await;
-            migrated.map_err(|source| StoreError::of_migration(path, source))?;
-        }
+        let (connection, lock) = opening::beside(path).await?;
         Ok(TokenTable {
             connection,
             path: path.into(),
@@ -91,7 +72,7 @@ impl TokenTable {
     /// # Errors
     /// [`StoreError`].
     pub async fn all(&mut self) -> Result<Vec<Token>, StoreError> {
-        let rows = sqlx::query(TOKENS).fetch_all(&mut self.connection).await;
+        let rows = query(TOKENS).fetch_all(&mut self.connection).await;
         rows.map_err(|e| self.failed(e))?.iter().map(token).collect()
     }
 
@@ -100,7 +81,7 @@ impl TokenTable {
     /// # Errors
     /// [`StoreError`].
     pub async fn add(&mut self, token: &Token) -> Result<bool, StoreError> {
-        let added = sqlx::query(
+        let added = query(
             "INSERT INTO tokens (name, role, hash, created_at_ms) VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING",
         )
         .bind(&token.name)
@@ -109,7 +90,7 @@ impl TokenTable {
         .bind(token.created_at_ms)
         .execute(&mut self.connection)
         .await;
-        Ok(added.map_err(|e| self.failed(e))?.rows_affected() == 1)
+        Ok(added.map_err(|e| self.failed(e))? == 1)
     }
 
     /// Revokes the token of a name; whether there was one in use.
@@ -117,13 +98,12 @@ impl TokenTable {
     /// # Errors
     /// [`StoreError`].
     pub async fn revoke(&mut self, name: &str, now_ms: i64) -> Result<bool, StoreError> {
-        let revoked =
-            sqlx::query("UPDATE tokens SET revoked_at_ms = ? WHERE name = ? AND revoked_at_ms IS NULL")
-                .bind(now_ms)
-                .bind(name)
-                .execute(&mut self.connection)
-                .await;
-        Ok(revoked.map_err(|e| self.failed(e))?.rows_affected() == 1)
+        let revoked = query("UPDATE tokens SET revoked_at_ms = ? WHERE name = ? AND revoked_at_ms IS NULL")
+            .bind(now_ms)
+            .bind(name)
+            .execute(&mut self.connection)
+            .await;
+        Ok(revoked.map_err(|e| self.failed(e))? == 1)
     }
 
     /// Closes the store.

@@ -1,19 +1,18 @@
 //! What follows where a worker's answers are compared with those of another.
 
-use sqlx::SqliteConnection;
-
 use super::error::StoreError;
 use super::reader::Reader;
+use super::sql::{Connection, query, query_as};
 use record::{PREDICTIONS_FROM, Quarantine, Verified};
 
 /// Notes that a second worker has reproduced a result.
 pub(super) async fn confirm(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     calibration: i64,
     evaluation: u64,
     worker: &str,
 ) -> Result<(), sqlx::Error> {
-    sqlx::query("UPDATE evaluations SET confirmed_by = ? WHERE calibration = ? AND evaluation = ?")
+    query("UPDATE evaluations SET confirmed_by = ? WHERE calibration = ? AND evaluation = ?")
         .bind(worker)
         .bind(calibration)
         .bind(evaluation as i64)
@@ -24,7 +23,7 @@ pub(super) async fn confirm(
 
 /// Notes that a worker computes wrongly.
 pub(super) async fn quarantine(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     worker: &str,
     calibration: i64,
     evaluation: u64,
@@ -36,9 +35,9 @@ pub(super) async fn quarantine(
         evaluation,
         "quarantined: it computes wrongly"
     );
-    sqlx::query(
-        "INSERT OR IGNORE INTO quarantine (worker, calibration, evaluation, at_ms)
-         VALUES (?, ?, ?, unixepoch('subsec') * 1000)",
+    query(
+        "INSERT INTO quarantine (worker, calibration, evaluation, at_ms)
+         VALUES (?, ?, ?, unixepoch('subsec') * 1000) ON CONFLICT DO NOTHING",
     )
     .bind(worker)
     .bind(calibration)
@@ -46,7 +45,7 @@ pub(super) async fn quarantine(
     .execute(&mut *connection)
     .await?;
     // An answer of this worker disputes nothing any more where the calibration goes on.
-    sqlx::query(
+    query(
         "DELETE FROM disputes WHERE ? IN (first, second) AND calibration IN
          (SELECT id FROM calibrations WHERE state NOT IN ('finished', 'failed', 'cancelled'))",
     )
@@ -58,12 +57,12 @@ pub(super) async fn quarantine(
 
 /// Drops the unconfirmed results of a worker, and all results of later rounds: they were asked for because of them.
 pub(super) async fn rewind(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     calibration: i64,
     worker: &str,
     width: usize,
 ) -> Result<(), sqlx::Error> {
-    let (first, results): (Option<i64>, i64) = sqlx::query_as(
+    let (first, results): (Option<i64>, i64) = query_as(
         "SELECT min(evaluation), count(*) FROM evaluations
          WHERE calibration = ? AND worker = ? AND confirmed_by IS NULL",
     )
@@ -72,9 +71,9 @@ pub(super) async fn rewind(
     .fetch_one(&mut *connection)
     .await?;
     tracing::warn!(target: "journal", calibration, worker, results, "results are computed again");
-    sqlx::query(
+    query(
         "INSERT INTO rewinds (calibration, worker, results, at_ms) VALUES (?, ?, ?, unixepoch('subsec') * 1000)
-         ON CONFLICT DO UPDATE SET results = results + excluded.results",
+         ON CONFLICT (calibration, worker) DO UPDATE SET results = rewinds.results + excluded.results",
     )
     .bind(calibration)
     .bind(worker)
@@ -82,7 +81,7 @@ pub(super) async fn rewind(
     .execute(&mut *connection)
     .await?;
     // An answer of this worker disputes nothing any more.
-    sqlx::query("DELETE FROM disputes WHERE calibration = ?1 AND ?2 IN (first, second)")
+    query("DELETE FROM disputes WHERE calibration = ?1 AND ?2 IN (first, second)")
         .bind(calibration)
         .bind(worker)
         .execute(&mut *connection)
@@ -92,7 +91,7 @@ pub(super) async fn rewind(
         true => i64::MAX,
         false => (first / width as i64 + 1) * width as i64,
     };
-    sqlx::query(
+    query(
         "DELETE FROM evaluations WHERE calibration = ?1
          AND (evaluation >= ?2 OR worker = ?3 AND confirmed_by IS NULL)",
     )
@@ -102,7 +101,7 @@ pub(super) async fn rewind(
     .execute(&mut *connection)
     .await?;
     // What failed then was asked something else.
-    sqlx::query(
+    query(
         "INSERT INTO faults (calibration, evaluation, attempt, worker, message, at_ms)
          SELECT DISTINCT calibration, evaluation, 0, '', 'asked anew: earlier results were dropped', unixepoch('subsec') * 1000
          FROM faults WHERE calibration = ? AND evaluation >= ?",
@@ -113,13 +112,13 @@ pub(super) async fn rewind(
     .await?;
     // What still holds of these is told again by the replay.
     for table in ["stages", "samples", "estimates", "discoveries"] {
-        let query = format!("DELETE FROM {table} WHERE calibration = ?");
-        sqlx::query(sqlx::AssertSqlSafe(query))
+        let sql = format!("DELETE FROM {table} WHERE calibration = ?");
+        query(sqlx::AssertSqlSafe(sql))
             .bind(calibration)
             .execute(&mut *connection)
             .await?;
     }
-    sqlx::query(
+    query(
         "UPDATE calibrations SET log_evidence = NULL, log_evidence_se = NULL, equilibrated = NULL,
          evaluations = NULL, rejected = NULL,
          model_version = CASE WHEN EXISTS (SELECT 1 FROM evaluations WHERE calibration = ?1) THEN model_version END
@@ -138,7 +137,7 @@ impl Reader {
     /// [`StoreError`].
     pub async fn quarantine(&self) -> Result<Vec<Quarantine>, StoreError> {
         let rows: Vec<(String, i64, i64)> =
-            sqlx::query_as("SELECT worker, calibration, evaluation FROM quarantine ORDER BY worker")
+            query_as("SELECT worker, calibration, evaluation FROM quarantine ORDER BY worker")
                 .fetch_all(&self.pool)
                 .await?;
         let quarantine = |(worker, calibration, evaluation): (String, i64, i64)| Quarantine {
@@ -158,8 +157,7 @@ impl Reader {
         if !self.has_table("quarantine").await? {
             return Ok((0, 0));
         }
-        let counts =
-            sqlx::query_as("SELECT (SELECT count(*) FROM disputes), (SELECT count(*) FROM quarantine)");
+        let counts = query_as("SELECT (SELECT count(*) FROM disputes), (SELECT count(*) FROM quarantine)");
         Ok(counts.fetch_one(&self.pool).await?)
     }
 
@@ -171,7 +169,7 @@ impl Reader {
     pub async fn verified(&self, calibration: i64) -> Result<Verified, StoreError> {
         if !self.has_table("quarantine").await? {
             // Written before results were verified.
-            let (results, workers): (i64, i64) = sqlx::query_as(
+            let (results, workers): (i64, i64) = query_as(
                 "SELECT count(*), count(DISTINCT worker) FROM evaluations WHERE calibration = ? AND worker <> ''",
             )
             .bind(calibration)
@@ -183,19 +181,18 @@ impl Reader {
                 ..Verified::default()
             });
         }
-        let (results, confirmed, workers): (i64, i64, i64) = sqlx::query_as(
+        let (results, confirmed, workers): (i64, i64, i64) = query_as(
             "SELECT count(*), count(nullif(confirmed_by, '')), count(DISTINCT worker) FROM evaluations
              WHERE calibration = ? AND worker <> ''",
         )
         .bind(calibration)
         .fetch_one(&self.pool)
         .await?;
-        let resting = sqlx::query_as(
+        let resting = query_as(
             "SELECT q.worker, count(*) FROM quarantine q JOIN evaluations e ON e.worker = q.worker
              WHERE e.calibration = ? AND e.confirmed_by IS NULL GROUP BY q.worker ORDER BY q.worker",
         );
-        let rewound =
-            sqlx::query_as("SELECT worker, results FROM rewinds WHERE calibration = ? ORDER BY worker");
+        let rewound = query_as("SELECT worker, results FROM rewinds WHERE calibration = ? ORDER BY worker");
         let resting: Vec<(String, i64)> = resting.bind(calibration).fetch_all(&self.pool).await?;
         let rewound: Vec<(String, i64)> = rewound.bind(calibration).fetch_all(&self.pool).await?;
         let counts =

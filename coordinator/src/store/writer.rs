@@ -9,7 +9,6 @@ use std::time::Duration;
 
 use shared::api::CalibrationState;
 use shared::file::FileSet;
-use sqlx::{Connection, SqliteConnection};
 use tokio::sync::{Notify, broadcast, mpsc, oneshot, watch};
 
 use super::effects::{AddedEffect, NewEffect, insert_effect};
@@ -20,6 +19,7 @@ use super::insert::{
     insert_study,
 };
 use super::results::StudyResults;
+use super::sql::Connection;
 use record::fact::{EvaluationRow, Fact};
 
 /// Most facts in one commit.
@@ -149,7 +149,7 @@ impl FactSink {
 
 impl Writer {
     /// Starts the task. `lock` is held until it ends.
-    pub(super) fn start(connection: SqliteConnection, lock: Option<std::fs::File>) -> Writer {
+    pub(super) fn start(connection: Connection, lock: Option<std::fs::File>) -> Writer {
         let (sender, receiver) = mpsc::unbounded_channel();
         let (committed_sender, committed) = watch::channel(0);
         let states = broadcast::Sender::new(STATES);
@@ -346,7 +346,7 @@ impl Writer {
 }
 
 async fn run(
-    mut connection: SqliteConnection,
+    mut connection: Connection,
     mut receiver: mpsc::UnboundedReceiver<Write>,
     committed: &watch::Sender<u64>,
     states: &broadcast::Sender<StateChange>,
@@ -365,17 +365,17 @@ async fn run(
         }
         closing = group.iter().any(|w| matches!(w, Write::Close));
         let began = std::time::Instant::now();
-        let mut transaction = loop {
-            match connection.begin_with("BEGIN IMMEDIATE").await {
-                Ok(transaction) => break transaction,
+        loop {
+            match connection.begin().await {
+                Ok(()) => break,
                 Err(error) if is_locked(&error) => health.wait_for_lock(began.elapsed()),
                 Err(error) => return Err(error),
             }
-        };
+        }
         health.is_locked.store(false, Ordering::Relaxed);
         let mut replies = Replies::default();
-        let facts = write_group(&mut transaction, group.drain(..), &mut replies, health).await?;
-        transaction.commit().await?;
+        let facts = write_group(&mut connection, group.drain(..), &mut replies, health).await?;
+        connection.commit().await?;
         number += facts;
         replies.send(states);
         health.commits.fetch_add(1, Ordering::Relaxed);
@@ -426,7 +426,7 @@ impl Replies {
 }
 
 async fn write_group(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     group: impl Iterator<Item = Write>,
     replies: &mut Replies,
     health: &StoreHealth,

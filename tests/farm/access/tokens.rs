@@ -10,7 +10,7 @@ use farm_tests::wait::until;
 
 /// A token as the command line makes it.
 fn add(service: &Service, name: &str, role: &str) -> String {
-    let store = format!("sqlite://{}", service.store().display());
+    let store = service.store_name().to_owned();
     let command = programs::coordinator(["token", "add", name, "--role", role, "--store", &store]);
     programs::run(command).success().trim().to_owned()
 }
@@ -85,7 +85,7 @@ fn each_role_does_its_own_and_no_more() {
             .then_some(())
     });
 
-    let store = format!("sqlite://{}", service.store().display());
+    let store = service.store_name().to_owned();
     let revoke = programs::coordinator(["token", "revoke", "anna-read", "--store", &store]);
     programs::run(revoke).success();
     until("a token revoked", || {
@@ -161,7 +161,7 @@ fn an_address_that_others_reach_demands_a_token_or_says_what_insecure_means() {
 #[test]
 fn a_token_has_one_holder_and_a_plain_name() {
     let service = Service::start(&[]);
-    let store = format!("sqlite://{}", service.store().display());
+    let store = service.store_name().to_owned();
     let run = |arguments: &[&str]| {
         let arguments = [&["token"], arguments, &["--store", store.as_str()]].concat();
         programs::run(programs::coordinator(arguments))
@@ -203,7 +203,7 @@ fn the_description_of_the_interface_has_tokens_and_refusals() {
 #[test]
 fn a_token_that_was_made_elsewhere_is_taken_once_and_again() {
     let service = Service::start(&[]);
-    let store = format!("sqlite://{}", service.store().display());
+    let store = service.store_name().to_owned();
     let file = service.folder().join("farm.token");
     let secret = "0123456789abcdef0123456789abcdef";
     let add = |role: &str| {

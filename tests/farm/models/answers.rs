@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-use farm_tests::database::Database;
 use farm_tests::service::Service;
 use farm_tests::umbridge_server::{Reply, UmbridgeServer};
 use farm_tests::wait::until;
@@ -100,7 +99,7 @@ fn a_program_is_held_to_its_limits() {
     let (rejected, _) = finished(&service, id);
     // Of the first draws alone four in ten or so lie there, and none at the medians.
     assert!(rejected >= 5, "{rejected}");
-    let mut store = Database::open(&service.store());
+    let mut store = service.database();
     for count in [
         "SELECT count(*) FROM evaluations WHERE rejection LIKE 'time_limit: %takes longer than 3 s'",
         "SELECT count(*) FROM evaluations WHERE rejection LIKE 'model_error: %MemoryError'",

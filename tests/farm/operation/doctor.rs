@@ -66,7 +66,7 @@ fn a_foreign_store_and_a_taken_address_fail_with_what_to_do() {
 #[test]
 fn a_service_is_asked_for_its_version_its_token_and_its_workers() {
     let service = Service::start(&[]);
-    let store = format!("sqlite://{}", service.store().display());
+    let store = service.store_name().to_owned();
     let seen = |more: &[&str]| {
         doctor(
             &store,

@@ -9,7 +9,7 @@ use farm_tests::text::same;
 use farm_tests::wait::until;
 
 fn back_up(service: &Service, to: &Path) -> Ended {
-    let store = format!("sqlite://{}", service.store().display());
+    let store = service.store_name().to_owned();
     run(coordinator([
         "backup",
         &to.display().to_string(),

@@ -1,6 +1,5 @@
 //! A row that cannot be read stops its own calibration, by name, and no other.
 
-use farm_tests::database::Database;
 use farm_tests::job::Job;
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
@@ -12,7 +11,7 @@ fn spoilt(sql: &'static str) -> (Service, Value) {
     let bad = service.submit(&Job::small());
     let good = service.submit(&Job::small());
     service.terminate();
-    Database::open(&service.store()).execute(sql);
+    service.database().execute(sql);
     service.restart();
     let worker = service.worker("worker", 2);
     service.wait_for(good, "finished");

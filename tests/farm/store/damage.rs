@@ -3,7 +3,6 @@
 use std::fs::File;
 use std::os::unix::fs::FileExt;
 
-use farm_tests::database::Database;
 use farm_tests::job::Job;
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
@@ -16,7 +15,7 @@ fn a_damaged_page_is_found_at_the_start_and_its_table_named() {
     let id = service.submit(&Job::small());
     service.wait_for(id, "finished");
     service.terminate();
-    let mut database = Database::open(&service.store());
+    let mut database = service.database();
     let page_size = database.number("PRAGMA page_size");
     let root = database.number("SELECT rootpage FROM sqlite_schema WHERE name = 'evaluations'");
     drop(database);
@@ -37,7 +36,7 @@ fn a_damaged_page_is_found_at_the_start_and_its_table_named() {
 fn a_store_of_a_newer_version_says_so_by_numbers() {
     let mut service = Service::start(&[]);
     service.terminate();
-    let mut database = Database::open(&service.store());
+    let mut database = service.database();
     let known = database.number("SELECT max(version) FROM _sqlx_migrations");
     database.execute(
         "INSERT INTO _sqlx_migrations (version, description, success, checksum, execution_time)

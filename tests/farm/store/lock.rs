@@ -3,7 +3,6 @@
 use std::os::unix::fs::symlink;
 use std::time::Duration;
 
-use farm_tests::database::Database;
 use farm_tests::job::Job;
 use farm_tests::service::Service;
 use farm_tests::wait::until;
@@ -41,7 +40,7 @@ fn a_store_with_two_names_is_refused_before_it_loses_its_write_ahead_log() {
 #[test]
 fn a_foreign_lock_is_waited_for_and_nothing_is_lost() {
     let mut service = Service::start(&[]);
-    let mut foreign = Database::open(&service.store());
+    let mut foreign = service.database();
     foreign.execute("BEGIN IMMEDIATE");
     std::thread::scope(|scope| {
         let submitted = scope.spawn(|| service.submit(&Job::small()));

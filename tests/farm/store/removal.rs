@@ -1,6 +1,5 @@
 //! Studies that are archived, restored, deleted, and deleted by age.
 
-use farm_tests::database::Database;
 use farm_tests::fake_worker::{FakeWorker, rejected};
 use farm_tests::job::Job;
 use farm_tests::programs::{Ended, coordinator, run};
@@ -42,7 +41,7 @@ fn a_deleted_study_is_gone_with_its_rows_and_its_numbers_are_not_given_out_again
     assert_eq!(service.submit(&Job::small()), 3);
     service.wait_for(3, "finished");
     service.terminate();
-    let mut database = Database::open(&service.store());
+    let mut database = service.database();
     let left = database.number(
         "SELECT (SELECT count(*) FROM evaluations WHERE calibration = 2) + (SELECT count(*) FROM samples WHERE calibration = 2)
          + (SELECT count(*) FROM results WHERE study = 2) + (SELECT count(*) FROM experiments WHERE id = 2)",
@@ -58,7 +57,7 @@ fn a_deletion_that_was_cut_short_is_finished_at_the_next_start() {
     service.wait_for(1, "finished");
     service.terminate();
     // As the first part of a deletion leaves it.
-    Database::open(&service.store()).execute(
+    service.database().execute(
         "INSERT INTO deletions VALUES (1, 1, 1, 0); UPDATE studies SET archived_at_ms = 0;
          DELETE FROM evaluations WHERE evaluation < 50",
     );
@@ -142,8 +141,9 @@ fn archived_studies_are_deleted_by_age_where_the_operator_says_so_and_others_nev
         verb(&service, "archive", study).success();
     }
     service.terminate();
-    Database::open(&service.store())
-        .execute("UPDATE studies SET archived_at_ms = archived_at_ms - 31 * 86400000 WHERE id = 1");
+    service
+        .database()
+        .execute("UPDATE studies SET archived_at_ms = archived_at_ms - 2678400000 WHERE id = 1");
     service.restart();
     until("the deletion of what is too old", || {
         (service.client.get("/v1/studies/1").status == 404).then_some(())

@@ -10,7 +10,7 @@ use tokio::net::TcpListener;
 
 use super::finding::Finding;
 use super::service;
-use crate::store::{Reader, file_of};
+use crate::store::{Reader, StoreError, file_of, is_server, name_of};
 
 /// A disk takes longer than this for one record where it is slow: every acknowledged result waits for it.
 const SLOW: Duration = Duration::from_millis(100);
@@ -19,6 +19,10 @@ const LITTLE_BYTES: u64 = 1_000_000_000;
 const TOO_LITTLE_BYTES: u64 = 100_000_000;
 
 pub(super) async fn findings(store: &str, listen: SocketAddr) -> Vec<Finding> {
+    if is_server(store) {
+        let (stored, has_token) = read(store).await;
+        return vec![stored, address(listen, has_token).await];
+    }
     let file = Path::new(file_of(store));
     let folder = match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -35,19 +39,33 @@ pub(super) async fn findings(store: &str, listen: SocketAddr) -> Vec<Finding> {
 
 /// What the store holds, and whether it has had a token.
 async fn stored(store: &str, file: &Path) -> (Finding, bool) {
-    let name = file.display();
     if !file.exists() {
+        let name = file.display();
         return (
             Finding::ok("store", format!("{name} is not there yet; serve makes it")),
             false,
         );
     }
+    read(store).await
+}
+
+async fn read(store: &str) -> (Finding, bool) {
+    let name = name_of(store);
+    let name = file_of(&name);
     let read = async {
         let reader = Reader::open(store).await?;
-        Ok::<_, crate::store::StoreError>((reader.calibrations().await?, !reader.tokens().await?.is_empty()))
+        if reader.is_blank().await? {
+            return Ok(None);
+        }
+        let has_token = !reader.tokens().await?.is_empty();
+        Ok::<_, StoreError>(Some((reader.calibrations().await?, has_token)))
     };
     match read.await {
-        Ok((rows, has_token)) => {
+        Ok(None) => (
+            Finding::ok("store", format!("{name} has no tables yet; serve makes them")),
+            false,
+        ),
+        Ok(Some((rows, has_token))) => {
             let bad: Vec<String> = rows
                 .iter()
                 .filter(|(_, row)| row.is_err())
@@ -69,8 +87,14 @@ async fn stored(store: &str, file: &Path) -> (Finding, bool) {
             (finding, has_token)
         }
         Err(error) => {
-            let remedy =
-                "name another file with --store, or put a backup back (coordinator backup makes them)";
+            let remedy = match is_server(store) {
+                true => {
+                    "start the server, or name another with --store (postgres://USER:PASSWORD@HOST/DATABASE)"
+                }
+                false => {
+                    "name another file with --store, or put a backup back (coordinator backup makes them)"
+                }
+            };
             (Finding::fail("store", error.to_string(), remedy), false)
         }
     }

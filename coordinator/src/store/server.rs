@@ -1,0 +1,97 @@
+//! A store in a PostgreSQL server: its connections, its lock, and what is refused as one.
+
+use std::str::FromStr;
+
+use sqlx::postgres::{PgConnectOptions, PgPoolOptions};
+use sqlx::{Connection as _, PgConnection, PgPool};
+
+use super::error::StoreError;
+use super::migrations;
+use super::place::name_of;
+use super::sql::{Connection, query, query_scalar};
+
+/// The number of the lock that the one writer of a database holds: "grouser" in its first bytes.
+const LOCK: i64 = 0x67_72_6f_75_73_65_72;
+
+/// A server soon notices that a machine is gone: probes after 2 s, three of them a second apart.
+const SETTINGS: [(&str, &str); 3] = [
+    ("tcp_keepalives_idle", "2"),
+    ("tcp_keepalives_interval", "1"),
+    ("tcp_keepalives_count", "3"),
+];
+
+fn options(path: &str) -> Result<PgConnectOptions, StoreError> {
+    let options = PgConnectOptions::from_str(path).map_err(|source| StoreError::of(path, source))?;
+    Ok(options.application_name("grouser").options(SETTINGS))
+}
+
+/// A connection that may write.
+pub(super) async fn connect(path: &str) -> Result<Connection, StoreError> {
+    let connected = PgConnection::connect_with(&options(path)?).await;
+    let mut connection = Connection::Postgres(connected.map_err(|source| StoreError::of(path, source))?);
+    // What is acknowledged is on disk, whatever the server's own default is.
+    let durable = query("SET synchronous_commit = on")
+        .execute(&mut connection)
+        .await;
+    durable.map_err(|source| StoreError::of(path, source))?;
+    Ok(connection)
+}
+
+/// Connections that read.
+pub(super) async fn pool(path: &str) -> Result<PgPool, StoreError> {
+    let options = options(path)?;
+    // A pool would try again for half a minute what the server refuses at once.
+    let first = PgConnection::connect_with(&options).await;
+    let closed = first
+        .map_err(|source| StoreError::of(path, source))?
+        .close()
+        .await;
+    closed.map_err(|source| StoreError::of(path, source))?;
+    Ok(PgPoolOptions::new().max_connections(4).connect_lazy_with(options))
+}
+
+/// Takes the lock of the one writer; whether it was free. The server releases it when the connection ends, whatever ends it. All that is
+/// written goes through the same connection: who has lost the lock can write nothing.
+pub(super) async fn lock(connection: &mut Connection, path: &str) -> Result<bool, StoreError> {
+    let taken = query_scalar("SELECT pg_try_advisory_lock(?)").bind(LOCK);
+    taken
+        .fetch_one(connection)
+        .await
+        .map_err(|source| StoreError::of(path, source))
+}
+
+/// Refuses a database that somebody else has made, or a later version of this program.
+pub(super) async fn recognise(connection: &mut Connection, path: &str) -> Result<(), StoreError> {
+    let wrap = |source| StoreError::of(path, source);
+    let tables = "SELECT count(*) FROM information_schema.tables WHERE table_schema = current_schema()";
+    let all: i64 = query_scalar(tables)
+        .fetch_one(&mut *connection)
+        .await
+        .map_err(wrap)?;
+    if all == 0 {
+        return Ok(());
+    }
+    let ours = "SELECT count(*) FROM information_schema.tables WHERE table_schema = current_schema()
+                AND table_name IN ('_sqlx_migrations', 'calibrations')";
+    let known: i64 = query_scalar(ours)
+        .fetch_one(&mut *connection)
+        .await
+        .map_err(wrap)?;
+    if known != 2 {
+        return Err(StoreError::Unfit {
+            path: name_of(path),
+            reason: "the database has tables that Grouser did not create".into(),
+        });
+    }
+    let found = query_scalar("SELECT max(version) FROM _sqlx_migrations");
+    let found: Option<i64> = found.fetch_one(connection).await.map_err(wrap)?;
+    let (found, known) = (found.unwrap_or_default(), migrations::VERSION);
+    match found > known {
+        true => Err(StoreError::Newer {
+            path: name_of(path),
+            found,
+            known,
+        }),
+        false => Ok(()),
+    }
+}

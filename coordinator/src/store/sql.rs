@@ -1,0 +1,447 @@
+//! Statements of the two databases that a store may stand in: written once, in the SQL that both have.
+//!
+//! A statement is written with SQLite's parameters, `?` or `?1`; for PostgreSQL they become `$1`. The functions of SQLite that
+//! statements use stand in `migrations/postgres`. What only one of them has (PRAGMAs, locks, sizes) stands in `file` and `server`.
+
+use std::marker::PhantomData;
+
+use futures::stream::BoxStream;
+use futures::{StreamExt, TryStreamExt};
+use sqlx::postgres::PgRow;
+use sqlx::sqlite::SqliteRow;
+use sqlx::{AssertSqlSafe, Connection as _, PgConnection, PgPool, Postgres, SqlSafeStr, SqlStr, Sqlite};
+use sqlx::{Decode, Row as _, SqliteConnection, SqlitePool, Type};
+
+/// What takes the place of NUL in a text: PostgreSQL has no text with one.
+const NUL: &str = "\u{2400}";
+
+/// A connection that may write.
+#[derive(Debug)]
+pub(super) enum Connection {
+    Sqlite(SqliteConnection),
+    Postgres(PgConnection),
+}
+
+/// Connections that read.
+#[derive(Debug, Clone)]
+pub(super) enum Pool {
+    Sqlite(SqlitePool),
+    Postgres(PgPool),
+}
+
+/// Where a statement is executed.
+pub(super) enum On<'a> {
+    Connection(&'a mut Connection),
+    Pool(&'a Pool),
+}
+
+impl<'a> From<&'a mut Connection> for On<'a> {
+    fn from(connection: &'a mut Connection) -> Self {
+        On::Connection(connection)
+    }
+}
+
+impl<'a> From<&'a Pool> for On<'a> {
+    fn from(pool: &'a Pool) -> Self {
+        On::Pool(pool)
+    }
+}
+
+impl Connection {
+    /// Begins a transaction that writes; whatever has begun is rolled back where the connection ends before [`Connection::commit`].
+    pub(super) async fn begin(&mut self) -> Result<(), sqlx::Error> {
+        let begin = match self {
+            Connection::Sqlite(_) => "BEGIN IMMEDIATE",
+            Connection::Postgres(_) => "BEGIN",
+        };
+        query(begin).execute(self).await.map(drop)
+    }
+
+    pub(super) async fn commit(&mut self) -> Result<(), sqlx::Error> {
+        query("COMMIT").execute(self).await.map(drop)
+    }
+
+    pub(super) async fn close(self) -> Result<(), sqlx::Error> {
+        match self {
+            Connection::Sqlite(connection) => connection.close().await,
+            Connection::Postgres(connection) => connection.close().await,
+        }
+    }
+}
+
+impl Pool {
+    /// A connection that sees one moment of the store for as long as it is held.
+    pub(super) async fn view(&self) -> Result<Connection, sqlx::Error> {
+        let (mut connection, begin) = match self {
+            Pool::Sqlite(pool) => (Connection::Sqlite(pool.acquire().await?.detach()), "BEGIN"),
+            Pool::Postgres(pool) => (
+                Connection::Postgres(pool.acquire().await?.detach()),
+                "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY",
+            ),
+        };
+        query(begin).execute(&mut connection).await?;
+        Ok(connection)
+    }
+
+    pub(super) async fn close(&self) {
+        match self {
+            Pool::Sqlite(pool) => pool.close().await,
+            Pool::Postgres(pool) => pool.close().await,
+        }
+    }
+
+    pub(super) fn is_closed(&self) -> bool {
+        match self {
+            Pool::Sqlite(pool) => pool.is_closed(),
+            Pool::Postgres(pool) => pool.is_closed(),
+        }
+    }
+}
+
+/// A value in a column or of a parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Value {
+    Integer(Option<i64>),
+    Real(Option<f64>),
+    Truth(Option<bool>),
+    Text(Option<String>),
+    Bytes(Option<Vec<u8>>),
+}
+
+/// Values of one Rust type are values of one kind.
+macro_rules! values {
+    ($($kind:ident: $($of:ty),+;)+) => {$($(
+        impl From<$of> for Value {
+            fn from(value: $of) -> Self {
+                Value::$kind(Some(value.into()))
+            }
+        }
+        impl From<Option<$of>> for Value {
+            fn from(value: Option<$of>) -> Self {
+                Value::$kind(value.map(Into::into))
+            }
+        }
+    )+)+};
+}
+
+values! {
+    Integer: i64, u32;
+    Real: f64;
+    Truth: bool;
+    Text: String, &str, &String;
+    Bytes: Vec<u8>;
+}
+
+impl From<&Option<String>> for Value {
+    fn from(value: &Option<String>) -> Self {
+        Value::Text(value.clone())
+    }
+}
+
+/// A row of a result.
+pub(super) enum Row {
+    Sqlite(SqliteRow),
+    Postgres(PgRow),
+}
+
+/// What a column is read as: either database decodes it.
+pub(super) trait Column<'r>:
+    Decode<'r, Sqlite> + Type<Sqlite> + Decode<'r, Postgres> + Type<Postgres>
+{
+}
+
+impl<'r, T> Column<'r> for T where T: Decode<'r, Sqlite> + Type<Sqlite> + Decode<'r, Postgres> + Type<Postgres>
+{}
+
+impl Row {
+    pub(super) fn try_get<'r, T: Column<'r>>(&'r self, column: &str) -> Result<T, sqlx::Error> {
+        match self {
+            Row::Sqlite(row) => row.try_get(column),
+            Row::Postgres(row) => row.try_get(column),
+        }
+    }
+
+    /// The same of a column that is read without fail, because its table says what it has.
+    pub(super) fn get<'r, T: Column<'r>>(&'r self, column: &str) -> T {
+        match self {
+            Row::Sqlite(row) => row.get(column),
+            Row::Postgres(row) => row.get(column),
+        }
+    }
+}
+
+/// A row as a tuple.
+pub(super) trait Tuple:
+    for<'r> sqlx::FromRow<'r, SqliteRow> + for<'r> sqlx::FromRow<'r, PgRow>
+{
+}
+
+impl<T> Tuple for T where T: for<'r> sqlx::FromRow<'r, SqliteRow> + for<'r> sqlx::FromRow<'r, PgRow> {}
+
+/// A statement with its parameters.
+pub(super) struct Query {
+    sql: SqlStr,
+    values: Vec<Value>,
+    is_kept: bool,
+}
+
+/// A statement; a connection prepares it once.
+pub(super) fn query(sql: impl SqlSafeStr) -> Query {
+    Query {
+        sql: sql.into_sql_str(),
+        values: Vec::new(),
+        is_kept: true,
+    }
+}
+
+/// Builds the statement of one of the databases with its parameters bound.
+macro_rules! bound {
+    ($sql:expr, $query:expr, $nul:expr) => {{
+        let mut statement = sqlx::query($sql).persistent($query.is_kept);
+        for value in $query.values {
+            statement = match value {
+                Value::Integer(value) => statement.bind(value),
+                Value::Real(value) => statement.bind(value),
+                Value::Truth(value) => statement.bind(value),
+                Value::Text(value) => statement.bind(value.map($nul)),
+                Value::Bytes(value) => statement.bind(value),
+            };
+        }
+        statement
+    }};
+}
+
+/// A text that PostgreSQL takes.
+fn without_nul(text: String) -> String {
+    match text.contains('\0') {
+        true => text.replace('\0', NUL),
+        false => text,
+    }
+}
+
+impl Query {
+    /// The value of the next parameter.
+    pub(super) fn bind(mut self, value: impl Into<Value>) -> Query {
+        self.values.push(value.into());
+        self
+    }
+
+    /// Executes it; how many rows it changed.
+    pub(super) async fn execute(self, on: impl Into<On<'_>>) -> Result<u64, sqlx::Error> {
+        match on.into() {
+            On::Connection(Connection::Sqlite(connection)) => {
+                let statement = bound!(self.sql, self, |text| text);
+                statement
+                    .execute(connection)
+                    .await
+                    .map(|done| done.rows_affected())
+            }
+            On::Pool(Pool::Sqlite(pool)) => {
+                let statement = bound!(self.sql, self, |text| text);
+                statement.execute(pool).await.map(|done| done.rows_affected())
+            }
+            On::Connection(Connection::Postgres(connection)) => {
+                let statement = bound!(numbered(&self.sql), self, without_nul);
+                statement
+                    .execute(connection)
+                    .await
+                    .map(|done| done.rows_affected())
+            }
+            On::Pool(Pool::Postgres(pool)) => {
+                let statement = bound!(numbered(&self.sql), self, without_nul);
+                statement.execute(pool).await.map(|done| done.rows_affected())
+            }
+        }
+    }
+
+    pub(super) async fn fetch_all(self, on: impl Into<On<'_>>) -> Result<Vec<Row>, sqlx::Error> {
+        fn rows<R>(rows: Vec<R>, row: fn(R) -> Row) -> Vec<Row> {
+            rows.into_iter().map(row).collect()
+        }
+        match on.into() {
+            On::Connection(Connection::Sqlite(connection)) => {
+                let statement = bound!(self.sql, self, |text| text);
+                statement
+                    .fetch_all(connection)
+                    .await
+                    .map(|all| rows(all, Row::Sqlite))
+            }
+            On::Pool(Pool::Sqlite(pool)) => {
+                let statement = bound!(self.sql, self, |text| text);
+                statement.fetch_all(pool).await.map(|all| rows(all, Row::Sqlite))
+            }
+            On::Connection(Connection::Postgres(connection)) => {
+                let statement = bound!(numbered(&self.sql), self, without_nul);
+                statement
+                    .fetch_all(connection)
+                    .await
+                    .map(|all| rows(all, Row::Postgres))
+            }
+            On::Pool(Pool::Postgres(pool)) => {
+                let statement = bound!(numbered(&self.sql), self, without_nul);
+                statement
+                    .fetch_all(pool)
+                    .await
+                    .map(|all| rows(all, Row::Postgres))
+            }
+        }
+    }
+
+    /// The rows one by one, as they come.
+    pub(super) fn fetch(self, connection: &mut Connection) -> BoxStream<'_, Result<Row, sqlx::Error>> {
+        match connection {
+            Connection::Sqlite(connection) => {
+                let statement = bound!(self.sql, self, |text| text);
+                statement.fetch(connection).map_ok(Row::Sqlite).boxed()
+            }
+            Connection::Postgres(connection) => {
+                let statement = bound!(numbered(&self.sql), self, without_nul);
+                statement.fetch(connection).map_ok(Row::Postgres).boxed()
+            }
+        }
+    }
+
+    pub(super) async fn fetch_optional(self, on: impl Into<On<'_>>) -> Result<Option<Row>, sqlx::Error> {
+        Ok(self.fetch_all(on).await?.into_iter().next())
+    }
+
+    pub(super) async fn fetch_one(self, on: impl Into<On<'_>>) -> Result<Row, sqlx::Error> {
+        self.fetch_optional(on).await?.ok_or(sqlx::Error::RowNotFound)
+    }
+}
+
+/// A statement whose rows are tuples.
+pub(super) struct QueryAs<T>(Query, PhantomData<T>);
+
+/// A statement whose rows are tuples.
+pub(super) fn query_as<T: Tuple>(sql: impl SqlSafeStr) -> QueryAs<T> {
+    QueryAs(query(sql), PhantomData)
+}
+
+impl<T: Tuple> QueryAs<T> {
+    /// The value of the next parameter.
+    pub(super) fn bind(self, value: impl Into<Value>) -> QueryAs<T> {
+        QueryAs(self.0.bind(value), PhantomData)
+    }
+
+    pub(super) async fn fetch_all(self, on: impl Into<On<'_>>) -> Result<Vec<T>, sqlx::Error> {
+        let tuple = |row: Row| match row {
+            Row::Sqlite(row) => T::from_row(&row),
+            Row::Postgres(row) => T::from_row(&row),
+        };
+        self.0.fetch_all(on).await?.into_iter().map(tuple).collect()
+    }
+
+    pub(super) async fn fetch_optional(self, on: impl Into<On<'_>>) -> Result<Option<T>, sqlx::Error> {
+        Ok(self.fetch_all(on).await?.into_iter().next())
+    }
+
+    pub(super) async fn fetch_one(self, on: impl Into<On<'_>>) -> Result<T, sqlx::Error> {
+        self.fetch_optional(on).await?.ok_or(sqlx::Error::RowNotFound)
+    }
+}
+
+/// A statement whose rows have one column.
+pub(super) struct QueryScalar<T>(QueryAs<(T,)>);
+
+/// A statement whose rows have one column.
+pub(super) fn query_scalar<T>(sql: impl SqlSafeStr) -> QueryScalar<T>
+where
+    (T,): Tuple,
+{
+    QueryScalar(query_as(sql))
+}
+
+impl<T> QueryScalar<T>
+where
+    (T,): Tuple,
+{
+    /// The value of the next parameter.
+    pub(super) fn bind(self, value: impl Into<Value>) -> QueryScalar<T> {
+        QueryScalar(self.0.bind(value))
+    }
+
+    pub(super) async fn fetch_all(self, on: impl Into<On<'_>>) -> Result<Vec<T>, sqlx::Error> {
+        Ok(self
+            .0
+            .fetch_all(on)
+            .await?
+            .into_iter()
+            .map(|(value,)| value)
+            .collect())
+    }
+
+    pub(super) async fn fetch_optional(self, on: impl Into<On<'_>>) -> Result<Option<T>, sqlx::Error> {
+        Ok(self.0.fetch_optional(on).await?.map(|(value,)| value))
+    }
+
+    pub(super) async fn fetch_one(self, on: impl Into<On<'_>>) -> Result<T, sqlx::Error> {
+        Ok(self.0.fetch_one(on).await?.0)
+    }
+}
+
+/// What becomes of a row whose key is there.
+pub(super) enum Conflict<'a> {
+    /// It stays, and the new one is dropped.
+    Keep,
+    /// The new one takes its place; these columns are the key.
+    Replace(&'a [&'a str]),
+}
+
+/// Inserts rows of so many columns in one statement.
+pub(super) fn insert(table: &str, columns: &[&str], rows: Vec<Vec<Value>>, conflict: &Conflict<'_>) -> Query {
+    let row = format!("({})", vec!["?"; columns.len()].join(", "));
+    let places = vec![row.as_str(); rows.len()].join(", ");
+    let conflict = match conflict {
+        Conflict::Keep => "DO NOTHING".to_owned(),
+        Conflict::Replace(key) => {
+            let others = columns.iter().filter(|column| !key.contains(column));
+            let taken: Vec<String> = others.map(|c| format!("{c} = excluded.{c}")).collect();
+            format!("({}) DO UPDATE SET {}", key.join(", "), taken.join(", "))
+        }
+    };
+    let columns = columns.join(", ");
+    let insert = format!("INSERT INTO {table} ({columns}) VALUES {places} ON CONFLICT {conflict}");
+    Query {
+        // One of many rows is large, and seldom the same.
+        is_kept: rows.len() == 1,
+        values: rows.into_iter().flatten().collect(),
+        sql: AssertSqlSafe(insert).into_sql_str(),
+    }
+}
+
+/// A statement with PostgreSQL's parameters in place of SQLite's. What stands in quotes is left as it is.
+fn numbered(sql: &SqlStr) -> SqlStr {
+    let mut text = String::with_capacity(sql.as_str().len() + 64);
+    let (mut is_quoted, mut count) = (false, 0);
+    let mut rest = sql.as_str().chars().peekable();
+    while let Some(c) = rest.next() {
+        is_quoted ^= c == '\'';
+        if c != '?' || is_quoted {
+            text.push(c);
+            continue;
+        }
+        text.push('$');
+        if !rest.peek().is_some_and(char::is_ascii_digit) {
+            count += 1;
+            text += &count.to_string();
+        }
+    }
+    AssertSqlSafe(text).into_sql_str()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_are_numbered_and_quotes_left_alone() {
+        let of = |sql: &'static str| numbered(&sql.into_sql_str()).as_str().to_owned();
+        assert_eq!(of("a = ? AND b = ?"), "a = $1 AND b = $2");
+        assert_eq!(
+            of("a = ?2 AND b = ?1 AND c = ?12"),
+            "a = $2 AND b = $1 AND c = $12"
+        );
+        assert_eq!(of("a = '?''?' AND b = ?"), "a = '?''?' AND b = $1");
+    }
+}

@@ -1,0 +1,60 @@
+//! Databases of a PostgreSQL server, one for each store, where the tests are told of a server.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use crate::database::Database;
+
+/// The variable with the server, as `postgres://USER@HOST:PORT`; its user may create databases.
+const VARIABLE: &str = "GROUSER_TEST_POSTGRES";
+
+/// A database that is deleted with this value.
+#[derive(Debug)]
+pub struct ServerDatabase {
+    server: String,
+    name: String,
+}
+
+impl ServerDatabase {
+    /// An empty database; `None` where the tests are told of no server.
+    ///
+    /// # Panics
+    /// The server refuses.
+    pub fn new() -> Option<ServerDatabase> {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        let server = std::env::var(VARIABLE).ok()?;
+        let name = format!(
+            "grouser_{}_{}",
+            std::process::id(),
+            NEXT.fetch_add(1, Ordering::Relaxed)
+        );
+        let database = ServerDatabase { server, name };
+        database.administer(&format!("CREATE DATABASE {}", database.name));
+        Some(database)
+    }
+
+    /// What `--store` takes.
+    pub fn url(&self) -> String {
+        format!("{}/{}", self.server, self.name)
+    }
+
+    /// Ends every connection to it, as a server does that is started again.
+    ///
+    /// # Panics
+    /// The server refuses.
+    pub fn end_connections(&self) {
+        let name = &self.name;
+        self.administer(&format!(
+            "SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity WHERE datname = '{name}'"
+        ));
+    }
+
+    fn administer(&self, sql: &str) {
+        Database::open(&format!("{}/postgres", self.server)).execute(sql);
+    }
+}
+
+impl Drop for ServerDatabase {
+    fn drop(&mut self) {
+        self.administer(&format!("DROP DATABASE {} WITH (FORCE)", self.name));
+    }
+}

@@ -1,0 +1,76 @@
+//! A standby takes over from a coordinator that dies.
+
+use std::time::{Duration, Instant};
+
+use farm_tests::job::Job;
+use farm_tests::programs::{coordinator, run};
+use farm_tests::service::Service;
+use farm_tests::wait::until;
+
+/// Within this, a calibration goes on after the death of its coordinator.
+const TAKE_OVER: Duration = Duration::from_secs(10);
+
+/// The posterior of the job where nothing happens.
+fn undisturbed() -> String {
+    let service = Service::start(&["--local-workers", "2"]);
+    let id = service.submit(&Job::small());
+    service.wait_for(id, "finished");
+    service.posterior_csv(id)
+}
+
+#[test]
+fn a_standby_goes_on_with_the_same_bits_within_ten_seconds_of_a_kill() {
+    let expected = undisturbed();
+    let mut service = Service::start(&["--lease-ms", "2000"]);
+    let mut standbys = vec![service.standby("standby-1"), service.standby("standby-2")];
+    let id = service.submit(&Job::small());
+    let _worker = service.worker("worker", 1);
+    for least in [100, 250] {
+        until("some evaluations", || {
+            service.evaluations(id).filter(|&done| done >= least)
+        });
+        until("coordinators that stand by", || {
+            let is_waiting =
+                |standby: &mut farm_tests::process::Process| standby.log().contains("standing by");
+            standbys.iter_mut().all(is_waiting).then_some(())
+        });
+        let before = service.evaluations(id).expect("a count");
+        match least {
+            100 => service.kill(),
+            // The standby that serves now is the one of the two that no longer only waits.
+            _ => {
+                let serving = standbys
+                    .iter()
+                    .position(|standby| standby.log().contains("serving"));
+                standbys.remove(serving.expect("a standby serves")).kill();
+            }
+        }
+        let killed = Instant::now();
+        until("progress under the standby", || {
+            service.evaluations(id).filter(|&done| done > before)
+        });
+        assert!(killed.elapsed() < TAKE_OVER, "{:?}", killed.elapsed());
+        println!("went on {:.1} s after the kill", killed.elapsed().as_secs_f64());
+    }
+    service.wait_for(id, "finished");
+    assert_eq!(service.posterior_csv(id), expected);
+}
+
+#[test]
+fn a_second_coordinator_is_turned_away_and_the_password_is_not_shown() {
+    let service = Service::start(&[]);
+    let store = service.store_name().replacen("@", ":secret@", 1);
+    let refusal = run(coordinator([
+        "serve",
+        "--listen",
+        "127.0.0.1:0",
+        "--store",
+        &store,
+    ]))
+    .refusal();
+    assert!(refusal.ends_with("another coordinator is using it"), "{refusal}");
+    assert!(
+        refusal.contains("store postgres://") && !refusal.contains("secret"),
+        "{refusal}"
+    );
+}
