@@ -3,9 +3,11 @@
 //! # Layout
 //! - `client`: what a service asks for.
 //! - `scale`: arguments of `coordinator scale`.
+//! - `store`: where a store is kept, copies of it, its tokens.
 
 mod client;
 mod scale;
+mod store;
 
 use std::path::PathBuf;
 
@@ -17,6 +19,7 @@ use crate::schema::FileKind;
 
 pub use client::ClientArguments;
 pub use scale::{EngineKind, ScaleArguments};
+pub use store::{BackupArguments, CopyStoreArguments, StoreArguments, TokenCommand};
 
 /// The processors that this program was built for.
 pub const ARCHITECTURE: &str = std::env::consts::ARCH;
@@ -317,70 +320,6 @@ pub struct DoctorArguments {
     /// What it asks for.
     #[command(flatten)]
     pub client: ClientArguments,
-}
-
-/// Copy a store.
-#[derive(Debug, Args)]
-pub struct BackupArguments {
-    /// The new file.
-    pub file: PathBuf,
-    /// What is copied.
-    #[command(flatten)]
-    pub store: StoreArguments,
-}
-
-/// Copy a store between a file and a server.
-#[derive(Debug, Args)]
-pub struct CopyStoreArguments {
-    /// What is copied, as it is at one moment: stop its service first, or what that stores afterwards is missing.
-    #[arg(value_name = "sqlite://FILE|postgres://URL")]
-    pub from: String,
-    /// Where it is copied to: a new file, or a database without tables.
-    #[arg(value_name = "postgres://URL|sqlite://FILE")]
-    pub to: String,
-}
-
-/// Add, list and revoke tokens; a running service follows within a second.
-#[derive(Debug, Subcommand)]
-pub enum TokenCommand {
-    /// Add a token and print it; it is shown this once.
-    Add {
-        /// Name of its holder.
-        name: String,
-        /// What its holder may do: read; read, submit and control; or work as a worker.
-        #[arg(long, value_enum)]
-        role: crate::token::Role,
-        /// Takes the token of this file, as of a secret of Kubernetes, and prints nothing; where it is there already, nothing changes.
-        #[arg(long, value_name = "FILE")]
-        from: Option<PathBuf>,
-        /// Where it is kept.
-        #[command(flatten)]
-        store: StoreArguments,
-    },
-    /// List the tokens: name, role, whether it is accepted.
-    List(StoreArguments),
-    /// Revoke the token of a name; a store that has had a token keeps asking for one.
-    Revoke {
-        /// Name of its holder.
-        name: String,
-        /// Where it is kept.
-        #[command(flatten)]
-        store: StoreArguments,
-    },
-}
-
-/// The store of a service.
-#[derive(Debug, Args)]
-pub struct StoreArguments {
-    /// The store: an SQLite file, or a database of a PostgreSQL server.
-    #[arg(
-        long,
-        env = "GROUSER_STORE",
-        hide_env_values = true,
-        default_value = "sqlite://grouser.db",
-        value_name = "sqlite://FILE|postgres://URL"
-    )]
-    pub store: String,
 }
 
 /// Submit a job to a service.
