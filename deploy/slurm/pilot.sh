@@ -17,8 +17,9 @@ if [ -n "${GROUSER_MODULES:-}" ]; then
 fi
 # One thread on each core of the job; nine tenths of its memory, where the site limits it.
 export GROUSER_THREADS="${SLURM_CPUS_PER_TASK:-1}"
-if [ -n "${SLURM_MEM_PER_NODE:-}" ] && [ "$SLURM_MEM_PER_NODE" -gt 0 ]; then
-    export GROUSER_MAX_MEMORY_MB="${GROUSER_MAX_MEMORY_MB:-$((SLURM_MEM_PER_NODE * 9 / 10))}"
+memory_mb="${SLURM_MEM_PER_NODE:-$((${SLURM_MEM_PER_CPU:-0} * GROUSER_THREADS))}"
+if [ "$memory_mb" -gt 0 ]; then
+    export GROUSER_MAX_MEMORY_MB="${GROUSER_MAX_MEMORY_MB:-$((memory_mb * 9 / 10))}"
 fi
 # The shell gives way to the worker, which then gets the signals.
 # shellcheck disable=SC2086 # a command with its arguments

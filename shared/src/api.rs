@@ -266,6 +266,8 @@ pub struct WorkDemand {
     pub threads: u64,
     /// Mean time of an evaluation on one of their threads `[s]`, once there has been one.
     pub evaluation_s: Option<f64>,
+    /// Results of workers that are part of a queue's job, since the service started.
+    pub completed_in_queues: u64,
 }
 
 /// Every error answer: `{"error": {"type": …, "message": …}}`.

@@ -66,6 +66,8 @@ def main():
         "grouser/coordinator": version,
         "grouser/worker": version,
     }
+    tagged = [container["image"] for document in documents(FOLDER / "job.yaml") for container in containers(document)]
+    assert tagged and all(image.endswith(f":{version}") for image in tagged), tagged
     checked = 0
     for name in names:
         for document in documents(FOLDER / name):

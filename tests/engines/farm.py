@@ -102,6 +102,10 @@ class Service:
     def status(self, calibration):
         return self.json(f"/v1/calibrations/{calibration}")
 
+    def cancel(self, calibration):
+        command = [self.coordinator, "cancel", str(calibration), "--url", self.url]
+        subprocess.run(command, check=True, capture_output=True)
+
     def evaluations(self, calibration):
         return (self.status(calibration)["progress"] or {"evaluations": 0})["evaluations"]
 

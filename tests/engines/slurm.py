@@ -114,10 +114,25 @@ def with_faults(slurm, service, folder, job, expected):
         assert service.posterior(calibration) == expected, "other bits than a local run"
         flags = service.json(f"/v1/calibrations/{calibration}/diagnostics")["flags"]
         until("an empty queue", lambda: not slurm.present())
-    logs = "".join(log.read_text() for log in folder.glob("grouser-*.log"))
-    print(f"slurm: {killed} killed, {requeued} requeued, {logs.count('asked to stop')} told to end before their time; the bits of a local run")
+    print(f"slurm: {killed} killed, {requeued} requeued; the bits of a local run")
     assert not any(flag["kind"] == "worker" for flag in flags), flags
     assert service.metric("grouser_evaluations_refused_total") == 0
+
+
+def at_the_time_limit(slurm, service, folder, job):
+    """A pilot ends before its time limit, by itself where Slurm states it (SLURM_JOB_END_TIME), else at its signal; the next one goes on."""
+    logs = folder / "limit"
+    logs.mkdir()
+    reasons = ("its lifetime is over", "asked to stop")
+    with Scale(service, slurm, logs, "--max", "1", more=["--time=1", "--signal=B:USR1@10"]):
+        calibration = service.submit(job)
+        until("the end of a pilot", lambda: any(reason in log.read_text() for log in logs.glob("grouser-*.log") for reason in reasons))
+        done = service.evaluations(calibration)
+        until("the next pilot", lambda: service.evaluations(calibration) > done)
+        service.cancel(calibration)
+        until("an empty queue", lambda: not slurm.present())
+    assert service.metric("grouser_leases_failed_total") == 0
+    print("slurm: a pilot ends before its time limit and blames no evaluation; the next one goes on")
 
 
 def main():
@@ -126,11 +141,13 @@ def main():
     job, long = write_job(folder / "job"), write_job(folder / "long", particles=200)
     expected = local_run(programs, job, folder / "local")
     expected_long = local_run(programs, long, folder / "local-long")
+    endless = write_job(folder / "endless", particles=20_000)
     slurm = Slurm(folder / "slurm")
     try:
         service = Service(programs, folder / "service", "--lease-ms", "3000")
         try:
             from_nothing(slurm, service, folder, job, expected)
+            at_the_time_limit(slurm, service, folder, endless)
             with_faults(slurm, service, folder, long, expected_long)
         finally:
             service.stop()

@@ -5,6 +5,7 @@ use farm_tests::job::Job;
 use farm_tests::programs::{coordinator, run};
 use farm_tests::server::ServerDatabase;
 use farm_tests::service::Service;
+use farm_tests::workspace::{data, text};
 
 /// The rows of every table of a store in a file, with the bits of its numbers.
 fn rows(store: &str) -> Vec<(String, String)> {
@@ -74,8 +75,12 @@ fn a_store_goes_to_a_file_to_a_server_and_to_a_file_with_every_bit_and_goes_on_t
     };
     assert_eq!(table_lines(&said), table_lines(&there));
     copy(&server.url(), &second);
-    for (one, other) in rows(&first).iter().zip(rows(&second)) {
-        assert_eq!(one, &other);
+    assert_eq!(rows(&first), rows(&second));
+    // The finished study is on every copy as it was where it was made.
+    let original = Service::start_on(service.store_name(), &["--read-only", "--insecure"]).posterior_csv(1);
+    for copy in [&first, &server.url()] {
+        let copied = Service::start_on(copy, &["--read-only", "--insecure"]).posterior_csv(1);
+        assert_eq!(copied, original, "{copy}");
     }
     // A coordinator on either copy goes on with what had begun, and numbers new rows on from the old ones.
     let posterior = |store: &str| {
@@ -88,6 +93,28 @@ fn a_store_goes_to_a_file_to_a_server_and_to_a_file_with_every_bit_and_goes_on_t
     assert_eq!(posterior(&second), expected);
     let ben = ["token", "add", "ben", "--role", "read", "--store", &server.url()];
     run(coordinator(ben)).success();
+}
+
+#[test]
+fn a_store_of_an_old_version_goes_to_a_server_and_back_with_the_posterior_that_it_had() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let store = |name: &str| format!("sqlite://{}", folder.path().join(name).display());
+    std::fs::copy(data("store-8/finished.store"), folder.path().join("grouser.db"))
+        .expect("the store is copied");
+    // Brings its tables up to date; its rows stay as they are.
+    let posterior = |store: &str| {
+        let mut service = Service::start_on(store, &["--insecure"]);
+        let posterior = service.posterior_csv(1);
+        service.terminate();
+        posterior
+    };
+    let kept = text(&data("store-8/posterior.csv"));
+    assert_eq!(posterior(&store("grouser.db")), kept);
+    let server = ServerDatabase::new().expect("a server");
+    copy(&store("grouser.db"), &server.url());
+    assert_eq!(posterior(&server.url()), kept);
+    copy(&server.url(), &store("back.db"));
+    assert_eq!(posterior(&store("back.db")), kept);
 }
 
 #[test]

@@ -73,4 +73,11 @@ fn a_second_coordinator_is_turned_away_and_the_password_is_not_shown() {
         refusal.contains("store postgres://") && !refusal.contains("secret"),
         "{refusal}"
     );
+    let blank = farm_tests::server::ServerDatabase::new().expect("a server");
+    let store = blank.url().replacen("@", ":secret@", 1);
+    let refusal = run(coordinator(["serve", "--listen", "0.0.0.0:0", "--store", &store])).refusal();
+    assert!(
+        refusal.contains("has no token") && !refusal.contains("secret"),
+        "{refusal}"
+    );
 }

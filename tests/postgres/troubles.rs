@@ -27,6 +27,15 @@ fn a_coordinator_that_loses_its_connection_ends_with_the_reason_and_another_goes
 }
 
 #[test]
+fn an_idle_coordinator_that_loses_its_connection_ends_too() {
+    let mut service = Service::start(&[]);
+    service.server_database().end_connections();
+    assert!(!service.wait());
+    let log = service.log();
+    assert!(log.contains("the store can no longer be written"), "{log}");
+}
+
+#[test]
 fn a_database_of_others_and_one_of_a_later_version_are_refused_and_left_alone() {
     let database = ServerDatabase::new().expect("GROUSER_TEST_POSTGRES names a server");
     let url = database.url();

@@ -6,7 +6,7 @@ use anyhow::bail;
 
 use crate::config::ExposureArguments;
 use crate::http::{Exposure, TokenRule, tls_acceptor};
-use crate::store::Reader;
+use crate::store::{Reader, name_of};
 
 /// How a service shows itself at an address; refused where others reach it and no token stands between.
 pub(super) async fn exposure(
@@ -34,7 +34,8 @@ pub(super) async fn exposure(
         bail!(
             "--listen {listening} is reached by other machines, and {store} has no token: add one with \
              \"coordinator token add NAME --role submit --store {store}\", and one with --role work for the workers; \
-             or start with --insecure to let everybody in"
+             or start with --insecure to let everybody in",
+            store = name_of(store)
         );
     };
     Ok(Exposure {

@@ -11,7 +11,7 @@ use crate::config::{EngineKind, ScaleArguments};
 use crate::scale::budget::{Cost, Vain};
 use crate::scale::engine::{Engine, SLURM_PILOT};
 use crate::scale::pilot::PilotSettings;
-use crate::scale::policy::Policy;
+use crate::scale::policy::{Patience, Policy};
 
 pub(super) async fn scale(arguments: &ScaleArguments) -> anyhow::Result<()> {
     if arguments.min > arguments.max {
@@ -30,6 +30,7 @@ pub(super) async fn scale(arguments: &ScaleArguments) -> anyhow::Result<()> {
         },
         cost: Cost::default(),
         vain: Vain::default(),
+        patience: Patience::default(),
         seen: Instant::now(),
     };
     if arguments.once {
@@ -101,6 +102,7 @@ struct Scaler {
     policy: Policy,
     cost: Cost,
     vain: Vain,
+    patience: Patience,
     /// When it looked last.
     seen: Instant,
 }
@@ -123,22 +125,27 @@ impl Scaler {
             return Ok(Round::Spent);
         }
         let demand: WorkDemand = self.client.get("/v1/work/demand").await?;
-        let has_pilot = pilots.count() > 0;
-        if let Some(pause) = self.vain.seen(demand.workers > 0, has_pilot, elapsed) {
+        let computed = demand.completed_in_queues;
+        if let Some(pause) = self.vain.seen(&pilots, computed, demand.queued > 0, elapsed) {
             tracing::warn!(
-                "pilots ended before the service heard of a worker; the next are started in {} s: their log says why",
+                "pilots ended while work waits, and none has sent a result; the next are started in {} s: their log says why",
                 pause.as_secs()
             );
         }
-        let wanted = self.policy.wanted(&demand, pilots.count());
+        let present = pilots.count();
+        let wanted = self.policy.wanted(&demand, present);
+        let idle = Duration::from_secs_f64(self.settings.max_idle_s);
+        let wanted = self
+            .patience
+            .wanted(wanted, present, demand.in_hand > 0, elapsed, idle);
         let wanted = match self.vain.may_start() {
             true => wanted,
-            false => wanted.min(pilots.count()),
+            false => wanted.min(present),
         };
         let change = self.engine.resize(&self.settings, &pilots, wanted);
         let (started, ended) = (change.started, change.ended);
-        if started > 0 {
-            self.vain.started();
+        if ended > 0 {
+            self.vain.took_back();
         }
         change.make().await?;
         if started + ended > 0 {

@@ -43,16 +43,22 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
         lease_ms: config.lease_ms,
         verified_share: config.verify_percent / 100.0,
     };
-    let (listener, service) = match (config.read_only, config.standby) {
-        (true, _) => (bind().await?, Service::open_read_only(store).await?),
-        (false, false) => (bind().await?, Service::open(store, settings).await?),
-        // Whoever asks a standby gets no answer: what stands before several coordinators sends them to the one that serves.
-        (false, true) => {
-            let Some(service) = standby(store, settings).await? else {
-                return Ok(());
-            };
-            (bind().await?, service)
-        }
+    let opened = async {
+        anyhow::Ok(match (config.read_only, config.standby) {
+            (true, _) => (bind().await?, Service::open_read_only(store).await?),
+            (false, false) => (bind().await?, Service::open(store, settings).await?),
+            // Whoever asks a standby gets no answer: what stands before several coordinators sends them to the one that serves.
+            (false, true) => {
+                let service = standby(store, settings).await?;
+                (bind().await?, service)
+            }
+        })
+    };
+    // One signal for all: what comes while a standby takes over stops it, too.
+    let mut signal = pin!(stop_signal()?);
+    let (listener, service) = tokio::select! {
+        opened = opened => opened?,
+        _ = &mut signal => return Ok(()),
     };
     let service = service.with_webhook_hosts(config.webhook_host);
     let address = listener.local_addr()?;
@@ -77,13 +83,12 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     ));
     let overviews = service.clone();
     let overviews = tokio::spawn(async move { overviews.keep_overviews().await });
-    let signal = stop_signal()?;
     let is_written = !config.read_only;
     tokio::select! {
         () = service.keep_growing(), if is_written => {}
         () = service.announce(), if is_written => {}
         () = service.keep_tidy(config.keep_days), if is_written => {}
-        _ = signal => tracing::info!("stopping; workers will reconnect"),
+        _ = &mut signal => tracing::info!("stopping; workers will reconnect"),
         () = service.store().writer().stopped(), if is_written => {
             bail!("the store can no longer be written; see the log")
         }
@@ -99,14 +104,13 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Opens a store as soon as no other coordinator holds it; `None` where this one is asked to stop before.
-async fn standby(store: &str, settings: FarmSettings) -> anyhow::Result<Option<Service>> {
-    let mut signal = pin!(stop_signal()?);
+/// Opens a store as soon as no other coordinator holds it.
+async fn standby(store: &str, settings: FarmSettings) -> anyhow::Result<Service> {
     tracing::info!(store = name_of(store), "standing by");
     let mut has_reached_it = false;
     loop {
         match Service::open(store, settings).await {
-            Ok(service) => return Ok(Some(service)),
+            Ok(service) => return Ok(service),
             Err(ServiceError::Store(StoreError::InUse(_))) => has_reached_it = true,
             // A server that is started again may be away for a while; one that was never there is an error.
             Err(ServiceError::Store(error @ StoreError::Database { .. })) if has_reached_it => {
@@ -114,9 +118,6 @@ async fn standby(store: &str, settings: FarmSettings) -> anyhow::Result<Option<S
             }
             Err(error) => return Err(error.into()),
         }
-        tokio::select! {
-            () = tokio::time::sleep(STANDBY) => {}
-            _ = &mut signal => return Ok(None),
-        }
+        tokio::time::sleep(STANDBY).await;
     }
 }

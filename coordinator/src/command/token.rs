@@ -52,19 +52,34 @@ async fn add(name: &str, role: Role, from: Option<&Path>, store: &StoreArguments
         is_revoked: false,
     };
     let mut table = TokenTable::open(&store.store).await?;
+    if let Some(file) = from {
+        let tokens = table.all().await?;
+        let same = |own: &&Token| own.hash.is(&token.hash);
+        match tokens.iter().rfind(same) {
+            // A coordinator that starts with a secret must start with one that was revoked since, too, and let nobody in by it.
+            Some(own) if own.is_revoked => note(&format!(
+                "the token of {} was revoked, and stays so",
+                file.display()
+            )),
+            Some(own) if (own.name.as_str(), own.role) != (name, role) => bail!(
+                "{}: {} has this token already, as {} with the role {}",
+                file.display(),
+                name_of(&store.store),
+                own.name,
+                own.role.name()
+            ),
+            Some(_) => {}
+            None => table.replace(&token).await?,
+        }
+        return Ok(table.close().await?);
+    }
     let is_added = table.add(&token).await?;
-    let tokens = table.all().await?;
     table.close().await?;
-    let is_there =
-        |own: &Token| own.name == name && own.role == role && !own.is_revoked && own.hash.is(&token.hash);
-    if !is_added && !tokens.iter().any(is_there) {
+    if !is_added {
         bail!(
             "{} has a token {name} already: revoke it first",
             name_of(&store.store)
         );
-    }
-    if from.is_some() {
-        return Ok(());
     }
     note(&format!(
         "token {name} with the role {}; it is not shown again:",

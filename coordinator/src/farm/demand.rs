@@ -33,6 +33,7 @@ impl Farm {
             workers: self.able_workers() as u64,
             threads: able.map(|(_, worker)| u64::from(worker.threads)).sum(),
             evaluation_s: (count > 0.0).then_some(time_s / count),
+            completed_in_queues: self.counters.completed_in_queues,
         }
     }
 }

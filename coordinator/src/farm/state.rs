@@ -352,6 +352,7 @@ impl Farm {
             Ok(true) => {
                 record.completed += 1;
                 self.counters.completed += 1;
+                self.counters.completed_in_queues += u64::from(record.queue_job.is_some());
                 Taken::New
             }
             Ok(false) => Taken::Duplicate,

@@ -1,8 +1,11 @@
 //! What pilots have cost, and when starting more is in vain.
 
+use std::collections::BTreeSet;
 use std::time::Duration;
 
-/// The pauses after pilots that ended before the service heard of a worker: they double, from the first to the last.
+use super::pilot::Pilots;
+
+/// The pauses after pilots that ended without a result: they double, from the first to the last.
 const PAUSES: [Duration; 2] = [Duration::from_secs(10), Duration::from_secs(600)];
 
 /// The cost of running pilots, against its cap.
@@ -23,32 +26,45 @@ impl Cost {
     }
 }
 
-/// Notices pilots that end without ever having worked, as where their token is refused.
+/// Notices pilots that end while work waits and none has computed anything, as where their token is refused, their program is another
+/// version, or their machine is too small.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Vain {
-    is_waiting: bool,
+    /// The pilots that were there at the last look.
+    there: BTreeSet<String>,
+    /// Results of all pilots until then.
+    computed: u64,
     pause: Option<Duration>,
     left: Duration,
 }
 
 impl Vain {
-    /// Pilots have been asked for.
-    pub fn started(&mut self) {
-        self.is_waiting = true;
-    }
-
-    /// What is seen after another while: whether the service knows a worker, and whether a pilot is there. Says the pause when one begins.
-    pub fn seen(&mut self, knows_worker: bool, has_pilot: bool, elapsed: Duration) -> Option<Duration> {
+    /// What is seen after another while: the pilots, the results of all pilots so far, and whether evaluations wait. Says the pause
+    /// when one begins.
+    pub fn seen(
+        &mut self,
+        pilots: &Pilots,
+        computed: u64,
+        has_waiting: bool,
+        elapsed: Duration,
+    ) -> Option<Duration> {
         self.left = self.left.saturating_sub(elapsed);
-        if knows_worker {
-            *self = Vain::default();
-        } else if self.is_waiting && !has_pilot {
-            self.is_waiting = false;
+        let there = pilots.names();
+        let has_lost = !self.there.is_subset(&there);
+        self.there = there;
+        if std::mem::replace(&mut self.computed, computed) != computed {
+            (self.pause, self.left) = (None, Duration::ZERO);
+        } else if has_lost && has_waiting && self.left.is_zero() {
             let pause = self.pause.map_or(PAUSES[0], |pause| (pause * 2).min(PAUSES[1]));
             (self.pause, self.left) = (Some(pause), pause);
             return Some(pause);
         }
         None
+    }
+
+    /// Pilots have been taken back: that they are missing at the next look says nothing.
+    pub fn took_back(&mut self) {
+        self.there.clear();
     }
 
     /// Whether pilots may be started.
@@ -69,23 +85,47 @@ mod tests {
         assert!((cost.thread_h() - 4.5).abs() < 1e-12);
     }
 
+    fn pilots(pending: &[&str], running: &[&str]) -> Pilots {
+        let own = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
+        Pilots {
+            pending: own(pending),
+            running: own(running),
+        }
+    }
+
     #[test]
-    fn pilots_that_end_without_a_word_make_pauses_that_double() {
+    fn pilots_that_end_without_a_result_make_pauses_that_double() {
         let s = Duration::from_secs;
         let mut vain = Vain::default();
         let mut pauses = Vec::new();
-        for _ in 0..9 {
+        for round in 0..9 {
             assert!(vain.may_start());
-            vain.started();
-            assert_eq!(vain.seen(false, true, s(10)), None);
-            let pause = vain.seen(false, false, s(10)).unwrap();
+            // Others still wait for a machine.
+            let name = round.to_string();
+            assert_eq!(vain.seen(&pilots(&["x"], &[&name]), 7, true, s(10)), None);
+            let pause = vain.seen(&pilots(&["x"], &[]), 7, true, s(10)).unwrap();
             assert!(!vain.may_start());
             pauses.push(pause.as_secs());
-            assert_eq!(vain.seen(false, false, pause), None);
+            assert_eq!(vain.seen(&pilots(&["x"], &[]), 7, true, pause), None);
         }
         assert_eq!(pauses, [10, 20, 40, 80, 160, 320, 600, 600, 600]);
-        vain.started();
-        assert_eq!(vain.seen(true, true, s(10)), None);
-        assert_eq!(vain, Vain::default());
+        // A result of any pilot ends that.
+        assert_eq!(vain.seen(&pilots(&["x"], &["9"]), 8, true, s(1)), None);
+        assert!(vain.may_start());
+        assert_eq!(vain.seen(&pilots(&["x"], &[]), 8, true, s(1)), Some(s(10)));
+    }
+
+    #[test]
+    fn pilots_may_end_where_nothing_waits_or_where_they_are_taken_back() {
+        let s = Duration::from_secs;
+        let mut vain = Vain {
+            computed: 7,
+            ..Vain::default()
+        };
+        assert_eq!(vain.seen(&pilots(&["2"], &["1"]), 7, true, s(10)), None);
+        assert_eq!(vain.seen(&pilots(&["2"], &[]), 7, false, s(10)), None);
+        vain.took_back();
+        assert_eq!(vain.seen(&pilots(&[], &[]), 7, true, s(10)), None);
+        assert!(vain.may_start());
     }
 }

@@ -1,5 +1,6 @@
 //! Pilots: what each is told, and which there are.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 /// What every pilot is told.
@@ -55,5 +56,10 @@ impl Pilots {
     /// How many there are.
     pub fn count(&self) -> u32 {
         u32::try_from(self.pending.len() + self.running.len()).unwrap_or(u32::MAX)
+    }
+
+    /// The names of all.
+    pub(super) fn names(&self) -> BTreeSet<String> {
+        self.pending.iter().chain(&self.running).cloned().collect()
     }
 }

@@ -1,5 +1,7 @@
 //! How many pilots the work is worth.
 
+use std::time::Duration;
+
 use shared::api::WorkDemand;
 
 /// Bounds and aims.
@@ -39,6 +41,36 @@ impl Policy {
     }
 }
 
+/// Keeps pilots through the end of a round, where little is left to be done at once, for the next one.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Patience {
+    fewer_for: Duration,
+}
+
+impl Patience {
+    /// How many pilots are wanted after another while: fewer than there are only once that has been so for `patience`, or where no
+    /// calibration is in hand.
+    pub fn wanted(
+        &mut self,
+        wanted: u32,
+        present: u32,
+        has_calibration: bool,
+        elapsed: Duration,
+        patience: Duration,
+    ) -> u32 {
+        if wanted >= present || !has_calibration {
+            *self = Patience::default();
+            return wanted;
+        }
+        self.fewer_for += elapsed;
+        if self.fewer_for < patience {
+            present
+        } else {
+            wanted
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -59,6 +91,7 @@ mod tests {
             workers: 0,
             threads: 0,
             evaluation_s,
+            completed_in_queues: 0,
         }
     }
 
@@ -89,6 +122,17 @@ mod tests {
         assert_eq!(POLICY.wanted(&nothing, 12), 0);
         let kept = Policy { min: 3, ..POLICY };
         assert_eq!(kept.wanted(&nothing, 12), 3);
+    }
+
+    #[test]
+    fn the_end_of_a_round_takes_no_pilots_back() {
+        let s = Duration::from_secs;
+        let mut patience = Patience::default();
+        assert_eq!(patience.wanted(5, 20, true, s(100), s(120)), 20);
+        assert_eq!(patience.wanted(25, 20, true, s(100), s(120)), 25);
+        assert_eq!(patience.wanted(5, 25, true, s(60), s(120)), 25);
+        assert_eq!(patience.wanted(5, 25, true, s(60), s(120)), 5);
+        assert_eq!(patience.wanted(0, 25, false, s(1), s(120)), 0);
     }
 
     #[test]

@@ -3,10 +3,12 @@
 use futures::TryStreamExt;
 use sqlx::AssertSqlSafe;
 
+use super::blob;
 use super::error::StoreError;
 use super::place::{is_server, name_of};
 use super::reader::Reader;
 use super::sql::{Conflict, Connection, Row, Value, insert, query, query_as, query_scalar};
+use super::theta::theta;
 use super::{migrations, opening};
 
 /// Rows that one statement inserts: with the columns of the widest table, fewer parameters than either database takes.
@@ -109,8 +111,10 @@ async fn version(reader: &Reader) -> Result<Option<i64>, StoreError> {
 /// The store's tables and their columns, as a server describes them; those that others refer to come first.
 async fn tables(server: &mut Connection) -> Result<Vec<Table>, StoreError> {
     let columns: Vec<(String, String, String)> = query_as(
-        "SELECT table_name::text, column_name::text, data_type::text FROM information_schema.columns
-         WHERE table_schema = current_schema() AND table_name <> '_sqlx_migrations' ORDER BY table_name, ordinal_position",
+        "SELECT c.table_name::text, c.column_name::text, c.data_type::text
+         FROM information_schema.columns c JOIN information_schema.tables t USING (table_schema, table_name)
+         WHERE c.table_schema = current_schema() AND t.table_type = 'BASE TABLE' AND c.table_name <> '_sqlx_migrations'
+         ORDER BY c.table_name, c.ordinal_position",
     )
     .fetch_all(server)
     .await?;
@@ -171,17 +175,25 @@ async fn copy_rows(
     Ok(read)
 }
 
-fn values(row: &Row, columns: &[(String, Kind)]) -> Result<Vec<Value>, sqlx::Error> {
+fn values(row: &Row, columns: &[(String, Kind)]) -> Result<Vec<Value>, StoreError> {
     let value = |(column, kind): &(String, Kind)| {
         Ok(match kind {
             Kind::Integer => Value::Integer(row.try_get(column)?),
             Kind::Real => Value::Real(row.try_get(column)?),
             Kind::Truth => Value::Truth(row.try_get(column)?),
             Kind::Text => Value::Text(row.try_get(column)?),
-            Kind::Bytes => Value::Bytes(row.try_get(column)?),
+            Kind::Bytes => Value::Bytes(bytes(row, column)?),
         })
     };
     columns.iter().map(value).collect()
+}
+
+/// The bytes of a column; a parameter vector of before migration 9, which a file keeps as text, in the form of today.
+fn bytes(row: &Row, column: &str) -> Result<Option<Vec<u8>>, StoreError> {
+    match column {
+        "theta" => Ok(Some(blob::encode(&theta(row)?))),
+        _ => Ok(row.try_get(column)?),
+    }
 }
 
 /// Lets a server number its next rows on from those that were copied.

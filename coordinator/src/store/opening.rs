@@ -50,7 +50,6 @@ pub(super) async fn beside(path: &str) -> Result<(Connection, Option<File>), Sto
 async fn open(path: &str, is_alone: bool) -> Result<Opened, StoreError> {
     if is_server(path) {
         let mut connection = server::connect(path).await?;
-        server::recognise(&mut connection, path).await?;
         let mut is_free = server::lock(&mut connection, path).await?;
         // The server may not have noticed yet that the coordinator before this one has died.
         let end = Instant::now() + PATIENCE;
@@ -61,6 +60,8 @@ async fn open(path: &str, is_alone: bool) -> Result<Opened, StoreError> {
             tokio::time::sleep(ASK_AGAIN).await;
             is_free = server::lock(&mut connection, path).await?;
         }
+        // Behind the lock: another coordinator may be making the tables.
+        server::recognise(&mut connection, path).await?;
         return Ok(Opened {
             connection,
             lock: None,

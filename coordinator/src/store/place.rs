@@ -12,14 +12,16 @@ pub(crate) fn name_of(path: &str) -> String {
     let Some((scheme, rest)) = path.split_once("://").filter(|_| is_server(path)) else {
         return path.to_owned();
     };
-    let (authority, place) = rest.split_at(rest.find(['/', '?']).unwrap_or(rest.len()));
-    let authority = match authority.rsplit_once('@') {
-        Some((user, host)) => format!("{}@{host}", user.split(':').next().unwrap_or_default()),
-        None => authority.to_owned(),
-    };
-    // A password may also stand among the settings.
-    let place = place.split('?').next().unwrap_or_default();
-    format!("{scheme}://{authority}{place}")
+    // A password may stand before the host or among the settings, and may have any character, though the URL is not valid then.
+    let first = || rest.split([':', '/', '?', '@']).next().unwrap_or_default();
+    match rest.rsplit_once('@') {
+        Some((before, _)) if before.contains('?') => format!("{scheme}://{}…", first()),
+        Some((_, place)) => {
+            let place = place.split('?').next().unwrap_or_default();
+            format!("{scheme}://{}@{place}", first())
+        }
+        None => format!("{scheme}://{}", rest.split('?').next().unwrap_or_default()),
+    }
 }
 
 #[cfg(test)]
@@ -39,6 +41,9 @@ mod tests {
                 "postgres://me:se@cret@host/farm?password=x",
                 "postgres://me@host/farm",
             ),
+            ("postgres://me:a/b@host/db", "postgres://me@host/db"),
+            ("postgres://me:a?b@host/db", "postgres://me…"),
+            ("postgres://host/db?password=a@b", "postgres://host…"),
             ("postgresql:///farm?host=/run/postgresql", "postgresql:///farm"),
         ] {
             assert_eq!(name_of(path), name);

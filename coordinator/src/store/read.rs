@@ -314,18 +314,17 @@ impl Reader {
         calibration: i64,
         theta: &[f64],
     ) -> Result<Option<Vec<f64>>, StoreError> {
-        if let Pool::Postgres(_) = self.pool {
-            // A server has nothing that is so old.
-            return Ok(None);
-        }
         let row = query(
             "SELECT fitted FROM evaluations
              WHERE calibration = ? AND theta = ? AND fitted IS NOT NULL ORDER BY evaluation LIMIT 1",
         )
-        .bind(calibration)
-        .bind(json(theta))
-        .fetch_optional(&self.pool)
-        .await?;
+        .bind(calibration);
+        // A file keeps such a vector as text; a server has it from a copy, in the form of today.
+        let row = match self.pool {
+            Pool::Sqlite(_) => row.bind(json(theta)),
+            Pool::Postgres(_) => row.bind(blob::encode(theta)),
+        };
+        let row = row.fetch_optional(&self.pool).await?;
         row.map(|row| blob::decode_values(row.get("fitted"))).transpose()
     }
 

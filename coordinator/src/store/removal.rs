@@ -14,13 +14,14 @@ const LARGE: [(&str, &str); 2] = [
 /// Rows of these that one commit deletes: results of workers wait no longer than for them.
 const PART: u64 = 1000;
 /// Tables that have few.
-const SMALL: [&str; 6] = [
+const SMALL: [&str; 7] = [
     "stages",
     "estimates",
     "discoveries",
     "faults",
     "disputes",
     "rewinds",
+    "repeats",
 ];
 
 /// Deletes a part of what belongs to a study alone, and the study itself at last; whether nothing is left.

@@ -1,6 +1,7 @@
 //! A store in a PostgreSQL server: its connections, its lock, and what is refused as one.
 
 use std::str::FromStr;
+use std::time::Duration;
 
 use sqlx::postgres::{PgConnectOptions, PgPoolOptions};
 use sqlx::{Connection as _, PgConnection, PgPool};
@@ -10,14 +11,32 @@ use super::migrations;
 use super::place::name_of;
 use super::sql::{Connection, query, query_scalar};
 
+/// An idle writer asks so often whether its connection is still there.
+pub(super) const PROBE: Duration = Duration::from_secs(2);
+/// The server answers that within so long, or is taken for lost.
+pub(super) const ANSWER_TIME: Duration = Duration::from_secs(5);
+/// A group of facts takes milliseconds; a server that has not stored one in so long is taken for lost.
+pub(super) const GROUP_TIME: Duration = Duration::from_secs(30);
+
+/// What a statement gives, or an error where it takes longer.
+pub(super) async fn in_time<T>(
+    most: Duration,
+    statement: impl Future<Output = Result<T, sqlx::Error>>,
+) -> Result<T, sqlx::Error> {
+    let late = |_| sqlx::Error::Io(std::io::Error::from(std::io::ErrorKind::TimedOut));
+    tokio::time::timeout(most, statement).await.map_err(late)?
+}
+
 /// The number of the lock that the one writer of a database holds: "grouser" in its first bytes.
 const LOCK: i64 = 0x67_72_6f_75_73_65_72;
 
-/// A server soon notices that a machine is gone: probes after 2 s, three of them a second apart.
-const SETTINGS: [(&str, &str); 3] = [
+/// A server soon notices that a machine is gone: probes after 2 s, three of them a second apart, and no more than 5 s for what it has
+/// sent itself to be acknowledged, while which it does not probe.
+const SETTINGS: [(&str, &str); 4] = [
     ("tcp_keepalives_idle", "2"),
     ("tcp_keepalives_interval", "1"),
     ("tcp_keepalives_count", "3"),
+    ("tcp_user_timeout", "5000"),
 ];
 
 fn options(path: &str) -> Result<PgConnectOptions, StoreError> {
@@ -63,7 +82,9 @@ pub(super) async fn lock(connection: &mut Connection, path: &str) -> Result<bool
 /// Refuses a database that somebody else has made, or a later version of this program.
 pub(super) async fn recognise(connection: &mut Connection, path: &str) -> Result<(), StoreError> {
     let wrap = |source| StoreError::of(path, source);
-    let tables = "SELECT count(*) FROM information_schema.tables WHERE table_schema = current_schema()";
+    // Whoever is cut off at the first start may leave the empty list of migrations. Views are others' business.
+    let tables = "SELECT count(*) FROM information_schema.tables
+                  WHERE table_schema = current_schema() AND table_type = 'BASE TABLE' AND table_name <> '_sqlx_migrations'";
     let all: i64 = query_scalar(tables)
         .fetch_one(&mut *connection)
         .await

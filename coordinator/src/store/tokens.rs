@@ -37,6 +37,17 @@ fn token(row: &Row) -> Result<Token, StoreError> {
     })
 }
 
+/// Inserts a token unless its name is in use; how many rows that made.
+async fn insert_token(connection: &mut Connection, token: &Token) -> Result<u64, sqlx::Error> {
+    query("INSERT INTO tokens (name, role, hash, created_at_ms) VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING")
+        .bind(&token.name)
+        .bind(token.role.name())
+        .bind(token.hash.0.to_vec())
+        .bind(token.created_at_ms)
+        .execute(connection)
+        .await
+}
+
 /// The tokens of a store, for changing them.
 ///
 /// This is the one way to write to a store beside its coordinator: each change is one short transaction of SQLite, for
@@ -81,16 +92,29 @@ impl TokenTable {
     /// # Errors
     /// [`StoreError`].
     pub async fn add(&mut self, token: &Token) -> Result<bool, StoreError> {
-        let added = query(
-            "INSERT INTO tokens (name, role, hash, created_at_ms) VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING",
-        )
-        .bind(&token.name)
-        .bind(token.role.name())
-        .bind(token.hash.0.to_vec())
-        .bind(token.created_at_ms)
-        .execute(&mut self.connection)
-        .await;
+        let added = insert_token(&mut self.connection, token).await;
         Ok(added.map_err(|e| self.failed(e))? == 1)
+    }
+
+    /// Adds a token in place of the one of its name, unless that is the same.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn replace(&mut self, token: &Token) -> Result<(), StoreError> {
+        let replaced = async {
+            self.connection.begin().await?;
+            query(
+                "UPDATE tokens SET revoked_at_ms = ? WHERE name = ? AND revoked_at_ms IS NULL AND hash <> ?",
+            )
+            .bind(token.created_at_ms)
+            .bind(&token.name)
+            .bind(token.hash.0.to_vec())
+            .execute(&mut self.connection)
+            .await?;
+            insert_token(&mut self.connection, token).await?;
+            self.connection.commit().await
+        };
+        replaced.await.map_err(|source| self.failed(source))
     }
 
     /// Revokes the token of a name; whether there was one in use.

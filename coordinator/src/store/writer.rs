@@ -19,7 +19,8 @@ use super::insert::{
     insert_study,
 };
 use super::results::StudyResults;
-use super::sql::Connection;
+use super::server;
+use super::sql::{Connection, query};
 use record::fact::{EvaluationRow, Fact};
 
 /// Most facts in one commit.
@@ -356,7 +357,7 @@ async fn run(
     let mut group = Vec::with_capacity(GROUP);
     let mut number = 0;
     let mut closing = false;
-    while !closing && receiver.recv_many(&mut group, GROUP).await > 0 {
+    while !closing && next_writes(&mut connection, &mut receiver, &mut group).await? > 0 {
         waiting.linger().await;
         while group.len() < GROUP
             && let Ok(write) = receiver.try_recv()
@@ -365,17 +366,14 @@ async fn run(
         }
         closing = group.iter().any(|w| matches!(w, Write::Close));
         let began = std::time::Instant::now();
-        loop {
-            match connection.begin().await {
-                Ok(()) => break,
-                Err(error) if is_locked(&error) => health.wait_for_lock(began.elapsed()),
-                Err(error) => return Err(error),
-            }
-        }
-        health.is_locked.store(false, Ordering::Relaxed);
         let mut replies = Replies::default();
-        let facts = write_group(&mut connection, group.drain(..), &mut replies, health).await?;
-        connection.commit().await?;
+        let is_file = matches!(connection, Connection::Sqlite(_));
+        let stored = store_group(&mut connection, group.drain(..), &mut replies, health);
+        let facts = if is_file {
+            stored.await?
+        } else {
+            server::in_time(server::GROUP_TIME, stored).await?
+        };
         number += facts;
         replies.send(states);
         health.commits.fetch_add(1, Ordering::Relaxed);
@@ -387,6 +385,48 @@ async fn run(
         committed.send_replace(number);
     }
     connection.close().await
+}
+
+/// Waits for writes; how many there are, none once nobody can send any. Meanwhile a server is asked whether the connection is still
+/// there, and with it the lock: an idle coordinator, too, must end when another one may have taken over.
+async fn next_writes(
+    connection: &mut Connection,
+    receiver: &mut mpsc::UnboundedReceiver<Write>,
+    group: &mut Vec<Write>,
+) -> Result<usize, sqlx::Error> {
+    loop {
+        let received = receiver.recv_many(group, GROUP);
+        match connection {
+            Connection::Sqlite(_) => return Ok(received.await),
+            Connection::Postgres(_) => match tokio::time::timeout(server::PROBE, received).await {
+                Ok(count) => return Ok(count),
+                Err(_) => {
+                    server::in_time(server::ANSWER_TIME, query("SELECT 1").execute(&mut *connection)).await?
+                }
+            },
+        };
+    }
+}
+
+/// Stores writes in one transaction; how many of them are facts.
+async fn store_group(
+    connection: &mut Connection,
+    group: impl Iterator<Item = Write>,
+    replies: &mut Replies,
+    health: &StoreHealth,
+) -> Result<u64, sqlx::Error> {
+    let began = std::time::Instant::now();
+    loop {
+        match connection.begin().await {
+            Ok(()) => break,
+            Err(error) if is_locked(&error) => health.wait_for_lock(began.elapsed()),
+            Err(error) => return Err(error),
+        }
+    }
+    health.is_locked.store(false, Ordering::Relaxed);
+    let facts = write_group(connection, group, replies, health).await?;
+    connection.commit().await?;
+    Ok(facts)
 }
 
 /// Answers that may only be given after the commit.

@@ -223,9 +223,27 @@ fn a_token_that_was_made_elsewhere_is_taken_once_and_again() {
     assert_eq!(add("work").success(), "");
     assert_eq!(add("work").success(), "", "as when a pod starts again");
     let refused = add("submit").refusal();
-    assert!(refused.contains("has a token farm already"), "{refused}");
-    until("the token", || {
-        let known = status(&service.client, "GET", "/v1/work/demand", Some(secret));
-        (known == 200).then_some(())
-    });
+    assert!(
+        refused.contains("has this token already, as farm with the role work"),
+        "{refused}"
+    );
+    let becomes = |secret: &str, expected: u16| {
+        until("the token", || {
+            let known = status(&service.client, "GET", "/v1/work/demand", Some(secret));
+            (known == expected).then_some(())
+        });
+    };
+    becomes(secret, 200);
+    let other = "fedcba9876543210fedcba9876543210";
+    std::fs::write(&file, format!("{other}\n")).expect("a file");
+    assert_eq!(add("work").success(), "", "as when a secret is changed");
+    becomes(other, 200);
+    becomes(secret, 401);
+    programs::run(programs::coordinator([
+        "token", "revoke", "farm", "--store", &store,
+    ]))
+    .success();
+    becomes(other, 401);
+    assert!(add("work").stderr.contains("was revoked, and stays so"));
+    becomes(other, 401);
 }

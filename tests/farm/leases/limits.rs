@@ -30,6 +30,19 @@ fn one_that_has_nothing_to_do_ends_after_its_time() {
 }
 
 #[test]
+fn one_whose_coordinator_does_not_come_back_ends_with_what_it_has_computed() {
+    let mut service = Service::start(&[]);
+    service.submit(&Job::small().sampler(5000, [2, 4], 1));
+    let mut left = start(&service, &["--max-idle", "2"]);
+    until("some evaluations", || {
+        service.evaluations(1).filter(|&done| done >= 64)
+    });
+    service.kill();
+    assert!(left.wait().success(), "{}", left.log());
+    assert!(left.log().contains("--max-idle"), "{}", left.log());
+}
+
+#[test]
 fn one_that_serves_once_ends_when_nothing_is_left() {
     let service = Service::start(&[]);
     let id = service.submit(&Job::small());

@@ -56,9 +56,10 @@ fn a_deletion_that_was_cut_short_is_finished_at_the_next_start() {
     service.submit(&Job::small());
     service.wait_for(1, "finished");
     service.terminate();
-    // As the first part of a deletion leaves it.
+    // As the first part of a deletion leaves it; a model that is not ours was asked twice.
     service.database().execute(
-        "INSERT INTO deletions VALUES (1, 1, 1, 0); UPDATE studies SET archived_at_ms = 0;
+        "INSERT INTO repeats VALUES (1, 1, 1, false, 0, 0, 0, 0);
+         INSERT INTO deletions VALUES (1, 1, 1, 0); UPDATE studies SET archived_at_ms = 0;
          DELETE FROM evaluations WHERE evaluation < 50",
     );
     service.restart();

@@ -89,6 +89,8 @@ pub(super) struct Worker<C> {
     renewed: Instant,
     /// When it last held a lease, or started.
     busy: Instant,
+    /// Whether the coordinator does not answer.
+    away: bool,
 }
 
 impl<C: Coordinator> Worker<C> {
@@ -122,6 +124,7 @@ impl<C: Coordinator> Worker<C> {
             flushed: Instant::now(),
             renewed: Instant::now(),
             busy: Instant::now(),
+            away: false,
         }
     }
 
@@ -132,7 +135,6 @@ impl<C: Coordinator> Worker<C> {
     pub(super) async fn run(mut self, shutdown: impl Future<Output = ()>) -> Result<Ended, ExchangeError> {
         tokio::pin!(shutdown);
         let mut back_off = BACK_OFF[0];
-        let mut away = false;
         loop {
             self.collect();
             if let Some(ended) = self.has_ended() {
@@ -179,7 +181,7 @@ impl<C: Coordinator> Worker<C> {
             };
             match answer {
                 Ok(response) => {
-                    if std::mem::take(&mut away) {
+                    if std::mem::take(&mut self.away) {
                         tracing::info!(worker = self.settings.name, "the coordinator is back");
                     }
                     back_off = BACK_OFF[0];
@@ -191,7 +193,7 @@ impl<C: Coordinator> Worker<C> {
                     }
                 }
                 Err((ExchangeError::Away(reason), results)) => {
-                    if !std::mem::replace(&mut away, true) {
+                    if !std::mem::replace(&mut self.away, true) {
                         tracing::warn!(
                             worker = self.settings.name,
                             reason,
@@ -226,9 +228,9 @@ impl<C: Coordinator> Worker<C> {
         }
     }
 
-    /// Whether it has nothing to do, and since when.
+    /// Whether it has nothing to do, and since when. Results that nobody takes are computed again elsewhere: they keep no machine.
     fn idle_since(&self) -> Option<Instant> {
-        (self.held.is_empty() && self.outbox.is_empty()).then_some(self.busy)
+        (self.held.is_empty() && (self.outbox.is_empty() || self.away)).then_some(self.busy)
     }
 
     /// Why it ends now, of the limits that are not a matter of time.
@@ -237,7 +239,8 @@ impl<C: Coordinator> Worker<C> {
             self.busy = Instant::now();
         }
         let limits = &self.settings.limits;
-        let is_idle = self.idle_since().is_some_and(|since| since.elapsed() >= LULL);
+        let is_idle =
+            self.outbox.is_empty() && self.idle_since().is_some_and(|since| since.elapsed() >= LULL);
         if limits.once && is_idle && self.known.in_hand == Some(0) {
             return Some(Ended::NothingLeft);
         }
