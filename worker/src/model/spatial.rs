@@ -5,7 +5,7 @@ use scm::spatial::{self, Grousers, RunSettings, Scene, Shape, SpatialRun, Surfac
 use scm::{Condition, Rejection, Soil, Wheel};
 use shared::experiment::{ProtocolKind, WheelGeometry};
 use shared::model::ModelVariant;
-use shared::model::spatial::{DisplacementFrame, HubMotion, PAPER_DURATION_S, PressureAxis};
+use shared::model::spatial::{DisplacementFrame, FootprintWidth, HubMotion, PAPER_DURATION_S, PressureAxis};
 
 use super::error::CompileError;
 use super::parameters::GroundMap;
@@ -39,6 +39,10 @@ impl SpatialModel {
             pressure_direction: match choices.pressure_direction {
                 PressureAxis::WheelNormal => spatial::PressureDirection::WheelNormal,
                 PressureAxis::Vertical => spatial::PressureDirection::Vertical,
+            },
+            footprint: match choices.footprint {
+                FootprintWidth::Hull => spatial::Footprint::Hull,
+                FootprintWidth::Patches => spatial::Footprint::Patches,
             },
             vertical: match choices.vertical {
                 HubMotion::Balance => spatial::Vertical::Balance,

@@ -13,7 +13,7 @@ use shared::outcome::{Observables, Outcome, ParameterRejection, SimulatedHistory
 use statistics::{Subchain, SubchainEnd};
 
 /// The version of the equations that calibrations are pinned to.
-pub(crate) const EQUATIONS: &str = "scm-6";
+pub(crate) const EQUATIONS: &str = "scm-7";
 
 const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 0.15\n";
 const HEAD: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\n";

@@ -24,7 +24,7 @@ mod wheel;
 pub use run::{History, SpatialRun};
 pub use scene::Scene;
 pub use settings::{
-    Displacement, Ground, Grousers, PressureDirection, Protocol, RunSettings, Shape, Vertical,
+    Displacement, Footprint, Ground, Grousers, PressureDirection, Protocol, RunSettings, Shape, Vertical,
 };
 pub use surface::{Normals, SurfaceMesh};
 
@@ -41,7 +41,7 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 /// wheel with its surface h below the soil's surface `z_s`, per projected area dA:
 ///
 /// - `p = min(gamma k* z^n, K_e (z_s − h))`, z below the reference `beta loose`, `k* = k_c / b_eff + k_phi`,
-///   `b_eff = 2 A / L` of the node's own patch of the footprint (area A, contour L)
+///   `b_eff = 2 A / L` of the hull of the whole footprint (area A, contour L), or of the node's patch: [`Footprint`]
 /// - `gamma = d^m / mean(d^m)` over the patch, d the Euclidean distance from its border
 /// - `tau = (c + p tan(phi)) (1 − exp(−|v_t| / v0))` against the slip velocity `v_t` of the wheel's surface, which has three
 ///   components
@@ -87,9 +87,11 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 /// # Validity
 /// Rigid wheel, dry granular soil, motion slow enough for the vertical balance (or [`Vertical::Dynamic`]). Stresses act on
 /// the wheel's surface. A height field cannot represent the flanks of grousers: their thrust beyond the sheared tips is
-/// not modelled. With a negative `k_c` a small patch of the footprint, such as a grouser's tip or a lip of a berm,
-/// carries nothing, and the load jumps as patches join: from about kappa = −0.5 on, wheels with grousers find no support and smooth
-/// ones on flowing soil no balance, where the quasi-static model, which knows one patch, still does. Wheels up to 126 lanes wide straight ahead, 62 at a slip angle.
+/// not modelled. With a negative `k_c` a footprint carries only where `b_eff > −k_c / k_phi`: a wheel of 50 mm balances down to
+/// kappa = −0.8, with and without grousers and flow, and not at −0.95, where the hull would have to be longer than the wheel's
+/// radius; one of 112 mm does at −0.95. With [`Footprint::Patches`] a grouser's tip or a lip of a berm carries nothing by itself, and
+/// the load jumps as patches join: no balance from kappa = −0.3 to −0.66 on. Checked by `spatial::cohesion`. Wheels up to 126 lanes
+/// wide straight ahead, 62 at a slip angle.
 ///
 /// # Numerics
 /// dx is refined until eight nodes lie in the contact of a smooth wheel, on soil or on its elastic layer, and the contact ends between nodes, so that

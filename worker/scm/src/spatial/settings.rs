@@ -173,6 +173,19 @@ pub enum PressureDirection {
     Vertical,
 }
 
+/// Whose effective width `b_eff = 2 A / L` the nodes of a footprint have; without `k_c` it acts on nothing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Footprint {
+    /// One for the whole footprint, as the source paper has it: that of the rectangle that its patches span.
+    ///
+    /// Its area spans, lane by lane, what lies between the rear and the front end of the contact; its width is that of the lanes
+    /// in contact. Two rims beside each other thus count as one of their joint width. A smooth wheel's footprint is its own hull.
+    #[default]
+    Hull,
+    /// Each patch of connected nodes its own, by its contour: a grouser's tip is a plate by itself.
+    Patches,
+}
+
 /// How the hub finds its height.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Vertical {
@@ -232,6 +245,8 @@ pub struct RunSettings {
     pub displacement: Displacement,
     /// Along which direction the pressure acts.
     pub pressure_direction: PressureDirection,
+    /// Whose effective width the nodes of a footprint have.
+    pub footprint: Footprint,
     /// How the hub finds its height.
     pub vertical: Vertical,
     /// When the run ends.
@@ -247,6 +262,7 @@ impl Default for RunSettings {
             travel_step_m: 0.0005,
             displacement: Displacement::default(),
             pressure_direction: PressureDirection::default(),
+            footprint: Footprint::default(),
             vertical: Vertical::default(),
             protocol: Protocol::default(),
             both_halves: false,

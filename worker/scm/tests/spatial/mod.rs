@@ -8,9 +8,10 @@
 //! - `protocol`, `vertical`: ways to run and average; `steady`: when a run has settled.
 //! - `mesh`: triangles against the analytic wheel; `surfaces`: the triangles.
 //! - `comparison`: the choices behind the figures of another implementation.
-//! - `rejections`: parameters without an answer.
+//! - `cohesion`: down to which kappa a wheel finds a balance; `rejections`: parameters without an answer.
 //! - `effects`: how effects enter; `signatures`: what each of them changes.
 
+mod cohesion;
 mod comparison;
 mod effects;
 mod extremes;

@@ -63,6 +63,11 @@ fn deposits_lift_the_wheel_as_the_prototypes() {
 }
 
 #[test]
+fn one_effective_width_for_the_hull_carries_where_single_patches_do_not() {
+    holds(validation::hull::add);
+}
+
+#[test]
 fn another_implementation_is_reproduced() {
     holds(validation::other_implementation::add);
 }
@@ -71,7 +76,7 @@ fn another_implementation_is_reproduced() {
 fn no_oracle_is_left_out_and_a_wrong_figure_fails() {
     assert_eq!(
         ORACLES.len(),
-        11,
+        12,
         "one test for each, above and in `effects::signatures`"
     );
     let mut rows = Rows::default();
