@@ -73,7 +73,6 @@ impl Contact {
             behind: zero,
             run: zero,
         };
-        self.spans.clear();
         self.spans.resize((self.end - self.first) * packs, blank);
         // pressures count relative to each other alone
         let modulus = splat(if laws.soil.k_phi > 0.0 {
@@ -88,7 +87,7 @@ impl Contact {
                 let quad = &self.quads[row * packs + pack];
                 let touching = lanes_of(self.masks[row] >> (pack * PACK));
                 let begins = lanes_of((self.masks[row] & !self.masks[row - 1]) >> (pack * PACK));
-                let pressure = touching.select(laws.pressure(modulus, quad.depth, quad.pressed), zero);
+                let pressure = touching.select(laws.bounded(modulus * quad.depth_power, quad.pressed), zero);
                 run = greater(begins.select(zero, run), pressure);
                 self.spans[(row - self.first) * packs + pack] = Span {
                     gap: begins.select(quad.rear_end - ended, zero),

@@ -248,7 +248,7 @@ impl Contact {
                         run.lanes_of(pack).select(stiffness(run), others)
                     })
                 });
-                let p = laws.pressure(stiffness * quad.shape, quad.depth, quad.pressed);
+                let p = laws.bounded(stiffness * quad.shape * quad.depth_power, quad.pressed);
                 quad.pressure = p;
                 force += quad.area * (p + (cohesion + p * tan_phi) * quad.shear_z);
             }

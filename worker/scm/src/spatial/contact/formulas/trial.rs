@@ -53,7 +53,7 @@ impl NodeFormulas<'_> {
             }),
         };
         let quad = &mut contact.quads[place];
-        let plastic = laws.plastic(of_patch(|patch| patch.stiffness) * quad.shape, quad.depth);
+        let plastic = of_patch(|patch| patch.stiffness) * quad.shape * quad.depth_power;
         quad.pressure = laws.bounded(plastic, quad.pressed);
         let bears = u64::from(quad.pressure.simd_gt(splat(0.0)).to_bitmask()) & lanes;
         self.points.push(Point { quad: place, bears });
