@@ -4,20 +4,11 @@ use super::super::pack::{PACK, Pack, greater, lanes_of, lesser, most_of, splat, 
 use super::super::terrain::Terrain;
 use super::Contact;
 use super::laws::Laws;
+use super::span::Span;
 use crate::footprint::rectangle_effective_width;
 
 /// A run of nodes counts in full from this share of the footprint's greatest pressure on `[–]`.
 const SHARE: f64 = 0.05;
-
-/// What four lanes hold up to a strip, from the rear.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Span {
-    /// The gap behind a run that begins in the strip `[m]`.
-    gap: Pack,
-    /// The greatest pressure behind that gap, and in the run so far `[Pa]`.
-    behind: Pack,
-    run: Pack,
-}
 
 impl Contact {
     /// Effective width of the hull `[m]`, 0 without contact.

@@ -4,7 +4,7 @@
 //! - `quad`: what is known of four neighbouring nodes.
 //! - `patch`: which nodes in contact are connected.
 //! - `distance`: ends of the contact between nodes, areas, distances from the border.
-//! - `contour`: contour lengths of the patches; `hull`: what they span together.
+//! - `contour`: contour lengths of the patches; `hull`: what they span together; `span`: what lanes do.
 //! - `laws`: pressure and its distribution; `power`: z^n for many nodes.
 //! - `reaction`: force and torque on the wheel.
 //! - `formulas`: pressure and shear stress as effects leave them.
@@ -18,13 +18,14 @@ mod patch;
 mod power;
 mod quad;
 pub(super) mod reaction;
+mod span;
 #[cfg(test)]
 mod tests;
 
-use hull::Span;
 use laws::Laws;
 use patch::{Patches, Run};
 use quad::{Quad, Under};
+use span::Span;
 
 use super::pack::{PACK, Pack, splat, sum};
 use super::settings::Footprint;
