@@ -27,7 +27,7 @@ impl Contact {
             if most > 0.0 {
                 lesser(pressure / splat(SHARE * most), splat(1.0))
             } else {
-                // on loose soil that bears nothing, all count alike
+                // where nothing bears, all count alike
                 splat(1.0)
             }
         };
@@ -74,19 +74,22 @@ impl Contact {
         let mut most = zero;
         for pack in 0..packs {
             let (mut ended, mut behind, mut run) = (zero, zero, zero);
+            let mut met = 0;
             for row in self.first..self.end {
                 let quad = &self.quads[row * packs + pack];
-                let touching = lanes_of(self.masks[row] >> (pack * PACK));
-                let begins = lanes_of((self.masks[row] & !self.masks[row - 1]) >> (pack * PACK));
+                let mask = self.masks[row] >> (pack * PACK);
+                let begins = mask & !(self.masks[row - 1] >> (pack * PACK));
+                let touching = lanes_of(mask);
                 let pressure = touching.select(laws.bounded(modulus * quad.depth_power, quad.pressed), zero);
-                run = greater(begins.select(zero, run), pressure);
+                run = greater(lanes_of(begins).select(zero, run), pressure);
                 self.spans[(row - self.first) * packs + pack] = Span {
-                    gap: begins.select(quad.rear_end - ended, zero),
+                    gap: lanes_of(begins & met).select(quad.rear_end - ended, zero),
                     behind,
                     run,
                 };
                 ended = touching.select(quad.front_end, ended);
                 behind = greater(behind, pressure);
+                met |= mask;
             }
             most = greater(most, behind);
         }
