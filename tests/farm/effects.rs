@@ -313,7 +313,7 @@ fn the_catalogue_is_listed_and_shown() {
 fn the_catalogue_is_there_over_rest() {
     let service = Service::start(&[]);
     let list = service.client.json("/v1/effects");
-    assert_eq!(list.as_array().map(Vec::len), Some(44));
+    assert_eq!(list.as_array().map(Vec::len), Some(49));
     let one = service.client.json("/v1/effects/sled_tare");
     let listed = list
         .as_array()

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use formula::catalogue::{catalogue, find};
+use formula::slip::variables;
 use formula::{Effect, Parameter};
 use shared::experiment::RunUse;
 use shared::file::{FileError, FileSet, unknown_word};
@@ -29,6 +30,9 @@ pub enum ExclusionReason {
     /// Its strength is fixed.
     #[error("no strength is free")]
     NoFreeStrength,
+    /// It changes nothing at the conditions of the fitted runs.
+    #[error("it changes nothing at the slips and slip angles of the fitted runs")]
+    AbsentEverywhere,
 }
 
 /// The job with further effects.
@@ -98,17 +102,21 @@ pub fn library(
     job: &FileSet,
     experiment: &FileSet,
 ) -> (Vec<CandidateEffect>, Vec<(String, ExclusionReason)>) {
-    let (mut had, mut wheels) = (BTreeSet::new(), BTreeSet::new());
+    let (mut had, mut wheels, mut fitted) = (BTreeSet::new(), BTreeSet::new(), Vec::new());
     // An invalid job excludes every effect, each with the reason.
     if let Ok(base) = spec(job, experiment) {
         had.extend(base.fit_variant.effects.into_iter().map(|e| e.name));
-        let fitted = base
-            .experiment
-            .runs
-            .into_iter()
-            .filter(|r| r.usage == RunUse::Fit);
-        wheels.extend(fitted.map(|run| run.wheel));
+        fitted = base.experiment.runs;
+        fitted.retain(|run| run.usage == RunUse::Fit);
+        wheels.extend(fitted.iter().map(|run| run.wheel.clone()));
     }
+    let acts = |effect: &Effect, wheel: Option<&str>| {
+        let mut own = fitted
+            .iter()
+            .filter(|run| wheel.is_none_or(|wheel| run.wheel == wheel));
+        fitted.is_empty()
+            || own.any(|run| !effect.is_absent_at(&variables(run.slip, run.slip_angle_deg.to_radians())))
+    };
     let missing = || catalogue().iter().filter(|e| !had.contains(&e.name));
     let everywhere = missing().map(|effect| (effect, None));
     let on_one = missing()
@@ -117,7 +125,12 @@ pub fn library(
     let (mut candidates, mut excluded) = (Vec::new(), Vec::new());
     for (effect, wheel) in everywhere.chain(on_one) {
         let candidate = candidate(effect, wheel);
-        match check(job, experiment, &candidate.extension, effect, wheel) {
+        let able = if acts(effect, wheel) {
+            check(job, experiment, &candidate.extension, effect, wheel)
+        } else {
+            Err(ExclusionReason::AbsentEverywhere)
+        };
+        match able {
             Ok(()) => candidates.push(candidate),
             Err(reason) => excluded.push((candidate.name, reason)),
         }
