@@ -209,6 +209,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         grouser_thickness_m: 0.0,
         rig_radius_m: 0.125,
         mesh: None,
+        tread: None,
     };
     let condition = RunCondition {
         wheel: "w".into(),

@@ -212,6 +212,7 @@ impl<'a> Reference<'a> {
             grouser_thickness_m: 0.002,
             rig_radius_m: RIG_RADIUS_M,
             mesh: None,
+            tread: None,
         };
         let soil = SoilProperties {
             density_kg_m3: Some(1400.0),

@@ -52,7 +52,7 @@ fn wheel() -> Value {
             (
                 "grouser_count",
                 usual(
-                    whole("number of straight grousers", 0, Some(u64::from(u32::MAX))),
+                    whole("number of grousers, in each row", 0, Some(u64::from(u32::MAX))),
                     0,
                 ),
             ),
@@ -63,6 +63,55 @@ fn wheel() -> Value {
             (
                 "grouser_thickness_m",
                 not_negative("thickness of a grouser along the rim [m]"),
+            ),
+            (
+                "grouser_rows",
+                usual(
+                    whole(
+                        "number of rows of grousers side by side, each with grouser_count; for scm",
+                        1,
+                        Some(100),
+                    ),
+                    1,
+                ),
+            ),
+            (
+                "grouser_stagger",
+                usual(
+                    json!({
+                        "type": "number", "minimum": 0, "exclusiveMaximum": 1,
+                        "description": "shift of a row against the one to its right, relative to the distance of its grousers",
+                    }),
+                    0.0,
+                ),
+            ),
+            (
+                "grouser_width_m",
+                above(
+                    "width of the grousers of a row [m]; width_m / grouser_rows where nothing is said",
+                    0.0,
+                ),
+            ),
+            (
+                "grouser_angle_deg",
+                bent(
+                    "angle of the grousers against the axle, positive: the left end is further forward [deg]",
+                    89.0,
+                ),
+            ),
+            (
+                "grouser_chevron_deg",
+                bent(
+                    "angle of either half of a V, positive: its middle enters the soil first [deg]",
+                    89.0,
+                ),
+            ),
+            (
+                "grouser_bow_m",
+                bent(
+                    "how far forward of their middle the grousers' ends lie, on a parabola [m]",
+                    1.0,
+                ),
             ),
             (
                 "rig_radius_m",
@@ -78,6 +127,11 @@ fn wheel() -> Value {
         ],
     );
     needing(wheel, &["radius_m", "width_m"])
+}
+
+/// A number between -`most` and `most`, 0 where nothing is said.
+fn bent(words: &str, most: f64) -> Value {
+    usual(number(words, -most, most), 0.0)
 }
 
 fn soil() -> Value {

@@ -1,7 +1,8 @@
 //! An experiment as its files describe it: wheels, rig, noise, protocol, test runs, bevameter readings.
 //!
 //! # Layout
-//! - `settings`: the tables of `experiment.toml`; `wheel`: those of the wheels; `scatter`: relative noise.
+//! - `settings`: the tables of `experiment.toml`; `wheel`: those of the wheels; `tread`: how their grousers
+//!   stand; `scatter`: relative noise.
 //! - `mesh`: a wheel given as a surface of triangles.
 //! - `runs`: the rows of `runs.csv`; `history`: the recorded time history of a run, and its averages.
 //! - `more_runs`: an experiment with further runs. `fewer_runs`: with fitted runs held out.
@@ -19,6 +20,7 @@ mod runs;
 mod scatter;
 mod settings;
 mod table;
+mod tread;
 mod wheel;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -30,6 +32,7 @@ pub use mesh::{MOST_BYTES, MOST_TRIANGLES, MeshError, WheelMesh};
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
 pub use scatter::{Scatter, ScatterSd};
 pub use settings::{AveragingProtocol, Noise, NoiseSd, ProtocolKind, Rig, SoilProperties};
+pub use tread::Tread;
 pub use wheel::{WheelGeometry, rim_speed_m_s};
 
 use crate::channel::Channel;

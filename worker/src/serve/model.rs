@@ -96,6 +96,7 @@ pub fn evaluate(kind: ModelKind, input: &[Vec<f64>], config: &toml::Table) -> Re
         grouser_thickness_m: number("grouser_thickness_m", 0.0)?,
         rig_radius_m: number("rig_radius_m", radius_m)?,
         mesh: None,
+        tread: None,
     };
     let run = TestRun {
         name: "run".to_owned(),

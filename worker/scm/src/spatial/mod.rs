@@ -1,7 +1,7 @@
 //! A wheel that rolls over a deformable terrain, in three dimensions.
 //!
 //! # Layout
-//! - [`Scene`], [`RunSettings`], [`Ground`], [`Shape`], [`SurfaceMesh`]: what a run is made of.
+//! - [`Scene`], [`RunSettings`], [`Ground`], [`Shape`], [`Tread`], [`SurfaceMesh`]: what a run is made of.
 //! - `run`: the wheel along its track, and the averages of force, torque and sinkage.
 //! - `wheel`: the underside that the soil meets, and its motion.
 //! - `contact`: which nodes the wheel touches at a height, their pressure, force and torque.
@@ -13,20 +13,22 @@ mod contact;
 mod displacement;
 #[cfg(test)]
 mod fixture;
+mod grousers;
 mod pack;
 mod run;
 mod scene;
 mod settings;
 mod surface;
 mod terrain;
+mod tread;
 mod wheel;
 
+pub use grousers::Grousers;
 pub use run::{History, SpatialRun};
 pub use scene::Scene;
-pub use settings::{
-    Displacement, Ground, Grousers, PressureDirection, Protocol, RunSettings, Shape, Vertical,
-};
+pub use settings::{Displacement, Ground, PressureDirection, Protocol, RunSettings, Shape, Vertical};
 pub use surface::{Normals, SurfaceMesh};
+pub use tread::Tread;
 
 use crate::rejection::require;
 use crate::{Condition, Rejection};
@@ -87,7 +89,7 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 /// # Validity
 /// Rigid wheel, dry granular soil, motion slow enough for the vertical balance (or [`Vertical::Dynamic`]). Stresses act on
 /// the wheel's surface. A height field cannot represent the flanks of grousers: their thrust beyond the sheared tips is
-/// not modelled. With a negative `k_c` a small patch of the footprint, such as a grouser's tip or a lip of a berm,
+/// not modelled, nor the sideways one of oblique grousers. With a negative `k_c` a small patch of the footprint, such as a grouser's tip or a lip of a berm,
 /// carries nothing, and the load jumps as patches join: from about kappa = −0.5 on, wheels with grousers find no support and smooth
 /// ones on flowing soil no balance, where the quasi-static model, which knows one patch, still does. Wheels up to 126 lanes wide straight ahead, 62 at a slip angle.
 ///

@@ -7,6 +7,7 @@
 //! - `grousers`, `passes`, `extremes`: what memory and shape of the soil do.
 //! - `protocol`, `vertical`: ways to run and average; `steady`: when a run has settled.
 //! - `mesh`: triangles against the analytic wheel; `surfaces`: the triangles.
+//! - `tread`: grousers in rows, oblique and bent, against straight ones and triangles.
 //! - `comparison`: the choices behind the figures of another implementation.
 //! - `rejections`: parameters without an answer.
 //! - `effects`: how effects enter; `signatures`: what each of them changes.
@@ -25,4 +26,5 @@ mod signatures;
 mod steady;
 mod surfaces;
 mod symmetry;
+mod tread;
 mod vertical;

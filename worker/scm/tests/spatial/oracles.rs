@@ -58,6 +58,11 @@ fn grousers_give_the_prototypes_figures() {
 }
 
 #[test]
+fn rows_of_grousers_roll_over_their_tips() {
+    holds(validation::tread::add);
+}
+
+#[test]
 fn deposits_lift_the_wheel_as_the_prototypes() {
     holds(validation::flow::add);
 }
@@ -71,7 +76,7 @@ fn another_implementation_is_reproduced() {
 fn no_oracle_is_left_out_and_a_wrong_figure_fails() {
     assert_eq!(
         ORACLES.len(),
-        11,
+        12,
         "one test for each, above and in `effects::signatures`"
     );
     let mut rows = Rows::default();

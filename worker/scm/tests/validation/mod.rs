@@ -7,7 +7,7 @@
 //! - `row`: one expected figure.
 //! - `profile`: pressure along a smooth wheel with uniform pressure across it, on paper.
 //! - `plate`, `smooth_wheel`, `quasi_static`, `effects`, `convergence`, `scaling`, `power`, `displacement`, `grousers`,
-//!   `flow`, `other_implementation`: the oracles.
+//!   `tread`, `flow`, `other_implementation`: the oracles.
 
 pub(crate) mod convergence;
 pub(crate) mod displacement;
@@ -22,6 +22,7 @@ pub(crate) mod quasi_static;
 mod row;
 pub(crate) mod scaling;
 pub(crate) mod smooth_wheel;
+pub(crate) mod tread;
 
 pub(crate) use row::{Row, Rows};
 
@@ -29,7 +30,7 @@ pub(crate) use row::{Row, Rows};
 pub(crate) type Oracle = (&'static str, fn(&mut Rows));
 
 /// All oracles, in the order of the table.
-pub(crate) const ORACLES: [Oracle; 11] = [
+pub(crate) const ORACLES: [Oracle; 12] = [
     ("plate", plate::add),
     ("smooth wheel", smooth_wheel::add),
     ("quasi-static", quasi_static::add),
@@ -39,6 +40,7 @@ pub(crate) const ORACLES: [Oracle; 11] = [
     ("power", power::add),
     ("displacement", displacement::add),
     ("grousers", grousers::add),
+    ("tread", tread::add),
     ("flow", flow::add),
     ("other implementation", other_implementation::add),
 ];
