@@ -197,7 +197,7 @@ fn what_is_no_effect_of_one_s_own_is_refused_with_the_reason() {
     );
     assert_eq!(
         service.client.json("/v1/effects").as_array().map(Vec::len),
-        Some(44)
+        Some(45)
     );
 
     add(&service, GAIN);

@@ -1,5 +1,6 @@
 //! What an effect changes in drawbar pull, torque and sinkage, on one wheel in one sand.
 
+use formula::effect::Mechanism;
 use formula::{Effect, Variable};
 use serde::{Deserialize, Serialize};
 use shared::experiment::{
@@ -32,6 +33,8 @@ const COLUMNS: [(&str, f64, f64, f64); 6] = [
     ("50 mm/s", 0.2, 100.0, 0.05),
 ];
 
+/// Slip angle at which an effect is shown that acts at one alone `[deg]`.
+const SLIP_ANGLE_DEG: f64 = 15.0;
 /// Numbers of the first and the last run of a series; what is shown are last runs.
 const FIRST: i32 = 0;
 const LAST: i32 = 1;
@@ -45,7 +48,8 @@ pub struct Signature {
     pub model_kind: String,
     /// Which pass over the track is shown.
     pub pass: u32,
-    /// Names of the conditions in the tables; slip 0.2, 100 N and 10 mm/s of rim speed where nothing else is said.
+    /// Names of the conditions in the tables; slip 0.2, 100 N, 10 mm/s of rim speed and straight ahead where nothing else is said, at a
+    /// slip angle of 15° for an effect that acts at one alone.
     pub conditions: Vec<String>,
     /// The other parameters, which only shape the effect.
     pub shapes: Vec<HeldParameter>,
@@ -120,6 +124,10 @@ pub fn signature(effect: &Effect, kind: ModelKind) -> Result<Signature, String> 
     let slips: Vec<f64> = (0..POINTS).map(|i| (i as f64 - 8.0) / 20.0).collect();
     let curve = slips.iter().map(|&slip| ("", slip, 100.0, RIM_M_S));
     let mut runs: Vec<TestRun> = COLUMNS.into_iter().chain(curve).map(|c| run(c, pass)).collect();
+    if effect.mechanism == Some(Mechanism::SideWall) {
+        runs.iter_mut()
+            .for_each(|run| run.slip_angle_deg = SLIP_ANGLE_DEG);
+    }
     runs.push(TestRun {
         order: Some(FIRST),
         ..run(COLUMNS[0], pass)

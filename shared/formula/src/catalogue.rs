@@ -6,7 +6,7 @@ use crate::effect::Effect;
 
 /// The files, in the order in which effects follow each other at a hook: pressure first, by how it is distributed; then strength
 /// and its mobilisation; wheel and rig; last what the rig does to what it measures, offsets after gains.
-const FILES: [&str; 44] = [
+const FILES: [&str; 45] = [
     include_str!("../catalogue/pressure_distribution_shape.toml"),
     include_str!("../catalogue/peak_pressure_angle.toml"),
     include_str!("../catalogue/slip_sinkage.toml"),
@@ -39,6 +39,7 @@ const FILES: [&str; 44] = [
     include_str!("../catalogue/load_transfer.toml"),
     include_str!("../catalogue/lug_thrust.toml"),
     include_str!("../catalogue/bulldozing.toml"),
+    include_str!("../catalogue/buried_side_wall.toml"),
     include_str!("../catalogue/bin_slope.toml"),
     include_str!("../catalogue/sled_tare.toml"),
     include_str!("../catalogue/sled_drag.toml"),

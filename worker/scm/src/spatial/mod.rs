@@ -5,6 +5,7 @@
 //! - `run`: the wheel along its track, and the averages of force, torque and sinkage.
 //! - `wheel`: the underside that the soil meets, and its motion.
 //! - `contact`: which nodes the wheel touches at a height, their pressure, force and torque.
+//! - `side_wall`: soil that the side of the wheel pushes at a slip angle.
 //! - `displacement`: how far wheel and soil have slid along each other, where a formula asks for it.
 //! - `terrain`: the soil as a height field, its flow and its slopes.
 //! - `pack`: four lanes at a time.
@@ -18,6 +19,7 @@ mod pack;
 mod run;
 mod scene;
 mod settings;
+mod side_wall;
 mod surface;
 mod terrain;
 mod tread;
@@ -66,7 +68,10 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 ///   and the effective width when the contour was last measured.
 /// - Mechanisms: rebound `1 / K_e' = 1 / K_e + a`; a flat patch cuts the rim off at `R − a W`, from where sinkage is then counted;
 ///   digging lowers the reference surface by `(d / l) |v_t| dt` under the sliding wheel; end walls make k*
-///   `1 + w (exp(−x / l) + exp(−(L − x) / l))` times as large, x from the rear wall to the hub, x = R at the start of each pass.
+///   `1 + w (exp(−x / l) + exp(−(L − x) / l))` times as large, x from the rear wall to the hub, x = R at the start of each pass;
+///   the buried side in front meets passive earth pressure at a slip angle β, `s |sin β| (N (γ h²/2 + γ ζ h) + 2 c h √N)` per length
+///   against the lateral motion and friction `tan(δ)` of that along the side, `N = tan²(45° + φ/2)`, h the depth of a disc of
+///   radius R, ζ the mean height of the raised soil within `h √N` beside it.
 ///
 /// Without effects none of this is evaluated. Checked by `spatial::effects`, `spatial::signatures`.
 ///

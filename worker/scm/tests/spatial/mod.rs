@@ -10,7 +10,8 @@
 //! - `tread`: grousers in rows, oblique and bent, against straight ones and triangles.
 //! - `comparison`: the choices behind the figures of another implementation.
 //! - `rejections`: parameters without an answer.
-//! - `effects`: how effects enter; `signatures`: what each of them changes.
+//! - `effects`: how effects enter; `signatures`: what each of them changes; `side_wall`: one that needs
+//!   a slip angle.
 
 mod comparison;
 mod effects;
@@ -22,6 +23,7 @@ mod oracles;
 mod passes;
 mod protocol;
 mod rejections;
+mod side_wall;
 mod signatures;
 mod steady;
 mod surfaces;

@@ -63,6 +63,11 @@ fn rows_of_grousers_roll_over_their_tips() {
 }
 
 #[test]
+fn the_buried_side_meets_rankines_passive_force() {
+    holds(validation::side_wall::add);
+}
+
+#[test]
 fn deposits_lift_the_wheel_as_the_prototypes() {
     holds(validation::flow::add);
 }
@@ -76,7 +81,7 @@ fn another_implementation_is_reproduced() {
 fn no_oracle_is_left_out_and_a_wrong_figure_fails() {
     assert_eq!(
         ORACLES.len(),
-        12,
+        13,
         "one test for each, above and in `effects::signatures`"
     );
     let mut rows = Rows::default();

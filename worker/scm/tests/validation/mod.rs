@@ -7,7 +7,7 @@
 //! - `row`: one expected figure.
 //! - `profile`: pressure along a smooth wheel with uniform pressure across it, on paper.
 //! - `plate`, `smooth_wheel`, `quasi_static`, `effects`, `convergence`, `scaling`, `power`, `displacement`, `grousers`,
-//!   `tread`, `flow`, `other_implementation`: the oracles.
+//!   `tread`, `side_wall`, `flow`, `other_implementation`: the oracles.
 
 pub(crate) mod convergence;
 pub(crate) mod displacement;
@@ -21,6 +21,7 @@ mod profile;
 pub(crate) mod quasi_static;
 mod row;
 pub(crate) mod scaling;
+pub(crate) mod side_wall;
 pub(crate) mod smooth_wheel;
 pub(crate) mod tread;
 
@@ -30,7 +31,7 @@ pub(crate) use row::{Row, Rows};
 pub(crate) type Oracle = (&'static str, fn(&mut Rows));
 
 /// All oracles, in the order of the table.
-pub(crate) const ORACLES: [Oracle; 12] = [
+pub(crate) const ORACLES: [Oracle; 13] = [
     ("plate", plate::add),
     ("smooth wheel", smooth_wheel::add),
     ("quasi-static", quasi_static::add),
@@ -41,6 +42,7 @@ pub(crate) const ORACLES: [Oracle; 12] = [
     ("displacement", displacement::add),
     ("grousers", grousers::add),
     ("tread", tread::add),
+    ("side wall", side_wall::add),
     ("flow", flow::add),
     ("other implementation", other_implementation::add),
 ];

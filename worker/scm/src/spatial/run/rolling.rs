@@ -266,7 +266,16 @@ impl<'a> Rolling<'a> {
         self.heights.push(found.height - missed / self.slope);
         let nodes = self.effects.as_mut().and_then(|effects| effects.nodes.as_mut());
         let strengths = nodes.map(|nodes| nodes.strengths(&self.contact, &self.laws));
-        let reaction = self.contact.react(&self.terrain, &self.laws, strengths);
+        let mut reaction = self.contact.react(&self.terrain, &self.laws, strengths);
+        if let Some(side) = self.effects.as_ref().and_then(|effects| effects.side) {
+            let law = &self.laws.shear_velocity;
+            let at = (self.pose, self.hub);
+            let push = side.push(&self.contact, &self.terrain, at, &self.motion, law);
+            reaction.force_x += push.force_x;
+            reaction.force_y += push.force_y;
+            reaction.force_z += push.force_z;
+            reaction.torque += push.torque;
+        }
         if self.contact.end > self.contact.first {
             if let Some(path) = &mut self.shear_path {
                 path.slide(&self.contact, &mut self.terrain, self.pose.turned, time);
@@ -372,6 +381,8 @@ impl<'a> Rolling<'a> {
                 0.02 * self.wheel.radius_m
             },
         };
+        let side = self.effects.as_ref().and_then(|effects| effects.side);
+        let (pose, motion) = (self.pose, &self.motion);
         let (contact, terrain, laws) = (&mut self.contact, &self.terrain, &self.laws);
         let per_time = if time > 0.0 { 1.0 / time } else { 0.0 };
         let most_carried = &mut self.most_carried;
@@ -381,6 +392,10 @@ impl<'a> Rolling<'a> {
                 None => contact.press(terrain, laws, height),
                 Some(nodes) => nodes.press(contact, terrain, laws, height),
             };
+            let carried = side.map_or(carried, |side| {
+                let law = &laws.shear_velocity;
+                carried + side.push(contact, terrain, (pose, height), motion, law).force_z
+            });
             *most_carried = most_carried.max(carried);
             let velocity = (height - hub) * per_time;
             carried - load + surplus - damping * velocity - mass * (velocity - rising) * per_time
