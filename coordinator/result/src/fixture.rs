@@ -80,7 +80,7 @@ pub(crate) fn with_held_out_runs(count: usize, error: f64) -> FinishedCalibratio
         .map(|&i| experiment.runs[i].measured[0]);
     let predicted: Vec<f64> = measured.flatten().map(|pull| pull + error).collect();
     for prediction in &mut calibration.predictions {
-        if let Some(Ok(observables)) = &mut prediction.holdout {
+        if let Some(Ok(observables)) = prediction.holdout.as_mut().map(|h| &mut h.together) {
             observables.drawbar_pull_n.clone_from(&predicted);
         }
     }
@@ -92,16 +92,41 @@ pub(crate) fn all_rejected() -> FinishedCalibration {
     let mut calibration = calibration();
     for prediction in &mut calibration.predictions {
         prediction.fit = Err(RejectionReason("no_support".into()));
-        prediction.holdout = prediction
-            .holdout
-            .take()
-            .map(|_| Err(RejectionReason("no_support".into())));
+        let refused = |_| Err(RejectionReason("no_support".into())).into();
+        prediction.holdout = prediction.holdout.take().map(refused);
     }
     for stage in &mut calibration.stages {
         (stage.equilibrated, stage.drift_z, stage.tempering_exponent) = (false, 1e6, 0.0);
     }
     calibration.row.equilibrated = Some(false);
     calibration.row.log_evidence = None;
+    calibration
+}
+
+/// The same with four runs held out of which the model refuses one at every draw, and one at every second draw.
+pub(crate) fn with_refused_runs() -> FinishedCalibration {
+    let mut calibration = with_held_out_runs(4, 0.5);
+    let draws = calibration.predictions.iter_mut().skip(1).enumerate();
+    for (draw, prediction) in draws {
+        let Some(holdout) = prediction.holdout.as_mut() else {
+            continue;
+        };
+        let reason = |of: &str| RejectionReason(format!("no_support: condition {of}: z = 0.11 m"));
+        let together = std::mem::replace(&mut holdout.together, Err(reason("1")));
+        for run in 0..4 {
+            let of_run = |all: &Observables| Observables {
+                drawbar_pull_n: vec![all.drawbar_pull_n[run]],
+                sinkage_m: vec![all.sinkage_m[run]],
+                ..Observables::default()
+            };
+            let is_refused = run == 1 || run == 2 && draw % 2 == 0;
+            let alone = match &together {
+                Ok(all) if !is_refused => Ok(of_run(all)),
+                _ => Err(reason("0")),
+            };
+            holdout.alone.insert(run, alone);
+        }
+    }
     calibration
 }
 
@@ -254,7 +279,7 @@ fn build(runs: &str) -> FinishedCalibration {
         .map(|k| Prediction {
             theta: theta(k),
             fit: Ok(predicted(k, &spec.fit_runs)),
-            holdout: (!spec.holdout_runs.is_empty()).then(|| Ok(predicted(k, &spec.holdout_runs))),
+            holdout: (!spec.holdout_runs.is_empty()).then(|| Ok(predicted(k, &spec.holdout_runs)).into()),
         })
         .collect();
     let likeliest_values = spec.predicted_values(&predicted(0, &spec.fit_runs));

@@ -61,6 +61,7 @@ pub use table::fixed_sigma::{FixedSigma, FixedSigmas, SigmaSource};
 pub use table::group::{ErrorGroup, GroupBy, GroupError};
 pub use table::posterior::PosteriorTable;
 pub use table::predictive::{Component, NewMeasurement, NewMeasurements, Predictive};
+pub use table::refusal::Refusal;
 pub use table::row::ComparisonRow;
 pub use words::data_channel::{BevameterTest, DataChannel};
 pub use words::number;

@@ -12,6 +12,7 @@ use crate::flag::unsettled_run::unsettled;
 use crate::table::comparison::Comparison;
 use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;
+use crate::table::refusal::Refusal;
 use crate::table::row::rows_of;
 use crate::words::data_channel::ShownUnit;
 use crate::words::number;
@@ -115,11 +116,21 @@ fn holdout(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<St
             few(held, "holdout run")
         )];
     };
-    let mut text = vec![format!(
-        "On the {}, not used in the fit, it is {}.",
-        few(held, "holdout run"),
-        misses(model)
-    )];
+    let refused = calibration.spec.holdout_runs.iter();
+    let refused = refused.filter_map(|&run| Refusal::of(calibration, run));
+    let mut text = vec![match refused.filter(Refusal::is_whole).count() {
+        0 => format!(
+            "On the {}, not used in the fit, it is {}.",
+            few(held, "holdout run"),
+            misses(model)
+        ),
+        refused => format!(
+            "On {} of the {}, not used in the fit, it is {}; the model refuses the others.",
+            held - refused,
+            few(held, "holdout run"),
+            misses(model)
+        ),
+    }];
     // Like with like: the model on the rows where interpolation has a value.
     let rows = rows_of(&comparison.rows, RunUse::Holdout).filter(|r| r.interpolated.is_some());
     text.push(match (&comparison.baseline_holdout, ErrorTable::of_model(rows)) {

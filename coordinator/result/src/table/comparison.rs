@@ -8,6 +8,7 @@ use super::errors::ErrorTable;
 use super::fixed_sigma::FixedSigmas;
 use super::group::{ErrorGroup, error_groups};
 use super::predictive::{Levels, predictive};
+use super::refusal::Refusal;
 use super::row::{ComparisonRow, rows_of};
 use crate::finished_calibration::FinishedCalibration;
 
@@ -33,6 +34,7 @@ impl FinishedCalibration {
         let levels = Levels::of(self);
         let mut rows = Vec::new();
         for (i, run) in self.spec.experiment.runs.iter().enumerate() {
+            let refused = Refusal::of(self, i);
             for channel in Channel::ALL {
                 let Some(measured) = run.measured[channel.index()] else {
                     continue;
@@ -55,6 +57,7 @@ impl FinishedCalibration {
                     q95: p.and_then(|p| p.interval).map(|[_, q95]| q95),
                     noise_sd: p.and_then(|p| p.noise_sd),
                     residual_sigma: p.and_then(|p| p.noise_sd.map(|sd| (measured - p.mean) / sd)),
+                    refused: refused.clone(),
                     interpolated: if holdout {
                         baseline.interpolate(run, channel)
                     } else {

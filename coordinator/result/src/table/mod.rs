@@ -6,7 +6,7 @@
 //! - `errors`: root mean square errors by channel. `group`: by level of a condition; `level`: those levels.
 //! - `baseline`: interpolation without physics. `predictive`: the posterior predictive distribution.
 //! - `coverage`: measurements inside their intervals. `readings`: errors of plates and rings.
-//! - `error_model`: the error model in words. `posterior`: the draws.
+//! - `refusal`: draws at which the model refuses a run. `error_model`: the error model in words. `posterior`: the draws.
 
 pub(crate) mod baseline;
 pub(crate) mod comparison;
@@ -20,4 +20,5 @@ pub(crate) mod level;
 pub(crate) mod posterior;
 pub(crate) mod predictive;
 pub(crate) mod readings;
+pub(crate) mod refusal;
 pub(crate) mod row;

@@ -3,6 +3,8 @@
 use shared::channel::Channel;
 use shared::experiment::RunUse;
 
+use super::refusal::Refusal;
+
 /// A run and channel.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ComparisonRow {
@@ -39,6 +41,8 @@ pub struct ComparisonRow {
     pub noise_sd: Option<f64>,
     /// (measured - predicted) / noise sd.
     pub residual_sigma: Option<f64>,
+    /// The final draws at which the model refuses the run; `None` where it refuses none.
+    pub refused: Option<Refusal>,
     /// Interpolation of the fitted measurements in slip; `None` inside the fit and where it would extrapolate.
     pub interpolated: Option<f64>,
 }
