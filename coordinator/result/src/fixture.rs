@@ -332,6 +332,7 @@ fn build(runs: &str) -> FinishedCalibration {
         disputes: Vec::new(),
         verified: Verified::default(),
         repeats: Repeats::default(),
+        interpolations: Default::default(),
         spec,
     }
 }

@@ -59,6 +59,7 @@ pub use table::comparison::Comparison;
 pub use table::errors::{ChannelError, ErrorTable};
 pub use table::fixed_sigma::{FixedSigma, FixedSigmas, SigmaSource};
 pub use table::group::{ErrorGroup, GroupBy, GroupError};
+pub use table::interpolation::{InterpolatedOver, Interpolations};
 pub use table::posterior::PosteriorTable;
 pub use table::predictive::{Component, NewMeasurement, NewMeasurements, Predictive};
 pub use table::refusal::Refusal;

@@ -12,8 +12,9 @@ use crate::flag::unsettled_run::unsettled;
 use crate::table::comparison::Comparison;
 use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;
+use crate::table::interpolation::InterpolatedOver;
 use crate::table::refusal::Refusal;
-use crate::table::row::rows_of;
+use crate::table::row::{ComparisonRow, rows_of};
 use crate::words::data_channel::ShownUnit;
 use crate::words::number;
 use inference::point_estimate::StopReason;
@@ -132,16 +133,48 @@ fn holdout(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<St
         ),
     }];
     // Like with like: the model on the rows where interpolation has a value.
-    let rows = rows_of(&comparison.rows, RunUse::Holdout).filter(|r| r.interpolated.is_some());
-    text.push(match (&comparison.baseline_holdout, ErrorTable::of_model(rows)) {
+    let both = || {
+        rows_of(&comparison.rows, RunUse::Holdout)
+            .filter(|r| r.predicted.is_some() && r.interpolated.is_some())
+    };
+    text.push(match (ErrorTable::of_baseline(both()), ErrorTable::of_model(both())) {
         (Some(baseline), Some(model)) => format!(
-            "Interpolating the fitted measurements in slip, without physics, has an error of {} where it applies; there the model {}.",
-            misses(baseline),
-            against(&model, baseline)
+            "Interpolating the fitted measurements {}, without physics, has an error of {} where it applies{}; there the model {}.",
+            over(both()),
+            misses(&baseline),
+            beyond(both()),
+            against(&model, &baseline)
         ),
-        _ => "Interpolating the fitted measurements in slip, without physics, does not apply there: it would have to extrapolate.".into(),
+        _ => "Interpolating the fitted measurements, without physics, does not apply there.".into(),
     });
+    text.extend(
+        comparison
+            .not_interpolated
+            .iter()
+            .map(|why| format!("Not interpolated: {why}.")),
+    );
     text
+}
+
+/// What the rows are interpolated over.
+fn over<'a>(mut rows: impl Iterator<Item = &'a ComparisonRow>) -> &'static str {
+    match rows.all(|row| row.interpolated_over == Some(InterpolatedOver::Slip)) {
+        true => "in slip",
+        false => "over the conditions that vary",
+    }
+}
+
+/// ` (2 of 48 measurements are extrapolated)`; nothing where none is.
+fn beyond<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> String {
+    let is_beyond = rows.map(|row| row.interpolated_over == Some(InterpolatedOver::Extrapolation));
+    let is_beyond: Vec<bool> = is_beyond.collect();
+    match is_beyond.iter().filter(|beyond| **beyond).count() {
+        0 => String::new(),
+        beyond => format!(
+            " ({beyond} of {} are extrapolated)",
+            number::count(is_beyond.len(), "measurement")
+        ),
+    }
 }
 
 /// Comparison of the model with interpolation, channel by channel.

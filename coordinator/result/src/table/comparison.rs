@@ -3,10 +3,10 @@
 use shared::channel::Channel;
 use shared::experiment::RunUse;
 
-use super::baseline::Baseline;
 use super::errors::ErrorTable;
 use super::fixed_sigma::FixedSigmas;
 use super::group::{ErrorGroup, error_groups};
+use super::interpolation::Interpolations;
 use super::predictive::{Levels, predictive};
 use super::refusal::Refusal;
 use super::row::{ComparisonRow, rows_of};
@@ -21,16 +21,23 @@ pub struct Comparison {
     pub fit: Option<ErrorTable>,
     /// Errors of the runs that were not fitted.
     pub holdout: Option<ErrorTable>,
-    /// Errors of interpolating the fitted measurements in slip, without physics, on the holdout runs.
+    /// Errors of interpolating the fitted measurements, without physics, on the holdout runs.
     pub baseline_holdout: Option<ErrorTable>,
+    /// Why some holdout runs are not interpolated; empty where all are.
+    pub not_interpolated: Vec<String>,
     /// Errors by level of slip, load and speed, and by wheel, of fitted runs and of the others.
     pub groups: Vec<ErrorGroup>,
 }
 
 impl FinishedCalibration {
+    fn interpolations(&self) -> &Interpolations {
+        self.interpolations
+            .get_or_init(|| Interpolations::of(&self.spec.experiment))
+    }
+
     /// Model against measurement, run by run.
     pub fn comparison(&self) -> Comparison {
-        let baseline = Baseline::new(&self.spec.experiment);
+        let interpolations = self.interpolations();
         let levels = Levels::of(self);
         let mut rows = Vec::new();
         for (i, run) in self.spec.experiment.runs.iter().enumerate() {
@@ -40,7 +47,7 @@ impl FinishedCalibration {
                     continue;
                 };
                 let p = predictive(self, &levels, i, channel);
-                let holdout = run.usage == RunUse::Holdout;
+                let interpolated = interpolations.at(i, channel);
                 rows.push(ComparisonRow {
                     run: run.name.clone(),
                     usage: run.usage,
@@ -58,11 +65,8 @@ impl FinishedCalibration {
                     noise_sd: p.and_then(|p| p.noise_sd),
                     residual_sigma: p.and_then(|p| p.noise_sd.map(|sd| (measured - p.mean) / sd)),
                     refused: refused.clone(),
-                    interpolated: if holdout {
-                        baseline.interpolate(run, channel)
-                    } else {
-                        None
-                    },
+                    interpolated: interpolated.map(|i| i.value),
+                    interpolated_over: interpolated.map(|i| i.over),
                 });
             }
         }
@@ -73,6 +77,7 @@ impl FinishedCalibration {
             holdout: errors(RunUse::Holdout),
             baseline_holdout: ErrorTable::of_baseline(rows_of(&rows, RunUse::Holdout))
                 .map(|table| table.in_fixed_sigmas(&sigmas)),
+            not_interpolated: interpolations.missing().to_vec(),
             groups: error_groups(&rows),
             rows,
         }
