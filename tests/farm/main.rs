@@ -39,5 +39,6 @@ mod store;
 mod stored_results;
 mod study;
 mod summary_contract;
+mod validate;
 mod which_model;
 mod wire;

@@ -9,6 +9,7 @@
 //! - [`diagnostics`]: how far the posterior can be trusted. `flag`: warnings in words.
 //!   `diagnosis`: both, computed once.
 //! - `model_comparison`: the models that a job compares, by evidence and by prediction.
+//! - [`validation`]: the levels of a factor, each predicted from the others.
 //! - `overview`, `study_member`: a study as the page shows it. `summary`: `summary.json`. `discovery`: its block on missing effects.
 //! - [`figure`]: the numbers of the source paper's figures.
 //! - [`report`]: one document with everything. [`terminal`]: text for a terminal.
@@ -36,6 +37,7 @@ mod study_member;
 mod summary;
 mod table;
 pub mod terminal;
+pub mod validation;
 mod words;
 
 pub use diagnostics::Diagnostics;

@@ -5,6 +5,7 @@
 //! - `brief`: a study in a few lines; `story`: its three last. `ledger`: the errors of its calibrations.
 //! - `study`: the tables of a study; `calibration`: of one calibration; `comparison`: its errors.
 //! - `diagnostics`: how far a result can be trusted. [`discovery`]: a search for a missing effect.
+//! - `validation`: the levels of a factor, each left out in turn.
 //! - `column`: widths and cells of columns.
 
 mod brief;
@@ -19,6 +20,7 @@ mod specification;
 mod status;
 mod story;
 mod study;
+mod validation;
 
 pub use brief::brief;
 pub use comparison::{comparison, groups};
@@ -27,3 +29,4 @@ pub use specification::specification;
 pub use status::status_table;
 pub use story::story;
 pub use study::study;
+pub use validation::validation;
