@@ -123,7 +123,7 @@ impl Complaints {
     }
 }
 
-const FLAGS: [&str; 12] = [
+const FLAGS: [&str; 13] = [
     "trend",
     "chi2",
     "outlier",
@@ -136,6 +136,7 @@ const FLAGS: [&str; 12] = [
     "interpolation_beats",
     "worker",
     "incomplete",
+    "plates_conflict",
 ];
 
 fn complaints(summary: &Value) -> Vec<String> {

@@ -233,7 +233,12 @@ fn build(runs: &str) -> FinishedCalibration {
         toml: JOB.into(),
         files: BTreeMap::new(),
     };
-    let spec = Spec::new("job.toml", &job, "experiment.toml", &files).expect("the fixture's files are valid");
+    of_files(job, &files)
+}
+
+/// A calibration of these files; its draws are spread over the prior.
+pub(crate) fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
+    let spec = Spec::new("job.toml", &job, "experiment.toml", files).expect("the fixture's files are valid");
     // The golden ratio's multiples spread evenly.
     let share = |k: usize, i: usize| (0.5 + 0.618_033_988_75 * (k * (i + 1)) as f64) % 1.0;
     let theta = |k: usize| -> Vec<f64> {
@@ -261,6 +266,7 @@ fn build(runs: &str) -> FinishedCalibration {
             torque_n_m: values(0.1, 0.1),
             sinkage_m: values(0.014, 0.002),
             lateral_force_n: values(0.0, 0.0),
+            plate_pressure_pa: vec![1e4; spec.bevameter.plates.len()],
             ..Observables::default()
         }
     };

@@ -5,6 +5,7 @@ use shared::parameters::behind;
 
 use super::finding::findings_that_alarm;
 use super::kind::{Flag, FlagKind};
+use super::plates::plates_conflict;
 use crate::diagnostics::calibration::Diagnostics;
 use crate::diagnostics::trends::TrendVariable;
 use crate::finished_calibration::FinishedCalibration;
@@ -32,6 +33,7 @@ impl FinishedCalibration {
             .chain(self.unbalanced())
             .collect();
         flags.extend(findings_that_alarm(diagnostics));
+        flags.extend(plates_conflict(self));
         flags.extend(self.confounded());
         let mut flag = |kind: FlagKind, text: String| flags.push(Flag::plain(kind, text));
         for ((name, parameter), found) in self.parameter_summaries().iter().zip(&diagnostics.parameters) {
