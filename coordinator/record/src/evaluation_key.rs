@@ -7,7 +7,7 @@ pub const PREDICTIONS_FROM: u64 = 1 << 40;
 /// Number of the evaluation at the likeliest parameters.
 pub const LIKELIEST: u64 = 2 * PREDICTIONS_FROM;
 
-/// Numbers from here on are single holdout runs of final draws: run r of draw k is number r x [`MOST_DRAWS`] + k.
+/// Numbers from here on are single holdout runs of final draws: run r of draw k is 65536 r + k further.
 pub const HOLDOUT_RUNS_FROM: u64 = 3 * PREDICTIONS_FROM;
 
 /// There are fewer final draws than this.
