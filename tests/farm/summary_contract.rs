@@ -300,7 +300,7 @@ fn the_check_notices_what_breaks_the_contract() {
 #[test]
 fn a_held_out_run_that_the_model_refuses_costs_its_own_row_alone() {
     // A load that no soil of the prior carries before the wheel is buried, far beyond what is fitted.
-    let beyond = "deep,w,s,0.3,8000.0,0.0133,0,1,100.0,10.0,0.1,,holdout\n";
+    let beyond = "deep,w,s,0.3,20000.0,0.0133,0,1,100.0,10.0,0.1,,holdout\n";
     let small = Job::small();
     let with = Job {
         runs: small.runs.clone() + beyond,

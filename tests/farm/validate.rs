@@ -24,11 +24,11 @@ fn validate(out: &str, factor: &str, more: &[&str]) -> farm_tests::programs::End
 fn every_level_is_predicted_from_the_others_and_a_second_call_prints_what_is_there() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = calibrated(folder.path());
-    let text = validate(&out, "load", &["--format", "json"]).success();
+    let text = validate(&out, "slip", &["--format", "json"]).success();
     let validation: Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(
         (&validation["calibration"], &validation["leave_out"]),
-        (&1.into(), &"load".into())
+        (&1.into(), &"slip".into())
     );
     assert_eq!(validation["algorithm"], "lm");
     let levels = validation["levels"].as_array().expect("levels");
@@ -49,7 +49,7 @@ fn every_level_is_predicted_from_the_others_and_a_second_call_prints_what_is_the
     }
     let total = &validation["total"];
     assert_eq!(total["model"]["drawbar_pull"]["runs"], 24);
-    // Nothing is hidden in these runs, so the model predicts a load that it has not seen to within its noise; interpolation does not.
+    // Nothing is hidden in these runs, so the model predicts a slip that it has not seen to within its noise; interpolation does not.
     let noise = |of: &str| total[of]["all"]["rmse_fixed_sigma"].as_f64().expect("a number");
     assert!((0.7..1.5).contains(&noise("model")), "{total}");
     assert!(noise("interpolation") > 2.0 * noise("model"), "{total}");
@@ -60,17 +60,17 @@ fn every_level_is_predicted_from_the_others_and_a_second_call_prints_what_is_the
     let list = |at: &str| run(coordinator(["list", "--out", at])).success().lines().count();
     let (of_run, of_validation) = (list(&out), list(&format!("{out}/validation-1")));
     assert_eq!(of_validation, 1 + levels.len(), "a line for each, and the title");
-    let file = Path::new(&out).join("validation-1").join("load.json");
+    let file = Path::new(&out).join("validation-1").join("slip.json");
     assert_eq!(std::fs::read_to_string(&file).expect("the file"), text);
-    let again = validate(&out, "load", &["--format", "json"]).success();
+    let again = validate(&out, "slip", &["--format", "json"]).success();
     assert_eq!(
         (again, list(&format!("{out}/validation-1"))),
         (text, of_validation)
     );
     assert_eq!(list(&out), of_run);
-    let table = validate(&out, "load", &[]).success();
+    let table = validate(&out, "slip", &[]).success();
     for words in [
-        "load left out in turn, calibrated by lm on the rest",
+        "slip left out in turn, calibrated by lm on the rest",
         "\nleft out ",
         "\nall  ",
     ] {
