@@ -10,7 +10,8 @@ use record::{
     Verified,
 };
 use shared::api::CalibrationState;
-use shared::file::FileSet;
+use shared::experiment::Campaign;
+use shared::file::{FileSet, parse_toml};
 use shared::outcome::Observables;
 
 use crate::discovery::DiscoveryRound;
@@ -52,6 +53,14 @@ b&c,a,sand,0.2,25,0.01,0.5,0.020,fit
 d,a,sand,0.5,25,0.01,1.5,,fit
 e,a,sand,0.4,25,0.01,1.2,0.022,LAST
 ";
+
+/// A campaign whose rows were digitised.
+pub(crate) fn campaign() -> Campaign {
+    let toml = "title = \"Wheels in <i>sand</i>\"\nauthors = [\"A. Author\", \"B. Author\"]\ndate = \"2025\"\n\
+                licence = \"CC-BY-4.0\"\ndoi = \"10.1000/182\"\nsource = \"figure 5\"\ndigitised = true\n\
+                noise = \"guessed\"\ndoubts = [\"few rows\"]\n";
+    parse_toml("campaign.toml", toml).expect("a campaign")
+}
 
 /// A calibration with a holdout run.
 pub(crate) fn calibration() -> FinishedCalibration {

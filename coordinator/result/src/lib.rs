@@ -15,7 +15,7 @@
 //! - `provenance`: how a calibration came about, and what it reached in sentences.
 //! - [`story`]: what is wrong, what is missing, what to do next.
 //! - [`report`]: the HTML page. [`terminal`]: text for a terminal.
-//! - `words`: numbers, units and probabilities as people read them.
+//! - `words`: numbers, units, probabilities and citations as people read them.
 
 mod diagnosis;
 pub mod diagnostics;
@@ -62,5 +62,6 @@ pub use table::group::{ErrorGroup, GroupBy, GroupError};
 pub use table::posterior::PosteriorTable;
 pub use table::predictive::{Component, NewMeasurement, NewMeasurements, Predictive};
 pub use table::row::ComparisonRow;
+pub use words::campaign::CampaignWords;
 pub use words::data_channel::{BevameterTest, DataChannel};
 pub use words::number;

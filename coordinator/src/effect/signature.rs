@@ -218,6 +218,7 @@ impl<'a> Reference<'a> {
             repose_angle_deg: None,
         };
         let experiment = Experiment {
+            campaign: None,
             wheels: [("w".to_owned(), wheel)].into(),
             soils: [("s".to_owned(), soil)].into(),
             rig: Rig {

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use shared::channel::Channel;
 use shared::experiment::{AveragingProtocol, Rig, Scatter};
 
-use super::shape::{above, either, named, needing, number, one_of, table, text, usual, whole};
+use super::shape::{above, either, flag, list, named, needing, number, one_of, table, text, usual, whole};
 
 const ANY: f64 = f64::INFINITY;
 
@@ -15,6 +15,7 @@ pub(super) fn experiment() -> Value {
             "wheels, soils, rig and noise of a campaign",
             [
                 ("runs", text("file of the test runs, beside the experiment")),
+                ("campaign", campaign()),
                 ("plates", text("file of plate-sinkage readings")),
                 ("shear", text("file of ring-shear readings")),
                 ("wheel", named("the wheels, each as [wheel.NAME]", wheel())),
@@ -31,6 +32,58 @@ pub(super) fn experiment() -> Value {
         { "required": ["runs", "wheel"] }, { "required": ["plates"] }, { "required": ["shear"] }
     ]);
     experiment
+}
+
+fn campaign() -> Value {
+    let campaign = table(
+        "where the measurements come from; nothing is computed from it",
+        [
+            ("title", text("what was measured, as a title")),
+            ("authors", list("who measured", text("a name"))),
+            ("institution", text("where")),
+            (
+                "date",
+                text("when it was measured, else published: YYYY, YYYY-MM or YYYY-MM-DD"),
+            ),
+            ("licence", text("licence of the rows, by its SPDX identifier")),
+            (
+                "doi",
+                text("DOI of the publication: 10.1016/j.jterra.2010.08.001"),
+            ),
+            (
+                "source",
+                text("file, table or figure that the rows come from, with its version"),
+            ),
+            (
+                "digitised",
+                usual(
+                    flag("whether the rows were read off figures; needs source"),
+                    false,
+                ),
+            ),
+            ("preparation", text("how the soil was prepared before a run")),
+            ("wheel", text("material and surface of the wheels")),
+            (
+                "slip",
+                text("how slip was set or measured, and with which radius"),
+            ),
+            ("sinkage", text("how sinkage was measured, and from which zero")),
+            (
+                "forces",
+                text("sensor, sampling, tare and signs of forces and torque"),
+            ),
+            ("averaging", text("which part of a run was averaged")),
+            (
+                "noise",
+                text("how the standard deviations under [noise] were found"),
+            ),
+            (
+                "doubts",
+                list("what is uncertain about all this", text("a doubt")),
+            ),
+        ],
+    );
+    needing(campaign, &["title"])
 }
 
 fn wheel() -> Value {

@@ -158,6 +158,7 @@ fn variant(
     let input = |e: shared::model::ModelError| ServedError::Input(e.to_string());
     let settings = ModelSettings::from_table(&table).map_err(input)?;
     let experiment = Experiment {
+        campaign: None,
         wheels: BTreeMap::from([(run.wheel.clone(), wheel)]),
         soils: BTreeMap::from([(run.soil.clone(), SoilProperties::default())]),
         rig: Rig::default(),

@@ -74,6 +74,7 @@ export function StudyPage({ id, view, query }) {
     <div class="heading">
       <h1>${study.name}</h1>
       <p class="note">study ${id}, ${study.model_kind}, <span class=${`state ${study.state}`}>${study.state}</span></p>
+      ${study.campaign && html`<p class="note">Measurements: ${study.campaign.citation}${study.campaign.digitised && html`; <strong>${study.campaign.digitised}</strong>`}</p>`}
       ${error && html`<p class="error" role="alert">${error.message}</p>`}
     </div>
     <nav class="views" aria-label="Views of the study">

@@ -13,6 +13,7 @@ use crate::table::comparison::Comparison;
 use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;
 use crate::table::row::rows_of;
+use crate::words::campaign::CampaignWords;
 use crate::words::data_channel::ShownUnit;
 use crate::words::number;
 use inference::point_estimate::StopReason;
@@ -268,6 +269,14 @@ fn runs(calibration: &FinishedCalibration, usage: RunUse) -> usize {
 /// The limits of the model, and what is not as in the source paper.
 pub(super) fn notes(calibration: &FinishedCalibration) -> Vec<String> {
     let mut notes = Vec::new();
+    if let Some(campaign) = &calibration.spec.experiment.campaign {
+        let words = CampaignWords::from(campaign);
+        let said = |what: &str, text: &str| format!("{what}{}.", text.trim_end_matches('.'));
+        notes.push(said("Measurements: ", &words.citation));
+        notes.extend(words.digitised.iter().map(|text| said("They are ", text)));
+        notes.extend(words.method.iter().map(|text| said("Method, ", text)));
+        notes.extend(words.doubts.iter().map(|text| said("Doubt: ", text)));
+    }
     let accepted = calibration.spec.accepted.join(", ");
     if !accepted.is_empty() {
         notes.push(format!("What looks odd was accepted as meant: {accepted}."));

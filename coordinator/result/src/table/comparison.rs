@@ -14,6 +14,8 @@ use crate::finished_calibration::FinishedCalibration;
 /// Model against measurement.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Comparison {
+    /// Whether the measured values were read off figures.
+    pub digitised: bool,
     /// One row for each run and measured channel.
     pub rows: Vec<ComparisonRow>,
     /// Errors of the fitted runs.
@@ -66,6 +68,12 @@ impl FinishedCalibration {
         let sigmas = FixedSigmas::of(self);
         let errors = |usage| Some(ErrorTable::of_model(rows_of(&rows, usage))?.in_fixed_sigmas(&sigmas));
         Comparison {
+            digitised: self
+                .spec
+                .experiment
+                .campaign
+                .as_ref()
+                .is_some_and(|own| own.digitised),
             fit: errors(RunUse::Fit),
             holdout: errors(RunUse::Holdout),
             baseline_holdout: ErrorTable::of_baseline(rows_of(&rows, RunUse::Holdout))

@@ -15,10 +15,15 @@ use crate::words::data_channel::{ShownUnit, short_name};
 /// Model against measurement, run by run, with errors by channel.
 pub fn comparison(comparison: &Comparison) -> String {
     let mut text = String::new();
+    let measured = if comparison.digitised {
+        "digitised"
+    } else {
+        "measured"
+    };
     let _ = writeln!(
         text,
         "{:<22} {:<8} {:>7} {:>8} {:<13} {:>10} {:>10} {:>23} {:>7}",
-        "run", "use", "slip", "load N", "channel", "measured", "model", "90 % interval", "sigma"
+        "run", "use", "slip", "load N", "channel", measured, "model", "90 % interval", "sigma"
     );
     for row in &comparison.rows {
         let unit = ShownUnit::of(row.channel);

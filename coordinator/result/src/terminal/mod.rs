@@ -1,7 +1,7 @@
 //! Text for a terminal.
 //!
 //! # Layout
-//! - `specification`: a job before it runs. `status`: states of calibrations.
+//! - `specification`: a job before it runs. `campaign`: where its measurements come from. `status`: states of calibrations.
 //! - `brief`: a study in a few lines; `story`: its three last. `ledger`: the errors of its calibrations.
 //! - `study`: the tables of a study; `calibration`: of one calibration; `comparison`: its errors.
 //! - `diagnostics`: how far a result can be trusted. [`discovery`]: a search for a missing effect.
@@ -9,6 +9,7 @@
 
 mod brief;
 mod calibration;
+mod campaign;
 mod column;
 mod comparison;
 mod diagnostics;
