@@ -24,6 +24,7 @@ mod not_tried;
 mod older_store;
 mod openapi;
 mod operation;
+mod other_rigs;
 mod own_effects;
 mod page;
 mod page_data;
