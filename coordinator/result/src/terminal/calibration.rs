@@ -5,7 +5,6 @@ use std::fmt::Write;
 use job::FreeParameter;
 use record::EstimateRow;
 
-use super::campaign::campaign;
 use super::column::{cell, width};
 use super::comparison::comparison;
 use super::diagnostics::{findings, flags};
@@ -53,9 +52,6 @@ fn fit_of(calibration: &FinishedCalibration) -> Option<&EstimateRow> {
 pub(super) fn summary(calibration: &FinishedCalibration) -> String {
     let compared = calibration.comparison();
     let mut text = headline(calibration) + "\n";
-    if let Some(own) = &calibration.spec.experiment.campaign {
-        text += &campaign(own);
-    }
     let row = &calibration.row;
     let fit = fit_of(calibration);
     if let Some(metamodel) = &calibration.subchains {
