@@ -39,7 +39,7 @@ const fn limit(
 const ANY: f64 = f64::INFINITY;
 
 /// Every quantity that has limits.
-pub const LIMITS: [Limit; 23] = [
+pub const LIMITS: [Limit; 27] = [
     limit(
         "wheel_load_n",
         "N",
@@ -61,6 +61,10 @@ pub const LIMITS: [Limit; 23] = [
     limit("wheel_radius_m", "m", [0.0, 100.0], [0.01, 1.0], LENGTHS),
     limit("grouser_height_m", "m", [0.0, 1.0], [0.0, 0.1], LENGTHS),
     limit("grouser_thickness_m", "m", [0.0, 1.0], [0.0, 0.1], LENGTHS),
+    limit("grouser_width_m", "m", [0.0, 10.0], [1e-3, 1.0], LENGTHS),
+    limit("grouser_angle_deg", "deg", [-89.0, 89.0], [-60.0, 60.0], &[]),
+    limit("grouser_chevron_deg", "deg", [-89.0, 89.0], [-60.0, 60.0], &[]),
+    limit("grouser_bow_m", "m", [-1.0, 1.0], [-0.1, 0.1], LENGTHS),
     limit(
         "gravity_m_s2",
         "m/s^2",

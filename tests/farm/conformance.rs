@@ -209,6 +209,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         grouser_thickness_m: 0.0,
         rig_radius_m: 0.125,
         mesh: None,
+        tread: None,
     };
     let condition = RunCondition {
         wheel: "w".into(),
@@ -309,7 +310,8 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
     golden(
         &spatial,
         &json!({"dem_spacing_m": 0.004, "travel_step_m": 0.0005, "displacement": "rim",
-                "pressure_direction": "wheel_normal", "vertical": "balance", "damping_n_s_m": 2000.0,
+                "pressure_direction": "wheel_normal", "footprint": "hull", "vertical": "balance",
+                "damping_n_s_m": 2000.0,
                 "steady_tolerance": 0.005, "steady_travel_m": 1.0}),
     );
     let rolling = ModelVariant {

@@ -198,7 +198,9 @@ fn at_its_neutral_strength_no_effect_of_the_catalogue_changes_a_byte() {
         .write(folder.path());
     let model = "kind = \"quasi_static\"\n";
     let base = simulated(folder.path(), model, &truth());
-    let catalogue = formula::catalogue::catalogue();
+    // the side of the wheel needs a terrain beside it
+    let has_form = |effect: &&formula::Effect| effect.name != "buried_side_wall";
+    let catalogue: Vec<_> = formula::catalogue::catalogue().iter().filter(has_form).collect();
     for some in catalogue.chunks(10) {
         let strengths = some.iter().flat_map(|effect| {
             let strengths = effect.parameters.iter();
@@ -245,7 +247,7 @@ fn the_catalogue_is_listed_and_shown() {
     assert!(list.lines().count() > 100 && list.lines().all(|l| l.chars().count() <= 100));
     let shown = run(coordinator(["effects", "slip_sinkage"])).success();
     assert!(
-        shown.contains("sinkage_exponent = \"n + exponent_per_slip * abs(slip)\""),
+        shown.contains("sinkage_exponent = \"n + exponent_per_slip * abs(slip) * cos(slip_angle)\""),
         "{shown}"
     );
     assert!(
@@ -313,7 +315,7 @@ fn the_catalogue_is_listed_and_shown() {
 fn the_catalogue_is_there_over_rest() {
     let service = Service::start(&[]);
     let list = service.client.json("/v1/effects");
-    assert_eq!(list.as_array().map(Vec::len), Some(44));
+    assert_eq!(list.as_array().map(Vec::len), Some(50));
     let one = service.client.json("/v1/effects/sled_tare");
     let listed = list
         .as_array()

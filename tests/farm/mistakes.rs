@@ -193,6 +193,10 @@ fn the_examples_raise_no_question() {
         "cmu-sand/plates.toml",
         "cmu-sand/job.toml",
         "cmu-sand/discover.toml",
+        "other-rigs/ding-2011/job.toml",
+        "other-rigs/kls-1/job.toml",
+        "other-rigs/kls-1/by-hand.toml",
+        "other-rigs/rashid-1/job.toml",
     ] {
         let path = workspace::root().join("examples").join(job);
         let toml = read_text(&path).unwrap();

@@ -67,7 +67,7 @@ fn each_text_of_a_name_is_a_version_and_survives_a_restart() {
     service.restart();
     let list = service.client.json("/v1/effects");
     let last = list.as_array().and_then(|list| list.last()).expect("effects");
-    assert_eq!(list.as_array().map(Vec::len), Some(45));
+    assert_eq!(list.as_array().map(Vec::len), Some(51));
     assert_eq!(
         (&last["name"], &last["origin"], &last["version"]),
         (&"my_gain".into(), &"own".into(), &2.into())
@@ -197,7 +197,7 @@ fn what_is_no_effect_of_one_s_own_is_refused_with_the_reason() {
     );
     assert_eq!(
         service.client.json("/v1/effects").as_array().map(Vec::len),
-        Some(44)
+        Some(50)
     );
 
     add(&service, GAIN);

@@ -123,7 +123,7 @@ impl Complaints {
     }
 }
 
-const FLAGS: [&str; 8] = [
+const FLAGS: [&str; 13] = [
     "trend",
     "chi2",
     "outlier",
@@ -132,6 +132,11 @@ const FLAGS: [&str; 8] = [
     "not_equilibrated",
     "no_information",
     "rejections",
+    "order",
+    "interpolation_beats",
+    "worker",
+    "incomplete",
+    "plates_conflict",
 ];
 
 fn complaints(summary: &Value) -> Vec<String> {
@@ -290,4 +295,41 @@ fn the_check_notices_what_breaks_the_contract() {
         4
     );
     assert!(broken("calibrations", serde_json::json!([{}])) >= 14);
+}
+
+#[test]
+fn a_held_out_run_that_the_model_refuses_costs_its_own_row_alone() {
+    // A load that no soil of the prior carries before the wheel is buried, far beyond what is fitted.
+    let beyond = "deep,w,s,0.3,20000.0,0.0133,0,1,100.0,10.0,0.1,,holdout\n";
+    let small = Job::small();
+    let with = Job {
+        runs: small.runs.clone() + beyond,
+        ..small.clone()
+    }
+    .in_job("[sampler]", "[sampler]\npoint_estimates = [\"lm\"]");
+    let (text, summary) = study(&with);
+    assert_eq!(complaints(&summary), Vec::<String>::new());
+    let (_, without) = study(&small);
+    let (calibration, before) = (&summary["calibrations"][0], &without["calibrations"][0]);
+    // What is said of the other runs is what is said without this one, to the bit.
+    assert_eq!(calibration["log_evidence"], before["log_evidence"]);
+    assert_eq!(calibration["coverage90"], before["coverage90"]);
+    for channel in ["drawbar_pull", "torque", "sinkage"] {
+        let error = &calibration["error"]["holdout"][channel];
+        assert_eq!(error, &before["error"]["holdout"][channel]);
+        assert_eq!(error["runs"], 16);
+    }
+    assert_eq!(calibration["error"]["holdout"]["all"]["unpredicted"], 3);
+    let estimate = &summary["point_estimates"][0]["error"]["holdout"];
+    assert_eq!(
+        (&estimate["sinkage"]["runs"], &estimate["all"]["unpredicted"]),
+        (&16.into(), &3.into())
+    );
+    for words in [
+        "\ndeep: the model refuses it at 60 of 60 final draws (no_support: ",
+        "the model refuses 1 of 17 held-out runs: deep at 60 of 60 final draws",
+        "errors and coverage are over the other 16 held-out runs",
+    ] {
+        assert!(text.contains(words), "{words} in {text}");
+    }
 }

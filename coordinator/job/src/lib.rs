@@ -21,7 +21,8 @@ mod table;
 
 pub use data::bevameter_readings::{BevameterReadings, PLATE, RING, Reading};
 pub use data::confounded_order::{ConfoundedOrder, SetCondition, confounded_orders};
-pub use data::noise::repeat_scatter;
+pub use data::level::levels_of;
+pub use data::noise::{repeat_scatter, repeats};
 pub use data::soil_scatter::SoilScatter;
 pub use derived::accepting_job::accepting_job;
 pub use derived::assumed_experiment::{AssumedExperiment, SiteProperty, UnsaidProperty};
@@ -32,6 +33,7 @@ pub use derived::extended_job::{extended_job, with_free, with_setting};
 pub use derived::one_model::model_job;
 pub use derived::own_effects::{OwnEffect, foreign_effects, with_own_effects, without_own_effects};
 pub use derived::point_job::point_job;
+pub use derived::validation_job::validation_job;
 pub use job_file::{JobFile, JobModels};
 pub use model_switch::{MODEL_SWITCHES, ModelSwitch};
 pub use plain_parameter::{PLAIN_PARAMETERS, PlainParameter};

@@ -4,6 +4,7 @@ import { html, render } from "./html.js";
 import { ChosenRuns } from "./part/chosen_runs.js";
 import { Guarded } from "./part/guarded.js";
 import { Pending } from "./part/message.js";
+import { Source } from "./part/source.js";
 import { path } from "./rest/routes.js";
 import { useAnswer } from "./rest/use_answer.js";
 import { VIEWS, modelName, modelOf, models } from "./view/study.js";
@@ -19,6 +20,7 @@ function Report() {
     <header class="heading">
       <h1>${study.name}</h1>
       <p class="note">${[...new Set([study.model_kind, model ? modelName(study, model) : "no model"])].join(", ")}${lineage(study)}</p>
+      <${Source} campaign=${study.campaign} />
       <nav class="views" aria-label="Sections">${VIEWS.map((v) => html`<a href=${`#${v.name}`}>${v.title}</a>`)}</nav>
     </header>
     ${VIEWS.map((v) => html`

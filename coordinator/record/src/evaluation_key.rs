@@ -7,6 +7,12 @@ pub const PREDICTIONS_FROM: u64 = 1 << 40;
 /// Number of the evaluation at the likeliest parameters.
 pub const LIKELIEST: u64 = 2 * PREDICTIONS_FROM;
 
+/// Numbers from here on are single holdout runs of final draws: run r of draw k is 65536 r + k further.
+pub const HOLDOUT_RUNS_FROM: u64 = 3 * PREDICTIONS_FROM;
+
+/// There are fewer final draws than this.
+const MOST_DRAWS: u64 = 1 << 16;
+
 /// Purpose of an evaluation. Its number depends on the job alone, so it is the same after a restart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EvaluationKey {
@@ -29,6 +35,13 @@ pub enum EvaluationKey {
         /// not reject the fitted ones.
         holdout: bool,
     },
+    /// One holdout run of a final draw whose holdout runs the model refused together.
+    HoldoutRun {
+        /// Position among the draws.
+        draw: usize,
+        /// Position among the holdout runs.
+        run: usize,
+    },
 }
 
 impl EvaluationKey {
@@ -40,12 +53,19 @@ impl EvaluationKey {
             EvaluationKey::Prediction { draw, holdout } => {
                 PREDICTIONS_FROM + 2 * draw as u64 + u64::from(holdout)
             }
+            EvaluationKey::HoldoutRun { draw, run } => {
+                HOLDOUT_RUNS_FROM + run as u64 * MOST_DRAWS + draw as u64
+            }
         }
     }
 
     /// The evaluation of a number.
     pub fn of(number: u64, width: usize) -> Self {
         match number.checked_sub(PREDICTIONS_FROM) {
+            Some(_) if number >= HOLDOUT_RUNS_FROM => EvaluationKey::HoldoutRun {
+                draw: ((number - HOLDOUT_RUNS_FROM) % MOST_DRAWS) as usize,
+                run: ((number - HOLDOUT_RUNS_FROM) / MOST_DRAWS) as usize,
+            },
             Some(_) if number >= LIKELIEST => EvaluationKey::Likeliest,
             Some(k) => EvaluationKey::Prediction {
                 draw: (k / 2) as usize,
@@ -55,6 +75,15 @@ impl EvaluationKey {
                 round: number / width as u64,
                 particle: (number % width as u64) as usize,
             },
+        }
+    }
+
+    /// The first number after the round of an evaluation: from there on stands what may follow from its result.
+    pub fn round_end(number: u64, width: usize) -> u64 {
+        match EvaluationKey::of(number, width) {
+            EvaluationKey::Sampling { round, .. } => (round + 1) * width as u64,
+            EvaluationKey::Prediction { .. } | EvaluationKey::Likeliest => HOLDOUT_RUNS_FROM,
+            EvaluationKey::HoldoutRun { .. } => i64::MAX as u64,
         }
     }
 }
@@ -73,8 +102,21 @@ mod tests {
             PREDICTIONS_FROM,
             PREDICTIONS_FROM + 199,
             LIKELIEST,
+            HOLDOUT_RUNS_FROM,
+            HOLDOUT_RUNS_FROM + 17 * MOST_DRAWS + 199,
         ] {
             assert_eq!(EvaluationKey::of(number, 1000).number(1000), number);
         }
+    }
+
+    #[test]
+    fn what_follows_from_a_round_comes_behind_it() {
+        let end = |number| EvaluationKey::round_end(number, 1000);
+        assert_eq!((end(0), end(999), end(1000)), (1000, 1000, 2000));
+        assert_eq!(
+            (end(PREDICTIONS_FROM + 3), end(LIKELIEST)),
+            (HOLDOUT_RUNS_FROM, HOLDOUT_RUNS_FROM)
+        );
+        assert!(end(HOLDOUT_RUNS_FROM + 5) > HOLDOUT_RUNS_FROM + MOST_DRAWS * MOST_DRAWS);
     }
 }

@@ -23,7 +23,7 @@ pub use discovery::{
     NOT_IN_LIBRARY, NextRun, NotTried, Outside, RemainingMisfit, RunInformation, Verdict, effect_of,
 };
 pub use estimate::EstimateRow;
-pub use evaluation_key::{EvaluationKey, LIKELIEST, PREDICTIONS_FROM};
+pub use evaluation_key::{EvaluationKey, HOLDOUT_RUNS_FROM, LIKELIEST, PREDICTIONS_FROM};
 pub use fact::{Dispute, EvaluationRow, Fact, Fingerprint, Kept};
 pub use replay::{Stored, StoredEvaluation};
 pub use sample::{Prediction, PriorDraw, RejectionReason, Sample, StageRow, Subchains};

@@ -1,5 +1,7 @@
 //! Results of a sampler: stages, draws, predictions.
 
+use std::collections::BTreeMap;
+
 use shared::outcome::Observables;
 
 /// A stored stage, without its population.
@@ -72,8 +74,43 @@ pub struct Prediction {
     pub theta: Vec<f64>,
     /// Observables of the fitted runs, or why the model rejected.
     pub fit: Result<Observables, RejectionReason>,
-    /// The same for the holdout runs, where there are any.
-    pub holdout: Option<Result<Observables, RejectionReason>>,
+    /// The holdout runs, where there are any.
+    pub holdout: Option<HoldoutPrediction>,
+}
+
+/// What the model says of the holdout runs at a final draw.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HoldoutPrediction {
+    /// Observables of all of them, or why the model rejected one.
+    pub together: Result<Observables, RejectionReason>,
+    /// Where it rejected one of several: each by itself, by position among them.
+    pub alone: BTreeMap<usize, Result<Observables, RejectionReason>>,
+}
+
+impl HoldoutPrediction {
+    /// The observables in which a run stands, with its place in them, or why the model rejected it.
+    ///
+    /// # Arguments
+    /// - `position`: the run's among the holdout runs.
+    ///
+    /// # Errors
+    /// The reason: its own, or where it was not asked for alone that of all.
+    pub fn run(&self, position: usize) -> Result<(&Observables, usize), &RejectionReason> {
+        match (&self.together, self.alone.get(&position)) {
+            (Ok(observables), _) => Ok((observables, position)),
+            (Err(_), Some(Ok(observables))) => Ok((observables, 0)),
+            (Err(_), Some(Err(reason))) | (Err(reason), None) => Err(reason),
+        }
+    }
+}
+
+impl From<Result<Observables, RejectionReason>> for HoldoutPrediction {
+    fn from(together: Result<Observables, RejectionReason>) -> Self {
+        HoldoutPrediction {
+            together,
+            alone: BTreeMap::new(),
+        }
+    }
 }
 
 /// Counts of a metamodel.

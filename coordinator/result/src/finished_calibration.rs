@@ -1,6 +1,7 @@
 //! A finished calibration with everything that the store kept of it.
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use job::Spec;
 use record::{
@@ -9,6 +10,8 @@ use record::{
 };
 use shared::outcome::SimulatedHistory;
 use statistics::Marginal;
+
+use crate::table::interpolation::Interpolations;
 
 /// A finished calibration.
 #[derive(Debug)]
@@ -51,6 +54,8 @@ pub struct FinishedCalibration {
     pub verified: Verified,
     /// How a model that is not ours answered what it was asked twice.
     pub repeats: Repeats,
+    /// The held-out measurements as interpolated from the fitted ones, once somebody asks.
+    pub interpolations: OnceLock<Interpolations>,
 }
 
 impl FinishedCalibration {

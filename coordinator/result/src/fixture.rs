@@ -10,7 +10,8 @@ use record::{
     Verified,
 };
 use shared::api::CalibrationState;
-use shared::file::FileSet;
+use shared::experiment::Campaign;
+use shared::file::{FileSet, parse_toml};
 use shared::outcome::Observables;
 
 use crate::discovery::DiscoveryRound;
@@ -53,6 +54,14 @@ d,a,sand,0.5,25,0.01,1.5,,fit
 e,a,sand,0.4,25,0.01,1.2,0.022,LAST
 ";
 
+/// A campaign whose rows were digitised.
+pub(crate) fn campaign() -> Campaign {
+    let toml = "title = \"Wheels in <i>sand</i>\"\nauthors = [\"A. Author\", \"B. Author\"]\ndate = \"2025\"\n\
+                licence = \"CC-BY-4.0\"\ndoi = \"10.1000/182\"\nsource = \"figure 5\"\ndigitised = true\n\
+                noise = \"guessed\"\ndoubts = [\"few rows\"]\n";
+    parse_toml("campaign.toml", toml).expect("a campaign")
+}
+
 /// A calibration with a holdout run.
 pub(crate) fn calibration() -> FinishedCalibration {
     build(&RUNS.replace("LAST", "holdout"))
@@ -80,7 +89,7 @@ pub(crate) fn with_held_out_runs(count: usize, error: f64) -> FinishedCalibratio
         .map(|&i| experiment.runs[i].measured[0]);
     let predicted: Vec<f64> = measured.flatten().map(|pull| pull + error).collect();
     for prediction in &mut calibration.predictions {
-        if let Some(Ok(observables)) = &mut prediction.holdout {
+        if let Some(Ok(observables)) = prediction.holdout.as_mut().map(|h| &mut h.together) {
             observables.drawbar_pull_n.clone_from(&predicted);
         }
     }
@@ -92,16 +101,41 @@ pub(crate) fn all_rejected() -> FinishedCalibration {
     let mut calibration = calibration();
     for prediction in &mut calibration.predictions {
         prediction.fit = Err(RejectionReason("no_support".into()));
-        prediction.holdout = prediction
-            .holdout
-            .take()
-            .map(|_| Err(RejectionReason("no_support".into())));
+        let refused = |_| Err(RejectionReason("no_support".into())).into();
+        prediction.holdout = prediction.holdout.take().map(refused);
     }
     for stage in &mut calibration.stages {
         (stage.equilibrated, stage.drift_z, stage.tempering_exponent) = (false, 1e6, 0.0);
     }
     calibration.row.equilibrated = Some(false);
     calibration.row.log_evidence = None;
+    calibration
+}
+
+/// The same with four runs held out of which the model refuses one at every draw, and one at every second draw.
+pub(crate) fn with_refused_runs() -> FinishedCalibration {
+    let mut calibration = with_held_out_runs(4, 0.5);
+    let draws = calibration.predictions.iter_mut().skip(1).enumerate();
+    for (draw, prediction) in draws {
+        let Some(holdout) = prediction.holdout.as_mut() else {
+            continue;
+        };
+        let reason = |of: &str| RejectionReason(format!("no_support: condition {of}: z = 0.11 m"));
+        let together = std::mem::replace(&mut holdout.together, Err(reason("1")));
+        for run in 0..4 {
+            let of_run = |all: &Observables| Observables {
+                drawbar_pull_n: vec![all.drawbar_pull_n[run]],
+                sinkage_m: vec![all.sinkage_m[run]],
+                ..Observables::default()
+            };
+            let is_refused = run == 1 || run == 2 && draw % 2 == 0;
+            let alone = match &together {
+                Ok(all) if !is_refused => Ok(of_run(all)),
+                _ => Err(reason("0")),
+            };
+            holdout.alone.insert(run, alone);
+        }
+    }
     calibration
 }
 
@@ -208,7 +242,12 @@ fn build(runs: &str) -> FinishedCalibration {
         toml: JOB.into(),
         files: BTreeMap::new(),
     };
-    let spec = Spec::new("job.toml", &job, "experiment.toml", &files).expect("the fixture's files are valid");
+    of_files(job, &files)
+}
+
+/// A calibration of these files; its draws are spread over the prior.
+pub(crate) fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
+    let spec = Spec::new("job.toml", &job, "experiment.toml", files).expect("the fixture's files are valid");
     // The golden ratio's multiples spread evenly.
     let share = |k: usize, i: usize| (0.5 + 0.618_033_988_75 * (k * (i + 1)) as f64) % 1.0;
     let theta = |k: usize| -> Vec<f64> {
@@ -236,6 +275,7 @@ fn build(runs: &str) -> FinishedCalibration {
             torque_n_m: values(0.1, 0.1),
             sinkage_m: values(0.014, 0.002),
             lateral_force_n: values(0.0, 0.0),
+            plate_pressure_pa: vec![1e4; spec.bevameter.plates.len()],
             ..Observables::default()
         }
     };
@@ -254,7 +294,7 @@ fn build(runs: &str) -> FinishedCalibration {
         .map(|k| Prediction {
             theta: theta(k),
             fit: Ok(predicted(k, &spec.fit_runs)),
-            holdout: (!spec.holdout_runs.is_empty()).then(|| Ok(predicted(k, &spec.holdout_runs))),
+            holdout: (!spec.holdout_runs.is_empty()).then(|| Ok(predicted(k, &spec.holdout_runs)).into()),
         })
         .collect();
     let likeliest_values = spec.predicted_values(&predicted(0, &spec.fit_runs));
@@ -307,6 +347,7 @@ fn build(runs: &str) -> FinishedCalibration {
         disputes: Vec::new(),
         verified: Verified::default(),
         repeats: Repeats::default(),
+        interpolations: Default::default(),
         spec,
     }
 }

@@ -9,13 +9,14 @@
 //! - [`diagnostics`]: how far the posterior can be trusted. `flag`: warnings in words.
 //!   `diagnosis`: both, computed once.
 //! - `model_comparison`: the models that a job compares, by evidence and by prediction.
+//! - [`validation`]: the levels of a factor, each predicted from the others.
 //! - `overview`, `study_member`: a study as the page shows it. `summary`: `summary.json`. `discovery`: its block on missing effects.
 //! - [`figure`]: the numbers of the source paper's figures.
 //! - [`report`]: one document with everything. [`terminal`]: text for a terminal.
 //! - `provenance`: how a calibration came about, and what it reached in sentences.
 //! - [`story`]: what is wrong, what is missing, what to do next.
 //! - [`report`]: the HTML page. [`terminal`]: text for a terminal.
-//! - `words`: numbers, units and probabilities as people read them.
+//! - `words`: numbers, units, probabilities and citations as people read them.
 
 mod diagnosis;
 pub mod diagnostics;
@@ -36,6 +37,7 @@ mod study_member;
 mod summary;
 mod table;
 pub mod terminal;
+pub mod validation;
 mod words;
 
 pub use diagnostics::Diagnostics;
@@ -59,8 +61,11 @@ pub use table::comparison::Comparison;
 pub use table::errors::{ChannelError, ErrorTable};
 pub use table::fixed_sigma::{FixedSigma, FixedSigmas, SigmaSource};
 pub use table::group::{ErrorGroup, GroupBy, GroupError};
+pub use table::interpolation::{InterpolatedOver, Interpolations};
 pub use table::posterior::PosteriorTable;
 pub use table::predictive::{Component, NewMeasurement, NewMeasurements, Predictive};
+pub use table::refusal::Refusal;
 pub use table::row::ComparisonRow;
+pub use words::campaign::CampaignWords;
 pub use words::data_channel::{BevameterTest, DataChannel};
 pub use words::number;

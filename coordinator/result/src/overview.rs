@@ -15,6 +15,7 @@ use crate::summary::calibration::CalibrationSummary;
 use crate::summary::error::ErrorSummary;
 use crate::summary::point_estimate::PointEstimate;
 use crate::table::fixed_sigma::FixedSigma;
+use crate::words::campaign::CampaignWords;
 use crate::words::data_channel::DataChannel;
 
 /// A study: what is finished of it, and what is still computed.
@@ -26,6 +27,8 @@ pub struct StudyOverview {
     pub name: String,
     /// The experiment of the submitted calibration.
     pub experiment: i64,
+    /// Where its measurements come from; null where the experiment does not say it, and without a finished calibration.
+    pub campaign: Option<CampaignWords>,
     /// `finished` where no further step follows, else the state of its first unfinished member.
     pub state: CalibrationState,
     /// Whether it is archived.
@@ -128,6 +131,7 @@ impl StudyOverview {
             id,
             name: members.first().map(|m| m.name.clone()).unwrap_or_default(),
             experiment,
+            campaign: None,
             state: unfinished.map_or(CalibrationState::Finished, |m| m.state),
             archived: false,
             model_kind,
@@ -185,6 +189,13 @@ impl Study {
         let kind = self.lead.spec.model.kind.name().to_owned();
         let (id, experiment) = (self.lead.row.study, self.lead.row.experiment);
         StudyOverview {
+            campaign: self
+                .lead
+                .spec
+                .experiment
+                .campaign
+                .as_ref()
+                .map(CampaignWords::from),
             state: self.state,
             current,
             ledger: self.ledger_summaries(&sigmas),

@@ -137,6 +137,9 @@ impl Calibration {
         let variant = match (self.key(evaluation), &self.spec.holdout_variant, &self.histories) {
             _ if searched.is_some() => searched.unwrap_or(&self.spec.fit_variant),
             (EvaluationKey::Prediction { holdout: true, .. }, Some(variant), _) => variant,
+            (EvaluationKey::HoldoutRun { run, .. }, ..) => {
+                self.apart.get(run).map_or(&self.spec.fit_variant, |(_, own)| own)
+            }
             (EvaluationKey::Likeliest, _, Some((_, variant))) => variant,
             (EvaluationKey::Sampling { .. }, ..) => &self.sampled.1,
             _ => &self.spec.fit_variant,
@@ -184,8 +187,11 @@ impl Calibration {
         self.evaluations += u64::from(!stayed);
         self.rejected += u64::from(rejected);
         let Some(scored) = scored else {
+            if rejected {
+                self.note_refused(evaluation);
+            }
             if self.done.len() == self.queue.len() {
-                self.conclude(facts);
+                self.after_draws(facts);
             }
             return;
         };
@@ -217,10 +223,10 @@ impl Calibration {
                     Some(CalibrationResult::Estimate(estimate)) => {
                         self.draws = Some(match &estimate.approximation {
                             Some(approximation) => final_draws(&approximation.draws, Some(&estimate.theta)),
-                            None => FinalDraws {
-                                thetas: vec![estimate.theta.clone()],
-                                likeliest: self.histories.is_some().then(|| estimate.theta.clone()),
-                            },
+                            None => FinalDraws::new(
+                                vec![estimate.theta.clone()],
+                                self.histories.is_some().then(|| estimate.theta.clone()),
+                            ),
                         });
                         facts.push(Fact::Estimate {
                             calibration,
@@ -239,6 +245,34 @@ impl Calibration {
                 self.finish(CalibrationState::Failed, Some(failure.to_string()), facts);
             }
             Err(error) => self.finish(CalibrationState::Failed, Some(error.to_string()), facts),
+        }
+    }
+
+    /// Notes that the model refuses the holdout runs of a draw together. Where there is one alone, or where a machine failed,
+    /// asking again would bring nothing.
+    fn note_refused(&mut self, evaluation: u64) {
+        let EvaluationKey::Prediction { draw, holdout: true } = self.key(evaluation) else {
+            return;
+        };
+        let is_model_s = self
+            .done
+            .get(&evaluation)
+            .is_some_and(|d| d.answer.worker != NOBODY);
+        if let Some(draws) = self.draws.as_mut().filter(|_| is_model_s)
+            && self.spec.holdout_runs.len() > 1
+        {
+            draws.refused.insert(draw);
+        }
+    }
+
+    /// What follows when all that was asked for of the final draws is there.
+    fn after_draws(&mut self, facts: &mut Vec<Fact>) {
+        match &mut self.draws {
+            Some(draws) if !draws.apart && !draws.refused.is_empty() => {
+                draws.apart = true;
+                self.ask();
+            }
+            _ => self.conclude(facts),
         }
     }
 

@@ -1,5 +1,7 @@
 //! The parameter vectors simulated after a sampler or a fit has ended.
 
+use std::collections::BTreeSet;
+
 use inference::Particle;
 
 /// What is simulated once the posterior, or the estimate, is known.
@@ -9,6 +11,21 @@ pub(super) struct FinalDraws {
     pub(super) thetas: Vec<Vec<f64>>,
     /// The one of the highest likelihood, if it is simulated once more.
     pub(super) likeliest: Option<Vec<f64>>,
+    /// The draws at which the model refuses one of several holdout runs.
+    pub(super) refused: BTreeSet<usize>,
+    /// Whether all are simulated, so that the holdout runs of these are asked for one by one.
+    pub(super) apart: bool,
+}
+
+impl FinalDraws {
+    pub(super) fn new(thetas: Vec<Vec<f64>>, likeliest: Option<Vec<f64>>) -> Self {
+        FinalDraws {
+            thetas,
+            likeliest,
+            refused: BTreeSet::new(),
+            apart: false,
+        }
+    }
 }
 
 /// The draws that are simulated on every run: the most probable parameters, by default the particle's, then evenly spaced
@@ -27,8 +44,8 @@ pub(super) fn final_draws(particles: &[Particle], mode: Option<&[f64]>) -> Final
         let best = highest(&|i| log_likelihood(i) + particles[i].log_prior);
         best.map(theta)
     });
-    FinalDraws {
-        thetas: best.into_iter().chain(even.map(theta)).collect(),
-        likeliest: likeliest.map(theta),
-    }
+    FinalDraws::new(
+        best.into_iter().chain(even.map(theta)).collect(),
+        likeliest.map(theta),
+    )
 }

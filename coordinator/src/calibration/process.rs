@@ -65,6 +65,8 @@ pub struct Calibration {
     stage_variant: Option<(usize, (String, ModelVariant))>,
     /// The fitted runs with their histories, and their hash; `None` of a model that knows no time.
     pub(super) histories: Option<(String, ModelVariant)>,
+    /// Each holdout run by itself, with its hash; none before they are asked for.
+    pub(super) apart: Vec<(String, ModelVariant)>,
     /// What the calibration ends with; `None` while sampling.
     pub(super) draws: Option<FinalDraws>,
     /// Answers of the present round.
@@ -140,6 +142,7 @@ impl Calibration {
             rejected: 0,
             engine,
             stage_variant: None,
+            apart: Vec::new(),
             draws: None,
             done: BTreeMap::new(),
             given_up: 0,
@@ -186,6 +189,7 @@ impl Calibration {
         }
         let variant = match self.key(evaluation) {
             EvaluationKey::Prediction { holdout: true, .. } => self.holdout_hash.as_deref()?,
+            EvaluationKey::HoldoutRun { run, .. } => &self.apart.get(run)?.0,
             EvaluationKey::Likeliest => self.histories.as_ref().map_or(&self.fit_hash, |(hash, _)| hash),
             EvaluationKey::Prediction { .. } => &self.fit_hash,
             EvaluationKey::Sampling { .. } => &self.sampled.0,
@@ -234,7 +238,7 @@ impl Calibration {
             h if Some(h) == self.holdout_hash.as_deref() => self.spec.holdout_variant.as_ref(),
             h => {
                 let of_stage = self.stage_variant.iter().map(|(_, variant)| variant);
-                let mut others = of_stage.chain(&self.histories);
+                let mut others = of_stage.chain(&self.histories).chain(&self.apart);
                 let searched = || self.engine.discovery()?.variant(h);
                 others
                     .find(|(own, _)| own == h)
@@ -248,9 +252,10 @@ impl Calibration {
     /// The whole parameter vector of an evaluation that is asked for at present; of a subchain, where it starts.
     pub(super) fn theta(&self, evaluation: u64) -> Option<&[f64]> {
         match (self.key(evaluation), &self.draws) {
-            (EvaluationKey::Prediction { draw, .. }, Some(draws)) => {
-                draws.thetas.get(draw).map(Vec::as_slice)
-            }
+            (
+                EvaluationKey::Prediction { draw, .. } | EvaluationKey::HoldoutRun { draw, .. },
+                Some(draws),
+            ) => draws.thetas.get(draw).map(Vec::as_slice),
             (EvaluationKey::Likeliest, Some(draws)) => draws.likeliest.as_deref(),
             _ => self.proposal(evaluation).map(|p| p.theta.as_slice()),
         }
@@ -283,6 +288,16 @@ impl Calibration {
         self.given_up = 0;
         let failed = |evaluation| self.failed.get(&evaluation).cloned().unwrap_or_default();
         match &self.draws {
+            Some(draws) if draws.apart => {
+                let holdout = self.spec.holdout_variant.iter();
+                self.apart = holdout.flat_map(ModelVariant::by_condition).map(hashed).collect();
+                let runs = 0..self.apart.len();
+                let keys = draws.refused.iter().flat_map(|&draw| {
+                    runs.clone()
+                        .map(move |run| EvaluationKey::HoldoutRun { draw, run })
+                });
+                self.queue.ask(keys.map(|key| key.number(particles)), failed);
+            }
             Some(draws) => {
                 let parts = if self.holdout_hash.is_some() { 2 } else { 1 };
                 let keys = (0..draws.thetas.len()).flat_map(|draw| {

@@ -54,13 +54,13 @@ impl Calibration {
         self.ask();
         let mut facts = Vec::new();
         loop {
-            let (round, drawing) = (self.engine.round(), self.draws.is_some());
+            let (round, drawing) = (self.engine.round(), self.drawing());
             for evaluation in self.queue.asked() {
                 if let Some(row) = stored.evaluations.get(&evaluation) {
                     self.tell_again(evaluation, row, &mut facts)?;
                 }
             }
-            let moved = self.engine.round() != round || self.draws.is_some() != drawing;
+            let moved = self.engine.round() != round || self.drawing() != drawing;
             if !moved || self.state.is_final() {
                 break;
             }
@@ -74,6 +74,11 @@ impl Calibration {
             self.message = stored.message;
         }
         Ok(facts)
+    }
+
+    /// Whether final draws are asked for: together, then those that are refused run by run.
+    fn drawing(&self) -> Option<bool> {
+        self.draws.as_ref().map(|draws| draws.apart)
     }
 
     fn tell_again(
@@ -139,7 +144,7 @@ mod tests {
     use super::*;
     use job::Spec;
     use record::fact::{EvaluationRow, Kept};
-    use record::{LIKELIEST, PREDICTIONS_FROM};
+    use record::{EvaluationKey, HOLDOUT_RUNS_FROM, LIKELIEST, PREDICTIONS_FROM};
 
     const JOB: &str = "[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = { uniform = [4.0, 5.6] }\nkappa = 0.0\nn = { uniform = [0.8, 1.4] }\nfriction_angle_deg = 30.0\n[sampler]\nparticles = 20\nmoves = [2, 4]\n";
     const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 0.05\n";
@@ -160,9 +165,19 @@ mod tests {
     }
 
     fn calibration(job: &str) -> Calibration {
+        of_runs(job, RUNS)
+    }
+
+    /// The same with two more runs held out, the first of which the model refuses.
+    fn with_a_refused_run() -> Calibration {
+        let more = "c,w,s,0.9,100,0.008,5.2,holdout\nd,w,s,0.3,100,0.008,5.0,holdout\n";
+        of_runs(JOB, &format!("{RUNS}{more}"))
+    }
+
+    fn of_runs(job: &str, runs: &str) -> Calibration {
         let files = FileSet {
             toml: EXPERIMENT.into(),
-            files: [("runs.csv".into(), RUNS.into())].into(),
+            files: [("runs.csv".into(), runs.into())].into(),
         };
         let job = FileSet {
             toml: job.into(),
@@ -199,6 +214,9 @@ mod tests {
         );
     }
 
+    /// The toy refuses runs of more slip.
+    const TOO_STEEP: f64 = 0.8;
+
     /// A model of one line, refusing a corner of the prior.
     fn toy(theta: &[f64], runs: usize) -> Result<Observables, String> {
         if theta[1] > 1.35 {
@@ -232,9 +250,12 @@ mod tests {
                 let Some(question) = calibration.question(evaluation) else {
                     break;
                 };
-                let runs = 1;
+                let conditions = &calibration.variant(question.variant).unwrap().conditions;
                 let timed = calibration.histories.is_some();
-                let mut outcome = toy(question.theta, runs);
+                let mut outcome = toy(question.theta, conditions.len());
+                if let Some(steep) = conditions.iter().position(|c| c.slip > TOO_STEEP) {
+                    outcome = Err(format!("no_support: condition {steep}: toy"));
+                }
                 if let (Ok(observables), true) = (&mut outcome, evaluation == LIKELIEST && timed) {
                     let samples = vec![0.25; 3];
                     observables.histories = vec![SimulatedHistory {
@@ -428,6 +449,33 @@ mod tests {
                         fitted
                     }
             );
+        }
+    }
+
+    #[test]
+    fn where_a_holdout_run_is_refused_each_is_asked_for_alone() {
+        let facts = work(&mut with_a_refused_run(), usize::MAX, false);
+        let whole = sorted(&facts);
+        let outcome = |evaluation| &whole.iter().find(|r| r.evaluation == evaluation).unwrap().kept;
+        for draw in 0..21 {
+            let together = EvaluationKey::Prediction { draw, holdout: true }.number(20);
+            assert!(matches!(outcome(together), Kept::Rejected(_)));
+            let alone = |run| outcome(EvaluationKey::HoldoutRun { draw, run }.number(20));
+            let answers = |kept: &Kept| matches!(kept, Kept::Whole(o) if o.sinkage_m.len() == 1);
+            assert!(answers(alone(0)) && answers(alone(2)));
+            assert_eq!(*alone(1), Kept::Rejected("no_support: condition 0: toy".into()));
+        }
+        let alone = whole.iter().filter(|r| r.evaluation >= HOLDOUT_RUNS_FROM);
+        assert_eq!(alone.count(), 3 * 21);
+        assert_eq!(sorted(&work(&mut with_a_refused_run(), usize::MAX, true)), whole);
+        for cut in [30, whole.len() - 63, whole.len() - 62, whole.len() - 1] {
+            let begun = work(&mut with_a_refused_run(), cut, true);
+            let mut again = with_a_refused_run();
+            again.replay(stored(&begun)).unwrap();
+            let mut all = begun;
+            all.extend(work(&mut again, usize::MAX, false));
+            assert_eq!(sorted(&all), whole, "cut after {cut}");
+            assert_eq!(again.state, CalibrationState::Finished);
         }
     }
 

@@ -132,10 +132,14 @@ fn wrapped(words: &str, indent: usize) -> String {
 /// What each strength does, in a table and in curves.
 fn deeds(signature: &Signature) -> String {
     let pass = if signature.pass > 1 { "; second pass" } else { "" };
+    let angle = match signature.slip_angle_deg {
+        angle if angle > 0.0 => format!("; slip angle {angle:.0} deg"),
+        _ => String::new(),
+    };
     let mut text = wrapped(
         &format!(
             "What it does in {}: a wheel of 0.130 m, 0.112 m wide, with 12 grousers of 9 mm, in sand (k_phi 1e7, n 1.1, \
-             30 deg, 1400 kg/m^3); 100 N, slip 0.2 and a rim speed of 10 mm/s where nothing else is said{pass}.",
+             30 deg, 1400 kg/m^3); 100 N, slip 0.2 and a rim speed of 10 mm/s where nothing else is said{pass}{angle}.",
             signature.model_kind
         ),
         0,

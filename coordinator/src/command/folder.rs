@@ -148,14 +148,21 @@ impl Folder {
         }
     }
 
-    /// Brings a study to its end, writes its results and prints them.
-    pub(super) async fn finish(mut self, study: i64, details: Details) -> anyhow::Result<()> {
+    /// Brings a study to its end.
+    pub(super) async fn bring_to_end(&mut self, study: i64) -> anyhow::Result<()> {
         let reader = self.service.store().reader();
         let rows = reader.study(study).await?;
         let is_over = rows.iter().all(|row| row.state.is_final());
         if !is_over || next_step_of(&reader, study).await?.is_some() {
             self.calibrate(study).await?;
         }
+        Ok(())
+    }
+
+    /// Brings a study to its end, writes its results and prints them.
+    pub(super) async fn finish(mut self, study: i64, details: Details) -> anyhow::Result<()> {
+        self.bring_to_end(study).await?;
+        let reader = self.service.store().reader();
         let rows = reader.study(study).await?;
         if let Some(row) = rows.iter().find(|row| row.state == CalibrationState::Finished) {
             let rounds = search_rounds(&reader, &rows).await?;

@@ -21,6 +21,7 @@ mod shell;
 mod shutdown;
 mod source;
 mod token;
+mod validate;
 mod verbs;
 
 use crate::config::CoordinatorCommand;
@@ -47,6 +48,7 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Report(report) => verbs::report(&report).await,
         CoordinatorCommand::Export(export) => export_file::export(&export).await,
         CoordinatorCommand::Diagnose(target) => verbs::diagnose(&target).await,
+        CoordinatorCommand::Validate(config) => validate::validate(&config).await,
         CoordinatorCommand::Discover(discover) => growth::discover(&discover).await,
         CoordinatorCommand::Extend(extend) => growth::extend(&extend).await,
         CoordinatorCommand::AddRuns(runs) => growth::add_runs(&runs).await,

@@ -128,7 +128,8 @@ impl CalibrationSource {
     }
 }
 
-async fn outcome(reader: &Reader, id: i64) -> anyhow::Result<FinishedCalibration> {
+/// A finished calibration in a folder.
+pub(super) async fn outcome(reader: &Reader, id: i64) -> anyhow::Result<FinishedCalibration> {
     Ok(finished_calibration(reader, &calibration_row(reader, id).await?).await?)
 }
 

@@ -2,12 +2,16 @@
 //!
 //! # Layout
 //! - `client`: what a service asks for.
-//! - `scale`: arguments of `coordinator scale`.
+//! - `model`: models that are not ours. `target`: which calibration, and where.
+//! - `scale`, `validate`: arguments of `coordinator scale` and `coordinator validate`.
 //! - `store`: where a store is kept, copies of it, its tokens.
 
 mod client;
+mod model;
 mod scale;
 mod store;
+mod target;
+mod validate;
 
 use std::path::PathBuf;
 
@@ -18,8 +22,11 @@ use crate::embedded::WorkerConfig;
 use crate::schema::FileKind;
 
 pub use client::ClientArguments;
+pub use model::ModelArguments;
 pub use scale::{EngineKind, ScaleArguments};
 pub use store::{BackupArguments, CopyStoreArguments, StoreArguments, TokenCommand};
+pub use target::{SourceArguments, TargetArguments};
+pub use validate::{LeaveOut, ValidateArguments, ValidationFormat};
 
 /// The processors that this program was built for.
 pub const ARCHITECTURE: &str = std::env::consts::ARCH;
@@ -64,6 +71,8 @@ pub enum CoordinatorCommand {
     Export(ExportArguments),
     /// Show how reliable a calibration is and where its model fails.
     Diagnose(TargetArguments),
+    /// Leave each level of a factor out in turn, and predict it by a calibration on the rest.
+    Validate(ValidateArguments),
     /// Search for an effect that the model of a calibration is missing.
     Discover(DiscoverArguments),
     /// Extend a study by a calibration with one additional effect.
@@ -155,20 +164,6 @@ pub struct SchemaArguments {
     /// Writes the schemas of all kinds into this folder, and .taplo.toml, which says what files have them.
     #[arg(long, value_name = "FOLDER", conflicts_with = "kind")]
     pub output: Option<PathBuf>,
-}
-
-/// The models that are not ours that this process runs.
-#[derive(Debug, Args)]
-pub struct ModelArguments {
-    /// Runs this model for jobs that name it: the file of a program (kind = "command"), or the URL of a UM-Bridge server (kind =
-    /// "umbridge"); may be repeated, or several between commas. By default no job starts a program here.
-    #[arg(
-        long,
-        value_name = "FILE_OR_URL",
-        env = "GROUSER_ALLOW_MODEL",
-        value_delimiter = ','
-    )]
-    pub allow_model: Vec<String>,
 }
 
 /// List the effects of the catalogue, or show one.
@@ -340,31 +335,6 @@ pub struct SubmitArguments {
     pub client: ClientArguments,
 }
 
-/// Where calibrations are looked up: a service or a folder.
-#[derive(Debug, Args)]
-pub struct SourceArguments {
-    /// URL of a service; by default `GROUSER_URL` from the environment, or port 7070 of this machine.
-    #[arg(long)]
-    pub url: Option<String>,
-    /// The output folder of a run.
-    #[arg(long, conflicts_with_all = ["url", "token_file"])]
-    pub out: Option<PathBuf>,
-    /// What the service asks for.
-    #[command(flatten)]
-    pub client: ClientArguments,
-}
-
-impl SourceArguments {
-    /// The URL of the service: the argument, or else the environment's.
-    pub fn url(&self) -> String {
-        let environment = || std::env::var("GROUSER_URL").ok();
-        self.url
-            .clone()
-            .or_else(environment)
-            .unwrap_or_else(|| "http://127.0.0.1:7070".into())
-    }
-}
-
 /// Which calibrations are listed.
 #[derive(Debug, Args)]
 pub struct ListArguments {
@@ -387,16 +357,6 @@ pub struct StudyArguments {
     /// What it asks for.
     #[command(flatten)]
     pub client: ClientArguments,
-}
-
-/// One calibration.
-#[derive(Debug, Args)]
-pub struct TargetArguments {
-    /// Id of the calibration; may be omitted if there is only one study.
-    pub id: Option<i64>,
-    /// Where it is stored.
-    #[command(flatten)]
-    pub source: SourceArguments,
 }
 
 /// Resume a paused calibration.

@@ -93,6 +93,7 @@ impl Group {
         if let Some(mechanism) = effect.mechanism {
             return match mechanism {
                 Mechanism::FlatPatch => Group::Wheel,
+                Mechanism::SideWall => Group::Rig,
                 Mechanism::Rebound | Mechanism::Digging | Mechanism::EndWall => Group::Pressure,
             };
         }

@@ -1,5 +1,6 @@
 //! What an effect changes in drawbar pull, torque and sinkage, on one wheel in one sand.
 
+use formula::slip::variables;
 use formula::{Effect, Variable};
 use serde::{Deserialize, Serialize};
 use shared::experiment::{
@@ -32,6 +33,8 @@ const COLUMNS: [(&str, f64, f64, f64); 6] = [
     ("50 mm/s", 0.2, 100.0, 0.05),
 ];
 
+/// Slip angle at which effects are shown that are absent straight ahead `[deg]`.
+const SIDEWAYS_DEG: f64 = 30.0;
 /// Numbers of the first and the last run of a series; what is shown are last runs.
 const FIRST: i32 = 0;
 const LAST: i32 = 1;
@@ -45,6 +48,8 @@ pub struct Signature {
     pub model_kind: String,
     /// Which pass over the track is shown.
     pub pass: u32,
+    /// From the wheel's heading to the travel `[deg]`: 0 but for effects that are absent straight ahead.
+    pub slip_angle_deg: f64,
     /// Names of the conditions in the tables; slip 0.2, 100 N and 10 mm/s of rim speed where nothing else is said.
     pub conditions: Vec<String>,
     /// The other parameters, which only shape the effect.
@@ -117,12 +122,22 @@ pub fn signature(effect: &Effect, kind: ModelKind) -> Result<Signature, String> 
     } else {
         1
     };
+    let is_absent = |slip: f64| effect.is_absent_at(&variables(slip, 0.0));
+    let slip_angle_deg = if is_absent(0.2) && is_absent(-0.2) {
+        SIDEWAYS_DEG
+    } else {
+        0.0
+    };
+    let run = |column| TestRun {
+        slip_angle_deg,
+        ..run(column, pass)
+    };
     let slips: Vec<f64> = (0..POINTS).map(|i| (i as f64 - 8.0) / 20.0).collect();
     let curve = slips.iter().map(|&slip| ("", slip, 100.0, RIM_M_S));
-    let mut runs: Vec<TestRun> = COLUMNS.into_iter().chain(curve).map(|c| run(c, pass)).collect();
+    let mut runs: Vec<TestRun> = COLUMNS.into_iter().chain(curve).map(run).collect();
     runs.push(TestRun {
         order: Some(FIRST),
-        ..run(COLUMNS[0], pass)
+        ..run(COLUMNS[0])
     });
     let reference = Reference::new(effect, kind, runs)?;
     let base = reference.simulate(None)?;
@@ -152,6 +167,7 @@ pub fn signature(effect: &Effect, kind: ModelKind) -> Result<Signature, String> 
     Ok(Signature {
         model_kind: kind.name().to_owned(),
         pass,
+        slip_angle_deg,
         conditions: COLUMNS.iter().map(|c| c.0.to_owned()).collect(),
         shapes: effect
             .parameters
@@ -212,12 +228,14 @@ impl<'a> Reference<'a> {
             grouser_thickness_m: 0.002,
             rig_radius_m: RIG_RADIUS_M,
             mesh: None,
+            tread: None,
         };
         let soil = SoilProperties {
             density_kg_m3: Some(1400.0),
             repose_angle_deg: None,
         };
         let experiment = Experiment {
+            campaign: None,
             wheels: [("w".to_owned(), wheel)].into(),
             soils: [("s".to_owned(), soil)].into(),
             rig: Rig {
@@ -305,6 +323,16 @@ mod tests {
     use formula::catalogue::find;
 
     #[test]
+    fn an_effect_of_the_slip_angle_is_shown_at_one() {
+        let shown = signature(find("side_drag").unwrap(), ModelKind::QuasiStatic).unwrap();
+        assert!((shown.slip_angle_deg - SIDEWAYS_DEG).abs() < f64::EPSILON);
+        assert!(
+            shown.strengths[0].channels[0].change[0].unwrap() < -0.01,
+            "{shown:?}"
+        );
+    }
+
+    #[test]
     fn a_tare_takes_itself_from_the_pull_and_leaves_the_rest() {
         let shown = signature(find("sled_tare").unwrap(), ModelKind::QuasiStatic).unwrap();
         let [tare] = shown.strengths.as_slice() else {
@@ -315,6 +343,7 @@ mod tests {
                 assert!((change.unwrap() - expected).abs() < 1e-9, "{channel:?}");
             }
         }
+        assert!(shown.slip_angle_deg.abs() < f64::EPSILON);
         assert!((shown.slips[0] + 0.4).abs() < 1e-12 && (shown.slips[POINTS - 1] - 0.8).abs() < 1e-12);
     }
 }

@@ -85,7 +85,7 @@ mod tests {
         worker: "a",
         calibration: 1,
         evaluation: 3,
-        model_version: "scm-6",
+        model_version: "scm-7",
     };
     const QUESTION: Question = Question {
         variant: "00ff",
@@ -115,7 +115,7 @@ mod tests {
                     ..TERMS
                 },
                 LeaseTerms {
-                    model_version: "scm-7",
+                    model_version: "scm-8",
                     ..TERMS
                 },
             ] {

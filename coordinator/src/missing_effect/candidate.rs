@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use formula::catalogue::{catalogue, find};
+use formula::slip::variables;
 use formula::{Effect, Parameter};
 use shared::experiment::RunUse;
 use shared::file::{FileError, FileSet, unknown_word};
@@ -29,6 +30,9 @@ pub enum ExclusionReason {
     /// Its strength is fixed.
     #[error("no strength is free")]
     NoFreeStrength,
+    /// It changes nothing at the conditions of the fitted runs.
+    #[error("it changes nothing at the slips and slip angles of the fitted runs")]
+    AbsentEverywhere,
 }
 
 /// The job with further effects.
@@ -98,17 +102,21 @@ pub fn library(
     job: &FileSet,
     experiment: &FileSet,
 ) -> (Vec<CandidateEffect>, Vec<(String, ExclusionReason)>) {
-    let (mut had, mut wheels) = (BTreeSet::new(), BTreeSet::new());
+    let (mut had, mut wheels, mut fitted) = (BTreeSet::new(), BTreeSet::new(), Vec::new());
     // An invalid job excludes every effect, each with the reason.
     if let Ok(base) = spec(job, experiment) {
         had.extend(base.fit_variant.effects.into_iter().map(|e| e.name));
-        let fitted = base
-            .experiment
-            .runs
-            .into_iter()
-            .filter(|r| r.usage == RunUse::Fit);
-        wheels.extend(fitted.map(|run| run.wheel));
+        fitted = base.experiment.runs;
+        fitted.retain(|run| run.usage == RunUse::Fit);
+        wheels.extend(fitted.iter().map(|run| run.wheel.clone()));
     }
+    let acts = |effect: &Effect, wheel: Option<&str>| {
+        let mut own = fitted
+            .iter()
+            .filter(|run| wheel.is_none_or(|wheel| run.wheel == wheel));
+        fitted.is_empty()
+            || own.any(|run| !effect.is_absent_at(&variables(run.slip, run.slip_angle_deg.to_radians())))
+    };
     let missing = || catalogue().iter().filter(|e| !had.contains(&e.name));
     let everywhere = missing().map(|effect| (effect, None));
     let on_one = missing()
@@ -117,7 +125,15 @@ pub fn library(
     let (mut candidates, mut excluded) = (Vec::new(), Vec::new());
     for (effect, wheel) in everywhere.chain(on_one) {
         let candidate = candidate(effect, wheel);
-        match check(job, experiment, &candidate.extension, effect, wheel) {
+        // A mechanism alone may be one that the model does not have: then runs of no kind would show it.
+        let is_mechanism = effect.hooks().next().is_none();
+        let able = match acts(effect, wheel) {
+            true => check(job, experiment, &candidate.extension, effect, wheel),
+            false if is_mechanism => check(job, experiment, &candidate.extension, effect, wheel)
+                .and(Err(ExclusionReason::AbsentEverywhere)),
+            false => Err(ExclusionReason::AbsentEverywhere),
+        };
+        match able {
             Ok(()) => candidates.push(candidate),
             Err(reason) => excluded.push((candidate.name, reason)),
         }
@@ -259,6 +275,42 @@ mod tests {
         );
         let smooth = excluded.iter().find(|(name, _)| name == "lug_thrust.smooth");
         assert!(smooth.is_some_and(|(_, reason)| reason.to_string().contains("needs a wheel with grousers")));
+    }
+
+    #[test]
+    fn what_no_fitted_run_shows_is_no_candidate() {
+        let (job, straight, _) = read("examples/cmu-sand");
+        let mut at_an_angle = straight.clone();
+        let runs = at_an_angle.files.get_mut("runs.csv").unwrap();
+        *runs = runs
+            .lines()
+            .map(|line| match line.starts_with("grousered") {
+                true => line.replacen(",0,1,", ",15,1,", 1) + "\n",
+                false => line.to_owned() + "\n",
+            })
+            .collect();
+        let names = |files: &FileSet| -> Vec<String> {
+            let (candidates, _) = library(&job, files);
+            candidates.into_iter().map(|c| c.name).collect()
+        };
+        let of = |names: &[String], effect: &str| -> Vec<String> {
+            let own = names.iter().filter(|name| name.split('.').next() == Some(effect));
+            own.cloned().collect()
+        };
+        let (without, with) = (names(&straight), names(&at_an_angle));
+        for effect in ["lateral_slip_sinkage", "side_bulldozing", "side_drag"] {
+            assert!(of(&without, effect).is_empty(), "{effect}");
+            assert_eq!(
+                of(&with, effect),
+                [effect.to_owned(), format!("{effect}.grousered")]
+            );
+        }
+        // The sand was driven over in skid, too.
+        assert_eq!(of(&without, "skid_sinkage").len(), 3);
+        let models = SearchModels::new(&job, &straight, 1).unwrap();
+        let said: Vec<_> = models.not_tried().filter(|own| own.name == "side_drag").collect();
+        assert_eq!(said.len(), 1);
+        assert_eq!(said[0].needs, "runs at a slip angle or in skid");
     }
 
     #[test]

@@ -5,10 +5,8 @@ use shared::experiment::{TestRun, rim_speed_m_s};
 use shared::model::RunCondition;
 use statistics::Likelihood;
 
-use job::{PLATE, Spec};
+use job::{PLATE, Spec, levels_of};
 
-/// Values closer than this share of their range are one level `[1]`.
-const SAME_LEVEL: f64 = 0.02;
 /// Least levels of a variable for the cross-validation: fewer do not determine an extrapolation.
 const LEAST_LEVELS: usize = 3;
 /// Slips of proposed runs.
@@ -31,7 +29,7 @@ pub(super) fn levels(spec: &Spec) -> Vec<Vec<usize>> {
     let mut levels = Vec::new();
     for variable in variables {
         let values: Vec<f64> = runs.iter().map(|run| variable(run)).collect();
-        let own = level_of(&values);
+        let own = levels_of(&values);
         let count = own.iter().max().map_or(0, |most| most + 1);
         if count >= LEAST_LEVELS {
             levels.extend((0..count).map(|level| of_runs(&spec.likelihood, |run| own[run] == level)));
@@ -46,22 +44,6 @@ fn of_runs(likelihood: &Likelihood, is_in: impl Fn(usize) -> bool) -> Vec<usize>
     data.filter(|(_, d)| d.channel < PLATE && is_in(d.run))
         .map(|(i, _)| i)
         .collect()
-}
-
-/// The level of each value, ascending from 0.
-fn level_of(values: &[f64]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
-    let (Some(&first), Some(&last)) = (order.first(), order.last()) else {
-        return Vec::new();
-    };
-    let gap = SAME_LEVEL * (values[last] - values[first]);
-    let mut level = vec![0; values.len()];
-    for pair in order.windows(2) {
-        let is_next = values[pair[1]] - values[pair[0]] > gap;
-        level[pair[1]] = level[pair[0]] + usize::from(is_next);
-    }
-    level
 }
 
 /// The measured wheel loads, and rim speeds above 0.
@@ -204,12 +186,5 @@ mod tests {
         for (own, ratio) in found.iter().zip([1.0, 2.0, 3.0]) {
             assert!((own - libm::log(ratio)).abs() < 1e-12, "{found:?}");
         }
-    }
-
-    #[test]
-    fn scatter_within_a_level_makes_no_further_one() {
-        assert_eq!(level_of(&[0.6, 0.2, 0.201, 0.4, 0.599]), [2, 0, 0, 1, 2]);
-        assert_eq!(level_of(&[5.0, 5.0]), [0, 0]);
-        assert!(level_of(&[]).is_empty());
     }
 }

@@ -12,7 +12,7 @@ use shared::file::{FileError, FileSet};
 use shared::model::{ExternalModel, ModelKind, ModelVariant, RunCondition};
 use shared::outcome::Observables;
 
-use super::candidate::{CandidateEffect, JOB, candidate_of, extended, library, spec};
+use super::candidate::{CandidateEffect, ExclusionReason, JOB, candidate_of, extended, library, spec};
 use super::design;
 use super::entry::{CandidateEntry, LawEntry};
 use super::law::dependence::{Dependence, dependences};
@@ -62,8 +62,7 @@ impl SearchModels {
         let base = spec(job, experiment)?;
         let fail = |message: String| FileError::whole(JOB, message);
         let (effects, excluded) = library(job, experiment);
-        let excluded = excluded.iter().map(|(name, _)| name.as_str());
-        let (untried, assumed) = untried(job, experiment, base.model.kind, excluded)?;
+        let (untried, assumed) = untried(job, experiment, base.model.kind, &excluded)?;
         let known = |name: &str| base.parameters.iter().any(|p| p.name == name);
         let entry = |own: CandidateEffect, experiment: &FileSet| {
             let with = spec(&extended(JOB, job, &[&own.extension])?, experiment)?;
@@ -82,6 +81,7 @@ impl SearchModels {
         );
         let external = base.model.external.iter();
         let mut not_tried: Vec<NotTried> = external.flat_map(out_of_reach).collect();
+        not_tried.extend(absent(&excluded));
         for switch in &MODEL_SWITCHES {
             match CandidateEntry::switch(switch, &base, job, experiment) {
                 Ok(own) => entries.extend(own),
@@ -295,6 +295,19 @@ impl SearchModels {
         };
         (0..self.design.len()).flat_map(channel).collect()
     }
+}
+
+/// The effects that change nothing at the conditions of any fitted run.
+fn absent(excluded: &[(String, ExclusionReason)]) -> impl Iterator<Item = NotTried> {
+    let everywhere = excluded.iter().filter(|(name, reason)| {
+        let is_on_one_wheel = name.contains('.');
+        matches!(reason, ExclusionReason::AbsentEverywhere) && !is_on_one_wheel
+    });
+    everywhere.map(|(name, reason)| NotTried {
+        name: name.clone(),
+        why: reason.to_string(),
+        needs: "runs at a slip angle or in skid".to_owned(),
+    })
 }
 
 /// The effects of the catalogue that cannot act around a model that is not ours.

@@ -6,7 +6,7 @@ use formula::{Effect, Variable};
 use shared::file::{FileError, FileSet};
 use shared::model::ModelKind;
 
-use super::candidate::{CandidateEffect, EXPERIMENT, candidate_of, check, library};
+use super::candidate::{CandidateEffect, EXPERIMENT, ExclusionReason, candidate_of, check, library};
 use job::{AssumedExperiment, SiteProperty, UnsaidProperty};
 use record::NotTried;
 
@@ -42,11 +42,11 @@ impl UntriedEffect {
 ///
 /// # Errors
 /// [`FileError`] of the experiment.
-pub fn untried<'n>(
+pub fn untried(
     job: &FileSet,
     experiment: &FileSet,
     kind: ModelKind,
-    excluded: impl IntoIterator<Item = &'n str>,
+    excluded: &[(String, ExclusionReason)],
 ) -> Result<(Vec<UntriedEffect>, FileSet), FileError> {
     let assumed = AssumedExperiment::new(EXPERIMENT, experiment, kind)?;
     let of = |name: &str| {
@@ -62,7 +62,11 @@ pub fn untried<'n>(
             unsaid,
         })
     };
-    let untried = excluded.into_iter().filter_map(of).collect();
+    // What no fitted run shows, no further line of the experiment would show.
+    let stated = excluded
+        .iter()
+        .filter(|(_, reason)| !matches!(reason, ExclusionReason::AbsentEverywhere));
+    let untried = stated.filter_map(|(name, _)| of(name)).collect();
     Ok((untried, assumed.files))
 }
 
@@ -72,12 +76,7 @@ pub fn untried<'n>(
 /// [`FileError`] of the experiment.
 pub fn additions(job: &FileSet, experiment: &FileSet, kind: ModelKind) -> Result<Vec<String>, FileError> {
     let (_, excluded) = library(job, experiment);
-    let (untried, _) = untried(
-        job,
-        experiment,
-        kind,
-        excluded.iter().map(|(name, _)| name.as_str()),
-    )?;
+    let (untried, _) = untried(job, experiment, kind, &excluded)?;
     let mut of_lines: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for effect in &untried {
         let NotTried { name, needs, .. } = effect.record();
@@ -124,8 +123,7 @@ mod tests {
             .map(|line| format!("{line}\n"))
             .collect();
         let (candidates, excluded) = library(&job, &files);
-        let names = excluded.iter().map(|(name, _)| name.as_str());
-        let (untried, assumed) = untried(&job, &files, ModelKind::QuasiStatic, names).unwrap();
+        let (untried, assumed) = untried(&job, &files, ModelKind::QuasiStatic, &excluded).unwrap();
         let records: Vec<NotTried> = untried.iter().map(UntriedEffect::record).collect();
         let of = |name: &str| records.iter().find(|r| r.name == name);
         let bulldozing = of("bulldozing").unwrap();
@@ -155,8 +153,7 @@ mod tests {
     fn a_rim_that_is_stated_to_be_smooth_has_no_grousers_to_try() {
         let (job, files, _) = read("examples/hidden-effect");
         let (_, excluded) = library(&job, &files);
-        let names = excluded.iter().map(|(name, _)| name.as_str());
-        let (untried, _) = untried(&job, &files, ModelKind::QuasiStatic, names).unwrap();
+        let (untried, _) = untried(&job, &files, ModelKind::QuasiStatic, &excluded).unwrap();
         assert!(untried.iter().all(|u| u.effect.name != "lug_thrust"));
     }
 }

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::prior;
 use super::shape::{named, needing, one_of, table, text};
 
-const MECHANISMS: [&str; 4] = ["rebound", "flat_patch", "digging", "end_wall"];
+const MECHANISMS: [&str; 5] = ["rebound", "flat_patch", "digging", "end_wall", "side_wall"];
 
 /// The whole file.
 pub(super) fn effect() -> Value {

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use shared::channel::Channel;
 use shared::experiment::{AveragingProtocol, Rig, Scatter};
 
-use super::shape::{above, either, named, needing, number, one_of, table, text, usual, whole};
+use super::shape::{above, either, flag, list, named, needing, number, one_of, table, text, usual, whole};
 
 const ANY: f64 = f64::INFINITY;
 
@@ -15,6 +15,7 @@ pub(super) fn experiment() -> Value {
             "wheels, soils, rig and noise of a campaign",
             [
                 ("runs", text("file of the test runs, beside the experiment")),
+                ("campaign", campaign()),
                 ("plates", text("file of plate-sinkage readings")),
                 ("shear", text("file of ring-shear readings")),
                 ("wheel", named("the wheels, each as [wheel.NAME]", wheel())),
@@ -31,6 +32,58 @@ pub(super) fn experiment() -> Value {
         { "required": ["runs", "wheel"] }, { "required": ["plates"] }, { "required": ["shear"] }
     ]);
     experiment
+}
+
+fn campaign() -> Value {
+    let campaign = table(
+        "where the measurements come from; nothing is computed from it",
+        [
+            ("title", text("what was measured, as a title")),
+            ("authors", list("who measured", text("a name"))),
+            ("institution", text("where")),
+            (
+                "date",
+                text("when it was measured, else published: YYYY, YYYY-MM or YYYY-MM-DD"),
+            ),
+            ("licence", text("licence of the rows, by its SPDX identifier")),
+            (
+                "doi",
+                text("DOI of the publication: 10.1016/j.jterra.2010.08.001"),
+            ),
+            (
+                "source",
+                text("file, table or figure that the rows come from, with its version"),
+            ),
+            (
+                "digitised",
+                usual(
+                    flag("whether the rows were read off figures; needs source"),
+                    false,
+                ),
+            ),
+            ("preparation", text("how the soil was prepared before a run")),
+            ("wheel", text("material and surface of the wheels")),
+            (
+                "slip",
+                text("how slip was set or measured, and with which radius"),
+            ),
+            ("sinkage", text("how sinkage was measured, and from which zero")),
+            (
+                "forces",
+                text("sensor, sampling, tare and signs of forces and torque"),
+            ),
+            ("averaging", text("which part of a run was averaged")),
+            (
+                "noise",
+                text("how the standard deviations under [noise] were found"),
+            ),
+            (
+                "doubts",
+                list("what is uncertain about all this", text("a doubt")),
+            ),
+        ],
+    );
+    needing(campaign, &["title"])
 }
 
 fn wheel() -> Value {
@@ -52,7 +105,7 @@ fn wheel() -> Value {
             (
                 "grouser_count",
                 usual(
-                    whole("number of straight grousers", 0, Some(u64::from(u32::MAX))),
+                    whole("number of grousers, in each row", 0, Some(u64::from(u32::MAX))),
                     0,
                 ),
             ),
@@ -63,6 +116,55 @@ fn wheel() -> Value {
             (
                 "grouser_thickness_m",
                 not_negative("thickness of a grouser along the rim [m]"),
+            ),
+            (
+                "grouser_rows",
+                usual(
+                    whole(
+                        "number of rows of grousers side by side, each with grouser_count; for scm",
+                        1,
+                        Some(100),
+                    ),
+                    1,
+                ),
+            ),
+            (
+                "grouser_stagger",
+                usual(
+                    json!({
+                        "type": "number", "minimum": 0, "exclusiveMaximum": 1,
+                        "description": "shift of a row against the one to its right, relative to the distance of its grousers",
+                    }),
+                    0.0,
+                ),
+            ),
+            (
+                "grouser_width_m",
+                above(
+                    "width of the grousers of a row [m]; width_m / grouser_rows where nothing is said",
+                    0.0,
+                ),
+            ),
+            (
+                "grouser_angle_deg",
+                bent(
+                    "angle of the grousers against the axle, positive: the left end is further forward [deg]",
+                    89.0,
+                ),
+            ),
+            (
+                "grouser_chevron_deg",
+                bent(
+                    "angle of either half of a V, positive: its middle enters the soil first [deg]",
+                    89.0,
+                ),
+            ),
+            (
+                "grouser_bow_m",
+                bent(
+                    "how far forward of their middle the grousers' ends lie, on a parabola [m]",
+                    1.0,
+                ),
             ),
             (
                 "rig_radius_m",
@@ -78,6 +180,11 @@ fn wheel() -> Value {
         ],
     );
     needing(wheel, &["radius_m", "width_m"])
+}
+
+/// A number between -`most` and `most`, 0 where nothing is said.
+fn bent(words: &str, most: f64) -> Value {
+    usual(number(words, -most, most), 0.0)
 }
 
 fn soil() -> Value {

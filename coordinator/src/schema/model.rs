@@ -50,7 +50,7 @@ pub(super) fn is_external() -> Value {
 }
 
 /// Settings of `kind = "scm"`.
-fn spatial() -> [(&'static str, Value); 8] {
+fn spatial() -> [(&'static str, Value); 9] {
     let settings = SpatialSettings::default();
     [
         (
@@ -79,6 +79,16 @@ fn spatial() -> [(&'static str, Value); 8] {
                     ["wheel_normal", "vertical"],
                 ),
                 settings.pressure_direction,
+            ),
+        ),
+        (
+            "footprint",
+            usual(
+                one_of(
+                    "scm: whose effective width the nodes of a footprint have",
+                    ["hull", "patches"],
+                ),
+                settings.footprint,
             ),
         ),
         (

@@ -70,7 +70,7 @@ const fn place(kind: FileKind, head: &'static str, pointer: &'static str) -> Pla
     Place { kind, head, pointer }
 }
 
-const PLACES: [Place; 16] = [
+const PLACES: [Place; 17] = [
     place(FileKind::Job, "", ""),
     place(
         FileKind::Job,
@@ -104,6 +104,11 @@ const PLACES: [Place; 16] = [
         "/properties/soil/additionalProperties",
     ),
     place(FileKind::Experiment, "[rig]\n", "/properties/rig"),
+    place(
+        FileKind::Experiment,
+        "[campaign]\ntitle = \"a\"\n",
+        "/properties/campaign",
+    ),
     place(
         FileKind::Experiment,
         "runs = \"r.csv\"\n[wheel.w]\nradius_m = 0.1\nwidth_m = 0.1\n[soil.s]\n[noise]\n",

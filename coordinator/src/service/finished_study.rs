@@ -93,6 +93,7 @@ pub async fn finished_calibration(
         disputes: reader.disputes(row.id).await?,
         verified: reader.verified(row.id).await?,
         repeats: reader.repeats(row.id).await?,
+        interpolations: Default::default(),
         stages,
         row: row.clone(),
     })

@@ -37,6 +37,6 @@ pub use error::ServiceError;
 pub use farm_settings::{FarmSettings, LEASE_MS, VERIFIED_PERCENT};
 pub use finished_study::{finished_calibration, finished_study, search_rounds};
 pub use handle::Service;
-pub use stored_calibration::{calibration_row, leave_out_archived, stored_status};
+pub use stored_calibration::{calibration_row, experiment_files, leave_out_archived, stored_status};
 pub use study_results::{diagnostics, study_file};
 pub use study_step::{finished_search, next_step_of};

@@ -18,7 +18,7 @@ pub async fn calibration_row(reader: &Reader, id: i64) -> Result<CalibrationRow,
 }
 
 /// The files of a stored experiment.
-pub(super) async fn experiment_files(reader: &Reader, id: i64) -> Result<FileSet, ServiceError> {
+pub async fn experiment_files(reader: &Reader, id: i64) -> Result<FileSet, ServiceError> {
     let row = reader.experiment(id).await?;
     Ok(row
         .ok_or_else(|| ServiceError::not_found("experiment", id))?

@@ -382,7 +382,7 @@ impl Reader {
     pub async fn predictions(&self, calibration: i64) -> Result<Vec<Prediction>, StoreError> {
         let rows = query(
             "SELECT evaluation, theta, rejection, observables FROM evaluations
-             WHERE calibration = ? AND evaluation >= ? AND evaluation < ? ORDER BY evaluation",
+             WHERE calibration = ? AND evaluation >= ? AND evaluation <> ? ORDER BY evaluation",
         )
         .bind(calibration)
         .bind(PREDICTIONS_FROM as i64)
@@ -396,13 +396,27 @@ impl Reader {
                 None => Ok(blob::decode(row.get("observables"))?),
             };
             let number = row.get::<i64>("evaluation").unsigned_abs();
-            match (EvaluationKey::of(number, 1), predictions.last_mut()) {
-                (EvaluationKey::Prediction { holdout: true, .. }, Some(last)) => last.holdout = Some(result),
-                _ => predictions.push(Prediction {
-                    theta: theta(row)?,
-                    fit: result,
-                    holdout: None,
-                }),
+            match EvaluationKey::of(number, 1) {
+                EvaluationKey::Prediction { holdout: true, .. } => {
+                    if let Some(last) = predictions.last_mut() {
+                        last.holdout = Some(result.into());
+                    }
+                }
+                EvaluationKey::HoldoutRun { draw, run } => {
+                    let of_draw = predictions.get_mut(draw).and_then(|p| p.holdout.as_mut());
+                    if let Some(holdout) = of_draw {
+                        holdout.alone.insert(run, result);
+                    }
+                }
+                EvaluationKey::Prediction { .. }
+                | EvaluationKey::Sampling { .. }
+                | EvaluationKey::Likeliest => {
+                    predictions.push(Prediction {
+                        theta: theta(row)?,
+                        fit: result,
+                        holdout: None,
+                    });
+                }
             }
         }
         Ok(predictions)

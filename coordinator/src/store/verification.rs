@@ -3,7 +3,7 @@
 use super::error::StoreError;
 use super::reader::Reader;
 use super::sql::{Connection, query, query_as};
-use record::{PREDICTIONS_FROM, Quarantine, Verified};
+use record::{EvaluationKey, Quarantine, Verified};
 
 /// Notes that a second worker has reproduced a result.
 pub(super) async fn confirm(
@@ -87,10 +87,7 @@ pub(super) async fn rewind(
         .execute(&mut *connection)
         .await?;
     let Some(first) = first else { return Ok(()) };
-    let round_end = match first >= PREDICTIONS_FROM as i64 {
-        true => i64::MAX,
-        false => (first / width as i64 + 1) * width as i64,
-    };
+    let round_end = EvaluationKey::round_end(first.unsigned_abs(), width) as i64;
     query(
         "DELETE FROM evaluations WHERE calibration = ?1
          AND (evaluation >= ?2 OR worker = ?3 AND confirmed_by IS NULL)",

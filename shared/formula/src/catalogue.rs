@@ -6,10 +6,12 @@ use crate::effect::Effect;
 
 /// The files, in the order in which effects follow each other at a hook: pressure first, by how it is distributed; then strength
 /// and its mobilisation; wheel and rig; last what the rig does to what it measures, offsets after gains.
-const FILES: [&str; 44] = [
+const FILES: [&str; 50] = [
     include_str!("../catalogue/pressure_distribution_shape.toml"),
     include_str!("../catalogue/peak_pressure_angle.toml"),
     include_str!("../catalogue/slip_sinkage.toml"),
+    include_str!("../catalogue/skid_sinkage.toml"),
+    include_str!("../catalogue/lateral_slip_sinkage.toml"),
     include_str!("../catalogue/slip_digging.toml"),
     include_str!("../catalogue/rate_dependent_pressure.toml"),
     include_str!("../catalogue/multipass_hardening.toml"),
@@ -30,6 +32,7 @@ const FILES: [&str; 44] = [
     include_str!("../catalogue/side_wall_friction.toml"),
     include_str!("../catalogue/shear_velocity_scale.toml"),
     include_str!("../catalogue/janosi_hanamoto.toml"),
+    include_str!("../catalogue/stretched_mobilisation.toml"),
     include_str!("../catalogue/stick_slip.toml"),
     include_str!("../catalogue/elastic_rebound.toml"),
     include_str!("../catalogue/wheel_flexibility.toml"),
@@ -39,6 +42,9 @@ const FILES: [&str; 44] = [
     include_str!("../catalogue/load_transfer.toml"),
     include_str!("../catalogue/lug_thrust.toml"),
     include_str!("../catalogue/bulldozing.toml"),
+    include_str!("../catalogue/side_bulldozing.toml"),
+    include_str!("../catalogue/side_drag.toml"),
+    include_str!("../catalogue/buried_side_wall.toml"),
     include_str!("../catalogue/bin_slope.toml"),
     include_str!("../catalogue/sled_tare.toml"),
     include_str!("../catalogue/sled_drag.toml"),

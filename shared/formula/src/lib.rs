@@ -5,6 +5,7 @@
 //! - [`effect`]: an effect file, read and checked.
 //! - [`catalogue`]: the effect files that come with the program.
 //! - [`variable`], [`hook`]: the variables of a formula, and the quantity of the model that it replaces.
+//! - [`slip`]: slip along and across the heading.
 //! - [`mod@unit`]: units, and the dimensions behind them.
 //!
 //! From text to numbers:
@@ -75,10 +76,10 @@
 //! | `torque` | the same | N m | finite | all four channels, and those of the contact |
 //! | `sinkage` | the same | m | finite | all four channels, and those of the contact |
 //!
-//! Every formula sees `slip` (1), `sled_speed` (m/s), `wheel_load` (N), `radius` (m), `width` (m), `friction_angle_rad` (rad),
-//! `cohesion_pa` (Pa), `n` (1), `shear_velocity` (m/s), `density_kg_m3` (kg/m^3), `gravity` (m/s^2), `grouser_count` (1),
-//! `grouser_height` (m), `pass` (1), `bin_length` (m) and `order` (1). Those of the contact are `contact_length` (m), `b_eff` (m) and
-//! `k_star` (N/m^(n+2)). [`Variable`] says what each is.
+//! Every formula sees `slip` (1), `slip_angle` (rad), `longitudinal_slip` (1), `lateral_slip` (1), `sled_speed` (m/s), `wheel_load`
+//! (N), `radius` (m), `width` (m), `friction_angle_rad` (rad), `cohesion_pa` (Pa), `n` (1), `shear_velocity` (m/s), `density_kg_m3`
+//! (kg/m^3), `gravity` (m/s^2), `grouser_count` (1), `grouser_height` (m), `pass` (1), `bin_length` (m) and `order` (1). Those of the
+//! contact are `contact_length` (m), `b_eff` (m) and `k_star` (N/m^(n+2)). [`Variable`] says what each is.
 //!
 //! # Units
 //! Parameters have a unit of `1 kg m s deg rad N Pa J W Hz`, with `^`, `/` and spaces, without prefixes. Only certain
@@ -110,6 +111,7 @@ mod evaluation;
 pub mod expression;
 pub mod hook;
 pub mod nesting;
+pub mod slip;
 mod syntax;
 pub mod unit;
 pub mod variable;

@@ -28,8 +28,14 @@ pub enum Variable {
     Tau,
     /// Length of the contact along the ground.
     ContactLength,
-    /// Slip, in [−1, 1): negative in skid.
+    /// Slip, in [−1, 1): negative in skid. Nominal: of the speed of the sled along its travel, whatever the wheel's heading.
     Slip,
+    /// Angle from the wheel's heading to the sled's travel, in [−π/2, π/2].
+    SlipAngle,
+    /// Slip along the heading, (ωR − v cos β) / max(ωR, v), in [−1, 1]: negative in skid; straight ahead it is the slip.
+    LongitudinalSlip,
+    /// Slip across the heading, v sin β / max(ωR, v), in [−1, 1], of the sign of the slip angle.
+    LateralSlip,
     /// Speed of the sled.
     SledSpeed,
     /// Vertical load on the wheel.
@@ -84,6 +90,9 @@ const TABLE: [(Variable, &str, &str); Variable::COUNT] = [
     (Variable::Tau, "tau", "Pa"),
     (Variable::ContactLength, "contact_length", "m"),
     (Variable::Slip, "slip", "1"),
+    (Variable::SlipAngle, "slip_angle", "rad"),
+    (Variable::LongitudinalSlip, "longitudinal_slip", "1"),
+    (Variable::LateralSlip, "lateral_slip", "1"),
     (Variable::SledSpeed, "sled_speed", "m/s"),
     (Variable::WheelLoad, "wheel_load", "N"),
     (Variable::Radius, "radius", "m"),
@@ -107,7 +116,7 @@ const TABLE: [(Variable, &str, &str); Variable::COUNT] = [
 
 impl Variable {
     /// How many variables there are; `variable as usize` is below it.
-    pub const COUNT: usize = 31;
+    pub const COUNT: usize = 34;
 
     /// How many may differ from node to node: they come first.
     pub const LOCAL: usize = 10;
@@ -141,12 +150,12 @@ impl Variable {
 
 /// A set of variables.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Variables(u32);
+pub struct Variables(u64);
 
 impl Variables {
     /// The variables that are the same at all nodes: conditions, dimensions, and parameters of soil and rig.
     pub const OF_RUN: Variables = {
-        let (first, last) = (Variable::Slip as u32, Variable::Order as u32);
+        let (first, last) = (Variable::Slip as u64, Variable::Order as u64);
         Variables((1 << (last + 1)) - (1 << first))
     };
 
@@ -192,7 +201,7 @@ mod tests {
         for (place, variable) in Variable::ALL.into_iter().enumerate() {
             assert_eq!(variable as usize, place);
         }
-        assert_eq!(Variables::OF_RUN.iter().count(), 16);
+        assert_eq!(Variables::OF_RUN.iter().count(), 19);
         assert!(!Variables::OF_RUN.contains(Variable::ContactLength));
         assert!(!Variables::OF_RUN.contains(Variable::DrawbarPull));
     }

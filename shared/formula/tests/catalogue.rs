@@ -6,19 +6,19 @@ use formula::catalogue::catalogue;
 
 /// The names of the effects, as results and jobs have them.
 const NAMES: &str = "janosi_hanamoto shear_velocity_scale interface_friction adhesion rate_dependent_pressure \
-    elastic_rebound multipass_hardening slip_sinkage slip_digging bulldozing lug_thrust wheel_flexibility hard_pan \
+    elastic_rebound multipass_hardening slip_sinkage slip_digging bulldozing buried_side_wall lug_thrust wheel_flexibility hard_pan \
     density_gradient side_wall_friction sled_tare sled_drag drawbar_pull_gain torque_gain sinkage_offset load_transfer \
     load_scale bearing_torque bearing_friction bin_slope end_wall peak_pressure_angle pressure_distribution_shape edge_loss \
     small_diameter reece_pressure saturating_pressure moisture friction_rate_weakening stick_slip slip_radius_error \
     stress_dependent_friction gravity_scaling slip_softened_pressure drift_stiffness drift_drawbar_pull_zero drift_torque_zero \
-    drift_sinkage_zero drift_lateral_force_zero";
+    drift_sinkage_zero drift_lateral_force_zero skid_sinkage lateral_slip_sinkage stretched_mobilisation side_bulldozing side_drag";
 
 #[test]
 fn every_effect_is_there_once_under_its_name() {
     let expected: BTreeSet<&str> = NAMES.split_whitespace().collect();
     let names: BTreeSet<&str> = catalogue().iter().map(|e| e.name.as_str()).collect();
     assert_eq!(names, expected);
-    assert_eq!(catalogue().len(), 44);
+    assert_eq!(catalogue().len(), 50);
 }
 
 #[test]

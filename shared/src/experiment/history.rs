@@ -186,6 +186,7 @@ mod tests {
             grouser_thickness_m: 0.002,
             rig_radius_m: 0.125,
             mesh: None,
+            tread: None,
         }
     }
 

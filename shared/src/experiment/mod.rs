@@ -1,7 +1,9 @@
 //! An experiment as its files describe it: wheels, rig, noise, protocol, test runs, bevameter readings.
 //!
 //! # Layout
-//! - `settings`: the tables of `experiment.toml`; `wheel`: those of the wheels; `scatter`: relative noise.
+//! - `settings`: the tables of `experiment.toml`; `wheel`: those of the wheels; `tread`: how their grousers
+//!   stand; `scatter`: relative noise;
+//!   `campaign`: where the measurements come from.
 //! - `mesh`: a wheel given as a surface of triangles.
 //! - `runs`: the rows of `runs.csv`; `history`: the recorded time history of a run, and its averages.
 //! - `more_runs`: an experiment with further runs. `fewer_runs`: with fitted runs held out.
@@ -10,6 +12,7 @@
 //! - `table`: rows of a CSV file whose columns are known by name.
 
 mod bevameter;
+mod campaign;
 mod check;
 mod fewer_runs;
 mod history;
@@ -19,17 +22,20 @@ mod runs;
 mod scatter;
 mod settings;
 mod table;
+mod tread;
 mod wheel;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 pub use bevameter::{PLATE_COLUMNS, PlateReading, SHEAR_COLUMNS, ShearReading};
+pub use campaign::Campaign;
 pub use history::{MeasuredHistory, Recorded};
 pub use mesh::{MOST_BYTES, MOST_TRIANGLES, MeshError, WheelMesh};
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
 pub use scatter::{Scatter, ScatterSd};
 pub use settings::{AveragingProtocol, Noise, NoiseSd, ProtocolKind, Rig, SoilProperties};
+pub use tread::Tread;
 pub use wheel::{WheelGeometry, rim_speed_m_s};
 
 use crate::channel::Channel;
@@ -39,6 +45,8 @@ use crate::text_file::{read_text, sibling};
 /// A measured data set: the content of `experiment.toml` and of the files it names.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
+    /// Where the measurements come from, where the file says it.
+    pub campaign: Option<Campaign>,
     /// Wheels by name.
     pub wheels: BTreeMap<String, WheelGeometry>,
     /// Soils by name.
@@ -144,6 +152,7 @@ impl Experiment {
             return Err(FileError::whole(file.runs.as_deref().unwrap_or(name), message));
         }
         Ok(Experiment {
+            campaign: file.campaign,
             wheels: file.wheel,
             soils: file.soil,
             rig: file.rig,
@@ -269,6 +278,19 @@ mod tests {
         assert_eq!(
             parse(&negative, HEADER).unwrap_err(),
             "experiment.toml: [wheel.w] width_m -0.05 m must be > 0 m"
+        );
+    }
+
+    #[test]
+    fn a_campaign_is_kept_and_a_mistake_in_it_names_its_table() {
+        let row = format!("{HEADER}a,w,s,0.2,100,0.01,1,,fit\n");
+        assert_eq!(parse(TOML, &row).unwrap().campaign, None);
+        let with = |lines: &str| parse(&format!("{TOML}[campaign]\n{lines}\n"), &row);
+        let campaign = with("title = \"Sand\"").unwrap().campaign;
+        assert_eq!(campaign.unwrap().title, "Sand");
+        assert_eq!(
+            with("title = \"\"").unwrap_err(),
+            "experiment.toml: [campaign] title is blank"
         );
     }
 

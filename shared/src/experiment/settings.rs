@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::campaign::Campaign;
 use super::check::{RawSd, ValueError, not_negative, positive, require};
 use super::scatter::{Scatter, ScatterSd};
 use super::wheel::{RawWheel, WheelGeometry};
@@ -115,6 +116,7 @@ impl Default for AveragingProtocol {
 
 /// `experiment.toml`, validated, before the files it names are read.
 pub(super) struct ExperimentFile {
+    pub(super) campaign: Option<Campaign>,
     pub(super) runs: Option<String>,
     pub(super) plates: Option<String>,
     pub(super) shear: Option<String>,
@@ -130,6 +132,7 @@ pub(super) struct ExperimentFile {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawExperiment {
+    campaign: Option<Campaign>,
     runs: Option<String>,
     plates: Option<String>,
     shear: Option<String>,
@@ -187,7 +190,10 @@ pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError>
     }
     check_numbers(name, &raw.rig, &raw.soil, &raw.protocol)?;
     let noise = noise(raw.noise).map_err(|e| fail(format!("[noise] {e}")))?;
+    let campaign = raw.campaign.map(Campaign::checked).transpose();
+    let campaign = campaign.map_err(|e| fail(format!("[campaign] {e}")))?;
     Ok(ExperimentFile {
+        campaign,
         runs: raw.runs,
         plates: raw.plates,
         shear: raw.shear,

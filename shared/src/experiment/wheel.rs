@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::check::{ValueError, not_negative, positive};
 use super::mesh::{self, WheelMesh};
+use super::tread::{RawTread, Tread};
 
 /// Speed of the rim `[m/s]` by the rig's radius: `v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the sled speed `[m/s]`.
 /// 0 for a locked wheel.
@@ -22,7 +23,7 @@ pub struct WheelGeometry {
     pub radius_m: f64,
     /// Width of the rim `[m]`; beside a mesh, the width of the lane.
     pub width_m: f64,
-    /// Number of straight grousers.
+    /// Number of grousers; with a tread, in each row.
     pub grouser_count: u32,
     /// Height of a grouser above the rim `[m]`.
     pub grouser_height_m: f64,
@@ -34,6 +35,9 @@ pub struct WheelGeometry {
     /// without a mesh has the text, and the hash, that it had before there were meshes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh: Option<WheelMesh>,
+    /// How the grousers stand, where they are more than straight bars across the rim; not written where they are not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tread: Option<Tread>,
 }
 
 impl WheelGeometry {
@@ -76,13 +80,19 @@ pub(super) struct RawWheel {
     grouser_count: Option<u32>,
     grouser_height_m: Option<f64>,
     grouser_thickness_m: Option<f64>,
+    grouser_rows: Option<u32>,
+    grouser_stagger: Option<f64>,
+    grouser_width_m: Option<f64>,
+    grouser_angle_deg: Option<f64>,
+    grouser_chevron_deg: Option<f64>,
+    grouser_bow_m: Option<f64>,
     rig_radius_m: Option<f64>,
 }
 
 impl RawWheel {
     /// The wheel without its mesh, and the name of the mesh's file.
     pub(super) fn check(self) -> Result<(WheelGeometry, Option<String>), ValueError> {
-        let wheel = WheelGeometry {
+        let mut wheel = WheelGeometry {
             radius_m: self.radius_m,
             width_m: self.width_m,
             grouser_count: self.grouser_count.unwrap_or(0),
@@ -90,19 +100,28 @@ impl RawWheel {
             grouser_thickness_m: self.grouser_thickness_m.unwrap_or(0.0),
             rig_radius_m: self.rig_radius_m.unwrap_or(self.radius_m),
             mesh: None,
+            tread: None,
+        };
+        let tread = RawTread {
+            rows: self.grouser_rows,
+            stagger: self.grouser_stagger,
+            width_m: self.grouser_width_m,
+            angle_deg: self.grouser_angle_deg,
+            chevron_deg: self.grouser_chevron_deg,
+            bow_m: self.grouser_bow_m,
         };
         if let Some(file) = &self.mesh {
             mesh::check_name(file)?;
-            for (key, stated) in [
+            let keys = [
                 ("grouser_count", self.grouser_count.is_some()),
                 ("grouser_height_m", self.grouser_height_m.is_some()),
                 ("grouser_thickness_m", self.grouser_thickness_m.is_some()),
-            ] {
-                if stated {
-                    return Err(ValueError::Rule(format!(
-                        "{key} has no place beside mesh = \"{file}\": grousers are part of the surface"
-                    )));
-                }
+            ];
+            let stated = keys.into_iter().find_map(|(key, stated)| stated.then_some(key));
+            if let Some(key) = stated.or(tread.stated()) {
+                return Err(ValueError::Rule(format!(
+                    "{key} has no place beside mesh = \"{file}\": grousers are part of the surface"
+                )));
             }
         }
         for (key, value) in [
@@ -118,6 +137,7 @@ impl RawWheel {
         ] {
             not_negative(key, value, "m")?;
         }
+        wheel.tread = tread.check(wheel.width_m, wheel.grouser_count)?;
         Ok((wheel, self.mesh))
     }
 }
@@ -136,6 +156,7 @@ mod tests {
             grouser_thickness_m: 0.0,
             rig_radius_m: 0.125,
             mesh: None,
+            tread: None,
         };
         // 8 mm/s at slip 0.2 and 12.5 mm/s at slip -0.2 are 10 mm/s of the rim: 2 pi 0.125 m / 12 / 0.01 m/s
         for (slip, speed) in [(0.2, 0.008), (-0.2, 0.0125)] {

@@ -63,7 +63,8 @@ impl ModelVariant {
     /// Checks that the model has a form of every effect.
     fn check_effects(&self, effects: &EffectSet) -> Result<(), ModelError> {
         let has_form = |effect: &Effect| match self.kind {
-            ModelKind::QuasiStatic | ModelKind::Scm | ModelKind::Command | ModelKind::Umbridge => true,
+            ModelKind::QuasiStatic => effect.mechanism != Some(Mechanism::SideWall),
+            ModelKind::Scm | ModelKind::Command | ModelKind::Umbridge => true,
             ModelKind::WongReece => effect.hooks().next().is_some(),
             ModelKind::Rft => effect.hooks().next().is_some() && !effect.needs_soil_laws(),
         };

@@ -102,6 +102,9 @@ impl ExternalModel {
             Variable::Sinkage => output(Channel::Sinkage),
             Variable::LateralForce => output(Channel::LateralForce),
             Variable::Slip
+            | Variable::SlipAngle
+            | Variable::LongitudinalSlip
+            | Variable::LateralSlip
             | Variable::SledSpeed
             | Variable::WheelLoad
             | Variable::Radius

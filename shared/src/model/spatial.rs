@@ -25,6 +25,8 @@ pub struct SpatialSettings {
     pub displacement: DisplacementFrame,
     /// Along which normal the pressure acts.
     pub pressure_direction: PressureAxis,
+    /// Whose effective width the nodes of a footprint have.
+    pub footprint: FootprintWidth,
     /// How the hub finds its height.
     pub vertical: HubMotion,
     /// Damping of the hub where it moves freely \[N s/m\].
@@ -55,6 +57,16 @@ pub enum PressureAxis {
     Vertical,
 }
 
+/// Whose effective width `b_eff` the nodes of a footprint have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FootprintWidth {
+    /// That of the whole footprint, by its hull.
+    Hull,
+    /// Each that of its patch of connected nodes, by the patch's contour.
+    Patches,
+}
+
 /// How the hub finds its height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
@@ -72,6 +84,7 @@ impl Default for SpatialSettings {
             travel_step_m: 0.0005,
             displacement: DisplacementFrame::Rim,
             pressure_direction: PressureAxis::WheelNormal,
+            footprint: FootprintWidth::Hull,
             vertical: HubMotion::Balance,
             damping_n_s_m: 2000.0,
             steady_tolerance: 0.005,
@@ -82,11 +95,12 @@ impl Default for SpatialSettings {
 
 impl SpatialSettings {
     /// The keys by name.
-    pub const KEYS: [&str; 8] = [
+    pub const KEYS: [&str; 9] = [
         "dem_spacing_m",
         "travel_step_m",
         "displacement",
         "pressure_direction",
+        "footprint",
         "vertical",
         "damping_n_s_m",
         "steady_tolerance",
@@ -211,11 +225,13 @@ mod tests {
             read("damping_n_s_m = 1.0").unwrap_err().to_string(),
             "damping_n_s_m has no effect without vertical = \"dynamic\""
         );
-        let error = read("displacement = \"soil\"").unwrap_err().to_string();
-        assert!(
-            error.contains("soil") && error.contains("rim") && error.contains("node"),
-            "{error}"
-        );
+        for (text, words) in [
+            ("displacement = \"soil\"", ["soil", "rim", "node"]),
+            ("footprint = \"contour\"", ["contour", "hull", "patches"]),
+        ] {
+            let error = read(text).unwrap_err().to_string();
+            assert!(words.into_iter().all(|word| error.contains(word)), "{error}");
+        }
     }
 
     #[test]

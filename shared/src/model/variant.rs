@@ -193,6 +193,14 @@ impl ModelVariant {
         })
     }
 
+    /// The same for each of its conditions alone.
+    pub fn by_condition(&self) -> impl Iterator<Item = Self> {
+        self.conditions.iter().map(|condition| ModelVariant {
+            conditions: vec![condition.clone()],
+            ..self.clone()
+        })
+    }
+
     /// The names of all parameters, free and fixed.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
         self.parameters

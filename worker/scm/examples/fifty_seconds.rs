@@ -2,7 +2,7 @@
 //!
 //! `cargo build --release -p scm --example fifty_seconds`, then
 //! `valgrind --tool=callgrind target/release/examples/fifty_seconds`. Words on the command line change the case:
-//! `smooth`, `steady`, `both-halves`; `formula`: the base's shear-velocity law as a formula; `displacement`: Janosi and
+//! `smooth`; `staggered`, `oblique` grousers; `steady`, `both-halves`; `formula`: the base's shear-velocity law as a formula; `displacement`: Janosi and
 //! Hanamoto's law; `pressure`: soil that grows denser with depth.
 
 #[path = "../tests/scene.rs"]
@@ -13,7 +13,7 @@ mod scene;
 mod support;
 
 use scene::Track;
-use scm::spatial::{Grousers, Protocol, RunSettings, Shape};
+use scm::spatial::{Grousers, Protocol, RunSettings, Shape, Tread};
 use support::base;
 
 fn main() -> Result<(), scm::Rejection> {
@@ -24,6 +24,22 @@ fn main() -> Result<(), scm::Rejection> {
     let mut track = Track::with_grousers(case);
     if says("smooth") {
         track.shape = Shape::Rim(Grousers::default());
+    }
+    if let Shape::Rim(bars) = track.shape {
+        let straight = Tread::straight(bars);
+        if says("staggered") {
+            track.shape = Shape::Tread(Tread {
+                rows: 2,
+                stagger: 0.5,
+                ..straight
+            });
+        }
+        if says("oblique") {
+            track.shape = Shape::Tread(Tread {
+                angle_rad: 0.35,
+                ..straight
+            });
+        }
     }
     track.settings = RunSettings {
         protocol: if says("steady") {

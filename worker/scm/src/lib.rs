@@ -72,4 +72,4 @@ pub use wheel::Wheel;
 pub use wong_reece::WongReece;
 
 /// Identifies the equations and numerics; bumped when any number changes.
-pub const MODEL_VERSION: &str = "scm-6";
+pub const MODEL_VERSION: &str = "scm-7";

@@ -1,11 +1,11 @@
 //! The three-dimensional model of a variant: shared settings become the physics' types.
 
 use scm::effects::{Active, Site};
-use scm::spatial::{self, Grousers, RunSettings, Scene, Shape, SpatialRun, SurfaceMesh};
+use scm::spatial::{self, Grousers, RunSettings, Scene, Shape, SpatialRun, SurfaceMesh, Tread};
 use scm::{Condition, Rejection, Soil, Wheel};
 use shared::experiment::{ProtocolKind, WheelGeometry};
 use shared::model::ModelVariant;
-use shared::model::spatial::{DisplacementFrame, HubMotion, PAPER_DURATION_S, PressureAxis};
+use shared::model::spatial::{DisplacementFrame, FootprintWidth, HubMotion, PAPER_DURATION_S, PressureAxis};
 
 use super::error::CompileError;
 use super::parameters::GroundMap;
@@ -39,6 +39,10 @@ impl SpatialModel {
             pressure_direction: match choices.pressure_direction {
                 PressureAxis::WheelNormal => spatial::PressureDirection::WheelNormal,
                 PressureAxis::Vertical => spatial::PressureDirection::Vertical,
+            },
+            footprint: match choices.footprint {
+                FootprintWidth::Hull => spatial::Footprint::Hull,
+                FootprintWidth::Patches => spatial::Footprint::Patches,
             },
             vertical: match choices.vertical {
                 HubMotion::Balance => spatial::Vertical::Balance,
@@ -97,10 +101,23 @@ fn shape(wheel: &WheelGeometry) -> Shape {
             vertices_m: mesh.vertices_m.clone(),
             triangles: mesh.triangles.clone(),
         }),
-        None => Shape::Rim(Grousers {
-            count: wheel.grouser_count,
-            height_m: wheel.grouser_height_m,
-            thickness_m: wheel.grouser_thickness_m,
-        }),
+        None => {
+            let grousers = Grousers {
+                count: wheel.grouser_count,
+                height_m: wheel.grouser_height_m,
+                thickness_m: wheel.grouser_thickness_m,
+            };
+            wheel.tread.map_or(Shape::Rim(grousers), |tread| {
+                Shape::Tread(Tread {
+                    grousers,
+                    rows: tread.rows,
+                    stagger: tread.stagger,
+                    width_m: tread.width_m,
+                    angle_rad: tread.angle_deg.to_radians(),
+                    chevron_rad: tread.chevron_deg.to_radians(),
+                    bow_m: tread.bow_m,
+                })
+            })
+        }
     }
 }

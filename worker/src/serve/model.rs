@@ -96,6 +96,7 @@ pub fn evaluate(kind: ModelKind, input: &[Vec<f64>], config: &toml::Table) -> Re
         grouser_thickness_m: number("grouser_thickness_m", 0.0)?,
         rig_radius_m: number("rig_radius_m", radius_m)?,
         mesh: None,
+        tread: None,
     };
     let run = TestRun {
         name: "run".to_owned(),
@@ -158,6 +159,7 @@ fn variant(
     let input = |e: shared::model::ModelError| ServedError::Input(e.to_string());
     let settings = ModelSettings::from_table(&table).map_err(input)?;
     let experiment = Experiment {
+        campaign: None,
         wheels: BTreeMap::from([(run.wheel.clone(), wheel)]),
         soils: BTreeMap::from([(run.soil.clone(), SoilProperties::default())]),
         rig: Rig::default(),

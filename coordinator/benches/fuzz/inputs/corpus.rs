@@ -112,7 +112,7 @@ fn messages() -> Vec<ExchangeRequest> {
     let full = ExchangeRequest {
         worker: "lab-3".into(),
         protocol: PROTOCOL_VERSION,
-        model_version: "scm-6".into(),
+        model_version: "scm-7".into(),
         models: [("wheel.py".to_owned(), "command-0123456789abcdef".to_owned())].into(),
         queue_job: Some("slurm 12_3".into()),
         threads: 8,

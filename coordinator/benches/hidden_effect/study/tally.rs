@@ -11,7 +11,7 @@ use super::target::Target;
 /// Lower ends of the bins of stated probabilities.
 const BINS: [f64; 5] = [0.0, 0.5, 0.8, 0.95, 0.99];
 /// Candidates of an experiment with one wheel; with two wheels there are more.
-const ONE_WHEEL: usize = 44;
+const ONE_WHEEL: usize = 49;
 
 /// The scores of all trials.
 pub(crate) struct Tally<'a>(pub(crate) &'a [TrialScore]);

@@ -13,12 +13,14 @@ use shared::outcome::{Observables, Outcome, ParameterRejection, SimulatedHistory
 use statistics::{Subchain, SubchainEnd};
 
 /// The version of the equations that calibrations are pinned to.
-pub(crate) const EQUATIONS: &str = "scm-6";
+pub(crate) const EQUATIONS: &str = "scm-7";
 
 const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 0.15\n";
 const HEAD: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\n";
 const FITTED: &str = "a,w,s,0.2,100,0.008,5.1,fit\n";
 const HELD_OUT: &str = "b,w,s,0.4,100,0.008,5.2,holdout\n";
+/// Held out as well; a refusing model refuses it at some draws.
+const STEEP: &str = "c,w,s,0.9,100,0.008,5.2,holdout\n";
 /// Jobs of each kind, which differ in their seeds.
 const SEEDS: u64 = 3;
 /// Numbers of the poisonous evaluation of the kinds that have one: a draw from the prior, and one of a later round.
@@ -29,7 +31,7 @@ const POISON: [u64; 2] = [2, 55];
 pub(crate) enum Kind {
     /// TMCMC by moves, with a run held out.
     Sample,
-    /// The same of a model that refuses a part of the prior.
+    /// The same of a model that refuses a part of the prior, and beyond it one of two held-out runs.
     Refusing,
     /// The same with an evaluation that ends every worker: it pauses, and a user skips it.
     Poisoned,
@@ -120,7 +122,8 @@ impl Kind {
 
     /// Observables of a model that is nothing but a line; of a refusing one, not everywhere.
     fn evaluate(self, variant: &ModelVariant, theta: &[f64]) -> Outcome {
-        if self == Kind::Refusing && theta[0] > 1.25 {
+        let is_steep = variant.conditions.iter().any(|condition| condition.slip > 0.8);
+        if self == Kind::Refusing && theta[0] > if is_steep { 1.0 } else { 1.25 } {
             return Outcome::Rejected(ParameterRejection {
                 kind: "no_support".into(),
                 condition: 0,
@@ -187,7 +190,11 @@ impl Case {
     }
 
     fn new(kind: Kind, seed: u64) -> Result<Case, String> {
-        let held_out = if kind == Kind::Sample { HELD_OUT } else { "" };
+        let held_out = match kind {
+            Kind::Sample => HELD_OUT.to_owned(),
+            Kind::Refusing => format!("{HELD_OUT}{STEEP}"),
+            Kind::Poisoned | Kind::Crowded | Kind::Metamodel | Kind::Fit => String::new(),
+        };
         let files = FileSet {
             toml: EXPERIMENT.into(),
             files: [("runs.csv".into(), format!("{HEAD}{FITTED}{held_out}"))].into(),

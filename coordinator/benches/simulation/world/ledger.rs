@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use record::{EvaluationRow, Fact, Kept, PREDICTIONS_FROM, Quarantine, SealKey, Stored, StoredEvaluation};
+use record::{EvaluationKey, EvaluationRow, Fact, Kept, Quarantine, SealKey, Stored, StoredEvaluation};
 use shared::api::CalibrationState;
 
 use super::case::{Case, CaseResult, posterior_bits};
@@ -148,10 +148,7 @@ impl<'a> Table<'a> {
     fn rewind(&mut self, worker: &str, width: u64) {
         let mut rests = self.rows.values().filter(|(_, row)| self.rests_on(worker, row));
         let Some((_, first)) = rests.next() else { return };
-        let end = match first.evaluation >= PREDICTIONS_FROM {
-            true => u64::MAX,
-            false => (first.evaluation / width + 1) * width,
-        };
+        let end = EvaluationKey::round_end(first.evaluation, width as usize);
         let (rows, confirmed) = (
             std::mem::take(&mut self.rows),
             std::mem::take(&mut self.confirmed),

@@ -9,7 +9,7 @@ mod runs;
 
 use std::collections::BTreeMap;
 
-use result::FinishedCalibration;
+use result::{CampaignWords, FinishedCalibration};
 
 use crate::error::ExportError;
 use crate::inference_data::InferenceData;
@@ -52,6 +52,12 @@ pub fn inference_data(calibration: &FinishedCalibration) -> Result<InferenceData
 /// What is said of the whole.
 fn attributes(calibration: &FinishedCalibration) -> BTreeMap<String, String> {
     let row = &calibration.row;
+    let campaign = calibration
+        .spec
+        .experiment
+        .campaign
+        .as_ref()
+        .map(CampaignWords::from);
     let said = [
         (
             "created_by",
@@ -61,6 +67,11 @@ fn attributes(calibration: &FinishedCalibration) -> BTreeMap<String, String> {
         ("name", Some(row.name.clone())),
         ("model_kind", Some(calibration.spec.model.kind.name().to_owned())),
         ("model_version", row.model_version.clone()),
+        (
+            "measurements",
+            campaign.as_ref().map(|words| words.citation.clone()),
+        ),
+        ("digitised", campaign.and_then(|words| words.digitised)),
         ("log_evidence", row.log_evidence.map(|value| value.to_string())),
         (
             "log_evidence_se",

@@ -4,7 +4,6 @@ use record::Prediction;
 use result::{Component, FinishedCalibration, NewMeasurements};
 use shared::channel::Channel;
 use shared::experiment::TestRun;
-use shared::outcome::Observables;
 use statistics::ErrorLaw;
 use statistics::rng::Stream;
 
@@ -29,7 +28,6 @@ pub(super) struct Part<'a> {
     runs: Vec<&'a TestRun>,
     /// The channels that some run of the experiment has measured.
     channels: Vec<Channel>,
-    of: fn(&Prediction) -> Option<&Observables>,
 }
 
 /// A fitted measurement.
@@ -45,23 +43,15 @@ struct Cell {
 impl<'a> Part<'a> {
     /// The fitted runs.
     pub(super) fn fitted(calibration: &'a FinishedCalibration) -> Self {
-        Part::new(calibration, &calibration.spec.fit_runs, |draw| {
-            draw.fit.as_ref().ok()
-        })
+        Part::new(calibration, &calibration.spec.fit_runs)
     }
 
     /// The runs that are not fitted.
     pub(super) fn held_out(calibration: &'a FinishedCalibration) -> Self {
-        Part::new(calibration, &calibration.spec.holdout_runs, |draw| {
-            draw.holdout.as_ref()?.as_ref().ok()
-        })
+        Part::new(calibration, &calibration.spec.holdout_runs)
     }
 
-    fn new(
-        calibration: &'a FinishedCalibration,
-        places: &'a [usize],
-        of: fn(&Prediction) -> Option<&Observables>,
-    ) -> Self {
+    fn new(calibration: &'a FinishedCalibration, places: &'a [usize]) -> Self {
         let all = &calibration.spec.experiment.runs;
         let is_measured = |channel: &Channel| all.iter().any(|run| run.measured[channel.index()].is_some());
         Part {
@@ -69,7 +59,6 @@ impl<'a> Part<'a> {
             places,
             runs: places.iter().map(|&run| &all[run]).collect(),
             channels: Channel::ALL.into_iter().filter(is_measured).collect(),
-            of,
         }
     }
 
@@ -158,8 +147,8 @@ impl<'a> Part<'a> {
         let cells = self.cells();
         let mut values = Vec::new();
         for draw in self.calibration.predictive_draws() {
-            let predicted =
-                (self.of)(draw).map(|observables| self.calibration.spec.predicted_values(observables));
+            let fitted = draw.fit.as_ref().ok();
+            let predicted = fitted.map(|observables| self.calibration.spec.predicted_values(observables));
             let densities = predicted.and_then(|p| likelihood.log_densities(&p, &draw.theta).ok());
             let of_cell = |cell: &Cell| densities.as_ref().map_or(f64::NAN, |all| all[cell.datum]);
             values.extend(cells.iter().map(of_cell));

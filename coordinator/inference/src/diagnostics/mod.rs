@@ -10,6 +10,7 @@
 //! - `predicted_draw`: draws with their predictions. `information`: the prior signal of a channel. `residual`: studentised
 //!   residuals and their chi-square. `trend`: trends of residuals with a regressor.
 //! - `region`: where in the prior failures concentrate.
+//! - `subset_shift`: how far some of the data would move parameters, were they fitted alone.
 //! - `tail`: tail probabilities of test statistics.
 
 mod conflict;
@@ -22,6 +23,7 @@ mod quantile;
 mod region;
 mod residual;
 mod spectrum;
+mod subset_shift;
 mod tail;
 mod trend;
 
@@ -35,5 +37,6 @@ pub use quantile::{DrawSummary, quantile, summary};
 pub use region::{BINS, Region, Side, bin, concentration};
 pub use residual::{Residual, ResidualChiSquare, chi_square, residuals};
 pub use spectrum::{Direction, principal_directions};
+pub use subset_shift::{SubsetShift, derivatives_from_draws, subset_shift};
 pub use tail::chi_square_tail;
 pub use trend::{Trend, TrendTest};

@@ -3,6 +3,7 @@
 pub(crate) mod bevameter_readings;
 pub(crate) mod confounded_order;
 pub(crate) mod error;
+pub(crate) mod level;
 pub(crate) mod likelihood;
 pub(crate) mod noise;
 pub(crate) mod outside_model;

@@ -256,8 +256,9 @@ pub(crate) fn conditions(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Vec
     conditions.into_iter().map(|(_, positions)| positions).collect()
 }
 
-/// Whether two runs repeat one condition, within what a rig can hold: slip to 0.02, load to 15 %, speed to 5 %.
-fn repeats(a: &TestRun, b: &TestRun) -> bool {
+/// Whether two runs repeat one condition, within what a rig can hold: slip to 0.02, slip angle to 0.5 degrees, load to 15 %, speed
+/// to 5 %.
+pub fn repeats(a: &TestRun, b: &TestRun) -> bool {
     let close = |x: f64, y: f64, share: f64| (x - y).abs() <= share * x.abs().max(y.abs());
     a.wheel == b.wheel
         && a.soil == b.soil

@@ -75,6 +75,11 @@ fn values(spec: &Spec, limit: &Limit) -> Vec<(String, f64)> {
         each.map(|(name, wheel)| (format!("wheel {name}"), value(wheel)))
             .collect()
     };
+    let treads = |value: fn(&shared::experiment::Tread) -> Option<f64>| {
+        let each = experiment.wheels.iter();
+        each.filter_map(|(name, wheel)| Some((format!("wheel {name}"), value(wheel.tread.as_ref()?)?)))
+            .collect()
+    };
     let soils = |value: fn(&shared::experiment::SoilProperties) -> Option<f64>| {
         let each = experiment.soils.iter();
         each.filter_map(|(name, soil)| Some((format!("soil {name}"), value(soil)?)))
@@ -92,6 +97,10 @@ fn values(spec: &Spec, limit: &Limit) -> Vec<(String, f64)> {
         "rig_radius_m" => wheels(|wheel| wheel.rig_radius_m),
         "grouser_height_m" => wheels(|wheel| wheel.grouser_height_m),
         "grouser_thickness_m" => wheels(|wheel| wheel.grouser_thickness_m),
+        "grouser_width_m" => treads(|tread| tread.width_m),
+        "grouser_angle_deg" => treads(|tread| Some(tread.angle_deg)),
+        "grouser_chevron_deg" => treads(|tread| Some(tread.chevron_deg)),
+        "grouser_bow_m" => treads(|tread| Some(tread.bow_m)),
         "gravity_m_s2" => vec![("[rig]".into(), experiment.rig.gravity_m_s2)],
         "bin_length_m" => {
             let length = experiment.rig.bin_length_m.into_iter();

@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 
 use inference::diagnostics::mean_and_sd;
+use shared::experiment::Scatter;
 use shared::file::{FileError, number, unknown_word};
 use shared::model::ParameterScope;
-use shared::parameters::{NOISE_PREFIX, RING_TRANSFER, bekker_moduli};
+use shared::parameters::{NOISE_PREFIX, RING_TRANSFER, bekker_moduli, scatter_parameter};
 use statistics::{Distribution, Marginal};
 
 use super::error::TableError;
@@ -42,6 +43,8 @@ pub struct JointPrior {
     pub unused: Vec<String>,
     /// The Bekker moduli that the draws imply; `None` where they do not fix them.
     pub moduli: Option<ImpliedModuli>,
+    /// Whether plates were among the data of that calibration: it inferred how they scatter.
+    pub of_plates: bool,
 }
 
 /// Bekker's moduli as the draws of a posterior imply them.
@@ -120,6 +123,8 @@ impl PosteriorPrior {
         let whole = |message: String| FileError::whole(&file, message);
         let mut table = Draws::read(&file, text)?;
         let moduli = table.moduli(fixed);
+        let scatters = [Scatter::PlateTest, Scatter::PlateReading].map(scatter_parameter);
+        let of_plates = table.columns.iter().any(|column| scatters.contains(column));
         if self.literal {
             table.turn_to_moduli().map_err(|e| whole(e.to_string()))?;
         }
@@ -180,6 +185,7 @@ impl PosteriorPrior {
             correlations: (0..count).map(row).collect(),
             unused,
             moduli,
+            of_plates,
             said: self,
         };
         Ok((joint, free))

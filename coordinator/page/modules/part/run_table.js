@@ -15,6 +15,11 @@ export function RunTable({ rows }) {
     </div>`;
 }
 
+/** The share of the final draws at which the model refuses a run, in front of what the others predict. */
+function refusal(/** @type {any} */ row) {
+  return row.refused ? `refused at ${digits(100 * row.refused.draws / row.refused.of, 2)} % ` : "";
+}
+
 function RunRow(/** @type {{ row: any }} */ { row }) {
   const quantity = shown(row.unit);
   const value = (/** @type {number | null} */ v) => digits(v === null ? null : v * quantity.scale);
@@ -24,7 +29,7 @@ function RunRow(/** @type {{ row: any }} */ { row }) {
       <td>${row.use === "holdout" ? "held out" : "fit"}</td>
       <td class="number">${minus(row.slip.toFixed(2))}</td><td class="number">${digits(row.wheel_load_n)}</td><td class="number">${digits(1000 * row.sled_speed_m_s)}</td>
       <td>${short(row.channel)} ${quantity.unit}</td>
-      <td class="number">${value(row.measured)}</td><td class="number">${value(row.predicted)}</td>
+      <td class="number">${value(row.measured)}</td><td class="number" title=${row.refused ? `refused at ${row.refused.draws} of ${row.refused.of} final draws: ${row.refused.reason}` : undefined}>${refusal(row)}${row.refused && row.predicted === null ? "" : value(row.predicted)}</td>
       <td class="number">${row.q05 === null ? "–" : `${value(row.q05)} to ${value(row.q95)}`}</td>
       <td class="number">${row.residual_sigma === null ? "–" : minus(row.residual_sigma.toFixed(1))}</td>
     </tr>`;

@@ -4,6 +4,7 @@ import { html, useEffect } from "../html.js";
 import { ChosenRuns } from "../part/chosen_runs.js";
 import { Guarded } from "../part/guarded.js";
 import { Pending } from "../part/message.js";
+import { Source } from "../part/source.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
@@ -74,6 +75,7 @@ export function StudyPage({ id, view, query }) {
     <div class="heading">
       <h1>${study.name}</h1>
       <p class="note">study ${id}, ${study.model_kind}, <span class=${`state ${study.state}`}>${study.state}</span></p>
+      <${Source} campaign=${study.campaign} />
       ${error && html`<p class="error" role="alert">${error.message}</p>`}
     </div>
     <nav class="views" aria-label="Views of the study">

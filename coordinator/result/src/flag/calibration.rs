@@ -1,21 +1,24 @@
 //! Flags of a calibration.
 
 use job::{SetCondition, confounded_orders};
-use record::RejectionReason;
 use shared::parameters::behind;
 
 use super::finding::findings_that_alarm;
 use super::kind::{Flag, FlagKind};
+use super::plates::plates_conflict;
 use crate::diagnostics::calibration::Diagnostics;
 use crate::diagnostics::trends::TrendVariable;
 use crate::finished_calibration::FinishedCalibration;
 use crate::summary::parameter::ParameterSummary;
 use crate::summary::point_estimate::fitted;
 use crate::table::predictive::discrepancy_posterior;
+use crate::table::refusal::Refusal;
 use crate::words::number;
 
 /// Ratio of posterior to prior standard deviation, in the sampler's coordinate, above which the data are called uninformative.
 const NO_CONTRACTION: f64 = 0.95;
+/// More refused runs than this are counted, not named.
+const SHOWN_REFUSED: usize = 3;
 /// Share of rejected parameter vectors above which the prior is questioned.
 const MANY_REJECTED: f64 = 0.5;
 
@@ -30,6 +33,7 @@ impl FinishedCalibration {
             .chain(self.unbalanced())
             .collect();
         flags.extend(findings_that_alarm(diagnostics));
+        flags.extend(plates_conflict(self));
         flags.extend(self.confounded());
         let mut flag = |kind: FlagKind, text: String| flags.push(Flag::plain(kind, text));
         for ((name, parameter), found) in self.parameter_summaries().iter().zip(&diagnostics.parameters) {
@@ -109,14 +113,7 @@ impl FinishedCalibration {
         }
         flags.extend(self.given_up());
         let mut flag = |kind: FlagKind, text: String| flags.push(Flag::plain(kind, text));
-        let holdout = self.predictions.iter().filter_map(|p| p.holdout.as_ref());
-        let rejected: Vec<&RejectionReason> = holdout.filter_map(|h| h.as_ref().err()).collect();
-        if let Some(reason) = rejected.first() {
-            let text = format!(
-                "the model rejects {} of {} final draws on the holdout runs ({reason}): a holdout condition lies outside its validity",
-                rejected.len(),
-                self.predictions.len()
-            );
+        if let Some(text) = refused_holdout(self) {
             flag(FlagKind::Rejections, text);
         }
         flags
@@ -154,6 +151,47 @@ impl FinishedCalibration {
         };
         Some(Flag::plain(FlagKind::NotEquilibrated, text))
     }
+}
+
+/// A sentence on the holdout runs that the model refuses; `None` where it refuses none.
+fn refused_holdout(calibration: &FinishedCalibration) -> Option<String> {
+    let spec = &calibration.spec;
+    let refused: Vec<(&str, Refusal)> = spec
+        .holdout_runs
+        .iter()
+        .filter_map(|&run| {
+            Some((
+                spec.experiment.runs[run].name.as_str(),
+                Refusal::of(calibration, run)?,
+            ))
+        })
+        .collect();
+    let shown = refused.iter().take(SHOWN_REFUSED);
+    let mut words: Vec<String> = shown
+        .map(|(run, refusal)| format!("{run} at {}", refusal.words()))
+        .collect();
+    let others = refused.len().saturating_sub(SHOWN_REFUSED);
+    if others > 0 {
+        words.push(format!("{others} more"));
+    }
+    let whole = refused.iter().filter(|(_, refusal)| refusal.is_whole()).count();
+    let rest = match (whole, spec.holdout_runs.len() - whole) {
+        (0, _) => "its predictions there rest on the other draws".to_owned(),
+        (_, 0) => "no held-out run is left to judge the model".to_owned(),
+        (_, rest) => format!(
+            "errors and coverage are over the other {}",
+            number::count(rest, "held-out run")
+        ),
+    };
+    (!refused.is_empty()).then(|| {
+        format!(
+            "the model refuses {} of {}: {}; {} outside its validity, and {rest}",
+            refused.len(),
+            number::count(spec.holdout_runs.len(), "held-out run"),
+            number::list(&words),
+            if refused.len() == 1 { "it lies" } else { "they lie" },
+        )
+    })
 }
 
 fn bound_text(name: &str, p: &ParameterSummary) -> String {

@@ -30,9 +30,9 @@ impl Study {
             return Vec::new();
         };
         let comparison = current.comparison();
-        let interpolated = || rows_of(&comparison.rows, RunUse::Holdout).filter(|r| r.interpolated.is_some());
-        let (model, baseline) = (ErrorTable::of_model(interpolated()), &comparison.baseline_holdout);
-        let (Some(model), Some(baseline)) = (model, baseline) else {
+        let both = || rows_of(&comparison.rows, RunUse::Holdout).filter(|r| r.is_interpolated());
+        let (Some(model), Some(baseline)) = (ErrorTable::of_model(both()), ErrorTable::of_baseline(both()))
+        else {
             return Vec::new();
         };
         let sigmas = self.fixed_sigmas();

@@ -49,6 +49,8 @@ pub enum FlagKind {
     Worker,
     /// Interpolation without physics predicts held-out runs better than the model.
     InterpolationBeats,
+    /// The posterior of the wheel's soil contradicts what plates say.
+    PlatesConflict,
 }
 
 impl FlagKind {
@@ -67,6 +69,7 @@ impl FlagKind {
             FlagKind::Order => "order",
             FlagKind::Worker => "worker",
             FlagKind::InterpolationBeats => "interpolation_beats",
+            FlagKind::PlatesConflict => "plates_conflict",
         }
     }
 }

@@ -8,14 +8,16 @@ pub(crate) fn unsettled(calibration: &FinishedCalibration) -> Option<String> {
     let tolerance = calibration.spec.model.spatial?.steady_tolerance;
     let draw = calibration.predictions.first()?;
     let spec = &calibration.spec;
-    let fitted = spec.fit_runs.iter().zip(settled_to(draw.fit.as_ref().ok()));
-    let held_out = draw.holdout.as_ref().and_then(|result| result.as_ref().ok());
-    let held_out = spec.holdout_runs.iter().zip(settled_to(held_out));
-    let late: Vec<(usize, f64)> = fitted
+    let fitted = spec.fit_runs.iter().enumerate();
+    let fitted = fitted.filter_map(|(k, &run)| Some((run, draw.fit.as_ref().ok()?, k)));
+    let held_out = spec.holdout_runs.iter().enumerate().filter_map(|(k, &run)| {
+        let (observables, position) = draw.holdout.as_ref()?.run(k).ok()?;
+        Some((run, observables, position))
+    });
+    let settled = fitted
         .chain(held_out)
-        .filter(|(_, change)| **change > tolerance)
-        .map(|(&run, &change)| (run, change))
-        .collect();
+        .filter_map(|(run, observables, position)| Some((run, *observables.settled_to.get(position)?)));
+    let late: Vec<(usize, f64)> = settled.filter(|(_, change)| *change > tolerance).collect();
     let (worst, change) = late
         .iter()
         .copied()
@@ -27,10 +29,6 @@ pub(crate) fn unsettled(calibration: &FinishedCalibration) -> Option<String> {
         if late.len() == 1 { "was" } else { "were" },
         spec.experiment.runs[worst].name
     ))
-}
-
-fn settled_to(observables: Option<&shared::outcome::Observables>) -> &[f64] {
-    observables.map_or(&[], |o| &o.settled_to)
 }
 
 #[cfg(test)]

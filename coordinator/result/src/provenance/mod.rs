@@ -77,6 +77,9 @@ fn data(calibration: &FinishedCalibration) -> String {
         number::count(spec.wheel_data(), "measurement"),
         number::count(held, "holdout run")
     );
+    if spec.experiment.campaign.as_ref().is_some_and(|own| own.digitised) {
+        words += "; digitised";
+    }
     let (plates, rings) = (spec.bevameter.plates.len(), spec.bevameter.rings.len());
     if plates + rings > 0 {
         words += &format!(
@@ -133,6 +136,17 @@ mod tests {
         ] {
             assert!(!text.contains(words), "{words} in {text}");
         }
+    }
+
+    #[test]
+    fn a_campaign_stands_in_the_notes_and_digitised_data_are_called_so() {
+        let mut calibration = fixture::calibration();
+        assert!(!calibration.provenance().data.contains("digitised"));
+        calibration.spec.experiment.campaign = Some(fixture::campaign());
+        let provenance = calibration.provenance();
+        assert!(provenance.data.ends_with("; digitised"), "{}", provenance.data);
+        assert_eq!(provenance.notes[3], "Doubt: few rows.");
+        assert!(provenance.notes[0].starts_with("Measurements: Wheels in <i>sand</i>, "));
     }
 
     #[test]

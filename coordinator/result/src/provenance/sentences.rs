@@ -12,7 +12,10 @@ use crate::flag::unsettled_run::unsettled;
 use crate::table::comparison::Comparison;
 use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;
-use crate::table::row::rows_of;
+use crate::table::interpolation::InterpolatedOver;
+use crate::table::refusal::Refusal;
+use crate::table::row::{ComparisonRow, rows_of};
+use crate::words::campaign::CampaignWords;
 use crate::words::data_channel::ShownUnit;
 use crate::words::number;
 use inference::point_estimate::StopReason;
@@ -115,22 +118,64 @@ fn holdout(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<St
             few(held, "holdout run")
         )];
     };
-    let mut text = vec![format!(
-        "On the {}, not used in the fit, it is {}.",
-        few(held, "holdout run"),
-        misses(model)
-    )];
-    // Like with like: the model on the rows where interpolation has a value.
-    let rows = rows_of(&comparison.rows, RunUse::Holdout).filter(|r| r.interpolated.is_some());
-    text.push(match (&comparison.baseline_holdout, ErrorTable::of_model(rows)) {
-        (Some(baseline), Some(model)) => format!(
-            "Interpolating the fitted measurements in slip, without physics, has an error of {} where it applies; there the model {}.",
-            misses(baseline),
-            against(&model, baseline)
+    let refused = calibration.spec.holdout_runs.iter();
+    let refused = refused.filter_map(|&run| Refusal::of(calibration, run));
+    let mut text = vec![match refused.filter(Refusal::is_whole).count() {
+        0 => format!(
+            "On the {}, not used in the fit, it is {}.",
+            few(held, "holdout run"),
+            misses(model)
         ),
-        _ => "Interpolating the fitted measurements in slip, without physics, does not apply there: it would have to extrapolate.".into(),
+        refused => format!(
+            "On {} of the {}, not used in the fit, it is {}; the model refuses the others.",
+            held - refused,
+            few(held, "holdout run"),
+            misses(model)
+        ),
+    }];
+    // Like with like: the model on the rows where interpolation has a value.
+    let both = || {
+        rows_of(&comparison.rows, RunUse::Holdout)
+            .filter(|r| r.predicted.is_some() && r.interpolated.is_some())
+    };
+    text.push(match (ErrorTable::of_baseline(both()), ErrorTable::of_model(both())) {
+        (Some(baseline), Some(model)) => format!(
+            "Interpolating the fitted measurements {}, without physics, has an error of {} where it applies{}; there the model {}.",
+            over(both()),
+            misses(&baseline),
+            beyond(both()),
+            against(&model, &baseline)
+        ),
+        _ => "Interpolating the fitted measurements, without physics, does not apply there.".into(),
     });
+    text.extend(
+        comparison
+            .not_interpolated
+            .iter()
+            .map(|why| format!("Not interpolated: {why}.")),
+    );
     text
+}
+
+/// What the rows are interpolated over.
+fn over<'a>(mut rows: impl Iterator<Item = &'a ComparisonRow>) -> &'static str {
+    match rows.all(|row| row.interpolated_over == Some(InterpolatedOver::Slip)) {
+        true => "in slip",
+        false => "over the conditions that vary",
+    }
+}
+
+/// ` (2 of 48 measurements are extrapolated)`; nothing where none is.
+fn beyond<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> String {
+    let is_beyond = rows.map(|row| row.interpolated_over == Some(InterpolatedOver::Extrapolation));
+    let is_beyond: Vec<bool> = is_beyond.collect();
+    match is_beyond.iter().filter(|beyond| **beyond).count() {
+        0 => String::new(),
+        beyond => format!(
+            " ({beyond} of {} are extrapolated)",
+            number::count(is_beyond.len(), "measurement")
+        ),
+    }
 }
 
 /// Comparison of the model with interpolation, channel by channel.
@@ -268,6 +313,14 @@ fn runs(calibration: &FinishedCalibration, usage: RunUse) -> usize {
 /// The limits of the model, and what is not as in the source paper.
 pub(super) fn notes(calibration: &FinishedCalibration) -> Vec<String> {
     let mut notes = Vec::new();
+    if let Some(campaign) = &calibration.spec.experiment.campaign {
+        let words = CampaignWords::from(campaign);
+        let said = |what: &str, text: &str| format!("{what}{}.", text.trim_end_matches('.'));
+        notes.push(said("Measurements: ", &words.citation));
+        notes.extend(words.digitised.iter().map(|text| said("They are ", text)));
+        notes.extend(words.method.iter().map(|text| said("Method, ", text)));
+        notes.extend(words.doubts.iter().map(|text| said("Doubt: ", text)));
+    }
     let accepted = calibration.spec.accepted.join(", ");
     if !accepted.is_empty() {
         notes.push(format!("What looks odd was accepted as meant: {accepted}."));

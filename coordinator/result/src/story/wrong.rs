@@ -56,8 +56,8 @@ impl Wrong {
         let sigmas = study.fixed_sigmas();
         let table = |usage| ErrorTable::of_model(rows_of(&comparison.rows, usage));
         let tables = [RunUse::Holdout, RunUse::Fit].map(|usage| (usage, table(usage)));
-        let interpolated = rows_of(&comparison.rows, RunUse::Holdout).filter(|r| r.interpolated.is_some());
-        let beside = ErrorTable::of_model(interpolated);
+        let both = || rows_of(&comparison.rows, RunUse::Holdout).filter(|r| r.is_interpolated());
+        let (beside, interpolation) = (ErrorTable::of_model(both()), ErrorTable::of_baseline(both()));
         let failure = |channel: Channel| {
             let measured = |(usage, table): &(RunUse, Option<ErrorTable>)| {
                 Some((*usage, table.as_ref()?.channel(channel)?))
@@ -70,10 +70,7 @@ impl Wrong {
                 chi_square_tail(runs * sds * sds, runs)
             });
             let is_noise = by_noise.is_some_and(|p| p >= BY_CHANCE);
-            let baseline = comparison
-                .baseline_holdout
-                .as_ref()
-                .and_then(|t| t.channel(channel));
+            let baseline = interpolation.as_ref().and_then(|table| table.channel(channel));
             let own = beside.as_ref().and_then(|table| table.channel(channel));
             // An inferred noise is the model's own error, and no excuse.
             let is_excused = is_noise && sigma.is_some_and(|s| s.source != SigmaSource::Inferred);

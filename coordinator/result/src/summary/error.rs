@@ -26,10 +26,13 @@ impl ErrorSummary {
 /// Interpolation without physics.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct BaselineSummary {
-    /// `interpolation`: monotone cubic in slip between the fitted measurements of the same wheel.
+    /// `interpolation`: between the fitted measurements of the same wheel, soil and pass, by a monotone cubic where runs differ in slip
+    /// alone, else by a Gaussian process over the conditions that vary.
     pub name: String,
     /// Its errors.
     pub holdout: Option<ErrorTable>,
+    /// Why some runs are not interpolated; empty where all are.
+    pub missing: Vec<String>,
 }
 
 impl BaselineSummary {
@@ -37,6 +40,7 @@ impl BaselineSummary {
         BaselineSummary {
             name: "interpolation".into(),
             holdout: comparison.baseline_holdout.clone(),
+            missing: comparison.not_interpolated.clone(),
         }
     }
 

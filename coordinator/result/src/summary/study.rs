@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use shared::experiment::Campaign;
+
 use super::calibration::CalibrationSummary;
 use super::point_estimate::PointEstimate;
 use crate::discovery::DiscoverySummary;
@@ -16,6 +18,8 @@ use crate::table::fixed_sigma::{FixedSigma, FixedSigmas};
 pub struct StudySummary {
     /// Name of the experiment.
     pub experiment: String,
+    /// Where the measurements come from; null where the experiment does not say it.
+    pub campaign: Option<Campaign>,
     /// Seed of the job.
     pub seed: u64,
     /// Version of the equations and the effects.
@@ -76,6 +80,7 @@ impl Study {
         let sigmas = self.fixed_sigmas();
         StudySummary {
             experiment: lead.experiment.clone(),
+            campaign: lead.spec.experiment.campaign.clone(),
             seed: lead.spec.algorithm.seed(),
             model_version: lead.row.model_version.clone().unwrap_or_default(),
             model_kind: lead.spec.model.kind.name().to_owned(),

@@ -3,42 +3,53 @@
 use shared::channel::Channel;
 use shared::experiment::RunUse;
 
-use super::baseline::Baseline;
 use super::errors::ErrorTable;
 use super::fixed_sigma::FixedSigmas;
 use super::group::{ErrorGroup, error_groups};
+use super::interpolation::Interpolations;
 use super::predictive::{Levels, predictive};
+use super::refusal::Refusal;
 use super::row::{ComparisonRow, rows_of};
 use crate::finished_calibration::FinishedCalibration;
 
 /// Model against measurement.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Comparison {
+    /// Whether the measured values were read off figures.
+    pub digitised: bool,
     /// One row for each run and measured channel.
     pub rows: Vec<ComparisonRow>,
     /// Errors of the fitted runs.
     pub fit: Option<ErrorTable>,
     /// Errors of the runs that were not fitted.
     pub holdout: Option<ErrorTable>,
-    /// Errors of interpolating the fitted measurements in slip, without physics, on the holdout runs.
+    /// Errors of interpolating the fitted measurements, without physics, on the holdout runs.
     pub baseline_holdout: Option<ErrorTable>,
+    /// Why some holdout runs are not interpolated; empty where all are.
+    pub not_interpolated: Vec<String>,
     /// Errors by level of slip, load and speed, and by wheel, of fitted runs and of the others.
     pub groups: Vec<ErrorGroup>,
 }
 
 impl FinishedCalibration {
+    fn interpolations(&self) -> &Interpolations {
+        self.interpolations
+            .get_or_init(|| Interpolations::of(&self.spec.experiment))
+    }
+
     /// Model against measurement, run by run.
     pub fn comparison(&self) -> Comparison {
-        let baseline = Baseline::new(&self.spec.experiment);
+        let interpolations = self.interpolations();
         let levels = Levels::of(self);
         let mut rows = Vec::new();
         for (i, run) in self.spec.experiment.runs.iter().enumerate() {
+            let refused = Refusal::of(self, i);
             for channel in Channel::ALL {
                 let Some(measured) = run.measured[channel.index()] else {
                     continue;
                 };
                 let p = predictive(self, &levels, i, channel);
-                let holdout = run.usage == RunUse::Holdout;
+                let interpolated = interpolations.at(i, channel);
                 rows.push(ComparisonRow {
                     run: run.name.clone(),
                     usage: run.usage,
@@ -55,21 +66,26 @@ impl FinishedCalibration {
                     q95: p.and_then(|p| p.interval).map(|[_, q95]| q95),
                     noise_sd: p.and_then(|p| p.noise_sd),
                     residual_sigma: p.and_then(|p| p.noise_sd.map(|sd| (measured - p.mean) / sd)),
-                    interpolated: if holdout {
-                        baseline.interpolate(run, channel)
-                    } else {
-                        None
-                    },
+                    refused: refused.clone(),
+                    interpolated: interpolated.map(|i| i.value),
+                    interpolated_over: interpolated.map(|i| i.over),
                 });
             }
         }
         let sigmas = FixedSigmas::of(self);
         let errors = |usage| Some(ErrorTable::of_model(rows_of(&rows, usage))?.in_fixed_sigmas(&sigmas));
         Comparison {
+            digitised: self
+                .spec
+                .experiment
+                .campaign
+                .as_ref()
+                .is_some_and(|own| own.digitised),
             fit: errors(RunUse::Fit),
             holdout: errors(RunUse::Holdout),
             baseline_holdout: ErrorTable::of_baseline(rows_of(&rows, RunUse::Holdout))
                 .map(|table| table.in_fixed_sigmas(&sigmas)),
+            not_interpolated: interpolations.missing().to_vec(),
             groups: error_groups(&rows),
             rows,
         }

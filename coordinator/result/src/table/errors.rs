@@ -41,17 +41,20 @@ pub struct AllError {
     pub rmse_sigma: Option<f64>,
     /// The same in units of the study's noise sds.
     pub rmse_fixed_sigma: Option<f64>,
+    /// Measurements without a prediction, which do not count: of runs that the model refuses at every draw, or that interpolation
+    /// does not reach.
+    pub unpredicted: usize,
 }
 
 impl ErrorTable {
     /// Errors of the posterior-mean prediction; `None` without rows.
     pub(crate) fn of_model<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
-        table(rows.filter_map(|r| Some((r, r.predicted?))))
+        table(rows.map(|r| (r, r.predicted)))
     }
 
     /// Errors of interpolation without physics; `None` where it has nothing to say.
     pub(crate) fn of_baseline<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
-        table(rows.filter_map(|r| Some((r, r.interpolated?))))
+        table(rows.map(|r| (r, r.interpolated)))
     }
 
     /// The error of a channel.
@@ -86,10 +89,15 @@ struct Squares {
     rows_sigma: usize,
 }
 
-fn table<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, f64)>) -> Option<ErrorTable> {
+fn table<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, Option<f64>)>) -> Option<ErrorTable> {
     let mut squares: BTreeMap<Channel, Squares> = BTreeMap::new();
     let mut all = Squares::default();
+    let mut unpredicted = 0;
     for (row, predicted) in rows {
+        let Some(predicted) = predicted else {
+            unpredicted += 1;
+            continue;
+        };
         let error = row.measured - predicted;
         let sd = row.noise_sd;
         for s in [squares.entry(row.channel).or_default(), &mut all] {
@@ -121,6 +129,7 @@ fn table<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, f64)>) -> Option<Err
         all: AllError {
             rmse_sigma: sigma(&all),
             rmse_fixed_sigma: None,
+            unpredicted,
         },
     })
 }

@@ -4,20 +4,21 @@
 //! - `row`: a measured channel of a run beside its prediction. `comparison`: all rows with their errors.
 //! - `ledger`: errors of the calibrations of a study; `fixed_sigma`: the noise that they are measured by.
 //! - `errors`: root mean square errors by channel. `group`: by level of a condition; `level`: those levels.
-//! - `baseline`: interpolation without physics. `predictive`: the posterior predictive distribution.
+//! - `interpolation`: interpolation without physics. `predictive`: the posterior predictive distribution.
 //! - `coverage`: measurements inside their intervals. `readings`: errors of plates and rings.
-//! - `error_model`: the error model in words. `posterior`: the draws.
+//! - `refusal`: draws at which the model refuses a run. `error_model`: the error model in words. `posterior`: the draws.
 
-pub(crate) mod baseline;
 pub(crate) mod comparison;
 pub(crate) mod coverage;
 pub(crate) mod error_model;
 pub(crate) mod errors;
 pub(crate) mod fixed_sigma;
 pub(crate) mod group;
+pub(crate) mod interpolation;
 pub(crate) mod ledger;
 pub(crate) mod level;
 pub(crate) mod posterior;
 pub(crate) mod predictive;
 pub(crate) mod readings;
+pub(crate) mod refusal;
 pub(crate) mod row;

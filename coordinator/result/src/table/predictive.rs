@@ -240,11 +240,10 @@ fn accepted(
 ) -> impl Iterator<Item = (usize, &[f64], &Observables, usize)> {
     let draws = calibration.predictive_draws().iter().enumerate();
     draws.filter_map(move |(number, p)| {
-        let (result, position) = match place {
-            RunPosition::Fit(position) => (&p.fit, position),
-            RunPosition::Holdout(position) => (p.holdout.as_ref()?, position),
+        let (observables, position) = match place {
+            RunPosition::Fit(position) => (p.fit.as_ref().ok()?, position),
+            RunPosition::Holdout(position) => p.holdout.as_ref()?.run(position).ok()?,
         };
-        let observables = result.as_ref().ok()?;
         Some((number, p.theta.as_slice(), observables, position))
     })
 }

@@ -3,6 +3,9 @@
 use shared::channel::Channel;
 use shared::experiment::RunUse;
 
+use super::interpolation::InterpolatedOver;
+use super::refusal::Refusal;
+
 /// A run and channel.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ComparisonRow {
@@ -39,14 +42,27 @@ pub struct ComparisonRow {
     pub noise_sd: Option<f64>,
     /// (measured - predicted) / noise sd.
     pub residual_sigma: Option<f64>,
-    /// Interpolation of the fitted measurements in slip; `None` inside the fit and where it would extrapolate.
+    /// The final draws at which the model refuses the run; `None` where it refuses none.
+    pub refused: Option<Refusal>,
+    /// Interpolation of the fitted measurements, without physics; `None` inside the fit, and where there is none.
     pub interpolated: Option<f64>,
+    /// What it interpolates over.
+    #[schema(value_type = Option<String>)]
+    pub interpolated_over: Option<InterpolatedOver>,
 }
 
 impl ComparisonRow {
     /// Whether the measurement lies in its 90 % interval.
     pub fn covered(&self) -> Option<bool> {
         Some((self.q05?..=self.q95?).contains(&self.measured))
+    }
+
+    /// Whether the model and interpolation both predict it, so that their errors compare; interpolation without extrapolating.
+    pub(crate) fn is_interpolated(&self) -> bool {
+        let is_within = self
+            .interpolated_over
+            .is_some_and(|over| over != InterpolatedOver::Extrapolation);
+        self.predicted.is_some() && is_within
     }
 }
 

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use record::{Verdict, effect_of};
 
 use super::calibration::headline;
+use super::campaign::digitised;
 use super::ledger::ledger;
 use super::models::models;
 use crate::discovery::word;
@@ -27,6 +28,9 @@ pub fn brief(study: &Study) -> String {
             let _ = writeln!(text, "  search: {found}, {cost}");
         }
     }
+    if let Some(campaign) = &study.lead.spec.experiment.campaign {
+        text += &digitised(campaign);
+    }
     for doubt in doubts(study) {
         let _ = writeln!(text, "caution: {doubt}");
     }
@@ -47,7 +51,7 @@ fn doubts(study: &Study) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixture;
+    use crate::{fixture, terminal};
 
     #[test]
     fn a_study_has_a_line_for_each_calibration_and_search_and_no_table_of_runs() {
@@ -62,6 +66,20 @@ mod tests {
             !text.contains("90 % interval") && !text.contains("prior"),
             "{text}"
         );
+    }
+
+    #[test]
+    fn digitised_rows_are_called_so() {
+        let mut calibration = fixture::calibration();
+        calibration.spec.experiment.campaign = Some(fixture::campaign());
+        let study = calibration.into();
+        for text in [brief(&study), terminal::study(&study)] {
+            assert!(
+                text.contains("digitised, not as recorded by the rig: figure 5"),
+                "{text}"
+            );
+        }
+        assert!(!brief(&fixture::calibration().into()).contains("digitised"));
     }
 
     #[test]

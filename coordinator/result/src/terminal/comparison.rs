@@ -11,14 +11,20 @@ use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;
 use crate::table::row::rows_of;
 use crate::words::data_channel::{ShownUnit, short_name};
+use crate::words::number;
 
 /// Model against measurement, run by run, with errors by channel.
 pub fn comparison(comparison: &Comparison) -> String {
     let mut text = String::new();
+    let measured = if comparison.digitised {
+        "digitised"
+    } else {
+        "measured"
+    };
     let _ = writeln!(
         text,
         "{:<22} {:<8} {:>7} {:>8} {:<13} {:>10} {:>10} {:>23} {:>7}",
-        "run", "use", "slip", "load N", "channel", "measured", "model", "90 % interval", "sigma"
+        "run", "use", "slip", "load N", "channel", measured, "model", "90 % interval", "sigma"
     );
     for row in &comparison.rows {
         let unit = ShownUnit::of(row.channel);
@@ -41,9 +47,24 @@ pub fn comparison(comparison: &Comparison) -> String {
             cell(row.residual_sigma, |r| format!("{r:+.1}"))
         );
     }
+    text.push_str(&refused(comparison));
     text.push('\n');
     text.push_str(&errors(comparison));
     text
+}
+
+/// A line for each run that the model refuses at some draw.
+fn refused(comparison: &Comparison) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for row in &comparison.rows {
+        if let Some(refusal) = &row.refused {
+            let line = format!("{}: the model refuses it at {}\n", row.run, refusal.words());
+            if lines.last() != Some(&line) {
+                lines.push(line);
+            }
+        }
+    }
+    lines.concat()
 }
 
 /// Errors by channel, and how many measurements lie within their intervals.
@@ -61,6 +82,20 @@ fn errors(comparison: &Comparison) -> String {
     ] {
         if let Some(table) = table {
             text.push_str(&error_line(name, table));
+        }
+    }
+    let unpredicted = [&comparison.fit, &comparison.holdout].map(|table| {
+        let of_table = table.as_ref().map(|table| table.all.unpredicted);
+        of_table.unwrap_or_default()
+    });
+    for (usage, unpredicted) in [RunUse::Fit, RunUse::Holdout].into_iter().zip(unpredicted) {
+        if unpredicted > 0 {
+            let measurements = number::count(unpredicted, "measurement");
+            let _ = writeln!(
+                text,
+                "without {measurements} of {} runs that the model refuses at every draw",
+                usage.name()
+            );
         }
     }
     for usage in [RunUse::Fit, RunUse::Holdout] {

@@ -1,14 +1,16 @@
 //! Text for a terminal.
 //!
 //! # Layout
-//! - `specification`: a job before it runs. `status`: states of calibrations.
+//! - `specification`: a job before it runs. `campaign`: where its measurements come from. `status`: states of calibrations.
 //! - `brief`: a study in a few lines; `story`: its three last. `ledger`: the errors of its calibrations.
 //! - `study`: the tables of a study; `calibration`: of one calibration; `comparison`: its errors.
 //! - `diagnostics`: how far a result can be trusted. [`discovery`]: a search for a missing effect.
+//! - `validation`: the levels of a factor, each left out in turn.
 //! - `column`: widths and cells of columns.
 
 mod brief;
 mod calibration;
+mod campaign;
 mod column;
 mod comparison;
 mod diagnostics;
@@ -19,6 +21,7 @@ mod specification;
 mod status;
 mod story;
 mod study;
+mod validation;
 
 pub use brief::brief;
 pub use comparison::{comparison, groups};
@@ -27,3 +30,4 @@ pub use specification::specification;
 pub use status::status_table;
 pub use story::story;
 pub use study::study;
+pub use validation::validation;

@@ -5,13 +5,19 @@ use std::fmt::Write;
 use job::{JointPrior, Spec};
 use shared::experiment::{AveragingProtocol, MeasuredHistory};
 
+use super::campaign::campaign;
 use super::column::width;
 use crate::finished_calibration::prior_mean;
 use crate::words::number;
 
 /// Data, model, algorithm and priors of a job.
 pub fn specification(spec: &Spec) -> String {
-    let mut text = String::new();
+    let mut text = spec
+        .experiment
+        .campaign
+        .as_ref()
+        .map(campaign)
+        .unwrap_or_default();
     let holdout = spec.experiment.runs.len() - spec.fit_runs.len();
     let _ = writeln!(
         text,

@@ -60,15 +60,18 @@ pub enum Mechanism {
     Digging,
     /// The soil is stiffer near the ends of its bin.
     EndWall,
+    /// The buried side of the wheel pushes soil at a slip angle.
+    SideWall,
 }
 
 impl Mechanism {
     /// Every mechanism.
-    pub const ALL: [Mechanism; 4] = [
+    pub const ALL: [Mechanism; 5] = [
         Mechanism::Rebound,
         Mechanism::FlatPatch,
         Mechanism::Digging,
         Mechanism::EndWall,
+        Mechanism::SideWall,
     ];
 
     /// Name in effect files.
@@ -78,6 +81,7 @@ impl Mechanism {
             Mechanism::FlatPatch => "flat_patch",
             Mechanism::Digging => "digging",
             Mechanism::EndWall => "end_wall",
+            Mechanism::SideWall => "side_wall",
         }
     }
 
@@ -88,6 +92,17 @@ impl Mechanism {
             Mechanism::FlatPatch => &["deflection_m_n"],
             Mechanism::Digging => &["depth_m"],
             Mechanism::EndWall => &["wall_stiffening", "reach_m"],
+            Mechanism::SideWall => &["passive_scale", "wall_friction"],
+        }
+    }
+
+    /// The variables that it uses beside those of the effect's formulas.
+    fn uses(self) -> Variables {
+        match self {
+            Mechanism::SideWall => Variables::of(&[Variable::Density, Variable::Gravity]),
+            Mechanism::Rebound | Mechanism::FlatPatch | Mechanism::Digging | Mechanism::EndWall => {
+                Variables::default()
+            }
         }
     }
 }
@@ -146,13 +161,14 @@ impl Effect {
             .is_some_and(|(_, result)| is_proportional(&self.graph, *result, hook.target()))
     }
 
-    /// The variables that its formulas use.
+    /// The variables that its formulas and its mechanism use.
     pub fn uses(&self) -> Variables {
         let uses = self
             .formulas
             .iter()
             .map(|(_, result)| self.graph.variables(*result));
-        uses.fold(Variables::default(), Variables::union)
+        let mechanism = self.mechanism.map(Mechanism::uses).unwrap_or_default();
+        uses.fold(mechanism, Variables::union)
     }
 
     /// Whether it needs the laws of a soil at a point, by Bekker, Mohr and Coulomb: it enters where they do, or asks for their

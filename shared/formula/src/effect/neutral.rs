@@ -1,6 +1,7 @@
 //! Whether an effect is absent at the neutral value of its strengths.
 
-use super::{Effect, Parameter};
+use super::{Effect, Mechanism, Parameter};
+use crate::hook::Hook;
 use crate::variable::{Variable, Variables};
 
 /// Relative difference that rounding explains.
@@ -23,6 +24,34 @@ impl Effect {
             .collect();
         strengths.first()?;
         let parameters: Vec<f64> = self.parameters.iter().map(value).collect();
+        let (hook, before, after) = self.change(&parameters, &[])?;
+        Some(format!(
+            "at {}, its neutral value, effect {} turns a {} of {before} {unit} into {after} {unit}",
+            strengths.join(", "),
+            self.name,
+            hook.name(),
+            unit = hook.target().unit_name()
+        ))
+    }
+
+    /// Whether the effect changes nothing where variables have these values, at the typical values of its strengths. What a mechanism
+    /// does is not known here, and counts as a change; but a side wall pushes at a slip angle alone.
+    ///
+    /// Checked by `tests::an_effect_of_the_slip_angle_is_absent_straight_ahead`.
+    pub fn is_absent_at(&self, held: &[(Variable, f64)]) -> bool {
+        let typical = |p: &Parameter| p.typical.unwrap_or_else(|| value(p));
+        let parameters: Vec<f64> = self.parameters.iter().map(typical).collect();
+        let is_straight = held.contains(&(Variable::SlipAngle, 0.0));
+        let can_act = match self.mechanism {
+            None => false,
+            Some(Mechanism::SideWall) => !is_straight,
+            Some(_) => true,
+        };
+        !can_act && self.change(&parameters, held).is_none()
+    }
+
+    /// The first change that is found at three states of a wheel: of which quantity, from what to what.
+    fn change(&self, parameters: &[f64], held: &[(Variable, f64)]) -> Option<(Hook, f64, f64)> {
         for hook in self.hooks() {
             let Some(program) = self.program(hook, Variables::default()) else {
                 continue;
@@ -32,16 +61,13 @@ impl Effect {
                 for variable in Variable::ALL {
                     variables[variable as usize] = share * size(variable);
                 }
+                for (variable, value) in held {
+                    variables[*variable as usize] = *value;
+                }
                 let before = variables[hook.target() as usize];
-                let after = program.settle(&variables, &parameters, &mut Vec::new())?;
+                let after = program.settle(&variables, parameters, &mut Vec::new())?;
                 if after.is_finite() && (after - before).abs() > ROUNDING * before.abs() {
-                    return Some(format!(
-                        "at {}, its neutral value, effect {} turns a {} of {before} {unit} into {after} {unit}",
-                        strengths.join(", "),
-                        self.name,
-                        hook.name(),
-                        unit = hook.target().unit_name()
-                    ));
+                    return Some((hook, before, after));
                 }
             }
         }
@@ -77,6 +103,7 @@ fn size(variable: Variable) -> f64 {
         Variable::Radius => 0.125,
         Variable::ShearVelocity => 1e-3,
         Variable::Position | Variable::FrictionAngle | Variable::Slip | Variable::Order => 0.5,
+        Variable::SlipAngle | Variable::LongitudinalSlip | Variable::LateralSlip => 0.4,
         Variable::N => 1.0,
         Variable::Pass | Variable::BinLength => 2.0,
         Variable::Torque => 5.0,
@@ -117,6 +144,26 @@ mod tests {
         ] {
             assert_eq!(effect(formula, neutral).change_at_neutral(), None, "{formula}");
         }
+    }
+
+    #[test]
+    fn an_effect_of_the_slip_angle_is_absent_straight_ahead() {
+        let absent = |slip: f64, angle: f64| -> Vec<&str> {
+            let slips = crate::slip::variables(slip, angle);
+            let catalogue = catalogue::catalogue().iter();
+            let absent = catalogue.filter(|effect| effect.is_absent_at(&slips));
+            absent.map(|effect| effect.name.as_str()).collect()
+        };
+        let sideways = [
+            "lateral_slip_sinkage",
+            "side_bulldozing",
+            "side_drag",
+            "buried_side_wall",
+        ];
+        assert_eq!(absent(-0.3, 0.0), sideways);
+        assert_eq!(absent(0.3, 0.0)[1..], sideways);
+        assert_eq!(absent(0.3, 0.0)[0], "skid_sinkage");
+        assert_eq!(absent(-0.3, 0.5), [""; 0]);
     }
 
     #[test]

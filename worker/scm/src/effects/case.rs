@@ -27,7 +27,6 @@ impl Active<'_> {
     ) -> Result<Case, Rejection> {
         let mut variables = [0.0; Variable::COUNT];
         for (variable, value) in [
-            (Variable::Slip, condition.slip),
             (Variable::SledSpeed, condition.sled_speed_m_s),
             (Variable::WheelLoad, condition.wheel_load_n),
             (Variable::Radius, wheel.radius_m),
@@ -46,6 +45,7 @@ impl Active<'_> {
         ] {
             variables[variable as usize] = value;
         }
+        slide(condition.slip, condition, &mut variables);
         if self.enter(Hook::Slip) {
             replace(Hook::Slip, self.at(Hook::Slip), &mut variables)?;
         }
@@ -58,6 +58,7 @@ impl Active<'_> {
             } else {
                 rim * (1.0 - slip)
             };
+            slide(slip, condition, &mut variables);
         }
         for hook in [Hook::Radius, Hook::Width, Hook::SinkageExponent] {
             if self.enter(hook) {
@@ -121,6 +122,13 @@ const REACTION: [Variable; 2] = [Variable::DrawbarPull, Variable::Torque];
 
 fn follows_reaction(program: &Program) -> bool {
     program.uses().meets(Variables::of(&REACTION))
+}
+
+/// Write how the wheel slides at a slip.
+fn slide(slip: f64, condition: &Condition, variables: &mut [f64; Variable::COUNT]) {
+    for (variable, value) in formula::slip::variables(slip, condition.slip_angle_rad) {
+        variables[variable as usize] = value;
+    }
 }
 
 /// Replace a quantity of the run by what formulas at its hook make of it.

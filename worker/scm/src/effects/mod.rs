@@ -35,7 +35,7 @@ pub enum ModelForm {
     WongReece,
     /// [`rft`](crate::rft): stresses follow from motion and depth alone, so that no formula enters at a node.
     Rft,
-    /// [`spatial`](crate::spatial): patches of the footprint have their own.
+    /// [`spatial`](crate::spatial): modulus and width are those of the footprint or of its patches, see [`Footprint`](crate::spatial::Footprint).
     Spatial,
     /// A model that is not of this crate: effects act on what it is given and on what it answers, see [`OutsideRun`](crate::outside::OutsideRun).
     Outside,

@@ -1,10 +1,11 @@
 //! A wheel that rolls over a deformable terrain, in three dimensions.
 //!
 //! # Layout
-//! - [`Scene`], [`RunSettings`], [`Ground`], [`Shape`], [`SurfaceMesh`]: what a run is made of.
+//! - [`Scene`], [`RunSettings`], [`Ground`], [`Shape`], [`Tread`], [`SurfaceMesh`]: what a run is made of.
 //! - `run`: the wheel along its track, and the averages of force, torque and sinkage.
 //! - `wheel`: the underside that the soil meets, and its motion.
 //! - `contact`: which nodes the wheel touches at a height, their pressure, force and torque.
+//! - `side_wall`: soil that the side of the wheel pushes at a slip angle.
 //! - `displacement`: how far wheel and soil have slid along each other, where a formula asks for it.
 //! - `terrain`: the soil as a height field, its flow and its slopes.
 //! - `pack`: four lanes at a time.
@@ -13,20 +14,25 @@ mod contact;
 mod displacement;
 #[cfg(test)]
 mod fixture;
+mod grousers;
 mod pack;
 mod run;
 mod scene;
 mod settings;
+mod side_wall;
 mod surface;
 mod terrain;
+mod tread;
 mod wheel;
 
+pub use grousers::Grousers;
 pub use run::{History, SpatialRun};
 pub use scene::Scene;
 pub use settings::{
-    Displacement, Ground, Grousers, PressureDirection, Protocol, RunSettings, Shape, Vertical,
+    Displacement, Footprint, Ground, PressureDirection, Protocol, RunSettings, Shape, Vertical,
 };
 pub use surface::{Normals, SurfaceMesh};
+pub use tread::Tread;
 
 use crate::rejection::require;
 use crate::{Condition, Rejection};
@@ -41,7 +47,7 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 /// wheel with its surface h below the soil's surface `z_s`, per projected area dA:
 ///
 /// - `p = min(gamma k* z^n, K_e (z_s − h))`, z below the reference `beta loose`, `k* = k_c / b_eff + k_phi`,
-///   `b_eff = 2 A / L` of the node's own patch of the footprint (area A, contour L)
+///   `b_eff = 2 A / L` of the hull of the whole footprint (area A, contour L), or of the node's patch: [`Footprint`]
 /// - `gamma = d^m / mean(d^m)` over the patch, d the Euclidean distance from its border
 /// - `tau = (c + p tan(phi)) (1 − exp(−|v_t| / v0))` against the slip velocity `v_t` of the wheel's surface, which has three
 ///   components
@@ -64,7 +70,10 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 ///   and the effective width when the contour was last measured.
 /// - Mechanisms: rebound `1 / K_e' = 1 / K_e + a`; a flat patch cuts the rim off at `R − a W`, from where sinkage is then counted;
 ///   digging lowers the reference surface by `(d / l) |v_t| dt` under the sliding wheel; end walls make k*
-///   `1 + w (exp(−x / l) + exp(−(L − x) / l))` times as large, x from the rear wall to the hub, x = R at the start of each pass.
+///   `1 + w (exp(−x / l) + exp(−(L − x) / l))` times as large, x from the rear wall to the hub, x = R at the start of each pass;
+///   the buried side in front meets passive earth pressure at a slip angle β, `s |sin β| (N (γ h²/2 + γ ζ h) + 2 c h √N)` per length
+///   against the lateral motion and friction `tan(δ)` of that along the side, `N = tan²(45° + φ/2)`, h the depth of a disc of
+///   radius R, ζ the mean height of the raised soil within `h √N` beside it.
 ///
 /// Without effects none of this is evaluated. Checked by `spatial::effects`, `spatial::signatures`.
 ///
@@ -87,9 +96,11 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 /// # Validity
 /// Rigid wheel, dry granular soil, motion slow enough for the vertical balance (or [`Vertical::Dynamic`]). Stresses act on
 /// the wheel's surface. A height field cannot represent the flanks of grousers: their thrust beyond the sheared tips is
-/// not modelled. With a negative `k_c` a small patch of the footprint, such as a grouser's tip or a lip of a berm,
-/// carries nothing, and the load jumps as patches join: from about kappa = −0.5 on, wheels with grousers find no support and smooth
-/// ones on flowing soil no balance, where the quasi-static model, which knows one patch, still does. Wheels up to 126 lanes wide straight ahead, 62 at a slip angle.
+/// not modelled, nor the sideways one of oblique grousers. With a negative `k_c` a footprint carries only where `b_eff > −k_c / k_phi`: a wheel of 50 mm balances down to
+/// kappa = −0.8, with and without grousers and flow, and not at −0.95, where the hull would have to be longer than the wheel's
+/// radius; one of 112 mm does at −0.95. With [`Footprint::Patches`] a grouser's tip or a lip of a berm carries nothing by itself, and
+/// the load jumps as patches join: no balance from kappa = −0.3 to −0.66 on. Checked by `spatial::cohesion`. Wheels up to 126 lanes
+/// wide straight ahead, 62 at a slip angle.
 ///
 /// # Numerics
 /// dx is refined until eight nodes lie in the contact of a smooth wheel, on soil or on its elastic layer, and the contact ends between nodes, so that

@@ -1,6 +1,8 @@
 //! Inputs of the model beyond soil, wheel and condition.
 
+use super::grousers::Grousers;
 use super::surface::{Normals, SurfaceMesh};
+use super::tread::Tread;
 use crate::Wheel;
 use crate::rejection::{Rejection, require};
 
@@ -64,22 +66,13 @@ impl Ground {
     }
 }
 
-/// Straight grousers on the rim: rectangles along its whole width, evenly spaced.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Grousers {
-    /// How many; 0: a smooth wheel.
-    pub count: u32,
-    /// Height above the rim `[m]`, > 0 if there are any.
-    pub height_m: f64,
-    /// Thickness along the rim `[m]`, > 0 if there are any.
-    pub thickness_m: f64,
-}
-
 /// The wheel's outer shape.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// A cylindrical rim, smooth or with grousers; radius and width are the [`Wheel`]'s.
     Rim(Grousers),
+    /// A cylindrical rim with grousers in rows, shifted, oblique, V-shaped or bent.
+    Tread(Tread),
     /// Any surface, in its own size. The [`Wheel`]'s radius is only what sinkage is counted from and what
     /// the grid is chosen by; its width counts for the latter only.
     Mesh {
@@ -113,29 +106,10 @@ impl Shape {
     /// [`Rejection::InvalidParameter`] for the first field outside its bounds.
     pub fn checked(&self, wheel: &Wheel) -> Result<(), Rejection> {
         match self {
-            Self::Rim(grousers) if grousers.count == 0 => Ok(()),
-            Self::Rim(grousers) => {
-                for (name, value) in [
-                    ("grouser_height_m", grousers.height_m),
-                    ("grouser_thickness_m", grousers.thickness_m),
-                ] {
-                    require(value > 0.0, name, value, "m", "above 0 where there are grousers")?;
-                }
-                require(
-                    grousers.height_m <= wheel.radius_m,
-                    "grouser_height_m",
-                    grousers.height_m,
-                    "m",
-                    "at most the wheel's radius",
-                )?;
-                let around = f64::from(grousers.count) * grousers.thickness_m;
-                require(
-                    around < core::f64::consts::TAU * wheel.radius_m,
-                    "grouser_thickness_m",
-                    grousers.thickness_m,
-                    "m",
-                    "so thin that all grousers stand beside each other on the rim",
-                )
+            Self::Rim(grousers) => grousers.checked(wheel),
+            Self::Tread(tread) => {
+                tread.grousers.checked(wheel)?;
+                tread.checked(wheel)
             }
             Self::Mesh {
                 surface,
@@ -171,6 +145,19 @@ pub enum PressureDirection {
     /// Along the normal of the undisturbed soil, vertically; shear acts horizontally. There is then no compaction
     /// resistance, as in some other implementations.
     Vertical,
+}
+
+/// Whose effective width `b_eff = 2 A / L` the nodes of a footprint have; without `k_c` it acts on nothing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Footprint {
+    /// One for the whole footprint, as the source paper has it: that of the rectangle that its patches span.
+    ///
+    /// Its area spans, lane by lane, what lies between the rear and the front end of the contact; its width is that of the lanes
+    /// in contact. Two rims beside each other thus count as one of their joint width. A smooth wheel's footprint is its own hull.
+    #[default]
+    Hull,
+    /// Each patch of connected nodes its own, by its contour: a grouser's tip is a plate by itself.
+    Patches,
 }
 
 /// How the hub finds its height.
@@ -232,6 +219,8 @@ pub struct RunSettings {
     pub displacement: Displacement,
     /// Along which direction the pressure acts.
     pub pressure_direction: PressureDirection,
+    /// Whose effective width the nodes of a footprint have.
+    pub footprint: Footprint,
     /// How the hub finds its height.
     pub vertical: Vertical,
     /// When the run ends.
@@ -247,6 +236,7 @@ impl Default for RunSettings {
             travel_step_m: 0.0005,
             displacement: Displacement::default(),
             pressure_direction: PressureDirection::default(),
+            footprint: Footprint::default(),
             vertical: Vertical::default(),
             protocol: Protocol::default(),
             both_halves: false,

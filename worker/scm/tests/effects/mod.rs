@@ -5,3 +5,4 @@ mod hidden;
 mod neutral;
 mod refusals;
 mod signatures;
+mod slip_angle;

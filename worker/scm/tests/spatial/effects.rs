@@ -376,6 +376,20 @@ fn all_effects_at_once_are_finite_and_repeat() {
 }
 
 #[test]
+fn formulas_see_the_slip_across_the_heading() {
+    let mut track = short_smooth();
+    track.case.condition.slip_angle_rad = 10_f64.to_radians();
+    let text =
+        "name = \"e\"\nsummary = \"s\"\nsource = \"s\"\nlateral_force = \"wheel_load * lateral_slip\"\n";
+    let effect = Effect::read(text).expect("a formula");
+    track.enter(&effect, &[]);
+    let condition = track.case.condition;
+    let lateral_slip = formula::slip::variables(condition.slip, condition.slip_angle_rad)[3].1;
+    let expected = condition.wheel_load_n * lateral_slip;
+    assert!((track.roll().averages.lateral_force_n - expected).abs() < 1e-9);
+}
+
+#[test]
 fn an_offset_of_what_is_measured_moves_no_soil() {
     // 10 degrees of slip angle, a light load: settles late
     let mut track = crate::scene::smooth(0.4, 60.0, 30.0);

@@ -4,7 +4,8 @@ use super::surfaces::{Surface, across};
 use crate::support::{Case, base};
 use scm::effects::{Active, Site};
 use scm::spatial::{
-    Ground, Grousers, Normals, Protocol, RunSettings, Scene, Shape, SpatialRun, SurfaceMesh, simulate,
+    Footprint, Ground, Grousers, Normals, Protocol, RunSettings, Scene, Shape, SpatialRun, SurfaceMesh,
+    simulate,
 };
 
 const R: f64 = 0.125;
@@ -224,7 +225,13 @@ fn two_narrow_rims_are_two_wheels_of_half_the_load() {
     let ring = |surface: Surface, from: f64| surface.rim(R, 180, &[from, from + NARROW], |_| 1.0);
     let two = ring(ring(Surface::default(), -0.5 * B), 0.5 * B - NARROW).0;
     let single = ring(Surface::default(), -0.5 * NARROW).0;
-    let two = roll(&both, &Shape::from(two), fixed(&both)).averages;
+    let two = Shape::from(two);
+    let joint = roll(&both, &two, fixed(&both)).averages;
+    let patches = RunSettings {
+        footprint: Footprint::Patches,
+        ..fixed(&both)
+    };
+    let two = roll(&both, &two, patches).averages;
     let single = roll(&one, &Shape::from(single), fixed(&one)).averages;
     println!("{two:?}\n{single:?}");
     let near = |a: f64, b: f64, tolerance: f64| (a / b - 1.0).abs() < tolerance;
@@ -238,6 +245,10 @@ fn two_narrow_rims_are_two_wheels_of_half_the_load() {
         2.0 * area(single.contact_length_m, NARROW),
     );
     assert!(near(areas, expected, 0.03), "no soil touches the gap");
+    // in one hull they are a wheel of their joint width
+    let length = joint.contact_length_m * B / (2.0 * NARROW);
+    let hull = length * 2.0 * NARROW / (length + 2.0 * NARROW);
+    assert!(near(joint.b_eff_m, hull, 0.05), "{joint:?}");
 }
 
 #[test]

@@ -58,8 +58,23 @@ fn grousers_give_the_prototypes_figures() {
 }
 
 #[test]
+fn rows_of_grousers_roll_over_their_tips() {
+    holds(validation::tread::add);
+}
+
+#[test]
+fn the_buried_side_meets_rankines_passive_force() {
+    holds(validation::side_wall::add);
+}
+
+#[test]
 fn deposits_lift_the_wheel_as_the_prototypes() {
     holds(validation::flow::add);
+}
+
+#[test]
+fn one_effective_width_for_the_hull_carries_where_single_patches_do_not() {
+    holds(validation::hull::add);
 }
 
 #[test]
@@ -71,7 +86,7 @@ fn another_implementation_is_reproduced() {
 fn no_oracle_is_left_out_and_a_wrong_figure_fails() {
     assert_eq!(
         ORACLES.len(),
-        11,
+        13,
         "one test for each, above and in `effects::signatures`"
     );
     let mut rows = Rows::default();

@@ -57,16 +57,49 @@ impl Surface {
     ) -> Self {
         for i in 0..count {
             let angle = std::f64::consts::TAU * f64::from(i) / f64::from(count);
-            let (sin, cos) = angle.sin_cos();
-            let at = |r: f64, aside: f64| [r * sin + aside * cos, -(r * cos - aside * sin)];
-            let (foot, tip, half) = (0.98 * radius, radius + height, 0.5 * thickness);
-            let corners = [at(foot, -half), at(tip, -half), at(tip, half), at(foot, half)];
-            for side in corners.windows(2) {
+            for side in profile(radius, height, thickness, angle).windows(2) {
                 self.draw(side[0], side[1], ys, |_| 1.0);
             }
         }
         self
     }
+
+    /// Boxes on the rim that stand further forward by `ahead(y)` along it, straight from place to place.
+    pub(crate) fn bent_grousers(
+        mut self,
+        radius: f64,
+        count: u32,
+        height: f64,
+        thickness: f64,
+        ys: &[f64],
+        ahead: impl Fn(f64) -> f64,
+    ) -> Self {
+        for i in 0..count {
+            let angle = std::f64::consts::TAU * f64::from(i) / f64::from(count);
+            let at = |y: f64| profile(radius, height, thickness, angle + ahead(y) / radius);
+            for sides in ys.windows(2) {
+                let first = self.0.vertices_m.len() as u32;
+                let corners = |y: f64| at(y).map(|[x, z]| [x, y, z]);
+                self.0
+                    .vertices_m
+                    .extend(corners(sides[0]).into_iter().chain(corners(sides[1])));
+                for k in first..first + 3 {
+                    self.0
+                        .triangles
+                        .extend([[k, k + 1, k + 4], [k + 1, k + 5, k + 4]]);
+                }
+            }
+        }
+        self
+    }
+}
+
+/// Foot, tip, tip and foot of a box on the rim at an angle, from rear to front.
+fn profile(radius: f64, height: f64, thickness: f64, angle: f64) -> [Point; 4] {
+    let (sin, cos) = angle.sin_cos();
+    let at = |r: f64, aside: f64| [r * sin + aside * cos, -(r * cos - aside * sin)];
+    let (foot, tip, half) = (0.98 * radius, radius + height, 0.5 * thickness);
+    [at(foot, -half), at(tip, -half), at(tip, half), at(foot, half)]
 }
 
 /// The point of a circle at an angle from straight down, positive forward.

@@ -7,13 +7,14 @@
 //! - `row`: one expected figure.
 //! - `profile`: pressure along a smooth wheel with uniform pressure across it, on paper.
 //! - `plate`, `smooth_wheel`, `quasi_static`, `effects`, `convergence`, `scaling`, `power`, `displacement`, `grousers`,
-//!   `flow`, `other_implementation`: the oracles.
+//!   `tread`, `side_wall`, `flow`, `hull`, `other_implementation`: the oracles.
 
 pub(crate) mod convergence;
 pub(crate) mod displacement;
 pub(crate) mod effects;
 pub(crate) mod flow;
 pub(crate) mod grousers;
+pub(crate) mod hull;
 pub(crate) mod other_implementation;
 pub(crate) mod plate;
 pub(crate) mod power;
@@ -21,7 +22,9 @@ mod profile;
 pub(crate) mod quasi_static;
 mod row;
 pub(crate) mod scaling;
+pub(crate) mod side_wall;
 pub(crate) mod smooth_wheel;
+pub(crate) mod tread;
 
 pub(crate) use row::{Row, Rows};
 
@@ -29,7 +32,7 @@ pub(crate) use row::{Row, Rows};
 pub(crate) type Oracle = (&'static str, fn(&mut Rows));
 
 /// All oracles, in the order of the table.
-pub(crate) const ORACLES: [Oracle; 11] = [
+pub(crate) const ORACLES: [Oracle; 14] = [
     ("plate", plate::add),
     ("smooth wheel", smooth_wheel::add),
     ("quasi-static", quasi_static::add),
@@ -39,7 +42,10 @@ pub(crate) const ORACLES: [Oracle; 11] = [
     ("power", power::add),
     ("displacement", displacement::add),
     ("grousers", grousers::add),
+    ("tread", tread::add),
+    ("side wall", side_wall::add),
     ("flow", flow::add),
+    ("hull", hull::add),
     ("other implementation", other_implementation::add),
 ];
 

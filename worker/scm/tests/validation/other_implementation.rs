@@ -2,13 +2,13 @@
 //!
 //! It lets the pressure act vertically and the shear horizontally, so that the pressure alone carries the load and the
 //! sinkage follows from it; there is no compaction resistance, but the pressure in front of the axle turns the wheel
-//! back.
+//! back. It takes the effective width patch by patch, which acts on nothing here, without `k_c`.
 
 use super::Rows;
 use super::profile::Profile;
 use super::row::Bounds;
 use crate::scene::{Track, smooth};
-use scm::spatial::{Displacement, PressureDirection};
+use scm::spatial::{Displacement, Footprint, PressureDirection};
 
 const SHEAR_MODULUS_M: f64 = 0.01;
 
@@ -23,6 +23,7 @@ pub(crate) fn track(dem_spacing_m: f64) -> Track {
     track.settings.dem_spacing_m = dem_spacing_m;
     track.settings.displacement = Displacement::Node;
     track.settings.pressure_direction = PressureDirection::Vertical;
+    track.settings.footprint = Footprint::Patches;
     track
 }
 

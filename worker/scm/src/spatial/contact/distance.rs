@@ -172,13 +172,14 @@ impl Contact {
         }
     }
 
-    /// Shapes of a strip's nodes, and the sums over its patch.
+    /// Shapes and z^n of a strip's nodes, and the sums over its patch.
     fn find_shapes(&mut self, laws: &Laws, row: usize) {
         let packs = self.across.packs();
         let (mut areas, mut shapes) = (splat(0.0), splat(0.0));
         let quads = &mut self.quads[row * packs..(row + 1) * packs];
         for (quad, distance) in quads.iter_mut().zip(&self.distance) {
             quad.shape = laws.shape(Pack::new(*distance));
+            quad.depth_power = laws.depth_power(quad.depth);
             areas += quad.area;
             shapes += quad.area * quad.shape;
         }

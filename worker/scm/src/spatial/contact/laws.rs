@@ -51,19 +51,10 @@ impl Laws {
         }
     }
 
-    /// Normal pressure: Bekker's `gamma k* z^n`, but no more than the elastic line from the present surface allows.
-    ///
-    /// # Arguments
-    /// - `stiffness`: k* gamma `[N/m^(n+2)]`. `depth`: z below the reference. `penetration`: below the surface `[m]`.
+    /// z^n of Bekker's plastic pressure `gamma k* z^n`, z below the reference.
     #[inline]
-    pub(crate) fn pressure(&self, stiffness: Pack, depth: Pack, penetration: Pack) -> Pack {
-        self.bounded(self.plastic(stiffness, depth), penetration)
-    }
-
-    /// Bekker's `gamma k* z^n`.
-    #[inline]
-    pub(crate) fn plastic(&self, stiffness: Pack, depth: Pack) -> Pack {
-        stiffness * self.sinkage_power.of(depth)
+    pub(crate) fn depth_power(&self, depth: Pack) -> Pack {
+        self.sinkage_power.of(depth)
     }
 
     /// A plastic pressure, but no more than the elastic line from the present surface allows, and no suction.

@@ -4,7 +4,7 @@
 //! - `quad`: what is known of four neighbouring nodes.
 //! - `patch`: which nodes in contact are connected.
 //! - `distance`: ends of the contact between nodes, areas, distances from the border.
-//! - `contour`: contour lengths of the patches.
+//! - `contour`: contour lengths of the patches; `hull`: what they span together; `span`: what lanes do.
 //! - `laws`: pressure and its distribution; `power`: z^n for many nodes.
 //! - `reaction`: force and torque on the wheel.
 //! - `formulas`: pressure and shear stress as effects leave them.
@@ -12,19 +12,23 @@
 mod contour;
 mod distance;
 pub(super) mod formulas;
+mod hull;
 pub(super) mod laws;
 mod patch;
 mod power;
 mod quad;
 pub(super) mod reaction;
+mod span;
 #[cfg(test)]
 mod tests;
 
 use laws::Laws;
 use patch::{Patches, Run};
 use quad::{Quad, Under};
+use span::Span;
 
 use super::pack::{PACK, Pack, splat, sum};
+use super::settings::Footprint;
 use super::terrain::Terrain;
 use super::wheel::across::Across;
 use super::wheel::envelope::{Envelope, NOWHERE, Strip};
@@ -60,11 +64,23 @@ pub(crate) struct Contact {
     pub(crate) distance: Vec<[f64; PACK]>,
     /// Squares of distances of one strip, with room on both sides.
     pub(crate) squares: Vec<f64>,
+    /// By strip in contact and pack, for the hull.
+    spans: Vec<Span>,
+    /// Whose `b_eff` nodes have.
+    pub(crate) footprint: Footprint,
     pub(crate) trials: u64,
     pub(crate) node_trials: u64,
 }
 
 impl Contact {
+    /// A contact whose nodes have the effective width of the hull, or of their patches.
+    pub(crate) fn new(footprint: Footprint) -> Self {
+        Self {
+            footprint,
+            ..Self::default()
+        }
+    }
+
     /// Bring wheel and terrain together: what does not depend on the height of the hub.
     ///
     /// With `vertical` the pressure acts upwards whatever the slope of the wheel's surface.
@@ -156,12 +172,12 @@ impl Contact {
         self.touch(hub);
         self.measure(terrain, laws, hub);
         if contours {
-            self.add_contours(terrain);
+            self.find_effective_widths(terrain, laws);
         }
         let cohesive = laws.soil.k_c.abs() > 0.0;
         for patch in &mut self.patches.patches {
             let k_star = if cohesive {
-                laws.soil.k_phi + laws.soil.k_c / effective_width(patch.area, patch.contour)
+                laws.soil.k_phi + laws.soil.k_c / patch.b_eff
             } else {
                 laws.soil.k_phi
             };
@@ -171,6 +187,24 @@ impl Contact {
             patch.stiffness = if carries { k_star * patch.area / shape } else { 0.0 };
         }
         self.trials += 1;
+    }
+
+    /// Effective widths of the patches at the height last tried, by their areas.
+    pub(crate) fn find_effective_widths(&mut self, terrain: &Terrain, laws: &Laws) {
+        match self.footprint {
+            Footprint::Hull => {
+                let b_eff = self.hull_width(terrain, laws);
+                for patch in &mut self.patches.patches {
+                    patch.b_eff = b_eff;
+                }
+            }
+            Footprint::Patches => {
+                self.add_contours(terrain);
+                for patch in &mut self.patches.patches {
+                    patch.b_eff = effective_width(patch.area, patch.contour);
+                }
+            }
+        }
     }
 
     /// Which nodes are in contact, in which patches, and where their contact begins.
@@ -215,7 +249,7 @@ impl Contact {
                         run.lanes_of(pack).select(stiffness(run), others)
                     })
                 });
-                let p = laws.pressure(stiffness * quad.shape, quad.depth, quad.pressed);
+                let p = laws.bounded(stiffness * quad.shape * quad.depth_power, quad.pressed);
                 quad.pressure = p;
                 force += quad.area * (p + (cohesion + p * tan_phi) * quad.shear_z);
             }

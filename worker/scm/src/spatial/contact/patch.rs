@@ -29,6 +29,8 @@ pub(crate) struct Patch {
     pub(crate) area: f64,
     /// Contour length L `[m]`, of the same half.
     pub(crate) contour: f64,
+    /// Effective width `[m]`: its own, or that of the hull.
+    pub(crate) b_eff: f64,
     /// Sums of area, and of area times the shape g of the pressure distribution, lane by lane.
     pub(crate) areas: Pack,
     pub(crate) shapes: Pack,
@@ -72,6 +74,7 @@ impl Patches {
         let blank = Patch {
             area: 0.0,
             contour: 0.0,
+            b_eff: 0.0,
             areas: zero,
             shapes: zero,
             modulus: 0.0,

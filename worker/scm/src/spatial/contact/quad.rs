@@ -23,9 +23,10 @@ pub(crate) struct Quad {
     pub(crate) tilt: Pack,
     /// Where the pressure is taken, ahead of the strip's middle `[m]`.
     pub(crate) offset: Pack,
-    /// Penetration and depth there `[m]`, and the shape g of the distribution.
+    /// Penetration and depth z there `[m]`, z^n, and the shape g of the distribution.
     pub(crate) pressed: Pack,
     pub(crate) depth: Pack,
+    pub(crate) depth_power: Pack,
     pub(crate) shape: Pack,
     /// Area `[m²]` and pressure `[Pa]`.
     pub(crate) area: Pack,
@@ -47,6 +48,7 @@ impl Quad {
             offset: zero,
             pressed: zero,
             depth: zero,
+            depth_power: zero,
             shape: zero,
             area: zero,
             pressure: zero,

@@ -78,10 +78,10 @@ impl Contact {
         reaction
     }
 
-    /// Effective width 2 A / L of the patches, weighted by their area `[m]`.
-    pub(crate) fn effective_width(&mut self, terrain: &Terrain) -> f64 {
-        self.add_contours(terrain);
-        self.mean_of(|patch| crate::footprint::effective_width(patch.area, patch.contour))
+    /// Effective width of the hull, or of the patches, weighted by their area `[m]`.
+    pub(crate) fn effective_width(&mut self, terrain: &Terrain, laws: &Laws) -> f64 {
+        self.find_effective_widths(terrain, laws);
+        self.mean_of(|patch| patch.b_eff)
     }
 
     /// Modulus k* of the patches, weighted by their area `[N/m^(n+2)]`.

@@ -36,10 +36,17 @@ fn flat() -> Envelope {
 
 /// The flat underside pressed 6 mm into soil: its load, and the contact.
 fn pressed(soil: &Soil, mirrored: bool) -> (f64, Contact, Terrain) {
+    pressed_into(level(mirrored), soil, Footprint::Hull)
+}
+
+fn level(mirrored: bool) -> Terrain {
     let first_y = if mirrored { 0.5 * SPACING } else { -19.5 * SPACING };
-    let terrain = Terrain::new(SPACING, SPACING, first_y, 24, 40, mirrored);
+    Terrain::new(SPACING, SPACING, first_y, 24, 40, mirrored)
+}
+
+fn pressed_into(terrain: Terrain, soil: &Soil, footprint: Footprint) -> (f64, Contact, Terrain) {
     let laws = Laws::new(soil, 1e12, 0.0);
-    let mut contact = Contact::default();
+    let mut contact = Contact::new(footprint);
     contact.across.lay(&terrain, 0.0, WIDTH);
     contact.prepare(&terrain, &flat(), &laws, &Motion::new(&WHEEL, &CONDITION), false);
     let load = contact.press(&terrain, &laws, RISE - DEPTH);
@@ -60,20 +67,66 @@ fn soil(gamma_exponent: f64, k_c: f64) -> Soil {
 fn a_flat_contact_carries_its_area_times_bekkers_pressure_whatever_the_distribution() {
     for gamma_exponent in [0.0, 0.5, 0.8, 1.0] {
         for k_c in [0.0, 2e5, -1e5] {
-            for mirrored in [false, true] {
-                let (load, mut contact, terrain) = pressed(&soil(gamma_exponent, k_c), mirrored);
+            for (footprint, mirrored) in [
+                (Footprint::Hull, false),
+                (Footprint::Hull, true),
+                (Footprint::Patches, false),
+                (Footprint::Patches, true),
+            ] {
+                let soil = soil(gamma_exponent, k_c);
+                let (load, mut contact, terrain) = pressed_into(level(mirrored), &soil, footprint);
                 // b_eff = l b / (l + b) of a rectangle
                 let k_star = 1e7 + k_c * (LENGTH + WIDTH) / (LENGTH * WIDTH);
                 let expected = LENGTH * WIDTH * k_star * libm::pow(DEPTH, 1.1);
                 assert!(
                     (load / expected - 1.0).abs() < 1e-12,
-                    "m {gamma_exponent} k_c {k_c} mirrored {mirrored}: {load} of {expected}"
+                    "m {gamma_exponent} k_c {k_c} {footprint:?} mirrored {mirrored}: {load} of {expected}"
                 );
-                let width = contact.effective_width(&terrain);
+                let width = contact.effective_width(&terrain, &Laws::new(&soil, 1e12, 0.0));
                 assert!((width / (LENGTH * WIDTH / (LENGTH + WIDTH)) - 1.0).abs() < 1e-12);
             }
         }
     }
+}
+
+/// Flat soil with a ditch under three strips of the wheel; gives the effective width of what is in contact.
+fn over_a_ditch(footprint: Footprint, depth_beyond: f64) -> f64 {
+    let mut terrain = level(false);
+    let lanes = terrain.lanes;
+    // strips 1 to 4 are in contact, 5 to 7 are not, 8 to 10 are as deep as asked
+    terrain.surface[9 * lanes..12 * lanes].fill(-0.05);
+    terrain.surface[12 * lanes..].fill(depth_beyond - DEPTH);
+    terrain.loose[12 * lanes..].fill(depth_beyond - DEPTH);
+    let mut laws = Laws::new(&soil(0.5, -1e5), 1e12, 0.0);
+    laws.bearing_credit = 1.0;
+    let mut contact = Contact::new(footprint);
+    contact.across.lay(&terrain, 0.0, WIDTH);
+    contact.prepare(&terrain, &flat(), &laws, &Motion::new(&WHEEL, &CONDITION), false);
+    contact.press(&terrain, &laws, RISE - DEPTH);
+    assert_eq!(contact.patches.patches.len(), 2);
+    contact.effective_width(&terrain, &laws)
+}
+
+#[test]
+fn the_hull_spans_the_gap_between_patches_as_far_as_both_bear() {
+    let rectangle = |strips: f64| {
+        let length = strips * SPACING;
+        length * WIDTH / (length + WIDTH)
+    };
+    let near = |got: f64, expected: f64| assert!((got / expected - 1.0).abs() < 1e-10, "{got} {expected}");
+    let depth_at = |share: f64| DEPTH * libm::pow(share, 1.0 / 1.1);
+    near(over_a_ditch(Footprint::Hull, DEPTH), rectangle(10.0));
+    // by area: 4 strips and 3
+    let by_patch = (4.0 * rectangle(4.0) + 3.0 * rectangle(3.0)) / 7.0;
+    near(over_a_ditch(Footprint::Patches, DEPTH), by_patch);
+    // with 1/20 of the greatest pressure a patch counts in full
+    near(over_a_ditch(Footprint::Hull, depth_at(0.051)), rectangle(10.0));
+    near(
+        over_a_ditch(Footprint::Hull, depth_at(0.025)),
+        rectangle(4.0 + 0.5 * 6.0),
+    );
+    let touching = over_a_ditch(Footprint::Hull, 1e-9);
+    assert!((touching / rectangle(4.0) - 1.0).abs() < 1e-4, "{touching}");
 }
 
 #[test]

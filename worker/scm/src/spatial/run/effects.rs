@@ -13,6 +13,7 @@ use crate::spatial::contact::laws::Laws;
 use crate::spatial::contact::reaction::Reaction;
 use crate::spatial::scene::Scene;
 use crate::spatial::settings::{Ground, Shape};
+use crate::spatial::side_wall::SideWall;
 
 /// The effects of one run.
 ///
@@ -23,6 +24,7 @@ use crate::spatial::settings::{Ground, Shape};
 /// - digging: the reference surface sinks under the sliding wheel, see [`Contact::dig`].
 /// - end wall: k* is `1 + w (exp(−x/l) + exp(−(L − x)/l))` times as large, where x is how far the hub is from the rear wall
 ///   of the bin and L the bin's length. A run, and every pass, starts with the rim at the rear wall, x = R.
+/// - side wall: soil beside the wheel pushes against its buried side, see [`SideWall`].
 #[derive(Debug)]
 pub(super) struct RunEffects<'a> {
     active: &'a Active<'a>,
@@ -31,6 +33,7 @@ pub(super) struct RunEffects<'a> {
     variables: [f64; Variable::COUNT],
     pub(super) nodes: Option<NodeFormulas<'a>>,
     wall: Option<EndWall>,
+    pub(super) side: Option<SideWall>,
     /// d `[m]`; 0 where nothing digs.
     digging_m: f64,
     load_follows: bool,
@@ -58,6 +61,7 @@ impl<'a> RunEffects<'a> {
             variables: case.variables,
             nodes: nodes.map(|laws| NodeFormulas::new(laws, case.variables, width)),
             wall: EndWall::find(active, case)?,
+            side: side_wall(active, case)?,
             digging_m: digging(active)?,
             load_follows: active.load_follows_reaction(),
             measures: active.change_channels(),
@@ -188,6 +192,20 @@ fn digging(active: &Active) -> Result<f64, Rejection> {
     let depth = values.and_then(|values| values.first().copied()).unwrap_or(0.0);
     require(depth >= 0.0, "depth_m", depth, "m", "at least 0")?;
     Ok(depth)
+}
+
+fn side_wall(active: &Active, case: &Case) -> Result<Option<SideWall>, Rejection> {
+    let Some(&[scale, friction]) = active.mechanism(Mechanism::SideWall) else {
+        return Ok(None);
+    };
+    let of = |variable: Variable| case.variables[variable as usize];
+    SideWall::new(
+        [scale, friction],
+        &case.soil,
+        case.wheel.radius_m,
+        [of(Variable::Density), of(Variable::Gravity)],
+        &case.condition,
+    )
 }
 
 /// Stiffness of unloading and reloading where the soil springs back `[Pa/m]`.

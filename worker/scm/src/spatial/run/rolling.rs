@@ -89,8 +89,6 @@ pub(crate) struct Rolling<'a> {
     pub(crate) track: f64,
     /// Time from one grouser to the next, if one comes after another within the track `[s]`.
     period: Option<f64>,
-    /// The most the soil has carried so far `[N]`.
-    most_carried: f64,
 }
 
 impl<'a> Rolling<'a> {
@@ -165,7 +163,7 @@ impl<'a> Rolling<'a> {
             underside,
             terrain,
             envelope: Envelope::default(),
-            contact: Contact::default(),
+            contact: Contact::new(settings.footprint),
             flow: Flow::default(),
             relaxation: Relaxation::new(ground.repose_angle_rad),
             start,
@@ -186,7 +184,6 @@ impl<'a> Rolling<'a> {
             repeats_after,
             track: travel,
             period,
-            most_carried: 0.0,
         })
     }
 
@@ -266,7 +263,16 @@ impl<'a> Rolling<'a> {
         self.heights.push(found.height - missed / self.slope);
         let nodes = self.effects.as_mut().and_then(|effects| effects.nodes.as_mut());
         let strengths = nodes.map(|nodes| nodes.strengths(&self.contact, &self.laws));
-        let reaction = self.contact.react(&self.terrain, &self.laws, strengths);
+        let mut reaction = self.contact.react(&self.terrain, &self.laws, strengths);
+        if let Some(side) = self.effects.as_ref().and_then(|effects| effects.side) {
+            let law = &self.laws.shear_velocity;
+            let at = (self.pose, self.hub);
+            let push = side.push(&self.contact, &self.terrain, at, &self.motion, law);
+            reaction.force_x += push.force_x;
+            reaction.force_y += push.force_y;
+            reaction.force_z += push.force_z;
+            reaction.torque += push.torque;
+        }
         if self.contact.end > self.contact.first {
             if let Some(path) = &mut self.shear_path {
                 path.slide(&self.contact, &mut self.terrain, self.pose.turned, time);
@@ -372,16 +378,22 @@ impl<'a> Rolling<'a> {
                 0.02 * self.wheel.radius_m
             },
         };
+        let side = self.effects.as_ref().and_then(|effects| effects.side);
+        let (pose, motion) = (self.pose, &self.motion);
         let (contact, terrain, laws) = (&mut self.contact, &self.terrain, &self.laws);
         let per_time = if time > 0.0 { 1.0 / time } else { 0.0 };
-        let most_carried = &mut self.most_carried;
+        let mut most_carried = 0.0_f64;
         let mut nodes = self.effects.as_mut().and_then(|effects| effects.nodes.as_mut());
         let found = balance(search, load, 0.0, |height| {
             let carried = match &mut nodes {
                 None => contact.press(terrain, laws, height),
                 Some(nodes) => nodes.press(contact, terrain, laws, height),
             };
-            *most_carried = most_carried.max(carried);
+            let carried = side.map_or(carried, |side| {
+                let law = &laws.shear_velocity;
+                carried + side.push(contact, terrain, (pose, height), motion, law).force_z
+            });
+            most_carried = most_carried.max(carried);
             let velocity = (height - hub) * per_time;
             carried - load + surplus - damping * velocity - mass * (velocity - rising) * per_time
         });
@@ -389,7 +401,7 @@ impl<'a> Rolling<'a> {
             return Err(refused);
         }
         let found = found.ok_or(Rejection::NoSupport {
-            most_carried_n: self.most_carried,
+            most_carried_n: most_carried,
             wheel_load_n: load,
             wheel_radius_m: self.wheel.radius_m,
         })?;
@@ -423,7 +435,7 @@ impl<'a> Rolling<'a> {
 
     /// Effective width 2 A / L of the footprint at the last height `[m]`.
     pub(crate) fn effective_width(&mut self) -> f64 {
-        self.contact.effective_width(&self.terrain)
+        self.contact.effective_width(&self.terrain, &self.laws)
     }
 
     /// Sinkage of a hub height, of the rim as its load leaves it `[m]`.

@@ -31,6 +31,20 @@ impl Across {
         self.width.len()
     }
 
+    /// Width of the wheel `[m]`.
+    pub(crate) fn wheel_width(&self) -> f64 {
+        let whole = |packs: &[Pack]| packs.first().map_or(0.0, |pack| pack.to_array()[0]);
+        whole(&self.from_left) + whole(&self.from_right)
+    }
+
+    /// What the wheel covers of a lane: from y to y from its middle plane `[m]`.
+    pub(crate) fn covered(&self, lane: usize) -> [f64; 2] {
+        let of = |packs: &[Pack]| packs[lane / PACK].to_array()[lane % PACK];
+        let middle = 0.5 * (of(&self.from_right) - of(&self.from_left));
+        let half = 0.5 * of(&self.width);
+        [middle - half, middle + half]
+    }
+
     /// The highest surface of a column of the terrain under the wheel `[m]`.
     pub(crate) fn highest(&self, terrain: &Terrain, column: usize) -> f64 {
         let start = column * terrain.lanes + self.first_lane;

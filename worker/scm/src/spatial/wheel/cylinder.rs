@@ -1,6 +1,6 @@
 //! An analytic wheel, a rim with straight grousers, over the columns of the terrain.
 
-use super::super::settings::Grousers;
+use super::super::grousers::Grousers;
 use super::super::terrain::Terrain;
 use super::across::Across;
 use super::envelope::{Envelope, NOWHERE, Strip};
@@ -23,11 +23,28 @@ pub(crate) struct Cylinder {
 
 /// A straight piece of a grouser's underside: from one end to the other, heights below the hub.
 #[derive(Debug, Clone, Copy)]
-struct Piece {
-    rear: f64,
-    front: f64,
+pub(super) struct Piece {
+    pub(super) rear: f64,
+    pub(super) front: f64,
     rear_rise: f64,
     front_rise: f64,
+}
+
+impl Piece {
+    /// Rise at a place between its ends `[m]`.
+    pub(super) fn rise(&self, ahead: f64) -> f64 {
+        let share = (ahead - self.rear) / (self.front - self.rear);
+        self.rear_rise + share * (self.front_rise - self.rear_rise)
+    }
+}
+
+/// Where a row of grousers stands, and how thick its grousers are.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Row {
+    /// Angle by which they stand further forward at the bottom `[rad]`.
+    pub(super) angle: f64,
+    /// Their thickness, relative to what it is where nothing else is said.
+    pub(super) share: f64,
 }
 
 impl Cylinder {
@@ -40,6 +57,15 @@ impl Cylinder {
             grouser_thickness: grousers.thickness_m,
             pieces: Vec::new(),
         }
+    }
+
+    pub(super) fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Angle from one grouser to the next `[rad]`.
+    pub(super) fn pitch(&self) -> f64 {
+        core::f64::consts::TAU / f64::from(self.grouser_count)
     }
 
     /// Number of grousers, if there are any.
@@ -66,7 +92,15 @@ impl Cylinder {
         across: &Across,
         out: &mut Envelope,
     ) {
-        self.collect_grousers(terrain, pose, least_rise, across);
+        let mut pieces = core::mem::take(&mut self.pieces);
+        pieces.clear();
+        let row = Row {
+            angle: 0.0,
+            share: 1.0,
+        };
+        let highest = |column| across.highest(terrain, column);
+        self.collect_grousers(terrain, pose, least_rise, row, highest, &mut pieces);
+        self.pieces = pieces;
         let mut range = range;
         if let (Some(first), Some(last)) = (self.pieces.first(), self.pieces.last()) {
             let column = |ahead: f64| ((pose.x + ahead) / terrain.dx) as usize;
@@ -108,7 +142,14 @@ impl Cylinder {
 
     /// The columns of `range`, those where the rim may touch soil, and one more on either side: where the last contact
     /// ended at a grouser, the rim beyond it may touch again.
-    fn widen(&self, terrain: &Terrain, pose: Pose, range: Range, least_rise: f64, across: &Across) -> Range {
+    pub(super) fn widen(
+        &self,
+        terrain: &Terrain,
+        pose: Pose,
+        range: Range,
+        least_rise: f64,
+        across: &Across,
+    ) -> Range {
         let least = least_rise.max(0.0);
         let half = (self.radius * self.radius - least * least).max(0.0).sqrt();
         let column = |ahead: f64| (((pose.x + ahead) / terrain.dx) as usize).min(terrain.columns - 1);
@@ -127,62 +168,71 @@ impl Cylinder {
 
     /// Rise and slope of every strip.
     fn fill(&self, terrain: &Terrain, pose: Pose, out: &mut Envelope) {
-        let square = self.radius * self.radius;
         let mut place = 0;
         for strip in &mut out.strips {
             while self.pieces.get(place).is_some_and(|p| p.front <= strip.rear) {
                 place += 1;
             }
             if let Some(piece) = self.pieces.get(place).filter(|p| p.rear < strip.middle) {
-                let share = (strip.middle - piece.rear) / (piece.front - piece.rear);
                 strip.ahead = strip.middle;
-                strip.rise = piece.rear_rise + share * (piece.front_rise - piece.rear_rise);
+                (strip.rise, strip.slope) = self.surface(strip.ahead, piece.rise(strip.middle));
             } else {
                 // the rim is taken where the node is, because it shaped the soil there
                 strip.ahead = terrain.x(strip.column) - pose.x;
-                let square_rise = square - strip.ahead * strip.ahead;
-                strip.rise = if square_rise > STEEPEST * square {
-                    square_rise.sqrt()
-                } else {
-                    NOWHERE
-                };
-            }
-            // the normal points to the hub, on grousers too: a height field cannot show their flanks
-            strip.slope = if strip.rise > 0.0 {
-                strip.ahead / strip.rise
-            } else {
-                0.0
-            };
-            if self.loaded_radius < self.radius {
-                self.flatten(strip);
+                (strip.rise, strip.slope) = self.rim(strip.ahead);
             }
         }
     }
 
-    /// Push a strip in by what the load cuts off the rim there.
-    fn flatten(&self, strip: &mut Strip) {
-        let square_rise = self.radius * self.radius - strip.ahead * strip.ahead;
-        let cut = square_rise.max(0.0).sqrt() - self.loaded_radius;
-        if cut > 0.0 {
-            strip.rise -= cut;
-            strip.slope = 0.0;
-        }
+    /// Rise and slope of the rim at a place.
+    pub(super) fn rim(&self, ahead: f64) -> (f64, f64) {
+        let square = self.radius * self.radius;
+        let square_rise = square - ahead * ahead;
+        let rise = if square_rise > STEEPEST * square {
+            square_rise.sqrt()
+        } else {
+            NOWHERE
+        };
+        self.surface(ahead, rise)
     }
 
-    /// The undersides of grousers that reach below `least_rise`, from rear to front.
-    fn collect_grousers(&mut self, terrain: &Terrain, pose: Pose, least_rise: f64, across: &Across) {
-        self.pieces.clear();
+    /// Rise and slope where the wheel that carries nothing has a rise: less what the load cuts off the rim there.
+    pub(super) fn surface(&self, ahead: f64, rise: f64) -> (f64, f64) {
+        if self.loaded_radius < self.radius {
+            let square_rise = self.radius * self.radius - ahead * ahead;
+            let cut = square_rise.max(0.0).sqrt() - self.loaded_radius;
+            if cut > 0.0 {
+                return (rise - cut, 0.0);
+            }
+        }
+        // the normal points to the hub, on grousers too: a height field cannot show their flanks
+        let slope = if rise > 0.0 { ahead / rise } else { 0.0 };
+        (rise, slope)
+    }
+
+    /// The undersides of a row's grousers that reach below `least_rise` and may touch soil, from rear to front.
+    ///
+    /// `highest` gives the highest soil under the row in a column `[m]`.
+    pub(super) fn collect_grousers(
+        &self,
+        terrain: &Terrain,
+        pose: Pose,
+        least_rise: f64,
+        row: Row,
+        highest: impl Fn(usize) -> f64,
+        out: &mut Vec<Piece>,
+    ) {
         if self.grouser_count == 0 {
             return;
         }
-        let pitch = core::f64::consts::TAU / f64::from(self.grouser_count);
+        let pitch = self.pitch();
         let reach = self.reach();
         if least_rise >= reach {
             return;
         }
         // angles from straight down, positive forward; the wheel turns them backwards
         let widest = libm::acos((least_rise / reach).max(-1.0)).min(0.5 * core::f64::consts::PI);
-        let phase = pose.turned / pitch;
+        let phase = (pose.turned - row.angle) / pitch;
         let phase = phase - libm::floor(phase); // of a pitch
         let most = libm::floor(widest / pitch + phase) as i64;
         let least = libm::ceil(-widest / pitch + phase) as i64;
@@ -193,16 +243,16 @@ impl Cylinder {
             let extent = self.grouser_thickness + self.grouser_height * libm::sin(angle).abs();
             let columns = ((tip - extent) / terrain.dx) as usize..=((tip + extent) / terrain.dx) as usize;
             let on_track = columns.take_while(|&column| column < terrain.columns);
-            let highest = on_track.fold(f64::MIN, |high, column| high.max(across.highest(terrain, column)));
+            let highest = on_track.fold(f64::MIN, |high, column| high.max(highest(column)));
             if deepest + highest > least_rise + terrain.top {
-                self.push_grouser(angle);
+                self.push_grouser(angle, row.share * self.grouser_thickness, out);
             }
         }
     }
 
-    fn push_grouser(&mut self, angle: f64) {
+    fn push_grouser(&self, angle: f64, thickness: f64, out: &mut Vec<Piece>) {
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-        let half = 0.5 * self.grouser_thickness;
+        let half = 0.5 * thickness;
         let (foot, tip) = (self.radius, self.radius + self.grouser_height);
         // The flank that looks down is the one towards the lowest point of the wheel.
         let side = if angle >= 0.0 { -half } else { half };
@@ -223,7 +273,7 @@ impl Cylinder {
         };
         for (rear, rear_rise, front, front_rise) in pieces {
             if front > rear {
-                self.pieces.push(Piece {
+                out.push(Piece {
                     rear,
                     front,
                     rear_rise,

@@ -33,6 +33,17 @@ pub(crate) struct Facet {
     pub(crate) slope_y: Pack,
 }
 
+impl Facet {
+    /// No wheel.
+    pub(crate) fn none() -> Self {
+        Self {
+            rise: Pack::splat(NOWHERE),
+            slope_x: Pack::splat(0.0),
+            slope_y: Pack::splat(0.0),
+        }
+    }
+}
+
 /// The wheel's lowest points over a range of columns without gaps, from rear to front.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Envelope {

@@ -3,6 +3,7 @@
 //! # Layout
 //! - `envelope`: the underside over the columns of the terrain, strip by strip.
 //! - `cylinder`: lays an analytic rim with straight grousers.
+//! - `treaded`: the same rim with grousers in rows, shifted, oblique or bent.
 //! - `mesh`: lays any surface of triangles.
 //! - `across`: the lanes that the wheel covers.
 //! - `pose`: where the wheel stands, and the columns that it may touch.
@@ -14,12 +15,14 @@ pub(super) mod envelope;
 pub(super) mod mesh;
 pub(super) mod motion;
 pub(super) mod pose;
+pub(super) mod treaded;
 
 use self::across::Across;
 use self::cylinder::Cylinder;
 use self::envelope::Envelope;
 use self::mesh::Mesh;
 use self::pose::{Pose, Range};
+use self::treaded::Treaded;
 use super::settings::Shape;
 use super::terrain::Terrain;
 use crate::Wheel;
@@ -28,6 +31,7 @@ use crate::Wheel;
 #[derive(Debug, Clone)]
 pub(crate) enum Underside {
     Cylinder(Cylinder),
+    Treaded(Box<Treaded>),
     Mesh(Box<Mesh>),
 }
 
@@ -36,6 +40,10 @@ impl Underside {
     pub(crate) fn new(wheel: &Wheel, shape: &Shape, deflection: f64) -> Self {
         match shape {
             Shape::Rim(grousers) => Self::Cylinder(Cylinder::new(wheel.radius_m, grousers, deflection)),
+            Shape::Tread(tread) if tread.is_straight(wheel) => {
+                Self::Cylinder(Cylinder::new(wheel.radius_m, &tread.grousers, deflection))
+            }
+            Shape::Tread(tread) => Self::Treaded(Box::new(Treaded::new(wheel.radius_m, *tread, deflection))),
             Shape::Mesh {
                 surface,
                 repeats_per_turn,
@@ -48,6 +56,7 @@ impl Underside {
     pub(crate) fn reach(&self) -> f64 {
         match self {
             Self::Cylinder(cylinder) => cylinder.reach(),
+            Self::Treaded(treaded) => treaded.one_row().reach(),
             Self::Mesh(mesh) => mesh.reach(),
         }
     }
@@ -55,7 +64,7 @@ impl Underside {
     /// Width about the middle plane that holds the whole wheel, nominally as wide as `wheel` `[m]`.
     pub(crate) fn width(&self, wheel: &Wheel) -> f64 {
         match self {
-            Self::Cylinder(_) => wheel.width_m,
+            Self::Cylinder(_) | Self::Treaded(_) => wheel.width_m,
             Self::Mesh(mesh) => mesh.width(),
         }
     }
@@ -64,6 +73,7 @@ impl Underside {
     pub(crate) fn repeats_per_turn(&self) -> Option<u32> {
         match self {
             Self::Cylinder(cylinder) => cylinder.grousers(),
+            Self::Treaded(treaded) => treaded.one_row().grousers(),
             Self::Mesh(mesh) => Some(mesh.repeats_per_turn()),
         }
     }
@@ -72,6 +82,7 @@ impl Underside {
     pub(crate) fn is_symmetric(&self) -> bool {
         match self {
             Self::Cylinder(_) => true,
+            Self::Treaded(treaded) => treaded.is_symmetric(),
             Self::Mesh(mesh) => mesh.is_symmetric(),
         }
     }
@@ -90,6 +101,7 @@ impl Underside {
     ) {
         match self {
             Self::Cylinder(cylinder) => cylinder.lay(terrain, pose, range, least_rise, across, out),
+            Self::Treaded(treaded) => treaded.lay(terrain, pose, range, least_rise, across, out),
             Self::Mesh(mesh) => mesh.lay(terrain, pose, range, least_rise, across, out),
         }
     }

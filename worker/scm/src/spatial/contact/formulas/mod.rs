@@ -33,7 +33,7 @@ use crate::effects::NodeLaws;
 /// acts as the node's strength, and where nothing slides there is no stress.
 ///
 /// Formulas see `z ≥ 1e-12 m`, the velocity `v_n ≥ 0` into the soil along the wheel's normal with the hub at constant height,
-/// `position` along the whole footprint at the place where the pressure is taken, and k* and `b_eff` of the node's patch.
+/// `position` along the whole footprint at the place where the pressure is taken, and k* and `b_eff` of the hull, or of the node's patch.
 ///
 /// # Numerics
 /// Formulas are evaluated at every trial height. Those that only scale the shear stress, by what no height changes, are

@@ -12,7 +12,6 @@ use super::super::patch::Patch;
 use super::super::quad::Quad;
 use super::{NodeFormulas, Point, strength};
 use crate::Rejection;
-use crate::footprint::effective_width;
 
 /// The least depth that formulas see `[m]`: that of the base's own powers.
 const LEAST_DEPTH: f64 = 1e-12;
@@ -54,7 +53,7 @@ impl NodeFormulas<'_> {
             }),
         };
         let quad = &mut contact.quads[place];
-        let plastic = laws.plastic(of_patch(|patch| patch.stiffness) * quad.shape, quad.depth);
+        let plastic = of_patch(|patch| patch.stiffness) * quad.shape * quad.depth_power;
         quad.pressure = laws.bounded(plastic, quad.pressed);
         let bears = u64::from(quad.pressure.simd_gt(splat(0.0)).to_bitmask()) & lanes;
         self.points.push(Point { quad: place, bears });
@@ -80,8 +79,11 @@ impl NodeFormulas<'_> {
             );
         }
         if uses.contains(Variable::BEff) {
-            let width = of_patch(|patch| effective_width(patch.area, patch.contour));
-            store(block.column_mut(Variable::BEff), at, width);
+            store(
+                block.column_mut(Variable::BEff),
+                at,
+                of_patch(|patch| patch.b_eff),
+            );
         }
         if changes_pressure {
             store(block.column_mut(Variable::P), at, plastic);

@@ -1,43 +1,30 @@
-//! Interpolation of the measurements in slip, without physics: what a model should beat.
+//! Interpolation in slip between runs that differ in slip alone.
 
 use shared::channel::Channel;
 use shared::experiment::{Experiment, RunUse, TestRun};
 
-/// Fitted measurements by wheel and slip angle, averaged over repeats, ready to interpolate.
-pub(crate) struct Baseline<'a> {
-    experiment: &'a Experiment,
-}
-
 /// Slips closer than this repeat one condition.
 const SAME_SLIP: f64 = 0.02;
 
-impl<'a> Baseline<'a> {
-    pub(crate) fn new(experiment: &'a Experiment) -> Self {
-        Baseline { experiment }
-    }
-
-    /// Monotone cubic interpolation at a run's slip between the fitted runs of the same wheel, slip angle,
-    /// speed and pass, within a factor of 1.5 in load; `None` where it would have to extrapolate.
-    pub(crate) fn interpolate(&self, run: &TestRun, channel: Channel) -> Option<f64> {
-        let near = |a: f64, b: f64, factor: f64| a / b < factor && b / a < factor;
-        let alike = |other: &&TestRun| {
-            other.usage == RunUse::Fit
-                && other.wheel == run.wheel
-                && other.pass == run.pass
-                && (other.slip_angle_deg - run.slip_angle_deg).abs() < 0.5
-                && near(other.sled_speed_m_s, run.sled_speed_m_s, 1.05)
-                && near(other.wheel_load_n, run.wheel_load_n, 1.5)
-        };
-        let mut points: Vec<(f64, f64)> = self
-            .experiment
-            .runs
-            .iter()
-            .filter(alike)
-            .filter_map(|r| Some((r.slip, r.measured[channel.index()]?)))
-            .collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        monotone_cubic(&averaged(&points), run.slip)
-    }
+/// Monotone cubic interpolation at a run's slip between the fitted runs of the same wheel, soil, slip angle, speed and pass, within a
+/// factor of 1.5 in load; `None` where it would have to extrapolate.
+pub(super) fn along_slip(experiment: &Experiment, run: &TestRun, channel: Channel) -> Option<f64> {
+    let near = |a: f64, b: f64, factor: f64| a / b < factor && b / a < factor;
+    let alike = |other: &&TestRun| {
+        other.usage == RunUse::Fit
+            && other.wheel == run.wheel
+            && other.soil == run.soil
+            && other.pass == run.pass
+            && (other.slip_angle_deg - run.slip_angle_deg).abs() < 0.5
+            && near(other.sled_speed_m_s, run.sled_speed_m_s, 1.05)
+            && near(other.wheel_load_n, run.wheel_load_n, 1.5)
+    };
+    let runs = experiment.runs.iter().filter(alike);
+    let mut points: Vec<(f64, f64)> = runs
+        .filter_map(|r| Some((r.slip, r.measured[channel.index()]?)))
+        .collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    monotone_cubic(&averaged(&points), run.slip)
 }
 
 /// Averages points whose slip differs little from the first of their group.

@@ -1,0 +1,45 @@
+//! Covariances of points and of observations.
+
+use nalgebra::DMatrix;
+
+use super::observation::Observation;
+
+/// Prior variance of each coefficient of the plane, over that of the process about it: large, so that the data choose the plane.
+const PLANE: f64 = 100.0;
+
+/// A plane and a process about it of unit variance.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Kernel {
+    /// Length scale of each coordinate.
+    pub(super) lengths: Vec<f64>,
+    /// Variance of the noise of one measurement.
+    pub(super) noise: f64,
+}
+
+impl Kernel {
+    /// Covariance of the values at two points, without noise.
+    pub(super) fn covariance(&self, a: &[f64], b: &[f64]) -> f64 {
+        let (mut squares, mut product) = (0.0, 0.0);
+        for ((x, y), length) in a.iter().zip(b).zip(&self.lengths) {
+            let distance = (x - y) / length;
+            squares += distance * distance;
+            product += x * y;
+        }
+        let r = (5.0 * squares).sqrt();
+        PLANE * (1.0 + product) + (1.0 + r + r * r / 3.0) * libm::exp(-r)
+    }
+
+    /// Covariance of the observations, noise included.
+    pub(super) fn matrix(&self, observations: &[Observation]) -> DMatrix<f64> {
+        let n = observations.len();
+        let mut matrix = DMatrix::zeros(n, n);
+        for (i, a) in observations.iter().enumerate() {
+            for (j, b) in observations.iter().enumerate().take(i + 1) {
+                let value = self.covariance(&a.point, &b.point);
+                (matrix[(i, j)], matrix[(j, i)]) = (value, value);
+            }
+            matrix[(i, i)] += self.noise / a.repeats as f64;
+        }
+        matrix
+    }
+}

@@ -1,0 +1,12 @@
+//! A measurement at a point.
+
+/// The mean of the repeats at one point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observation {
+    /// Its coordinates, each in its own unit.
+    pub point: Vec<f64>,
+    /// The mean [unit of the values].
+    pub value: f64,
+    /// Number of repeats, at least 1.
+    pub repeats: usize,
+}

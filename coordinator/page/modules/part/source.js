@@ -1,0 +1,9 @@
+// Where the measurements of a study come from.
+
+import { html } from "../html.js";
+
+/** @param {{ campaign: any }} properties */
+export function Source({ campaign }) {
+  if (!campaign) return null;
+  return html`<p class="note">Measurements: ${campaign.citation}${campaign.digitised && html`; <strong>${campaign.digitised}</strong>`}</p>`;
+}

@@ -1,0 +1,152 @@
+//! The held-out measurements of an experiment as interpolated from the fitted ones.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use shared::channel::Channel;
+use shared::experiment::{Experiment, RunUse};
+
+use super::along_slip::along_slip;
+use super::interpolated::{Interpolated, InterpolatedOver};
+use super::surface::Surfaces;
+
+/// The held-out measurements of an experiment as interpolated from the fitted ones.
+#[derive(Debug, Default)]
+pub struct Interpolations {
+    values: BTreeMap<(usize, Channel), Interpolated>,
+    missing: Vec<String>,
+}
+
+impl Interpolations {
+    /// Of every held-out measurement.
+    pub fn of(experiment: &Experiment) -> Self {
+        let mut values = BTreeMap::new();
+        let mut missing = BTreeSet::new();
+        let mut surfaces = Surfaces::new(experiment);
+        let runs = experiment.runs.iter().enumerate();
+        for (i, run) in runs.filter(|(_, run)| run.usage == RunUse::Holdout) {
+            let is_measured = |channel: &Channel| run.measured[channel.index()].is_some();
+            for channel in Channel::ALL.into_iter().filter(is_measured) {
+                let in_slip = along_slip(experiment, run, channel).map(|value| Interpolated {
+                    value,
+                    over: InterpolatedOver::Slip,
+                });
+                match in_slip.map_or_else(|| surfaces.at(run, channel), Ok) {
+                    Ok(found) => drop(values.insert((i, channel), found)),
+                    Err(reason) => drop(missing.insert(reason)),
+                }
+            }
+        }
+        Interpolations {
+            values,
+            missing: missing.into_iter().collect(),
+        }
+    }
+
+    /// That of a run and channel; `None` where it was fitted or there is none.
+    pub(crate) fn at(&self, run: usize, channel: Channel) -> Option<Interpolated> {
+        self.values.get(&(run, channel)).copied()
+    }
+
+    /// Why some are missing.
+    pub(crate) fn missing(&self) -> &[String] {
+        &self.missing
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use shared::file::FileSet;
+
+    use super::*;
+
+    const TOML: &str = "runs = \"runs.csv\"\n[wheel.a]\nradius_m = 0.1\nwidth_m = 0.05\n[wheel.b]\nradius_m = 0.1\nwidth_m = 0.05\n[soil.sand]\n[noise]\nlateral_force_n = 1.0\n";
+
+    fn force(slip: f64, angle: f64) -> f64 {
+        10.0 * (1.0 + slip) * libm::sin(angle / 60.0)
+    }
+
+    /// Fitted runs over slip and angle, with two repeats each, then held-out ones.
+    fn experiment(held_out: &[&str]) -> Experiment {
+        let mut runs =
+            "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use\n".to_owned();
+        for (i, slip) in [-0.3, 0.0, 0.3, 0.6].into_iter().enumerate() {
+            for angle in [0.0, 15.0, 30.0, 45.0, 60.0] {
+                for repeat in 0..2 {
+                    let (load, force) = (
+                        100.0 + f64::from(repeat),
+                        force(slip, angle) + 0.2 * f64::from(repeat) - 0.1,
+                    );
+                    runs += &format!("r{i}-{angle}-{repeat},a,sand,{slip},{load},0.01,{angle},{force},fit\n");
+                }
+            }
+        }
+        for (i, row) in held_out.iter().enumerate() {
+            runs += &format!("h{i},{row},holdout\n");
+        }
+        let files = FileSet {
+            toml: TOML.into(),
+            files: [("runs.csv".into(), runs)].into(),
+        };
+        Experiment::parse("experiment.toml", &files).unwrap()
+    }
+
+    #[test]
+    fn an_angle_and_a_slip_that_were_not_fitted_are_interpolated() {
+        let found = Interpolations::of(&experiment(&[
+            "a,sand,0.15,100,0.01,22,1",
+            "a,sand,0.3,100,0.01,75,1",
+            "a,sand,0.2,100,0.01,30,1",
+        ]));
+        let at = |run: usize| found.at(40 + run, Channel::LateralForce).unwrap();
+        for (run, slip, angle, over, within) in [
+            (0, 0.15, 22.0, InterpolatedOver::Conditions, 0.15),
+            (1, 0.3, 75.0, InterpolatedOver::Extrapolation, 2.0),
+            (2, 0.2, 30.0, InterpolatedOver::Slip, 0.2),
+        ] {
+            let own = at(run);
+            assert_eq!(own.over, over, "run {run}");
+            assert!(
+                (own.value - force(slip, angle)).abs() < within,
+                "run {run}: {}",
+                own.value
+            );
+        }
+        assert!(found.missing().is_empty());
+        assert_eq!(
+            found.at(0, Channel::LateralForce),
+            None,
+            "a fitted run is measured"
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_interpolated_says_why() {
+        let found = Interpolations::of(&experiment(&[
+            "a,sand,0.15,200,0.01,22,1",
+            "b,sand,0.15,100,0.01,22,1",
+            "a,sand,0.15,100,0.02,22,1",
+        ]));
+        assert_eq!(
+            found.missing(),
+            [
+                "wheel a on soil sand was fitted at one load alone",
+                "wheel a on soil sand was fitted at one sled speed alone",
+                "wheel b on soil sand has no fitted lateral force",
+            ]
+        );
+        let mut few = experiment(&["a,sand,0.15,100,0.01,22,1"]);
+        few.runs.retain(|run| {
+            run.usage == RunUse::Holdout
+                || (run.name.ends_with('0')
+                    && run.slip_angle_deg <= 15.0
+                    && run.slip <= 0.0
+                    && (run.slip < 0.0 || run.slip_angle_deg > 1.0))
+        });
+        assert_eq!(
+            Interpolations::of(&few).missing(),
+            [
+                "wheel a on soil sand has 3 fitted conditions of lateral force, and a Gaussian process over slip and slip angle needs 4"
+            ]
+        );
+    }
+}

@@ -1,0 +1,104 @@
+//! Final draws at which the model refuses a run.
+
+use record::RejectionReason;
+
+use crate::finished_calibration::FinishedCalibration;
+
+/// Final draws at which the model refuses a run; its prediction rests on the others.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct Refusal {
+    /// Draws that it refuses.
+    pub draws: usize,
+    /// Of so many.
+    pub of: usize,
+    /// Reason of the first of them.
+    pub reason: String,
+}
+
+impl Refusal {
+    /// Of a run; `None` where no draw is refused.
+    ///
+    /// # Arguments
+    /// - `run`: position in the experiment.
+    pub(crate) fn of(calibration: &FinishedCalibration, run: usize) -> Option<Self> {
+        let spec = &calibration.spec;
+        let draws = calibration.predictive_draws();
+        let held_out = spec.holdout_runs.iter().position(|&r| r == run);
+        let refused = draws.iter().filter_map(|draw| match (held_out, &draw.holdout) {
+            (Some(position), Some(holdout)) => holdout.run(position).err(),
+            (Some(_), None) => None,
+            (None, _) => draw.fit.as_ref().err(),
+        });
+        let refused: Vec<&RejectionReason> = refused.collect();
+        Some(Refusal {
+            draws: refused.len(),
+            of: draws.len(),
+            reason: refused.first()?.to_string(),
+        })
+    }
+
+    /// Whether nothing is left to predict from.
+    pub fn is_whole(&self) -> bool {
+        self.draws == self.of
+    }
+
+    /// `20 of 20 final draws (no_support: ...)`.
+    pub(crate) fn words(&self) -> String {
+        format!("{} of {} final draws ({})", self.draws, self.of, self.reason)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fixture;
+
+    #[test]
+    fn a_refused_run_costs_its_own_cells_alone() {
+        let (whole, refused) = (fixture::with_held_out_runs(4, 0.5), fixture::with_refused_runs());
+        let comparison = refused.comparison();
+        let row = |run: &str| comparison.rows.iter().find(|r| r.run == run).unwrap();
+        let gone = row("h1").refused.clone().unwrap();
+        assert!(gone.is_whole() && row("h1").predicted.is_none() && row("h1").covered().is_none());
+        let half = row("h2").refused.clone().unwrap();
+        assert_eq!(
+            half.words(),
+            "10 of 19 final draws (no_support: condition 0: z = 0.11 m)"
+        );
+        assert!(row("h2").predicted.is_some());
+        // The others are as they would be without the refusals, to the bit.
+        let before = whole.comparison();
+        for run in ["h0", "h3"] {
+            let before = before.rows.iter().find(|r| r.run == run).unwrap();
+            assert_eq!((row(run).predicted, row(run).q05), (before.predicted, before.q05));
+            assert_eq!(row(run).refused, None);
+        }
+        let holdout = comparison.holdout.as_ref().unwrap();
+        assert_eq!(
+            (holdout.drawbar_pull.unwrap().runs, holdout.all.unpredicted),
+            (3, 1)
+        );
+        assert_eq!(before.holdout.unwrap().all.unpredicted, 0);
+    }
+
+    #[test]
+    fn the_flag_the_story_and_the_terminal_name_what_is_refused() {
+        let refused = fixture::with_refused_runs();
+        let comparison = refused.comparison();
+        let flags = refused.diagnostics(&comparison).flags;
+        let flag = flags.iter().find(|f| f.text.contains("held-out")).unwrap();
+        assert_eq!(
+            flag.text,
+            "the model refuses 2 of 4 held-out runs: h1 at 19 of 19 final draws (no_support: condition 0: z = 0.11 m) and h2 at 10 \
+             of 19 final draws (no_support: condition 0: z = 0.11 m); they lie outside its validity, and errors and coverage are over \
+             the other 3 held-out runs"
+        );
+        let text = crate::terminal::comparison(&comparison);
+        for words in [
+            "\nh1: the model refuses it at 19 of 19 final draws (no_support",
+            "\nwithout 1 measurement of holdout runs that the model refuses at every draw\n",
+            "90 % intervals contain 3 of 3 (",
+        ] {
+            assert!(text.contains(words), "{words} in {text}");
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! Errors and coverage of a prediction.
+
+use crate::table::coverage::Coverage;
+use crate::table::errors::ErrorTable;
+use crate::table::fixed_sigma::FixedSigmas;
+use crate::table::interpolation::InterpolatedOver;
+use crate::table::row::ComparisonRow;
+
+/// How well some measurements are predicted that were left out.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Judgement {
+    /// Errors of the model; null where it refuses every run.
+    pub model: Option<ErrorTable>,
+    /// Errors of interpolating the other measurements, without physics; null where there is none.
+    pub interpolation: Option<ErrorTable>,
+    /// Measurements whose interpolation extrapolates.
+    pub extrapolated: usize,
+    /// Measurements in their 90 % intervals.
+    pub inside: usize,
+    /// Measurements with an interval; none where the calibration has no posterior.
+    pub with_interval: usize,
+}
+
+impl Judgement {
+    /// Of rows, in the noise of a study.
+    pub(super) fn of(rows: &[ComparisonRow], sigmas: &FixedSigmas) -> Self {
+        let table = |table: Option<ErrorTable>| table.map(|table| table.in_fixed_sigmas(sigmas));
+        let coverage = Coverage::count(rows.iter());
+        let is_beyond = |row: &&ComparisonRow| row.interpolated_over == Some(InterpolatedOver::Extrapolation);
+        Judgement {
+            model: table(ErrorTable::of_model(rows.iter())),
+            interpolation: table(ErrorTable::of_baseline(rows.iter())),
+            extrapolated: rows.iter().filter(is_beyond).count(),
+            inside: coverage.map_or(0, |c| c.inside),
+            with_interval: coverage.map_or(0, |c| c.of),
+        }
+    }
+}

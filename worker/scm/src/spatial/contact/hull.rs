@@ -1,0 +1,98 @@
+//! The hull of a footprint: what its patches span together.
+
+use super::super::pack::{PACK, Pack, greater, lanes_of, lesser, most_of, splat, sum};
+use super::super::terrain::Terrain;
+use super::Contact;
+use super::laws::Laws;
+use super::span::Span;
+use crate::footprint::rectangle_effective_width;
+
+/// A run of nodes counts in full from this share of the footprint's greatest pressure on `[–]`.
+const SHARE: f64 = 0.05;
+
+impl Contact {
+    /// Effective width of the hull `[m]`, 0 without contact.
+    ///
+    /// The hull is a rectangle along the heading. Its width b is that of the lanes in contact. Its area A spans, lane by lane,
+    /// from the rear end of the contact to its front end, gaps between patches included; its length is l = A / b, and
+    /// `b_eff = 2 A / L` with `L = 2 (l + b)`. A footprint without gaps has A = its area in contact.
+    ///
+    /// A run of nodes in a lane counts by `w = min(1, p / (SHARE p_max))`, where p is its greatest pressure under `k* = k_phi`, and a
+    /// gap by the lesser of the greatest w before and behind it: a grouser's tip that begins to touch, or leaves the soil, must
+    /// not change the hull by a pitch at once.
+    pub(crate) fn hull_width(&mut self, terrain: &Terrain, laws: &Laws) -> f64 {
+        let packs = self.across.packs();
+        let most = self.find_spans(laws);
+        let weight = |pressure: Pack| {
+            if most > 0.0 {
+                lesser(pressure / splat(SHARE * most), splat(1.0))
+            } else {
+                // where nothing bears, all count alike
+                splat(1.0)
+            }
+        };
+        let (mut area, mut width) = (splat(0.0), splat(0.0));
+        for pack in 0..packs {
+            let (mut gaps, mut ahead, mut run) = (splat(0.0), splat(0.0), splat(0.0));
+            for row in (self.first..self.end).rev() {
+                let place = row * packs + pack;
+                let span = &self.spans[place - self.first * packs];
+                let ends = self.masks[row] & !self.masks[row + 1];
+                run = lanes_of(ends >> (pack * PACK)).select(weight(span.run), run);
+                let counted = lanes_of(self.masks[row] >> (pack * PACK)).select(run, splat(0.0));
+                area += counted * self.quads[place].area;
+                ahead = greater(ahead, counted);
+                gaps += span.gap * lesser(weight(span.behind), ahead);
+            }
+            area += gaps * self.across.width[pack];
+            width += ahead * self.across.width[pack];
+        }
+        let width = sum(width);
+        if width > 0.0 {
+            let sides = if terrain.mirrored { 2.0 } else { 1.0 };
+            rectangle_effective_width(sum(area) / width, sides * width)
+        } else {
+            0.0
+        }
+    }
+
+    /// Follow the lanes from the rear, and give the greatest pressure `[Pa]`.
+    fn find_spans(&mut self, laws: &Laws) -> f64 {
+        let (zero, packs) = (splat(0.0), self.across.packs());
+        let blank = Span {
+            gap: zero,
+            behind: zero,
+            run: zero,
+        };
+        self.spans.resize((self.end - self.first) * packs, blank);
+        // pressures count relative to each other alone
+        let modulus = splat(if laws.soil.k_phi > 0.0 {
+            laws.soil.k_phi
+        } else {
+            1.0
+        });
+        let mut most = zero;
+        for pack in 0..packs {
+            let (mut ended, mut behind, mut run) = (zero, zero, zero);
+            let mut met = 0;
+            for row in self.first..self.end {
+                let quad = &self.quads[row * packs + pack];
+                let mask = self.masks[row] >> (pack * PACK);
+                let begins = mask & !(self.masks[row - 1] >> (pack * PACK));
+                let touching = lanes_of(mask);
+                let pressure = touching.select(laws.bounded(modulus * quad.depth_power, quad.pressed), zero);
+                run = greater(lanes_of(begins).select(zero, run), pressure);
+                self.spans[(row - self.first) * packs + pack] = Span {
+                    gap: lanes_of(begins & met).select(quad.rear_end - ended, zero),
+                    behind,
+                    run,
+                };
+                ended = touching.select(quad.front_end, ended);
+                behind = greater(behind, pressure);
+                met |= mask;
+            }
+            most = greater(most, behind);
+        }
+        most_of(most)
+    }
+}
