@@ -5,6 +5,7 @@ mod brute_force;
 mod closed_forms;
 mod crossing;
 mod effects;
+mod grousers;
 mod invariants;
 mod quadrature;
 mod reference_table;

@@ -159,7 +159,7 @@ fn signed(length: f64, x: f64) -> f64 {
 /// Up to |x| = 1/2 the rational approximation of `FreeBSD`'s msun, <https://www.netlib.org/fdlibm/e_asin.c>; beyond,
 /// `asin x = π/2 − 2 asin(sqrt((1 − x)/2))`.
 #[inline(always)]
-fn arcsine<const N: usize>(x: [f64; N]) -> [f64; N] {
+pub(super) fn arcsine<const N: usize>(x: [f64; N]) -> [f64; N] {
     x.map(|x| {
         let far = x.abs();
         let beyond = 0.5 * (1.0 - far);

@@ -96,7 +96,7 @@ impl Panel {
 
     /// Nodes on the round rim, with gamma in place of the pressure.
     #[inline(always)]
-    fn place(&mut self, rim: &Rim, contact: &Contact, start: f64, end: f64) {
+    pub(super) fn place(&mut self, rim: &Rim, contact: &Contact, start: f64, end: f64) {
         let (radius, extent, ahead) = (rim.radius, end - start, contact.front - end);
         let (per_length, per_radius) = (1.0 / contact.front, 1.0 / radius);
         (self.extent, self.arm) = (extent, radius);

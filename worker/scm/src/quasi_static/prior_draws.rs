@@ -119,7 +119,7 @@ fn has_one_balance(
     rim.flat = mechanics.flat(rim.radius);
     let laws = active.nodes.take();
     let mut panels = Panels::default();
-    let reshaping = Reshaping::new(&active, &rim, case, mechanics, laws, &mut panels);
+    let reshaping = Reshaping::new(&active, &rim, case, mechanics, laws, &mut panels, None);
     let (flat, radius) = (rim.flat, rim.radius);
     let mut footing = Footing {
         rim,

@@ -4,9 +4,11 @@ use formula::effect::Mechanism;
 use formula::{Hook, Variable};
 
 use super::displacement::Slide;
+use super::grousered::{Grousered, SURFACES};
 use super::panel::{Contact, Panel};
 use super::reaction::Reaction;
 use super::rim::Rim;
+use super::straight::StraightGrousers;
 use crate::Rejection;
 use crate::effects::case::Case;
 use crate::effects::{Active, NodeLaws};
@@ -20,12 +22,12 @@ use crate::wong_reece::Peak;
 
 /// Parts of a panel where formulas have kinks or jumps between nodes.
 const PARTS: usize = 4;
-/// Most panels at a time: those of most contacts, and little enough to clear for every run.
-const PANELS: usize = 3;
+/// Most panels at a time: those of most contacts or the surfaces at one place, and little enough to clear for every run.
+const PANELS: usize = SURFACES;
 /// Room for a contact.
 pub(super) type Panels = [Panel; PANELS];
 /// Most ends of panels.
-const ENDS: usize = 10;
+const ENDS: usize = 12;
 /// Passes in which rebound and footprint find each other, where the modulus depends on the footprint's width.
 const PASSES: usize = 3;
 
@@ -43,6 +45,8 @@ pub(super) struct Reshaping<'r, 'e> {
     compliance: f64,
     /// None where no law asks for it.
     slide: Option<Slide>,
+    /// The grousers, where they count; the rim is then the cylinder of their tips.
+    grousers: Option<Grousered>,
     /// Panels of the contact, and how many of them are in use.
     panels: &'r mut Panels,
     used: usize,
@@ -107,6 +111,21 @@ impl Mechanics {
         })
     }
 
+    /// # Errors
+    /// [`Rejection::InvalidParameter`]: soil that springs back, or a rim that its load flattens, which no wheel with grousers has here.
+    pub(super) fn require_rigid(&self) -> Result<(), Rejection> {
+        let (flat, compliance) = (self.deflection, self.compliance);
+        let bound = "0 under a wheel whose grousers count";
+        require(flat.abs() <= 0.0, "deflection of the rim", flat, "m", bound)?;
+        require(
+            compliance.abs() <= 0.0,
+            "compliance of the soil",
+            compliance,
+            "m/Pa",
+            bound,
+        )
+    }
+
     /// Half length of the flat `[m]`: a contact that reaches less far ahead of the axle carries nothing.
     pub(super) fn flat(&self, radius: f64) -> f64 {
         (self.deflection * (2.0 * radius - self.deflection))
@@ -119,6 +138,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
     /// # Arguments
     /// - `laws`: the formulas at nodes, with room to compute in.
     /// - `panels`: room for a contact.
+    /// - `grousers`: those of the wheel, where they count.
     pub(super) fn new(
         active: &'r Active<'e>,
         rim: &Rim,
@@ -126,6 +146,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         mechanics: Mechanics,
         mut laws: Option<NodeLaws<'e>>,
         panels: &'r mut Panels,
+        grousers: Option<&StraightGrousers>,
     ) -> Self {
         let Mechanics {
             deflection,
@@ -146,13 +167,18 @@ impl<'r, 'e> Reshaping<'r, 'e> {
             panels,
             used: 0,
             active,
+            grousers: grousers.map(|grousers| {
+                let run = (&case.soil, &case.wheel, &case.condition);
+                Grousered::new(run, grousers, rim, slides)
+            }),
             case,
         }
     }
 
     /// Whether stresses along the rim are other than the base's.
     pub(super) fn changes_stresses(&self) -> bool {
-        self.laws.is_some() || self.deflection.abs() > 0.0 || self.compliance.abs() > 0.0
+        let reshapes = self.deflection.abs() > 0.0 || self.compliance.abs() > 0.0;
+        reshapes || self.laws.is_some() || self.grousers.is_some()
     }
 
     /// Whether the load may jump: as places of a law's jumps pass nodes, with the contact, or with the reaction that it follows.
@@ -176,7 +202,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         let shape = self.shape(rim, front);
         let length = front + shape.rear;
         let mut reaction = Reaction {
-            sinkage: shape.sinkage,
+            sinkage: shape.sinkage - self.grousers.as_ref().map_or(0.0, |grousers| grousers.height),
             contact_length: front,
             footprint_length: length,
             b_eff: shape.b_eff,
@@ -212,9 +238,13 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         };
         let kinked = self.laws.as_ref().is_some_and(NodeLaws::are_kinked);
         let parts = if kinked { PARTS } else { 1 };
+        if self.grousers.is_some() {
+            self.react_with_grousers(rim, &shape, &contact, parts, &mut reaction)?;
+            return Ok(reaction);
+        }
         let mut ends = [0.0; ENDS];
         let count = if shape.rear > 0.0 || shape.peak.is_some() {
-            shape.panel_ends(rim, &mut ends)
+            shape.panel_ends(rim, &[], &mut ends)
         } else {
             let (plain, panels) = rim.panel_ends(front);
             ends[..plain.len()].copy_from_slice(&plain);
@@ -237,6 +267,36 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         }
         self.sum(rim, &shape, &mut reaction)?;
         Ok(reaction)
+    }
+
+    /// Add the forces on tips, flanks and rim.
+    fn react_with_grousers(
+        &mut self,
+        tips: &Rim,
+        shape: &Shape,
+        contact: &Contact,
+        parts: usize,
+        sum: &mut Reaction,
+    ) -> Result<(), Rejection> {
+        let Some(grousers) = &mut self.grousers else {
+            return Ok(());
+        };
+        let front_of_rim = grousers.front_of_rim(shape.hub_height);
+        let mut ends = [0.0; ENDS];
+        let count = shape.panel_ends(tips, &grousers.kinks(front_of_rim), &mut ends);
+        self.used = usize::from(grousers.lay_behind(contact, &mut self.panels[0]));
+        self.sum(tips, shape, sum)?;
+        for pair in ends[..count].windows(2) {
+            let at = |part: usize| pair[0] + (pair[1] - pair[0]) * (part as f64 / parts as f64);
+            for part in 0..parts {
+                if let Some(grousers) = &mut self.grousers {
+                    self.used =
+                        grousers.lay(tips, contact, front_of_rim, [at(part), at(part + 1)], self.panels);
+                }
+                self.sum(tips, shape, sum)?;
+            }
+        }
+        Ok(())
     }
 
     fn shape(&self, rim: &Rim, front: f64) -> Shape {
@@ -279,7 +339,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
     fn sum(&mut self, rim: &Rim, shape: &Shape, sum: &mut Reaction) -> Result<(), Rejection> {
         let (panels, variables) = (&mut self.panels[..self.used], &self.case.variables);
         if let Some(laws) = &mut self.laws {
-            shape.write(rim, self.slide.as_ref(), panels, laws);
+            shape.write(rim, (self.slide.as_ref(), self.grousers.as_ref()), panels, laws);
             if laws.enter(Hook::Pressure) {
                 laws.apply(Hook::Pressure, panels.len() * NODES, |_| true, variables)?;
                 read(laws, Variable::P, panels, |panel| &mut panel.pressure);
@@ -319,6 +379,12 @@ impl<'r, 'e> Reshaping<'r, 'e> {
             write(laws, Variable::Tau, panels, |panel| panel.shear);
             laws.apply(Hook::Shear, panels.len() * NODES, |_| true, variables)?;
             read(laws, Variable::Tau, panels, |panel| &mut panel.shear);
+        }
+        if let Some(grousers) = &self.grousers {
+            for (panel, share) in panels.iter_mut().zip(&grousers.shares) {
+                panel.pressure = core::array::from_fn(|i| panel.pressure[i] * share[i]);
+                panel.shear = core::array::from_fn(|i| panel.shear[i] * share[i]);
+            }
         }
         for panel in panels.iter() {
             let mut along = [0.0; NODES];
@@ -365,7 +431,7 @@ fn read(
 
 impl Shape {
     /// Ends of the panels from rear to front; gives how many there are.
-    fn panel_ends(&self, rim: &Rim, ends: &mut [f64; ENDS]) -> usize {
+    fn panel_ends(&self, rim: &Rim, more: &[f64], ends: &mut [f64; ENDS]) -> usize {
         // gamma has a ridge halfway, or a plateau where the sides are nearer than the ends
         let inner = (0.5 * (self.front + self.rear)).min(0.5 * rim.width);
         let candidates = [
@@ -380,7 +446,7 @@ impl Shape {
             self.front,
         ];
         let mut count = 0;
-        for candidate in candidates {
+        for candidate in candidates.iter().chain(more).copied() {
             if !(-self.rear..=self.front).contains(&candidate) {
                 continue;
             }
@@ -409,7 +475,13 @@ impl Shape {
     }
 
     /// Write the variables that formulas use into their block.
-    fn write(&self, rim: &Rim, slide: Option<&Slide>, panels: &[Panel], laws: &mut NodeLaws) {
+    fn write(
+        &self,
+        rim: &Rim,
+        (slide, grousers): (Option<&Slide>, Option<&Grousered>),
+        panels: &[Panel],
+        laws: &mut NodeLaws,
+    ) {
         if laws.enter(Hook::Pressure) || laws.use_variable(Variable::P) {
             write(laws, Variable::P, panels, |panel| panel.pressure);
         }
@@ -421,7 +493,11 @@ impl Shape {
                 panel.relative_sinkage.map(|z| z.max(0.0) * self.sinkage)
             });
         }
-        if laws.use_variable(Variable::Vn) {
+        if laws.use_variable(Variable::Vn) && grousers.is_some() {
+            write(laws, Variable::Vn, panels, |panel| {
+                core::array::from_fn(|i| (rim.motion.forward * panel.tan_theta[i] / panel.secant[i]).max(0.0))
+            });
+        } else if laws.use_variable(Variable::Vn) {
             // the hub keeps its height: what moves into the soil is the front of the round rim
             let per_radius = rim.motion.forward / rim.radius;
             write(laws, Variable::Vn, panels, |panel| {
@@ -432,12 +508,17 @@ impl Shape {
         if laws.use_variable(Variable::Position) {
             let per_length = 1.0 / (self.front + self.rear);
             write(laws, Variable::Position, panels, |panel| {
-                panel.x.map(|x| (x + self.rear) * per_length)
+                // flanks behind the axle press at the rear end of what the contact is without them
+                panel.x.map(|x| (x + self.rear).max(0.0) * per_length)
             });
         }
         if let Some(slide) = slide.filter(|_| laws.use_variable(Variable::J)) {
             let entry = slide.enter(self.front);
-            write(laws, Variable::J, panels, |panel| slide.slid(&entry, panel.x));
+            let of_rim = grousers.and_then(|grousers| grousers.slide_of_rim(self.hub_height));
+            write(laws, Variable::J, panels, |panel| match &of_rim {
+                Some((radius, slide, entry)) if panel.arm <= *radius => slide.slid(entry, panel.x),
+                _ => slide.slid(&entry, panel.x),
+            });
         }
     }
 }

@@ -33,6 +33,11 @@ fn smooth_wheel_without_flow_is_the_quasi_static_one() {
 }
 
 #[test]
+fn grousers_without_flow_are_on_average_the_quasi_static_ones() {
+    holds(validation::grousered::add);
+}
+
+#[test]
 fn finer_grids_and_shorter_steps_change_little() {
     holds(validation::convergence::add);
 }
@@ -86,7 +91,7 @@ fn another_implementation_is_reproduced() {
 fn no_oracle_is_left_out_and_a_wrong_figure_fails() {
     assert_eq!(
         ORACLES.len(),
-        13,
+        15,
         "one test for each, above and in `effects::signatures`"
     );
     let mut rows = Rows::default();

@@ -6,13 +6,14 @@
 //! # Layout
 //! - `row`: one expected figure.
 //! - `profile`: pressure along a smooth wheel with uniform pressure across it, on paper.
-//! - `plate`, `smooth_wheel`, `quasi_static`, `effects`, `convergence`, `scaling`, `power`, `displacement`, `grousers`,
+//! - `plate`, `smooth_wheel`, `quasi_static`, `grousered`, `effects`, `convergence`, `scaling`, `power`, `displacement`, `grousers`,
 //!   `tread`, `side_wall`, `flow`, `hull`, `other_implementation`: the oracles.
 
 pub(crate) mod convergence;
 pub(crate) mod displacement;
 pub(crate) mod effects;
 pub(crate) mod flow;
+pub(crate) mod grousered;
 pub(crate) mod grousers;
 pub(crate) mod hull;
 pub(crate) mod other_implementation;
@@ -32,10 +33,11 @@ pub(crate) use row::{Row, Rows};
 pub(crate) type Oracle = (&'static str, fn(&mut Rows));
 
 /// All oracles, in the order of the table.
-pub(crate) const ORACLES: [Oracle; 14] = [
+pub(crate) const ORACLES: [Oracle; 15] = [
     ("plate", plate::add),
     ("smooth wheel", smooth_wheel::add),
     ("quasi-static", quasi_static::add),
+    ("quasi-static with grousers", grousered::add),
     ("effects", effects::add),
     ("convergence", convergence::add),
     ("scaling", scaling::add),
