@@ -12,14 +12,7 @@ const JOBS: [&str; 4] = [
 ];
 
 fn rashid() -> Job {
-    let folder = root().join("examples/other-rigs/rashid-1");
-    let read = |name: &str| text(&folder.join(name));
-    Job {
-        experiment: read("experiment.toml"),
-        runs: read("runs.csv"),
-        job: read("job.toml"),
-        others: Vec::new(),
-    }
+    Job::example("other-rigs/rashid-1")
 }
 
 #[test]

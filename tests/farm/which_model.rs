@@ -7,21 +7,13 @@ use farm_tests::programs::{coordinator, run, study};
 use farm_tests::service::Service;
 use farm_tests::text::same;
 use farm_tests::wait::until;
-use farm_tests::workspace::{root, text};
 use serde_json::Value;
 
 const MODELS: [&str; 3] = ["quasi_static", "wong_reece", "rft"];
 
 /// The example: data of `wong_reece`.
 fn example() -> Job {
-    let folder = root().join("examples/which-model");
-    let read = |name: &str| text(&folder.join(name));
-    Job {
-        experiment: read("experiment.toml"),
-        runs: read("runs.csv"),
-        job: read("job.toml"),
-        others: Vec::new(),
-    }
+    Job::example("which-model")
 }
 
 fn compared(summary: &Value) -> &Vec<Value> {

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use crate::workspace::{root, text};
+
 /// An experiment and a job, as text.
 #[derive(Debug, Clone)]
 pub struct Job {
@@ -27,6 +29,21 @@ impl Job {
             experiment: include_str!("../data/nothing-hidden/experiment.toml").into(),
             runs: include_str!("../data/nothing-hidden/runs.csv").into(),
             job: SMALL.into(),
+            others: Vec::new(),
+        }
+    }
+
+    /// The job of a folder of `examples`.
+    ///
+    /// # Panics
+    /// A file is not there.
+    pub fn example(name: &str) -> Job {
+        let folder = root().join("examples").join(name);
+        let read = |file: &str| text(&folder.join(file));
+        Job {
+            experiment: read("experiment.toml"),
+            runs: read("runs.csv"),
+            job: read("job.toml"),
             others: Vec::new(),
         }
     }

@@ -142,16 +142,12 @@ impl Rest {
     }
 
     async fn add(&self, level: &LeftOutLevel, edited: FileSet, folder: &Folder) -> Result<i64, ServiceError> {
+        // Refused before anything is stored.
+        Spec::new(FILES[0], &self.job, FILES[1], &edited)?;
         let experiment = NewExperiment {
             toml: edited.toml,
             files: edited.files,
         };
-        // Refused before anything is stored.
-        let files = FileSet {
-            toml: experiment.toml.clone(),
-            files: experiment.files.clone(),
-        };
-        Spec::new(FILES[0], &self.job, FILES[1], &files)?;
         let new = NewCalibration {
             experiment: folder.service.add_experiment(experiment).await?,
             toml: self.job.toml.clone(),
