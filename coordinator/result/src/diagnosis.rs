@@ -70,7 +70,7 @@ mod tests {
     #[test]
     fn all_of_it_comes_back_from_json() {
         for calibration in [fixture::calibration(), fixture::all_rejected(), fixture::fit()] {
-            let diagnostics = calibration.diagnostics(&calibration.comparison());
+            let diagnostics = calibration.diagnostics(calibration.comparison());
             let json = serde_json::to_string(&diagnostics).unwrap();
             assert_eq!(serde_json::from_str::<Diagnostics>(&json).unwrap(), diagnostics);
         }
@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn a_fit_claims_nothing_that_it_cannot_know() {
         let calibration = fixture::fit();
-        let diagnostics = calibration.diagnostics(&calibration.comparison());
+        let diagnostics = calibration.diagnostics(calibration.comparison());
         assert_eq!(diagnostics.sampler, None);
         assert_eq!(diagnostics.chi_square, None);
         assert!(diagnostics.residuals.is_empty() && diagnostics.directions.is_empty());

@@ -11,6 +11,7 @@ use record::{
 use shared::outcome::SimulatedHistory;
 use statistics::Marginal;
 
+use crate::table::comparison::Comparison;
 use crate::table::interpolation::Interpolations;
 
 /// A finished calibration.
@@ -56,6 +57,8 @@ pub struct FinishedCalibration {
     pub repeats: Repeats,
     /// The held-out measurements as interpolated from the fitted ones, once somebody asks.
     pub interpolations: OnceLock<Interpolations>,
+    /// Model against measurement, once somebody asks: the intervals of many runs and draws are dear.
+    pub comparison: OnceLock<Comparison>,
 }
 
 impl FinishedCalibration {

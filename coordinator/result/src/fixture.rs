@@ -348,6 +348,7 @@ pub(crate) fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
         verified: Verified::default(),
         repeats: Repeats::default(),
         interpolations: Default::default(),
+        comparison: Default::default(),
         spec,
     }
 }

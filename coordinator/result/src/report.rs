@@ -34,8 +34,8 @@ pub fn answers(study: &Study) -> Map<String, Value> {
     for calibration in study.calibrations() {
         let path = |what: &str| format!("calibrations/{}/{what}", calibration.row.id);
         let comparison = calibration.comparison();
-        let diagnostics = calibration.diagnostics(&comparison);
-        add(path("comparison"), json(&comparison));
+        let diagnostics = calibration.diagnostics(comparison);
+        add(path("comparison"), json(comparison));
         add(path("diagnostics"), json(&diagnostics));
         add(path("figures"), json(&study.figures_of(calibration)));
         add(path("histories"), json(&calibration.histories()));

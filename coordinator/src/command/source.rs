@@ -78,7 +78,7 @@ impl CalibrationSource {
             CalibrationSource::Service(client) => {
                 client.get(&format!("/v1/calibrations/{id}/comparison")).await
             }
-            CalibrationSource::Folder(reader) => Ok(outcome(reader, id).await?.comparison()),
+            CalibrationSource::Folder(reader) => Ok(outcome(reader, id).await?.comparison().clone()),
         }
     }
 

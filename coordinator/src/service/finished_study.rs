@@ -94,6 +94,7 @@ pub async fn finished_calibration(
         verified: reader.verified(row.id).await?,
         repeats: reader.repeats(row.id).await?,
         interpolations: Default::default(),
+        comparison: Default::default(),
         stages,
         row: row.clone(),
     })

@@ -66,7 +66,7 @@ pub async fn diagnostics(
     if !is_diagnosed || stamp(&reader.study(row.study).await?, (0, 0)).is_none() {
         // Of what has no diagnostics this says why.
         let calibration = finished_calibration(reader, row).await?;
-        return Ok(calibration.diagnostics(&calibration.comparison()));
+        return Ok(calibration.diagnostics(calibration.comparison()));
     }
     let text = study_file(reader, writer, row, StudyFile::Diagnostics(row.id)).await?;
     let corrupt = |e| StoreError::Corrupt(format!("diagnostics of calibration {}: {e}", row.id));

@@ -215,7 +215,7 @@ mod tests {
                 draws,
                 ..Default::default()
             });
-            let flags = fit.diagnostics(&fit.comparison()).flags;
+            let flags = fit.diagnostics(fit.comparison()).flags;
             flags
                 .iter()
                 .any(|f| f.kind == FlagKind::NotEquilibrated && f.text.contains("tmcmc"))

@@ -140,7 +140,7 @@ mod tests {
 
     fn quiet() -> Diagnostics {
         let calibration = fixture::calibration();
-        let mut diagnostics = calibration.diagnostics(&calibration.comparison());
+        let mut diagnostics = calibration.diagnostics(calibration.comparison());
         for channel in &mut diagnostics.channels {
             (channel.silence, channel.chi_square) = (None, None);
         }

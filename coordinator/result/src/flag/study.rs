@@ -21,7 +21,7 @@ impl Study {
 
     /// The same, each with the calibration that it is about; `None` where that is several.
     pub(crate) fn flags_by_calibration(&self) -> Vec<(Option<i64>, Flag)> {
-        let of = |calibration: &FinishedCalibration| calibration.diagnostics(&calibration.comparison()).flags;
+        let of = |calibration: &FinishedCalibration| calibration.diagnostics(calibration.comparison()).flags;
         let mut flags: Vec<_> = self.missed_modes().into_iter().map(|flag| (None, flag)).collect();
         let lead = Some(self.lead.row.id);
         flags.extend(of(&self.lead).into_iter().map(|flag| (lead, flag)));

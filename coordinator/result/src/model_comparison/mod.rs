@@ -102,7 +102,7 @@ impl Study {
                         )
                     }
                 };
-                let chi_square = calibration.diagnostics(&comparison).chi_square;
+                let chi_square = calibration.diagnostics(comparison).chi_square;
                 ComparedModel {
                     calibration: calibration.row.id,
                     name: name(calibration, &compared),

@@ -45,7 +45,7 @@ impl FinishedCalibration {
         let spec = &self.spec;
         Provenance {
             name: self.experiment.clone(),
-            sentences: sentences::sentences(self, &self.comparison()),
+            sentences: sentences::sentences(self, self.comparison()),
             notes: sentences::notes(self),
             model: spec.model_words(),
             model_version: self.row.model_version.clone(),

@@ -75,7 +75,8 @@ mod tests {
 
     /// Words on the pull of runs at these slips with these residuals.
     fn words(residuals: &[(f64, f64)]) -> Option<String> {
-        let comparison = fixture::calibration().comparison();
+        let calibration = fixture::calibration();
+        let comparison = calibration.comparison();
         let rows: Vec<ComparisonRow> = residuals
             .iter()
             .map(|&(slip, residual)| ComparisonRow {

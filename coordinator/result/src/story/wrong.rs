@@ -52,7 +52,7 @@ pub struct ChannelFailure {
 impl Wrong {
     pub(super) fn of(study: &Study, calibration: &FinishedCalibration) -> Wrong {
         let comparison = calibration.comparison();
-        let trends = calibration.diagnostics(&comparison).trends;
+        let trends = calibration.diagnostics(comparison).trends;
         let sigmas = study.fixed_sigmas();
         let table = |usage| ErrorTable::of_model(rows_of(&comparison.rows, usage));
         let tables = [RunUse::Holdout, RunUse::Fit].map(|usage| (usage, table(usage)));

@@ -150,15 +150,15 @@ impl FinishedCalibration {
                 })
                 .collect(),
             parameters: self.parameter_summaries().into_iter().collect(),
-            baseline: BaselineSummary::of(&comparison),
+            baseline: BaselineSummary::of(comparison),
             noise_sd,
             coverage90: CoverageSummary {
                 fit: coverage(&comparison.rows, RunUse::Fit),
                 holdout: coverage(&comparison.rows, RunUse::Holdout),
             },
             error: ErrorSummary {
-                fit: comparison.fit,
-                holdout: comparison.holdout,
+                fit: comparison.fit.clone(),
+                holdout: comparison.holdout.clone(),
             },
         })
     }

@@ -114,10 +114,10 @@ impl FinishedCalibration {
                 .then(|| fitted().map(|p| (name(p), p.sd)).collect()),
             at_bound: fitted().filter(|p| p.at_bound).map(name).collect(),
             log_posterior: estimate.log_posterior(),
-            baseline: BaselineSummary::of(&comparison),
+            baseline: BaselineSummary::of(comparison),
             error: ErrorSummary {
-                fit: comparison.fit,
-                holdout: comparison.holdout,
+                fit: comparison.fit.clone(),
+                holdout: comparison.holdout.clone(),
             },
             evaluations: self.row.evaluations.unwrap_or(0),
             rejected: self.row.rejected.unwrap_or(0),

@@ -38,7 +38,11 @@ impl FinishedCalibration {
     }
 
     /// Model against measurement, run by run.
-    pub fn comparison(&self) -> Comparison {
+    pub fn comparison(&self) -> &Comparison {
+        self.comparison.get_or_init(|| self.compared())
+    }
+
+    fn compared(&self) -> Comparison {
         let interpolations = self.interpolations();
         let levels = Levels::of(self);
         let mut rows = Vec::new();

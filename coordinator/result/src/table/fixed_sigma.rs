@@ -163,6 +163,7 @@ mod tests {
         let table = fixture::calibration()
             .comparison()
             .fit
+            .clone()
             .unwrap()
             .in_fixed_sigmas(&sigmas);
         let (pull, sinkage) = (table.drawbar_pull.unwrap(), table.sinkage.unwrap());

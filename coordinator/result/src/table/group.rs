@@ -168,7 +168,7 @@ mod tests {
 
     #[test]
     fn errors_stand_by_use_and_level_with_their_sign() {
-        let mut rows = fixture::calibration().comparison().rows;
+        let mut rows = fixture::calibration().comparison().rows.clone();
         rows.retain(|r| r.channel == Channel::DrawbarPull);
         for (row, (slip, residual)) in
             rows.iter_mut()
@@ -195,8 +195,9 @@ mod tests {
 
     #[test]
     fn the_terminal_shows_a_line_for_each_group() {
-        let comparison = fixture::calibration().comparison();
-        let text = crate::terminal::groups(&comparison);
+        let calibration = fixture::calibration();
+        let comparison = calibration.comparison();
+        let text = crate::terminal::groups(comparison);
         assert_eq!(text.lines().count(), 2 + comparison.groups.len());
         let line = text.lines().find(|line| line.starts_with("holdout  slip 0.400"));
         let pull = comparison
@@ -210,7 +211,7 @@ mod tests {
 
     #[test]
     fn rows_without_a_prediction_or_noise_do_not_count() {
-        let mut rows = fixture::calibration().comparison().rows;
+        let mut rows = fixture::calibration().comparison().rows.clone();
         for row in &mut rows {
             row.residual_sigma = None;
         }

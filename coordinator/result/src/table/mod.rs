@@ -4,7 +4,8 @@
 //! - `row`: a measured channel of a run beside its prediction. `comparison`: all rows with their errors.
 //! - `ledger`: errors of the calibrations of a study; `fixed_sigma`: the noise that they are measured by.
 //! - `errors`: root mean square errors by channel. `group`: by level of a condition; `level`: those levels.
-//! - `interpolation`: interpolation without physics. `predictive`: the posterior predictive distribution.
+//! - `interpolation`: interpolation without physics. `predictive`: the posterior predictive distribution; `mixture`: its
+//!   quantiles.
 //! - `coverage`: measurements inside their intervals. `readings`: errors of plates and rings.
 //! - `refusal`: draws at which the model refuses a run. `error_model`: the error model in words. `posterior`: the draws.
 
@@ -17,6 +18,7 @@ pub(crate) mod group;
 pub(crate) mod interpolation;
 pub(crate) mod ledger;
 pub(crate) mod level;
+pub(crate) mod mixture;
 pub(crate) mod posterior;
 pub(crate) mod predictive;
 pub(crate) mod readings;

@@ -7,8 +7,9 @@ use shared::experiment::NoiseSd;
 use shared::outcome::Observables;
 use shared::parameters::noise_parameter;
 use statistics::likelihood::discrepancy_levels;
-use statistics::{Discrepancy, ErrorLaw, ErrorSd};
+use statistics::{Discrepancy, ErrorSd};
 
+use super::mixture::{Component, quantile};
 use crate::finished_calibration::FinishedCalibration;
 
 /// Posterior predictive distribution of one run and channel.
@@ -65,7 +66,7 @@ pub(crate) fn predictive(
         interval: calibration
             .estimate
             .is_none()
-            .then(|| [0.05, 0.95].map(|p| mixture_quantile(&components, law, p))),
+            .then(|| [0.05, 0.95].map(|p| quantile(&components, law, p))),
         noise_sd: inference::diagnostics::mean(&sds),
     })
 }
@@ -142,17 +143,6 @@ fn new_measurements(
         })
     };
     Some(accepted(calibration, place).filter_map(of_draw).collect())
-}
-
-/// One draw of the posterior with one value of the discrepancy.
-#[derive(Debug, Clone, Copy)]
-pub struct Component {
-    /// The model's value [channel's unit].
-    pub mean: f64,
-    /// Noise, scatter and discrepancy together [channel's unit]; `None` where no noise is known.
-    pub scale: Option<f64>,
-    /// Probability of this value of the discrepancy.
-    pub weight: f64,
 }
 
 /// Of each final draw and channel, the values of the discrepancy with their posterior probabilities; m = 0 without one.
@@ -248,81 +238,9 @@ fn accepted(
     })
 }
 
-/// Quantile of a mixture by bisection; without noise, of the values themselves.
-fn mixture_quantile(draws: &[Component], law: ErrorLaw, p: f64) -> f64 {
-    let total: f64 = draws.iter().map(|d| d.weight).sum();
-    let cdf = |y: f64| {
-        let below = |d: &Component| match (d.scale, law) {
-            (Some(sd), ErrorLaw::Gaussian) => {
-                0.5 * libm::erfc((d.mean - y) / (sd * std::f64::consts::SQRT_2))
-            }
-            (Some(scale), law) => law.cumulative((y - d.mean) / scale),
-            (None, _) => f64::from(u8::from(d.mean <= y)),
-        };
-        draws.iter().map(|d| d.weight * below(d)).sum::<f64>() / total
-    };
-    let end = |scales: f64| {
-        let ends = draws.iter().map(|d| d.mean + scales * d.scale.unwrap_or(0.0));
-        match scales < 0.0 {
-            true => ends.fold(f64::INFINITY, f64::min),
-            false => ends.fold(f64::NEG_INFINITY, f64::max),
-        }
-    };
-    // Ten scales hold the quantile of normal errors; heavy tails may reach further.
-    let mut reach = 10.0;
-    while law != ErrorLaw::Gaussian && reach < 1e6 && !(cdf(end(-reach)) < p && cdf(end(reach)) > p) {
-        reach *= 10.0;
-    }
-    let (mut low, mut high) = (end(-reach), end(reach));
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if cdf(middle) < p {
-            low = middle
-        } else {
-            high = middle
-        }
-    }
-    0.5 * (low + high)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn component(mean: f64, sd: f64, weight: f64) -> Component {
-        Component {
-            mean,
-            scale: Some(sd),
-            weight,
-        }
-    }
-
-    #[test]
-    fn quantiles_of_one_normal_are_the_normal_s() {
-        let draws = [component(3.0, 2.0, 1.0); 5];
-        let quantile = |p| mixture_quantile(&draws, ErrorLaw::Gaussian, p);
-        assert!((quantile(0.95) - (3.0 + 2.0 * 1.644_853_627)).abs() < 1e-6);
-        assert!((quantile(0.05) - (3.0 - 2.0 * 1.644_853_627)).abs() < 1e-6);
-    }
-
-    #[test]
-    fn quantiles_of_one_t_are_the_t_s() {
-        let law = |degrees_of_freedom| ErrorLaw::StudentT { degrees_of_freedom };
-        let draws = [component(3.0, 2.0, 1.0); 5];
-        // Abramowitz & Stegun, table 26.10.
-        assert!((mixture_quantile(&draws, law(5.0), 0.95) - (3.0 + 2.0 * 2.015_048)).abs() < 1e-5);
-        assert!((mixture_quantile(&draws, law(1.0), 0.05) - (3.0 - 2.0 * 6.313_752)).abs() < 1e-5);
-    }
-
-    #[test]
-    fn a_wide_mixture_is_wider_than_its_parts() {
-        let draws = [component(-5.0, 1.0, 1.0), component(5.0, 1.0, 1.0)];
-        assert!(mixture_quantile(&draws, ErrorLaw::Gaussian, 0.95) > 5.0);
-        assert!(mixture_quantile(&draws, ErrorLaw::Gaussian, 0.05) < -5.0);
-        // With one part as good as sure, the other hardly counts.
-        let draws = [component(-5.0, 1.0, 1e-9), component(5.0, 1.0, 1.0)];
-        assert!((mixture_quantile(&draws, ErrorLaw::Gaussian, 0.05) - (5.0 - 1.644_853_627)).abs() < 1e-6);
-    }
 
     #[test]
     fn independent_errors_add_their_squares_and_none_changes_nothing() {

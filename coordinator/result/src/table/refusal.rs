@@ -77,14 +77,14 @@ mod tests {
             (holdout.drawbar_pull.unwrap().runs, holdout.all.unpredicted),
             (3, 1)
         );
-        assert_eq!(before.holdout.unwrap().all.unpredicted, 0);
+        assert_eq!(before.holdout.as_ref().unwrap().all.unpredicted, 0);
     }
 
     #[test]
     fn the_flag_the_story_and_the_terminal_name_what_is_refused() {
         let refused = fixture::with_refused_runs();
         let comparison = refused.comparison();
-        let flags = refused.diagnostics(&comparison).flags;
+        let flags = refused.diagnostics(comparison).flags;
         let flag = flags.iter().find(|f| f.text.contains("held-out")).unwrap();
         assert_eq!(
             flag.text,
@@ -92,7 +92,7 @@ mod tests {
              of 19 final draws (no_support: condition 0: z = 0.11 m); they lie outside its validity, and errors and coverage are over \
              the other 3 held-out runs"
         );
-        let text = crate::terminal::comparison(&comparison);
+        let text = crate::terminal::comparison(comparison);
         for words in [
             "\nh1: the model refuses it at 19 of 19 final draws (no_support",
             "\nwithout 1 measurement of holdout runs that the model refuses at every draw\n",

@@ -40,7 +40,7 @@ pub fn brief(study: &Study) -> String {
 /// Why the numbers themselves may be wrong: of the study and of its current model.
 fn doubts(study: &Study) -> Vec<String> {
     let current = study.current().unwrap_or(&study.lead);
-    let flags = current.diagnostics(&current.comparison()).flags;
+    let flags = current.diagnostics(current.comparison()).flags;
     let of_numbers = flags
         .into_iter()
         .filter(|flag| matches!(flag.kind, FlagKind::NotEquilibrated | FlagKind::Worker));

@@ -86,7 +86,7 @@ pub(super) fn summary(calibration: &FinishedCalibration) -> String {
     }
     text.push('\n');
     if !calibration.spec.experiment.runs.is_empty() {
-        text.push_str(&comparison(&compared));
+        text.push_str(&comparison(compared));
     }
     for error in reading_errors(calibration) {
         let _ = writeln!(text, "{}", error.words());
@@ -95,7 +95,7 @@ pub(super) fn summary(calibration: &FinishedCalibration) -> String {
         Some(estimate) => point(calibration, estimate),
         None => parameters(calibration),
     });
-    let diagnostics = calibration.diagnostics(&compared);
+    let diagnostics = calibration.diagnostics(compared);
     for words in [findings(&diagnostics), flags(&diagnostics)] {
         if !words.is_empty() {
             let _ = write!(text, "\n{words}");

@@ -45,9 +45,9 @@ pub(super) fn ledger(study: &Study) -> String {
     }
     let interpolated = lines
         .last()
-        .and_then(|line| line.calibration.comparison().baseline_holdout);
+        .and_then(|line| line.calibration.comparison().baseline_holdout.as_ref());
     if let Some(errors) = interpolated {
-        let cells = cells(&errors, &channels, &[]);
+        let cells = cells(errors, &channels, &[]);
         let _ = writeln!(
             text,
             "{INTERPOLATION:<width$} {:<8}{cells}",

@@ -53,7 +53,7 @@ impl ValidatedLevel {
     /// # Arguments
     /// - `of`: the calibration on all fitted runs.
     pub fn predicted(level: LeftOutLevel, of: &FinishedCalibration, others: &FinishedCalibration) -> Self {
-        let mut rows = others.comparison().rows;
+        let mut rows = others.comparison().rows.clone();
         rows.retain(|row| level.runs.contains(&row.run));
         ValidatedLevel {
             level,
