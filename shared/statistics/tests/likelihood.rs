@@ -188,6 +188,39 @@ fn blocks_match_a_dense_density() {
     }
 }
 
+/// A known discrepancy goes through the factored covariance, an unknown one through the sums of a common shift.
+#[test]
+fn a_common_shift_has_the_density_of_its_covariance() {
+    let sds = [0.4, 1.0, 2.5, 0.7, 0.7];
+    let data: Vec<Datum> = [1.0, -2.0, 4.0, 0.3, 0.9]
+        .iter()
+        .zip(sds)
+        .enumerate()
+        .map(|(run, (&value, sd))| datum(run, 0, value, ErrorSd::Known(sd)))
+        .collect();
+    let common = [vec![0, 1, 2], vec![3, 4]].map(|data| CommonError {
+        data,
+        size: CommonErrorSize::Discrepancy { group: 0 },
+    });
+    let predicted = [0.2, 0.1, -0.5, 0.0, 30.0];
+    for law in [ErrorLaw::Gaussian, T5] {
+        let value = |discrepancy| {
+            let likelihood =
+                Likelihood::with_common(data.clone(), law, common.to_vec(), vec![discrepancy]).unwrap();
+            likelihood.log_likelihood(&predicted, &[]).unwrap().value()
+        };
+        let levels: Vec<f64> = discrepancy_levels()
+            .into_iter()
+            .map(|m| value(Discrepancy::Known(m)))
+            .collect();
+        let highest = levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = levels.iter().map(|v| libm::exp(v - highest)).sum();
+        let expected = highest + libm::log(sum / levels.len() as f64);
+        let unknown = value(Discrepancy::Unknown);
+        assert!((unknown - expected).abs() < 1e-9, "{unknown} {expected}");
+    }
+}
+
 /// Runs 0 and 1 have one preparation, run 2 another: two errors along different derivatives couple the runs of one.
 #[test]
 fn errors_of_a_preparation_couple_its_runs() {

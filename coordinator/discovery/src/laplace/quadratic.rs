@@ -27,8 +27,12 @@ pub(crate) fn quadratic(
         let scaled: Vec<Vec<f64>> = columns.iter().map(|column| whitening.apply(column)).collect();
         for k in 0..count {
             gradient[k] -= whitening.slope(&scaled[k]);
-            for l in 0..count {
-                hessian[(k, l)] += whitening.curvature(&scaled[k], &scaled[l]);
+            for l in 0..=k {
+                let curvature = whitening.curvature(&scaled[k], &scaled[l]);
+                hessian[(k, l)] += curvature;
+                if l < k {
+                    hessian[(l, k)] += curvature;
+                }
             }
         }
     }

@@ -109,13 +109,18 @@ impl Likelihood {
 
     /// Log-density of the blocks that share an unknown discrepancy, for each value of m.
     fn by_level(&self, family: usize, values: &[f64], theta: &[f64]) -> Result<Vec<f64>, LikelihoodError> {
-        let blocks = || self.blocks.iter().filter(|block| block.family == Some(family));
-        let density = |m: f64| {
-            blocks().try_fold(0.0, |sum, block| {
-                Ok(sum + self.block_density(block, m, values, theta)?)
-            })
-        };
-        discrepancy_levels().into_iter().map(density).collect()
+        let levels = discrepancy_levels();
+        let mut densities = vec![0.0; levels.len()];
+        for block in self.blocks.iter().filter(|block| block.family == Some(family)) {
+            let shift = self.common_shift(block, values, theta)?;
+            for (density, &m) in densities.iter_mut().zip(&levels) {
+                *density += match &shift {
+                    Some(shift) => shift.log_density(self.law, m),
+                    None => self.block_density(block, m, values, theta)?,
+                };
+            }
+        }
+        Ok(densities)
     }
 
     fn block_density(

@@ -8,11 +8,12 @@
 //! - `datum`: a measured value with its noise. `law`: normal or Student's t.
 //! - `common_error`: errors in common, and the blocks that they make. `spread`: the covariance of a block.
 //! - `error_model`: data, law and common errors together. `density`: their log-density.
-//! - `factor`: the Cholesky factor of a block's covariance. `subset`: the likelihood of some of the data.
+//! - `factor`: the Cholesky factor of a block's covariance; `common_shift`: a block that needs none. `subset`: the likelihood of some of the data.
 //! - `numerical_noise`: the likelihood of a model whose predictions scatter.
 //! - `whitening`: residuals and derivatives made independent, for least squares.
 
 mod common_error;
+mod common_shift;
 mod datum;
 mod density;
 mod error_model;

@@ -7,6 +7,9 @@ use super::factor::CholeskyFactor;
 use super::law::ErrorLaw;
 use super::spread::CERTAIN;
 
+/// A value of the discrepancy with less probability moves no slope and no curvature visibly.
+const LEAST_PROBABILITY: f64 = 1e-12;
+
 /// The linear transform to independent errors of sd 1, at one point.
 ///
 /// With W the transform, r the residuals and c, d the derivatives of the predictions along two directions, the
@@ -46,7 +49,7 @@ impl Likelihood {
         for block in &self.blocks {
             let levels = block.family.map_or(&CERTAIN[..], |family| &families[family]);
             for &(m, probability) in levels {
-                if probability > 0.0 {
+                if probability > LEAST_PROBABILITY {
                     self.whiten_block(block, m, probability, values, theta, &mut whitening)?;
                 }
             }
