@@ -14,11 +14,12 @@ const STANDS_OUT: f64 = 1.3;
 /// Reads a condition from a row.
 type Condition = (&'static str, f64, &'static str, fn(&ComparisonRow) -> f64);
 
-/// Slip, load and speed, with factor and unit of what is shown.
-const CONDITIONS: [Condition; 3] = [
+/// Slip, load, speed and slip angle, with factor and unit of what is shown.
+const CONDITIONS: [Condition; 4] = [
     ("slip", 1.0, "", |row| row.slip),
     ("a load of", 1.0, " N", |row| row.wheel_load_n),
     ("a speed of", 1000.0, " mm/s", |row| row.sled_speed_m_s),
+    ("a slip angle of", 1.0, " deg", |row| row.slip_angle_deg),
 ];
 
 /// The trend of the fitted residuals that is beyond chance; else one direction in every run; else the level that stands out.

@@ -27,7 +27,7 @@ pub struct Comparison {
     pub baseline_holdout: Option<ErrorTable>,
     /// Why some holdout runs are not interpolated; empty where all are.
     pub not_interpolated: Vec<String>,
-    /// Errors by level of slip, load and speed, and by wheel, of fitted runs and of the others.
+    /// Errors by level of slip, load, speed and slip angle, and by wheel, of fitted runs and of the others.
     pub groups: Vec<ErrorGroup>,
 }
 

@@ -23,7 +23,7 @@ pub struct ErrorGroup {
     pub by: GroupBy,
     /// The wheel, of a group by wheel.
     pub wheel: Option<String>,
-    /// Least value of the condition `[N, m/s, of slip 1]`; null of a wheel.
+    /// Least value of the condition `[N, m/s, deg, of slip 1]`; null of a wheel.
     pub from: Option<f64>,
     /// Largest value of the condition.
     pub to: Option<f64>,
@@ -41,6 +41,8 @@ pub enum GroupBy {
     WheelLoad,
     /// A level of sled speed.
     SledSpeed,
+    /// A level of slip angle.
+    SlipAngle,
     /// The wheel.
     Wheel,
 }
@@ -62,6 +64,7 @@ impl ErrorGroup {
         let (what, scale, decimals, unit) = match self.by {
             GroupBy::WheelLoad => ("load", 1.0, 1, " N"),
             GroupBy::SledSpeed => ("speed", 1000.0, 2, " mm/s"),
+            GroupBy::SlipAngle => ("slip angle", 1.0, 1, " deg"),
             GroupBy::Slip | GroupBy::Wheel => ("slip", 1.0, 3, ""),
         };
         let value = |x: f64| number::fixed(scale * x, decimals);
@@ -80,12 +83,13 @@ impl GroupError {
     }
 }
 
-/// Fitted rows, then the others, each by slip, load, speed and wheel; conditions on one level only are left out.
+/// Fitted rows, then the others, each by slip, load, speed, slip angle and wheel; conditions on one level only are left out.
 pub(crate) fn error_groups(rows: &[ComparisonRow]) -> Vec<ErrorGroup> {
-    let conditions: [(GroupBy, Condition); 3] = [
+    let conditions: [(GroupBy, Condition); 4] = [
         (GroupBy::Slip, |r| r.slip),
         (GroupBy::WheelLoad, |r| r.wheel_load_n),
         (GroupBy::SledSpeed, |r| r.sled_speed_m_s),
+        (GroupBy::SlipAngle, |r| r.slip_angle_deg),
     ];
     let mut groups = Vec::new();
     for usage in [RunUse::Fit, RunUse::Holdout] {

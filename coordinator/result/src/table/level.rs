@@ -2,6 +2,8 @@
 
 /// Values within so much of the range are one level.
 const TOLERANCE: f64 = 0.02;
+/// Values whose whole range is less than this share of the largest are one level: a condition that a rig holds so well does not vary.
+const HELD: f64 = 0.01;
 /// More levels than a table can show.
 const MOST: usize = 12;
 
@@ -21,7 +23,7 @@ impl Level {
     }
 }
 
-/// The levels of some values, the least first: a level spans less than 2 % of the range.
+/// The levels of some values, the least first: a level spans less than 2 % of the range, or all values where they differ by less than 1 %.
 pub(crate) fn levels(values: impl IntoIterator<Item = f64>) -> Vec<Level> {
     let mut sorted: Vec<f64> = values.into_iter().collect();
     sorted.sort_by(f64::total_cmp);
@@ -47,7 +49,12 @@ fn within(sorted: &[f64], tolerance: f64) -> Vec<Level> {
     let (Some(&least), Some(&largest)) = (sorted.first(), sorted.last()) else {
         return found;
     };
-    let span = tolerance * (largest - least);
+    let range = largest - least;
+    let span = if range < HELD * largest.abs().max(least.abs()) {
+        f64::INFINITY
+    } else {
+        tolerance * range
+    };
     for &value in sorted {
         match found.last_mut() {
             Some(level) if value <= level.from || value - level.from < span => level.to = value,
@@ -78,6 +85,16 @@ mod tests {
         assert_eq!(bounds(&levels([0.0, 0.02, 1.0])).len(), 3);
         let one = levels(loads)[0];
         assert!(one.holds(60.0) && !one.holds(120.0));
+    }
+
+    #[test]
+    fn a_condition_that_the_rig_holds_has_one_level() {
+        assert_eq!(
+            bounds(&levels([9.988, 10.0, 9.995])),
+            [[9.988, 10.0]],
+            "mm/s: within .2 %"
+        );
+        assert_eq!(bounds(&levels([-0.2, 0.0, 0.003])).len(), 3);
     }
 
     #[test]
