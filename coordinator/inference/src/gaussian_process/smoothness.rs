@@ -9,6 +9,10 @@ use super::observation::Observation;
 const LENGTHS: [f64; 6] = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
 /// Variances of the noise of one measurement that are tried, over that of the process.
 const NOISES: [f64; 5] = [1e-4, 1e-3, 1e-2, 1e-1, 1.0];
+/// A coordinate of fewer levels says nothing of its scale, and has the longest.
+const LEAST_LEVELS: usize = 3;
+/// Values within so much of the range are one level.
+const ONE_LEVEL: f64 = 0.1;
 /// Most rounds over all coordinates.
 const ROUNDS: usize = 8;
 /// Of more observations so many equally spaced ones choose: the cost grows with the cube of their number.
@@ -18,14 +22,20 @@ const MOST: usize = 150;
 pub(super) fn smoothest(observations: &[Observation], dimension: usize) -> Kernel {
     let step = observations.len().div_ceil(MOST).max(1);
     let chosen: Vec<Observation> = observations.iter().step_by(step).cloned().collect();
+    let is_free = |k: &usize| levels(observations, *k) >= LEAST_LEVELS;
+    let free: Vec<usize> = (0..dimension).filter(is_free).collect();
+    let length = |k: usize| match free.contains(&k) {
+        true => LENGTHS[LENGTHS.len() / 2],
+        false => LENGTHS[LENGTHS.len() - 1],
+    };
     let mut best = Kernel {
-        lengths: vec![LENGTHS[LENGTHS.len() / 2]; dimension],
+        lengths: (0..dimension).map(length).collect(),
         noise: NOISES[NOISES.len() / 2],
     };
     let mut least = left_out_squares(&chosen, &best);
     for _ in 0..ROUNDS {
         let before = best.clone();
-        for coordinate in 0..=dimension {
+        for &coordinate in free.iter().chain([&dimension]) {
             for trial in trials(&best, coordinate) {
                 let squares = left_out_squares(&chosen, &trial);
                 if squares < least {
@@ -38,6 +48,20 @@ pub(super) fn smoothest(observations: &[Observation], dimension: usize) -> Kerne
         }
     }
     best
+}
+
+/// Number of levels of a coordinate: a value further than [`ONE_LEVEL`] above the first of its level opens the next, so values
+/// without a gap are many.
+fn levels(observations: &[Observation], coordinate: usize) -> usize {
+    let mut values: Vec<f64> = observations.iter().map(|o| o.point[coordinate]).collect();
+    values.sort_by(f64::total_cmp);
+    let (mut levels, mut first) = (0, f64::NEG_INFINITY);
+    for value in values {
+        if value - first > ONE_LEVEL {
+            (levels, first) = (levels + 1, value);
+        }
+    }
+    levels
 }
 
 /// A kernel with every other value of one coordinate, the noise being the last.
@@ -114,6 +138,29 @@ mod tests {
             (by_inverse - squares).abs() < 1e-8 * squares,
             "{by_inverse} {squares}"
         );
+    }
+
+    #[test]
+    fn a_coordinate_of_two_levels_has_the_longest_scale() {
+        let mut all = observations(|x, y| libm::sin(6.0 * x) * y);
+        all.retain(|o| o.point[1] < 0.01 || o.point[1] > 0.99);
+        assert_eq!(levels(&all, 0), 5);
+        assert!((smoothest(&all, 2).lengths[1] - 3.2).abs() < f64::EPSILON);
+    }
+
+    #[test]
+    fn values_that_scatter_about_two_levels_are_two_and_those_without_a_gap_many() {
+        let along = |values: &[f64]| -> Vec<Observation> {
+            let at = |&x: &f64| Observation {
+                point: vec![x],
+                value: 0.0,
+                repeats: 1,
+            };
+            values.iter().map(at).collect()
+        };
+        assert_eq!(levels(&along(&[0.06, 0.0, 0.97, 0.03, 1.0]), 0), 2);
+        let dense: Vec<f64> = (0..=25).map(|i| 0.04 * f64::from(i)).collect();
+        assert!(levels(&along(&dense), 0) >= 5);
     }
 
     #[test]

@@ -120,6 +120,61 @@ mod tests {
     }
 
     #[test]
+    fn between_two_levels_it_is_a_line_however_the_load_scatters() {
+        let mut runs =
+            "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use\n".to_owned();
+        let force = |slip: f64, angle: f64| 10.0 * (1.0 + slip * slip) * angle / 60.0;
+        for (i, slip) in [-0.7, -0.2, 0.0, 0.5, 0.9].into_iter().enumerate() {
+            for (k, angle) in [0.0, 60.0].into_iter().enumerate() {
+                // Lower at the angle, and by a fifth without a gap.
+                let load = 25.0 - 1.1 * (i + 2 * k) as f64;
+                let force = force(slip, angle);
+                runs += &format!("r{i}-{k},a,sand,{slip},{load},0.01,{angle},{force},fit\n");
+                runs += &format!("h{i}-{k},a,sand,{slip},{load},0.01,30,1,holdout\n");
+            }
+        }
+        let files = FileSet {
+            toml: TOML.into(),
+            files: [("runs.csv".into(), runs)].into(),
+        };
+        let experiment = Experiment::parse("experiment.toml", &files).unwrap();
+        let found = Interpolations::of(&experiment);
+        for (i, run) in experiment
+            .runs
+            .iter()
+            .enumerate()
+            .filter(|(_, run)| run.usage == RunUse::Holdout)
+        {
+            let own = found.at(i, Channel::LateralForce).unwrap();
+            assert_eq!(own.over, InterpolatedOver::Conditions);
+            assert!(
+                (own.value - force(run.slip, 30.0)).abs() < 0.5,
+                "{}: {}",
+                run.slip,
+                own.value
+            );
+        }
+    }
+
+    #[test]
+    fn loads_from_half_to_twice_are_a_condition_though_no_gap_parts_them() {
+        let mut runs =
+            "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use\n".to_owned();
+        for (i, load) in (0..12).map(|i| (i, 60.0 + 6.0 * f64::from(i))) {
+            let (slip, angle) = (0.1 * f64::from(i % 3), 15.0 * f64::from(i % 2));
+            runs += &format!("r{i},a,sand,{slip},{load},0.01,{angle},{},fit\n", 0.1 * load);
+        }
+        runs += "h,a,sand,0.1,93,0.01,8,1,holdout\n";
+        let files = FileSet {
+            toml: TOML.into(),
+            files: [("runs.csv".into(), runs)].into(),
+        };
+        let experiment = Experiment::parse("experiment.toml", &files).unwrap();
+        let own = Interpolations::of(&experiment).at(12, Channel::LateralForce);
+        assert!((own.unwrap().value - 9.3).abs() < 0.1, "{own:?}");
+    }
+
+    #[test]
     fn what_cannot_be_interpolated_says_why() {
         let found = Interpolations::of(&experiment(&[
             "a,sand,0.15,200,0.01,22,1",
