@@ -13,14 +13,14 @@ use super::surface::Surfaces;
 #[derive(Debug, Default)]
 pub struct Interpolations {
     values: BTreeMap<(usize, Channel), Interpolated>,
-    missing: Vec<String>,
+    missing: BTreeMap<(usize, Channel), String>,
 }
 
 impl Interpolations {
     /// Of every held-out measurement.
     pub fn of(experiment: &Experiment) -> Self {
         let mut values = BTreeMap::new();
-        let mut missing = BTreeSet::new();
+        let mut missing = BTreeMap::new();
         let mut surfaces = Surfaces::new(experiment);
         let runs = experiment.runs.iter().enumerate();
         for (i, run) in runs.filter(|(_, run)| run.usage == RunUse::Holdout) {
@@ -32,14 +32,11 @@ impl Interpolations {
                 });
                 match in_slip.map_or_else(|| surfaces.at(run, channel), Ok) {
                     Ok(found) => drop(values.insert((i, channel), found)),
-                    Err(reason) => drop(missing.insert(reason)),
+                    Err(reason) => drop(missing.insert((i, channel), reason)),
                 }
             }
         }
-        Interpolations {
-            values,
-            missing: missing.into_iter().collect(),
-        }
+        Interpolations { values, missing }
     }
 
     /// That of a run and channel; `None` where it was fitted or there is none.
@@ -47,9 +44,15 @@ impl Interpolations {
         self.values.get(&(run, channel)).copied()
     }
 
-    /// Why some are missing.
-    pub(crate) fn missing(&self) -> &[String] {
-        &self.missing
+    /// Why that of a run and channel is missing; `None` where it is not.
+    pub(crate) fn missing_at(&self, run: usize, channel: Channel) -> Option<&str> {
+        self.missing.get(&(run, channel)).map(String::as_str)
+    }
+
+    /// Why some are missing, each reason once.
+    pub(crate) fn missing(&self) -> Vec<String> {
+        let reasons: BTreeSet<&String> = self.missing.values().collect();
+        reasons.into_iter().cloned().collect()
     }
 }
 
