@@ -4,8 +4,10 @@ use record::RejectionReason;
 
 use crate::finished_calibration::FinishedCalibration;
 
-/// Final draws at which the model refuses a run. The prediction of a held-out run rests on the others; where these are half of all or
-/// fewer, they speak for parameters that are hardly probable, and there is no prediction.
+/// Final draws at which the model refuses a run.
+///
+/// The prediction of a held-out run rests on the others; where these are half of all or fewer, they speak for parameters that are hardly
+/// probable, and there is no prediction.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Refusal {
     /// Draws that it refuses.
