@@ -460,8 +460,9 @@ impl Reader {
         row.map(|row| blob::decode(row.get("observables"))).transpose()
     }
 
-    /// How many parameter vectors of the sampler or the fit the model refused, by the kind of refusal. What it refuses of the final
-    /// draws, their held-out runs among them, is said of these.
+    /// How many parameter vectors of the sampler or the fit the model refused, by the kind of refusal.
+    ///
+    /// What it refuses of the final draws, their held-out runs among them, is said of these.
     ///
     /// # Errors
     /// [`StoreError`].
