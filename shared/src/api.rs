@@ -235,7 +235,7 @@ pub struct Progress {
     pub step: u32,
     /// Acceptance rate of the present stage; of a fit 0.
     pub acceptance: f64,
-    /// Evaluations done, over all stages.
+    /// Parameter vectors evaluated, over all stages; of final draws their fitted runs, held-out runs not counted again.
     pub evaluations: u64,
     /// Of these, rejected by the model.
     pub rejected: u64,

@@ -214,7 +214,7 @@ pub struct NotTried {
     pub name: String,
     /// What is not stated, and the value that is assumed to weigh the effect.
     pub why: String,
-    /// The line of the experiment that would state it.
+    /// The line of the experiment that would state it, or the runs that would show it: `runs at a slip angle`.
     pub needs: String,
 }
 
@@ -222,9 +222,17 @@ impl NotTried {
     /// What an effect needs that no line of an experiment states: a model that shows its contact.
     pub const OUR_MODEL: &str = "kind = \"quasi_static\" or \"scm\" under [model]";
 
-    /// Whether a line of the experiment would state what it needs.
-    pub fn lacks_line(&self) -> bool {
+    /// How `needs` begins where no line, but runs are missing.
+    pub const RUNS: &str = "runs ";
+
+    /// Whether a line of the experiment would state, or runs would show, what it needs.
+    pub fn lacks_data(&self) -> bool {
         self.needs != Self::OUR_MODEL
+    }
+
+    /// Whether runs would show what it needs.
+    pub fn lacks_runs(&self) -> bool {
+        self.needs.starts_with(Self::RUNS)
     }
 }
 

@@ -78,6 +78,14 @@ impl EvaluationKey {
         }
     }
 
+    /// Whether it is of holdout runs alone: of a parameter vector whose fitted runs are another evaluation.
+    pub fn is_of_holdout(self) -> bool {
+        matches!(
+            self,
+            EvaluationKey::Prediction { holdout: true, .. } | EvaluationKey::HoldoutRun { .. }
+        )
+    }
+
     /// The first number after the round of an evaluation: from there on stands what may follow from its result.
     pub fn round_end(number: u64, width: usize) -> u64 {
         match EvaluationKey::of(number, width) {

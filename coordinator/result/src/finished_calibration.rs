@@ -39,7 +39,7 @@ pub struct FinishedCalibration {
     pub predictions: Vec<Prediction>,
     /// Simulated history of each fitted run at the likeliest parameters; `None` of a model without time.
     pub simulated_histories: Option<Vec<SimulatedHistory>>,
-    /// Number of rejections by kind.
+    /// Number of rejected parameter vectors of the sampler or the fit, by kind.
     pub rejections: BTreeMap<String, u64>,
     /// Counts of a metamodel; `None` without one.
     pub subchains: Option<Subchains>,

@@ -112,7 +112,7 @@ pub(crate) fn all_rejected() -> FinishedCalibration {
     calibration
 }
 
-/// The same with four runs held out of which the model refuses one at every draw, and one at every second draw.
+/// The same with four runs held out of which the model refuses one at every draw, one at every second and one at every fourth.
 pub(crate) fn with_refused_runs() -> FinishedCalibration {
     let mut calibration = with_held_out_runs(4, 0.5);
     let draws = calibration.predictions.iter_mut().skip(1).enumerate();
@@ -128,7 +128,7 @@ pub(crate) fn with_refused_runs() -> FinishedCalibration {
                 sinkage_m: vec![all.sinkage_m[run]],
                 ..Observables::default()
             };
-            let is_refused = run == 1 || run == 2 && draw % 2 == 0;
+            let is_refused = run == 1 || run == 2 && draw % 2 == 0 || run == 3 && draw % 4 == 0;
             let alone = match &together {
                 Ok(all) if !is_refused => Ok(of_run(all)),
                 _ => Err(reason("0")),

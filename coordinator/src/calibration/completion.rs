@@ -184,8 +184,10 @@ impl Calibration {
     ) {
         // A subchain that stayed where it was has evaluated nothing.
         let stayed = scored.is_some_and(|s| s.end.is_some_and(|end| end.accepted == 0));
-        self.evaluations += u64::from(!stayed);
-        self.rejected += u64::from(rejected);
+        // Held-out runs of a draw are no further parameter vector.
+        let counts = !self.key(evaluation).is_of_holdout() && !stayed;
+        self.evaluations += u64::from(counts);
+        self.rejected += u64::from(counts && rejected);
         let Some(scored) = scored else {
             if rejected {
                 self.note_refused(evaluation);

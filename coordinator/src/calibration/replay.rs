@@ -316,6 +316,14 @@ mod tests {
         }
     }
 
+    /// How many rows are of fitted runs.
+    fn vectors(facts: &[Fact]) -> u64 {
+        let keys = rows(facts)
+            .into_iter()
+            .map(|row| EvaluationKey::of(row.evaluation, 20));
+        keys.filter(|key| !key.is_of_holdout()).count() as u64
+    }
+
     fn sorted(facts: &[Fact]) -> Vec<EvaluationRow> {
         let mut rows: Vec<EvaluationRow> = rows(facts).into_iter().cloned().collect();
         rows.sort_by_key(|r| r.evaluation);
@@ -337,7 +345,7 @@ mod tests {
             let first = work(&mut fresh(), cut, false);
             let mut again = fresh();
             again.replay(stored(&first)).unwrap();
-            assert_eq!(again.evaluations, cut as u64);
+            assert_eq!(again.evaluations, vectors(&first));
             let mut all = first;
             all.extend(work(&mut again, usize::MAX, true));
             assert_eq!(sorted(&all), whole, "cut after {cut}");
@@ -366,7 +374,7 @@ mod tests {
                 let begun = work(&mut fresh_fit(sampler), cut, true);
                 let mut again = fresh_fit(sampler);
                 let lost = again.replay(stored(&begun)).unwrap();
-                assert_eq!(again.evaluations, cut as u64);
+                assert_eq!(again.evaluations, vectors(&begun));
                 let rest = work(&mut again, usize::MAX, false);
                 let all: Vec<Fact> = begun.iter().chain(&rest).cloned().collect();
                 assert_eq!(sorted(&all), whole, "cut after {cut}");
@@ -467,6 +475,16 @@ mod tests {
         }
         let alone = whole.iter().filter(|r| r.evaluation >= HOLDOUT_RUNS_FROM);
         assert_eq!(alone.count(), 3 * 21);
+        // Neither they nor the 21 draws whose held-out runs are refused together count as parameter vectors.
+        let mut counted = with_a_refused_run();
+        let facts = work(&mut counted, usize::MAX, false);
+        let refused =
+            |row: &&EvaluationRow| row.evaluation < PREDICTIONS_FROM && matches!(row.kept, Kept::Rejected(_));
+        let refused = rows(&facts).into_iter().filter(refused).count() as u64;
+        assert_eq!(
+            (counted.evaluations, counted.rejected),
+            (vectors(&facts), refused)
+        );
         assert_eq!(sorted(&work(&mut with_a_refused_run(), usize::MAX, true)), whole);
         for cut in [30, whole.len() - 63, whole.len() - 62, whole.len() - 1] {
             let begun = work(&mut with_a_refused_run(), cut, true);

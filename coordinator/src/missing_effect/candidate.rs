@@ -310,7 +310,22 @@ mod tests {
         let models = SearchModels::new(&job, &straight, 1).unwrap();
         let said: Vec<_> = models.not_tried().filter(|own| own.name == "side_drag").collect();
         assert_eq!(said.len(), 1);
-        assert_eq!(said[0].needs, "runs at a slip angle or in skid");
+        assert_eq!(said[0].needs, "runs at a slip angle");
+        // Runs in drive alone show nothing of a law of skid.
+        let mut driven = straight;
+        let runs = driven.files.get_mut("runs.csv").unwrap();
+        *runs = runs
+            .lines()
+            .filter(|line| !line.contains(",-"))
+            .map(|line| line.to_owned() + "\n")
+            .collect();
+        let models = SearchModels::new(&job, &driven, 1).unwrap();
+        let needs = |name: &str| -> Vec<String> {
+            let own = models.not_tried().filter(|own| own.name == name);
+            own.map(|own| own.needs.clone()).collect()
+        };
+        assert_eq!(needs("skid_sinkage"), ["runs in skid"]);
+        assert_eq!(needs("lateral_slip_sinkage"), ["runs at a slip angle"]);
     }
 
     #[test]

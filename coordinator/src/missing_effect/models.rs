@@ -6,7 +6,8 @@ use discovery::{
     LawCandidate, ProposedRuns, QueriedModel, Query, Reduction, SearchSettings, SearchTask, Starts,
 };
 use formula::Effect;
-use formula::catalogue::catalogue;
+use formula::catalogue::{catalogue, find};
+use formula::slip::variables;
 use shared::channel::Channel;
 use shared::file::{FileError, FileSet};
 use shared::model::{ExternalModel, ModelKind, ModelVariant, RunCondition};
@@ -306,8 +307,33 @@ fn absent(excluded: &[(String, ExclusionReason)]) -> impl Iterator<Item = NotTri
     everywhere.map(|(name, reason)| NotTried {
         name: name.clone(),
         why: reason.to_string(),
-        needs: "runs at a slip angle or in skid".to_owned(),
+        needs: format!("{}{}", NotTried::RUNS, where_it_acts(name)),
     })
+}
+
+/// The conditions in which an effect of the catalogue changes something, the simplest that do.
+fn where_it_acts(name: &str) -> String {
+    const SLIP: f64 = 0.3;
+    const ANGLE_RAD: f64 = 0.26;
+    let acts = |slip: f64, angle: f64| find(name).is_some_and(|e| !e.is_absent_at(&variables(slip, angle)));
+    let straight = [("in drive", SLIP), ("in skid", -SLIP)];
+    let mut found: Vec<String> = straight
+        .into_iter()
+        .filter(|(_, slip)| acts(*slip, 0.0))
+        .map(|(words, _)| words.to_owned())
+        .collect();
+    // An angle alone matters where it shows what straight runs of that slip do not.
+    let at_angle: Vec<&str> = straight
+        .into_iter()
+        .filter(|(_, slip)| acts(*slip, ANGLE_RAD) && !acts(*slip, 0.0))
+        .map(|(words, _)| words)
+        .collect();
+    match at_angle.as_slice() {
+        [] => {}
+        [one] if found.is_empty() => found.push(format!("at a slip angle {one}")),
+        _ => found.push("at a slip angle".to_owned()),
+    }
+    found.join(" or ")
 }
 
 /// The effects of the catalogue that cannot act around a model that is not ours.

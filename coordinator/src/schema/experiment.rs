@@ -45,7 +45,10 @@ fn campaign() -> Value {
                 "date",
                 text("when it was measured, else published: YYYY, YYYY-MM or YYYY-MM-DD"),
             ),
-            ("licence", text("licence of the rows, by its SPDX identifier")),
+            (
+                "licence",
+                text("licence of the rows, in words; an SPDX identifier where one says it all"),
+            ),
             (
                 "doi",
                 text("DOI of the publication: 10.1016/j.jterra.2010.08.001"),

@@ -460,16 +460,19 @@ impl Reader {
         row.map(|row| blob::decode(row.get("observables"))).transpose()
     }
 
-    /// How often the model refused, by the kind of refusal.
+    /// How many parameter vectors of the sampler or the fit the model refused, by the kind of refusal.
+    ///
+    /// What it refuses of the final draws, their held-out runs among them, is said of these.
     ///
     /// # Errors
     /// [`StoreError`].
     pub async fn rejections(&self, calibration: i64) -> Result<BTreeMap<String, u64>, StoreError> {
         let rows = query(
             "SELECT substr(rejection, 1, instr(rejection, ':') - 1) AS kind, count(*) AS n FROM evaluations
-             WHERE calibration = ? AND rejection IS NOT NULL GROUP BY kind",
+             WHERE calibration = ? AND evaluation < ? AND rejection IS NOT NULL GROUP BY kind",
         )
         .bind(calibration)
+        .bind(PREDICTIONS_FROM as i64)
         .fetch_all(&self.pool)
         .await?;
         Ok(rows

@@ -146,7 +146,7 @@ fn subchain_end(json: &str) -> Result<SubchainEnd, StoreError> {
 
 #[cfg(test)]
 mod tests {
-    use record::{EvaluationRow, Fact, Kept};
+    use record::{EvaluationRow, Fact, HOLDOUT_RUNS_FROM, Kept, PREDICTIONS_FROM};
 
     use super::*;
     use crate::store::fixture;
@@ -205,6 +205,22 @@ mod tests {
             assert_eq!(values == Some(&[number as f64, 0.1]), number % 3 == 1);
         }
         assert_eq!(bits(&stored[&(last + 1)].theta), bits(&[0.1, 1e-300]));
+        store.close().await;
+    }
+
+    #[tokio::test]
+    async fn refusals_of_final_draws_are_not_counted_as_parameter_vectors() {
+        let (_folder, store, calibration) = fixture::store().await;
+        let rejected = || Kept::Rejected("no_support: condition 0: toy".into());
+        let numbers = [4, PREDICTIONS_FROM + 1, HOLDOUT_RUNS_FROM + 3];
+        let facts = numbers.map(|number| Fact::Evaluated {
+            calibration,
+            row: row(number, vec![0.1], rejected()),
+        });
+        let fact = store.writer().sink().send(facts.into()).unwrap();
+        store.writer().durable(fact).await.unwrap();
+        let refused = store.reader().rejections(calibration).await.unwrap();
+        assert_eq!(refused, [("no_support".to_owned(), 1)].into());
         store.close().await;
     }
 }

@@ -18,7 +18,7 @@ pub struct Campaign {
     pub institution: Option<String>,
     /// When it was measured, else published: `2025`, `2025-04` or `2025-04-30`.
     pub date: Option<String>,
-    /// Licence of the rows, by its SPDX identifier.
+    /// Licence of the rows in words: an SPDX identifier where one says it all; of digitised rows, who owns what.
     pub licence: Option<String>,
     /// DOI of the publication, without a resolver.
     pub doi: Option<String>,

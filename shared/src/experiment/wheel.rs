@@ -18,6 +18,7 @@ pub fn rim_speed_m_s(slip: f64, sled_speed_m_s: f64) -> f64 {
 
 /// A rigid wheel. `quasi_static` models its smooth rim alone: grousers enter through a radius of its own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct WheelGeometry {
     /// Radius of the rim `[m]`; beside a mesh, the radius that slip and sinkage refer to.
     pub radius_m: f64,
@@ -166,5 +167,21 @@ mod tests {
         assert_eq!(wheel.grouser_period_s(-1.0, 0.01), None);
         wheel.grouser_count = 0;
         assert_eq!(wheel.grouser_period_s(0.2, 0.01), None);
+    }
+
+    #[test]
+    fn a_field_that_no_wheel_has_is_refused_on_the_wire_and_named_with_its_line_in_a_file() {
+        let wheel = r#"{"radius_m":0.1,"width_m":0.05,"grouser_count":0,"grouser_height_m":0.0,"grouser_thickness_m":0.0,"rig_radius_m":0.1"#;
+        assert!(serde_json::from_str::<WheelGeometry>(&format!("{wheel}}}")).is_ok());
+        let stray = serde_json::from_str::<WheelGeometry>(&format!("{wheel},\"tread_m\":0.1}}"));
+        assert!(stray.unwrap_err().to_string().contains("tread_m"));
+        let files = crate::file::FileSet {
+            toml: "runs = \"runs.csv\"\n[wheel.a]\nradius_m = 0.1\nwidth_m = 0.05\ngrouser_hight_m = 0.005\n[soil.sand]\n[noise]\n".into(),
+            files: [("runs.csv".into(), String::new())].into(),
+        };
+        let error = crate::experiment::Experiment::parse("experiment.toml", &files).unwrap_err();
+        for words in ["experiment.toml line 5", "grouser_hight_m", "grouser_height_m"] {
+            assert!(error.to_string().contains(words), "{words} in {error}");
+        }
     }
 }

@@ -9,6 +9,7 @@
 //! - `density`: kernel densities, and highest-density regions.
 //! - `predicted_draw`: draws with their predictions. `information`: the prior signal of a channel. `residual`: studentised
 //!   residuals and their chi-square. `trend`: trends of residuals with a regressor.
+//! - `linear_dependence`: which of several quantities follows from others.
 //! - `region`: where in the prior failures concentrate.
 //! - `subset_shift`: how far some of the data would move parameters, were they fitted alone.
 //! - `tail`: tail probabilities of test statistics.
@@ -17,6 +18,7 @@ mod conflict;
 mod density;
 mod ess;
 mod information;
+mod linear_dependence;
 mod moments;
 mod predicted_draw;
 mod quantile;
@@ -31,6 +33,7 @@ pub use conflict::{Conflict, conflict};
 pub use density::{bandwidth, density, highest_density_levels, joint_density};
 pub use ess::{kish_ess, rank_correlation, weight_cov};
 pub use information::{ChannelSignal, signals};
+pub use linear_dependence::linear_dependence;
 pub use moments::{mean, mean_and_sd};
 pub use predicted_draw::PredictedDraw;
 pub use quantile::{DrawSummary, quantile, summary};

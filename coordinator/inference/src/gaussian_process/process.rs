@@ -11,7 +11,9 @@ use super::smoothness::smoothest;
 /// `y(x) = a + b'x + f(x) + e`, with `f` of the covariance `s^2 (1 + r + r^2 / 3) exp(-r)`, `r^2 = 5 sum_k ((x_k - x'_k) / l_k)^2`
 /// (Matérn, 5/2), coordinates over their range, and noise `e` of the variance `s^2 q / repeats`. Between observations the mean
 /// interpolates; beyond them it returns to the plane. The `l_k`, from 0.1 to 3.2 of the range, and `q`, from 1e-4 to 1, are those with
-/// the least squared error of the observations when each is left out; of more than 150, of equally spaced ones.
+/// the least squared error of the observations when each is left out; of more than 150, of so many that represent every
+/// level of every coordinate. A coordinate of two
+/// levels has the longest `l_k`: between them the process is nearly straight.
 ///
 /// # Source
 /// Rasmussen & Williams 2006, Gaussian Processes for Machine Learning, Eqs. 2.25, 4.17 (covariance) and 5.12 (leaving one out),

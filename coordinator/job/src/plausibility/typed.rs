@@ -2,7 +2,7 @@
 
 use shared::experiment::TestRun;
 use shared::limit::{self, Limit};
-use shared::parameters::behind;
+use shared::parameters::{WHEEL_RADIUS, behind};
 
 use super::question::Question;
 use crate::Spec;
@@ -10,6 +10,10 @@ use crate::table::prior_entry::FreeParameter;
 
 /// Probability of a prior within the values that are judged.
 const CENTRAL: f64 = 0.9;
+/// The same of a wheel's radius, which is known.
+const OF_RADIUS: f64 = 0.998;
+/// Relative distance at which a radius is still that of the wheel.
+const ABOUT: f64 = 0.02;
 
 /// Each quantity once, with the first of its values that is odd and the number of the others.
 pub(super) fn questions(spec: &Spec) -> Vec<Question> {
@@ -37,7 +41,37 @@ pub(super) fn questions(spec: &Spec) -> Vec<Question> {
         }
     }
     questions.extend(spec.parameters.iter().filter_map(of_prior));
+    questions.extend(spec.parameters.iter().filter_map(|p| of_radius(spec, p)));
     questions
+}
+
+/// A prior of a wheel's radius that lies elsewhere than the wheel: neither rim nor tips, nor what is between them, is where it has
+/// 99.8 % of its probability.
+fn of_radius(spec: &Spec, parameter: &FreeParameter) -> Option<Question> {
+    let (name, own) = match parameter.name.split_once('.') {
+        Some((name, wheel)) => (name, Some(wheel)),
+        None => (parameter.name.as_str(), None),
+    };
+    if name != WHEEL_RADIUS {
+        return None;
+    }
+    let end = 0.5 * (1.0 - OF_RADIUS);
+    let [low, high] = [end, 1.0 - end].map(|p| parameter.marginal.quantile(p));
+    let wheels = spec.experiment.wheels.iter();
+    let mut elsewhere = wheels.filter(|(wheel, geometry)| {
+        let (rim, tips) = (geometry.radius_m, geometry.radius_m + geometry.grouser_height_m);
+        let is_meant = own.is_none_or(|own| own == wheel.as_str());
+        is_meant && (high < rim * (1.0 - ABOUT) || low > tips * (1.0 + ABOUT))
+    });
+    let (wheel, geometry) = elsewhere.next()?;
+    let words = format!(
+        "the prior of {} has 99.8 % of its probability from {} to {} m, and wheel {wheel} has radius_m = {}",
+        parameter.name,
+        limit::number(low),
+        limit::number(high),
+        limit::number(geometry.radius_m)
+    );
+    Some(Question::new(WHEEL_RADIUS, words))
 }
 
 /// A prior of which hardly anything lies in the usual range.

@@ -2,11 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use inference::diagnostics::mean_and_sd;
+use inference::diagnostics::{linear_dependence, mean_and_sd};
+use shared::channel::Channel;
 use shared::experiment::Scatter;
 use shared::file::{FileError, number, unknown_word};
 use shared::model::ParameterScope;
-use shared::parameters::{NOISE_PREFIX, RING_TRANSFER, bekker_moduli, scatter_parameter};
+use shared::parameters::{
+    NOISE_PREFIX, RING_TRANSFER, WHEEL_RADIUS, bekker_moduli, noise_parameter, scatter_parameter,
+};
 use statistics::{Distribution, Marginal};
 
 use super::error::TableError;
@@ -43,7 +46,7 @@ pub struct JointPrior {
     pub unused: Vec<String>,
     /// The Bekker moduli that the draws imply; `None` where they do not fix them.
     pub moduli: Option<ImpliedModuli>,
-    /// Whether plates were among the data of that calibration: it inferred how they scatter.
+    /// Whether plates alone were the data of that calibration: it inferred how they scatter, and nothing that only a wheel shows.
     pub of_plates: bool,
 }
 
@@ -124,7 +127,8 @@ impl PosteriorPrior {
         let mut table = Draws::read(&file, text)?;
         let moduli = table.moduli(fixed);
         let scatters = [Scatter::PlateTest, Scatter::PlateReading].map(scatter_parameter);
-        let of_plates = table.columns.iter().any(|column| scatters.contains(column));
+        let of_plates = table.columns.iter().any(|column| scatters.contains(column))
+            && !table.columns.iter().any(|column| is_of_wheel(column));
         if self.literal {
             table.turn_to_moduli().map_err(|e| whole(e.to_string()))?;
         }
@@ -179,10 +183,21 @@ impl PosteriorPrior {
         };
         let count = covered.len();
         let row = |i| (0..count).map(|j| correlation(i, j)).collect();
+        let correlations: Vec<Vec<f64>> = (0..count).map(row).collect();
+        let parameters: Vec<String> = covered.into_iter().map(|(_, name, _)| name).collect();
+        if let Some((last, others)) = linear_dependence(&correlations) {
+            let others: Vec<&str> = others.into_iter().map(|i| parameters[i].as_str()).collect();
+            return Err(whole(format!(
+                "{} follows from {} in every draw, so their covariance is singular: give {} a number or a prior of its own in the job",
+                parameters[last],
+                others.join(" and "),
+                parameters[last]
+            )));
+        }
         let joint = JointPrior {
             draws,
-            parameters: covered.into_iter().map(|(_, name, _)| name).collect(),
-            correlations: (0..count).map(row).collect(),
+            parameters,
+            correlations,
             unused,
             moduli,
             of_plates,
@@ -190,6 +205,12 @@ impl PosteriorPrior {
         };
         Ok((joint, free))
     }
+}
+
+/// Whether a column of a posterior is of what a wheel shows and a plate does not.
+fn is_of_wheel(column: &str) -> bool {
+    let of_channel = |channel: Channel| column == noise_parameter(channel);
+    column.split('.').next() == Some(WHEEL_RADIUS) || Channel::ALL.into_iter().any(of_channel)
 }
 
 impl JointPrior {
@@ -460,6 +481,10 @@ mod tests {
                 None => format!("{line}\n"),
             })
             .collect();
+        let mut dependent = "log10_p_ref,kappa,n\n".to_owned();
+        for [p_ref, kappa, _] in draws() {
+            let _ = writeln!(dependent, "{p_ref},{kappa},{}", 0.3 * p_ref - 0.2 * kappa);
+        }
         for (priors, text, message) in [
             (
                 "posterior = \"p.csv\"",
@@ -470,6 +495,11 @@ mod tests {
                 "posterior = \"p.csv\"",
                 constant,
                 "p.csv: n is 1.3 in every draw and has no density: fix it in the job",
+            ),
+            (
+                "posterior = \"p.csv\"",
+                dependent,
+                "p.csv: n follows from log10_p_ref and kappa in every draw, so their covariance is singular: give n a number or a prior of its own in the job",
             ),
             (
                 "posterior = \"p.csv\"",

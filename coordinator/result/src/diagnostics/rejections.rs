@@ -14,7 +14,7 @@ use crate::words::probability::{LEVEL, p_words};
 /// Rejected parameter vectors and failed leases.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct RejectionDiagnostics {
-    /// How often the model rejected in the whole calibration, by reason.
+    /// How many parameter vectors of the sampler or the fit the model rejected, by reason.
     pub refused: BTreeMap<String, u64>,
     /// How often a lease failed in the whole calibration, by message. Each was retried: a failed lease is independent of the
     /// parameters.

@@ -176,16 +176,17 @@ fn refused_holdout(calibration: &FinishedCalibration) -> Option<String> {
     }
     let whole = refused.iter().filter(|(_, refusal)| refusal.is_whole()).count();
     let rest = match (whole, spec.holdout_runs.len() - whole) {
-        (0, _) => "its predictions there rest on the other draws".to_owned(),
-        (_, 0) => "no held-out run is left to judge the model".to_owned(),
-        (_, rest) => format!(
-            "errors and coverage are over the other {}",
+        (0, _) => ", and its predictions there rest on the other draws".to_owned(),
+        (_, 0) => ", and no held-out run is left to judge the model".to_owned(),
+        (whole, rest) => format!(
+            "; {whole} of them, refused at half of the draws or more, {} not judged, and errors and coverage are over the other {}",
+            if whole == 1 { "is" } else { "are" },
             number::count(rest, "held-out run")
         ),
     };
     (!refused.is_empty()).then(|| {
         format!(
-            "the model refuses {} of {}: {}; {} outside its validity, and {rest}",
+            "the model refuses {} of {}: {}; {} outside its validity{rest}",
             refused.len(),
             number::count(spec.holdout_runs.len(), "held-out run"),
             number::list(&words),

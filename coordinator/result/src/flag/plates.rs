@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use inference::diagnostics::{self, SubsetShift, conflict, derivatives_from_draws, subset_shift};
-use job::{JointPrior, PLATE};
-use statistics::Prior;
+use job::{FreeParameter, JointPrior, PLATE};
+use statistics::{Marginal, Prior};
 
 use super::kind::{Flag, FlagKind};
 use crate::finished_calibration::FinishedCalibration;
@@ -14,6 +14,8 @@ use crate::words::probability::{LEVEL, p_words};
 
 /// The parameters that plates determine.
 const OF_PLATES: [&str; 5] = ["log10_p_ref", "kappa", "n", "k_c", "k_phi"];
+/// Sds of what plates ask for within which a prior may allow it.
+const ALLOWED: f64 = 2.0;
 /// Where the plates' own parameters leave more than this of the error, their readings are not worth a flag.
 const MUCH: f64 = 0.8;
 
@@ -98,8 +100,19 @@ fn against_posterior(calibration: &FinishedCalibration) -> Option<Flag> {
             number::count(calibration.prior_draws.len(), "draw")
         ),
     };
+    // Where the model ends, the wheel has not been asked.
+    let (who, why) = match 2 * refused > calibration.prior_draws.len() {
+        true => (
+            "the posterior of the wheel lies far from that",
+            "the model's limits may be the cause; else an effect is missing, or a wheel is no plate and transfer is too small",
+        ),
+        false => (
+            "the wheel contradicts the posterior",
+            "an effect is missing, or a wheel is no plate and transfer is too small",
+        ),
+    };
     let text = format!(
-        "the wheel contradicts the plates of {} ({} among {}): {what}, their covariance times {}{limits}: an effect is missing, or a wheel is no plate and transfer is too small",
+        "{who} of the plates in {} ({} among {}): {what}, their covariance times {}{limits}: {why}",
         joint.said.file,
         p_words(p),
         number::count(tests, "test"),
@@ -158,24 +171,63 @@ fn against_readings(calibration: &FinishedCalibration) -> Option<Flag> {
     let groups = plates.iter().map(|reading| group(&reading.test));
     let groups: Vec<usize> = groups.collect::<Option<_>>()?;
     let found = subset_shift(&derivatives, &residuals, &groups)?;
-    let names: Vec<&str> = places.iter().map(|&i| spec.parameters[i].name.as_str()).collect();
-    flag_of(&found, &names, tests.len())
+    let free: Vec<&FreeParameter> = places.iter().map(|&i| &spec.parameters[i]).collect();
+    let mean = |k: usize| parameters.iter().map(|own| own[k]).sum::<f64>() / parameters.len() as f64;
+    let from: Vec<f64> = (0..free.len()).map(mean).collect();
+    flag_of(&found, &free, &from, tests.len())
 }
 
-fn flag_of(found: &SubsetShift, names: &[&str], tests: usize) -> Option<Flag> {
+/// Whether a prior excludes a value, and all within [`ALLOWED`] sds of it.
+fn excludes(prior: &Marginal, value: f64, sd: f64) -> bool {
+    let ends = [value - ALLOWED * sd, value + ALLOWED * sd].map(|end| prior.cumulative(end));
+    let tail = 0.5 * LEVEL;
+    ends[1] < tail || ends[0] > 1.0 - tail
+}
+
+/// # Arguments
+/// - `from`: the values that all data ask for.
+fn flag_of(found: &SubsetShift, free: &[&FreeParameter], from: &[f64], tests: usize) -> Option<Flag> {
     let count = found.p.len();
     let p = found.p.iter().copied().reduce(f64::min)? * count as f64;
     if p >= LEVEL || found.rms_after > MUCH * found.rms_before {
         return None;
     }
-    let pulled = (0..count)
-        .filter(|&k| found.p[k] * (count as f64) < LEVEL)
-        .map(|k| {
-            let sds = number::significant((found.shift[k] / found.sd[k]).abs(), 2);
-            format!("{} by {sds} of their standard deviations", names[k])
-        });
+    let is_pulled = |k: &usize| found.p[*k] * (count as f64) < LEVEL;
+    let pulled = (0..count).filter(is_pulled).map(|k| {
+        let sds = number::significant((found.shift[k] / found.sd[k]).abs(), 2);
+        format!("{} by {sds} of their standard deviations", free[k].name)
+    });
+    // What the prior excludes, no wheel need have moved. Derivatives change along the way, so the end of it is rough: that the prior is
+    // the cause is said where it excludes even half of the way.
+    let excluded = |share: f64| -> Vec<String> {
+        let of = |&k: &usize| excludes(&free[k].marginal, from[k] + share * found.shift[k], found.sd[k]);
+        let names = (0..count)
+            .filter(is_pulled)
+            .filter(of)
+            .map(|k| free[k].name.clone());
+        names.collect()
+    };
+    let (half, whole) = (number::list(&excluded(0.5)), number::list(&excluded(1.0)));
+    let (who, why) = match (half.is_empty(), whole.is_empty()) {
+        (false, _) => (
+            "the prior contradicts the plates",
+            format!(
+                "the prior of {half} excludes even half of that; widen it, and whether the wheel contradicts the plates will be seen"
+            ),
+        ),
+        (true, false) => (
+            "the wheel or the prior contradicts the plates",
+            format!(
+                "the prior of {whole} excludes what they ask for, and may be too tight; else an effect is missing, or a wheel is no plate"
+            ),
+        ),
+        (true, true) => (
+            "the wheel contradicts the plates",
+            "an effect is missing, or a wheel is no plate".to_owned(),
+        ),
+    };
     let text = format!(
-        "the wheel contradicts the plates ({} among {}): fitted together, the readings of {} of plates are missed by {:.0} % (root mean square), and by {:.0} % with the soil that the plates alone ask for, which differs in {}: an effect is missing, or a wheel is no plate",
+        "{who} ({} among {}): fitted together, the readings of {} of plates are missed by {:.0} % (root mean square), and by {:.0} % with the soil that the plates alone ask for, which differs in {}: {why}",
         p_words(p),
         number::count(count, "test"),
         number::count(tests, "test"),
@@ -268,6 +320,11 @@ mod tests {
 
     /// Wheel and plates fitted together, with the soil about a point.
     fn together(centre: [f64; 3]) -> Vec<Flag> {
+        together_under(FREE, centre)
+    }
+
+    /// The same under another prior.
+    fn together_under(priors: &str, centre: [f64; 3]) -> Vec<Flag> {
         let mut stream = Stream::new(7, 0, 0, 0);
         let mut plates = "test,plate_radius_m,sinkage_m,pressure_pa\n".to_owned();
         let mut common = 0.0;
@@ -283,7 +340,7 @@ mod tests {
             files: [("runs.csv".into(), RUNS.into()), ("plates.csv".into(), plates)].into(),
         };
         let job = FileSet {
-            toml: JOB.replace("SOIL", FREE),
+            toml: JOB.replace("SOIL", priors),
             files: Default::default(),
         };
         let calibration = with_soil(fixture::of_files(job, &experiment), centre, [0.01, 0.02, 0.02]);
@@ -309,11 +366,30 @@ mod tests {
         }
     }
 
+    #[test]
+    fn where_the_prior_excludes_what_plates_ask_for_it_is_named_and_not_the_wheel() {
+        let tight = FREE.replace("{ uniform = [-0.95, 0.5] }", "{ normal = [0.0, 0.02] }");
+        let flags = together_under(&tight, [3.9, 0.0, 1.2]);
+        assert_eq!(flags.len(), 1);
+        for words in [
+            "the prior contradicts the plates (p ",
+            "which differs in kappa by ",
+            ": the prior of kappa excludes even half of that; widen it, ",
+        ] {
+            assert!(flags[0].text.contains(words), "{words} in {}", flags[0].text);
+        }
+        let wider = FREE.replace("{ uniform = [-0.95, 0.5] }", "{ normal = [0.0, 0.25] }");
+        let flags = together_under(&wider, [3.9, 0.0, 1.2]);
+        let begins = "the wheel or the prior contradicts the plates (p ";
+        assert!(flags[0].text.starts_with(begins), "{}", flags[0].text);
+    }
+
     /// The posterior of plates as the prior of a wheel, whose own posterior lies about a point.
-    fn after_plates(centre: [f64; 3], sds: [f64; 3], header: &str) -> Vec<Flag> {
+    fn after_plates(centre: [f64; 3], sds: [f64; 3], header: &str, refused: usize) -> Vec<Flag> {
         let mut text = format!("{header}\n");
+        let noises = ",0.1".repeat(header.split(',').count() - 3);
         for [p_ref, kappa, n] in about(TRUTH, [0.03, 0.03, 0.05], 200) {
-            text += &format!("{p_ref},{kappa},{n},0.1\n");
+            text += &format!("{p_ref},{kappa},{n}{noises}\n");
         }
         let job = FileSet {
             toml: JOB.replace("SOIL", "posterior = \"plates-posterior.csv\"\ntransfer = 4.0"),
@@ -324,10 +400,10 @@ mod tests {
             files: [("runs.csv".into(), RUNS.into())].into(),
         };
         let mut calibration = with_soil(fixture::of_files(job, &experiment), centre, sds);
-        let refused = |draw: &mut PriorDraw| {
+        let refuse = |draw: &mut PriorDraw| {
             draw.result = Err(RejectionReason("no_convergence: condition 0: x".into()))
         };
-        calibration.prior_draws.iter_mut().take(30).for_each(refused);
+        calibration.prior_draws.iter_mut().take(refused).for_each(refuse);
         plates_conflict(&calibration)
     }
 
@@ -335,21 +411,22 @@ mod tests {
 
     #[test]
     fn a_wheel_far_from_the_posterior_of_plates_is_flagged_however_much_of_it_is_refused() {
-        assert_eq!(after_plates(TRUTH, [0.03, 0.03, 0.05], OF_PLATES), []);
+        assert_eq!(after_plates(TRUTH, [0.03, 0.03, 0.05], OF_PLATES, 30), []);
         assert_eq!(
-            after_plates([3.95, -0.55, 1.25], [0.03, 0.03, 0.05], OF_PLATES),
+            after_plates([3.95, -0.55, 1.25], [0.03, 0.03, 0.05], OF_PLATES, 30),
             []
         );
-        let flags = after_plates([3.9, 0.02, 1.2], [0.03, 0.02, 0.05], OF_PLATES);
+        let flags = after_plates([3.9, 0.02, 1.2], [0.03, 0.02, 0.05], OF_PLATES, 30);
         assert_eq!(
             flags.iter().map(|f| f.kind).collect::<Vec<_>>(),
             [FlagKind::PlatesConflict]
         );
         for words in [
-            "contradicts the plates of plates-posterior.csv (p < ",
+            "the posterior of the wheel lies far from that of the plates in plates-posterior.csv (p < ",
             "): kappa 0.0",
             " where they say -0.5",
             "times 4; the model refuses 31 of 40 draws of the prior",
+            ": the model's limits may be the cause; ",
         ] {
             assert!(
                 flags[0].text.replace('\u{2212}', "-").contains(words),
@@ -357,11 +434,17 @@ mod tests {
                 flags[0].text
             );
         }
-        let of_wheels = OF_PLATES.replace("noise.plate_scatter", "noise.torque_n_m");
-        assert_eq!(
-            after_plates([3.9, 0.02, 1.2], [0.03, 0.02, 0.05], &of_wheels),
-            [],
-            "not of plates"
+        let flags = after_plates([3.9, 0.02, 1.2], [0.03, 0.02, 0.05], OF_PLATES, 3);
+        assert!(
+            flags[0].text.starts_with(
+                "the wheel contradicts the posterior of the plates in plates-posterior.csv (p < "
+            )
         );
+        let of_wheels = OF_PLATES.replace("noise.plate_scatter", "noise.torque_n_m");
+        let of_both = format!("{OF_PLATES},noise.torque_n_m");
+        for (header, of) in [(of_wheels, "a wheel"), (of_both, "plates and a wheel")] {
+            let flags = after_plates([3.9, 0.02, 1.2], [0.03, 0.02, 0.05], &header, 30);
+            assert_eq!(flags, [], "a posterior of {of}");
+        }
     }
 }

@@ -135,7 +135,7 @@ impl Missing {
         let outside = record
             .not_tried
             .iter()
-            .filter(|effect| !effect.lacks_line())
+            .filter(|effect| !effect.lacks_data())
             .count();
         if outside > 0 {
             text.push(format!(
@@ -240,7 +240,7 @@ fn label(effect: &NamedEffect) -> String {
 /// The effects that were not tried, without the wheels.
 fn folded(record: &Discovery) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for effect in record.not_tried.iter().filter(|effect| effect.lacks_line()) {
+    for effect in record.not_tried.iter().filter(|effect| effect.lacks_data()) {
         let name = split(&effect.name).name;
         if !names.contains(&name) {
             names.push(name);

@@ -49,7 +49,7 @@ pub enum StepKind {
     Discover,
     /// Make test runs.
     MakeRuns,
-    /// Make a test without a rolling wheel.
+    /// Make a test without a rolling wheel, or runs in conditions that no run had.
     MeasureOther,
     /// State in the experiment what it lacks.
     StateInExperiment,
@@ -131,21 +131,27 @@ fn steps(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool
     }
     let tests = record.other_tests.iter();
     steps.extend(tests.map(|test| NextStep::new(StepKind::MeasureOther, format!("measure {test}"), None)));
-    let needs: BTreeSet<&str> = record
-        .not_tried
-        .iter()
-        .filter(|effect| effect.lacks_line())
-        .map(|effect| effect.needs.as_str())
+    let lacking = record.not_tried.iter().filter(|effect| effect.lacks_data());
+    let needs: BTreeSet<(&str, bool)> = lacking
+        .map(|effect| (effect.needs.as_str(), effect.lacks_runs()))
         .collect();
-    steps.extend(needs.into_iter().map(|needs| {
+    steps.extend(needs.into_iter().map(|(needs, are_runs)| {
         let own = record.not_tried.iter().filter(|effect| effect.needs == needs);
         let mut names: Vec<String> = own.map(|effect| effect.name.clone()).collect();
         names.dedup();
-        let text = format!(
-            "state {needs} in the experiment, so that {} can be judged",
-            number::list(&names)
-        );
-        NextStep::new(StepKind::StateInExperiment, text, None)
+        let names = number::list(&names);
+        match are_runs {
+            true => NextStep::new(
+                StepKind::MeasureOther,
+                format!("measure {needs}, so that {names} can be judged"),
+                None,
+            ),
+            false => NextStep::new(
+                StepKind::StateInExperiment,
+                format!("state {needs} in the experiment, so that {names} can be judged"),
+                None,
+            ),
+        }
     }));
     if steps.is_empty() {
         steps.push(predict(
@@ -325,5 +331,25 @@ mod tests {
         let next = Next::of(&study, &study.lead, true);
         assert_eq!(kinds(&next), [StepKind::Predict, StepKind::StateInExperiment]);
         assert!(next.steps[1].text.contains("bin_length_m under [rig]"));
+    }
+
+    #[test]
+    fn runs_that_an_effect_needs_are_measured_and_not_stated() {
+        let mut study = searched();
+        let record = &mut study.rounds[0].record;
+        record.not_tried = vec![NotTried {
+            name: "side_drag".into(),
+            why: "it changes nothing at the slips and slip angles of the fitted runs".into(),
+            needs: "runs at a slip angle".into(),
+        }];
+        let next = Next::of(&study, &study.lead, true);
+        let step = next.steps.last().unwrap();
+        assert_eq!(
+            (step.kind, step.text.as_str()),
+            (
+                StepKind::MeasureOther,
+                "measure runs at a slip angle, so that side_drag can be judged"
+            )
+        );
     }
 }

@@ -32,7 +32,8 @@ pub struct Comparison {
 }
 
 impl FinishedCalibration {
-    fn interpolations(&self) -> &Interpolations {
+    /// The held-out measurements as interpolated from the fitted ones.
+    pub(crate) fn interpolations(&self) -> &Interpolations {
         self.interpolations
             .get_or_init(|| Interpolations::of(&self.spec.experiment))
     }
@@ -89,7 +90,7 @@ impl FinishedCalibration {
             holdout: errors(RunUse::Holdout),
             baseline_holdout: ErrorTable::of_baseline(rows_of(&rows, RunUse::Holdout))
                 .map(|table| table.in_fixed_sigmas(&sigmas)),
-            not_interpolated: interpolations.missing().to_vec(),
+            not_interpolated: interpolations.missing(),
             groups: error_groups(&rows),
             rows,
         }

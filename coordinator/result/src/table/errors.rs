@@ -41,8 +41,8 @@ pub struct AllError {
     pub rmse_sigma: Option<f64>,
     /// The same in units of the study's noise sds.
     pub rmse_fixed_sigma: Option<f64>,
-    /// Measurements without a prediction, which do not count: of runs that the model refuses at every draw, or that interpolation
-    /// does not reach.
+    /// Measurements without a prediction, which do not count: of runs that the model refuses at half of the final draws or more, or that
+    /// interpolation does not reach.
     pub unpredicted: usize,
 }
 

@@ -10,6 +10,7 @@ use statistics::likelihood::discrepancy_levels;
 use statistics::{Discrepancy, ErrorSd};
 
 use super::mixture::{Component, quantile};
+use super::refusal::Refusal;
 use crate::finished_calibration::FinishedCalibration;
 
 /// Posterior predictive distribution of one run and channel.
@@ -48,7 +49,7 @@ fn noise_source(calibration: &FinishedCalibration, run: usize, channel: Channel)
     }
 }
 
-/// The predictive distribution of a run and channel; `None` where every draw was rejected.
+/// The predictive distribution of a run and channel; `None` where every draw was rejected, of a held-out run half of them.
 pub(crate) fn predictive(
     calibration: &FinishedCalibration,
     levels: &Levels,
@@ -112,8 +113,12 @@ fn new_measurements(
     run: usize,
     channel: Channel,
 ) -> Option<Vec<NewMeasurement>> {
-    let source = noise_source(calibration, run, channel);
     let spec = &calibration.spec;
+    let refusal = || Refusal::of(calibration, run);
+    if spec.holdout_runs.contains(&run) && refusal().is_some_and(|refusal| refusal.is_whole()) {
+        return Some(Vec::new());
+    }
+    let source = noise_source(calibration, run, channel);
     let position = |runs: &[usize]| runs.iter().position(|&r| r == run);
     let place = match position(&spec.fit_runs) {
         Some(position) => RunPosition::Fit(position),

@@ -4,7 +4,10 @@ use record::RejectionReason;
 
 use crate::finished_calibration::FinishedCalibration;
 
-/// Final draws at which the model refuses a run; its prediction rests on the others.
+/// Final draws at which the model refuses a run.
+///
+/// The prediction of a held-out run rests on the others; where these are half of all or fewer, they speak for parameters that are hardly
+/// probable, and there is no prediction.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Refusal {
     /// Draws that it refuses.
@@ -37,9 +40,9 @@ impl Refusal {
         })
     }
 
-    /// Whether nothing is left to predict from.
+    /// Whether too little is left to predict from: at least half of the draws are refused.
     pub fn is_whole(&self) -> bool {
-        self.draws == self.of
+        2 * self.draws >= self.of
     }
 
     /// `20 of 20 final draws (no_support: ...)`.
@@ -59,25 +62,47 @@ mod tests {
         let row = |run: &str| comparison.rows.iter().find(|r| r.run == run).unwrap();
         let gone = row("h1").refused.clone().unwrap();
         assert!(gone.is_whole() && row("h1").predicted.is_none() && row("h1").covered().is_none());
-        let half = row("h2").refused.clone().unwrap();
+        let some = row("h3").refused.clone().unwrap();
         assert_eq!(
-            half.words(),
-            "10 of 19 final draws (no_support: condition 0: z = 0.11 m)"
+            some.words(),
+            "5 of 19 final draws (no_support: condition 0: z = 0.11 m)"
         );
-        assert!(row("h2").predicted.is_some());
+        assert!(!some.is_whole() && row("h3").predicted.is_some());
         // The others are as they would be without the refusals, to the bit.
         let before = whole.comparison();
-        for run in ["h0", "h3"] {
-            let before = before.rows.iter().find(|r| r.run == run).unwrap();
-            assert_eq!((row(run).predicted, row(run).q05), (before.predicted, before.q05));
-            assert_eq!(row(run).refused, None);
-        }
+        let unrefused = before.rows.iter().find(|r| r.run == "h0").unwrap();
+        assert_eq!(
+            (row("h0").predicted, row("h0").q05),
+            (unrefused.predicted, unrefused.q05)
+        );
+        assert_eq!(row("h0").refused, None);
         let holdout = comparison.holdout.as_ref().unwrap();
         assert_eq!(
             (holdout.drawbar_pull.unwrap().runs, holdout.all.unpredicted),
-            (3, 1)
+            (2, 2)
         );
         assert_eq!(before.holdout.as_ref().unwrap().all.unpredicted, 0);
+    }
+
+    #[test]
+    fn a_run_refused_at_half_of_the_draws_is_not_judged_by_the_others() {
+        let refused = fixture::with_refused_runs();
+        let comparison = refused.comparison();
+        let row = comparison.rows.iter().find(|r| r.run == "h2").unwrap();
+        let half = row.refused.clone().unwrap();
+        assert_eq!((half.draws, half.of), (10, 19));
+        assert!(half.is_whole() && row.predicted.is_none() && row.q05.is_none());
+        let new = crate::NewMeasurements::of(&refused);
+        let place = refused
+            .spec
+            .experiment
+            .runs
+            .iter()
+            .position(|run| run.name == "h2");
+        assert!(
+            new.at(place.unwrap(), shared::channel::Channel::DrawbarPull)
+                .is_empty()
+        );
     }
 
     #[test]
@@ -88,15 +113,17 @@ mod tests {
         let flag = flags.iter().find(|f| f.text.contains("held-out")).unwrap();
         assert_eq!(
             flag.text,
-            "the model refuses 2 of 4 held-out runs: h1 at 19 of 19 final draws (no_support: condition 0: z = 0.11 m) and h2 at 10 \
-             of 19 final draws (no_support: condition 0: z = 0.11 m); they lie outside its validity, and errors and coverage are over \
-             the other 3 held-out runs"
+            "the model refuses 3 of 4 held-out runs: h1 at 19 of 19 final draws (no_support: condition 0: z = 0.11 m), h2 at 10 of 19 \
+             final draws (no_support: condition 0: z = 0.11 m) and h3 at 5 of 19 final draws (no_support: condition 0: z = 0.11 m); \
+             they lie outside its validity; 2 of them, refused at half of the draws or more, are not judged, and errors and coverage \
+             are over the other 2 held-out runs"
         );
         let text = crate::terminal::comparison(comparison);
         for words in [
             "\nh1: the model refuses it at 19 of 19 final draws (no_support",
-            "\nwithout 1 measurement of holdout runs that the model refuses at every draw\n",
-            "90 % intervals contain 3 of 3 (",
+            ": not judged\n",
+            "\nwithout 2 measurements of holdout runs that the model refuses at half of the draws or more\n",
+            "90 % intervals contain 2 of 2 (",
         ] {
             assert!(text.contains(words), "{words} in {text}");
         }

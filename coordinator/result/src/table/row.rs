@@ -32,7 +32,8 @@ pub struct ComparisonRow {
     pub unit: String,
     /// Measured.
     pub measured: f64,
-    /// Posterior mean of the model, or its value at the point that a fit found; `None` where every draw was rejected.
+    /// Posterior mean of the model, or its value at the point that a fit found; `None` where every draw was rejected, of a held-out run
+    /// half of them.
     pub predicted: Option<f64>,
     /// 5 % quantile of a new measurement; `None` of a fit, which has no distribution.
     pub q05: Option<f64>,

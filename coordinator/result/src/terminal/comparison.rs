@@ -58,7 +58,15 @@ fn refused(comparison: &Comparison) -> String {
     let mut lines: Vec<String> = Vec::new();
     for row in &comparison.rows {
         if let Some(refusal) = &row.refused {
-            let line = format!("{}: the model refuses it at {}\n", row.run, refusal.words());
+            let judged = match row.predicted {
+                Some(_) => "",
+                None => ": not judged",
+            };
+            let line = format!(
+                "{}: the model refuses it at {}{judged}\n",
+                row.run,
+                refusal.words()
+            );
             if lines.last() != Some(&line) {
                 lines.push(line);
             }
@@ -93,7 +101,7 @@ fn errors(comparison: &Comparison) -> String {
             let measurements = number::count(unpredicted, "measurement");
             let _ = writeln!(
                 text,
-                "without {measurements} of {} runs that the model refuses at every draw",
+                "without {measurements} of {} runs that the model refuses at half of the draws or more",
                 usage.name()
             );
         }

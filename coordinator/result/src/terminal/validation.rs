@@ -1,5 +1,6 @@
 //! A validation as text.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use shared::channel::Channel;
@@ -57,11 +58,19 @@ pub fn validation(validation: &Validation) -> String {
 }
 
 fn line(judgement: &Judgement, channels: &[Channel]) -> String {
-    let (model, interpolation) = (judgement.model.as_ref(), judgement.interpolation.as_ref());
+    let interpolation = judgement.interpolation.as_ref();
     let mark = if judgement.extrapolated > 0 { "*" } else { "" };
     let pair = |of: &dyn Fn(&ErrorTable) -> Option<String>| {
-        let [model, interpolation] =
-            [model, interpolation].map(|table| cell(table.and_then(of), |words| words));
+        let (interpolation, beside) = (
+            interpolation.and_then(of),
+            judgement.model_beside.as_ref().and_then(of),
+        );
+        // Where nothing is interpolated, the model stands alone.
+        let model = match interpolation {
+            Some(_) => beside,
+            None => judgement.model.as_ref().and_then(of),
+        };
+        let [model, interpolation] = [model, interpolation].map(|words| cell(words, |words| words));
         format!("{model} | {interpolation}{mark}")
     };
     let mut text = String::new();
@@ -89,12 +98,35 @@ fn notes(validation: &Validation) -> Vec<String> {
             number::count(total.extrapolated, "measurement")
         ));
     }
+    let rows = || validation.levels.iter().flat_map(|level| &level.rows);
+    let (all, both) = (
+        rows().count(),
+        rows()
+            .filter(|row| row.predicted.is_some() && row.interpolated.is_some())
+            .count(),
+    );
+    if (1..all).contains(&both) {
+        notes.push(format!(
+            "where there are two, both errors are over the {both} of {} that model and interpolation predict",
+            number::count(all, "measurement")
+        ));
+    }
     let refused = total.model.as_ref().map_or(0, |model| model.all.unpredicted);
     if refused > 0 {
         notes.push(format!(
-            "without {} of runs that the model refuses at every draw",
+            "without {} of runs that the model refuses at half of the draws or more",
             number::count(refused, "measurement")
         ));
     }
+    let mut reasons: BTreeMap<&str, usize> = BTreeMap::new();
+    for (reason, count) in validation.levels.iter().flat_map(|level| &level.not_interpolated) {
+        *reasons.entry(reason).or_default() += count;
+    }
+    notes.extend(reasons.into_iter().map(|(reason, count)| {
+        format!(
+            "{} not interpolated: {reason}",
+            number::count(count, "measurement")
+        )
+    }));
     notes
 }

@@ -11,8 +11,10 @@ use crate::table::row::ComparisonRow;
 pub struct Judgement {
     /// Errors of the model; null where it refuses every run.
     pub model: Option<ErrorTable>,
-    /// Errors of interpolating the other measurements, without physics; null where there is none.
+    /// Errors of interpolating the other measurements, without physics, where the model predicts too; null where there is none.
     pub interpolation: Option<ErrorTable>,
+    /// Errors of the model on the same measurements as those of interpolation, so that both compare.
+    pub model_beside: Option<ErrorTable>,
     /// Measurements whose interpolation extrapolates.
     pub extrapolated: usize,
     /// Measurements in their 90 % intervals.
@@ -27,9 +29,14 @@ impl Judgement {
         let table = |table: Option<ErrorTable>| table.map(|table| table.in_fixed_sigmas(sigmas));
         let coverage = Coverage::count(rows.iter());
         let is_beyond = |row: &&ComparisonRow| row.interpolated_over == Some(InterpolatedOver::Extrapolation);
+        let both = || {
+            rows.iter()
+                .filter(|row| row.predicted.is_some() && row.interpolated.is_some())
+        };
         Judgement {
             model: table(ErrorTable::of_model(rows.iter())),
-            interpolation: table(ErrorTable::of_baseline(rows.iter())),
+            interpolation: table(ErrorTable::of_baseline(both())),
+            model_beside: table(ErrorTable::of_model(both())),
             extrapolated: rows.iter().filter(is_beyond).count(),
             inside: coverage.map_or(0, |c| c.inside),
             with_interval: coverage.map_or(0, |c| c.of),

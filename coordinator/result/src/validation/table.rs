@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use job::AlgorithmName;
+use shared::channel::Channel;
 
 use super::factor::Factor;
 use super::judgement::Judgement;
@@ -43,6 +44,8 @@ pub struct ValidatedLevel {
     pub judgement: Option<Judgement>,
     /// Why there is none.
     pub refused: Option<String>,
+    /// Why some of its measurements are not interpolated, with their number.
+    pub not_interpolated: BTreeMap<String, usize>,
     /// Model and interpolation against the measurements of this level.
     pub rows: Vec<ComparisonRow>,
 }
@@ -55,11 +58,20 @@ impl ValidatedLevel {
     pub fn predicted(level: LeftOutLevel, of: &FinishedCalibration, others: &FinishedCalibration) -> Self {
         let mut rows = others.comparison().rows.clone();
         rows.retain(|row| level.runs.contains(&row.run));
+        let mut not_interpolated = BTreeMap::new();
+        let runs = others.spec.experiment.runs.iter().enumerate();
+        for (i, _) in runs.filter(|(_, run)| level.runs.contains(&run.name)) {
+            let missing = |channel: Channel| others.interpolations().missing_at(i, channel);
+            for reason in Channel::ALL.into_iter().filter_map(missing) {
+                *not_interpolated.entry(reason.to_owned()).or_default() += 1;
+            }
+        }
         ValidatedLevel {
             level,
             calibration: Some(others.row.id),
             judgement: Some(Judgement::of(&rows, &FixedSigmas::of(of))),
             refused: None,
+            not_interpolated,
             rows,
         }
     }
@@ -71,6 +83,7 @@ impl ValidatedLevel {
             calibration: None,
             judgement: None,
             refused: Some(reason),
+            not_interpolated: BTreeMap::new(),
             rows: Vec::new(),
         }
     }
@@ -106,6 +119,7 @@ impl Validation {
 mod tests {
     use super::*;
     use crate::fixture;
+    use crate::table::errors::ErrorTable;
 
     #[test]
     fn a_level_is_judged_by_its_own_rows_and_the_total_by_all() {
@@ -141,5 +155,52 @@ mod tests {
         let json = serde_json::to_string(&validation).unwrap();
         let again: Validation = serde_json::from_str(&json).unwrap();
         assert_eq!(again.total, judgement);
+    }
+
+    #[test]
+    fn model_and_interpolation_are_compared_on_the_rows_of_both_and_the_rest_is_counted_with_its_reason() {
+        let (of, mut others) = (fixture::without_holdout(), fixture::with_refused_runs());
+        // h0 is of a wheel that was never fitted.
+        let place = |run: &str| others.spec.experiment.runs.iter().position(|own| own.name == run);
+        let (h0, runs) = (place("h0").unwrap(), ["h0", "h1", "h2", "h3"]);
+        let mut wheels = others.spec.experiment.wheels.clone();
+        wheels.insert("b".into(), wheels["a"].clone());
+        others.spec.experiment.wheels = wheels;
+        others.spec.experiment.runs[h0].wheel = "b".into();
+        let level = LeftOutLevel {
+            name: "load 25.0 N".into(),
+            from: Some(25.0),
+            to: Some(25.0),
+            runs: runs.map(str::to_owned).into(),
+        };
+        let judged = ValidatedLevel::predicted(level, &of, &others);
+        let judgement = judged.judgement.clone().unwrap();
+        let rows = |table: &Option<ErrorTable>| table.as_ref().map(|own| own.drawbar_pull.unwrap().runs);
+        // Predicted are h0 and h3, interpolated h1, h2 and h3.
+        assert_eq!(
+            (
+                rows(&judgement.model),
+                rows(&judgement.interpolation),
+                rows(&judgement.model_beside)
+            ),
+            (Some(2), Some(1), Some(1))
+        );
+        assert_eq!(
+            judged.not_interpolated,
+            [("wheel b on soil sand has no fitted drawbar pull".to_owned(), 1)].into()
+        );
+        let text = crate::terminal::validation(&Validation::new(
+            &of,
+            Factor::Load,
+            AlgorithmName::Lm,
+            vec![judged],
+        ));
+        for words in [
+            "both errors are over the 1 of 4 measurements that model and interpolation predict",
+            "without 2 measurements of runs that the model refuses at half of the draws or more",
+            "1 measurement not interpolated: wheel b on soil sand has no fitted drawbar pull",
+        ] {
+            assert!(text.contains(words), "{words} in {text}");
+        }
     }
 }

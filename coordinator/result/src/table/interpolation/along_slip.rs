@@ -3,6 +3,8 @@
 use shared::channel::Channel;
 use shared::experiment::{Experiment, RunUse, TestRun};
 
+use super::axis::ALIKE_LOADS;
+
 /// Slips closer than this repeat one condition.
 const SAME_SLIP: f64 = 0.02;
 
@@ -17,7 +19,7 @@ pub(super) fn along_slip(experiment: &Experiment, run: &TestRun, channel: Channe
             && other.pass == run.pass
             && (other.slip_angle_deg - run.slip_angle_deg).abs() < 0.5
             && near(other.sled_speed_m_s, run.sled_speed_m_s, 1.05)
-            && near(other.wheel_load_n, run.wheel_load_n, 1.5)
+            && near(other.wheel_load_n, run.wheel_load_n, ALIKE_LOADS)
     };
     let runs = experiment.runs.iter().filter(alike);
     let mut points: Vec<(f64, f64)> = runs

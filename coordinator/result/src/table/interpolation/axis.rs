@@ -3,6 +3,9 @@
 use job::repeats;
 use shared::experiment::{TestRun, rim_speed_m_s};
 
+/// Loads within this factor are alike where a rig does not hold its load.
+pub(super) const ALIKE_LOADS: f64 = 1.5;
+
 /// A condition that may vary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Axis {
@@ -70,8 +73,16 @@ impl Axis {
         [Axis::Slip, Axis::SlipAngle, Axis::WheelLoad, speed]
     }
 
-    /// Whether the condition has more than one value.
+    /// Whether the condition was varied. Loads that were set lie apart or span more than [`ALIKE_LOADS`]; those of a rig that does
+    /// not hold its load scatter within that without a gap.
     pub(super) fn varies(self, runs: &[&TestRun]) -> bool {
-        self.count(runs) > 1
+        if self != Axis::WheelLoad {
+            return self.count(runs) > 1;
+        }
+        let mut ordered = runs.to_vec();
+        ordered.sort_by(|a, b| self.value(a).total_cmp(&self.value(b)));
+        let ends = ordered.first().zip(ordered.last());
+        ends.is_some_and(|(least, most)| self.value(most) > ALIKE_LOADS * self.value(least))
+            || ordered.windows(2).any(|pair| !self.is_same(pair[0], pair[1]))
     }
 }

@@ -13,14 +13,14 @@ use super::surface::Surfaces;
 #[derive(Debug, Default)]
 pub struct Interpolations {
     values: BTreeMap<(usize, Channel), Interpolated>,
-    missing: Vec<String>,
+    missing: BTreeMap<(usize, Channel), String>,
 }
 
 impl Interpolations {
     /// Of every held-out measurement.
     pub fn of(experiment: &Experiment) -> Self {
         let mut values = BTreeMap::new();
-        let mut missing = BTreeSet::new();
+        let mut missing = BTreeMap::new();
         let mut surfaces = Surfaces::new(experiment);
         let runs = experiment.runs.iter().enumerate();
         for (i, run) in runs.filter(|(_, run)| run.usage == RunUse::Holdout) {
@@ -32,14 +32,11 @@ impl Interpolations {
                 });
                 match in_slip.map_or_else(|| surfaces.at(run, channel), Ok) {
                     Ok(found) => drop(values.insert((i, channel), found)),
-                    Err(reason) => drop(missing.insert(reason)),
+                    Err(reason) => drop(missing.insert((i, channel), reason)),
                 }
             }
         }
-        Interpolations {
-            values,
-            missing: missing.into_iter().collect(),
-        }
+        Interpolations { values, missing }
     }
 
     /// That of a run and channel; `None` where it was fitted or there is none.
@@ -47,9 +44,15 @@ impl Interpolations {
         self.values.get(&(run, channel)).copied()
     }
 
-    /// Why some are missing.
-    pub(crate) fn missing(&self) -> &[String] {
-        &self.missing
+    /// Why that of a run and channel is missing; `None` where it is not.
+    pub(crate) fn missing_at(&self, run: usize, channel: Channel) -> Option<&str> {
+        self.missing.get(&(run, channel)).map(String::as_str)
+    }
+
+    /// Why some are missing, each reason once.
+    pub(crate) fn missing(&self) -> Vec<String> {
+        let reasons: BTreeSet<&String> = self.missing.values().collect();
+        reasons.into_iter().cloned().collect()
     }
 }
 
@@ -117,6 +120,61 @@ mod tests {
             None,
             "a fitted run is measured"
         );
+    }
+
+    #[test]
+    fn between_two_levels_it_is_a_line_however_the_load_scatters() {
+        let mut runs =
+            "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use\n".to_owned();
+        let force = |slip: f64, angle: f64| 10.0 * (1.0 + slip * slip) * angle / 60.0;
+        for (i, slip) in [-0.7, -0.2, 0.0, 0.5, 0.9].into_iter().enumerate() {
+            for (k, angle) in [0.0, 60.0].into_iter().enumerate() {
+                // Lower at the angle, and by a fifth without a gap.
+                let load = 25.0 - 1.1 * (i + 2 * k) as f64;
+                let force = force(slip, angle);
+                runs += &format!("r{i}-{k},a,sand,{slip},{load},0.01,{angle},{force},fit\n");
+                runs += &format!("h{i}-{k},a,sand,{slip},{load},0.01,30,1,holdout\n");
+            }
+        }
+        let files = FileSet {
+            toml: TOML.into(),
+            files: [("runs.csv".into(), runs)].into(),
+        };
+        let experiment = Experiment::parse("experiment.toml", &files).unwrap();
+        let found = Interpolations::of(&experiment);
+        for (i, run) in experiment
+            .runs
+            .iter()
+            .enumerate()
+            .filter(|(_, run)| run.usage == RunUse::Holdout)
+        {
+            let own = found.at(i, Channel::LateralForce).unwrap();
+            assert_eq!(own.over, InterpolatedOver::Conditions);
+            assert!(
+                (own.value - force(run.slip, 30.0)).abs() < 0.5,
+                "{}: {}",
+                run.slip,
+                own.value
+            );
+        }
+    }
+
+    #[test]
+    fn loads_from_half_to_twice_are_a_condition_though_no_gap_parts_them() {
+        let mut runs =
+            "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use\n".to_owned();
+        for (i, load) in (0..12).map(|i| (i, 60.0 + 6.0 * f64::from(i))) {
+            let (slip, angle) = (0.1 * f64::from(i % 3), 15.0 * f64::from(i % 2));
+            runs += &format!("r{i},a,sand,{slip},{load},0.01,{angle},{},fit\n", 0.1 * load);
+        }
+        runs += "h,a,sand,0.1,93,0.01,8,1,holdout\n";
+        let files = FileSet {
+            toml: TOML.into(),
+            files: [("runs.csv".into(), runs)].into(),
+        };
+        let experiment = Experiment::parse("experiment.toml", &files).unwrap();
+        let own = Interpolations::of(&experiment).at(12, Channel::LateralForce);
+        assert!((own.unwrap().value - 9.3).abs() < 0.1, "{own:?}");
     }
 
     #[test]

@@ -48,8 +48,10 @@ struct Surface {
     of: String,
     /// The conditions that vary.
     axes: Vec<Axis>,
-    /// Those that do not, with a run that has their values.
-    held: (Vec<Axis>, TestRun),
+    /// Those that do not.
+    held: Vec<Axis>,
+    /// The fitted runs, which have their values.
+    fitted: Vec<TestRun>,
     process: GaussianProcess,
 }
 
@@ -66,9 +68,9 @@ impl Surface {
                 && run.measured[channel.index()].is_some()
         };
         let runs: Vec<&TestRun> = experiment.runs.iter().filter(alike).collect();
-        let Some(&first) = runs.first() else {
+        if runs.is_empty() {
             return Err(format!("{of} has no fitted {}", channel.words()));
-        };
+        }
         let (axes, held): (Vec<Axis>, Vec<Axis>) =
             Axis::of(&runs).into_iter().partition(|axis| axis.varies(&runs));
         let observations = observations(&runs, &axes, channel);
@@ -89,14 +91,15 @@ impl Surface {
         Ok(Surface {
             of,
             axes,
-            held: (held, first.clone()),
+            held,
+            fitted: runs.into_iter().cloned().collect(),
             process,
         })
     }
 
     fn at(&self, run: &TestRun) -> Result<Interpolated, String> {
-        let (held, first) = &self.held;
-        if let Some(axis) = held.iter().find(|axis| !axis.is_same(first, run)) {
+        let is_fitted = |axis: &Axis| self.fitted.iter().any(|own| axis.is_same(own, run));
+        if let Some(axis) = self.held.iter().find(|axis| !is_fitted(axis)) {
             return Err(format!("{} was fitted at one {} alone", self.of, axis.words()));
         }
         let point: Vec<f64> = self.axes.iter().map(|axis| axis.value(run)).collect();
