@@ -22,7 +22,11 @@ pub fn model_limits(spec: &Spec) -> Vec<String> {
     let name = spec.fit_variant.kind.name();
     match spec.fit_variant.kind {
         ModelKind::QuasiStatic | ModelKind::WongReece => {
-            if !lugged.is_empty() && !named(&[Variable::GrouserCount, Variable::GrouserHeight]) {
+            if spec.model.rolls_grousers {
+                limits.push(format!(
+                    "{name} rolls the grousers of {lugged} on average over their period: the soil does not flow, and against scm pulls are too low, by some 6 % of the load"
+                ));
+            } else if !lugged.is_empty() && !named(&[Variable::GrouserCount, Variable::GrouserHeight]) {
                 limits.push(format!(
                     "{name} models the smooth rim: the grousers of {lugged} enter only through a wheel radius of their own (wheel_radius_m.NAME)"
                 ));
