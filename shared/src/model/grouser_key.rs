@@ -14,20 +14,22 @@ pub const WORDS: [&str; 2] = ["ignored", "rolled"];
 /// [`ModelError::Invalid`]: another word, or another kind.
 pub(super) fn read(kind: ModelKind, value: &toml::Value) -> Result<bool, ModelError> {
     let [ignored, rolled] = WORDS;
+    let rolls = match value.as_str() {
+        Some(word) if word == ignored => false,
+        Some(word) if word == rolled => true,
+        _ => {
+            return Err(ModelError::Invalid(format!(
+                "{KEY} = {value} must be \"{ignored}\" or \"{rolled}\""
+            )));
+        }
+    };
     let why = match kind {
-        ModelKind::QuasiStatic => "",
+        ModelKind::QuasiStatic => return Ok(rolls),
         ModelKind::WongReece => "rolls a smooth rim",
         _ => "rolls grousers as they are declared",
     };
-    match value.as_str() {
-        _ if !why.is_empty() => Err(ModelError::Invalid(format!(
-            "{KEY}: {} {why}; the key is for kind = \"quasi_static\"",
-            kind.name()
-        ))),
-        Some(word) if word == ignored => Ok(false),
-        Some(word) if word == rolled => Ok(true),
-        _ => Err(ModelError::Invalid(format!(
-            "{KEY} = {value} must be \"{ignored}\" or \"{rolled}\""
-        ))),
-    }
+    Err(ModelError::Invalid(format!(
+        "{KEY}: {} {why}; the key is for kind = \"quasi_static\"",
+        kind.name()
+    )))
 }
