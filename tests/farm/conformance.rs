@@ -225,6 +225,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
     let variant = ModelVariant {
         kind: ModelKind::QuasiStatic,
         spatial: None,
+        rolls_grousers: false,
         external: None,
         effects: Vec::new(),
         parameters: vec!["n".into()],
@@ -289,6 +290,13 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
     };
     assert_ne!(variant.hash(), other.hash());
     assert_eq!(variant.hash().len(), 32);
+
+    let rolled = ModelVariant {
+        rolls_grousers: true,
+        ..variant.clone()
+    };
+    assert_eq!(serde_json::to_value(&rolled).unwrap()["rolls_grousers"], true);
+    assert_ne!(variant.hash(), rolled.hash());
 
     let effect = EffectText {
         name: "mine".into(),

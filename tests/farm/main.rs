@@ -12,6 +12,7 @@ mod discovery;
 mod effects;
 mod end_to_end;
 mod forward;
+mod grousers;
 mod histories;
 mod import;
 mod leases;

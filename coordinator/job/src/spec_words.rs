@@ -5,13 +5,15 @@ use shared::experiment::{Scatter, ScatterSd};
 use crate::spec::Spec;
 
 impl Spec {
-    /// The model with its effects: `quasi_static with janosi_hanamoto, mine`.
+    /// The model with its effects: `quasi_static with janosi_hanamoto, mine`, or `quasi_static with grousers, mine`.
     pub fn model_words(&self) -> String {
         let kind = self.model.kind.name();
-        let effects: Vec<&str> = self.fit_variant.effects.iter().map(|e| e.name.as_str()).collect();
-        match effects.as_slice() {
+        let grousers = self.model.rolls_grousers.then_some("grousers");
+        let effects = self.fit_variant.effects.iter().map(|e| e.name.as_str());
+        let parts: Vec<&str> = grousers.into_iter().chain(effects).collect();
+        match parts.as_slice() {
             [] => kind.to_owned(),
-            effects => format!("{kind} with {}", effects.join(", ")),
+            parts => format!("{kind} with {}", parts.join(", ")),
         }
     }
 

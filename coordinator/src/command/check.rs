@@ -38,7 +38,7 @@ pub(super) async fn check(config: &CheckArguments) -> anyhow::Result<()> {
         }
     }
     if !job.spec.fit_variant.conditions.is_empty() {
-        for line in additions(&job.job, &job.experiment, job.spec.model.kind)? {
+        for line in additions(&job.job, &job.experiment, job.spec.model.is_smooth())? {
             text += &format!("note: {line}\n");
         }
     }

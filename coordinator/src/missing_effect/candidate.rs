@@ -278,6 +278,27 @@ mod tests {
     }
 
     #[test]
+    fn where_grousers_roll_a_springy_soil_or_rim_is_excluded_with_the_reason() {
+        let (mut job, files, _) = read("examples/cmu-sand");
+        let kind = "kind = \"quasi_static\"\n";
+        job.toml = job
+            .toml
+            .replacen(kind, &format!("{kind}grousers = \"rolled\"\n"), 1);
+        let (candidates, excluded) = library(&job, &files);
+        for effect in ["elastic_rebound", "wheel_flexibility"] {
+            let smooth = format!("{effect}.smooth");
+            assert!(candidates.iter().any(|c| c.name == smooth), "{smooth}");
+            for name in [effect.to_owned(), format!("{effect}.grousered")] {
+                let reason = excluded.iter().find(|(n, _)| *n == name).unwrap().1.to_string();
+                assert!(
+                    reason.contains("grousers = \"rolled\": effect "),
+                    "{name}: {reason}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn what_no_fitted_run_shows_is_no_candidate() {
         let (job, straight, _) = read("examples/cmu-sand");
         let mut at_an_angle = straight.clone();

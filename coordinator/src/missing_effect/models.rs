@@ -63,7 +63,7 @@ impl SearchModels {
         let base = spec(job, experiment)?;
         let fail = |message: String| FileError::whole(JOB, message);
         let (effects, excluded) = library(job, experiment);
-        let (untried, assumed) = untried(job, experiment, base.model.kind, &excluded)?;
+        let (untried, assumed) = untried(job, experiment, base.model.is_smooth(), &excluded)?;
         let known = |name: &str| base.parameters.iter().any(|p| p.name == name);
         let entry = |own: CandidateEffect, experiment: &FileSet| {
             let with = spec(&extended(JOB, job, &[&own.extension])?, experiment)?;

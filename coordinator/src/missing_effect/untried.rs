@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use formula::{Effect, Variable};
 use shared::file::{FileError, FileSet};
-use shared::model::ModelKind;
 
 use super::candidate::{CandidateEffect, EXPERIMENT, ExclusionReason, candidate_of, check, library};
 use job::{AssumedExperiment, SiteProperty, UnsaidProperty};
@@ -38,6 +37,7 @@ impl UntriedEffect {
 /// values stand for that.
 ///
 /// # Arguments
+/// - `is_smooth`: whether the model rolls smooth rims, whatever grousers are declared.
 /// - `excluded`: names as [`library`] gives them.
 ///
 /// # Errors
@@ -45,10 +45,10 @@ impl UntriedEffect {
 pub fn untried(
     job: &FileSet,
     experiment: &FileSet,
-    kind: ModelKind,
+    is_smooth: bool,
     excluded: &[(String, ExclusionReason)],
 ) -> Result<(Vec<UntriedEffect>, FileSet), FileError> {
-    let assumed = AssumedExperiment::new(EXPERIMENT, experiment, kind)?;
+    let assumed = AssumedExperiment::new(EXPERIMENT, experiment, is_smooth)?;
     let of = |name: &str| {
         let (effect, candidate) = candidate_of(name)?;
         let needed = needed(effect);
@@ -74,9 +74,9 @@ pub fn untried(
 ///
 /// # Errors
 /// [`FileError`] of the experiment.
-pub fn additions(job: &FileSet, experiment: &FileSet, kind: ModelKind) -> Result<Vec<String>, FileError> {
+pub fn additions(job: &FileSet, experiment: &FileSet, is_smooth: bool) -> Result<Vec<String>, FileError> {
     let (_, excluded) = library(job, experiment);
-    let (untried, _) = untried(job, experiment, kind, &excluded)?;
+    let (untried, _) = untried(job, experiment, is_smooth, &excluded)?;
     let mut of_lines: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for effect in &untried {
         let NotTried { name, needs, .. } = effect.record();
@@ -123,7 +123,7 @@ mod tests {
             .map(|line| format!("{line}\n"))
             .collect();
         let (candidates, excluded) = library(&job, &files);
-        let (untried, assumed) = untried(&job, &files, ModelKind::QuasiStatic, &excluded).unwrap();
+        let (untried, assumed) = untried(&job, &files, true, &excluded).unwrap();
         let records: Vec<NotTried> = untried.iter().map(UntriedEffect::record).collect();
         let of = |name: &str| records.iter().find(|r| r.name == name);
         let bulldozing = of("bulldozing").unwrap();
@@ -137,7 +137,7 @@ mod tests {
             "{lugs:?}"
         );
         assert!(of("janosi_hanamoto").is_none() && candidates.iter().any(|c| c.name == "janosi_hanamoto"));
-        let lines = additions(&job, &files, ModelKind::QuasiStatic).unwrap();
+        let lines = additions(&job, &files, true).unwrap();
         assert!(
             lines
                 .iter()
@@ -153,7 +153,7 @@ mod tests {
     fn a_rim_that_is_stated_to_be_smooth_has_no_grousers_to_try() {
         let (job, files, _) = read("examples/hidden-effect");
         let (_, excluded) = library(&job, &files);
-        let (untried, _) = untried(&job, &files, ModelKind::QuasiStatic, &excluded).unwrap();
+        let (untried, _) = untried(&job, &files, true, &excluded).unwrap();
         assert!(untried.iter().all(|u| u.effect.name != "lug_thrust"));
     }
 }

@@ -3,7 +3,7 @@
 use formula::catalogue::catalogue;
 use serde_json::{Value, json};
 use shared::channel::Channel;
-use shared::model::{ModelKind, RunInput, SpatialSettings};
+use shared::model::{ModelKind, RunInput, SpatialSettings, grouser_key};
 
 use super::prior;
 use super::shape::{above, list, needing, number, one_of, table, text, usual, whole};
@@ -29,7 +29,7 @@ pub(super) fn model() -> Value {
         ),
         &["kind"],
     );
-    let keys = spatial().into_iter().chain(external());
+    let keys = std::iter::once(grousers()).chain(spatial()).chain(external());
     let keys = keys.map(|(key, shape)| (key.to_owned(), shape));
     for (key, shape) in keys.chain(prior::values()) {
         model["properties"][key] = shape;
@@ -47,6 +47,16 @@ pub(super) fn is_external() -> Value {
     let external = ModelKind::ALL.into_iter().filter(|kind| kind.is_external());
     let names: Vec<&str> = external.map(ModelKind::name).collect();
     json!({ "properties": { "kind": { "enum": names } }, "required": ["kind"] })
+}
+
+/// The setting of `kind = "quasi_static"`.
+fn grousers() -> (&'static str, Value) {
+    let [ignored, rolled] = grouser_key::WORDS;
+    let shape = one_of(
+        "quasi_static: whether the grousers that wheels have are ignored (a smooth rim) or rolled",
+        [ignored, rolled],
+    );
+    (grouser_key::KEY, usual(shape, ignored))
 }
 
 /// Settings of `kind = "scm"`.

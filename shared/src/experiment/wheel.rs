@@ -16,7 +16,7 @@ pub fn rim_speed_m_s(slip: f64, sled_speed_m_s: f64) -> f64 {
     }
 }
 
-/// A rigid wheel. `quasi_static` models its smooth rim alone: grousers enter through a radius of its own.
+/// A rigid wheel. `quasi_static` models its smooth rim alone, unless its grousers roll: they enter through a radius of its own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WheelGeometry {

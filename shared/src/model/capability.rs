@@ -52,6 +52,7 @@ impl ModelVariant {
             )));
         }
         self.check_effects(effects)?;
+        self.check_rolled_grousers(effects, &names)?;
         match meshes.first() {
             Some(wheel) if self.kind.is_smooth() => Err(ModelError::Inexpressible(format!(
                 "wheel {wheel} is a surface mesh: {kind} rolls a smooth cylinder; use kind = \"scm\""

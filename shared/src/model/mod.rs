@@ -4,6 +4,7 @@
 //! - `kind`: the models by name; [`settings`]: the table `[model]` of a job; [`spatial`]: settings of the
 //!   three-dimensional model; `external`, `external_table`, `external_effects`: models
 //!   that are not ours.
+//! - [`grouser_key`]: whether the quasi-static model rolls grousers; `rolled_grousers`: those that it has a form of.
 //! - [`effects`]: the effects of a job, their order and their parameters.
 //! - `error`: why a model cannot be set up.
 //! - `names`: what parameter names mean, and whether a set of them is complete.
@@ -19,9 +20,11 @@ mod error;
 mod external;
 mod external_effects;
 mod external_table;
+pub mod grouser_key;
 mod kind;
 mod metamodel;
 mod names;
+mod rolled_grousers;
 pub mod settings;
 pub mod spatial;
 mod variant;

@@ -6,6 +6,7 @@ use super::effects::EffectSet;
 use super::error::ModelError;
 use super::external::ExternalModel;
 use super::external_table;
+use super::grouser_key;
 use super::kind::ModelKind;
 use super::spatial::SpatialSettings;
 use formula::catalogue;
@@ -20,6 +21,8 @@ pub struct ModelSettings {
     pub kind: ModelKind,
     /// Settings of the three-dimensional model.
     pub spatial: Option<SpatialSettings>,
+    /// Whether the quasi-static model rolls the grousers that wheels have.
+    pub rolls_grousers: bool,
     /// The model, where it is not ours.
     pub external: Option<ExternalModel>,
     /// Parameters that are fixed.
@@ -40,6 +43,7 @@ impl ModelSettings {
         let (mut spatial, mut own) = (toml::Table::new(), toml::Table::new());
         let mut others = Vec::new();
         let (mut effects, mut effect_files) = (Vec::new(), Vec::new());
+        let mut rolls_grousers = false;
         for (key, value) in table {
             match key.as_str() {
                 "kind" => {}
@@ -50,6 +54,9 @@ impl ModelSettings {
                 }
                 key if SpatialSettings::KEYS.contains(&key) => {
                     spatial.insert(key.to_owned(), value.clone());
+                }
+                grouser_key::KEY if !kind.is_external() => {
+                    rolls_grousers = grouser_key::read(kind, value)?;
                 }
                 key => others.push((key, value)),
             }
@@ -75,6 +82,7 @@ impl ModelSettings {
         let mut settings = ModelSettings {
             kind,
             spatial,
+            rolls_grousers,
             external,
             fixed,
             effects: Vec::new(),
@@ -82,6 +90,21 @@ impl ModelSettings {
         };
         settings.add_effects(&effects, &effect_files)?;
         Ok(settings)
+    }
+
+    /// The keys that only a model of a kind has, beside its parameters.
+    pub fn keys_of(kind: ModelKind) -> &'static [&'static str] {
+        match kind {
+            ModelKind::QuasiStatic => &[grouser_key::KEY],
+            ModelKind::Scm => &SpatialSettings::KEYS,
+            ModelKind::WongReece | ModelKind::Rft => &[],
+            ModelKind::Command | ModelKind::Umbridge => &external_table::KEYS,
+        }
+    }
+
+    /// Whether the model rolls smooth rims, whatever grousers are declared.
+    pub fn is_smooth(&self) -> bool {
+        self.kind.is_smooth() && !self.rolls_grousers
     }
 
     /// Adds effects of the catalogue by name, and files of others.
@@ -167,12 +190,13 @@ fn fixed_parameter(
         }
     };
     if !key.contains('.') && !base.contains(&key) {
-        let keys: &[&str] = match external {
-            None => &SpatialSettings::KEYS,
-            Some(_) => &external_table::KEYS,
+        let kinds: &[ModelKind] = match external {
+            None => &[ModelKind::QuasiStatic, ModelKind::Scm],
+            Some(_) => &[ModelKind::Command],
         };
+        let keys = kinds.iter().flat_map(|kind| ModelSettings::keys_of(*kind));
         let names = base.into_iter().chain(["kind", "effects", "effect_files"]);
-        let names = names.chain(keys.iter().copied());
+        let names = names.chain(keys.copied());
         return Err(ModelError::Unknown(unknown_word("key", key, names)));
     }
     number(value).ok_or_else(|| ModelError::Invalid(format!("{key} must be a number, not {value}")))

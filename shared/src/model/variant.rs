@@ -30,6 +30,9 @@ pub struct ModelVariant {
     /// Settings of the three-dimensional model; absent for the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spatial: Option<SpatialSettings>,
+    /// Whether the quasi-static model rolls the grousers that wheels have.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub rolls_grousers: bool,
     /// The model, where it is not ours.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub external: Option<ExternalModel>,
@@ -161,6 +164,7 @@ impl ModelVariant {
         let variant = ModelVariant {
             kind: settings.kind,
             spatial: settings.spatial,
+            rolls_grousers: settings.rolls_grousers,
             external: settings.external.clone(),
             effects: effects.texts(),
             parameters,

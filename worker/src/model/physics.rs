@@ -1,9 +1,10 @@
 //! Which equations a variant's wheel is simulated by, with the sources of their parameters.
 
 use scm::effects::{Active, Site};
+use scm::quasi_static::{self, StraightGrousers};
 use scm::rft::{self, RftShape, RftSoil};
 use scm::spatial::{Grousers, SpatialRun, SurfaceMesh};
-use scm::{Averages, Condition, Rejection, Soil, Wheel, WongReece, quasi_static};
+use scm::{Averages, Condition, Rejection, Soil, Wheel, WongReece};
 use shared::experiment::WheelGeometry;
 use shared::model::{ModelKind, ModelVariant};
 
@@ -14,7 +15,8 @@ use super::spatial::SpatialModel;
 /// The equations of a variant.
 #[derive(Debug)]
 pub(super) enum Physics {
-    QuasiStatic(SoilMap),
+    /// With the grousers of each wheel that roll, in the variant's order.
+    QuasiStatic(SoilMap, Vec<StraightGrousers>),
     WongReece(SoilMap, WongReeceMap),
     Scm(SoilMap, Box<SpatialModel>),
     /// With the shape of each wheel, in the variant's order.
@@ -24,7 +26,7 @@ pub(super) enum Physics {
 /// The equations at one parameter vector.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Settled<'p> {
-    QuasiStatic(Soil),
+    QuasiStatic(Soil, &'p [StraightGrousers]),
     WongReece(Soil, WongReece),
     Scm(Soil, &'p SpatialModel),
     Rft(RftSoil, &'p [RftShape]),
@@ -54,7 +56,13 @@ impl Physics {
     /// [`CompileError`] names what is missing or cannot be expressed.
     pub(super) fn new(variant: &ModelVariant) -> Result<Self, CompileError> {
         Ok(match variant.kind {
-            ModelKind::QuasiStatic => Physics::QuasiStatic(SoilMap::new(variant)?),
+            ModelKind::QuasiStatic => {
+                let grousers = |wheel| straight_grousers(wheel, variant.rolls_grousers);
+                Physics::QuasiStatic(
+                    SoilMap::new(variant)?,
+                    variant.wheels.values().map(grousers).collect(),
+                )
+            }
             ModelKind::Command | ModelKind::Umbridge => return Err(CompileError::NoDescription),
             ModelKind::WongReece => Physics::WongReece(SoilMap::new(variant)?, WongReeceMap::new(variant)?),
             ModelKind::Scm => Physics::Scm(SoilMap::new(variant)?, Box::new(SpatialModel::new(variant)?)),
@@ -71,7 +79,9 @@ impl Physics {
     /// [`Rejection::InvalidParameter`].
     pub(super) fn at(&self, theta: &[f64]) -> Result<Settled<'_>, Rejection> {
         Ok(match self {
-            Physics::QuasiStatic(soil) => Settled::QuasiStatic(soil.soil(theta).checked()?),
+            Physics::QuasiStatic(soil, grousers) => {
+                Settled::QuasiStatic(soil.soil(theta).checked()?, grousers)
+            }
             Physics::WongReece(soil, law) => Settled::WongReece(soil.soil(theta).checked()?, law.law(theta)),
             Physics::Scm(soil, model) => Settled::Scm(soil.soil(theta).checked()?, model),
             Physics::Rft(soil, shapes) => Settled::Rft(soil.soil(theta).checked()?, shapes),
@@ -87,7 +97,10 @@ impl Settled<'_> {
     pub(super) fn simulate(&self, run: &Run, effects: &mut Active) -> Result<Simulated, Rejection> {
         let (wheel, condition, site) = (run.wheel, run.condition, run.site);
         let averages = match self {
-            Settled::QuasiStatic(soil) => quasi_static::simulate_with(soil, wheel, condition, effects, site),
+            Settled::QuasiStatic(soil, grousers) => {
+                let grousers = &grousers[run.place];
+                quasi_static::simulate_with_grousers(soil, wheel, grousers, condition, effects, site)
+            }
             Settled::WongReece(soil, law) => {
                 quasi_static::simulate_wong_reece(soil, wheel, condition, law, effects, site)
             }
@@ -111,7 +124,7 @@ impl Settled<'_> {
             ..*soil
         };
         match *self {
-            Settled::QuasiStatic(ref soil) => Settled::QuasiStatic(stiffer(soil)),
+            Settled::QuasiStatic(ref soil, grousers) => Settled::QuasiStatic(stiffer(soil), grousers),
             Settled::WongReece(ref soil, law) => Settled::WongReece(stiffer(soil), law),
             Settled::Scm(ref soil, model) => Settled::Scm(stiffer(soil), model),
             Settled::Rft(soil, shapes) => {
@@ -119,6 +132,15 @@ impl Settled<'_> {
                 Settled::Rft(RftSoil { xi_n_pa_m, ..soil }, shapes)
             }
         }
+    }
+}
+
+/// The grousers of a wheel if they roll; none otherwise.
+fn straight_grousers(wheel: &WheelGeometry, roll: bool) -> StraightGrousers {
+    StraightGrousers {
+        count: if roll { wheel.grouser_count } else { 0 },
+        height_m: wheel.grouser_height_m,
+        thickness_m: wheel.grouser_thickness_m,
     }
 }
 

@@ -7,7 +7,7 @@ use shared::channel::Channel;
 use shared::experiment::{
     AveragingProtocol, Experiment, Noise, Rig, RunUse, SoilProperties, TestRun, WheelGeometry,
 };
-use shared::model::{EffectSet, ModelKind, ModelSettings, ModelVariant, RunInput, SpatialSettings};
+use shared::model::{EffectSet, ModelKind, ModelSettings, ModelVariant, RunInput};
 use shared::outcome::Outcome;
 
 use crate::external::allowed::AllowedModels;
@@ -58,8 +58,8 @@ pub enum ServedError {
 ///
 /// # Arguments
 /// - `input`: values of [`INPUTS`] and of [`PARAMETERS`].
-/// - `config`: of the wheel `grouser_count`, `grouser_height_m`, `grouser_thickness_m` and `rig_radius_m`; of `scm` the keys of a
-///   job's `[model]`.
+/// - `config`: of the wheel `grouser_count`, `grouser_height_m`, `grouser_thickness_m` and `rig_radius_m`; of the model the keys
+///   of a job's `[model]` that its kind alone has.
 ///
 /// # Errors
 /// [`ServedError`].
@@ -146,11 +146,9 @@ fn variant(
         .iter()
         .filter(|(key, _)| !WHEEL_KEYS.contains(&key.as_str()))
     {
-        if kind != ModelKind::Scm || !SpatialSettings::KEYS.contains(&key.as_str()) {
-            let keys = match kind {
-                ModelKind::Scm => [WHEEL_KEYS.as_slice(), &SpatialSettings::KEYS].concat(),
-                _ => WHEEL_KEYS.to_vec(),
-            };
+        let own = ModelSettings::keys_of(kind);
+        if !own.contains(&key.as_str()) {
+            let keys = [WHEEL_KEYS.as_slice(), own].concat();
             let message = shared::file::unknown_word("key of config", key, keys);
             return Err(ServedError::Input(message));
         }
@@ -197,6 +195,12 @@ mod tests {
         let channels = quasi_static(RUN, SOIL, "").unwrap();
         assert_eq!(channels.len(), OUTPUTS.len());
         assert!(channels[0] > 0.0 && channels[2] > 0.0, "{channels:?}");
+        let wheel = "grouser_count = 12\ngrouser_height_m = 0.009\ngrouser_thickness_m = 0.002\n";
+        let mut slips = RUN;
+        slips[0] = 0.6;
+        let smooth = quasi_static(slips, SOIL, wheel).unwrap();
+        let rolled = quasi_static(slips, SOIL, &format!("{wheel}grousers = \"rolled\"")).unwrap();
+        assert!(rolled[2] > 1.5 * smooth[2], "{rolled:?} {smooth:?}");
         let wider = quasi_static(RUN, SOIL, "rig_radius_m = 0.14").unwrap();
         assert!(wider[1].to_bits() != channels[1].to_bits());
     }

@@ -2,7 +2,6 @@
 
 use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet};
-use shared::model::ModelKind;
 use toml_edit::{DocumentMut, Item, Table, TableLike, value};
 
 /// Bulk density of dry sand between loose and dense `[kg/m^3]`.
@@ -49,12 +48,15 @@ pub struct AssumedExperiment {
 impl AssumedExperiment {
     /// States the density of the runs' soil, the grousers of every wheel and the length of the bin where the experiment does not.
     ///
-    /// A wheel with `grouser_count = 0` is smooth and stays so, as does a surface mesh. `scm` rolls the wheel as it is declared:
-    /// there, grousers are never assumed.
+    /// A wheel with `grouser_count = 0` is smooth and stays so, as does a surface mesh. A model that rolls grousers rolls those that are
+    /// declared: for it, they are never assumed.
+    ///
+    /// # Arguments
+    /// - `is_smooth`: whether the model rolls smooth rims, whatever grousers are declared.
     ///
     /// # Errors
     /// [`FileError`] where the files are no experiment.
-    pub fn new(name: &str, experiment: &FileSet, kind: ModelKind) -> Result<Self, FileError> {
+    pub fn new(name: &str, experiment: &FileSet, is_smooth: bool) -> Result<Self, FileError> {
         let parsed = Experiment::parse(name, experiment)?;
         let mut document: DocumentMut = experiment
             .toml
@@ -77,7 +79,7 @@ impl AssumedExperiment {
             }
         }
         for (wheel, geometry) in &parsed.wheels {
-            if !kind.is_smooth() || geometry.mesh.is_some() {
+            if !is_smooth || geometry.mesh.is_some() {
                 continue;
             }
             if let Some(table) = table(document.get_mut("wheel"), wheel)
@@ -140,19 +142,19 @@ mod tests {
     const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\n\
         1,a,s,0.2,100,0.01,20,fit\n2,b,s,0.2,100,0.01,20,fit\n";
 
-    fn assumed(kind: ModelKind) -> (Experiment, Vec<UnsaidProperty>) {
+    fn assumed(is_smooth: bool) -> (Experiment, Vec<UnsaidProperty>) {
         let files = FileSet {
             toml: EXPERIMENT.into(),
             files: [("runs.csv".to_owned(), RUNS.to_owned())].into(),
         };
-        let assumed = AssumedExperiment::new("experiment.toml", &files, kind).unwrap();
+        let assumed = AssumedExperiment::new("experiment.toml", &files, is_smooth).unwrap();
         let parsed = Experiment::parse("experiment.toml", &assumed.files).unwrap();
         (parsed, assumed.unsaid)
     }
 
     #[test]
     fn what_is_stated_stays_and_the_rest_is_assumed() {
-        let (with, unsaid) = assumed(ModelKind::QuasiStatic);
+        let (with, unsaid) = assumed(true);
         assert_eq!(with.soils["s"].density_kg_m3, Some(DENSITY_KG_M3));
         // no run is in it
         assert_eq!(with.soils["t"].density_kg_m3, None);
@@ -170,8 +172,8 @@ mod tests {
     }
 
     #[test]
-    fn a_rolling_wheel_is_as_it_is_declared() {
-        let (with, unsaid) = assumed(ModelKind::Scm);
+    fn a_wheel_whose_grousers_roll_is_as_it_is_declared() {
+        let (with, unsaid) = assumed(false);
         assert_eq!(with.wheels["a"].grouser_count, 0);
         assert!(unsaid.iter().all(|u| u.property != SiteProperty::Grousers));
     }

@@ -1,7 +1,7 @@
 //! The job of a model with more effects: the same job, and what is added to it.
 
 use shared::file::FileError;
-use shared::model::SpatialSettings;
+use shared::model::{ModelKind, ModelSettings};
 use shared::parameters::SPATIAL;
 
 use super::one_model::keep_model;
@@ -84,8 +84,10 @@ pub fn with_setting(name: &str, toml: &str, switch: &ModelSwitch) -> Result<Stri
         .and_then(toml_edit::Item::as_table_like_mut);
     let model = model.ok_or_else(|| fail("[model] is missing".into()))?;
     if switch.is_kind() {
-        let own = SPATIAL.iter().map(|p| p.name).chain(SpatialSettings::KEYS);
-        for key in own {
+        let keys = [ModelKind::QuasiStatic, ModelKind::Scm]
+            .into_iter()
+            .flat_map(ModelSettings::keys_of);
+        for key in SPATIAL.iter().map(|p| p.name).chain(keys.copied()) {
             model.remove(key);
         }
     }
@@ -128,6 +130,11 @@ mod tests {
         assert_eq!(
             turned("kind_quasi_static"),
             "[model]\nkind = \"quasi_static\"\ncohesion_pa = 5.0\n"
+        );
+        let rolled = "[model]\nkind = \"quasi_static\"\ngrousers = \"rolled\"\n";
+        assert_eq!(
+            with_setting("job.toml", rolled, ModelSwitch::find("kind_scm").unwrap()).unwrap(),
+            "[model]\nkind = \"scm\"\n"
         );
         let node = turned("displacement_node");
         assert!(

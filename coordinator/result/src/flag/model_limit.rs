@@ -22,7 +22,11 @@ pub fn model_limits(spec: &Spec) -> Vec<String> {
     let name = spec.fit_variant.kind.name();
     match spec.fit_variant.kind {
         ModelKind::QuasiStatic | ModelKind::WongReece => {
-            if !lugged.is_empty() && !named(&[Variable::GrouserCount, Variable::GrouserHeight]) {
+            if spec.model.rolls_grousers {
+                limits.push(format!(
+                    "{name} rolls the grousers of {lugged} on average over their period: the soil does not flow, and against scm pulls are too low, by some 6 % of the load"
+                ));
+            } else if !lugged.is_empty() && !named(&[Variable::GrouserCount, Variable::GrouserHeight]) {
                 limits.push(format!(
                     "{name} models the smooth rim: the grousers of {lugged} enter only through a wheel radius of their own (wheel_radius_m.NAME)"
                 ));
@@ -68,4 +72,41 @@ fn of_external(spec: &Spec, model: &ExternalModel) -> Vec<String> {
     let sentence =
         |input: &str| format!("{input} differs between runs, but is not among the inputs of {name}");
     unseen.into_iter().map(sentence).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::file::FileSet;
+
+    #[test]
+    fn a_reader_learns_whether_grousers_roll() {
+        let limits = |key: &str| {
+            let job = FileSet {
+                toml: format!(
+                    "experiment = \"e.toml\"\n[model]\nkind = \"quasi_static\"\n{key}[priors]\nlog10_p_ref = {{ normal = [3.9, 0.2] }}\nkappa = 0.0\nn = 1.1\nfriction_angle_deg = 30.0\n"
+                ),
+                ..FileSet::default()
+            };
+            let experiment = FileSet {
+                toml: "runs = \"runs.csv\"\n[wheel.a]\nradius_m = 0.1\nwidth_m = 0.05\ngrouser_count = 12\ngrouser_height_m = 0.005\ngrouser_thickness_m = 0.001\n[soil.s]\n[noise]\ndrawbar_pull_n = 1.0\n".into(),
+                files: [(
+                    "runs.csv".to_owned(),
+                    "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\n1,a,s,0.2,25,0.01,0.5,fit\n".to_owned(),
+                )]
+                .into(),
+            };
+            let spec = Spec::new("job.toml", &job, "e.toml", &experiment).expect("a job");
+            (model_limits(&spec).join("\n"), spec.model_words())
+        };
+        let (ignored, words) = limits("");
+        assert!(ignored.contains("enter only through a wheel radius"), "{ignored}");
+        assert_eq!(words, "quasi_static");
+        let (rolled, words) = limits("grousers = \"rolled\"\n");
+        assert!(
+            rolled.starts_with("quasi_static rolls the grousers of a "),
+            "{rolled}"
+        );
+        assert_eq!(words, "quasi_static with grousers");
+    }
 }

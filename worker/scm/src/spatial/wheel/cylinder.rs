@@ -101,14 +101,9 @@ impl Cylinder {
         let highest = |column| across.highest(terrain, column);
         self.collect_grousers(terrain, pose, least_rise, row, highest, &mut pieces);
         self.pieces = pieces;
-        let mut range = range;
-        if let (Some(first), Some(last)) = (self.pieces.first(), self.pieces.last()) {
-            let column = |ahead: f64| ((pose.x + ahead) / terrain.dx) as usize;
-            range.start = range.start.min(column(first.rear) - 1);
-            range.end = range.end.max(column(last.front) + 2);
-        }
-        let mut range = self.widen(terrain, pose, range, least_rise, across);
-        range.end = range.end.min(terrain.columns);
+        let ends = self.pieces.first().zip(self.pieces.last());
+        let ends = ends.map(|(first, last)| [first.rear, last.front]);
+        let range = self.widen(terrain, pose, range, ends, least_rise, across);
         out.facets.clear();
         out.strips.clear();
         let mut next_piece = 0;
@@ -140,16 +135,23 @@ impl Cylinder {
         self.fill(terrain, pose, out);
     }
 
-    /// The columns of `range`, those where the rim may touch soil, and one more on either side: where the last contact
-    /// ended at a grouser, the rim beyond it may touch again.
+    /// The columns of `range`, those from the rear end of grousers to their front end, those where the rim may touch soil, and one more
+    /// on either side: where the last contact ended at a grouser, the rim beyond it may touch again.
     pub(super) fn widen(
         &self,
         terrain: &Terrain,
         pose: Pose,
         range: Range,
+        grousers: Option<[f64; 2]>,
         least_rise: f64,
         across: &Across,
     ) -> Range {
+        let mut range = range;
+        if let Some([rear, front]) = grousers {
+            let column = |ahead: f64| ((pose.x + ahead) / terrain.dx) as usize;
+            range.start = range.start.min(column(rear).saturating_sub(1));
+            range.end = range.end.max(column(front) + 2);
+        }
         let least = least_rise.max(0.0);
         let half = (self.radius * self.radius - least * least).max(0.0).sqrt();
         let column = |ahead: f64| (((pose.x + ahead) / terrain.dx) as usize).min(terrain.columns - 1);
@@ -162,7 +164,7 @@ impl Cylinder {
         let foremost = (range.end..column(half) + 1).rev().find(touches);
         Range {
             start: rearmost.map_or(range.start, |c| c.saturating_sub(1)),
-            end: foremost.map_or(range.end, |c| c + 2),
+            end: foremost.map_or(range.end, |c| c + 2).min(terrain.columns),
         }
     }
 

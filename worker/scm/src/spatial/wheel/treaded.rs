@@ -73,14 +73,11 @@ impl Treaded {
     ) {
         self.find_places(across);
         self.collect_pieces(terrain, pose, least_rise, across);
-        let mut range = range;
-        if let (Some(first), Some(last)) = (self.borders.first(), self.borders.last()) {
-            let column = |ahead: f64| ((pose.x + ahead) / terrain.dx) as usize;
-            range.start = range.start.min(column(*first).saturating_sub(1));
-            range.end = range.end.max(column(*last) + 2);
-        }
-        let mut range = self.cylinder.widen(terrain, pose, range, least_rise, across);
-        range.end = range.end.min(terrain.columns);
+        let ends = self.borders.first().zip(self.borders.last());
+        let ends = ends.map(|(first, last)| [*first, *last]);
+        let range = self
+            .cylinder
+            .widen(terrain, pose, range, ends, least_rise, across);
         self.cut(terrain, pose, range, out);
         self.fill(terrain, pose, across, out);
     }
