@@ -15,6 +15,8 @@
 //! - `reference`: one effect, after a reference campaign on the same soil without it, whose posterior is the prior; of every fourth
 //!   nothing. Beside it the search without the reference.
 //! - `steady`: as `scm`, one experiment after the other as a study searches them: the answer, its reason and its time.
+//! - `node`: as `steady`, with Janosi and Hanamoto's law hidden whose displacement the nodes of the soil keep.
+//! - `rolling`: as `steady`, with the model's own grid and 24 runs.
 //! - `tmcmc`: one effect of the catalogue, each in turn; the search's log Bayes factor of it beside that of full evidences by the
 //!   sampler.
 //! - `data`: the experiments of `tests/data`.
@@ -36,6 +38,7 @@ mod tmcmc;
 use std::process::ExitCode;
 
 use rig::Flaw;
+use study::design::Plan;
 use study::error::StudyError;
 use study::kind::HiddenKind;
 use study::parallel::each;
@@ -61,7 +64,9 @@ fn main() -> ExitCode {
         "drift" => rig::run(&Flaw::DRIFTS, count, seed),
         "preparations" => rig::run(&[Flaw::Preparations], count, seed),
         "reference" => reference::run(count, seed),
-        "steady" => steady::run(count, seed),
+        "steady" => steady::run(Plan::Spatial, None, count, seed),
+        "node" => steady::run(Plan::Spatial, Some("janosi_hanamoto_node"), count, seed),
+        "rolling" => steady::run(Plan::Rolling, None, count, seed),
         "tmcmc" => tmcmc::run(count, seed),
         "understated" => rig::run(&[Flaw::Understated], count, seed),
         "untryable" => rig::untryable::run(count, seed),

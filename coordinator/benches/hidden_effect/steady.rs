@@ -2,12 +2,14 @@
 
 use std::time::Instant;
 
+use record::Extension;
+
 use crate::study::design::Plan;
 use crate::study::error::StudyError;
 use crate::study::parallel::threads;
 use crate::study::rate::Rate;
 use crate::study::record::{is_right, record};
-use crate::study::trial::draw_detectable;
+use crate::study::trial::{draw_detectable, draw_of};
 
 /// The truths are others than those of the other kinds.
 const FIRST: u64 = 3_000_000;
@@ -15,19 +17,30 @@ const FIRST: u64 = 3_000_000;
 const MOST_S: f64 = 60.0;
 
 /// Searches so many experiments one after the other, each on all threads.
-pub(crate) fn run(count: u64, seed: u64) -> Result<(), StudyError> {
+///
+/// # Arguments
+/// - `hidden`: the effect that is hidden; `None`: any of the catalogue.
+pub(crate) fn run(plan: Plan, hidden: Option<&str>, count: u64, seed: u64) -> Result<(), StudyError> {
     let mut times = Vec::new();
     let mut right = Vec::new();
     let mut wrong = Vec::new();
     for number in 0..count {
-        let case = draw_detectable(Plan::Spatial, 1, seed, FIRST + number)?;
+        let case = match hidden {
+            None => draw_detectable(plan, 1, seed, FIRST + number)?,
+            Some(name) => {
+                let own = (name.to_owned(), Extension::Effect(name.to_owned()));
+                draw_of(plan, &[own], 1, seed, FIRST + number)?
+            }
+        };
         let begin = Instant::now();
+        let cpu = cpu_s();
         let record = record(&case.plan.job(), &case.experiment(), 1, threads())?;
         let seconds = begin.elapsed().as_secs_f64();
         let is_right = is_right(&record, case.hidden.first().map(String::as_str));
         println!(
-            "steady {number} {}: {seconds:.1} s, {} evaluations, {}: {}",
+            "steady {number} {}: {seconds:.1} s, {:.1} CPU-s, {} evaluations, {}: {}",
             case.hidden[0],
+            cpu_s() - cpu,
             record.evaluations,
             match is_right {
                 Some(true) => "right",
@@ -49,4 +62,15 @@ pub(crate) fn run(count: u64, seed: u64) -> Result<(), StudyError> {
         threads()
     );
     Ok(())
+}
+
+/// Processor time of this process, all threads together \[s\]; Linux counts it in hundredths.
+fn cpu_s() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let fields = stat.rsplit(')').next().unwrap_or_default().split_whitespace();
+    let ticks = fields
+        .skip(11)
+        .take(2)
+        .filter_map(|field| field.parse::<f64>().ok());
+    ticks.sum::<f64>() / 100.0
 }

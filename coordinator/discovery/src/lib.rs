@@ -33,5 +33,5 @@ pub use search::next_run::InformativeRun;
 pub use search::query::{QueriedModel, Query};
 pub use search::verdict::SearchVerdict;
 pub use search::weighing::WeighedSet;
-pub use settings::{SearchSettings, Starts};
+pub use settings::{Roughness, SearchSettings, Starts};
 pub use task::{LawCandidate, ProposedRuns, Reduction, SearchTask};

@@ -9,6 +9,42 @@ pub enum Starts {
     Even(usize),
 }
 
+/// How a model's predictions follow its parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Roughness {
+    /// Smoothly.
+    Smooth,
+    /// In jumps, as on a grid that the contact crosses node by node.
+    Rough,
+}
+
+impl Roughness {
+    /// Shortest finite difference, in standard deviations of the prior; shorter ones show the jumps.
+    pub(crate) fn least_difference(self) -> f64 {
+        match self {
+            Self::Smooth => 0.03,
+            Self::Rough => 0.15,
+        }
+    }
+
+    /// A step of a fit that gains, or is predicted to gain, less ends its trials \[nats\]: the log-likelihood of a rough model scatters by
+    /// more.
+    pub(crate) fn least_gain(self) -> f64 {
+        match self {
+            Self::Smooth => 0.01,
+            Self::Rough => 0.2,
+        }
+    }
+
+    /// Rejected steps in a row that end the trials.
+    pub(crate) fn most_failures(self) -> usize {
+        match self {
+            Self::Smooth => 4,
+            Self::Rough => 3,
+        }
+    }
+}
+
 /// Settings of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchSettings {
@@ -16,19 +52,19 @@ pub struct SearchSettings {
     pub starts: Starts,
     /// Seed of the draws.
     pub seed: u64,
-    /// Shortest finite difference, in standard deviations of the prior; shorter ones show the roughness of a model on a grid.
-    pub least_difference: f64,
+    /// How the model's predictions follow its parameters: a rough model is searched by long differences and fewer fits.
+    pub roughness: Roughness,
     /// Whether the scatter of the model's predictions is measured, and counted as noise.
     pub has_numerical_noise: bool,
 }
 
 impl Default for SearchSettings {
-    /// 32 starts that fill the prior, seed 1, differences for a smooth model, without numerical noise.
+    /// 32 starts that fill the prior, seed 1, for a smooth model without numerical noise.
     fn default() -> Self {
         Self {
             starts: Starts::Even(32),
             seed: 1,
-            least_difference: 0.03,
+            roughness: Roughness::Smooth,
             has_numerical_noise: false,
         }
     }

@@ -6,11 +6,13 @@
 //! - `data`: the fitted measurements: noise, likelihood, predicted values; whether their order follows a condition.
 //! - `spec`: [`Spec`], a calibration as its files determine it; `spec_words` says it in words.
 //! - `plain_parameter`: [`PlainParameter`], what a search may free. `model_switch`: [`ModelSwitch`], what it may turn.
+//!   `effect_on_nodes`: [`EffectOnNodes`], an effect together with such a turn.
 //! - `plausibility`: questions about what is possible, but was probably not meant.
 //! - `derived`: the jobs, and the experiment, that follow from a job and its experiment.
 
 mod data;
 mod derived;
+mod effect_on_nodes;
 mod job_file;
 mod model_switch;
 mod plain_parameter;
@@ -34,6 +36,7 @@ pub use derived::one_model::model_job;
 pub use derived::own_effects::{OwnEffect, foreign_effects, with_own_effects, without_own_effects};
 pub use derived::point_job::point_job;
 pub use derived::validation_job::validation_job;
+pub use effect_on_nodes::EffectOnNodes;
 pub use job_file::{JobFile, JobModels};
 pub use model_switch::{MODEL_SWITCHES, ModelSwitch};
 pub use plain_parameter::{PLAIN_PARAMETERS, PlainParameter};

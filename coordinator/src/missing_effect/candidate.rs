@@ -9,13 +9,16 @@ use shared::experiment::RunUse;
 use shared::file::{FileError, FileSet, unknown_word};
 use shared::model::effects::parameter_name;
 
-use job::{ModelSwitch, PlainParameter, Spec, candidate_priors, extended_job, with_free, with_setting};
+use job::{
+    EffectOnNodes, ModelSwitch, PlainParameter, Spec, candidate_priors, extended_job, with_free, with_setting,
+};
 use record::Extension;
 
 /// A candidate effect as an addition to a job.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CandidateEffect {
-    /// Its name: that of the effect, `EFFECT.WHEEL` on one wheel of several, `pressure_z` of a curve, `pressure_z_power` of a form.
+    /// Its name: that of the effect, `EFFECT.WHEEL` on one wheel of several, `EFFECT_node` with the displacement on the soil,
+    /// `pressure_z` of a curve, `pressure_z_power` of a form.
     pub name: String,
     /// The addition to the job.
     pub extension: Extension,
@@ -58,6 +61,15 @@ pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<
                 } else if let Some(switch) = ModelSwitch::find(effect) {
                     toml = with_setting(name, &toml, switch)?;
                 } else {
+                    let mut effect = effect;
+                    if let Some(on_nodes) = EffectOnNodes::find(effect) {
+                        toml = with_setting(name, &toml, on_nodes.setting)?;
+                        effect = &on_nodes.effect.name;
+                    }
+                    // On the rim and on the nodes together, an effect is on the nodes.
+                    if effects.contains(effect) {
+                        continue;
+                    }
                     let own = stated
                         .iter()
                         .filter(|(name, _)| name.split_once('.').is_some_and(|(of, _)| of == effect));
@@ -94,7 +106,8 @@ pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<
 /// The candidate effects of the library for an experiment.
 ///
 /// First every effect of the catalogue that the job does not have, in the order of the catalogue; then, where fitted runs have
-/// several wheels, each on each of these wheels alone. Checked by `tests::of_several_wheels_each_may_have_an_effect_alone`.
+/// several wheels, each on each of these wheels alone; then those of the shear displacement with that on the nodes of the soil. Checked by
+/// `tests::of_several_wheels_each_may_have_an_effect_alone` and `tests::an_effect_of_the_displacement_may_be_on_the_nodes`.
 ///
 /// # Returns
 /// The candidates, and the names of the effects that are excluded here with the reason.
@@ -103,8 +116,10 @@ pub fn library(
     experiment: &FileSet,
 ) -> (Vec<CandidateEffect>, Vec<(String, ExclusionReason)>) {
     let (mut had, mut wheels, mut fitted) = (BTreeSet::new(), BTreeSet::new(), Vec::new());
+    let mut on_nodes = Vec::new();
     // An invalid job excludes every effect, each with the reason.
     if let Ok(base) = spec(job, experiment) {
+        on_nodes.extend(EffectOnNodes::all_of(&base));
         had.extend(base.fit_variant.effects.into_iter().map(|e| e.name));
         fitted = base.experiment.runs;
         fitted.retain(|run| run.usage == RunUse::Fit);
@@ -138,11 +153,21 @@ pub fn library(
             Err(reason) => excluded.push((candidate.name, reason)),
         }
     }
+    for on_nodes in on_nodes {
+        let candidate = named(on_nodes.name());
+        // Where it cannot be on the rim, that has been said.
+        if check(job, experiment, &candidate.extension, on_nodes.effect, None).is_ok() {
+            candidates.push(candidate);
+        }
+    }
     (candidates, excluded)
 }
 
 /// The candidate of a name, with its effect; `None` for a name that is not in the catalogue.
 pub(super) fn candidate_of(name: &str) -> Option<(&'static Effect, CandidateEffect)> {
+    if let Some(on_nodes) = EffectOnNodes::find(name) {
+        return Some((on_nodes.effect, named(name.to_owned())));
+    }
     let (effect, wheel) = match name.split_once('.') {
         Some((effect, wheel)) => (effect, Some(wheel)),
         None => (name, None),
@@ -154,10 +179,7 @@ pub(super) fn candidate_of(name: &str) -> Option<(&'static Effect, CandidateEffe
 fn candidate(effect: &Effect, wheel: Option<&str>) -> CandidateEffect {
     let effect = effect.name.clone();
     match wheel {
-        None => CandidateEffect {
-            name: effect.clone(),
-            extension: Extension::Effect(effect),
-        },
+        None => named(effect),
         Some(wheel) => CandidateEffect {
             name: format!("{effect}.{wheel}"),
             extension: Extension::OnWheel {
@@ -165,6 +187,14 @@ fn candidate(effect: &Effect, wheel: Option<&str>) -> CandidateEffect {
                 wheel: wheel.to_owned(),
             },
         },
+    }
+}
+
+/// A candidate that a job gets by its name.
+fn named(name: String) -> CandidateEffect {
+    CandidateEffect {
+        extension: Extension::Effect(name.clone()),
+        name,
     }
 }
 
@@ -296,6 +326,38 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn an_effect_of_the_displacement_may_be_on_the_nodes() {
+        let (mut job, files, _) = read("tests/data/shear-mobilisation");
+        let on_nodes = |job: &FileSet| -> Vec<CandidateEffect> {
+            let (candidates, _) = library(job, &files);
+            candidates
+                .into_iter()
+                .filter(|c| c.name.ends_with("_node"))
+                .collect()
+        };
+        // No terrain, no nodes.
+        assert!(on_nodes(&job).is_empty());
+        job.toml = job.toml.replace("quasi_static", "scm");
+        let found = on_nodes(&job);
+        let names: Vec<&str> = found.iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(names, ["janosi_hanamoto_node", "stretched_mobilisation_node"]);
+        let with = extended("job.toml", &job, &[&found[0].extension]).unwrap();
+        let own = spec(&with, &files).unwrap();
+        let displacement = own.model.spatial.map(|spatial| spatial.displacement);
+        assert_eq!(
+            displacement,
+            Some(shared::model::spatial::DisplacementFrame::Node)
+        );
+        assert_eq!(own.freed(), ["displacement_node", "kind_scm"]);
+        // Together with the same on the rim it is one effect; a job that has one is asked where it keeps the displacement.
+        let rim = Extension::Effect("janosi_hanamoto".into());
+        let both = extended("job.toml", &job, &[&rim, &found[0].extension]).unwrap();
+        assert_eq!(spec(&both, &files).unwrap().fit_variant.effects.len(), 1);
+        let mobilised = extended("job.toml", &job, &[&rim]).unwrap();
+        assert!(on_nodes(&mobilised).is_empty());
     }
 
     #[test]

@@ -12,7 +12,7 @@ use record::{
 };
 use shared::channel::Channel;
 
-use super::candidate::CandidateEffect;
+use super::candidate::{CandidateEffect, candidate_of};
 use super::curves::curves;
 use super::entry::CandidateEntry;
 use super::law::curve;
@@ -210,7 +210,7 @@ fn strength_prior(candidate: &CandidateEffect, models: &SearchModels) -> Option<
             .map_or(plain.prior.to_owned(), ToString::to_string);
         return Some(format!("{} = {prior}", plain.name));
     }
-    let effect = formula::catalogue::find(candidate.name.split('.').next()?)?;
+    let (effect, _) = candidate_of(&candidate.name)?;
     let strength = effect.parameters.iter().find(|p| p.neutral.is_some())?;
     let name = format!("{}.{}", effect.name, strength.name);
     let prior = stated.get(&name).unwrap_or(&strength.prior);

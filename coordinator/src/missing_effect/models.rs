@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use discovery::{
-    LawCandidate, ProposedRuns, QueriedModel, Query, Reduction, SearchSettings, SearchTask, Starts,
+    LawCandidate, ProposedRuns, QueriedModel, Query, Reduction, Roughness, SearchSettings, SearchTask, Starts,
 };
 use formula::Effect;
 use formula::catalogue::{catalogue, find};
@@ -22,8 +22,6 @@ use super::untried::untried;
 use job::{FreeParameter, MODEL_SWITCHES, PLAIN_PARAMETERS, Spec, free_parameters, without_effects};
 use record::{Extension, NotTried};
 
-/// Shortest finite difference of the three-dimensional model, in standard deviations of the prior: shorter ones show its grid.
-const ROUGH: f64 = 0.15;
 /// Position in the series of the campaign from which a rig goes on.
 const LAST_IN_SERIES: f64 = 0.5;
 /// Starts of the base's fit.
@@ -186,12 +184,10 @@ impl SearchModels {
             settings: SearchSettings {
                 starts: Starts::Even(STARTS),
                 seed: base.algorithm.seed(),
-                least_difference: match base.model.kind {
-                    ModelKind::QuasiStatic | ModelKind::WongReece | ModelKind::Rft => {
-                        SearchSettings::default().least_difference
-                    }
+                roughness: match base.model.kind {
+                    ModelKind::QuasiStatic | ModelKind::WongReece | ModelKind::Rft => Roughness::Smooth,
                     // Whether another model has a grid, nobody has said.
-                    ModelKind::Scm | ModelKind::Command | ModelKind::Umbridge => ROUGH,
+                    ModelKind::Scm | ModelKind::Command | ModelKind::Umbridge => Roughness::Rough,
                 },
                 has_numerical_noise: base.model.kind != ModelKind::QuasiStatic,
             },

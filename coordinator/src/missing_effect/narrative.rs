@@ -1,9 +1,10 @@
 //! The result of a search in one sentence.
 
 use discovery::{Conclusion, DETECTED, SearchVerdict};
-use job::{ModelSwitch, PlainParameter};
+use job::{EffectOnNodes, ModelSwitch, PlainParameter};
 use record::{JudgedEffect, NONE, NOT_IN_LIBRARY, Outside};
 
+use super::candidate::candidate_of;
 use super::models::SearchModels;
 use super::remaining_misfit::remaining_misfit;
 
@@ -95,7 +96,7 @@ fn verdict(
                     untried.needs
                 );
             }
-            let effect = formula::catalogue::find(name.split('.').next().unwrap_or_default());
+            let effect = candidate_of(&name).map(|(effect, _)| effect);
             let claim = match (PlainParameter::find(&name), ModelSwitch::find(&name)) {
                 (Some(plain), _) => format!("{name} is missing: {}", plain.summary),
                 (None, Some(switch)) => {
@@ -103,7 +104,9 @@ fn verdict(
                 }
                 (None, None) => {
                     let summary = effect.map_or("", |effect| effect.summary.as_str());
-                    format!("{name} is missing: {summary}")
+                    let place =
+                        EffectOnNodes::find(&name).map_or("", |_| ", counted where the soil is sheared");
+                    format!("{name} is missing: {summary}{place}")
                 }
             };
             format!(

@@ -5,6 +5,8 @@ use std::collections::BTreeSet;
 use job::PlainParameter;
 use record::Verdict;
 
+use super::candidate::candidate_of;
+
 /// A test and the effects that it measures separately.
 struct RigTest {
     what: &'static str,
@@ -69,7 +71,10 @@ pub(super) fn deciding(open: &[&str], verdict: Verdict) -> Vec<String> {
     if matches!(verdict, Verdict::Named | Verdict::NothingDetectable) {
         return Vec::new();
     }
-    let effect = |name: &&str| name.split('.').next().unwrap_or_default().to_owned();
+    let effect = |name: &&str| match candidate_of(name) {
+        Some((effect, _)) => effect.name.clone(),
+        None => (*name).to_owned(),
+    };
     let open: Vec<String> = open.iter().map(effect).collect();
     let proposal = |test: &RigTest| {
         let own = open.iter().filter(|name| test.decides.contains(&name.as_str()));

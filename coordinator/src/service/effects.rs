@@ -11,7 +11,7 @@ use super::error::ServiceError;
 use super::handle::Service;
 use crate::farm::dispatch::Stopped;
 use crate::store::{AddedEffect, NewEffect, StoredEffect};
-use job::{ModelSwitch, OwnEffect, PlainParameter, check_own, foreign_effects};
+use job::{EffectOnNodes, ModelSwitch, OwnEffect, PlainParameter, check_own, foreign_effects};
 use record::Extension;
 
 /// How an effect file and a job are called in messages.
@@ -101,7 +101,8 @@ impl Service {
         };
         let is_ours = find(named).is_some()
             || PlainParameter::find(named).is_some()
-            || ModelSwitch::find(named).is_some();
+            || ModelSwitch::find(named).is_some()
+            || EffectOnNodes::find(named).is_some();
         let own = if is_ours { None } else { self.as_file(named).await? };
         Ok(match own {
             Some(own) => Extension::File {

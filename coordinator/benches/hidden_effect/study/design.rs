@@ -8,6 +8,8 @@ pub(crate) const CHANNELS: usize = 3;
 const PRIORS: &str = "log10_p_ref = { uniform = [4.0, 5.6] }\nkappa = { normal = [0.0, 0.3], bounds = [-0.8, 2.0] }\nn = { normal = [1.1, 0.2], bounds = [0.8, 2.0] }\nfriction_angle_deg = { normal = [30.0, 5.7], bounds = [11.5, 37.3] }\n";
 /// Priors of the three-dimensional model: soils that carry the wheel, and no kappa, which one wheel does not determine.
 const SPATIAL_PRIORS: &str = "log10_p_ref = { uniform = [4.6, 5.4] }\nkappa = 0.0\nn = { normal = [1.1, 0.1], bounds = [0.8, 2.0] }\nfriction_angle_deg = { normal = [30.0, 4.0], bounds = [15.0, 37.3] }\n";
+/// The three-dimensional model as a user gets it, without kappa.
+const ROLLING: &str = "kind = \"scm\"\n";
 /// Short and coarse rolling: the trials test the search, not the physics.
 const SPATIAL: &str = "kind = \"scm\"\ndem_spacing_m = 0.012\ntravel_step_m = 0.003\nsteady_travel_m = 0.3\nsteady_tolerance = 0.01\n";
 
@@ -22,8 +24,10 @@ pub(crate) enum Plan {
     Wheels,
     /// Six slips at one load and one speed: many effects are ambiguous.
     Narrow,
-    /// Four slips, two loads, two speeds of a wheel that rolls in three dimensions.
+    /// Four slips, two loads, two speeds of a wheel that rolls in three dimensions on a coarse grid.
     Spatial,
+    /// Six slips, two loads, two speeds of the same wheel with the model's own grid and steps.
+    Rolling,
 }
 
 /// A run of the design.
@@ -57,12 +61,13 @@ impl Plan {
                 [&[0.05, 0.1, 0.2, 0.3, 0.45, 0.6], &[60.0, 120.0], &[0.01, 0.05]]
             }
             Plan::Narrow => [&[0.05, 0.1, 0.2, 0.3, 0.45, 0.6], &[90.0], &[0.03]],
+            Plan::Rolling => [&[0.05, 0.1, 0.2, 0.3, 0.4, 0.5], &[60.0, 120.0], &[0.01, 0.05]],
             Plan::Spatial => [&[0.05, 0.15, 0.3, 0.5], &[60.0, 120.0], &[0.01, 0.05]],
         };
         let mut rows = self.grid([slips, loads, rims], false);
         rows.extend(match self {
             Plan::Narrow => Vec::new(),
-            Plan::Spatial => self.grid([&[0.1, 0.4], &[85.0], &[0.02, 0.06]], true),
+            Plan::Spatial | Plan::Rolling => self.grid([&[0.1, 0.4], &[85.0], &[0.02, 0.06]], true),
             _ => self.grid([&[0.07, 0.15, 0.38, 0.66], &[85.0, 132.0], &[0.02, 0.06]], true),
         });
         rows
@@ -98,11 +103,12 @@ impl Plan {
     pub(crate) fn job(self) -> FileSet {
         let (model, priors) = match self {
             Plan::Spatial => (SPATIAL, SPATIAL_PRIORS),
+            Plan::Rolling => (ROLLING, SPATIAL_PRIORS),
             _ => ("kind = \"quasi_static\"\n", PRIORS),
         };
         let radii = match self {
             // With grousers the radius is that of the rim.
-            Plan::Spatial => "wheel_radius_m = { uniform = [0.124, 0.130] }\n",
+            Plan::Spatial | Plan::Rolling => "wheel_radius_m = { uniform = [0.124, 0.130] }\n",
             Plan::Wheels => {
                 "\"wheel_radius_m.wide\" = { uniform = [0.125, 0.155] }\n\"wheel_radius_m.small\" = { uniform = [0.075, 0.09] }\n"
             }

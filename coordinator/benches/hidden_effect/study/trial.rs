@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-use coordinator::missing_effect::candidate::library;
+use coordinator::missing_effect::candidate::{CandidateEffect, library};
+use job::EffectOnNodes;
 use record::Extension;
 use statistics::rng::Stream;
 
@@ -99,10 +100,20 @@ pub(crate) fn draw_detectable(
     seed: u64,
     number: u64,
 ) -> Result<SyntheticCase, StudyError> {
-    let known = expressible(plan);
+    draw_of(plan, &expressible(plan), count, seed, number)
+}
+
+/// Draws some of these effects at random until each of them is detectable without noise.
+pub(crate) fn draw_of(
+    plan: Plan,
+    known: &[(String, Extension)],
+    count: usize,
+    seed: u64,
+    number: u64,
+) -> Result<SyntheticCase, StudyError> {
     for attempt in 0..MOST_DRAWN {
         let mut stream = Stream::new(seed, STAGE, number, attempt);
-        let mut rest = known.clone();
+        let mut rest = known.to_vec();
         let mut hidden = Vec::new();
         for _ in 0..count {
             hidden.push(rest.swap_remove(stream.below(rest.len())));
@@ -121,8 +132,9 @@ pub(crate) fn draw_detectable(
 /// The effects of the catalogue that a plan can have, each with its addition to the job.
 fn expressible(plan: Plan) -> Vec<(String, Extension)> {
     let (candidates, _) = library(&plan.job(), &blank(&plan.rows()));
-    // Effects on one wheel alone are left out.
-    let own = candidates.into_iter().filter(|e| !e.name.contains('.'));
+    // Effects on one wheel alone are left out, and those on the nodes of the soil.
+    let is_plain = |e: &CandidateEffect| !e.name.contains('.') && EffectOnNodes::find(&e.name).is_none();
+    let own = candidates.into_iter().filter(is_plain);
     own.map(|e| (e.name, e.extension)).collect()
 }
 

@@ -40,6 +40,7 @@ fn golden_ratio(dimension: usize) -> f64 {
 pub(crate) fn fits(
     frame: &NormalFrame,
     likelihood: &Likelihood,
+    plan: &[FitStep],
     evaluated: Vec<(Vec<f64>, Option<Vec<f64>>)>,
 ) -> Vec<LaplaceFit> {
     let points = evaluated
@@ -50,7 +51,7 @@ pub(crate) fn fits(
     points.truncate(COUNT);
     let fit = |point: FitPoint| {
         let columns = vec![vec![0.0; point.values.len()]; frame.dimension()];
-        LaplaceFit::new(frame.clone(), point, columns, &PLAN)
+        LaplaceFit::new(frame.clone(), point, columns, plan)
     };
     points.into_iter().map(fit).collect()
 }
@@ -58,12 +59,16 @@ pub(crate) fn fits(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::Roughness;
     use statistics::prior::{Distribution, Marginal, Prior};
 
     #[test]
     fn starts_fill_the_prior() {
         let uniform = |lower, upper| Marginal::new(Distribution::Uniform { lower, upper }, None).unwrap();
-        let frame = NormalFrame::base(&Prior::new(vec![uniform(0.0, 1.0), uniform(0.0, 4.0)]), 0.03);
+        let frame = NormalFrame::base(
+            &Prior::new(vec![uniform(0.0, 1.0), uniform(0.0, 4.0)]),
+            Roughness::Smooth,
+        );
         let thetas: Vec<Vec<f64>> = starts(&frame, 32).iter().map(|t| frame.theta(t)).collect();
         for quarter in 0..4 {
             let low = f64::from(quarter);

@@ -1,12 +1,10 @@
 //! Confirmation of the best extensions from several starts, to find other modes.
 
 use crate::laplace::coordinate::NormalFrame;
-use crate::laplace::fit::{FitStep, LaplaceFit};
+use crate::laplace::fit::LaplaceFit;
 
-/// How many extensions are confirmed at once, the best; so many are confirmed in any case.
+/// How many extensions are confirmed at once, the best.
 pub(crate) const COUNT: usize = 4;
-/// Whatever lies, or promises to lie, within so many nats of the best is confirmed: a fit that stuck may lead.
-pub(crate) const WITHIN: f64 = 10.0;
 /// A fit that fell short of its promise has not converged, and its promise is that of a linear model: the best of them are
 /// confirmed where that is more than this share of the best.
 pub(crate) const STUCK: f64 = 0.6;
@@ -15,11 +13,6 @@ pub(crate) const LEAST_PROMISE: f64 = 0.0;
 
 /// Starts that fill the prior, where the best fit so far contradicts the data.
 pub(crate) const ANYWHERE: usize = 16;
-/// Most starts of a model from which a fit continues, the most probable.
-pub(crate) const MOST_STARTS: usize = 6;
-
-/// As thorough as the base's fit.
-pub(crate) const PLAN: [FitStep; 2] = [FitStep::Rounds { most: 3, trials: 12 }, FitStep::Differences];
 
 /// Distances of the strength from its neutral value, in standard deviations of its prior: very weak, weak, usual and strong.
 const ONE_SIDED: [f64; 4] = [0.05, 0.3, 1.0, 2.0];

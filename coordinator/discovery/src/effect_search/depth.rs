@@ -1,12 +1,41 @@
 //! How far a search goes, and the plans of its fits.
 
+use crate::effect_search::base;
 use crate::laplace::fit::FitStep;
+use crate::settings::Roughness;
+
+/// The confirmation of a model from several starts.
+#[derive(Debug)]
+pub(crate) struct Confirmation {
+    /// Most starts of a model from which a fit continues, the most probable.
+    pub(crate) most_starts: usize,
+    /// The plan of these fits.
+    pub(crate) plan: &'static [FitStep],
+    /// Whether they begin with the Jacobian of the model's best fit.
+    pub(crate) keeps_jacobian: bool,
+}
+
+/// As thorough as the base's fit.
+const THOROUGH: Confirmation = Confirmation {
+    most_starts: 6,
+    plan: &[FitStep::Rounds { most: 3, trials: 12 }, FitStep::Differences],
+    keeps_jacobian: false,
+};
 
 /// How far a search goes.
 #[derive(Debug)]
 pub(crate) struct Depth {
+    /// The plan of the base's fits before the numerical noise is known, and how many of them go on after that, the best.
+    pub(crate) base: &'static [FitStep],
+    pub(crate) most_bases: usize,
+    /// Steps of a single strength that the screen tries, in standard deviations of its prior, the longest first. An effect that acts
+    /// like a square root near zero shows its size at short steps only.
+    pub(crate) strengths: &'static [f64],
     /// How many candidates are fitted, the best of the screen.
     pub(crate) most_extended: usize,
+    /// Of the others, those are fitted to which the screen promises more than this share of the best fit's log Bayes factor: the screen
+    /// is linear and may promise too little, but not four times too little. `None`: no others.
+    pub(crate) reach: Option<f64>,
     /// Coordinates of the shape parameters that the screen tries.
     pub(crate) shapes: &'static [f64],
     /// The plan of an extension's fit.
@@ -17,13 +46,35 @@ pub(crate) struct Depth {
     /// How many of the best are polished, and the plan of that fit.
     pub(crate) most_polished: usize,
     pub(crate) polish: &'static [FitStep],
-    /// Whether the best are confirmed from several starts, and by importance sampling.
+    /// Whether the best are confirmed from several starts, how many are in any case, and whether doubtful evidences are sampled: the
+    /// weights of a rough model scatter as its log-likelihood does, so that few draws stand for all.
     pub(crate) confirms: bool,
+    pub(crate) least_confirmed: usize,
+    /// Whatever lies, or promises to lie, within so many nats of the best is confirmed, too: a fit that stuck may lead.
+    pub(crate) within: f64,
+    pub(crate) samples: bool,
+    /// How a model is confirmed, and how where the best fit contradicts the data.
+    pub(crate) confirmation: Confirmation,
+    pub(crate) confirmation_if_wrong: Confirmation,
+}
+
+impl Depth {
+    /// Of the search for one effect.
+    pub(crate) fn of(roughness: Roughness) -> &'static Self {
+        match roughness {
+            Roughness::Smooth => &FULL,
+            Roughness::Rough => &SPARING,
+        }
+    }
 }
 
 /// Every candidate, confirmed.
 pub(crate) const FULL: Depth = Depth {
+    base: &base::PLAN,
+    most_bases: usize::MAX,
+    strengths: &[1.0, 0.3, 0.1],
     most_extended: usize::MAX,
+    reach: None,
     shapes: &[0.0, -1.0, 1.0],
     // Broyden's steps alone, the first to the linear solution.
     extension: &[FitStep::Trials(9)],
@@ -31,6 +82,35 @@ pub(crate) const FULL: Depth = Depth {
     most_polished: 3,
     polish: &[FitStep::Differences, FitStep::Trials(6)],
     confirms: true,
+    least_confirmed: 4,
+    within: 10.0,
+    samples: true,
+    confirmation: THOROUGH,
+    confirmation_if_wrong: THOROUGH,
+};
+
+/// Every candidate of a rough model, whose evaluations are dear and whose evidences are no sharper than its scatter.
+pub(crate) const SPARING: Depth = Depth {
+    base: &[FitStep::Rounds { most: 2, trials: 6 }],
+    most_bases: 1,
+    strengths: &[1.0, 0.3],
+    most_extended: 8,
+    reach: Some(0.25),
+    extension: &[FitStep::Trials(6)],
+    least_confirmed: 2,
+    within: 5.0,
+    samples: false,
+    confirmation: Confirmation {
+        most_starts: 2,
+        plan: &[
+            FitStep::Trials(6),
+            FitStep::Differences,
+            FitStep::Trials(4),
+            FitStep::Differences,
+        ],
+        keeps_jacobian: true,
+    },
+    ..FULL
 };
 
 /// The best of the screen, fitted and polished.

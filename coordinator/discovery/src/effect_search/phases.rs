@@ -38,6 +38,10 @@ impl EffectSearch {
                 batch.tell(&self.likelihood, answers);
                 self.fit_extensions(batch);
             }
+            Phase::FurtherExtensions(mut batch) => {
+                batch.tell(&self.likelihood, answers);
+                self.fit_further(batch);
+            }
             Phase::Polish(mut batch) => {
                 batch.tell(&self.likelihood, answers);
                 self.polish(batch);
@@ -59,7 +63,12 @@ impl EffectSearch {
         let draws = answers.len();
         self.evaluations.base += draws;
         let evaluated = positions.zip(answers).collect();
-        let fits = base::fits(&self.base_frame, &self.likelihood, evaluated);
+        let plan = if self.measures_noise {
+            self.depth.base
+        } else {
+            &base::PLAN
+        };
+        let fits = base::fits(&self.base_frame, &self.likelihood, plan, evaluated);
         if fits.is_empty() {
             self.phase = Phase::Failed(InferenceFailure::AllImpossible { draws });
         } else {
@@ -100,7 +109,9 @@ impl EffectSearch {
             return self.measure_noise(batch, shorter);
         }
         self.evaluations.base += batch.evaluations();
-        let mut plan: &[FitStep] = &[];
+        let most = self.depth.most_bases;
+        // Fits that are few have not been made to the end.
+        let mut plan: &[FitStep] = if most == usize::MAX { &[] } else { &base::PLAN };
         if let Some(sds) = numerical_noise::sds(&self.likelihood, answers)
             && let Ok(likelihood) = self.likelihood.with_numerical_noise(&sds)
         {
@@ -113,8 +124,12 @@ impl EffectSearch {
             let point = FitPoint::new(&fit.frame, &self.likelihood, position, values)?;
             Some((None, LaplaceFit::new(fit.frame, point, fit.columns, plan)))
         });
-        let again = FitBatch::new(again.collect());
-        self.fit_base(again);
+        let mut again: Vec<(Option<usize>, LaplaceFit)> = again.collect();
+        if again.len() > most {
+            again.sort_by(|(_, a), (_, b)| a.point.value.total_cmp(&b.point.value));
+            again.truncate(most);
+        }
+        self.fit_base(FitBatch::new(again));
     }
 
     /// Screens candidates by a step of the strength.
@@ -124,7 +139,7 @@ impl EffectSearch {
         for &k in &wanted {
             let frame = &self.candidates[k].frame;
             let base = &base.fit.point.position;
-            let at = screen::positions(frame, base, self.depth.shapes, level);
+            let at = screen::positions(frame, base, self.depth, level);
             asked.extend(at.into_iter().map(|position| (Some(k), position)));
         }
         if asked.is_empty() && level + 1 < LEVELS.len() {
@@ -172,19 +187,34 @@ impl EffectSearch {
     }
 
     fn extend(&mut self) {
-        let Some(base) = &self.base else { return };
-        let fits = self.best(self.depth.most_extended).into_iter().filter_map(|k| {
+        let batch = self.extensions(self.best(self.depth.most_extended));
+        self.fit_extensions(batch);
+    }
+
+    /// Fits of candidates, from the screen's results.
+    fn extensions(&self, candidates: Vec<usize>) -> FitBatch {
+        let fits = candidates.into_iter().filter_map(|k| {
+            let base = &self.base.as_ref()?.fit;
             let state = &self.candidates[k];
             let screened = state.screened.as_ref()?;
-            let fit = extension::fit(&state.frame, &base.fit, screened, &self.likelihood, self.depth)?;
+            let fit = extension::fit(&state.frame, base, screened, &self.likelihood, self.depth)?;
             Some((Some(k), fit))
         });
-        let batch = FitBatch::new(fits.collect());
-        self.fit_extensions(batch);
+        FitBatch::new(fits.collect())
     }
 
     fn fit_extensions(&mut self, batch: FitBatch) {
         let Some(batch) = self.next_round(batch, Phase::Extensions) else {
+            return;
+        };
+        self.evaluations.extension += batch.evaluations();
+        self.take(batch, EvidenceMethod::RankOne);
+        let further = self.extensions(self.within_reach());
+        self.fit_further(further);
+    }
+
+    fn fit_further(&mut self, batch: FitBatch) {
+        let Some(batch) = self.next_round(batch, Phase::FurtherExtensions) else {
             return;
         };
         self.evaluations.extension += batch.evaluations();
@@ -206,7 +236,7 @@ impl EffectSearch {
         if !self.depth.confirms {
             return self.finish();
         }
-        let first = self.best(confirmation::COUNT);
+        let first = self.best(self.depth.least_confirmed);
         self.confirm_these(first);
     }
 
@@ -245,20 +275,30 @@ impl EffectSearch {
             let point = values.and_then(|v| FitPoint::new(frame, &self.likelihood, position, v));
             points.entry(candidate).or_default().extend(point);
         }
+        let confirmation = if self.is_wrong() {
+            &self.depth.confirmation_if_wrong
+        } else {
+            &self.depth.confirmation
+        };
+        let plan = confirmation.plan;
         let mut fits = Vec::new();
         for (candidate, mut points) in points {
             points.sort_by(|a, b| a.value.total_cmp(&b.value));
-            points.truncate(confirmation::MOST_STARTS);
+            points.truncate(confirmation.most_starts);
             let frame = self.frame(candidate);
+            let known = candidate.map_or(Some(&base.fit), |k| self.fit_of(k));
+            let columns = match known.filter(|_| confirmation.keeps_jacobian) {
+                Some(known) => known.columns.clone(),
+                None => vec![vec![0.0; base.fit.point.values.len()]; frame.dimension()],
+            };
             for point in points {
-                let columns = vec![vec![0.0; base.fit.point.values.len()]; frame.dimension()];
-                let fit = LaplaceFit::new(frame.clone(), point, columns, &confirmation::PLAN);
+                let fit = LaplaceFit::new(frame.clone(), point, columns.clone(), plan);
                 fits.push((candidate, fit));
             }
         }
         for k in candidates {
             if let Some(fit) = self.fit_of(k) {
-                fits.push((Some(k), fit.continued(&confirmation::PLAN)));
+                fits.push((Some(k), fit.continued(plan)));
             }
         }
         self.confirm(FitBatch::new(fits));

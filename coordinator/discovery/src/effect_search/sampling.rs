@@ -25,13 +25,15 @@ struct Best<'a> {
 
 impl EffectSearch {
     /// Samplers of the base and the best effect, where Laplace's approximation is doubtful: a parameter of either is at a bound, or the
-    /// effect is nearly absent; and of the second effect where it is close and of another class. None of what was sampled before.
+    /// effect is nearly absent; and of the second effect where it is close and of another class. None of what was sampled before, and none of a
+    /// rough model.
     pub(super) fn samplers(&self) -> Vec<(Option<usize>, ImportanceSampler)> {
         let none = Vec::new();
         let (Some(base), Some((first, rest))) = (&self.base, self.fits_of_best()) else {
             return none;
         };
-        if first.log_bayes_factor < LEAST_CLAIMED || self.sampled.len() > MOST_SAMPLED {
+        let is_in_vain = !self.depth.samples || first.log_bayes_factor < LEAST_CLAIMED;
+        if is_in_vain || self.sampled.len() > MOST_SAMPLED {
             return none;
         }
         let classes = self.projected().map(|projected| projected.classes);

@@ -1,5 +1,6 @@
 //! The screen: the evidence of every candidate by finite steps from the fitted base.
 
+use crate::effect_search::depth::Depth;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
@@ -8,9 +9,6 @@ use crate::laplace::quadratic::quadratic;
 use crate::laplace::strength_prior::mixed_evidence;
 use statistics::likelihood::Likelihood;
 
-/// Steps of a single strength, in standard deviations of its prior. An effect that acts like a square root near zero shows its size
-/// at short steps only.
-const STRENGTHS: [f64; 3] = [1.0, 0.3, 0.1];
 /// Steps of each of several strengths, and the last resort of a single one; each is tried where the model rejects the one before.
 pub(super) const LEVELS: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
 
@@ -33,7 +31,7 @@ pub(super) struct Screened {
 
 /// The positions to evaluate: every strength at the first shape and the usual strength at the others, a step along each of several
 /// strengths, or the base's fit with a switch turned.
-pub(super) fn positions(frame: &NormalFrame, base: &[f64], shapes: &[f64], level: usize) -> Vec<Vec<f64>> {
+pub(super) fn positions(frame: &NormalFrame, base: &[f64], depth: &Depth, level: usize) -> Vec<Vec<f64>> {
     if frame.is_switch() {
         return if level == 0 {
             vec![base.to_vec()]
@@ -53,9 +51,9 @@ pub(super) fn positions(frame: &NormalFrame, base: &[f64], shapes: &[f64], level
         return frame.strengths.iter().map(along).collect();
     };
     let shapes = if frame.dimension() > base.len() + 1 {
-        shapes
+        depth.shapes
     } else {
-        &shapes[..1]
+        &depth.shapes[..1]
     };
     let at = |shape: f64, strength: f64| {
         let mut position = base.to_vec();
@@ -66,8 +64,8 @@ pub(super) fn positions(frame: &NormalFrame, base: &[f64], shapes: &[f64], level
     let last = LEVELS.len() - 1;
     match level {
         0 => {
-            let strengths = STRENGTHS.iter().map(|&strength| at(shapes[0], strength));
-            let others = shapes[1..].iter().map(|&shape| at(shape, STRENGTHS[0]));
+            let strengths = depth.strengths.iter().map(|&strength| at(shapes[0], strength));
+            let others = shapes[1..].iter().map(|&shape| at(shape, depth.strengths[0]));
             strengths.chain(others).collect()
         }
         level if level == last => vec![at(shapes[0], LEVELS[last])],

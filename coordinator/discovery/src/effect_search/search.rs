@@ -39,13 +39,14 @@ impl EffectSearch {
             return Err(CandidateError::NoBase);
         }
         candidates.iter().try_for_each(Candidate::check)?;
-        let frame = NormalFrame::base(prior, settings.least_difference);
+        let frame = NormalFrame::base(prior, settings.roughness);
         let positions = match &settings.starts {
             Starts::Draws(draws) => draws.iter().map(|theta| frame.position(theta)).collect(),
             Starts::Even(count) => base::starts(&frame, *count),
         };
         let mut search = Self::unasked(frame, likelihood, candidates, settings.seed);
         search.measures_noise = settings.has_numerical_noise;
+        search.depth = Depth::of(settings.roughness);
         search.ask(positions.into_iter().map(|position| (None, position)).collect());
         Ok(search)
     }

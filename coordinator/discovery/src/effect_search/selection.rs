@@ -97,6 +97,25 @@ impl EffectSearch {
         self.promises().into_iter().take(count).map(|(k, _)| k).collect()
     }
 
+    /// Candidates that were only screened, with a promise that the best fit does not put out of reach.
+    pub(super) fn within_reach(&self) -> Vec<usize> {
+        let is_fitted = |k: usize| self.fit_of(k).is_some();
+        let of = |k: usize| {
+            self.candidates[k]
+                .estimate
+                .as_ref()
+                .map(|own| own.log_bayes_factor)
+        };
+        let fitted = (0..self.candidates.len()).filter(|k| is_fitted(*k));
+        let best = fitted.filter_map(of).fold(0.0, f64::max);
+        let Some(share) = self.depth.reach else {
+            return Vec::new();
+        };
+        let promises = self.promises().into_iter();
+        let near = promises.filter(|(k, promise)| !is_fitted(*k) && *promise > share * best);
+        near.map(|(k, _)| k).collect()
+    }
+
     /// Candidates that are to be confirmed next: those near the best that are not confirmed yet; once there are none, of a
     /// model with numerical noise and once only, those whose fits got stuck.
     pub(super) fn unconfirmed(&mut self) -> Vec<usize> {
@@ -116,7 +135,7 @@ impl EffectSearch {
             let wanted = above.filter(|(k, promise)| wanted(*k, *promise));
             wanted.map(|(k, _)| *k).take(confirmation::COUNT).collect()
         };
-        let near = (best - confirmation::WITHIN).max(confirmation::LEAST_PROMISE);
+        let near = (best - self.depth.within).max(confirmation::LEAST_PROMISE);
         let next = first(&|k, _| open(k).is_some(), near);
         // Where the model scatters, fits get stuck more often than elsewhere.
         if !next.is_empty() || self.has_confirmed_stuck || self.numerical_noise_sds.is_empty() {

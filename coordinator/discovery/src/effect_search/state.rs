@@ -69,6 +69,8 @@ pub(super) enum Phase {
     /// Index of the strength that the screen tries.
     Screen(usize),
     Extensions(FitBatch),
+    /// Of those within reach of the best.
+    FurtherExtensions(FitBatch),
     Polish(FitBatch),
     /// The candidates that are confirmed.
     ConfirmationStarts(Vec<usize>),

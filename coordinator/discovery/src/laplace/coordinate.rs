@@ -3,6 +3,7 @@
 use statistics::prior::{Marginal, Prior, normal};
 
 use crate::candidate::Candidate;
+use crate::settings::Roughness;
 
 /// Limit of the search, in standard deviations of the prior.
 const FARTHEST: f64 = 7.5;
@@ -31,8 +32,8 @@ pub(crate) struct NormalFrame {
     pub(crate) coordinates: Vec<NormalCoordinate>,
     /// Of the base model; its correlations make the normal scores of its parameters from the coordinates.
     base: Prior,
-    /// Shortest finite difference, in standard deviations of the prior.
-    pub(crate) least_difference: f64,
+    /// How the predictions follow the parameters.
+    pub(crate) roughness: Roughness,
     /// Index of each strength of the last candidate, and its coordinate at which the candidate is absent.
     pub(crate) strengths: Vec<(usize, f64)>,
     /// Indices of the single strengths of all candidates, whose priors are widened.
@@ -89,11 +90,11 @@ impl NormalCoordinate {
 }
 
 impl NormalFrame {
-    pub(crate) fn base(prior: &Prior, least_difference: f64) -> Self {
+    pub(crate) fn base(prior: &Prior, roughness: Roughness) -> Self {
         Self {
             coordinates: prior.marginals().iter().map(NormalCoordinate::whole).collect(),
             base: prior.clone(),
-            least_difference,
+            roughness,
             strengths: Vec::new(),
             widened: Vec::new(),
         }
@@ -127,7 +128,7 @@ impl NormalFrame {
         Self {
             coordinates,
             base: self.base.clone(),
-            least_difference: self.least_difference,
+            roughness: self.roughness,
             strengths,
             widened,
         }
@@ -238,7 +239,7 @@ mod tests {
             strengths: vec![0],
             neutral: 0.0,
         };
-        let frame = NormalFrame::base(&Prior::new(Vec::new()), 0.03).with(&effect);
+        let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
         for t in [0.0, 0.1, 1.0, 2.5, 5.0] {
             let x = frame.theta(&[t])[0];
             assert!((x - 3.0 * t).abs() < 1e-6, "{x} at {t}");
@@ -254,7 +255,7 @@ mod tests {
         let prior = prior
             .correlated(vec![0, 1], &[vec![1.0, 0.6], vec![0.6, 1.0]])
             .unwrap();
-        let frame = NormalFrame::base(&prior, 0.03);
+        let frame = NormalFrame::base(&prior, Roughness::Smooth);
         // The second given the first has the mean 0.6 t and the sd 0.8.
         let theta = frame.theta(&[1.0, -0.5]);
         assert!(
@@ -277,7 +278,7 @@ mod tests {
             strengths: vec![0],
             neutral: 0.0,
         };
-        let frame = NormalFrame::base(&Prior::new(Vec::new()), 0.03).with(&effect);
+        let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
         let (_, neutral) = frame.strength().unwrap();
         assert!((neutral + 0.5).abs() < 1e-12 && !frame.is_one_sided());
     }

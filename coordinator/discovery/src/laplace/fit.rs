@@ -7,21 +7,18 @@ use crate::laplace::noise;
 use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
 use crate::laplace::strength_prior::{mixed_evidence, stated_less_mixed};
+use crate::settings::Roughness;
 use inference::lm::QuadraticModel;
 use statistics::likelihood::Likelihood;
 
 /// Longest finite difference, in standard deviations of the prior; above the shortest it equals the coordinate's current posterior
 /// sd. Long differences average over the roughness of a model on a grid, short ones resolve a narrow posterior.
 const DIFFERENCE: f64 = 0.15;
-/// A step that gains, or is predicted to gain, less than this ends the trials `[nats]`.
-const LEAST_GAIN: f64 = 0.01;
 /// The damping after the first rejected step, and the factor between successive dampings.
 const FIRST_DAMPING: f64 = 0.05;
 const DAMPING_FACTOR: f64 = 8.0;
 /// Most gain beyond the point that the evidence counts, though no step has reached it `[nats]`.
 const MOST_UNREACHED: f64 = 3.0;
-/// Rejected steps in a row that end the trials.
-const MOST_FAILURES: usize = 4;
 
 /// One step of the plan of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,7 +29,8 @@ pub(crate) enum FitStep {
     Differences,
     /// At most so many trial steps, one evaluation each.
     Trials(usize),
-    /// `Differences` and `Trials(trials)`, repeated at most so many times, until a new Jacobian predicts no gain.
+    /// `Differences` and `Trials(trials)`, repeated at most so many times, until a new Jacobian predicts no gain, and of a rough model
+    /// until no step gains what is predicted.
     Rounds { most: usize, trials: usize },
 }
 
@@ -51,6 +49,8 @@ pub(crate) struct LaplaceFit {
     held: Vec<bool>,
     /// No step was tried since the last Jacobian of a round.
     is_fresh: bool,
+    /// A step has gained since then.
+    has_gained: bool,
     pending: Pending,
 }
 
@@ -86,6 +86,7 @@ impl LaplaceFit {
             damping: 0.0,
             failures: 0,
             is_fresh: false,
+            has_gained: true,
             pending: Pending::Nothing,
         }
     }
@@ -124,7 +125,7 @@ impl LaplaceFit {
                     let uncertainty = self.quadratic(likelihood).uncertainty();
                     let offset = |k: usize| {
                         let length = uncertainty[k].unwrap_or(DIFFERENCE);
-                        let length = length.clamp(self.frame.least_difference.min(DIFFERENCE), DIFFERENCE);
+                        let length = length.clamp(self.frame.roughness.least_difference(), DIFFERENCE);
                         if upper[k] >= length { length } else { -length }
                     };
                     // Predictions do not depend on the noise sds.
@@ -145,6 +146,7 @@ impl LaplaceFit {
                     self.plan.push_front(FitStep::Trials(trials));
                     self.plan.push_front(FitStep::Differences);
                     self.is_fresh = true;
+                    self.has_gained = false;
                 }
                 FitStep::Trials(left) => {
                     if let Some((position, predicted)) = self.trial(likelihood) {
@@ -158,7 +160,7 @@ impl LaplaceFit {
                     }
                     self.damping = 0.0;
                     self.failures = 0;
-                    if self.is_fresh {
+                    if self.is_fresh || (self.frame.roughness == Roughness::Rough && !self.has_gained) {
                         self.plan.clear();
                     }
                 }
@@ -178,14 +180,15 @@ impl LaplaceFit {
 
     /// The next trial position and its predicted gain; `None` where no step is worth an evaluation.
     fn trial(&self, likelihood: &Likelihood) -> Option<(Vec<f64>, f64)> {
-        if self.failures >= MOST_FAILURES {
+        if self.failures >= self.frame.roughness.most_failures() {
             return None;
         }
         let quadratic = self.quadratic(likelihood);
         let step = quadratic.step(self.damping)?;
         let predicted = quadratic.decrease(&step);
         let pairs = self.point.position.iter().zip(&step);
-        (predicted > LEAST_GAIN).then(|| (pairs.map(|(t, by)| t + by).collect(), predicted))
+        (predicted > self.frame.roughness.least_gain())
+            .then(|| (pairs.map(|(t, by)| t + by).collect(), predicted))
     }
 
     /// Takes the predicted values at those positions; `None` where the model rejected one.
@@ -249,6 +252,7 @@ impl LaplaceFit {
             Some(point) if point.value < self.point.value => {
                 let gain = self.point.value - point.value;
                 self.failures = 0;
+                self.has_gained = true;
                 self.damping = if gain > 0.5 * predicted && self.damping <= FIRST_DAMPING {
                     0.0
                 } else {

@@ -3,10 +3,12 @@
 use nalgebra::Cholesky;
 
 use crate::laplace::fit::LaplaceFit;
+use crate::settings::Roughness;
 use statistics::likelihood::Likelihood;
 
 /// Parameter vectors one standard deviation to either side of a fit's mode, a pair for each column of the factor L of the posterior
-/// covariance L L' by Laplace's approximation. `None` beyond the limits; no pairs where the posterior has no covariance.
+/// covariance L L' by Laplace's approximation. `None` beyond the limits, and on the second side of a rough model, whose evaluations are
+/// dear; no pairs where the posterior has no covariance.
 pub(crate) fn spread(fit: &LaplaceFit, likelihood: &Likelihood) -> Vec<[Option<Vec<f64>>; 2]> {
     let covariance = Cholesky::new(fit.quadratic(likelihood).hessian).map(|c| c.inverse());
     let Some(factor) = covariance.and_then(Cholesky::new).map(|c| c.l()) else {
@@ -22,6 +24,11 @@ pub(crate) fn spread(fit: &LaplaceFit, likelihood: &Likelihood) -> Vec<[Option<V
         fit.frame.holds(&position).then(|| fit.frame.theta(&position))
     };
     (0..mode.len())
-        .map(|column| [theta(column, 1.0), theta(column, -1.0)])
+        .map(|column| {
+            let above = theta(column, 1.0);
+            let is_enough = above.is_some() && fit.frame.roughness == Roughness::Rough;
+            let below = if is_enough { None } else { theta(column, -1.0) };
+            [above, below]
+        })
         .collect()
 }

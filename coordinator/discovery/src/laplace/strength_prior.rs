@@ -147,6 +147,7 @@ fn precision(t: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::candidate::Candidate;
+    use crate::settings::Roughness;
     use statistics::prior::{Distribution, Marginal, Prior};
 
     #[test]
@@ -158,7 +159,7 @@ mod tests {
             strengths: vec![0],
             neutral: 0.0,
         };
-        let frame = NormalFrame::base(&Prior::new(Vec::new()), 0.03).with(&effect);
+        let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
         // The likelihood rises by 8 nats per standard deviation and hardly bends; the narrow parts balance it at once.
         let position = [0.04];
         let (mut gradient, mut hessian) = (position.to_vec(), DMatrix::from_element(1, 1, 1.001));

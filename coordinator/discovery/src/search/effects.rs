@@ -118,7 +118,7 @@ impl SearchState {
             return self.curves();
         };
         let branches = best.effects.iter().map(|&dropped| {
-            let mut frame = NormalFrame::base(&self.task.prior, self.task.settings.least_difference);
+            let mut frame = NormalFrame::base(&self.task.prior, self.task.settings.roughness);
             let (own, mut rest) = best.fit.point.position.split_at(self.task.prior.dimension());
             let mut start = own.to_vec();
             let mut effects = Vec::new();

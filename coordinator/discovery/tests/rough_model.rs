@@ -1,0 +1,123 @@
+//! The search of a rough model, whose evaluations are dear, beside that of the same model without its jumps.
+
+use discovery::{
+    Candidate, EffectRanking, EffectSearch, EvidenceMethod, RankedEffect, Roughness, SearchSettings,
+};
+use statistics::rng::Stream;
+use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
+
+const DATA: usize = 48;
+const EFFECTS: usize = 30;
+const SD: f64 = 0.2;
+/// The jumps of the rough model's predictions.
+const SCATTER: f64 = 0.05;
+const STRENGTH: f64 = 1.5;
+
+fn candidate(k: usize) -> Candidate {
+    let prior = Marginal::new(Distribution::HalfNormal { scale: 1.0 }, None).unwrap();
+    Candidate {
+        name: format!("effect {k}"),
+        parameters: vec![prior],
+        strengths: vec![0],
+        neutral: 0.0,
+    }
+}
+
+/// A straight line, and an effect that saturates slowly.
+fn predicted(theta: &[f64], effect: Option<usize>, roughness: Roughness) -> Vec<f64> {
+    let key = theta
+        .iter()
+        .fold(0, |key: u64, t| key.rotate_left(7) ^ t.to_bits());
+    let jumps = Stream::new(1, 0, key, 0).normals(DATA);
+    let value = |i: usize| {
+        let x = 2.0 * i as f64 / (DATA - 1) as f64 - 1.0;
+        let own = effect.map_or(0.0, |k| {
+            let shape = libm::cos((1.0 + 0.3 * k as f64) * (x + 1.0) + k as f64);
+            theta[2] / (1.0 + 0.1 * theta[2]) * shape
+        });
+        let jump = match roughness {
+            Roughness::Smooth => 0.0,
+            Roughness::Rough => SCATTER * jumps[i],
+        };
+        theta[0] + theta[1] * x + own + jump
+    };
+    (0..DATA).map(value).collect()
+}
+
+fn search(truth: usize, roughness: Roughness) -> EffectRanking {
+    let normal = || Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
+    let noise = Stream::new(2, 0, truth as u64, 0).normals(DATA);
+    let clean = predicted(&[0.4, -0.7, STRENGTH], Some(truth), Roughness::Smooth);
+    let datum = |(run, (value, noise)): (usize, (&f64, &f64))| Datum {
+        run,
+        channel: 0,
+        value: value + SD * noise,
+        sd: ErrorSd::Known(SD),
+    };
+    let likelihood = Likelihood::new(clean.iter().zip(&noise).enumerate().map(datum).collect()).unwrap();
+    let candidates: Vec<Candidate> = (0..EFFECTS).map(candidate).collect();
+    let settings = SearchSettings {
+        roughness,
+        has_numerical_noise: roughness == Roughness::Rough,
+        ..SearchSettings::default()
+    };
+    let prior = Prior::new(vec![normal(), normal()]);
+    let mut search = EffectSearch::new(&prior, likelihood, &candidates, &settings).unwrap();
+    while search.ranking().is_none() {
+        let pending: Vec<_> = search.pending().collect();
+        for (index, request) in pending.iter().enumerate() {
+            let values = predicted(&request.theta, request.candidate, roughness);
+            search.tell(index, Some(&values)).unwrap();
+        }
+    }
+    search.ranking().unwrap().clone()
+}
+
+fn leader(ranking: &EffectRanking) -> &RankedEffect {
+    ranking.ranked()[0]
+}
+
+#[test]
+fn a_rough_model_is_searched_with_fewer_evaluations_and_names_the_same() {
+    for truth in [5, 7, 13, 22, 29] {
+        let [smooth, rough] = [Roughness::Smooth, Roughness::Rough].map(|of| search(truth, of));
+        assert_eq!(
+            leader(&smooth).class,
+            smooth.of(Some(truth)).unwrap().class,
+            "{truth}"
+        );
+        assert_eq!(
+            leader(&rough).class,
+            rough.of(Some(truth)).unwrap().class,
+            "{truth}"
+        );
+        // Beside the measurement of its scatter.
+        let of_effects = |own: &EffectRanking| own.evaluations.to_confirm() - own.evaluations.base;
+        let [thorough, sparing] = [&smooth, &rough].map(of_effects);
+        assert!(4 * sparing < 3 * thorough, "{truth}: {sparing} of {thorough}");
+    }
+}
+
+#[test]
+fn what_is_out_of_reach_is_screened_alone_and_its_probability_is_small_by_either_search() {
+    let truth = 13;
+    let [smooth, rough] = [Roughness::Smooth, Roughness::Rough].map(|of| search(truth, of));
+    let screened = || {
+        rough
+            .effects
+            .iter()
+            .filter(|e| e.method == EvidenceMethod::Screen)
+    };
+    assert!(screened().count() > EFFECTS / 2, "{}", screened().count());
+    assert!(smooth.effects.iter().all(|e| e.method > EvidenceMethod::Screen));
+    for own in screened() {
+        let thorough = smooth.of(own.candidate).unwrap();
+        assert!(
+            own.probability < 1e-4 && thorough.probability < 1e-4,
+            "{:?}: {} and {}",
+            own.candidate,
+            own.probability,
+            thorough.probability
+        );
+    }
+}

@@ -1,0 +1,74 @@
+//! Effects of the shear displacement where that is kept on the nodes of the soil: candidates of a search beside the same on the rim.
+
+use formula::catalogue::{catalogue, find};
+use formula::{Effect, Variable};
+use shared::model::spatial::DisplacementFrame;
+
+use crate::model_switch::ModelSwitch;
+use crate::spec::Spec;
+
+/// What follows the effect's name.
+const ON_NODES: &str = "_node";
+
+/// An effect of the catalogue together with the setting that keeps its displacement on the nodes: without such an effect the setting
+/// changes nothing, so that no job can have it first.
+#[derive(Debug, Clone, Copy)]
+pub struct EffectOnNodes {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// The setting.
+    pub setting: &'static ModelSwitch,
+}
+
+impl EffectOnNodes {
+    fn new(effect: &'static Effect) -> Option<Self> {
+        let setting = ModelSwitch::find("displacement_node")?;
+        let uses_displacement = effect.uses().contains(Variable::J);
+        uses_displacement.then_some(Self { effect, setting })
+    }
+
+    /// The candidate of a name, such as `janosi_hanamoto_node`.
+    pub fn find(name: &str) -> Option<Self> {
+        Self::new(find(name.strip_suffix(ON_NODES)?)?)
+    }
+
+    /// Its name as a candidate.
+    pub fn name(&self) -> String {
+        format!("{}{ON_NODES}", self.effect.name)
+    }
+
+    /// Those that a model may have: one that rolls, and has no effect of the displacement yet.
+    pub fn all_of(spec: &Spec) -> impl Iterator<Item = Self> {
+        let spatial = spec.model.spatial.as_ref();
+        let is_on_rim = spatial.is_some_and(|own| own.displacement == DisplacementFrame::Rim);
+        let effects = spec.fit_variant.effects.iter();
+        let has_one = effects
+            .filter_map(|own| find(&own.name))
+            .any(|own| own.uses().contains(Variable::J));
+        let all = catalogue().iter().filter_map(Self::new);
+        all.filter(move |_| is_on_rim && !has_one)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_an_effect_of_the_displacement_can_be_on_the_nodes() {
+        let janosi = EffectOnNodes::find("janosi_hanamoto_node").unwrap();
+        assert_eq!(janosi.effect.name, "janosi_hanamoto");
+        assert_eq!(janosi.name(), "janosi_hanamoto_node");
+        assert_eq!(janosi.setting.value, "node");
+        for other in [
+            "slip_sinkage_node",
+            "janosi_hanamoto",
+            "displacement_node",
+            "_node",
+        ] {
+            assert!(EffectOnNodes::find(other).is_none(), "{other}");
+        }
+        // No effect of the catalogue has such a name.
+        assert!(catalogue().iter().all(|effect| !effect.name.ends_with(ON_NODES)));
+    }
+}
