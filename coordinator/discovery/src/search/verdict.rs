@@ -60,7 +60,7 @@ impl SearchVerdict {
             .reduce(|a, b| if b.probability > a.probability { b } else { a });
         match best {
             // Evidence and prediction contradict each other.
-            Some(best) if best.candidate.is_some() && weighing.is_disputed() => Self::Undecided,
+            Some(best) if best.candidate.is_some_and(|k| weighing.is_disputed(k)) => Self::Undecided,
             // Where nothing missing is the most probable, no effect is claimed.
             Some(best) if best.probability > NAMED || best.candidate.is_none() => {
                 best.candidate.map_or(nothing, Self::Named)

@@ -66,6 +66,21 @@ fn leader(ranking: &EffectRanking, effects: &[usize]) -> Option<usize> {
         .and_then(|effect| effect.candidate)
 }
 
+/// Whether a set without an effect predicts left-out levels better than every set with it. Sets that both have the effect contradict
+/// each other in the rest alone.
+fn disputes(sets: &[WeighedSet], effect: usize, misfit: f64) -> bool {
+    let highest = |has: bool| {
+        let own = sets
+            .iter()
+            .filter(|set| set.effects.as_ref().is_some_and(|e| e.contains(&effect)) == has);
+        own.filter_map(|set| set.predictive).reduce(f64::max)
+    };
+    match (highest(true), highest(false)) {
+        (Some(with), Some(without)) => (without - with) / misfit > DETECTED,
+        _ => false,
+    }
+}
+
 impl Weighing {
     /// A combination counts for its member with the highest Bayes factor; each further effect has the prior of one among all.
     pub(super) fn new(task: &SearchTask, hypotheses: &Hypotheses) -> Self {
@@ -184,12 +199,9 @@ impl Weighing {
         leader.filter(|_| predicted.all(is_beaten) && others_are_improbable)
     }
 
-    /// Whether a rival of the best set predicts left-out levels better by a detectable amount.
-    pub(super) fn is_disputed(&self) -> bool {
-        let best = self.sets.first().and_then(|best| best.predictive);
-        let Some(own) = best else { return false };
-        let mut gains = self.sets.iter().filter_map(|set| set.predictive);
-        gains.any(|gain| (gain - own) / self.misfit > DETECTED)
+    /// Whether a set without an effect predicts left-out levels better, by a detectable amount, than every set with it.
+    pub(super) fn is_disputed(&self, effect: usize) -> bool {
+        disputes(&self.sets, effect, self.misfit)
     }
 
     /// The explanations that further runs should distinguish; none without a detection.
@@ -220,5 +232,36 @@ impl Weighing {
         open.sort_by(|a, b| b.probability.total_cmp(&a.probability));
         open.truncate(MOST_OPEN);
         open
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(effects: &[usize], predictive: Option<f64>) -> WeighedSet {
+        WeighedSet {
+            effects: Some(effects.to_vec()),
+            log_bayes_factor: 0.0,
+            prior: 0.0,
+            probability: 0.0,
+            predictive,
+        }
+    }
+
+    #[test]
+    fn a_better_prediction_disputes_the_effects_that_it_lacks_alone() {
+        let sets = [
+            set(&[1, 2], Some(10.0)),
+            set(&[1, 3], Some(20.0)),
+            set(&[4], Some(12.0)),
+            set(&[5], None),
+        ];
+        assert!(!disputes(&sets, 1, 1.0));
+        assert!(disputes(&sets, 2, 1.0));
+        assert!(!disputes(&sets, 3, 1.0));
+        assert!(disputes(&sets, 4, 1.0));
+        // A misfit makes the difference mean less; what predicted nothing is not disputed.
+        assert!(!disputes(&sets, 4, 4.0) && !disputes(&sets, 5, 1.0));
     }
 }
