@@ -10,7 +10,7 @@ use formula::catalogue::{catalogue, find};
 use formula::slip::variables;
 use shared::channel::Channel;
 use shared::file::{FileError, FileSet};
-use shared::model::{ExternalModel, ModelKind, ModelVariant, RunCondition};
+use shared::model::{EffectSet, ExternalModel, ModelKind, ModelVariant, RunCondition};
 use shared::outcome::Observables;
 
 use super::candidate::{CandidateEffect, ExclusionReason, JOB, candidate_of, extended, library, spec};
@@ -53,7 +53,7 @@ pub struct SearchModels {
 
 impl SearchModels {
     /// # Arguments
-    /// - `job`: of the base model, with its effects. `max_effects`: most effects in a combination.
+    /// - `job`: of the base model, with its effects. `max_effects`: most effects in a combination, as far as a job has room for them.
     ///
     /// # Errors
     /// [`FileError`] of job or experiment.
@@ -106,9 +106,12 @@ impl SearchModels {
             let entry = CandidateEntry::new(law, &effect, free, true);
             entry.ok_or_else(|| fail(format!("{name} has no strength")))
         };
+        // A job has at most so many effects; one place is for a law beyond the best combination.
+        let room = EffectSet::MOST.saturating_sub(base.fit_variant.effects.len());
         let mut laws = Vec::new();
         let of_model = |dependence: &Dependence| dependence.is_shown_by(base.model.external.as_ref());
-        for dependence in dependences(&base.experiment).into_iter().filter(of_model) {
+        let dependences = dependences(&base.experiment).into_iter().filter(of_model);
+        for dependence in dependences.take_while(|_| room > 1) {
             let forms = LawForm::ALL
                 .iter()
                 .map(|form| Ok((*form, of_file(form.of(&dependence))?)))
@@ -143,7 +146,7 @@ impl SearchModels {
             laws,
             reductions,
             variants: BTreeMap::new(),
-            max_effects,
+            max_effects: max_effects.min(room.saturating_sub(1)),
             base,
         })
     }
@@ -353,5 +356,42 @@ fn sorted(model: &QueriedModel) -> QueriedModel {
             QueriedModel::With(effects)
         }
         without @ QueriedModel::Without(_) => without.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::missing_effect::fixture::read;
+
+    #[test]
+    fn a_search_asks_for_no_more_effects_than_a_job_may_have() {
+        let (job, files, _) = read("examples/cmu-sand");
+        let task = |count: usize| {
+            let effects = [
+                "slip_sinkage",
+                "skid_sinkage",
+                "hard_pan",
+                "janosi_hanamoto",
+                "adhesion",
+                "stick_slip",
+                "load_scale",
+                "reece_pressure",
+                "edge_loss",
+                "moisture",
+            ];
+            let line = format!("kind = \"quasi_static\"\neffects = {:?}\n", &effects[..count]);
+            let mut job = job.clone();
+            job.toml = job.toml.replacen("kind = \"quasi_static\"\n", &line, 1);
+            SearchModels::new(&job, &files, 3).unwrap().task()
+        };
+        let room = |count: usize| {
+            let task = task(count);
+            (task.max_effects, task.laws.is_empty())
+        };
+        assert_eq!(room(0), (3, false));
+        assert_eq!(room(7), (2, false), "a law beyond two effects is the tenth");
+        assert_eq!(room(9), (0, true));
+        assert_eq!(room(10), (0, true));
     }
 }
