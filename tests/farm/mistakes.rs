@@ -196,6 +196,8 @@ fn the_examples_raise_no_question() {
         "cmu-sand/angles.toml",
         "cmu-sand/from-plates.toml",
         "cmu-sand/points-scm.toml",
+        "cmu-sand/points-rolled.toml",
+        "cmu-sand/all-runs.toml",
         "other-rigs/ding-2011/job.toml",
         "other-rigs/kls-1/job.toml",
         "other-rigs/kls-1/by-hand.toml",

@@ -2,6 +2,7 @@
 
 use formula::catalogue::{catalogue, find};
 use formula::{Effect, Variable};
+use shared::model::EffectSet;
 use shared::model::spatial::DisplacementFrame;
 
 use crate::model_switch::ModelSwitch;
@@ -41,10 +42,8 @@ impl EffectOnNodes {
     pub fn all_of(spec: &Spec) -> impl Iterator<Item = Self> {
         let spatial = spec.model.spatial.as_ref();
         let is_on_rim = spatial.is_some_and(|own| own.displacement == DisplacementFrame::Rim);
-        let effects = spec.fit_variant.effects.iter();
-        let has_one = effects
-            .filter_map(|own| find(&own.name))
-            .any(|own| own.uses().contains(Variable::J));
+        let effects = EffectSet::read(&spec.fit_variant.effects);
+        let has_one = effects.is_ok_and(|own| own.using(Variable::J).is_some());
         let all = catalogue().iter().filter_map(Self::new);
         all.filter(move |_| is_on_rim && !has_one)
     }
@@ -52,7 +51,40 @@ impl EffectOnNodes {
 
 #[cfg(test)]
 mod tests {
+    use shared::file::FileSet;
+
     use super::*;
+
+    const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 1.0\n";
+    const RUNS: &str =
+        "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n\na,w,s,0.2,100,0.008,30\n";
+
+    /// The candidates of a job with an effect of the user.
+    fn candidates(formula: &str) -> Vec<String> {
+        let effect = format!(
+            "name = \"mine\"\nsummary = \"mine\"\nsource = \"a guess\"\n{formula}\n[parameters.a]\nunit = \"1\"\nneutral = 0.0\nprior = {{ normal = [0.0, 0.2] }}\n"
+        );
+        let job = FileSet {
+            toml: "[model]\nkind = \"scm\"\neffect_files = [\"mine.toml\"]\n[priors]\nlog10_p_ref = 4.5\nn = 1.1\nkappa = 0.0\nfriction_angle_deg = 30.0\n".into(),
+            files: [("mine.toml".to_owned(), effect)].into(),
+        };
+        let experiment = FileSet {
+            toml: EXPERIMENT.into(),
+            files: [("runs.csv".to_owned(), RUNS.to_owned())].into(),
+        };
+        let spec = Spec::new("job.toml", &job, "experiment.toml", &experiment).unwrap();
+        EffectOnNodes::all_of(&spec).map(|own| own.name()).collect()
+    }
+
+    #[test]
+    fn an_effect_of_the_displacement_in_a_file_of_the_user_is_one_too() {
+        assert_eq!(
+            candidates("drawbar_pull = \"drawbar_pull * (1 + a)\""),
+            ["janosi_hanamoto_node", "stretched_mobilisation_node"]
+        );
+        let none: [&str; 0] = [];
+        assert_eq!(candidates("shear = \"tau * (1 + a * j / radius)\""), none);
+    }
 
     #[test]
     fn only_an_effect_of_the_displacement_can_be_on_the_nodes() {

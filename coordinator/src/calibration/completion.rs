@@ -186,6 +186,7 @@ impl Calibration {
         let stayed = scored.is_some_and(|s| s.end.is_some_and(|end| end.accepted == 0));
         // Held-out runs of a draw are no further parameter vector.
         let counts = !self.key(evaluation).is_of_holdout() && !stayed;
+        self.simulations += u64::from(!stayed);
         self.evaluations += u64::from(counts);
         self.rejected += u64::from(counts && rejected);
         let Some(scored) = scored else {

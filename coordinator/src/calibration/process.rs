@@ -56,6 +56,8 @@ pub struct Calibration {
     pub evaluations: u64,
     /// Of these, refused by the model.
     pub rejected: u64,
+    /// Simulations completed: evaluations, and those of held-out runs.
+    pub simulations: u64,
     pub(super) engine: CalibrationEngine,
     /// What is evaluated while sampling, with its hash.
     pub(super) sampled: (String, ModelVariant),
@@ -140,6 +142,7 @@ impl Calibration {
             busy_ms: 0,
             evaluations: 0,
             rejected: 0,
+            simulations: 0,
             engine,
             stage_variant: None,
             apart: Vec::new(),

@@ -485,6 +485,7 @@ mod tests {
             (counted.evaluations, counted.rejected),
             (vectors(&facts), refused)
         );
+        assert_eq!(counted.simulations, rows(&facts).len() as u64);
         assert_eq!(sorted(&work(&mut with_a_refused_run(), usize::MAX, true)), whole);
         for cut in [30, whole.len() - 63, whole.len() - 62, whole.len() - 1] {
             let begun = work(&mut with_a_refused_run(), cut, true);

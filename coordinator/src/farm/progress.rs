@@ -9,10 +9,10 @@ use crate::calibration::{Calibration, CalibrationEngine};
 /// The pace is an average over so much of the past `[ms]`.
 const WINDOW_MS: u64 = 10_000;
 
-/// Evaluations over the last seconds.
+/// Simulations over the last seconds.
 #[derive(Debug)]
 pub(super) struct Pace {
-    /// (time, evaluations by then), a few a second; never empty.
+    /// (time, simulations by then), a few a second; never empty.
     marks: VecDeque<(u64, u64)>,
     /// Mean duration of leases that ended in a result, the late ones counting more `[ms]`.
     mean_lease_ms: Option<u64>,
@@ -22,17 +22,17 @@ pub(super) struct Pace {
 const LEASE_MEMORY: u64 = 16;
 
 impl Pace {
-    pub(super) fn new(evaluations: u64, now_ms: u64) -> Self {
+    pub(super) fn new(simulations: u64, now_ms: u64) -> Self {
         Pace {
-            marks: VecDeque::from([(now_ms, evaluations)]),
+            marks: VecDeque::from([(now_ms, simulations)]),
             mean_lease_ms: None,
         }
     }
 
-    /// Notes how many evaluations are done by now.
-    pub(super) fn count(&mut self, evaluations: u64, now_ms: u64) {
+    /// Notes how many simulations are done by now.
+    pub(super) fn count(&mut self, simulations: u64, now_ms: u64) {
         if self.marks.back().is_none_or(|&(at, _)| now_ms >= at + 250) {
-            self.marks.push_back((now_ms, evaluations));
+            self.marks.push_back((now_ms, simulations));
         }
         while self.marks.len() > 2 && self.marks[1].0 + WINDOW_MS < now_ms {
             self.marks.pop_front();
@@ -50,10 +50,10 @@ impl Pace {
         self.mean_lease_ms
     }
 
-    fn per_second(&self, evaluations: u64, now_ms: u64) -> f64 {
+    fn per_second(&self, simulations: u64, now_ms: u64) -> f64 {
         let (since, before) = self.marks[0];
         let seconds = now_ms.saturating_sub(since).max(1) as f64 / 1000.0;
-        evaluations.saturating_sub(before) as f64 / seconds
+        simulations.saturating_sub(before) as f64 / seconds
     }
 }
 
@@ -75,7 +75,7 @@ pub(super) fn status(
         CalibrationEngine::Discovery(search) => (search.round() as usize, 1.0, 0, None),
     };
     let queue = &calibration.queue;
-    let per_second = pace.per_second(calibration.evaluations, now_ms);
+    let per_second = pace.per_second(calibration.simulations, now_ms);
     CalibrationStatus {
         id: identity.id,
         name: identity.name.clone(),

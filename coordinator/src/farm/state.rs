@@ -117,7 +117,7 @@ impl Farm {
             calibration.busy_ms = before.calibration.busy_ms;
         }
         self.facts.extend(facts);
-        let pace = Pace::new(calibration.evaluations, now_ms);
+        let pace = Pace::new(calibration.simulations, now_ms);
         let entry = Entry {
             calibration,
             key,
@@ -340,7 +340,7 @@ impl Farm {
                     repeated,
                 });
             }
-            entry.pace.count(calibration.evaluations, now_ms);
+            entry.pace.count(calibration.simulations, now_ms);
             counted
         });
         let convicted = calibration.take_convicted();

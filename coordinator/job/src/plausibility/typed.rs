@@ -42,36 +42,55 @@ pub(super) fn questions(spec: &Spec) -> Vec<Question> {
     }
     questions.extend(spec.parameters.iter().filter_map(of_prior));
     questions.extend(spec.parameters.iter().filter_map(|p| of_radius(spec, p)));
+    let fixed = spec.model.fixed.iter();
+    questions.extend(fixed.filter_map(|(name, &value)| of_fixed_radius(spec, name, value)));
     questions
 }
 
-/// A prior of a wheel's radius that lies elsewhere than the wheel: neither rim nor tips, nor what is between them, is where it has
-/// 99.8 % of its probability.
+/// A prior of a wheel's radius that lies elsewhere than the wheel, with 99.8 % of its probability.
 fn of_radius(spec: &Spec, parameter: &FreeParameter) -> Option<Question> {
-    let (name, own) = match parameter.name.split_once('.') {
-        Some((name, wheel)) => (name, Some(wheel)),
-        None => (parameter.name.as_str(), None),
-    };
-    if name != WHEEL_RADIUS {
-        return None;
-    }
     let end = 0.5 * (1.0 - OF_RADIUS);
     let [low, high] = [end, 1.0 - end].map(|p| parameter.marginal.quantile(p));
-    let wheels = spec.experiment.wheels.iter();
-    let mut elsewhere = wheels.filter(|(wheel, geometry)| {
-        let (rim, tips) = (geometry.radius_m, geometry.radius_m + geometry.grouser_height_m);
-        let is_meant = own.is_none_or(|own| own == wheel.as_str());
-        is_meant && (high < rim * (1.0 - ABOUT) || low > tips * (1.0 + ABOUT))
-    });
-    let (wheel, geometry) = elsewhere.next()?;
+    let (wheel, radius_m) = elsewhere(spec, &parameter.name, [low, high])?;
     let words = format!(
         "the prior of {} has 99.8 % of its probability from {} to {} m, and wheel {wheel} has radius_m = {}",
         parameter.name,
         limit::number(low),
         limit::number(high),
-        limit::number(geometry.radius_m)
+        limit::number(radius_m)
     );
     Some(Question::new(WHEEL_RADIUS, words))
+}
+
+/// A wheel's radius that is fixed elsewhere than the wheel.
+fn of_fixed_radius(spec: &Spec, name: &str, value: f64) -> Option<Question> {
+    let (wheel, radius_m) = elsewhere(spec, name, [value, value])?;
+    let [value, radius_m] = [value, radius_m].map(limit::number);
+    let words = format!("{name}, fixed: {value} m, and wheel {wheel} has radius_m = {radius_m}");
+    Some(Question::new(WHEEL_RADIUS, words))
+}
+
+/// The first wheel, with its `radius_m`, to which radii of a parameter do not belong: they lie beside its rim and, where the model
+/// rolls a smooth wheel in place of its grousers, beside their tips and what is between.
+fn elsewhere<'a>(spec: &'a Spec, parameter: &str, [low, high]: [f64; 2]) -> Option<(&'a str, f64)> {
+    let (name, own) = match parameter.split_once('.') {
+        Some((name, wheel)) => (name, Some(wheel)),
+        None => (parameter, None),
+    };
+    if name != WHEEL_RADIUS {
+        return None;
+    }
+    let mut wheels = spec.experiment.wheels.iter();
+    let (wheel, geometry) = wheels.find(|(wheel, geometry)| {
+        let rim = geometry.radius_m;
+        let largest = match spec.model.is_smooth() {
+            true => rim + geometry.grouser_height_m,
+            false => rim,
+        };
+        let is_meant = own.is_none_or(|own| own == wheel.as_str());
+        is_meant && (high < rim * (1.0 - ABOUT) || low > largest * (1.0 + ABOUT))
+    })?;
+    Some((wheel, geometry.radius_m))
 }
 
 /// A prior of which hardly anything lies in the usual range.
@@ -157,5 +176,75 @@ fn values(spec: &Spec, limit: &Limit) -> Vec<(String, f64)> {
         "steady_travel_m" => spatial(|s| s.steady_travel_m),
         // Slip is refused outside its range; the rest are parameters.
         _ => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use shared::file::FileSet;
+
+    use super::*;
+
+    const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\ngrouser_count = 12\ngrouser_height_m = 0.02\ngrouser_thickness_m = 0.002\n[soil.s]\n[noise]\ndrawbar_pull_n = 1.0\n";
+    const RUNS: &str =
+        "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n\na,w,s,0.2,100,0.008,30\n";
+
+    /// The questions on the radius of a wheel with its rim at 0.125 m and its tips at 0.145 m.
+    fn asked(model: &str, radius: &str) -> Vec<String> {
+        let priors = match model.contains("rft") {
+            true => "",
+            false => {
+                "log10_p_ref = 4.5\nkappa = 0.0\nfriction_angle_deg = 30.0\nn = { normal = [1.1, 0.2], bounds = [0.8, 2.0] }\n"
+            }
+        };
+        let job = FileSet {
+            toml: format!("[model]\n{model}\n[priors]\n\"wheel_radius_m.w\" = {radius}\n{priors}"),
+            files: Default::default(),
+        };
+        let experiment = FileSet {
+            toml: EXPERIMENT.into(),
+            files: [("runs.csv".to_owned(), RUNS.to_owned())].into(),
+        };
+        let spec = Spec::new("job.toml", &job, "experiment.toml", &experiment).unwrap();
+        let of_radius = questions(&spec)
+            .into_iter()
+            .filter(|own| own.name == WHEEL_RADIUS);
+        of_radius.map(|own| own.words).collect()
+    }
+
+    #[test]
+    fn a_radius_may_be_that_of_the_tips_only_where_the_wheel_rolls_smooth() {
+        let (smooth, rolled) = (
+            "kind = \"quasi_static\"",
+            "kind = \"quasi_static\"\ngrousers = \"rolled\"",
+        );
+        let tips = "{ uniform = [0.140, 0.145] }";
+        let none: [&str; 0] = [];
+        assert_eq!(asked(smooth, tips), none);
+        for model in [rolled, "kind = \"scm\"", "kind = \"rft\""] {
+            assert_eq!(
+                asked(model, tips),
+                [
+                    "the prior of wheel_radius_m.w has 99.8 % of its probability from 0.140005 to 0.144995 m, and wheel w has radius_m = 0.125"
+                ],
+                "{model}"
+            );
+            assert_eq!(asked(model, "{ uniform = [0.120, 0.130] }"), none, "{model}");
+        }
+    }
+
+    #[test]
+    fn a_fixed_radius_of_another_wheel_is_asked_about() {
+        let smooth = "kind = \"quasi_static\"";
+        let none: [&str; 0] = [];
+        assert_eq!(asked(smooth, "0.145"), none);
+        for radius in ["0.25", "0.0625"] {
+            assert_eq!(
+                asked(smooth, radius),
+                [format!(
+                    "wheel_radius_m.w, fixed: {radius} m, and wheel w has radius_m = 0.125"
+                )]
+            );
+        }
     }
 }

@@ -19,6 +19,8 @@ use super::prior_entry::FreeParameter;
 const DRAWS_PER_PARAMETER: usize = 10;
 /// Relative standard deviation below which a column is constant.
 const ROUNDING: f64 = 1e-12;
+/// The parameter of an effect that rings feel too.
+const RING_MODULUS: &str = "janosi_hanamoto.shear_modulus_m";
 
 /// `posterior`, `transfer` and `moduli` under `[priors]`, as written.
 #[derive(Debug, Clone, PartialEq)]
@@ -207,10 +209,16 @@ impl PosteriorPrior {
     }
 }
 
-/// Whether a column of a posterior is of what a wheel shows and a plate does not.
+/// Whether a column of a posterior is of what a wheel shows and plates and rings do not: its radius, the noise of its channels, and
+/// effects, of which a ring feels the one of its shear modulus alone.
 fn is_of_wheel(column: &str) -> bool {
     let of_channel = |channel: Channel| column == noise_parameter(channel);
-    column.split('.').next() == Some(WHEEL_RADIUS) || Channel::ALL.into_iter().any(of_channel)
+    match column.starts_with(NOISE_PREFIX) {
+        true => Channel::ALL.into_iter().any(of_channel),
+        false => {
+            column == WHEEL_RADIUS || column.contains('.') && ![RING_TRANSFER, RING_MODULUS].contains(&column)
+        }
+    }
 }
 
 impl JointPrior {
@@ -436,6 +444,36 @@ mod tests {
         // a vector against the correlation is less probable than one along it
         let density = |p: f64, kappa: f64| spec.prior().log_density(&[p, kappa, 1.3, 30.0]);
         assert!(density(3.92, -0.57) > density(3.92, -0.63) + 1.0);
+    }
+
+    #[test]
+    fn parameters_of_a_wheel_or_of_its_effects_make_a_posterior_that_of_more_than_plates() {
+        for column in [
+            "n",
+            "noise.plate_noise",
+            RING_TRANSFER,
+            RING_MODULUS,
+            "log_likelihood",
+        ] {
+            assert!(!is_of_wheel(column), "{column}");
+        }
+        for column in [
+            WHEEL_RADIUS,
+            "wheel_radius_m.w",
+            "noise.drawbar_pull_n",
+            "slip_sinkage.slip_exponent",
+            "janosi_hanamoto.shear_modulus_m.w",
+        ] {
+            assert!(is_of_wheel(column), "{column}");
+        }
+        let scatter = scatter_parameter(Scatter::PlateTest);
+        let of_plates = |column: &str| {
+            let csv = csv().replacen("log_likelihood,log_prior", &format!("{scatter},{column}"), 1);
+            let spec = spec("posterior = \"p.csv\"", &csv).unwrap();
+            spec.joint_prior.unwrap().of_plates
+        };
+        assert!(of_plates("log_prior"));
+        assert!(!of_plates("slip_sinkage.slip_exponent"));
     }
 
     #[test]

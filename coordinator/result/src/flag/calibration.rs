@@ -174,7 +174,10 @@ fn refused_holdout(calibration: &FinishedCalibration) -> Option<String> {
     if others > 0 {
         words.push(format!("{others} more"));
     }
-    let whole = refused.iter().filter(|(_, refusal)| refusal.is_whole()).count();
+    let whole = refused
+        .iter()
+        .filter(|(_, refusal)| refusal.is_at_half_or_more())
+        .count();
     let rest = match (whole, spec.holdout_runs.len() - whole) {
         (0, _) => ", and its predictions there rest on the other draws".to_owned(),
         (_, 0) => ", and no held-out run is left to judge the model".to_owned(),

@@ -27,7 +27,8 @@ pub struct ModelComparison {
     pub prior: f64,
     /// The calibration of the most probable model, with which the study goes on.
     pub best: i64,
-    /// The calibration of the model that predicts left-out data best; null where none predicts any.
+    /// The calibration of the model that predicts left-out data best; null where none predicts any, or one more of
+    /// them than another.
     pub best_predicting: Option<i64>,
     /// Whether even the most probable model leaves residuals that its noise does not explain (chi-square, p < 0.01); null where no noise
     /// is known that is not inferred from the misfit.
@@ -153,9 +154,17 @@ fn name(calibration: &FinishedCalibration, compared: &[&FinishedCalibration]) ->
     }
 }
 
-/// The model of the least error in noise sds.
+/// The model of the least error in noise sds; `None` where one predicts more of the measurements than another: those that a model
+/// refuses are the hard ones.
 fn best_predicting(models: &[ComparedModel]) -> Option<&ComparedModel> {
     let error = |model: &ComparedModel| model.left_out.as_ref()?.all.rmse_fixed_sigma;
+    let mut unpredicted = models
+        .iter()
+        .filter_map(|model| Some(model.left_out.as_ref()?.all.unpredicted));
+    let first = unpredicted.next()?;
+    if unpredicted.any(|other| other != first) {
+        return None;
+    }
     let known = models.iter().filter_map(|model| Some((model, error(model)?)));
     let best = known.reduce(|best, own| if own.1 < best.1 { own } else { best })?;
     Some(best.0)
@@ -278,6 +287,22 @@ mod tests {
             ..study([-10.0, -12.0])
         };
         assert_eq!(unfinished.model_comparison(), None);
+    }
+
+    #[test]
+    fn a_model_that_refuses_more_does_not_predict_better() {
+        let comparison = study([-10.0, -12.0]).model_comparison().unwrap();
+        let mut models = comparison.models;
+        for (model, sds) in models.iter_mut().zip([2.0, 1.0]) {
+            let errors = model.left_out.as_mut().unwrap();
+            errors.all.rmse_fixed_sigma = Some(sds);
+        }
+        assert_eq!(
+            best_predicting(&models).unwrap().calibration,
+            models[1].calibration
+        );
+        models[1].left_out.as_mut().unwrap().all.unpredicted += 3;
+        assert!(best_predicting(&models).is_none());
     }
 
     #[test]

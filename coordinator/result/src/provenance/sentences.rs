@@ -120,14 +120,14 @@ fn holdout(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<St
     };
     let refused = calibration.spec.holdout_runs.iter();
     let refused = refused.filter_map(|&run| Refusal::of(calibration, run));
-    let mut text = vec![match refused.filter(Refusal::is_whole).count() {
+    let mut text = vec![match refused.filter(Refusal::is_at_half_or_more).count() {
         0 => format!(
             "On the {}, not used in the fit, it is {}.",
             few(held, "holdout run"),
             misses(model)
         ),
         refused => format!(
-            "On {} of the {}, not used in the fit, it is {}; the model refuses the others.",
+            "On {} of the {}, not used in the fit, it is {}; the model refuses the others at half of its final draws or more.",
             held - refused,
             few(held, "holdout run"),
             misses(model)

@@ -23,7 +23,7 @@ pub struct Comparison {
     pub fit: Option<ErrorTable>,
     /// Errors of the runs that were not fitted.
     pub holdout: Option<ErrorTable>,
-    /// Errors of interpolating the fitted measurements, without physics, on the holdout runs.
+    /// Errors of interpolating the fitted measurements, without physics, on the holdout measurements that the model predicts.
     pub baseline_holdout: Option<ErrorTable>,
     /// Why some holdout runs are not interpolated; empty where all are.
     pub not_interpolated: Vec<String>,

@@ -52,9 +52,9 @@ impl ErrorTable {
         table(rows.map(|r| (r, r.predicted)))
     }
 
-    /// Errors of interpolation without physics; `None` where it has nothing to say.
+    /// Errors of interpolation without physics where the model has a prediction too; `None` where there is no such row.
     pub(crate) fn of_baseline<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
-        table(rows.map(|r| (r, r.interpolated)))
+        table(rows.map(|r| (r, r.interpolated.filter(|_| r.predicted.is_some()))))
     }
 
     /// The error of a channel.

@@ -51,6 +51,8 @@ impl Study {
                     .last()
                     .filter(|line| line.calibration.row.experiment == calibration.row.experiment)
                     .and_then(|line| line.rows.iter().find(|r| r.usage == usage));
+                // Nor do those of a model that refuses more or fewer of them.
+                let last = last.filter(|row| row.errors.all.unpredicted == errors.all.unpredicted);
                 let is_worse = |channel: &Channel| {
                     let before = last.and_then(|last| last.errors.channel(*channel));
                     let now = errors.channel(*channel);
@@ -99,25 +101,48 @@ mod tests {
 
     #[test]
     fn a_channel_that_got_worse_is_marked_and_no_other() {
-        let mut study = fixture::grown();
-        let worsen = |by: f64, study: &mut Study| {
-            for prediction in &mut study.extensions[0].predictions {
+        let marked = |by: f64, change: &dyn Fn(&mut FinishedCalibration)| -> Vec<Channel> {
+            let mut study = fixture::grown();
+            let extension = &mut study.extensions[0];
+            for prediction in &mut extension.predictions {
                 let observables = prediction.fit.as_mut().unwrap();
                 observables.sinkage_m.iter_mut().for_each(|z| *z += by);
             }
-        };
-        let marked = |study: &Study| -> Vec<Channel> {
-            study
-                .ledger_lines()
-                .into_iter()
+            change(extension);
+            let lines = study.ledger_lines().into_iter();
+            lines
                 .flat_map(|line| line.rows)
                 .flat_map(|row| row.worse)
                 .collect()
         };
-        assert_eq!(marked(&study), []);
-        worsen(0.05, &mut study);
-        assert_eq!(marked(&study), [Channel::Sinkage]);
-        study.extensions[0].row.experiment += 1;
-        assert_eq!(marked(&study), []);
+        assert_eq!(marked(0.0, &|_| ()), []);
+        assert_eq!(marked(0.05, &|_| ()), [Channel::Sinkage]);
+        assert_eq!(marked(0.05, &|own| own.row.experiment += 1), []);
+    }
+
+    #[test]
+    fn errors_are_not_compared_where_a_model_refuses_runs_that_the_one_before_predicts() {
+        // The runs that both predict got worse.
+        let after = || {
+            let mut refused = fixture::with_refused_runs();
+            refused.row.id += 1;
+            let holdouts = refused.predictions.iter_mut().flat_map(|own| &mut own.holdout);
+            for observables in holdouts.flat_map(|own| own.alone.values_mut().flatten()) {
+                observables.drawbar_pull_n.iter_mut().for_each(|f| *f += 500.0);
+            }
+            refused
+        };
+        let marked = |before: FinishedCalibration| {
+            let study = Study {
+                extensions: vec![after()],
+                ..Study::from(before)
+            };
+            let lines = study.ledger_lines();
+            let rows = lines.iter().flat_map(|line| &line.rows);
+            let held_out = rows.filter(|row| row.usage == RunUse::Holdout);
+            held_out.flat_map(|row| row.worse.clone()).collect::<Vec<_>>()
+        };
+        assert_eq!(marked(fixture::with_held_out_runs(4, 0.5)), []);
+        assert_eq!(marked(fixture::with_refused_runs()), [Channel::DrawbarPull]);
     }
 }

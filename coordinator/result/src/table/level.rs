@@ -94,7 +94,7 @@ mod tests {
             [[9.988, 10.0]],
             "mm/s: within .2 %"
         );
-        assert_eq!(bounds(&levels([-0.2, 0.0, 0.003])).len(), 3);
+        assert_eq!(bounds(&levels([-0.2, 0.0, 0.005])).len(), 3);
     }
 
     #[test]

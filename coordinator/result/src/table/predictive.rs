@@ -49,13 +49,18 @@ fn noise_source(calibration: &FinishedCalibration, run: usize, channel: Channel)
     }
 }
 
-/// The predictive distribution of a run and channel; `None` where every draw was rejected, of a held-out run half of them.
+/// The predictive distribution of a run and channel; `None` where every draw was rejected, of a held-out run half of them
+/// or more.
 pub(crate) fn predictive(
     calibration: &FinishedCalibration,
     levels: &Levels,
     run: usize,
     channel: Channel,
 ) -> Option<Predictive> {
+    let refusal = || Refusal::of(calibration, run);
+    if calibration.spec.holdout_runs.contains(&run) && refusal().is_some_and(|own| own.is_at_half_or_more()) {
+        return None;
+    }
     let draws = new_measurements(calibration, levels, run, channel)?;
     let sds: Vec<f64> = draws.iter().filter_map(|draw| draw.noise_sd).collect();
     let components: Vec<Component> = draws.into_iter().flat_map(|draw| draw.components).collect();
@@ -114,10 +119,6 @@ fn new_measurements(
     channel: Channel,
 ) -> Option<Vec<NewMeasurement>> {
     let spec = &calibration.spec;
-    let refusal = || Refusal::of(calibration, run);
-    if spec.holdout_runs.contains(&run) && refusal().is_some_and(|refusal| refusal.is_whole()) {
-        return Some(Vec::new());
-    }
     let source = noise_source(calibration, run, channel);
     let position = |runs: &[usize]| runs.iter().position(|&r| r == run);
     let place = match position(&spec.fit_runs) {

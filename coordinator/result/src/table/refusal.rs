@@ -41,7 +41,7 @@ impl Refusal {
     }
 
     /// Whether too little is left to predict from: at least half of the draws are refused.
-    pub fn is_whole(&self) -> bool {
+    pub fn is_at_half_or_more(&self) -> bool {
         2 * self.draws >= self.of
     }
 
@@ -61,13 +61,13 @@ mod tests {
         let comparison = refused.comparison();
         let row = |run: &str| comparison.rows.iter().find(|r| r.run == run).unwrap();
         let gone = row("h1").refused.clone().unwrap();
-        assert!(gone.is_whole() && row("h1").predicted.is_none() && row("h1").covered().is_none());
+        assert!(gone.is_at_half_or_more() && row("h1").predicted.is_none() && row("h1").covered().is_none());
         let some = row("h3").refused.clone().unwrap();
         assert_eq!(
             some.words(),
             "5 of 19 final draws (no_support: condition 0: z = 0.11 m)"
         );
-        assert!(!some.is_whole() && row("h3").predicted.is_some());
+        assert!(!some.is_at_half_or_more() && row("h3").predicted.is_some());
         // The others are as they would be without the refusals, to the bit.
         let before = whole.comparison();
         let unrefused = before.rows.iter().find(|r| r.run == "h0").unwrap();
@@ -82,6 +82,11 @@ mod tests {
             (2, 2)
         );
         assert_eq!(before.holdout.as_ref().unwrap().all.unpredicted, 0);
+        // Interpolation stands beside the model, on the same rows.
+        let interpolated = comparison.baseline_holdout.as_ref().unwrap();
+        assert_eq!(interpolated.drawbar_pull.unwrap().runs, 2);
+        let of_whole = before.baseline_holdout.as_ref().unwrap();
+        assert_eq!(of_whole.drawbar_pull.unwrap().runs, 4);
     }
 
     #[test]
@@ -91,7 +96,7 @@ mod tests {
         let row = comparison.rows.iter().find(|r| r.run == "h2").unwrap();
         let half = row.refused.clone().unwrap();
         assert_eq!((half.draws, half.of), (10, 19));
-        assert!(half.is_whole() && row.predicted.is_none() && row.q05.is_none());
+        assert!(half.is_at_half_or_more() && row.predicted.is_none() && row.q05.is_none());
         let new = crate::NewMeasurements::of(&refused);
         let place = refused
             .spec
@@ -99,10 +104,9 @@ mod tests {
             .runs
             .iter()
             .position(|run| run.name == "h2");
-        assert!(
-            new.at(place.unwrap(), shared::channel::Channel::DrawbarPull)
-                .is_empty()
-        );
+        // What the other draws say is told all the same: it judges nothing.
+        let told = new.at(place.unwrap(), shared::channel::Channel::DrawbarPull);
+        assert_eq!(told.len(), 9);
     }
 
     #[test]

@@ -99,11 +99,12 @@ fn errors(comparison: &Comparison) -> String {
     for (usage, unpredicted) in [RunUse::Fit, RunUse::Holdout].into_iter().zip(unpredicted) {
         if unpredicted > 0 {
             let measurements = number::count(unpredicted, "measurement");
-            let _ = writeln!(
-                text,
-                "without {measurements} of {} runs that the model refuses at half of the draws or more",
-                usage.name()
-            );
+            // A fitted run is judged by whatever draws are left.
+            let which = match usage {
+                RunUse::Fit => "that have no prediction",
+                RunUse::Holdout => "that the model refuses at half of the draws or more",
+            };
+            let _ = writeln!(text, "without {measurements} of {} runs {which}", usage.name());
         }
     }
     for usage in [RunUse::Fit, RunUse::Holdout] {

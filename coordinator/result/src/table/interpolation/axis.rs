@@ -54,7 +54,7 @@ impl Axis {
     }
 
     /// Number of different values.
-    fn count(self, runs: &[&TestRun]) -> usize {
+    pub(super) fn count(self, runs: &[&TestRun]) -> usize {
         let mut different: Vec<&TestRun> = Vec::new();
         for run in runs {
             if !different.iter().any(|other| self.is_same(other, run)) {

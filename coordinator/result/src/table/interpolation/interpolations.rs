@@ -192,6 +192,15 @@ mod tests {
                 "wheel b on soil sand has no fitted lateral force",
             ]
         );
+        let mut scattered = experiment(&["a,sand,0.15,200,0.01,22,1"]);
+        let fitted = scattered.runs.iter_mut().filter(|run| run.usage == RunUse::Fit);
+        for (i, run) in fitted.enumerate() {
+            run.wheel_load_n = 100.0 + i as f64;
+        }
+        assert_eq!(
+            Interpolations::of(&scattered).missing(),
+            ["wheel a on soil sand was fitted at loads of 100 to 139 N, and not at 200 N"]
+        );
         let mut few = experiment(&["a,sand,0.15,100,0.01,22,1"]);
         few.runs.retain(|run| {
             run.usage == RunUse::Holdout

@@ -100,7 +100,7 @@ impl Surface {
     fn at(&self, run: &TestRun) -> Result<Interpolated, String> {
         let is_fitted = |axis: &Axis| self.fitted.iter().any(|own| axis.is_same(own, run));
         if let Some(axis) = self.held.iter().find(|axis| !is_fitted(axis)) {
-            return Err(format!("{} was fitted at one {} alone", self.of, axis.words()));
+            return Err(self.beside(*axis, run));
         }
         let point: Vec<f64> = self.axes.iter().map(|axis| axis.value(run)).collect();
         Ok(Interpolated {
@@ -110,6 +110,24 @@ impl Surface {
                 false => InterpolatedOver::Extrapolation,
             },
         })
+    }
+
+    /// Why there is no value at a run beside the one level of a condition. The loads of a rig that does not hold them are one level,
+    /// and scatter.
+    fn beside(&self, axis: Axis, run: &TestRun) -> String {
+        let fitted: Vec<&TestRun> = self.fitted.iter().collect();
+        if axis != Axis::WheelLoad || axis.count(&fitted) == 1 {
+            return format!("{} was fitted at one {} alone", self.of, axis.words());
+        }
+        let loads = || fitted.iter().map(|own| axis.value(own));
+        let (least, most) = loads().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), load| {
+            (least.min(load), most.max(load))
+        });
+        let [least, most, own] = [least, most, axis.value(run)].map(|load| number::significant(load, 3));
+        format!(
+            "{} was fitted at loads of {least} to {most} N, and not at {own} N",
+            self.of
+        )
     }
 }
 
