@@ -27,12 +27,19 @@ impl Roughness {
         }
     }
 
-    /// A step of a fit that gains, or is predicted to gain, less ends its trials \[nats\]: the log-likelihood of a rough model scatters by
-    /// more.
+    /// A step of a fit that is predicted to gain less ends its trials \[nats\]: the log-likelihood of a rough model scatters by more.
     pub(crate) fn least_gain(self) -> f64 {
         match self {
             Self::Smooth => 0.01,
             Self::Rough => 0.2,
+        }
+    }
+
+    /// A step that gains less is taken and counts as rejected \[nats\].
+    pub(crate) fn least_counted_gain(self) -> f64 {
+        match self {
+            Self::Smooth => 0.0,
+            Self::Rough => self.least_gain(),
         }
     }
 
