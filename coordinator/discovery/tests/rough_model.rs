@@ -23,6 +23,7 @@ fn candidate(k: usize) -> Candidate {
         parameters: vec![prior],
         strengths: vec![0],
         neutral: 0.0,
+        excludes: Vec::new(),
     }
 }
 
