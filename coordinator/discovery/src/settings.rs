@@ -16,6 +16,8 @@ pub enum Roughness {
     Smooth,
     /// In jumps, as on a grid that the contact crosses node by node.
     Rough,
+    /// As the scatter says where it is measured: smoothly where that is negligible beside the noise of all data, in jumps otherwise.
+    Unknown,
 }
 
 impl Roughness {
@@ -23,7 +25,7 @@ impl Roughness {
     pub(crate) fn least_difference(self) -> f64 {
         match self {
             Self::Smooth => 0.03,
-            Self::Rough => 0.15,
+            Self::Rough | Self::Unknown => 0.15,
         }
     }
 
@@ -31,7 +33,7 @@ impl Roughness {
     pub(crate) fn least_gain(self) -> f64 {
         match self {
             Self::Smooth => 0.01,
-            Self::Rough => 0.2,
+            Self::Rough | Self::Unknown => 0.2,
         }
     }
 
@@ -39,7 +41,7 @@ impl Roughness {
     pub(crate) fn least_counted_gain(self) -> f64 {
         match self {
             Self::Smooth => 0.0,
-            Self::Rough => self.least_gain(),
+            Self::Rough | Self::Unknown => self.least_gain(),
         }
     }
 
@@ -47,7 +49,7 @@ impl Roughness {
     pub(crate) fn most_failures(self) -> usize {
         match self {
             Self::Smooth => 4,
-            Self::Rough => 3,
+            Self::Rough | Self::Unknown => 3,
         }
     }
 }

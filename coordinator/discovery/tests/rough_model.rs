@@ -41,7 +41,7 @@ fn predicted(theta: &[f64], effect: Option<usize>, roughness: Roughness) -> Vec<
         });
         let jump = match roughness {
             Roughness::Smooth => 0.0,
-            Roughness::Rough => SCATTER * jumps[i],
+            Roughness::Rough | Roughness::Unknown => SCATTER * jumps[i],
         };
         theta[0] + theta[1] * x + own + jump
     };
@@ -65,11 +65,16 @@ fn search(truth: usize, roughness: Roughness) -> EffectRanking {
 }
 
 fn searched(likelihood: Likelihood, roughness: Roughness) -> EffectRanking {
+    searched_as(likelihood, roughness, roughness)
+}
+
+/// The search of a model of a roughness that is told another one.
+fn searched_as(likelihood: Likelihood, roughness: Roughness, told: Roughness) -> EffectRanking {
     let normal = || Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
     let candidates: Vec<Candidate> = (0..EFFECTS).map(candidate).collect();
     let settings = SearchSettings {
-        roughness,
-        has_numerical_noise: roughness == Roughness::Rough,
+        roughness: told,
+        has_numerical_noise: told != Roughness::Smooth,
         ..SearchSettings::default()
     };
     let prior = Prior::new(vec![normal(), normal()]);
@@ -164,5 +169,20 @@ fn what_is_out_of_reach_is_screened_alone_and_its_probability_is_small_by_either
             own.probability,
             thorough.probability
         );
+    }
+}
+
+#[test]
+fn a_model_of_unknown_roughness_is_searched_as_its_scatter_says() {
+    let of = |roughness, told| searched_as(Likelihood::new(data(13)).unwrap(), roughness, told);
+    let rough = of(Roughness::Rough, Roughness::Unknown);
+    assert_eq!(rough, of(Roughness::Rough, Roughness::Rough));
+    let [smooth, thorough] = [Roughness::Unknown, Roughness::Smooth].map(|told| of(Roughness::Smooth, told));
+    assert!(smooth.evaluations.to_confirm() > rough.evaluations.to_confirm());
+    for own in &smooth.effects {
+        let known = thorough.of(own.candidate).unwrap();
+        assert_eq!(own.method, known.method, "{:?}", own.candidate);
+        let difference = own.log_bayes_factor - known.log_bayes_factor;
+        assert!(difference.abs() < 0.1, "{:?}: {difference}", own.candidate);
     }
 }

@@ -189,8 +189,10 @@ impl SearchModels {
                 seed: base.algorithm.seed(),
                 roughness: match base.model.kind {
                     ModelKind::QuasiStatic | ModelKind::WongReece | ModelKind::Rft => Roughness::Smooth,
+                    // Fine as its grid may be, its evaluations are dear.
+                    ModelKind::Scm => Roughness::Rough,
                     // Whether another model has a grid, nobody has said.
-                    ModelKind::Scm | ModelKind::Command | ModelKind::Umbridge => Roughness::Rough,
+                    ModelKind::Command | ModelKind::Umbridge => Roughness::Unknown,
                 },
                 has_numerical_noise: base.model.kind != ModelKind::QuasiStatic,
             },

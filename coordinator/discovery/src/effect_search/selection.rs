@@ -61,7 +61,7 @@ impl EffectSearch {
         // A rough model is confirmed thoroughly only here, so a discrepancy, which takes up any misfit, does not count.
         let of = match self.base_frame.roughness {
             Roughness::Smooth => FitChiSquare::of,
-            Roughness::Rough => FitChiSquare::of_known_noise,
+            Roughness::Rough | Roughness::Unknown => FitChiSquare::of_known_noise,
         };
         let chi_square = best.and_then(|fit| of(fit, &self.likelihood));
         chi_square.is_some_and(|chi| chi.is_wrong())
