@@ -14,6 +14,8 @@ pub struct Candidate {
     pub strengths: Vec<usize>,
     /// The value of every strength at which the effect is absent.
     pub neutral: f64,
+    /// Names of the candidates with which it makes no combination.
+    pub excludes: Vec<String>,
 }
 
 impl Candidate {
@@ -21,6 +23,11 @@ impl Candidate {
     #[must_use]
     pub fn is_switch(&self) -> bool {
         self.parameters.is_empty()
+    }
+
+    /// Whether the two make a combination.
+    pub(crate) fn combines_with(&self, other: &Self) -> bool {
+        !self.excludes.contains(&other.name) && !other.excludes.contains(&self.name)
     }
 
     /// Checks strengths and neutral value.

@@ -16,6 +16,8 @@ pub enum Roughness {
     Smooth,
     /// In jumps, as on a grid that the contact crosses node by node.
     Rough,
+    /// As the scatter says where it is measured: smoothly where that is negligible beside the noise of all data, in jumps otherwise.
+    Unknown,
 }
 
 impl Roughness {
@@ -23,16 +25,23 @@ impl Roughness {
     pub(crate) fn least_difference(self) -> f64 {
         match self {
             Self::Smooth => 0.03,
-            Self::Rough => 0.15,
+            Self::Rough | Self::Unknown => 0.15,
         }
     }
 
-    /// A step of a fit that gains, or is predicted to gain, less ends its trials \[nats\]: the log-likelihood of a rough model scatters by
-    /// more.
+    /// A step of a fit that is predicted to gain less ends its trials \[nats\]: the log-likelihood of a rough model scatters by more.
     pub(crate) fn least_gain(self) -> f64 {
         match self {
             Self::Smooth => 0.01,
-            Self::Rough => 0.2,
+            Self::Rough | Self::Unknown => 0.2,
+        }
+    }
+
+    /// A step that gains less is taken and counts as rejected \[nats\].
+    pub(crate) fn least_counted_gain(self) -> f64 {
+        match self {
+            Self::Smooth => 0.0,
+            Self::Rough | Self::Unknown => self.least_gain(),
         }
     }
 
@@ -40,7 +49,7 @@ impl Roughness {
     pub(crate) fn most_failures(self) -> usize {
         match self {
             Self::Smooth => 4,
-            Self::Rough => 3,
+            Self::Rough | Self::Unknown => 3,
         }
     }
 }

@@ -21,6 +21,7 @@ fn effect(name: &str, prior: Marginal) -> Candidate {
         parameters: vec![prior],
         strengths: vec![0],
         neutral: 0.0,
+        excludes: Vec::new(),
     }
 }
 

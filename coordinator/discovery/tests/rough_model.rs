@@ -4,7 +4,10 @@ use discovery::{
     Candidate, EffectRanking, EffectSearch, EvidenceMethod, RankedEffect, Roughness, SearchSettings,
 };
 use statistics::rng::Stream;
-use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
+use statistics::{
+    CommonError, CommonErrorSize, Datum, Discrepancy, Distribution, ErrorLaw, ErrorSd, Likelihood, Marginal,
+    Prior,
+};
 
 const DATA: usize = 48;
 const EFFECTS: usize = 30;
@@ -20,6 +23,7 @@ fn candidate(k: usize) -> Candidate {
         parameters: vec![prior],
         strengths: vec![0],
         neutral: 0.0,
+        excludes: Vec::new(),
     }
 }
 
@@ -37,15 +41,14 @@ fn predicted(theta: &[f64], effect: Option<usize>, roughness: Roughness) -> Vec<
         });
         let jump = match roughness {
             Roughness::Smooth => 0.0,
-            Roughness::Rough => SCATTER * jumps[i],
+            Roughness::Rough | Roughness::Unknown => SCATTER * jumps[i],
         };
         theta[0] + theta[1] * x + own + jump
     };
     (0..DATA).map(value).collect()
 }
 
-fn search(truth: usize, roughness: Roughness) -> EffectRanking {
-    let normal = || Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
+fn data(truth: usize) -> Vec<Datum> {
     let noise = Stream::new(2, 0, truth as u64, 0).normals(DATA);
     let clean = predicted(&[0.4, -0.7, STRENGTH], Some(truth), Roughness::Smooth);
     let datum = |(run, (value, noise)): (usize, (&f64, &f64))| Datum {
@@ -54,11 +57,24 @@ fn search(truth: usize, roughness: Roughness) -> EffectRanking {
         value: value + SD * noise,
         sd: ErrorSd::Known(SD),
     };
-    let likelihood = Likelihood::new(clean.iter().zip(&noise).enumerate().map(datum).collect()).unwrap();
+    clean.iter().zip(&noise).enumerate().map(datum).collect()
+}
+
+fn search(truth: usize, roughness: Roughness) -> EffectRanking {
+    searched(Likelihood::new(data(truth)).unwrap(), roughness)
+}
+
+fn searched(likelihood: Likelihood, roughness: Roughness) -> EffectRanking {
+    searched_as(likelihood, roughness, roughness)
+}
+
+/// The search of a model of a roughness that is told another one.
+fn searched_as(likelihood: Likelihood, roughness: Roughness, told: Roughness) -> EffectRanking {
+    let normal = || Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
     let candidates: Vec<Candidate> = (0..EFFECTS).map(candidate).collect();
     let settings = SearchSettings {
-        roughness,
-        has_numerical_noise: roughness == Roughness::Rough,
+        roughness: told,
+        has_numerical_noise: told != Roughness::Smooth,
         ..SearchSettings::default()
     };
     let prior = Prior::new(vec![normal(), normal()]);
@@ -79,6 +95,7 @@ fn leader(ranking: &EffectRanking) -> &RankedEffect {
 
 #[test]
 fn a_rough_model_is_searched_with_fewer_evaluations_and_names_the_same() {
+    let (mut sparing, mut thorough) = (0, 0);
     for truth in [5, 7, 13, 22, 29] {
         let [smooth, rough] = [Roughness::Smooth, Roughness::Rough].map(|of| search(truth, of));
         assert_eq!(
@@ -93,8 +110,41 @@ fn a_rough_model_is_searched_with_fewer_evaluations_and_names_the_same() {
         );
         // Beside the measurement of its scatter.
         let of_effects = |own: &EffectRanking| own.evaluations.to_confirm() - own.evaluations.base;
-        let [thorough, sparing] = [&smooth, &rough].map(of_effects);
-        assert!(4 * sparing < 3 * thorough, "{truth}: {sparing} of {thorough}");
+        sparing += of_effects(&rough);
+        thorough += of_effects(&smooth);
+    }
+    assert!(4 * sparing < 3 * thorough, "{sparing} of {thorough}");
+}
+
+#[test]
+fn a_rough_model_that_contradicts_the_data_is_confirmed_thoroughly_with_a_discrepancy_too() {
+    let confirmation = |misfit: f64, discrepancy: bool| {
+        let mut data = data(13);
+        for (i, datum) in data.iter_mut().enumerate() {
+            datum.value += if i.is_multiple_of(2) { misfit } else { -misfit };
+        }
+        let likelihood = if discrepancy {
+            let size = CommonErrorSize::Discrepancy { group: 0 };
+            let common = CommonError {
+                data: (0..DATA).collect(),
+                size,
+            };
+            Likelihood::with_common(
+                data,
+                ErrorLaw::Gaussian,
+                vec![common],
+                vec![Discrepancy::Known(2.0)],
+            )
+        } else {
+            Likelihood::new(data)
+        };
+        let ranking = searched(likelihood.unwrap(), Roughness::Rough);
+        ranking.evaluations.confirmation
+    };
+    let fits = confirmation(0.0, false);
+    for discrepancy in [false, true] {
+        let contradicts = confirmation(0.6, discrepancy);
+        assert!(contradicts > 2 * fits, "{discrepancy}: {contradicts} and {fits}");
     }
 }
 
@@ -119,5 +169,20 @@ fn what_is_out_of_reach_is_screened_alone_and_its_probability_is_small_by_either
             own.probability,
             thorough.probability
         );
+    }
+}
+
+#[test]
+fn a_model_of_unknown_roughness_is_searched_as_its_scatter_says() {
+    let of = |roughness, told| searched_as(Likelihood::new(data(13)).unwrap(), roughness, told);
+    let rough = of(Roughness::Rough, Roughness::Unknown);
+    assert_eq!(rough, of(Roughness::Rough, Roughness::Rough));
+    let [smooth, thorough] = [Roughness::Unknown, Roughness::Smooth].map(|told| of(Roughness::Smooth, told));
+    assert!(smooth.evaluations.to_confirm() > rough.evaluations.to_confirm());
+    for own in &smooth.effects {
+        let known = thorough.of(own.candidate).unwrap();
+        assert_eq!(own.method, known.method, "{:?}", own.candidate);
+        let difference = own.log_bayes_factor - known.log_bayes_factor;
+        assert!(difference.abs() < 0.1, "{:?}: {difference}", own.candidate);
     }
 }

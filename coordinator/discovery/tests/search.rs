@@ -32,6 +32,7 @@ fn candidate(name: &str, parameters: Vec<Marginal>, strengths: Vec<usize>) -> Ca
         parameters,
         strengths,
         neutral: 0.0,
+        excludes: Vec::new(),
     }
 }
 
@@ -260,6 +261,15 @@ fn two_effects_are_found_together() {
     let sum: f64 = found.ranking.effects.iter().map(|j| j.probability).sum();
     let outside = found.not_in_library.map_or(0.0, |(_, p)| p);
     assert!((sum + outside - 1.0).abs() < 1e-9, "{sum} {outside}");
+}
+
+#[test]
+fn candidates_that_exclude_each_other_make_no_combination() {
+    let mut task = task(&measured(|x, w| 0.3 + 0.8 * x * x + 0.7 * w * x));
+    task.library[WIDTH].excludes = vec![task.library[SQUARE].name.clone()];
+    let found = search(task, false, answer);
+    let both = |effects: &[usize]| effects.contains(&SQUARE) && effects.contains(&WIDTH);
+    assert!(!both(&found.combination), "{:?}", found.combination);
 }
 
 #[test]

@@ -356,6 +356,21 @@ mod tests {
         let rim = Extension::Effect("janosi_hanamoto".into());
         let both = extended("job.toml", &job, &[&rim, &found[0].extension]).unwrap();
         assert_eq!(spec(&both, &files).unwrap().fit_variant.effects.len(), 1);
+        // The search therefore combines none on the nodes with another effect of the displacement.
+        let models = SearchModels::new(&job, &files, 2).unwrap();
+        let excluded = |name: &str| -> Vec<String> {
+            let library = models.task().library;
+            library.into_iter().find(|c| c.name == name).unwrap().excludes
+        };
+        assert_eq!(
+            excluded("janosi_hanamoto_node"),
+            [
+                "janosi_hanamoto",
+                "stretched_mobilisation",
+                "stretched_mobilisation_node"
+            ]
+        );
+        assert!(excluded("janosi_hanamoto").is_empty());
         let mobilised = extended("job.toml", &job, &[&rim]).unwrap();
         assert!(on_nodes(&mobilised).is_empty());
     }

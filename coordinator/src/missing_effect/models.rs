@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use discovery::{
     LawCandidate, ProposedRuns, QueriedModel, Query, Reduction, Roughness, SearchSettings, SearchTask, Starts,
 };
-use formula::Effect;
 use formula::catalogue::{catalogue, find};
 use formula::slip::variables;
+use formula::{Effect, Variable};
 use shared::channel::Channel;
 use shared::file::{FileError, FileSet};
 use shared::model::{EffectSet, ExternalModel, ModelKind, ModelVariant, RunCondition};
@@ -19,7 +19,9 @@ use super::entry::{CandidateEntry, LawEntry};
 use super::law::dependence::{Dependence, dependences};
 use super::law::form::LawForm;
 use super::untried::untried;
-use job::{FreeParameter, MODEL_SWITCHES, PLAIN_PARAMETERS, Spec, free_parameters, without_effects};
+use job::{
+    EffectOnNodes, FreeParameter, MODEL_SWITCHES, PLAIN_PARAMETERS, Spec, free_parameters, without_effects,
+};
 use record::{Extension, NotTried};
 
 /// Position in the series of the campaign from which a rig goes on.
@@ -96,6 +98,7 @@ impl SearchModels {
                 ..own
             }));
         }
+        exclude_on_nodes(&mut entries);
         let of_file = |law: CandidateEffect| -> Result<CandidateEntry, FileError> {
             let name = law.name.clone();
             let Extension::File { text, .. } = &law.extension else {
@@ -189,8 +192,10 @@ impl SearchModels {
                 seed: base.algorithm.seed(),
                 roughness: match base.model.kind {
                     ModelKind::QuasiStatic | ModelKind::WongReece | ModelKind::Rft => Roughness::Smooth,
+                    // Fine as its grid may be, its evaluations are dear.
+                    ModelKind::Scm => Roughness::Rough,
                     // Whether another model has a grid, nobody has said.
-                    ModelKind::Scm | ModelKind::Command | ModelKind::Umbridge => Roughness::Rough,
+                    ModelKind::Command | ModelKind::Umbridge => Roughness::Unknown,
                 },
                 has_numerical_noise: base.model.kind != ModelKind::QuasiStatic,
             },
@@ -294,6 +299,25 @@ impl SearchModels {
             channels.map(move |(channel, _)| observables.channel(*channel)[run])
         };
         (0..self.design.len()).flat_map(channel).collect()
+    }
+}
+
+/// An effect with the displacement on the nodes puts that of all others there, too: it makes no combination with them.
+fn exclude_on_nodes(entries: &mut [CandidateEntry]) {
+    let uses_displacement = |own: &&CandidateEntry| {
+        let effect = candidate_of(&own.effect.name);
+        effect.is_some_and(|(effect, _)| effect.uses().contains(Variable::J))
+    };
+    let names = entries
+        .iter()
+        .filter(uses_displacement)
+        .map(|own| own.effect.name.clone());
+    let names: Vec<String> = names.collect();
+    for own in entries {
+        if EffectOnNodes::find(&own.effect.name).is_some() {
+            let others = names.iter().filter(|other| **other != own.effect.name);
+            own.candidate.excludes = others.cloned().collect();
+        }
     }
 }
 

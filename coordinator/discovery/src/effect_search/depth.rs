@@ -63,7 +63,7 @@ impl Depth {
     pub(crate) fn of(roughness: Roughness) -> &'static Self {
         match roughness {
             Roughness::Smooth => &FULL,
-            Roughness::Rough => &SPARING,
+            Roughness::Rough | Roughness::Unknown => &SPARING,
         }
     }
 }

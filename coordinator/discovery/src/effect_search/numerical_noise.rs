@@ -37,8 +37,7 @@ pub(super) fn are_enough(answers: &[Option<Vec<f64>>]) -> bool {
 }
 
 /// The scatter of each channel by its index, in its unit: the root mean square of the fourth differences over the root of 70, over all
-/// data of the channel, and 0 where all noise of the channel is inferred, which holds the scatter already. `None` where all are negligible
-/// beside the declared noise.
+/// data of the channel. `None` without data.
 ///
 /// # Arguments
 /// - `answers`: the values at [`positions`]; a difference with a rejected position is left out.
@@ -46,12 +45,8 @@ pub(super) fn are_enough(answers: &[Option<Vec<f64>>]) -> bool {
 /// # Source
 /// Moré & Wild 2011, "Estimating computational noise", SIAM Journal on Scientific Computing 33, doi:10.1137/100786125, Algorithm
 /// `ECnoise` at one order. Checked by `tests`.
-pub(super) fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<f64>> {
+fn scatter(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<f64>> {
     let data = likelihood.data();
-    let is_declared = |channel: usize| {
-        let mut own = data.iter().filter(|datum| datum.channel == channel);
-        own.any(|datum| matches!(datum.sd, ErrorSd::Known(_)))
-    };
     let channels = data.iter().map(|datum| datum.channel + 1).max()?;
     let mut squares = vec![(0.0, 0_usize); channels];
     for window in answers.windows(FOURTH_DIFFERENCE.len()) {
@@ -66,9 +61,20 @@ pub(super) fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Opti
             *count += 1;
         }
     }
-    let sds: Vec<f64> = squares
+    let sd = |(sum, count): (f64, usize)| (sum / count.max(1) as f64).sqrt();
+    Some(squares.into_iter().map(sd).collect())
+}
+
+/// The [`scatter`] to be counted as noise, 0 where all noise of the channel is inferred, which holds the scatter already. `None` where
+/// all are negligible beside the declared noise.
+pub(super) fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<f64>> {
+    let data = likelihood.data();
+    let is_declared = |channel: usize| {
+        let mut own = data.iter().filter(|datum| datum.channel == channel);
+        own.any(|datum| matches!(datum.sd, ErrorSd::Known(_)))
+    };
+    let sds: Vec<f64> = scatter(likelihood, answers)?
         .into_iter()
-        .map(|(sum, count)| (sum / count.max(1) as f64).sqrt())
         .enumerate()
         .map(|(channel, sd)| if is_declared(channel) { sd } else { 0.0 })
         .collect();
@@ -77,6 +83,23 @@ pub(super) fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Opti
         ErrorSd::Inferred { .. } => false,
     });
     matters.then_some(sds)
+}
+
+/// Whether the scatter was measured, and is negligible beside the noise of every datum, declared or inferred.
+///
+/// # Arguments
+/// - `theta`: the parameters of the fit.
+pub(super) fn is_negligible(likelihood: &Likelihood, answers: &[Option<Vec<f64>>], theta: &[f64]) -> bool {
+    let Some(scatter) = scatter(likelihood, answers).filter(|_| are_enough(answers)) else {
+        return false;
+    };
+    likelihood.data().iter().all(|datum| {
+        let noise = match datum.sd {
+            ErrorSd::Known(sd) => sd,
+            ErrorSd::Inferred { parameter } => theta[parameter],
+        };
+        scatter[datum.channel] <= NEGLIGIBLE * noise
+    })
 }
 
 #[cfg(test)]
@@ -144,14 +167,21 @@ mod tests {
         for datum in data.iter_mut().filter(|datum| datum.channel == 0) {
             datum.sd = ErrorSd::Inferred { parameter: 0 };
         }
-        assert_eq!(sds(&Likelihood::new(data).unwrap(), &answers), None);
+        let likelihood = Likelihood::new(data).unwrap();
+        assert_eq!(sds(&likelihood, &answers), None);
+        // It is there nevertheless.
+        assert!(!is_negligible(&likelihood, &answers, &[1.0]));
+        assert!(is_negligible(&likelihood, &answers, &[10.0]));
     }
 
     #[test]
     fn a_smooth_model_has_none() {
         let (likelihood, answers) = answers(0.0);
         assert_eq!(sds(&likelihood, &answers), None);
+        assert!(is_negligible(&likelihood, &answers, &[]));
+        // What was not measured may be rough.
         assert_eq!(sds(&likelihood, &[]), None);
+        assert!(!is_negligible(&likelihood, &[], &[]));
     }
 
     #[test]

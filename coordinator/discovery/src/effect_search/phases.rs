@@ -10,6 +10,7 @@ use crate::laplace::batch::FitBatch;
 use crate::laplace::fit::{FitStep, FittedModel, LaplaceFit};
 use crate::laplace::importance::ImportanceSampler;
 use crate::laplace::point::FitPoint;
+use crate::settings::Roughness;
 use inference::InferenceFailure;
 
 impl EffectSearch {
@@ -109,9 +110,20 @@ impl EffectSearch {
             return self.measure_noise(batch, shorter);
         }
         self.evaluations.base += batch.evaluations();
+        // Fits of which only the best go on have not been made to the end.
+        let is_made = self.depth.most_bases == usize::MAX;
+        let mut plan: &[FitStep] = if is_made { &[] } else { &base::PLAN };
+        if self.base_frame.roughness == Roughness::Unknown {
+            let mut best = batch.best().into_iter();
+            let is_smooth =
+                best.any(|fit| numerical_noise::is_negligible(&self.likelihood, answers, &fit.theta()));
+            self.set_roughness(if is_smooth {
+                Roughness::Smooth
+            } else {
+                Roughness::Rough
+            });
+        }
         let most = self.depth.most_bases;
-        // Fits that are few have not been made to the end.
-        let mut plan: &[FitStep] = if most == usize::MAX { &[] } else { &base::PLAN };
         if let Some(sds) = numerical_noise::sds(&self.likelihood, answers)
             && let Ok(likelihood) = self.likelihood.with_numerical_noise(&sds)
         {
@@ -121,8 +133,9 @@ impl EffectSearch {
         }
         let again = batch.fits.into_iter().filter_map(|(_, fit)| {
             let FitPoint { position, values, .. } = fit.point;
-            let point = FitPoint::new(&fit.frame, &self.likelihood, position, values)?;
-            Some((None, LaplaceFit::new(fit.frame, point, fit.columns, plan)))
+            let frame = self.base_frame.clone();
+            let point = FitPoint::new(&frame, &self.likelihood, position, values)?;
+            Some((None, LaplaceFit::new(frame, point, fit.columns, plan)))
         });
         let mut again: Vec<(Option<usize>, LaplaceFit)> = again.collect();
         if again.len() > most {

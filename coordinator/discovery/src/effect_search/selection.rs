@@ -12,6 +12,7 @@ use crate::laplace::batch::FitBatch;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::laplace::point::FitPoint;
+use crate::settings::Roughness;
 
 /// A change of the predictions shorter than this many standard deviations, after projection, cannot be seen.
 const LEAST_SEEN: f64 = 2.0;
@@ -57,7 +58,12 @@ impl EffectSearch {
     /// Whether the best fit so far contradicts the data.
     pub(super) fn is_wrong(&self) -> bool {
         let best = self.best(1).into_iter().find_map(|k| self.fit_of(k));
-        let chi_square = best.and_then(|fit| FitChiSquare::of(fit, &self.likelihood));
+        // A rough model is confirmed thoroughly only here, so a discrepancy, which takes up any misfit, does not count.
+        let of = match self.base_frame.roughness {
+            Roughness::Smooth => FitChiSquare::of,
+            Roughness::Rough | Roughness::Unknown => FitChiSquare::of_known_noise,
+        };
+        let chi_square = best.and_then(|fit| of(fit, &self.likelihood));
         chi_square.is_some_and(|chi| chi.is_wrong())
     }
 

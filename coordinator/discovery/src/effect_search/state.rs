@@ -10,6 +10,7 @@ use crate::laplace::batch::FitBatch;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::laplace::importance::ImportanceSampler;
+use crate::settings::Roughness;
 use inference::{InferenceFailure, Proposal, ProposalRound};
 use statistics::likelihood::Likelihood;
 
@@ -111,6 +112,20 @@ impl EffectSearch {
             sampled: BTreeMap::new(),
             evaluations: EvaluationCounts::default(),
         }
+    }
+
+    /// Searches on as a model of this roughness is searched.
+    pub(super) fn set_roughness(&mut self, roughness: Roughness) {
+        self.depth = Depth::of(roughness);
+        self.base_frame.roughness = roughness;
+        for candidate in &mut self.candidates {
+            candidate.frame.roughness = roughness;
+        }
+    }
+
+    /// How the predictions follow the parameters, as far as that is known.
+    pub(crate) fn roughness(&self) -> Roughness {
+        self.base_frame.roughness
     }
 
     /// The fit of the base, once there is one.

@@ -238,6 +238,7 @@ mod tests {
             parameters: vec![half],
             strengths: vec![0],
             neutral: 0.0,
+            excludes: Vec::new(),
         };
         let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
         for t in [0.0, 0.1, 1.0, 2.5, 5.0] {
@@ -277,6 +278,7 @@ mod tests {
             parameters: vec![normal],
             strengths: vec![0],
             neutral: 0.0,
+            excludes: Vec::new(),
         };
         let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
         let (_, neutral) = frame.strength().unwrap();

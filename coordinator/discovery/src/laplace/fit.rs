@@ -29,8 +29,8 @@ pub(crate) enum FitStep {
     Differences,
     /// At most so many trial steps, one evaluation each.
     Trials(usize),
-    /// `Differences` and `Trials(trials)`, repeated at most so many times, until a new Jacobian predicts no gain, and of a rough model
-    /// until no step gains what is predicted.
+    /// `Differences` and `Trials(trials)`, repeated at most so many times, until a new Jacobian predicts no gain, which ends the plan.
+    /// Of a rough model a round whose steps gain nothing ends the plan, too, with the Jacobian that its differences gave.
     Rounds { most: usize, trials: usize },
 }
 
@@ -51,6 +51,8 @@ pub(crate) struct LaplaceFit {
     is_fresh: bool,
     /// A step has gained since then.
     has_gained: bool,
+    /// The Jacobian that the differences of the round gave, before the updates by its steps.
+    of_round: Vec<Vec<f64>>,
     pending: Pending,
 }
 
@@ -87,6 +89,7 @@ impl LaplaceFit {
             failures: 0,
             is_fresh: false,
             has_gained: true,
+            of_round: Vec::new(),
             pending: Pending::Nothing,
         }
     }
@@ -151,7 +154,9 @@ impl LaplaceFit {
                 FitStep::Trials(left) => {
                     if let Some((position, predicted)) = self.trial(likelihood) {
                         self.plan.push_front(FitStep::Trials(left - 1));
-                        self.is_fresh = false;
+                        if std::mem::take(&mut self.is_fresh) {
+                            self.of_round.clone_from(&self.columns);
+                        }
                         self.pending = Pending::Trial {
                             position: position.clone(),
                             predicted,
@@ -160,7 +165,11 @@ impl LaplaceFit {
                     }
                     self.damping = 0.0;
                     self.failures = 0;
-                    if self.is_fresh || (self.frame.roughness == Roughness::Rough && !self.has_gained) {
+                    if self.is_fresh {
+                        self.plan.clear();
+                    } else if self.frame.roughness != Roughness::Smooth && !self.has_gained {
+                        // The evidence needs the slope at the point, not that to where the steps failed.
+                        self.columns = std::mem::take(&mut self.of_round);
                         self.plan.clear();
                     }
                 }
@@ -251,6 +260,10 @@ impl LaplaceFit {
         match reached {
             Some(point) if point.value < self.point.value => {
                 let gain = self.point.value - point.value;
+                self.point = point;
+                if gain < self.frame.roughness.least_counted_gain() {
+                    return self.fail();
+                }
                 self.failures = 0;
                 self.has_gained = true;
                 self.damping = if gain > 0.5 * predicted && self.damping <= FIRST_DAMPING {
@@ -258,13 +271,14 @@ impl LaplaceFit {
                 } else {
                     self.damping / DAMPING_FACTOR
                 };
-                self.point = point;
             }
-            _ => {
-                self.failures += 1;
-                self.damping = (DAMPING_FACTOR * self.damping).max(FIRST_DAMPING);
-            }
+            _ => self.fail(),
         }
+    }
+
+    fn fail(&mut self) {
+        self.failures += 1;
+        self.damping = (DAMPING_FACTOR * self.damping).max(FIRST_DAMPING);
     }
 
     /// Broyden's update: the smallest change of the Jacobian that reproduces the values at the new position.
@@ -320,5 +334,56 @@ impl LaplaceFit {
             }
         }
         quadratic
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use statistics::likelihood::{Datum, ErrorSd};
+    use statistics::prior::{Distribution, Marginal, Prior};
+
+    /// The fit in rounds of a model with one parameter from its prior's middle to the datum
+    /// 3 with the sd 1/2.
+    fn fitted(roughness: Roughness, model: impl Fn(f64) -> f64) -> LaplaceFit {
+        let prior = Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
+        let frame = NormalFrame::base(&Prior::new(vec![prior]), roughness);
+        let datum = Datum {
+            run: 0,
+            channel: 0,
+            value: 3.0,
+            sd: ErrorSd::Known(0.5),
+        };
+        let likelihood = Likelihood::new(vec![datum]).unwrap();
+        let start = FitPoint::new(&frame, &likelihood, vec![0.0], vec![model(0.0)]).unwrap();
+        let plan = [FitStep::Rounds { most: 6, trials: 12 }, FitStep::Differences];
+        let mut fit = LaplaceFit::new(frame, start, vec![vec![0.0]], &plan);
+        loop {
+            let asked = fit.ask(&likelihood);
+            if asked.is_empty() {
+                return fit;
+            }
+            let answers = asked.iter().map(|position| Some(vec![model(position[0])]));
+            fit.tell(&likelihood, answers.collect());
+        }
+    }
+
+    #[test]
+    fn a_rough_fit_whose_steps_all_fail_keeps_the_jacobian_of_its_differences() {
+        // A slope of 1 that no step beyond the difference bears out.
+        let fit = fitted(Roughness::Rough, |t| if t.abs() < 0.2 { t } else { -t.abs() });
+        assert_eq!(fit.point.position, [0.0]);
+        assert!((fit.columns[0][0] - 1.0).abs() < 1e-12, "{:?}", fit.columns);
+    }
+
+    #[test]
+    fn a_step_of_a_rough_fit_that_gains_next_to_nothing_is_taken_and_begins_no_round() {
+        // Beyond the difference the log posterior rises by 0.001 in all.
+        let level = |t: f64| 3.0 - (0.5 * (18.0 - 0.5 * t * t - 0.001 * t.min(1.0))).sqrt();
+        let model = |t: f64| if t < 0.2 { t } else { level(t) };
+        let fit = fitted(Roughness::Rough, model);
+        assert!(fit.point.position[0] > 0.0, "{:?}", fit.point);
+        assert!(fit.evaluations <= 4, "{}", fit.evaluations);
+        assert!(fitted(Roughness::Smooth, model).evaluations > 4);
     }
 }

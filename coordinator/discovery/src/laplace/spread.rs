@@ -6,10 +6,18 @@ use crate::laplace::fit::LaplaceFit;
 use crate::settings::Roughness;
 use statistics::likelihood::Likelihood;
 
-/// Parameter vectors one standard deviation to either side of a fit's mode, a pair for each column of the factor L of the posterior
-/// covariance L L' by Laplace's approximation. `None` beyond the limits, and on the second side of a rough model, whose evaluations are
-/// dear; no pairs where the posterior has no covariance.
-pub(crate) fn spread(fit: &LaplaceFit, likelihood: &Likelihood) -> Vec<[Option<Vec<f64>>; 2]> {
+/// Parameter vectors one standard deviation to either side of a fit's mode, along one column of the factor L of the posterior covariance
+/// L L' by Laplace's approximation.
+#[derive(Debug, Clone)]
+pub(crate) struct Axis {
+    /// Those to evaluate, `None` beyond the limits: of a rough model, whose evaluations are dear, one.
+    pub(crate) sides: [Option<Vec<f64>>; 2],
+    /// The one to evaluate where the model rejects those.
+    pub(crate) spare: Option<Vec<f64>>,
+}
+
+/// The axes about a fit's mode; none where the posterior has no covariance.
+pub(crate) fn spread(fit: &LaplaceFit, likelihood: &Likelihood) -> Vec<Axis> {
     let covariance = Cholesky::new(fit.quadratic(likelihood).hessian).map(|c| c.inverse());
     let Some(factor) = covariance.and_then(Cholesky::new).map(|c| c.l()) else {
         return Vec::new();
@@ -25,10 +33,18 @@ pub(crate) fn spread(fit: &LaplaceFit, likelihood: &Likelihood) -> Vec<[Option<V
     };
     (0..mode.len())
         .map(|column| {
-            let above = theta(column, 1.0);
-            let is_enough = above.is_some() && fit.frame.roughness == Roughness::Rough;
-            let below = if is_enough { None } else { theta(column, -1.0) };
-            [above, below]
+            let (above, below) = (theta(column, 1.0), theta(column, -1.0));
+            if above.is_some() && fit.frame.roughness != Roughness::Smooth {
+                Axis {
+                    sides: [above, None],
+                    spare: below,
+                }
+            } else {
+                Axis {
+                    sides: [above, below],
+                    spare: None,
+                }
+            }
         })
         .collect()
 }

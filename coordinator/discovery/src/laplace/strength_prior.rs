@@ -158,6 +158,7 @@ mod tests {
             parameters: vec![prior],
             strengths: vec![0],
             neutral: 0.0,
+            excludes: Vec::new(),
         };
         let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
         // The likelihood rises by 8 nats per standard deviation and hardly bends; the narrow parts balance it at once.

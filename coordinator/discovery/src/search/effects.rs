@@ -75,8 +75,13 @@ impl SearchState {
             return self.backward_elimination();
         }
         let branches = best.into_iter().map(|combination| {
-            let others: Vec<usize> = (0..self.task.library.len())
-                .filter(|k| !combination.effects.contains(k) && !self.task.library[*k].is_switch())
+            let library = &self.task.library;
+            let combines = |k: usize| {
+                let mut own = combination.effects.iter();
+                own.all(|own| *own != k && library[k].combines_with(&library[*own]))
+            };
+            let others: Vec<usize> = (0..library.len())
+                .filter(|k| combines(*k) && !library[*k].is_switch())
                 .collect();
             let candidates: Vec<_> = others.iter().map(|&k| self.task.library[k].clone()).collect();
             let base = FittedModel {

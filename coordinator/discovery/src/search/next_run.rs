@@ -1,7 +1,7 @@
 //! The runs to make next: those that together tell most about the explanations.
 
 use crate::laplace::fit::LaplaceFit;
-use crate::laplace::spread::spread;
+use crate::laplace::spread::{Axis, spread};
 use crate::search::query::{QueriedModel, Query};
 use crate::search::run_information::{Prediction, Predictive};
 use crate::task::{ProposedRuns, SearchTask};
@@ -46,8 +46,10 @@ pub(super) struct RunChoice {
 struct AskedHypothesis {
     effects: Vec<usize>,
     probability: f64,
-    mode: Vec<f64>,
-    spread: Vec<[Option<Vec<f64>>; 2]>,
+    /// `None` once it is told.
+    mode: Option<Vec<f64>>,
+    /// Those that are not told yet.
+    spread: Vec<Axis>,
     /// `None` before it is told, and where the model rejects the mode.
     prediction: Option<Prediction>,
 }
@@ -58,35 +60,43 @@ pub(super) struct RunSelection {
     asked: Vec<AskedHypothesis>,
     proposed: ProposedRuns,
     seed: u64,
-    is_told: bool,
 }
 
 impl AskedHypothesis {
     fn thetas(&self) -> impl Iterator<Item = &Vec<f64>> {
-        std::iter::once(&self.mode).chain(self.spread.iter().flatten().flatten())
+        let sides = self.spread.iter().flat_map(|axis| axis.sides.iter().flatten());
+        self.mode.iter().chain(sides)
     }
 
-    /// Takes the answers to [`thetas`](Self::thetas). Along an axis with one answer its difference from the mode counts, along one
-    /// without any nothing.
+    /// Takes the answers to [`thetas`](Self::thetas). Along an axis with one answer its difference from the mode counts; along one
+    /// without any the spare side is asked next, and without that nothing counts.
     fn take(&mut self, mut answers: impl Iterator<Item = Option<Vec<f64>>>) {
-        let mean = answers.next().flatten();
-        let mut columns = Vec::new();
-        for sides in &self.spread {
-            let [above, below] = sides
-                .each_ref()
-                .map(|side| side.as_ref().and_then(|_| answers.next().flatten()));
-            let half_difference = |a: &[f64], b: &[f64], share: f64| -> Vec<f64> {
-                a.iter().zip(b).map(|(a, b)| share * (a - b)).collect()
-            };
-            columns.extend(match (above, below, &mean) {
-                (Some(above), Some(below), _) => Some(half_difference(&above, &below, 0.5)),
-                (Some(one), None, Some(mean)) | (None, Some(one), Some(mean)) => {
-                    Some(half_difference(&one, mean, 1.0))
-                }
-                _ => None,
+        if self.mode.take().is_some() {
+            self.prediction = answers.next().flatten().map(|mean| Prediction {
+                mean,
+                columns: Vec::new(),
             });
         }
-        self.prediction = mean.map(|mean| Prediction { mean, columns });
+        let axes = std::mem::take(&mut self.spread);
+        let Some(prediction) = &mut self.prediction else {
+            return;
+        };
+        let half_difference = |a: &[f64], b: &[f64], share: f64| -> Vec<f64> {
+            a.iter().zip(b).map(|(a, b)| share * (a - b)).collect()
+        };
+        for Axis { sides, spare } in axes {
+            match sides.map(|side| side.and_then(|_| answers.next().flatten())) {
+                [Some(above), Some(below)] => prediction.columns.push(half_difference(&above, &below, 0.5)),
+                [Some(one), None] | [None, Some(one)] => {
+                    let column = half_difference(&one, &prediction.mean, 1.0);
+                    prediction.columns.push(column);
+                }
+                [None, None] => self.spread.extend(spare.map(|spare| Axis {
+                    sides: [None, Some(spare)],
+                    spare: None,
+                })),
+            }
+        }
     }
 }
 
@@ -99,7 +109,7 @@ impl RunSelection {
         let asked = explanations.into_iter().map(|explanation| AskedHypothesis {
             effects: explanation.effects,
             probability: explanation.probability,
-            mode: explanation.fit.theta(),
+            mode: Some(explanation.fit.theta()),
             spread: spread(explanation.fit, &task.likelihood),
             prediction: None,
         });
@@ -107,14 +117,10 @@ impl RunSelection {
             asked: asked.collect(),
             proposed: task.proposed.clone(),
             seed: task.settings.seed,
-            is_told: false,
         })
     }
 
     pub(super) fn queries(&self) -> Vec<Query> {
-        if self.is_told {
-            return Vec::new();
-        }
         let of = |asked: &AskedHypothesis| {
             let model = QueriedModel::With(asked.effects.clone());
             let queries = asked.thetas().map(|theta| Query {
@@ -128,7 +134,6 @@ impl RunSelection {
     }
 
     pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
-        self.is_told = true;
         let mut answers = answers.into_iter();
         for asked in &mut self.asked {
             let count = asked.thetas().count();
@@ -184,5 +189,41 @@ impl RunSelection {
             });
         }
         RunChoice { runs, alone }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn asked(sides: [Option<f64>; 2], spare: Option<f64>) -> AskedHypothesis {
+        let theta = |t: Option<f64>| t.map(|t| vec![t]);
+        AskedHypothesis {
+            effects: Vec::new(),
+            probability: 0.5,
+            mode: Some(vec![0.0]),
+            spread: vec![Axis {
+                sides: sides.map(theta),
+                spare: theta(spare),
+            }],
+            prediction: None,
+        }
+    }
+
+    /// Answers with the parameter until nothing is asked; the model rejects what lies above 0.
+    fn columns(mut asked: AskedHypothesis) -> Vec<Vec<f64>> {
+        while asked.thetas().next().is_some() {
+            let answers = asked.thetas().map(|t| (t[0] <= 0.0).then(|| t.clone()));
+            let answers: Vec<_> = answers.collect();
+            asked.take(answers.into_iter());
+        }
+        asked.prediction.unwrap().columns
+    }
+
+    #[test]
+    fn where_the_model_rejects_the_side_that_is_asked_the_other_one_is_asked() {
+        assert_eq!(columns(asked([Some(1.0), None], Some(-1.0))), [[-1.0]]);
+        assert_eq!(columns(asked([Some(1.0), Some(-1.0)], None)), [[-1.0]]);
+        assert!(columns(asked([Some(1.0), None], None)).is_empty());
     }
 }

@@ -15,10 +15,12 @@ pub(super) struct SearchState {
 }
 
 impl SearchState {
-    /// Counts the numerical noise that the search for one effect has found as noise of all data, measured or proposed.
+    /// Counts the numerical noise that the search for one effect has found as noise of all data, measured or proposed, and keeps whether
+    /// the model is rough.
     pub(super) fn take_numerical_noise(&mut self, search: &EffectSearch) {
         let task = &mut self.task;
         task.settings.has_numerical_noise = false;
+        task.settings.roughness = search.roughness();
         task.likelihood.clone_from(&search.likelihood);
         self.numerical_noise_sds.clone_from(&search.numerical_noise_sds);
         let proposed = task.proposed.channels.iter().zip(&mut task.proposed.noise_sds);
