@@ -41,7 +41,13 @@ pub(super) fn questions(spec: &Spec) -> Vec<Question> {
         }
     }
     questions.extend(spec.parameters.iter().filter_map(of_prior));
-    questions.extend(spec.parameters.iter().filter_map(|p| of_radius(spec, p)));
+    let has_posterior = |p: &&FreeParameter| {
+        let joint = spec.joint_prior.as_ref();
+        joint.is_some_and(|joint| joint.parameters.contains(&p.name))
+    };
+    // A posterior was found, not typed.
+    let typed = spec.parameters.iter().filter(|p| !has_posterior(p));
+    questions.extend(typed.filter_map(|p| of_radius(spec, p)));
     let fixed = spec.model.fixed.iter();
     questions.extend(fixed.filter_map(|(name, &value)| of_fixed_radius(spec, name, value)));
     questions

@@ -159,12 +159,7 @@ fn refused_holdout(calibration: &FinishedCalibration) -> Option<String> {
     let refused: Vec<(&str, Refusal)> = spec
         .holdout_runs
         .iter()
-        .filter_map(|&run| {
-            Some((
-                spec.experiment.runs[run].name.as_str(),
-                Refusal::of(calibration, run)?,
-            ))
-        })
+        .filter_map(|&run| Some((spec.experiment.runs[run].name.as_str(), calibration.refusal(run)?)))
         .collect();
     let shown = refused.iter().take(SHOWN_REFUSED);
     let mut words: Vec<String> = shown

@@ -119,7 +119,7 @@ fn holdout(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<St
         )];
     };
     let refused = calibration.spec.holdout_runs.iter();
-    let refused = refused.filter_map(|&run| Refusal::of(calibration, run));
+    let refused = refused.filter_map(|&run| calibration.refusal(run));
     let mut text = vec![match refused.filter(Refusal::is_at_half_or_more).count() {
         0 => format!(
             "On the {}, not used in the fit, it is {}.",

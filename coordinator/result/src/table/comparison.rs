@@ -1,16 +1,8 @@
 //! Model against measurement, run by run.
 
-use shared::channel::Channel;
-use shared::experiment::RunUse;
-
 use super::errors::ErrorTable;
-use super::fixed_sigma::FixedSigmas;
-use super::group::{ErrorGroup, error_groups};
-use super::interpolation::Interpolations;
-use super::predictive::{Levels, predictive};
-use super::refusal::Refusal;
-use super::row::{ComparisonRow, rows_of};
-use crate::finished_calibration::FinishedCalibration;
+use super::group::ErrorGroup;
+use super::row::ComparisonRow;
 
 /// Model against measurement.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -29,70 +21,4 @@ pub struct Comparison {
     pub not_interpolated: Vec<String>,
     /// Errors by level of slip, load, speed and slip angle, and by wheel, of fitted runs and of the others.
     pub groups: Vec<ErrorGroup>,
-}
-
-impl FinishedCalibration {
-    /// The held-out measurements as interpolated from the fitted ones.
-    pub(crate) fn interpolations(&self) -> &Interpolations {
-        self.interpolations
-            .get_or_init(|| Interpolations::of(&self.spec.experiment))
-    }
-
-    /// Model against measurement, run by run.
-    pub fn comparison(&self) -> &Comparison {
-        self.comparison.get_or_init(|| self.compared())
-    }
-
-    fn compared(&self) -> Comparison {
-        let interpolations = self.interpolations();
-        let levels = Levels::of(self);
-        let mut rows = Vec::new();
-        for (i, run) in self.spec.experiment.runs.iter().enumerate() {
-            let refused = Refusal::of(self, i);
-            for channel in Channel::ALL {
-                let Some(measured) = run.measured[channel.index()] else {
-                    continue;
-                };
-                let p = predictive(self, &levels, i, channel);
-                let interpolated = interpolations.at(i, channel);
-                rows.push(ComparisonRow {
-                    run: run.name.clone(),
-                    usage: run.usage,
-                    wheel: run.wheel.clone(),
-                    slip: run.slip,
-                    wheel_load_n: run.wheel_load_n,
-                    sled_speed_m_s: run.sled_speed_m_s,
-                    slip_angle_deg: run.slip_angle_deg,
-                    channel,
-                    unit: channel.unit().into(),
-                    measured,
-                    predicted: p.map(|p| p.mean),
-                    q05: p.and_then(|p| p.interval).map(|[q05, _]| q05),
-                    q95: p.and_then(|p| p.interval).map(|[_, q95]| q95),
-                    noise_sd: p.and_then(|p| p.noise_sd),
-                    residual_sigma: p.and_then(|p| p.noise_sd.map(|sd| (measured - p.mean) / sd)),
-                    refused: refused.clone(),
-                    interpolated: interpolated.map(|i| i.value),
-                    interpolated_over: interpolated.map(|i| i.over),
-                });
-            }
-        }
-        let sigmas = FixedSigmas::of(self);
-        let errors = |usage| Some(ErrorTable::of_model(rows_of(&rows, usage))?.in_fixed_sigmas(&sigmas));
-        Comparison {
-            digitised: self
-                .spec
-                .experiment
-                .campaign
-                .as_ref()
-                .is_some_and(|own| own.digitised),
-            fit: errors(RunUse::Fit),
-            holdout: errors(RunUse::Holdout),
-            baseline_holdout: ErrorTable::of_baseline(rows_of(&rows, RunUse::Holdout))
-                .map(|table| table.in_fixed_sigmas(&sigmas)),
-            not_interpolated: interpolations.missing(),
-            groups: error_groups(&rows),
-            rows,
-        }
-    }
 }

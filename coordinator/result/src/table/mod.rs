@@ -1,7 +1,8 @@
 //! Model against measurement: tables of a calibration.
 //!
 //! # Layout
-//! - `row`: a measured channel of a run beside its prediction. `comparison`: all rows with their errors.
+//! - `row`: a measured channel of a run beside its prediction. `comparison`: all rows with their errors; `compared`:
+//!   that of a calibration.
 //! - `ledger`: errors of the calibrations of a study; `fixed_sigma`: the noise that they are measured by.
 //! - `errors`: root mean square errors by channel. `group`: by level of a condition; `level`: those levels.
 //! - `interpolation`: interpolation without physics. `predictive`: the posterior predictive distribution; `mixture`: its
@@ -9,6 +10,7 @@
 //! - `coverage`: measurements inside their intervals. `readings`: errors of plates and rings.
 //! - `refusal`: draws at which the model refuses a run. `error_model`: the error model in words. `posterior`: the draws.
 
+mod compared;
 pub(crate) mod comparison;
 pub(crate) mod coverage;
 pub(crate) mod error_model;

@@ -10,7 +10,6 @@ use statistics::likelihood::discrepancy_levels;
 use statistics::{Discrepancy, ErrorSd};
 
 use super::mixture::{Component, quantile};
-use super::refusal::Refusal;
 use crate::finished_calibration::FinishedCalibration;
 
 /// Posterior predictive distribution of one run and channel.
@@ -57,7 +56,7 @@ pub(crate) fn predictive(
     run: usize,
     channel: Channel,
 ) -> Option<Predictive> {
-    let refusal = || Refusal::of(calibration, run);
+    let refusal = || calibration.refusal(run);
     if calibration.spec.holdout_runs.contains(&run) && refusal().is_some_and(|own| own.is_at_half_or_more()) {
         return None;
     }

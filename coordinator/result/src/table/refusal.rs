@@ -1,9 +1,5 @@
 //! Final draws at which the model refuses a run.
 
-use record::RejectionReason;
-
-use crate::finished_calibration::FinishedCalibration;
-
 /// Final draws at which the model refuses a run.
 ///
 /// The prediction of a held-out run rests on the others; where these are half of all or fewer, they speak for parameters that are hardly
@@ -19,27 +15,6 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    /// Of a run; `None` where no draw is refused.
-    ///
-    /// # Arguments
-    /// - `run`: position in the experiment.
-    pub(crate) fn of(calibration: &FinishedCalibration, run: usize) -> Option<Self> {
-        let spec = &calibration.spec;
-        let draws = calibration.predictive_draws();
-        let held_out = spec.holdout_runs.iter().position(|&r| r == run);
-        let refused = draws.iter().filter_map(|draw| match (held_out, &draw.holdout) {
-            (Some(position), Some(holdout)) => holdout.run(position).err(),
-            (Some(_), None) => None,
-            (None, _) => draw.fit.as_ref().err(),
-        });
-        let refused: Vec<&RejectionReason> = refused.collect();
-        Some(Refusal {
-            draws: refused.len(),
-            of: draws.len(),
-            reason: refused.first()?.to_string(),
-        })
-    }
-
     /// Whether too little is left to predict from: at least half of the draws are refused.
     pub fn is_at_half_or_more(&self) -> bool {
         2 * self.draws >= self.of
