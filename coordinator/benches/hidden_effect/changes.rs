@@ -309,8 +309,11 @@ fn said(record: &Discovery, changed: &[&str]) -> String {
         )
     });
     let sets = record.sets.iter().take(PRINTED).map(|set| {
+        let left_out = set
+            .predictive
+            .map_or(String::new(), |nats| format!(" left out {nats:.1}"));
         format!(
-            "{} P {:.4} ln BF {:.1}",
+            "{} P {:.4} ln BF {:.1}{left_out}",
             set.members.join(" + "),
             set.probability,
             set.log_bayes_factor
