@@ -17,6 +17,9 @@
 //! - `steady`: as `scm`, one experiment after the other as a study searches them: the answer, its reason and its time.
 //! - `node`: as `steady`, with Janosi and Hanamoto's law hidden whose displacement the nodes of the soil keep.
 //! - `rolling`: as `steady`, with the model's own grid and 24 runs.
+//! - `changes`: the three-dimensional model as an unknown rig, whose soil has no cohesion and does not flow. A reference campaign is
+//!   calibrated and searched; its posterior is the prior of three more, in which the soil has a cohesion of 500 Pa, flows to the border of
+//!   the footprint, or both, and the job holds both at zero. `changes-rolling`: with the model's own grid and 24 runs in place of 16.
 //! - `tmcmc`: one effect of the catalogue, each in turn; the search's log Bayes factor of it beside that of full evidences by the
 //!   sampler.
 //! - `data`: the experiments of `tests/data`.
@@ -27,6 +30,7 @@
 //! and a little beyond, against the truth without noise.
 
 mod ambiguous;
+mod changes;
 mod data;
 mod reference;
 #[expect(dead_code, reason = "tests search a few campaigns")]
@@ -67,6 +71,8 @@ fn main() -> ExitCode {
         "steady" => steady::run(Plan::Spatial, None, count, seed),
         "node" => steady::run(Plan::Spatial, Some("janosi_hanamoto_node"), count, seed),
         "rolling" => steady::run(Plan::Rolling, None, count, seed),
+        "changes" => changes::run(Plan::Spatial, count, seed),
+        "changes-rolling" => changes::run(Plan::Rolling, count, seed),
         "tmcmc" => tmcmc::run(count, seed),
         "understated" => rig::run(&[Flaw::Understated], count, seed),
         "untryable" => rig::untryable::run(count, seed),

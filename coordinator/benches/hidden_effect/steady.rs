@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use record::Extension;
 
+use crate::study::cpu::cpu_s;
 use crate::study::design::Plan;
 use crate::study::error::StudyError;
 use crate::study::parallel::threads;
@@ -62,15 +63,4 @@ pub(crate) fn run(plan: Plan, hidden: Option<&str>, count: u64, seed: u64) -> Re
         threads()
     );
     Ok(())
-}
-
-/// Processor time of this process, all threads together \[s\]; Linux counts it in hundredths.
-fn cpu_s() -> f64 {
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    let fields = stat.rsplit(')').next().unwrap_or_default().split_whitespace();
-    let ticks = fields
-        .skip(11)
-        .take(2)
-        .filter_map(|field| field.parse::<f64>().ok());
-    ticks.sum::<f64>() / 100.0
 }

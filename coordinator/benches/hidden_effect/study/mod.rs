@@ -5,11 +5,12 @@
 //! - `design`: the runs of the rig and their files. `case`: a truth and its measurements.
 //! - `local_search`: the search on this thread; `record`: what a study would store of it. `noise_free`: how well the data determine the truth. `held_out`: prediction of unseen runs.
 //! - `score`: the result of a trial; `line`: in one line.
-//! - `posterior`: a calibration by the sampler on this thread.
+//! - `posterior`: a calibration on this thread.
 //! - `rate`: shares with their uncertainty. `target`: a line of the table; `tally`: the table.
-//! - `parallel`: trials on all threads. `error`: why one cannot be made.
+//! - `parallel`: trials on all threads. `cpu`: their processor time. `error`: why one cannot be made.
 
 pub(crate) mod case;
+pub(crate) mod cpu;
 pub(crate) mod design;
 pub(crate) mod error;
 mod held_out;

@@ -4,6 +4,7 @@ use coordinator::embedded::Evaluate;
 use coordinator::missing_effect::candidate::extended;
 use discovery::{EffectRanking, EffectSearch, SearchSettings, Starts};
 use record::Extension;
+use shared::file::FileSet;
 use shared::outcome::Outcome;
 use statistics::{Likelihood, LogLikelihood};
 
@@ -27,13 +28,15 @@ fn perfect(likelihood: &Likelihood) -> Result<f64, StudyError> {
 pub(crate) fn shortfall(case: &SyntheticCase, effects: &[&Extension]) -> Result<f64, StudyError> {
     let job = extended("job.toml", &case.plan.job(), effects)?;
     let truth = spec(&case.truth_job, &case.noise_free())?.parameters;
-    let spec = spec(&job, &case.noise_free())?;
+    let own = spec(&job, &case.noise_free())?.parameters;
     let place = |name: &String| truth.iter().position(|p| p.name == *name);
-    let start = spec
-        .parameters
-        .iter()
-        .filter_map(|p| Some(case.theta[place(&p.name)?]));
-    let start = start.collect();
+    let start = own.iter().filter_map(|p| Some(case.theta[place(&p.name)?]));
+    shortfall_of(&job, &case.noise_free(), start.collect())
+}
+
+/// Nats by which a job falls short of noise-free measurements, fitted from these parameters.
+pub(crate) fn shortfall_of(job: &FileSet, noise_free: &FileSet, start: Vec<f64>) -> Result<f64, StudyError> {
+    let spec = spec(job, noise_free)?;
     let settings = SearchSettings {
         starts: Starts::Draws(vec![start]),
         ..SearchSettings::default()
@@ -47,8 +50,7 @@ pub(crate) fn shortfall(case: &SyntheticCase, effects: &[&Extension]) -> Result<
             Outcome::Rejected(_) | Outcome::Fault(_) => None,
         })
     })?;
-    let perfect = perfect(&spec.likelihood)?;
-    Ok(perfect - ranking.effects[0].log_likelihood)
+    Ok(perfect(&spec.likelihood)? - ranking.effects[0].log_likelihood)
 }
 
 /// The library searched without noise.

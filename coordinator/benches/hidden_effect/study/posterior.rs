@@ -1,4 +1,4 @@
-//! A calibration by the sampler on this thread.
+//! A calibration on this thread, by the sampler or by a fit with the normal density about it.
 
 use std::sync::Arc;
 
@@ -23,6 +23,16 @@ impl PosteriorSample {
     pub(crate) fn highest(&self) -> f64 {
         let all = self.log_likelihoods.iter().copied();
         all.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The name of each parameter, the mean of its draws and their sd.
+    pub(crate) fn moments(&self) -> impl Iterator<Item = (&str, f64, f64)> {
+        let count = self.draws.len() as f64;
+        self.parameters.iter().enumerate().map(move |(k, name)| {
+            let mean = self.draws.iter().map(|draw| draw[k]).sum::<f64>() / count;
+            let squares: f64 = self.draws.iter().map(|draw| (draw[k] - mean).powi(2)).sum();
+            (name.as_str(), mean, (squares / (count - 1.0)).sqrt())
+        })
     }
 
     /// As `posterior.csv` has the draws.
@@ -62,10 +72,20 @@ pub(crate) fn sample(
     };
     let mut calibration = Calibration::new(identity, Arc::new(spec))?;
     loop {
-        if let Some(CalibrationResult::Posterior(posterior)) = calibration.engine().finding() {
-            let particles = &posterior.particles;
+        let found = match calibration.engine().finding() {
+            Some(CalibrationResult::Posterior(posterior)) => {
+                Some((posterior.log_evidence, &posterior.particles))
+            }
+            Some(CalibrationResult::Estimate(estimate)) => {
+                let normal = estimate.approximation.as_ref();
+                let normal = normal.ok_or("the fit gives no draws")?;
+                Some((normal.log_evidence, &normal.draws))
+            }
+            Some(CalibrationResult::Discovery(_)) | None => None,
+        };
+        if let Some((log_evidence, particles)) = found {
             return Ok(PosteriorSample {
-                log_evidence: posterior.log_evidence,
+                log_evidence,
                 parameters,
                 draws: particles.iter().map(|p| p.theta.clone()).collect(),
                 log_likelihoods: particles.iter().map(|p| p.log_likelihood.value()).collect(),
