@@ -16,6 +16,8 @@ pub struct Candidate {
     pub neutral: f64,
     /// Names of the candidates with which it makes no combination.
     pub excludes: Vec<String>,
+    /// Candidates of one family are laws of one quantity, each for other conditions: they may explain together what none does alone.
+    pub family: Option<String>,
 }
 
 impl Candidate {

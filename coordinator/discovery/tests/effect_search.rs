@@ -22,6 +22,7 @@ fn effect(name: &str, prior: Marginal) -> Candidate {
         strengths: vec![0],
         neutral: 0.0,
         excludes: Vec::new(),
+        family: None,
     }
 }
 

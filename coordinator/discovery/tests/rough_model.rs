@@ -24,6 +24,7 @@ fn candidate(k: usize) -> Candidate {
         strengths: vec![0],
         neutral: 0.0,
         excludes: Vec::new(),
+        family: None,
     }
 }
 

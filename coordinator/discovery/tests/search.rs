@@ -33,6 +33,7 @@ fn candidate(name: &str, parameters: Vec<Marginal>, strengths: Vec<usize>) -> Ca
         strengths,
         neutral: 0.0,
         excludes: Vec::new(),
+        family: None,
     }
 }
 

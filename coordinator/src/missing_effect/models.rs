@@ -16,6 +16,7 @@ use shared::outcome::Observables;
 use super::candidate::{CandidateEffect, ExclusionReason, JOB, candidate_of, extended, library, spec};
 use super::design;
 use super::entry::{CandidateEntry, LawEntry};
+use super::family::set_families;
 use super::law::dependence::{Dependence, dependences};
 use super::law::form::LawForm;
 use super::untried::untried;
@@ -99,6 +100,7 @@ impl SearchModels {
             }));
         }
         exclude_on_nodes(&mut entries);
+        set_families(&mut entries);
         let of_file = |law: CandidateEffect| -> Result<CandidateEntry, FileError> {
             let name = law.name.clone();
             let Extension::File { text, .. } = &law.extension else {

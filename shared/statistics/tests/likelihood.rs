@@ -384,6 +384,46 @@ fn whitened_slopes_are_those_of_the_density() {
 }
 
 #[test]
+fn a_common_shift_is_whitened_by_its_mean_precision() {
+    let data = [(2.0, 0.3), (1.4, 0.5), (-0.7, 0.2), (0.1, 0.4), (0.8, 0.4)];
+    let data = data.map(|(value, sd)| datum(0, 0, value, ErrorSd::Known(sd)));
+    let shifts = [vec![0, 1, 3], vec![2], vec![4]].map(|data| CommonError {
+        data,
+        size: CommonErrorSize::Discrepancy { group: 0 },
+    });
+    let with = |discrepancy| {
+        Likelihood::with_common(
+            data.to_vec(),
+            ErrorLaw::Gaussian,
+            shifts.to_vec(),
+            vec![discrepancy],
+        )
+        .unwrap()
+    };
+    let (values, c, d) = ([0.2; 5], [0.3, -0.2, 0.5, 0.1, -0.4], [1.0, 0.4, -0.3, 0.2, 0.9]);
+    let products = |likelihood: &Likelihood| {
+        let whitening = likelihood.whitening(&values, &[]).unwrap();
+        let (c, d) = (whitening.apply(&c), whitening.apply(&d));
+        [whitening.slope(&c), whitening.curvature(&c, &d)]
+    };
+    let unknown = with(Discrepancy::Unknown);
+    let levels = unknown.discrepancy_weights(&values, &[]).unwrap().remove(0);
+    let mut expected = [0.0; 2];
+    for (m, probability) in levels {
+        let of_level = products(&with(Discrepancy::Known(m)));
+        for (sum, product) in expected.iter_mut().zip(of_level) {
+            *sum += probability * product;
+        }
+    }
+    for (own, expected) in products(&unknown).into_iter().zip(expected) {
+        assert!(
+            (own - expected).abs() < 1e-12 * expected.abs().max(1.0),
+            "{own} {expected}"
+        );
+    }
+}
+
+#[test]
 fn error_models_that_mean_nothing_are_refused() {
     let (data, common) = three_runs(ErrorSd::Known(0.3));
     let refused = |law, common: Vec<CommonError>, discrepancy| {

@@ -16,13 +16,16 @@ pub(crate) fn fit(
     likelihood: &Likelihood,
     depth: &Depth,
 ) -> Option<LaplaceFit> {
+    // The value of the screen's point may be that of another likelihood.
+    let FitPoint { position, values, .. } = screened.point.clone();
+    let present = FitPoint::new(frame, likelihood, position, values)?;
     if frame.is_switch() {
-        let (point, columns) = (screened.point.clone(), screened.columns.clone());
+        let (point, columns) = (present, screened.columns.clone());
         return Some(LaplaceFit::new(frame.clone(), point, columns, depth.extension));
     }
     let position = frame.without(&screened.point.position);
     let absent = FitPoint::new(frame, likelihood, position, base.point.values.clone())?;
-    let is_present = screened.point.value < absent.value;
+    let is_present = present.value < absent.value;
     let mut columns = base.columns.clone();
     columns.extend_from_slice(&screened.columns[base.columns.len()..]);
     let shapes = || (base.columns.len()..frame.dimension()).filter(|k| !frame.is_strength(*k));
@@ -35,11 +38,7 @@ pub(crate) fn fit(
             columns[k].fill(0.0);
         }
     }
-    let point = if is_present {
-        screened.point.clone()
-    } else {
-        absent
-    };
+    let point = if is_present { present } else { absent };
     let mut fit = LaplaceFit::new(frame.clone(), point, columns, depth.extension);
     if depth.holds_shapes {
         fit.hold(shapes());

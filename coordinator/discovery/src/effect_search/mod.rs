@@ -14,7 +14,7 @@
 //! - `selection`: the candidates that are kept, confirmed and ranked. `sampling`: those whose evidence is sampled. `ranking`: the result.
 //! - `class`: effects that the data cannot distinguish.
 
-mod base;
+pub(crate) mod base;
 mod class;
 mod confirmation;
 pub(crate) mod depth;

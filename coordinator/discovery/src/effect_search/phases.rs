@@ -10,8 +10,10 @@ use crate::laplace::batch::FitBatch;
 use crate::laplace::fit::{FitStep, FittedModel, LaplaceFit};
 use crate::laplace::importance::ImportanceSampler;
 use crate::laplace::point::FitPoint;
+use crate::laplace::tightened::tightened;
 use crate::settings::Roughness;
 use inference::InferenceFailure;
+use statistics::likelihood::Likelihood;
 
 impl EffectSearch {
     /// Asks for the next evaluations of a batch; returns it once it is complete.
@@ -35,6 +37,10 @@ impl EffectSearch {
             }
             Phase::NumericalNoise(batch, spacing) => self.after_numerical_noise(batch, spacing, &answers),
             Phase::Screen(level) => self.after_screen(level, answers),
+            Phase::Tightened(tightened, mut batch) => {
+                batch.tell(&tightened, answers);
+                self.fit_tightened(tightened, batch);
+            }
             Phase::Extensions(mut batch) => {
                 batch.tell(&self.likelihood, answers);
                 self.fit_extensions(batch);
@@ -200,20 +206,53 @@ impl EffectSearch {
     }
 
     fn extend(&mut self) {
-        let batch = self.extensions(self.best(self.depth.most_extended));
-        self.fit_extensions(batch);
+        let candidates = self.best(self.depth.most_extended);
+        let base = self.base.as_ref().filter(|_| self.depth.tightens);
+        match base.and_then(|base| tightened(&self.likelihood, &base.fit)) {
+            Some(tightened) => {
+                let fits = self.extensions(candidates, &tightened);
+                self.fit_tightened(tightened, FitBatch::new(fits));
+            }
+            None => {
+                let fits = self.extensions(candidates, &self.likelihood);
+                self.fit_extensions(FitBatch::new(fits));
+            }
+        }
+    }
+
+    /// Fits with less room for discrepancy, from where the fits with the whole of it begin a second time.
+    fn fit_tightened(&mut self, tightened: Likelihood, mut batch: FitBatch) {
+        let asked = batch.ask(&tightened);
+        if !asked.is_empty() {
+            self.ask(asked);
+            self.phase = Phase::Tightened(tightened, batch);
+            return;
+        }
+        self.evaluations.extension += batch.evaluations();
+        let mut fits = self.extensions(self.best(self.depth.most_extended), &self.likelihood);
+        fits.extend(batch.fits.into_iter().filter_map(|(candidate, fit)| {
+            let FitPoint { position, values, .. } = fit.point;
+            let point = FitPoint::new(&fit.frame, &self.likelihood, position, values)?;
+            let again = LaplaceFit::new(fit.frame, point, fit.columns, self.depth.extension);
+            Some((candidate, again))
+        }));
+        self.fit_extensions(FitBatch::new(fits));
     }
 
     /// Fits of candidates, from the screen's results.
-    fn extensions(&self, candidates: Vec<usize>) -> FitBatch {
+    fn extensions(
+        &self,
+        candidates: Vec<usize>,
+        likelihood: &Likelihood,
+    ) -> Vec<(Option<usize>, LaplaceFit)> {
         let fits = candidates.into_iter().filter_map(|k| {
             let base = &self.base.as_ref()?.fit;
             let state = &self.candidates[k];
             let screened = state.screened.as_ref()?;
-            let fit = extension::fit(&state.frame, base, screened, &self.likelihood, self.depth)?;
+            let fit = extension::fit(&state.frame, base, screened, likelihood, self.depth)?;
             Some((Some(k), fit))
         });
-        FitBatch::new(fits.collect())
+        fits.collect()
     }
 
     fn fit_extensions(&mut self, batch: FitBatch) {
@@ -222,8 +261,8 @@ impl EffectSearch {
         };
         self.evaluations.extension += batch.evaluations();
         self.take(batch, EvidenceMethod::RankOne);
-        let further = self.extensions(self.within_reach());
-        self.fit_further(further);
+        let further = self.extensions(self.within_reach(), &self.likelihood);
+        self.fit_further(FitBatch::new(further));
     }
 
     fn fit_further(&mut self, batch: FitBatch) {

@@ -66,10 +66,15 @@ impl EffectSearch {
         search
     }
 
-    /// A fit of one model from one start, without candidates.
-    pub(crate) fn refit(frame: NormalFrame, start: Vec<f64>, likelihood: Likelihood, seed: u64) -> Self {
+    /// A fit of one model from the best of these starts, without candidates.
+    pub(crate) fn refit(
+        frame: NormalFrame,
+        starts: Vec<Vec<f64>>,
+        likelihood: Likelihood,
+        seed: u64,
+    ) -> Self {
         let mut search = Self::unasked(frame, likelihood, &[], seed);
-        search.ask(vec![(None, start)]);
+        search.ask(starts.into_iter().map(|start| (None, start)).collect());
         search
     }
 

@@ -69,6 +69,8 @@ pub(super) enum Phase {
     NumericalNoise(FitBatch, f64),
     /// Index of the strength that the screen tries.
     Screen(usize),
+    /// With less room for discrepancy.
+    Tightened(Likelihood, FitBatch),
     Extensions(FitBatch),
     /// Of those within reach of the best.
     FurtherExtensions(FitBatch),

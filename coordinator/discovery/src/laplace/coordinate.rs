@@ -239,6 +239,7 @@ mod tests {
             strengths: vec![0],
             neutral: 0.0,
             excludes: Vec::new(),
+            family: None,
         };
         let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
         for t in [0.0, 0.1, 1.0, 2.5, 5.0] {
@@ -279,6 +280,7 @@ mod tests {
             strengths: vec![0],
             neutral: 0.0,
             excludes: Vec::new(),
+            family: None,
         };
         let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
         let (_, neutral) = frame.strength().unwrap();

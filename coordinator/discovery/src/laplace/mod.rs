@@ -5,7 +5,7 @@
 //! - `point`: an evaluated position. `quadratic`: the expansion of the log posterior about it. `noise`: its part along noise sds.
 //! - `fit`: the minimisation for one model. `batch`: several side by side.
 //! - `evidence`: the integral over a quadratic. `importance`: the same integral by importance sampling. `draws`: posterior draws.
-//! - `spread`: points one standard deviation from the mode.
+//! - `spread`: points one standard deviation from the mode. `tightened`: the likelihood with less room for discrepancy.
 
 pub(crate) mod batch;
 pub(crate) mod coordinate;
@@ -19,3 +19,4 @@ pub(crate) mod quadratic;
 pub(crate) mod spread;
 pub(crate) mod strength_prior;
 pub(crate) mod student;
+pub(crate) mod tightened;

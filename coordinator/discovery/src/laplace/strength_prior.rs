@@ -159,6 +159,7 @@ mod tests {
             strengths: vec![0],
             neutral: 0.0,
             excludes: Vec::new(),
+            family: None,
         };
         let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
         // The likelihood rises by 8 nats per standard deviation and hardly bends; the narrow parts balance it at once.

@@ -162,6 +162,7 @@ impl DiscoverySearch {
         self.stage = match &self.stage {
             Stage::SingleEffects(branch) => state.after_single_effects(branch),
             Stage::BaseReduction(branches) => state.after_base_reduction(branches),
+            Stage::Families(branches) => state.after_families(branches),
             Stage::BeamSearch(size, branches) => state.after_beam_search(*size, branches),
             Stage::BackwardElimination(branches) => state.after_backward_elimination(branches),
             Stage::Curves(branch) => state.after_curves(branch),

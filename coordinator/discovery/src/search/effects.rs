@@ -1,7 +1,7 @@
 //! The stages that search effects of the library.
 
 use crate::chi_square::FURTHER_EFFECT;
-use crate::effect_search::depth::QUICK;
+use crate::effect_search::depth::{GLANCE, QUICK};
 use crate::effect_search::state::EffectSearch;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::FittedModel;
@@ -10,11 +10,13 @@ use crate::search::branch::SearchBranch;
 use crate::search::hypotheses::EffectCombination;
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
-use crate::settings::{SearchSettings, Starts};
+use crate::settings::{Roughness, SearchSettings, Starts};
 use inference::InferenceFailure;
 
 /// Beam width: combinations from which one more effect is searched.
 const BEAM: usize = 3;
+/// The same of single effects, where the best of them contradicts the data: two that explain much together may explain little alone.
+const WIDE_BEAM: usize = 6;
 
 impl SearchState {
     pub(super) fn after_single_effects(&mut self, branch: &SearchBranch) -> Stage {
@@ -54,27 +56,32 @@ impl SearchState {
             }
         }
         self.hypotheses.gains = gains;
-        self.beam_search(1)
+        self.families()
     }
 
     /// Searches one more effect beyond the best combinations of a size, unless the library fits.
-    fn beam_search(&mut self, size: usize) -> Stage {
+    pub(super) fn beam_search(&mut self, size: usize) -> Stage {
         let hypotheses = &self.hypotheses;
-        let best: Vec<&EffectCombination> = hypotheses
-            .combinations
-            .iter()
-            .filter(|c| c.effects.len() == size && c.log_bayes_factor > DETECTED)
+        let is_wide = size == 1 && self.searches_widely();
+        let combinations = hypotheses.combinations.iter();
+        let of_size = combinations
+            .filter(|c| c.effects.len() == size && (c.log_bayes_factor > DETECTED || is_wide))
             // A model with a switch turned may lack what others have.
-            .filter(|c| !c.effects.iter().any(|k| self.task.library[*k].is_switch()))
-            .take(BEAM)
-            .collect();
+            .filter(|c| !c.effects.iter().any(|k| self.task.library[*k].is_switch()));
+        let mut best: Vec<&EffectCombination> = of_size.collect();
+        let width = if is_wide { WIDE_BEAM } else { BEAM };
+        // The best set of a family goes on beside the others: what it lacks yet may hide that it leads.
+        let is_of_family = |c: &&EffectCombination| hypotheses.of_families.contains(&c.effects);
+        let family = best.iter().skip(width).find(|c| is_of_family(c)).copied();
+        best.truncate(width);
+        best.extend(family);
         let leaves_misfit = hypotheses
             .chi_square(&self.task.likelihood)
             .is_none_or(|chi| chi.p() < FURTHER_EFFECT);
         if size >= self.task.max_effects || best.is_empty() || !leaves_misfit {
             return self.backward_elimination();
         }
-        let branches = best.into_iter().map(|combination| {
+        let branches = best.into_iter().enumerate().map(|(rank, combination)| {
             let library = &self.task.library;
             let combines = |k: usize| {
                 let mut own = combination.effects.iter();
@@ -90,7 +97,8 @@ impl SearchState {
             };
             let likelihood = self.task.likelihood.clone();
             let seed = self.task.settings.seed;
-            let search = EffectSearch::beyond(base, likelihood, &candidates, &QUICK, seed);
+            let depth = if rank < BEAM { &QUICK } else { &GLANCE };
+            let search = EffectSearch::beyond(base, likelihood, &candidates, depth, seed);
             SearchBranch::new(combination.effects.clone(), others, search)
         });
         Stage::BeamSearch(size, branches.collect())
@@ -138,13 +146,26 @@ impl SearchState {
                 }
             }
             let seed = self.task.settings.seed;
-            let search = EffectSearch::refit(frame, start, self.task.likelihood.clone(), seed);
+            let search = EffectSearch::refit(frame, vec![start], self.task.likelihood.clone(), seed);
             SearchBranch::new(effects, Vec::new(), search)
         });
         Stage::BackwardElimination(branches.collect())
     }
 
     pub(super) fn after_backward_elimination(&mut self, branches: &[SearchBranch]) -> Stage {
+        self.add_fitted(branches);
+        self.curves()
+    }
+
+    /// Whether the best single effect contradicts the data, with a model whose evaluations are cheap enough to look for combinations of
+    /// effects that explain little alone.
+    pub(super) fn searches_widely(&self) -> bool {
+        let is_smooth = self.task.settings.roughness == Roughness::Smooth;
+        is_smooth && self.task.max_effects > 1 && self.hypotheses.is_incomplete(&self.task.likelihood)
+    }
+
+    /// Keeps the combinations that branches without candidates have fitted.
+    pub(super) fn add_fitted(&mut self, branches: &[SearchBranch]) {
         let base = self.hypotheses.base_evidence();
         for branch in branches {
             if let Some(fitted) = branch.search.base_fit() {
@@ -155,7 +176,6 @@ impl SearchState {
                 });
             }
         }
-        self.curves()
     }
 
     /// Keeps the results of a branch: all single effects, and the combinations that improve detectably.

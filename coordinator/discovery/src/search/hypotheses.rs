@@ -22,6 +22,8 @@ pub(super) struct Hypotheses {
     pub(super) ranking: EffectRanking,
     /// Combinations by falling Bayes factor, single effects among them.
     pub(super) combinations: Vec<EffectCombination>,
+    /// The sets of effects of one family that were fitted together.
+    pub(super) of_families: Vec<Vec<usize>>,
     /// Log Bayes factor of the base over itself without each effect that may be dropped; `None` where that cannot be fitted.
     pub(super) gains: Vec<Option<f64>>,
     /// Laws outside the library beyond the base; `None`: not searched.
@@ -85,6 +87,7 @@ impl Hypotheses {
             base: None,
             ranking: EffectRanking::default(),
             combinations: Vec::new(),
+            of_families: Vec::new(),
             gains: Vec::new(),
             laws: None,
             further_laws: None,

@@ -12,6 +12,7 @@ use inference::InferenceFailure;
 pub(super) enum Stage {
     SingleEffects(SearchBranch),
     BaseReduction(Vec<SearchBranch>),
+    Families(Vec<SearchBranch>),
     /// Beyond combinations of so many effects.
     BeamSearch(usize, Vec<SearchBranch>),
     BackwardElimination(Vec<SearchBranch>),
@@ -32,6 +33,7 @@ impl Stage {
         match self {
             Self::SingleEffects(branch) | Self::Curves(branch) | Self::Forms(branch) => branch.queries(),
             Self::BaseReduction(branches)
+            | Self::Families(branches)
             | Self::BeamSearch(_, branches)
             | Self::BackwardElimination(branches) => {
                 branches.iter().flat_map(SearchBranch::queries).collect()
@@ -47,6 +49,7 @@ impl Stage {
         match self {
             Self::SingleEffects(branch) | Self::Curves(branch) | Self::Forms(branch) => branch.take(answers),
             Self::BaseReduction(branches)
+            | Self::Families(branches)
             | Self::BeamSearch(_, branches)
             | Self::BackwardElimination(branches) => {
                 let mut answers = answers.into_iter();

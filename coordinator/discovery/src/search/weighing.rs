@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::effect_search::ranking::{EffectRanking, EvidenceMethod};
+use crate::effect_search::ranking::{EffectRanking, EvidenceMethod, RankedEffect};
+use crate::laplace::evidence::log_sum_exp;
 use crate::probability::{DETECTED, ModelProbability};
 use crate::search::hypotheses::{EffectCombination, Hypotheses};
 use crate::search::next_run::OpenHypothesis;
@@ -42,6 +43,7 @@ pub(super) struct Weighing {
     pub(super) sets: Vec<WeighedSet>,
     /// Chi-square of the best explanation over its degrees of freedom; 1 where it fits.
     pub(super) misfit: f64,
+    inclusion: Inclusion,
 }
 
 /// A combination that counts for its leading effect.
@@ -52,18 +54,39 @@ struct LedCombination<'a> {
     cost: f64,
 }
 
-/// The effect of a combination with the highest Bayes factor of its own; `None` without an effect of the library.
-fn leader(ranking: &EffectRanking, effects: &[usize]) -> Option<usize> {
+/// What the combinations say of each effect of the library: the log of the summed weights of those that have it.
+type Inclusion = BTreeMap<usize, f64>;
+
+/// Log weights that differ by less are the same.
+const SAME_WEIGHT: f64 = 1e-9;
+
+fn inclusion(hypotheses: &Hypotheses, further: f64, misfit: f64) -> Inclusion {
+    let mut weights: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    for combination in &hypotheses.combinations {
+        let cost = further * (combination.effects.len() as f64 - 1.0);
+        for &k in &combination.effects {
+            let own = weights.entry(k).or_default();
+            own.push(combination.log_bayes_factor / misfit - cost);
+        }
+    }
+    let sum = |(k, weights): (usize, Vec<f64>)| (k, log_sum_exp(weights.into_iter()));
+    weights.into_iter().map(sum).collect()
+}
+
+/// The effect of a combination that most of the weight includes, of several the one with the highest Bayes factor of its own; `None`
+/// without an effect of the library. An effect that every good combination has is thus not named after a rival that only some have.
+fn leader(ranking: &EffectRanking, inclusion: &Inclusion, effects: &[usize]) -> Option<usize> {
     let ranked = effects.iter().filter_map(|&k| ranking.of(Some(k)));
-    ranked
-        .reduce(|a, b| {
-            if b.log_bayes_factor > a.log_bayes_factor {
-                b
-            } else {
-                a
-            }
-        })
-        .and_then(|effect| effect.candidate)
+    let weight = |of: &RankedEffect| {
+        let known = of.candidate.and_then(|k| inclusion.get(&k));
+        known.copied().unwrap_or(f64::NEG_INFINITY)
+    };
+    let leads = |b: &RankedEffect, a: &RankedEffect| {
+        let more = weight(b) - weight(a);
+        more > SAME_WEIGHT || (more >= -SAME_WEIGHT && b.log_bayes_factor > a.log_bayes_factor)
+    };
+    let best = ranked.reduce(|a, b| if leads(b, a) { b } else { a });
+    best.and_then(|effect| effect.candidate)
 }
 
 /// Whether a set without an effect predicts left-out levels better than every set with it. Sets that both have the effect contradict
@@ -82,7 +105,7 @@ fn disputes(sets: &[WeighedSet], effect: usize, misfit: f64) -> bool {
 }
 
 impl Weighing {
-    /// A combination counts for its member with the highest Bayes factor; each further effect has the prior of one among all.
+    /// A combination counts for its member that most of the weight includes; each further effect has the prior of one among all.
     pub(super) fn new(task: &SearchTask, hypotheses: &Hypotheses) -> Self {
         let mut ranking = hypotheses.ranking.clone();
         // The backward elimination may have found a better fit of a single effect.
@@ -106,8 +129,10 @@ impl Weighing {
         }
         let further = libm::log(task.library.len().max(1) as f64);
         let mut led: BTreeMap<usize, Vec<LedCombination>> = BTreeMap::new();
+        let misfit = hypotheses.misfit(&task.likelihood);
+        let inclusion = inclusion(hypotheses, further, misfit);
         for combination in hypotheses.combinations.iter().filter(|c| c.effects.len() > 1) {
-            if let Some(leader) = leader(&ranking, &combination.effects) {
+            if let Some(leader) = leader(&ranking, &inclusion, &combination.effects) {
                 led.entry(leader).or_default().push(LedCombination {
                     effects: &combination.effects,
                     log_bayes_factor: combination.log_bayes_factor,
@@ -118,7 +143,6 @@ impl Weighing {
         let led_by = |k: usize| led.get(&k).map_or(&[][..], Vec::as_slice);
         let outside = hypotheses.laws.as_ref();
         let outside = outside.map(|scan| scan.log_bayes_factor(task.laws.len()));
-        let misfit = hypotheses.misfit(&task.likelihood);
         let weights = |k: usize| led_by(k).iter().map(|c| (c.log_bayes_factor, c.cost)).collect();
         let probabilities = ranking.weigh(weights, outside, misfit);
         let of_model = |model: &ModelProbability| {
@@ -165,6 +189,7 @@ impl Weighing {
             not_in_library: outside.zip(probabilities.outside),
             sets,
             misfit,
+            inclusion,
         }
     }
 
@@ -195,7 +220,7 @@ impl Weighing {
             .iter()
             .filter(|set| set.predictive.is_none())
             .all(|set| set.probability < LEADING);
-        let leader = leader(&self.ranking, effects);
+        let leader = leader(&self.ranking, &self.inclusion, effects);
         leader.filter(|_| predicted.all(is_beaten) && others_are_improbable)
     }
 
@@ -247,6 +272,38 @@ mod tests {
             probability: 0.0,
             predictive,
         }
+    }
+
+    fn ranked(candidate: usize, log_bayes_factor: f64) -> RankedEffect {
+        RankedEffect {
+            candidate: Some(candidate),
+            log_bayes_factor,
+            stated_log_bayes_factor: log_bayes_factor,
+            screen_log_bayes_factor: log_bayes_factor,
+            log_likelihood: 0.0,
+            prior_sds: 0.0,
+            method: EvidenceMethod::Confirmed,
+            probability: 0.0,
+            class: candidate,
+            is_credible: false,
+            theta: Vec::new(),
+            predicted: Vec::new(),
+            at_bound: Vec::new(),
+            evaluations: 0,
+        }
+    }
+
+    #[test]
+    fn what_most_combinations_include_leads_them() {
+        let ranking = EffectRanking {
+            effects: vec![ranked(1, 9.0), ranked(2, 11.0), ranked(3, 4.0)],
+            ..EffectRanking::default()
+        };
+        let inclusion = BTreeMap::from([(1, 30.0), (2, 29.9), (3, 30.0)]);
+        assert_eq!(leader(&ranking, &inclusion, &[1, 2]), Some(1));
+        assert_eq!(leader(&ranking, &inclusion, &[3, 1]), Some(1));
+        assert_eq!(leader(&ranking, &inclusion, &[3, 2]), Some(3));
+        assert_eq!(leader(&ranking, &inclusion, &[7]), None);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Whitening of residuals and derivatives, for a fit by least squares.
 
 use super::common_error::ErrorBlock;
+use super::common_shift::CommonShift;
 use super::datum::LikelihoodError;
 use super::error_model::Likelihood;
 use super::factor::CholeskyFactor;
@@ -20,10 +21,60 @@ const LEAST_PROBABILITY: f64 = 1e-12;
 #[derive(Debug, Clone)]
 pub struct Whitening {
     alone: Vec<(usize, f64)>,
-    blocks: Vec<(Vec<usize>, CholeskyFactor)>,
+    blocks: Vec<(Vec<usize>, BlockTransform)>,
     residuals: Vec<f64>,
     slope_weights: Vec<f64>,
     curvature_weights: Vec<f64>,
+}
+
+/// The transform of a block.
+#[derive(Debug, Clone)]
+enum BlockTransform {
+    Factor(CholeskyFactor),
+    Shift(ShiftTransform),
+}
+
+/// The transform of normal errors that have one shift in common, of every size that an unknown discrepancy may have at once.
+///
+/// With D the noise sds and q the unit vector along `D^-1 1`, the precision of a size m is `D^-1 (I - (1 - k_m) q q') D^-1` with
+/// `k_m = 1 / (1 + m^2 u^2 w)`, so their mean has the mean k, and its root is `(I - (1 - sqrt(k)) q q') D^-1`.
+///
+/// # Source
+/// Sherman & Morrison 1950, doi:10.1214/aoms/1177729893. Checked by `likelihood::a_common_shift_is_whitened_by_its_mean_precision`.
+#[derive(Debug, Clone)]
+struct ShiftTransform {
+    sds: Vec<f64>,
+    along: Vec<f64>,
+    /// `1 - sqrt(k)`.
+    taken: f64,
+}
+
+impl ShiftTransform {
+    /// # Arguments
+    /// - `levels`: the values of m with their posterior probabilities.
+    fn new(sds: Vec<f64>, shift: &CommonShift, levels: &[(f64, f64)]) -> Self {
+        let kept: f64 = levels
+            .iter()
+            .map(|(m, probability)| probability * shift.kept(*m))
+            .sum();
+        let squares: f64 = sds.iter().map(|sd| 1.0 / (sd * sd)).sum();
+        Self {
+            along: sds.iter().map(|sd| 1.0 / (sd * squares.sqrt())).collect(),
+            sds,
+            taken: 1.0 - kept.sqrt(),
+        }
+    }
+
+    fn whiten(&self, mut v: Vec<f64>) -> Vec<f64> {
+        for (v, sd) in v.iter_mut().zip(&self.sds) {
+            *v /= sd;
+        }
+        let shift: f64 = v.iter().zip(&self.along).map(|(v, q)| v * q).sum();
+        for (v, q) in v.iter_mut().zip(&self.along) {
+            *v -= self.taken * shift * q;
+        }
+        v
+    }
 }
 
 impl Likelihood {
@@ -47,6 +98,21 @@ impl Likelihood {
         }
         let families = self.family_weights(values, theta)?;
         for block in &self.blocks {
+            if let (Some(family), ErrorLaw::Gaussian) = (block.family, self.law)
+                && let Some(shift) = self.common_shift(block, values, theta)?
+            {
+                let sds: Result<Vec<f64>, _> =
+                    block.data.iter().map(|&i| self.data[i].noise_sd(theta)).collect();
+                let transform = ShiftTransform::new(sds?, &shift, &families[family]);
+                let residuals = block.data.iter().map(|&i| self.data[i].value - values[i]);
+                let whitened = transform.whiten(residuals.collect());
+                let squared_distance = whitened.iter().map(|r| r * r).sum();
+                whitening.push(&whitened, squared_distance, self.law, 1.0);
+                whitening
+                    .blocks
+                    .push((block.data.clone(), BlockTransform::Shift(transform)));
+                continue;
+            }
             let levels = block.family.map_or(&CERTAIN[..], |family| &families[family]);
             for &(m, probability) in levels {
                 if probability > LEAST_PROBABILITY {
@@ -68,7 +134,9 @@ impl Likelihood {
     ) -> Result<(), LikelihoodError> {
         if let Some(scored) = self.score(block, m, values, theta)? {
             whitening.push(&scored.whitened, scored.squared_distance, self.law, probability);
-            whitening.blocks.push((block.data.clone(), scored.factor));
+            whitening
+                .blocks
+                .push((block.data.clone(), BlockTransform::Factor(scored.factor)));
         }
         Ok(())
     }
@@ -93,8 +161,12 @@ impl Whitening {
     #[must_use]
     pub fn apply(&self, v: &[f64]) -> Vec<f64> {
         let mut whitened: Vec<f64> = self.alone.iter().map(|&(i, sd)| v[i] / sd).collect();
-        for (data, factor) in &self.blocks {
-            whitened.extend(factor.whiten(data.iter().map(|&i| v[i]).collect()));
+        for (data, transform) in &self.blocks {
+            let own = data.iter().map(|&i| v[i]).collect();
+            whitened.extend(match transform {
+                BlockTransform::Factor(factor) => factor.whiten(own),
+                BlockTransform::Shift(shift) => shift.whiten(own),
+            });
         }
         whitened
     }

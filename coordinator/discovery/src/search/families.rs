@@ -1,0 +1,87 @@
+//! The stage that fits the effects of a family together.
+
+use crate::effect_search::base::starts;
+use crate::effect_search::state::EffectSearch;
+use crate::laplace::coordinate::NormalFrame;
+use crate::search::branch::SearchBranch;
+use crate::search::stage::Stage;
+use crate::search::state::SearchState;
+
+/// Families with more members are not tried: their subsets are too many.
+const MOST_MEMBERS: usize = 4;
+/// Distances of all strengths from their neutral values where a fit may begin at the base's fit, in standard deviations of their priors.
+const STRENGTHS: [f64; 2] = [0.3, 1.0];
+/// Further starts that fill the prior.
+const ANYWHERE: usize = 6;
+
+impl SearchState {
+    /// Fits every subset of a family. A law in pieces, such as a sinkage that grows with slip in drive, in skid and sideways, shows
+    /// little by each piece alone, so a search that adds one effect after the other may take others for it.
+    pub(super) fn families(&mut self) -> Stage {
+        if !self.searches_widely() {
+            return self.beam_search(1);
+        }
+        let branches = self
+            .subsets()
+            .into_iter()
+            .filter_map(|subset| self.together(subset));
+        Stage::Families(branches.collect())
+    }
+
+    pub(super) fn after_families(&mut self, branches: &[SearchBranch]) -> Stage {
+        self.add_fitted(branches);
+        let fitted = branches.iter().map(|branch| branch.effects.clone());
+        self.hypotheses.of_families = fitted.collect();
+        self.beam_search(1)
+    }
+
+    /// The subsets of all families, of two effects and more.
+    fn subsets(&self) -> Vec<Vec<usize>> {
+        let library = &self.task.library;
+        let mut names: Vec<&String> = library.iter().filter_map(|own| own.family.as_ref()).collect();
+        names.sort_unstable();
+        names.dedup();
+        let mut subsets = Vec::new();
+        for name in names {
+            let is_member = |k: &usize| library[*k].family.as_ref() == Some(name);
+            let members: Vec<usize> = (0..library.len()).filter(is_member).collect();
+            if members.len() > MOST_MEMBERS {
+                continue;
+            }
+            for chosen in 0_u32..1 << members.len() {
+                let own = members.iter().enumerate();
+                let own: Vec<usize> = own
+                    .filter(|(i, _)| chosen >> i & 1 == 1)
+                    .map(|(_, k)| *k)
+                    .collect();
+                let combines = |k: &usize| {
+                    own.iter()
+                        .all(|l| k == l || library[*k].combines_with(&library[*l]))
+                };
+                if (2..=self.task.max_effects).contains(&own.len()) && own.iter().all(combines) {
+                    subsets.push(own);
+                }
+            }
+        }
+        subsets
+    }
+
+    fn together(&self, effects: Vec<usize>) -> Option<SearchBranch> {
+        let mut frame = NormalFrame::base(&self.task.prior, self.task.settings.roughness);
+        let base = &self.hypotheses.base_fit()?.point.position;
+        let mut at_base = vec![base.clone(); STRENGTHS.len()];
+        for &k in &effects {
+            frame = frame.with(&self.task.library[k]);
+            for (position, distance) in at_base.iter_mut().zip(STRENGTHS) {
+                position.resize(frame.dimension(), 0.0);
+                for &(strength, neutral) in &frame.strengths {
+                    position[strength] = neutral + distance;
+                }
+            }
+        }
+        at_base.extend(starts(&frame, ANYWHERE));
+        let likelihood = self.task.likelihood.clone();
+        let search = EffectSearch::refit(frame, at_base, likelihood, self.task.settings.seed);
+        Some(SearchBranch::new(effects, Vec::new(), search))
+    }
+}

@@ -1,0 +1,150 @@
+//! Effects that do little alone and much together, on a model that is linear in their strengths.
+
+use discovery::{
+    Candidate, Conclusion, DETECTED, DiscoverySearch, ProposedRuns, QueriedModel, Query, SearchSettings,
+    SearchTask,
+};
+use statistics::rng::Stream;
+use statistics::{
+    CommonError, CommonErrorSize, Datum, Discrepancy, Distribution, ErrorLaw, ErrorSd, Likelihood, Marginal,
+    Prior,
+};
+
+const DATA: usize = 24;
+/// The difference of these two is what the model lacks; either alone is nearly the same parabola, which it does not lack.
+const WAVY: usize = 0;
+const PLAIN: usize = 1;
+/// Steps that the data have.
+const STEPS: usize = 3;
+
+fn x(i: usize) -> f64 {
+    i as f64 / (DATA - 1) as f64 * 2.0 - 1.0
+}
+
+/// What a unit of a candidate's strength adds at x; beyond the two, steps that explain a little each.
+fn added(wave: f64, k: usize, x: f64) -> f64 {
+    let parabola = x * x - 0.36;
+    match k {
+        WAVY => parabola + wave * libm::sin(9.0 * x),
+        PLAIN => parabola,
+        // The steps after the third repeat these.
+        step => f64::from(u8::from(x > 0.4 * ((step - 2) % STEPS) as f64 - 0.4)),
+    }
+}
+
+fn normal() -> Marginal {
+    Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap()
+}
+
+fn library(steps: usize) -> Vec<Candidate> {
+    let candidate = |k: usize| Candidate {
+        name: k.to_string(),
+        parameters: vec![normal()],
+        strengths: vec![0],
+        neutral: 0.0,
+        excludes: Vec::new(),
+        family: None,
+    };
+    (0..2 + steps).map(candidate).collect()
+}
+
+fn predict(wave: f64, query: &Query) -> Vec<f64> {
+    let QueriedModel::With(effects) = &query.model else {
+        panic!("nothing is dropped");
+    };
+    let theta = &query.theta;
+    let at = |i: usize| {
+        let own = effects.iter().zip(&theta[2..]);
+        theta[0] + theta[1] * x(i) + own.map(|(&k, s)| s * added(wave, k, x(i))).sum::<f64>()
+    };
+    (0..DATA).map(at).collect()
+}
+
+/// Searches data of both effects at opposite strengths, and of the three steps.
+fn found(wave: f64, sd: f64, has_discrepancy: bool) -> Conclusion {
+    found_in(library(STEPS), wave, sd, has_discrepancy)
+}
+
+fn found_in(library: Vec<Candidate>, wave: f64, sd: f64, has_discrepancy: bool) -> Conclusion {
+    let noise = Stream::new(11, 0, 0, 0).normals(DATA);
+    let truth = |i: usize| {
+        let steps: f64 = (2..2 + STEPS).map(|k| 2.5 * sd * added(wave, k, x(i))).sum();
+        0.3 + 0.5 * x(i) + 2.5 * (added(wave, WAVY, x(i)) - added(wave, PLAIN, x(i))) + steps
+    };
+    let datum = |run: usize| Datum {
+        run,
+        channel: 0,
+        value: truth(run) + sd * noise[run],
+        sd: ErrorSd::Known(sd),
+    };
+    let each = |i: usize| CommonError {
+        data: vec![i],
+        size: CommonErrorSize::Discrepancy { group: 0 },
+    };
+    let data = (0..DATA).map(datum).collect();
+    let (common, discrepancy) = if has_discrepancy {
+        ((0..DATA).map(each).collect(), Discrepancy::Unknown)
+    } else {
+        (Vec::new(), Discrepancy::None)
+    };
+    let likelihood = Likelihood::with_common(data, ErrorLaw::Gaussian, common, vec![discrepancy]).unwrap();
+    let mut search = DiscoverySearch::new(SearchTask {
+        prior: Prior::new(vec![normal(), normal()]),
+        likelihood,
+        library,
+        laws: Vec::new(),
+        reductions: Vec::new(),
+        levels: Vec::new(),
+        proposed: ProposedRuns::default(),
+        max_effects: 2,
+        settings: SearchSettings::default(),
+    })
+    .unwrap();
+    loop {
+        if let Some(found) = search.conclusion() {
+            return found.clone();
+        }
+        for index in 0..search.pending().len() {
+            let values = predict(wave, search.query(index).unwrap());
+            search.tell(index, Some(&values)).unwrap();
+        }
+    }
+}
+
+fn effects(found: &Conclusion) -> Vec<usize> {
+    let mut effects = found.combination.clone();
+    effects.sort_unstable();
+    effects
+}
+
+#[test]
+fn two_effects_that_do_little_alone_are_found_together() {
+    let found = found(0.15, 0.1, false);
+    for k in [WAVY, PLAIN] {
+        let alone = found.ranking.of(Some(k)).unwrap().log_bayes_factor;
+        assert!(alone < DETECTED, "{k}: {alone}");
+    }
+    assert_eq!(effects(&found), [WAVY, PLAIN]);
+}
+
+#[test]
+fn an_unknown_discrepancy_does_not_hide_what_two_effects_explain() {
+    // Alone, one of them takes up nothing, little, or much of what the discrepancy would.
+    for wave in [0.15, 0.5, 0.8] {
+        assert_eq!(effects(&found(wave, 0.01, true)), [WAVY, PLAIN], "{wave}");
+    }
+}
+
+#[test]
+fn a_family_is_found_where_others_seem_better() {
+    // Copies of the steps crowd the two out of the beam.
+    let mut library = library(4 * STEPS);
+    assert_ne!(
+        effects(&found_in(library.clone(), 0.15, 0.1, false)),
+        [WAVY, PLAIN]
+    );
+    for k in [WAVY, PLAIN] {
+        library[k].family = Some("parabola".into());
+    }
+    assert_eq!(effects(&found_in(library, 0.15, 0.1, false)), [WAVY, PLAIN]);
+}
