@@ -40,8 +40,6 @@ pub(crate) struct Depth {
     pub(crate) shapes: &'static [f64],
     /// The plan of an extension's fit.
     pub(crate) extension: &'static [FitStep],
-    /// Whether an extension is fitted with less room for an unknown discrepancy, too, before it has the whole of it.
-    pub(crate) tightens: bool,
     /// Whether shapes are held at the screen's values at first: between two levels of a design a threshold changes nothing, so a
     /// finite difference of a shape has no information.
     pub(crate) holds_shapes: bool,
@@ -80,7 +78,6 @@ pub(crate) const FULL: Depth = Depth {
     shapes: &[0.0, -1.0, 1.0],
     // Broyden's steps alone, the first to the linear solution.
     extension: &[FitStep::Trials(9)],
-    tightens: true,
     holds_shapes: false,
     most_polished: 3,
     polish: &[FitStep::Differences, FitStep::Trials(6)],
@@ -100,7 +97,6 @@ pub(crate) const SPARING: Depth = Depth {
     most_extended: 8,
     reach: Some(0.25),
     extension: &[FitStep::Trials(6)],
-    tightens: false,
     least_confirmed: 2,
     within: 5.0,
     samples: false,

@@ -207,7 +207,9 @@ impl EffectSearch {
 
     fn extend(&mut self) {
         let candidates = self.best(self.depth.most_extended);
-        let base = self.base.as_ref().filter(|_| self.depth.tightens);
+        // The evaluations of a rough model are too dear for fitting twice.
+        let is_smooth = self.base_frame.roughness == Roughness::Smooth;
+        let base = self.base.as_ref().filter(|_| is_smooth);
         match base.and_then(|base| tightened(&self.likelihood, &base.fit)) {
             Some(tightened) => {
                 let fits = self.extensions(candidates, &tightened);

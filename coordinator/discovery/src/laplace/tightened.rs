@@ -6,7 +6,8 @@ use statistics::likelihood::{Discrepancy, LEAST_DISCREPANCY, Likelihood};
 /// Share of an unknown discrepancy that is left.
 const SHARE: f64 = 0.25;
 
-/// The likelihood with each unknown discrepancy held at a quarter of its posterior mean at a fit; `None` where none is unknown.
+/// The likelihood with each unknown discrepancy held at a quarter of its posterior mean at a fit, or at the least that it
+/// may be; `None` where none is unknown.
 ///
 /// An unknown discrepancy is as large as what the model misses, so that no small step explains much of it: a fit that would shrink it
 /// to a fraction may have a maximum of its own where nothing changes. With less room the data pull harder, and a fit that ends here

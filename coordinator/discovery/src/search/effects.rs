@@ -15,7 +15,7 @@ use inference::InferenceFailure;
 
 /// Beam width: combinations from which one more effect is searched.
 const BEAM: usize = 3;
-/// The same of single effects, where the best of them contradicts the data: two that explain much together may explain little alone.
+/// The same of single effects, where the best explanation so far contradicts the data: two that explain much together may explain little alone.
 const WIDE_BEAM: usize = 6;
 
 impl SearchState {
@@ -71,8 +71,13 @@ impl SearchState {
         let mut best: Vec<&EffectCombination> = of_size.collect();
         let width = if is_wide { WIDE_BEAM } else { BEAM };
         // The best set of a family goes on beside the others: what it lacks yet may hide that it leads.
-        let is_of_family = |c: &&EffectCombination| hypotheses.of_families.contains(&c.effects);
-        let family = best.iter().skip(width).find(|c| is_of_family(c)).copied();
+        let is_of_family = |c: &&EffectCombination| {
+            let mut effects = c.effects.clone();
+            effects.sort_unstable();
+            hypotheses.of_families.contains(&effects)
+        };
+        let family = best.iter().position(is_of_family).filter(|place| *place >= width);
+        let family = family.map(|place| best[place]);
         best.truncate(width);
         best.extend(family);
         let leaves_misfit = hypotheses
@@ -157,7 +162,7 @@ impl SearchState {
         self.curves()
     }
 
-    /// Whether the best single effect contradicts the data, with a model whose evaluations are cheap enough to look for combinations of
+    /// Whether the best explanation so far contradicts the data, with a model whose evaluations are cheap enough to look for combinations of
     /// effects that explain little alone.
     pub(super) fn searches_widely(&self) -> bool {
         let is_smooth = self.task.settings.roughness == Roughness::Smooth;

@@ -58,7 +58,10 @@ impl SearchState {
                     own.iter()
                         .all(|l| k == l || library[*k].combines_with(&library[*l]))
                 };
-                if (2..=self.task.max_effects).contains(&own.len()) && own.iter().all(combines) {
+                // A set counts for a member with an evidence of its own.
+                let is_ranked = own.iter().any(|k| self.hypotheses.ranking.of(Some(*k)).is_some());
+                let is_possible = is_ranked && own.iter().all(combines);
+                if (2..=self.task.max_effects).contains(&own.len()) && is_possible {
                     subsets.push(own);
                 }
             }

@@ -22,7 +22,7 @@ pub(super) struct Hypotheses {
     pub(super) ranking: EffectRanking,
     /// Combinations by falling Bayes factor, single effects among them.
     pub(super) combinations: Vec<EffectCombination>,
-    /// The sets of effects of one family that were fitted together.
+    /// The sets of effects of one family that were fitted together, each ascending.
     pub(super) of_families: Vec<Vec<usize>>,
     /// Log Bayes factor of the base over itself without each effect that may be dropped; `None` where that cannot be fitted.
     pub(super) gains: Vec<Option<f64>>,

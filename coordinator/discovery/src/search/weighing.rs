@@ -57,8 +57,8 @@ struct LedCombination<'a> {
 /// What the combinations say of each effect of the library: the log of the summed weights of those that have it.
 type Inclusion = BTreeMap<usize, f64>;
 
-/// Log weights that differ by less are the same.
-const SAME_WEIGHT: f64 = 1e-9;
+/// Effects within so many nats of the most included one are included alike: what tells them apart then is which poor combinations were tried.
+const SAME_WEIGHT: f64 = 0.01;
 
 fn inclusion(hypotheses: &Hypotheses, further: f64, misfit: f64) -> Inclusion {
     let mut weights: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
@@ -76,16 +76,21 @@ fn inclusion(hypotheses: &Hypotheses, further: f64, misfit: f64) -> Inclusion {
 /// The effect of a combination that most of the weight includes, of several the one with the highest Bayes factor of its own; `None`
 /// without an effect of the library. An effect that every good combination has is thus not named after a rival that only some have.
 fn leader(ranking: &EffectRanking, inclusion: &Inclusion, effects: &[usize]) -> Option<usize> {
-    let ranked = effects.iter().filter_map(|&k| ranking.of(Some(k)));
+    let ranked = || effects.iter().filter_map(|&k| ranking.of(Some(k)));
     let weight = |of: &RankedEffect| {
         let known = of.candidate.and_then(|k| inclusion.get(&k));
         known.copied().unwrap_or(f64::NEG_INFINITY)
     };
-    let leads = |b: &RankedEffect, a: &RankedEffect| {
-        let more = weight(b) - weight(a);
-        more > SAME_WEIGHT || (more >= -SAME_WEIGHT && b.log_bayes_factor > a.log_bayes_factor)
-    };
-    let best = ranked.reduce(|a, b| if leads(b, a) { b } else { a });
+    let most = ranked().map(weight).fold(f64::NEG_INFINITY, f64::max);
+    let best = ranked().filter(|of| weight(of) >= most - SAME_WEIGHT);
+    let best = best.reduce(|a, b| {
+        let by_factor = b.log_bayes_factor.total_cmp(&a.log_bayes_factor);
+        if by_factor.then(a.candidate.cmp(&b.candidate)).is_gt() {
+            b
+        } else {
+            a
+        }
+    });
     best.and_then(|effect| effect.candidate)
 }
 
@@ -299,9 +304,11 @@ mod tests {
             effects: vec![ranked(1, 9.0), ranked(2, 11.0), ranked(3, 4.0)],
             ..EffectRanking::default()
         };
-        let inclusion = BTreeMap::from([(1, 30.0), (2, 29.9), (3, 30.0)]);
+        // The third has a little more than the first, as poor combinations add.
+        let inclusion = BTreeMap::from([(1, 30.0), (2, 29.9), (3, 30.0 + 1e-6)]);
         assert_eq!(leader(&ranking, &inclusion, &[1, 2]), Some(1));
         assert_eq!(leader(&ranking, &inclusion, &[3, 1]), Some(1));
+        assert_eq!(leader(&ranking, &inclusion, &[1, 3]), Some(1));
         assert_eq!(leader(&ranking, &inclusion, &[3, 2]), Some(3));
         assert_eq!(leader(&ranking, &inclusion, &[7]), None);
     }
