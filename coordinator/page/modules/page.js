@@ -1,12 +1,14 @@
 // The page of a service: the home of all studies, or one study in one of its views.
 
 import { html, render, useEffect, useState } from "./html.js";
+import { Later } from "./part/later.js";
 import { Login } from "./part/login.js";
 import { token } from "./rest/token.js";
 import { useRoute } from "./route.js";
 import { Home } from "./view/home.js";
-import { NewCalibration } from "./view/new_calibration.js";
 import { StudyPage } from "./view/study.js";
+
+const newCalibration = () => import("./view/new_calibration.js").then((module) => module.NewCalibration);
 
 function Page() {
   const route = useRoute();
@@ -32,7 +34,7 @@ function Page() {
     <main id="content" tabindex="-1">
       ${isAsked && html`<${Login} />`}
       ${first === undefined && html`<${Home} />`}
-      ${first === "new" && html`<${NewCalibration} query=${route.query} />`}
+      ${first === "new" && html`<${Later} title="New calibration" load=${newCalibration} query=${route.query} />`}
       ${isStudy && html`<${StudyPage} key=${id} id=${Number(id)} view=${view ?? "story"} query=${route.query} />`}
       ${!isStudy && !["new", undefined].includes(first) && html`<h1>There is no such page</h1><p><a href="#/">To the studies</a></p>`}
     </main>`;

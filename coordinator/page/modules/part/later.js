@@ -1,0 +1,15 @@
+// A view whose modules are asked for when it is first shown: whoever reads a study does not wait for those of another view.
+
+import { html, useEffect, useState } from "../html.js";
+import { Pending } from "./message.js";
+
+/**
+ * @param {{ title: string, load: () => Promise<any>, query: Record<string, string> }} properties load: gives the view, always the same
+ */
+export function Later({ title, load, query }) {
+  const [loaded, setLoaded] = useState(/** @type {any} */ ({ view: null, error: null }));
+  useEffect(() => {
+    load().then((view) => setLoaded({ view, error: null }), (error) => setLoaded({ view: null, error }));
+  }, [load]);
+  return loaded.view ? html`<${loaded.view} query=${query} />` : html`<${Pending} answer=${null} error=${loaded.error} what=${title} />`;
+}
