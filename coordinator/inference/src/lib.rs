@@ -43,10 +43,11 @@
 //! - [`tmcmc`]: the sampler, its stages and its evidence. `mixture`: what its independent draws come from.
 //! - [`point_estimate`]: what every point estimate shares: axes, the result.
 //! - [`lm`]: the Levenberg-Marquardt fit. [`evolution`]: the genetic algorithm and CMA-ES.
-//! - [`gaussian_process`]: interpolation of measurements, without a model.
+//! - [`gaussian_process`]: interpolation of measurements, without a model. [`discrepancy`]: what a model misses between them.
 //! - [`diagnostics`]: summaries and tests of draws and residuals.
 
 pub mod diagnostics;
+pub mod discrepancy;
 pub mod evolution;
 pub mod gaussian_process;
 pub mod lm;

@@ -96,6 +96,40 @@ pub(crate) fn with_held_out_runs(count: usize, error: f64) -> FinishedCalibratio
     calibration
 }
 
+/// Nine fitted runs over slip and two held out between them, and one at another speed; the model misses the pull by `3 sin(3 slip)`
+/// `[N]`, and each draw by 1 N more or less in every run.
+pub(crate) fn with_smooth_misfit() -> FinishedCalibration {
+    let mut runs =
+        "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,sinkage_m,use\n".to_owned();
+    let row = |name: &str, slip: f64, speed: f64, usage: &str| {
+        format!("{name},a,sand,{slip},25,{speed},{},0.02,{usage}\n", 10.0 * slip)
+    };
+    for k in 0..9 {
+        runs += &row(&format!("f{k}"), -0.3 + 0.1 * f64::from(k), 0.01, "fit");
+    }
+    for (name, slip, speed) in [("h0", -0.05, 0.01), ("h1", 0.35, 0.01), ("fast", 0.35, 0.05)] {
+        runs += &row(name, slip, speed, "holdout");
+    }
+    let mut calibration = build(&runs);
+    let spec = &calibration.spec;
+    let values = |of: &[usize], shift: f64| -> Vec<f64> {
+        let slips = of.iter().map(|&i| spec.experiment.runs[i].slip);
+        slips
+            .map(|slip| 10.0 * slip - 3.0 * libm::sin(3.0 * slip) + shift)
+            .collect()
+    };
+    for (k, prediction) in calibration.predictions.iter_mut().enumerate() {
+        let shift = if k % 2 == 0 { 1.0 } else { -1.0 };
+        if let Ok(observables) = &mut prediction.fit {
+            observables.drawbar_pull_n = values(&spec.fit_runs, shift);
+        }
+        if let Some(Ok(observables)) = prediction.holdout.as_mut().map(|h| &mut h.together) {
+            observables.drawbar_pull_n = values(&spec.holdout_runs, shift);
+        }
+    }
+    calibration
+}
+
 /// The same where the model rejected all final draws, drifted, and has no evidence.
 pub(crate) fn all_rejected() -> FinishedCalibration {
     let mut calibration = calibration();

@@ -7,6 +7,17 @@ use super::observation::Observation;
 /// Prior variance of each coefficient of the plane, over that of the process about it: large, so that the data choose the plane.
 const PLANE: f64 = 100.0;
 
+/// Correlation of the values at two points: `(1 + r + r^2 / 3) exp(-r)`, `r^2 = 5 sum_k ((x_k - y_k) / l_k)^2` (Matérn, 5/2).
+pub(crate) fn matern(a: &[f64], b: &[f64], lengths: &[f64]) -> f64 {
+    let mut squares = 0.0;
+    for ((x, y), length) in a.iter().zip(b).zip(lengths) {
+        let distance = (x - y) / length;
+        squares += distance * distance;
+    }
+    let r = (5.0 * squares).sqrt();
+    (1.0 + r + r * r / 3.0) * libm::exp(-r)
+}
+
 /// A plane and a process about it of unit variance.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Kernel {
@@ -19,14 +30,8 @@ pub(super) struct Kernel {
 impl Kernel {
     /// Covariance of the values at two points, without noise.
     pub(super) fn covariance(&self, a: &[f64], b: &[f64]) -> f64 {
-        let (mut squares, mut product) = (0.0, 0.0);
-        for ((x, y), length) in a.iter().zip(b).zip(&self.lengths) {
-            let distance = (x - y) / length;
-            squares += distance * distance;
-            product += x * y;
-        }
-        let r = (5.0 * squares).sqrt();
-        PLANE * (1.0 + product) + (1.0 + r + r * r / 3.0) * libm::exp(-r)
+        let product: f64 = a.iter().zip(b).map(|(x, y)| x * y).sum();
+        PLANE * (1.0 + product) + matern(a, b, &self.lengths)
     }
 
     /// Covariance of the observations, noise included.

@@ -1,12 +1,16 @@
 //! Interpolation of measurements over several conditions by a Gaussian process.
 //!
 //! - `observation`: a measurement. `process`: the process and its mean between the measurements.
-//! - `smoothness`: length scales and noise, chosen by leaving out one measurement after the other. `kernel`: covariances.
+//! - `smoothness`: length scales and noise, chosen by leaving out one measurement after the other. `representative`: which measurements
+//!   choose. `kernel`: covariances.
 
 mod kernel;
 mod observation;
 mod process;
+mod representative;
 mod smoothness;
 
+pub(crate) use kernel::matern;
 pub use observation::Observation;
 pub use process::GaussianProcess;
+pub(crate) use representative::representative;

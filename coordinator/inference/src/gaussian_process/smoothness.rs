@@ -4,6 +4,7 @@ use nalgebra::{Cholesky, DVector};
 
 use super::kernel::Kernel;
 use super::observation::Observation;
+use super::representative::{levels, representative};
 
 /// Length scales that are tried, over the range of each coordinate.
 const LENGTHS: [f64; 6] = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
@@ -11,8 +12,6 @@ const LENGTHS: [f64; 6] = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
 const NOISES: [f64; 5] = [1e-4, 1e-3, 1e-2, 1e-1, 1.0];
 /// A coordinate of fewer levels says nothing of its scale, and has the longest.
 const LEAST_LEVELS: usize = 3;
-/// Values within so much of the range are one level.
-const ONE_LEVEL: f64 = 0.1;
 /// Most rounds over all coordinates.
 const ROUNDS: usize = 8;
 /// Of more observations so many choose: the cost grows with the cube of their number.
@@ -20,8 +19,10 @@ const MOST: usize = 150;
 
 /// The kernel with the least squared errors of the observations left out one by one, by steps along one coordinate at a time.
 pub(super) fn smoothest(observations: &[Observation], dimension: usize) -> Kernel {
-    let chosen = representative(observations, dimension, MOST);
-    let is_free = |k: &usize| levels(observations, *k).len() >= LEAST_LEVELS;
+    let points: Vec<&[f64]> = observations.iter().map(|o| o.point.as_slice()).collect();
+    let chosen = representative(&points, MOST).into_iter();
+    let chosen: Vec<Observation> = chosen.map(|i| observations[i].clone()).collect();
+    let is_free = |k: &usize| levels(&points, *k).len() >= LEAST_LEVELS;
     let free: Vec<usize> = (0..dimension).filter(is_free).collect();
     let length = |k: usize| match free.contains(&k) {
         true => LENGTHS[LENGTHS.len() / 2],
@@ -47,50 +48,6 @@ pub(super) fn smoothest(observations: &[Observation], dimension: usize) -> Kerne
         }
     }
     best
-}
-
-/// The least values of the levels of a coordinate, ascending: a value further than [`ONE_LEVEL`] above the first of its level opens
-/// the next, so values without a gap are many levels.
-fn levels(observations: &[Observation], coordinate: usize) -> Vec<f64> {
-    let mut values: Vec<f64> = observations.iter().map(|o| o.point[coordinate]).collect();
-    values.sort_by(f64::total_cmp);
-    let mut levels: Vec<f64> = Vec::new();
-    for value in values {
-        if levels.last().is_none_or(|first| value - first > ONE_LEVEL) {
-            levels.push(value);
-        }
-    }
-    levels
-}
-
-/// At most so many observations, in their order, which represent every level of every coordinate: the next is the one whose least
-/// represented level is represented least, then the one whose levels together are, then the first.
-fn representative(observations: &[Observation], dimension: usize, most: usize) -> Vec<Observation> {
-    if observations.len() <= most {
-        return observations.to_vec();
-    }
-    let starts: Vec<Vec<f64>> = (0..dimension).map(|k| levels(observations, k)).collect();
-    let place = |o: &Observation, k: usize| starts[k].partition_point(|start| *start <= o.point[k]);
-    let places: Vec<Vec<usize>> = observations
-        .iter()
-        .map(|o| (0..dimension).map(|k| place(o, k)).collect())
-        .collect();
-    let mut chosen_at: Vec<Vec<usize>> = starts.iter().map(|own| vec![0; own.len() + 1]).collect();
-    let mut left: Vec<usize> = (0..observations.len()).collect();
-    let mut chosen = Vec::new();
-    for _ in 0..most {
-        let counts = |i: usize| places[i].iter().zip(&chosen_at).map(|(&at, own)| own[at]);
-        let next = (0..left.len()).min_by_key(|&k| (counts(left[k]).min(), counts(left[k]).sum::<usize>()));
-        let Some(next) = next.map(|k| left.remove(k)) else {
-            break;
-        };
-        for (&at, own) in places[next].iter().zip(&mut chosen_at) {
-            own[at] += 1;
-        }
-        chosen.push(next);
-    }
-    chosen.sort_unstable();
-    chosen.into_iter().map(|i| observations[i].clone()).collect()
 }
 
 /// A kernel with every other value of one coordinate, the noise being the last.
@@ -173,49 +130,7 @@ mod tests {
     fn a_coordinate_of_two_levels_has_the_longest_scale() {
         let mut all = observations(|x, y| libm::sin(6.0 * x) * y);
         all.retain(|o| o.point[1] < 0.01 || o.point[1] > 0.99);
-        assert_eq!(levels(&all, 0).len(), 5);
         assert!((smoothest(&all, 2).lengths[1] - 3.2).abs() < f64::EPSILON);
-    }
-
-    #[test]
-    fn values_that_scatter_about_two_levels_are_two_and_those_without_a_gap_many() {
-        let along = |values: &[f64]| -> Vec<Observation> {
-            let at = |&x: &f64| Observation {
-                point: vec![x],
-                value: 0.0,
-                repeats: 1,
-            };
-            values.iter().map(at).collect()
-        };
-        assert_eq!(levels(&along(&[0.06, 0.0, 0.97, 0.03, 1.0]), 0).len(), 2);
-        let dense: Vec<f64> = (0..=25).map(|i| 0.04 * f64::from(i)).collect();
-        assert!(levels(&along(&dense), 0).len() >= 5);
-    }
-
-    #[test]
-    fn of_many_observations_those_that_choose_have_every_level() {
-        // In this order every second one, and every third one, is at one level of the second coordinate.
-        let at = |i: u32| Observation {
-            point: vec![f64::from(i / 6 % 5) / 4.0, f64::from(i % 6) / 5.0],
-            value: f64::from(i),
-            repeats: 1,
-        };
-        let all: Vec<Observation> = (0..360).map(at).collect();
-        let chosen = representative(&all, 2, 150);
-        assert_eq!(chosen.len(), 150);
-        for (coordinate, of_each) in [(0, 30), (1, 25)] {
-            for level in levels(&all, coordinate) {
-                let own = chosen
-                    .iter()
-                    .filter(|o| (o.point[coordinate] - level).abs() < 0.01);
-                assert_eq!(own.count(), of_each, "coordinate {coordinate} at {level}");
-            }
-        }
-        assert!(chosen.windows(2).all(|pair| pair[0].value < pair[1].value));
-        // A level of one observation among thousands.
-        let mut rare = all;
-        rare[77].point[1] = 1.7;
-        assert!(representative(&rare, 2, 20).iter().any(|o| o.point[1] > 1.5));
     }
 
     #[test]

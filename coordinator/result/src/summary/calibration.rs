@@ -7,12 +7,13 @@ use job::AlgorithmName;
 use shared::channel::Channel;
 use shared::experiment::RunUse;
 
-use super::error::{BaselineSummary, ErrorSummary};
+use super::coverage::CoverageSummary;
+use super::error::{BaselineSummary, CorrectedSummary, ErrorSummary};
 use super::parameter::ParameterSummary;
 use crate::finished_calibration::FinishedCalibration;
 use crate::table::coverage::Coverage;
 use crate::table::fixed_sigma::FixedSigmas;
-use crate::table::row::{ComparisonRow, rows_of};
+use crate::table::row::rows_of;
 
 /// A calibration of the ledger.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -46,6 +47,8 @@ pub struct CalibrationSummary {
     pub parameters: BTreeMap<String, ParameterSummary>,
     /// Interpolation without physics.
     pub baseline: BaselineSummary,
+    /// The model with what it misses in the fitted conditions.
+    pub corrected: CorrectedSummary,
     /// Errors of the posterior-mean prediction.
     pub error: ErrorSummary,
     /// Noise standard deviation by channel: declared, or its posterior mean.
@@ -78,21 +81,13 @@ pub struct StageSummary {
     pub steps: u32,
 }
 
-/// Coverage on both kinds of runs.
-#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
-pub struct CoverageSummary {
-    /// Fitted runs.
-    pub fit: Option<f64>,
-    /// Runs that were not fitted.
-    pub holdout: Option<f64>,
-}
-
 impl CalibrationSummary {
     /// The line with its errors in the noise sds of its study.
     #[must_use]
     pub fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
         CalibrationSummary {
             baseline: self.baseline.in_fixed_sigmas(sigmas),
+            corrected: self.corrected.in_fixed_sigmas(sigmas),
             error: self.error.in_fixed_sigmas(sigmas),
             ..self
         }
@@ -151,20 +146,13 @@ impl FinishedCalibration {
                 .collect(),
             parameters: self.parameter_summaries().into_iter().collect(),
             baseline: BaselineSummary::of(comparison),
+            corrected: CorrectedSummary::of(comparison),
             noise_sd,
-            coverage90: CoverageSummary {
-                fit: coverage(&comparison.rows, RunUse::Fit),
-                holdout: coverage(&comparison.rows, RunUse::Holdout),
-            },
+            coverage90: CoverageSummary::of(|usage| Coverage::count(rows_of(&comparison.rows, usage))),
             error: ErrorSummary {
                 fit: comparison.fit.clone(),
                 holdout: comparison.holdout.clone(),
             },
         })
     }
-}
-
-fn coverage(rows: &[ComparisonRow], usage: RunUse) -> Option<f64> {
-    let coverage = Coverage::count(rows_of(rows, usage))?;
-    Some(coverage.inside as f64 / coverage.of as f64)
 }

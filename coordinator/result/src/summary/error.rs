@@ -1,8 +1,11 @@
-//! Errors of a model and of interpolation without physics.
+//! Errors of a model, of its corrected predictions and of interpolation without physics.
 
+use super::coverage::CoverageSummary;
 use crate::table::comparison::Comparison;
+use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;
 use crate::table::fixed_sigma::FixedSigmas;
+use crate::table::row::rows_of;
 
 /// Errors on both kinds of runs.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -19,6 +22,40 @@ impl ErrorSummary {
         ErrorSummary {
             fit: table(self.fit),
             holdout: table(self.holdout),
+        }
+    }
+}
+
+/// The model with what it misses in the fitted conditions, interpolated by a Gaussian process over the conditions that vary.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct CorrectedSummary {
+    /// Errors of the fitted runs, each corrected by what the model misses in the other conditions.
+    pub fit: Option<ErrorTable>,
+    /// Errors of the runs that were not fitted.
+    pub holdout: Option<ErrorTable>,
+    /// Share of measurements inside their 90 % interval.
+    pub coverage90: CoverageSummary,
+    /// Why some predictions are not corrected; empty where all are.
+    pub missing: Vec<String>,
+}
+
+impl CorrectedSummary {
+    pub(super) fn of(comparison: &Comparison) -> Self {
+        let coverage = |usage| Coverage::count_corrected(rows_of(&comparison.rows, usage));
+        CorrectedSummary {
+            fit: comparison.corrected_fit.clone(),
+            holdout: comparison.corrected_holdout.clone(),
+            coverage90: CoverageSummary::of(coverage),
+            missing: comparison.not_corrected.clone(),
+        }
+    }
+
+    pub(super) fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
+        let table = |table: Option<ErrorTable>| table.map(|table| table.in_fixed_sigmas(sigmas));
+        CorrectedSummary {
+            fit: table(self.fit),
+            holdout: table(self.holdout),
+            ..self
         }
     }
 }

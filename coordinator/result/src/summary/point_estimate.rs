@@ -6,7 +6,7 @@ use inference::point_estimate::{Generation, StopReason};
 use job::{AlgorithmName, FreeParameter};
 use record::EstimateRow;
 
-use super::error::{BaselineSummary, ErrorSummary};
+use super::error::{BaselineSummary, CorrectedSummary, ErrorSummary};
 use crate::finished_calibration::FinishedCalibration;
 use crate::table::fixed_sigma::FixedSigmas;
 
@@ -29,6 +29,8 @@ pub struct PointEstimate {
     pub error: ErrorSummary,
     /// Interpolation without physics.
     pub baseline: BaselineSummary,
+    /// The model with what it misses in the fitted conditions.
+    pub corrected: CorrectedSummary,
     /// Evaluations spent.
     pub evaluations: u64,
     /// Of these, rejected by the model.
@@ -92,6 +94,7 @@ impl PointEstimate {
     pub fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
         PointEstimate {
             baseline: self.baseline.in_fixed_sigmas(sigmas),
+            corrected: self.corrected.in_fixed_sigmas(sigmas),
             error: self.error.in_fixed_sigmas(sigmas),
             ..self
         }
@@ -115,6 +118,7 @@ impl FinishedCalibration {
             at_bound: fitted().filter(|p| p.at_bound).map(name).collect(),
             log_posterior: estimate.log_posterior(),
             baseline: BaselineSummary::of(comparison),
+            corrected: CorrectedSummary::of(comparison),
             error: ErrorSummary {
                 fit: comparison.fit.clone(),
                 holdout: comparison.holdout.clone(),

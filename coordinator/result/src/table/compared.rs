@@ -1,10 +1,13 @@
 //! The comparison of a finished calibration with the measurements.
 
+use std::collections::BTreeSet;
+
 use record::RejectionReason;
 use shared::channel::Channel;
 use shared::experiment::RunUse;
 
 use super::comparison::Comparison;
+use super::correction::Corrections;
 use super::errors::ErrorTable;
 use super::fixed_sigma::FixedSigmas;
 use super::group::error_groups;
@@ -29,6 +32,8 @@ impl FinishedCalibration {
     fn compared(&self) -> Comparison {
         let interpolations = self.interpolations();
         let levels = Levels::of(self);
+        let corrections = Corrections::of(self);
+        let mut not_corrected = BTreeSet::new();
         let mut rows = Vec::new();
         for (i, run) in self.spec.experiment.runs.iter().enumerate() {
             let refused = self.refusal(i);
@@ -38,6 +43,12 @@ impl FinishedCalibration {
                 };
                 let p = predictive(self, &levels, i, channel);
                 let interpolated = interpolations.at(i, channel);
+                let corrected = p.map(|p| corrections.at(i, channel, p)).and_then(|found| {
+                    let reason = found.as_ref().err().cloned();
+                    not_corrected.extend(reason);
+                    found.ok()
+                });
+                let corrected_interval = corrected.and_then(|own| own.interval);
                 rows.push(ComparisonRow {
                     run: run.name.clone(),
                     usage: run.usage,
@@ -54,6 +65,9 @@ impl FinishedCalibration {
                     q95: p.and_then(|p| p.interval).map(|[_, q95]| q95),
                     noise_sd: p.and_then(|p| p.noise_sd),
                     residual_sigma: p.and_then(|p| p.noise_sd.map(|sd| (measured - p.mean) / sd)),
+                    corrected: corrected.map(|own| own.mean),
+                    corrected_q05: corrected_interval.map(|[q05, _]| q05),
+                    corrected_q95: corrected_interval.map(|[_, q95]| q95),
                     refused: refused.clone(),
                     interpolated: interpolated.map(|i| i.value),
                     interpolated_over: interpolated.map(|i| i.over),
@@ -62,6 +76,8 @@ impl FinishedCalibration {
         }
         let sigmas = FixedSigmas::of(self);
         let errors = |usage| Some(ErrorTable::of_model(rows_of(&rows, usage))?.in_fixed_sigmas(&sigmas));
+        let corrected =
+            |usage| Some(ErrorTable::of_corrected(rows_of(&rows, usage))?.in_fixed_sigmas(&sigmas));
         Comparison {
             digitised: self
                 .spec
@@ -74,6 +90,9 @@ impl FinishedCalibration {
             baseline_holdout: ErrorTable::of_baseline(rows_of(&rows, RunUse::Holdout))
                 .map(|table| table.in_fixed_sigmas(&sigmas)),
             not_interpolated: interpolations.missing(),
+            corrected_fit: corrected(RunUse::Fit),
+            corrected_holdout: corrected(RunUse::Holdout),
+            not_corrected: not_corrected.into_iter().collect(),
             groups: error_groups(&rows),
             rows,
         }

@@ -19,6 +19,12 @@ pub struct Comparison {
     pub baseline_holdout: Option<ErrorTable>,
     /// Why some holdout runs are not interpolated; empty where all are.
     pub not_interpolated: Vec<String>,
+    /// Errors of the corrected predictions of the fitted runs, each by what the model misses in the other conditions.
+    pub corrected_fit: Option<ErrorTable>,
+    /// Errors of the corrected predictions of the runs that were not fitted.
+    pub corrected_holdout: Option<ErrorTable>,
+    /// Why some predictions are not corrected; empty where all are.
+    pub not_corrected: Vec<String>,
     /// Errors by level of slip, load, speed and slip angle, and by wheel, of fitted runs and of the others.
     pub groups: Vec<ErrorGroup>,
 }

@@ -19,7 +19,15 @@ pub(crate) struct Coverage {
 impl Coverage {
     /// Counts rows; `None` where no row has an interval.
     pub(crate) fn count<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
-        let covered: Vec<bool> = rows.filter_map(ComparisonRow::covered).collect();
+        Self::of(rows.filter_map(ComparisonRow::covered).collect())
+    }
+
+    /// The same by the intervals of the corrected predictions.
+    pub(crate) fn count_corrected<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
+        Self::of(rows.filter_map(ComparisonRow::covered_corrected).collect())
+    }
+
+    fn of(covered: Vec<bool>) -> Option<Self> {
         let inside = covered.iter().filter(|c| **c).count();
         (!covered.is_empty()).then_some(Coverage {
             inside,

@@ -42,7 +42,7 @@ pub struct AllError {
     /// The same in units of the study's noise sds.
     pub rmse_fixed_sigma: Option<f64>,
     /// Measurements without a prediction, which do not count: of runs that the model refuses at half of the final draws or more, or that
-    /// interpolation does not reach.
+    /// interpolation, or a correction, does not reach.
     pub unpredicted: usize,
 }
 
@@ -55,6 +55,11 @@ impl ErrorTable {
     /// Errors of interpolation without physics where the model has a prediction too; `None` where there is no such row.
     pub(crate) fn of_baseline<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
         table(rows.map(|r| (r, r.interpolated.filter(|_| r.predicted.is_some()))))
+    }
+
+    /// Errors of the corrected prediction; `None` where there is none.
+    pub(crate) fn of_corrected<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
+        table(rows.map(|r| (r, r.corrected)))
     }
 
     /// The error of a channel.

@@ -6,12 +6,14 @@
 //! - `ledger`: errors of the calibrations of a study; `fixed_sigma`: the noise that they are measured by.
 //! - `errors`: root mean square errors by channel. `group`: by level of a condition; `level`: those levels.
 //! - `interpolation`: interpolation without physics. `predictive`: the posterior predictive distribution; `mixture`: its
-//!   quantiles.
+//!   quantiles. `correction`: predictions corrected by what the model misses. `conditions`: those of the rig as coordinates.
 //! - `coverage`: measurements inside their intervals. `readings`: errors of plates and rings.
 //! - `refusal`: draws at which the model refuses a run. `error_model`: the error model in words. `posterior`: the draws.
 
 mod compared;
 pub(crate) mod comparison;
+mod conditions;
+mod correction;
 pub(crate) mod coverage;
 pub(crate) mod error_model;
 pub(crate) mod errors;

@@ -119,12 +119,7 @@ fn new_measurements(
 ) -> Option<Vec<NewMeasurement>> {
     let spec = &calibration.spec;
     let source = noise_source(calibration, run, channel);
-    let position = |runs: &[usize]| runs.iter().position(|&r| r == run);
-    let place = match position(&spec.fit_runs) {
-        Some(position) => RunPosition::Fit(position),
-        None => RunPosition::Holdout(position(&spec.holdout_runs)?),
-    };
-    let radius_m = spec.experiment.wheels[&spec.experiment.runs[run].wheel].radius_m;
+    let place = RunPosition::of(spec, run)?;
     let of_draw = |(draw, theta, observables, position): (usize, &[f64], &Observables, usize)| {
         let noise_sd = source.map(|s| match s {
             ErrorSd::Known(sd) => sd,
@@ -132,11 +127,7 @@ fn new_measurements(
         });
         // A model that is not ours may lack the channel.
         let mean = *observables.channel(channel).get(position)?;
-        let soil = spec
-            .scatters
-            .iter()
-            .map(|scatter| scatter.shift(theta, observables, (channel, position), radius_m));
-        let soil: f64 = soil.map(|shift| shift * shift).sum::<f64>().sqrt();
+        let soil = soil_scatter(calibration, run, channel, (theta, observables, position));
         let component = |&(m, weight): &(f64, f64)| {
             let scale = noise_sd.map(|sd| widened(sd, [m * sd, soil]));
             Component { mean, scale, weight }
@@ -148,6 +139,25 @@ fn new_measurements(
         })
     };
     Some(accepted(calibration, place).filter_map(of_draw).collect())
+}
+
+/// What the scatter of the soil does to a channel of a run, as an sd [channel's unit].
+///
+/// # Arguments
+/// - `draw`: parameters, observables, position of the run in them.
+pub(super) fn soil_scatter(
+    calibration: &FinishedCalibration,
+    run: usize,
+    channel: Channel,
+    (theta, observables, position): (&[f64], &Observables, usize),
+) -> f64 {
+    let spec = &calibration.spec;
+    let radius_m = spec.experiment.wheels[&spec.experiment.runs[run].wheel].radius_m;
+    let shifts = spec
+        .scatters
+        .iter()
+        .map(|scatter| scatter.shift(theta, observables, (channel, position), radius_m));
+    shifts.map(|shift| shift * shift).sum::<f64>().sqrt()
 }
 
 /// Of each final draw and channel, the values of the discrepancy with their posterior probabilities; m = 0 without one.
@@ -223,13 +233,24 @@ fn weighted_mean(values: &[(f64, f64)]) -> Option<f64> {
 
 /// Position of a run in the observables of a final draw.
 #[derive(Clone, Copy)]
-enum RunPosition {
+pub(super) enum RunPosition {
     Fit(usize),
     Holdout(usize),
 }
 
+impl RunPosition {
+    /// `None` of a run that is neither fitted nor held out.
+    pub(super) fn of(spec: &Spec, run: usize) -> Option<Self> {
+        let position = |runs: &[usize]| runs.iter().position(|&r| r == run);
+        match position(&spec.fit_runs) {
+            Some(position) => Some(RunPosition::Fit(position)),
+            None => position(&spec.holdout_runs).map(RunPosition::Holdout),
+        }
+    }
+}
+
 /// The final draws that the model accepted: number, parameters, observables, position of the run in them.
-fn accepted(
+pub(super) fn accepted(
     calibration: &FinishedCalibration,
     place: RunPosition,
 ) -> impl Iterator<Item = (usize, &[f64], &Observables, usize)> {

@@ -43,6 +43,13 @@ pub struct ComparisonRow {
     pub noise_sd: Option<f64>,
     /// (measured - predicted) / noise sd.
     pub residual_sigma: Option<f64>,
+    /// The prediction with the discrepancy of the model that the fitted conditions show, of a fitted run the other conditions; `None`
+    /// where they show none.
+    pub corrected: Option<f64>,
+    /// 5 % quantile of a new measurement by the corrected prediction; `None` of a fit, which has no distribution.
+    pub corrected_q05: Option<f64>,
+    /// 95 % quantile.
+    pub corrected_q95: Option<f64>,
     /// The final draws at which the model refuses the run; `None` where it refuses none.
     pub refused: Option<Refusal>,
     /// Interpolation of the fitted measurements, without physics; `None` inside the fit, and where there is none.
@@ -56,6 +63,11 @@ impl ComparisonRow {
     /// Whether the measurement lies in its 90 % interval.
     pub fn covered(&self) -> Option<bool> {
         Some((self.q05?..=self.q95?).contains(&self.measured))
+    }
+
+    /// Whether the measurement lies in the 90 % interval of the corrected prediction.
+    pub(crate) fn covered_corrected(&self) -> Option<bool> {
+        Some((self.corrected_q05?..=self.corrected_q95?).contains(&self.measured))
     }
 
     /// Whether the model and interpolation both predict it, so that their errors compare; interpolation without extrapolating.

@@ -23,19 +23,29 @@ pub fn comparison(comparison: &Comparison) -> String {
     };
     let _ = writeln!(
         text,
-        "{:<22} {:<8} {:>7} {:>8} {:<13} {:>10} {:>10} {:>23} {:>7}",
-        "run", "use", "slip", "load N", "channel", measured, "model", "90 % interval", "sigma"
+        "{:<22} {:<8} {:>7} {:>8} {:<13} {:>10} {:>10} {:>23} {:>7} {:>10} {:>23}",
+        "run",
+        "use",
+        "slip",
+        "load N",
+        "channel",
+        measured,
+        "model",
+        "90 % interval",
+        "sigma",
+        "corrected",
+        "90 % interval"
     );
     for row in &comparison.rows {
         let unit = ShownUnit::of(row.channel);
         let value = |v: Option<f64>| cell(v, |v| format!("{:.2}", v * unit.factor));
-        let interval = match row.q05 {
-            Some(_) => format!("{} to {}", value(row.q05), value(row.q95)),
+        let interval = |q05: Option<f64>, q95: Option<f64>| match q05 {
+            Some(_) => format!("{} to {}", value(q05), value(q95)),
             None => "-".into(),
         };
         let _ = writeln!(
             text,
-            "{:<22} {:<8} {:>7.3} {:>8.1} {:<13} {:>10} {:>10} {:>23} {:>7}",
+            "{:<22} {:<8} {:>7.3} {:>8.1} {:<13} {:>10} {:>10} {:>23} {:>7} {:>10} {:>23}",
             row.run,
             row.usage.name(),
             row.slip,
@@ -43,8 +53,10 @@ pub fn comparison(comparison: &Comparison) -> String {
             format!("{} {}", short_name(row.channel), unit.name),
             value(Some(row.measured)),
             value(row.predicted),
-            interval,
-            cell(row.residual_sigma, |r| format!("{r:+.1}"))
+            interval(row.q05, row.q95),
+            cell(row.residual_sigma, |r| format!("{r:+.1}")),
+            value(row.corrected),
+            interval(row.corrected_q05, row.corrected_q95)
         );
     }
     text.push_str(&refused(comparison));
@@ -85,7 +97,9 @@ fn errors(comparison: &Comparison) -> String {
     );
     for (name, table) in [
         ("fit", &comparison.fit),
+        ("fit, corrected", &comparison.corrected_fit),
         ("holdout", &comparison.holdout),
+        ("holdout, corrected", &comparison.corrected_holdout),
         ("holdout, interpolation", &comparison.baseline_holdout),
     ] {
         if let Some(table) = table {
@@ -108,14 +122,24 @@ fn errors(comparison: &Comparison) -> String {
         }
     }
     for usage in [RunUse::Fit, RunUse::Holdout] {
-        if let Some(coverage) = Coverage::count(rows_of(&comparison.rows, usage)) {
-            let words = coverage.words();
-            let _ = writeln!(
-                text,
-                "90 % intervals contain {words} {} measurements",
-                usage.name()
-            );
+        let rows = || rows_of(&comparison.rows, usage);
+        for (whose, coverage) in [
+            ("", Coverage::count(rows())),
+            (" of corrected predictions", Coverage::count_corrected(rows())),
+        ] {
+            if let Some(coverage) = coverage {
+                let (words, usage) = (coverage.words(), usage.name());
+                let _ = writeln!(text, "90 % intervals{whose} contain {words} {usage} measurements");
+            }
         }
+    }
+    if comparison.corrected_fit.is_some() {
+        text.push_str(
+            "corrected: with what the model misses in the fitted conditions, of a fitted run in the others\n",
+        );
+    }
+    for reason in &comparison.not_corrected {
+        let _ = writeln!(text, "not corrected: {reason}");
     }
     text
 }

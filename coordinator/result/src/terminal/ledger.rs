@@ -13,6 +13,8 @@ use crate::words::data_channel::{ShownUnit, short_name};
 
 /// Least width of the column of models.
 const MODEL: usize = 20;
+/// The line of the last model with what it misses in the fitted conditions.
+const CORRECTED: &str = "the last, corrected";
 /// The line of what no model predicts.
 const INTERPOLATION: &str = "interpolation";
 
@@ -43,16 +45,14 @@ pub(super) fn ledger(study: &Study) -> String {
             let _ = writeln!(text, "{model:<width$} {}", ledger_row(row, &channels));
         }
     }
-    let interpolated = lines
-        .last()
-        .and_then(|line| line.calibration.comparison().baseline_holdout.as_ref());
-    if let Some(errors) = interpolated {
-        let cells = cells(errors, &channels, &[]);
-        let _ = writeln!(
-            text,
-            "{INTERPOLATION:<width$} {:<8}{cells}",
-            usage(RunUse::Holdout)
-        );
+    let last = lines.last().map(|line| line.calibration.comparison());
+    let corrected = last.and_then(|own| own.corrected_holdout.as_ref());
+    let interpolated = last.and_then(|own| own.baseline_holdout.as_ref());
+    for (name, errors) in [(CORRECTED, corrected), (INTERPOLATION, interpolated)] {
+        if let Some(errors) = errors {
+            let cells = cells(errors, &channels, &[]);
+            let _ = writeln!(text, "{name:<width$} {:<8}{cells}", usage(RunUse::Holdout));
+        }
     }
     text += &labelled("noise:", &study.fixed_sigmas().words());
     if lines

@@ -3,7 +3,7 @@
 use shared::channel::Channel;
 use shared::experiment::{Experiment, RunUse, TestRun};
 
-use super::axis::ALIKE_LOADS;
+use crate::table::conditions::ALIKE_LOADS;
 
 /// Slips closer than this repeat one condition.
 const SAME_SLIP: f64 = 0.02;

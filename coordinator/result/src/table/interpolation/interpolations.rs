@@ -199,7 +199,7 @@ mod tests {
         }
         assert_eq!(
             Interpolations::of(&scattered).missing(),
-            ["wheel a on soil sand was fitted at loads of 100 to 139 N, and not at 200 N"]
+            ["wheel a on soil sand was fitted at loads of 100 to 139 N alone"]
         );
         let mut few = experiment(&["a,sand,0.15,100,0.01,22,1"]);
         few.runs.retain(|run| {

@@ -1,11 +1,9 @@
 //! Interpolation of the fitted measurements, without physics: what a model should beat.
 //!
 //! - `interpolations`: of an experiment. `interpolated`: of one measurement.
-//! - `along_slip`: between runs that differ in slip alone. `surface`: over all conditions that vary, by a Gaussian process; `axis`:
-//!   those conditions.
+//! - `along_slip`: between runs that differ in slip alone. `surface`: over all conditions that vary, by a Gaussian process.
 
 mod along_slip;
-mod axis;
 mod interpolated;
 mod interpolations;
 mod surface;

@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 
 use inference::gaussian_process::{GaussianProcess, Observation};
-use job::repeats;
 use shared::channel::Channel;
 use shared::experiment::{Experiment, RunUse, TestRun};
 
-use super::axis::Axis;
 use super::interpolated::{Interpolated, InterpolatedOver};
+use crate::table::conditions::{Conditions, repeated};
 use crate::words::number;
 
 /// What one process is through: wheel, soil, pass, channel.
@@ -46,12 +45,7 @@ impl<'a> Surfaces<'a> {
 struct Surface {
     /// The wheel, soil and pass.
     of: String,
-    /// The conditions that vary.
-    axes: Vec<Axis>,
-    /// Those that do not.
-    held: Vec<Axis>,
-    /// The fitted runs, which have their values.
-    fitted: Vec<TestRun>,
+    conditions: Conditions,
     process: GaussianProcess,
 }
 
@@ -71,38 +65,32 @@ impl Surface {
         if runs.is_empty() {
             return Err(format!("{of} has no fitted {}", channel.words()));
         }
-        let (axes, held): (Vec<Axis>, Vec<Axis>) =
-            Axis::of(&runs).into_iter().partition(|axis| axis.varies(&runs));
-        let observations = observations(&runs, &axes, channel);
-        let process = GaussianProcess::through(&observations).filter(|_| !axes.is_empty());
-        let process = process.ok_or_else(|| {
-            let names: Vec<String> = axes.iter().map(|axis| axis.words().to_owned()).collect();
-            match axes.is_empty() {
-                true => format!("{of} was fitted in one condition"),
-                false => format!(
-                    "{of} has {} of {}, and a Gaussian process over {} needs {}",
-                    number::count(observations.len(), "fitted condition"),
-                    channel.words(),
-                    number::list(&names),
-                    GaussianProcess::least_observations(axes.len())
-                ),
-            }
+        let conditions = Conditions::of(&runs);
+        let axes = conditions.axes.len();
+        let observations = observations(&runs, &conditions, channel);
+        let process = GaussianProcess::through(&observations).filter(|_| axes > 0);
+        let process = process.ok_or_else(|| match axes {
+            0 => format!("{of} was fitted in one condition"),
+            axes => format!(
+                "{of} has {} of {}, and a Gaussian process over {} needs {}",
+                number::count(observations.len(), "fitted condition"),
+                channel.words(),
+                conditions.names(),
+                GaussianProcess::least_observations(axes)
+            ),
         })?;
         Ok(Surface {
             of,
-            axes,
-            held,
-            fitted: runs.into_iter().cloned().collect(),
+            conditions,
             process,
         })
     }
 
     fn at(&self, run: &TestRun) -> Result<Interpolated, String> {
-        let is_fitted = |axis: &Axis| self.fitted.iter().any(|own| axis.is_same(own, run));
-        if let Some(axis) = self.held.iter().find(|axis| !is_fitted(axis)) {
-            return Err(self.beside(*axis, run));
+        if let Some(reason) = self.conditions.beside(&self.of, run) {
+            return Err(reason);
         }
-        let point: Vec<f64> = self.axes.iter().map(|axis| axis.value(run)).collect();
+        let point = self.conditions.point(run);
         Ok(Interpolated {
             value: self.process.mean(&point),
             over: match self.process.reaches(&point) {
@@ -111,45 +99,18 @@ impl Surface {
             },
         })
     }
-
-    /// Why there is no value at a run beside the one level of a condition. The loads of a rig that does not hold them are one level,
-    /// and scatter.
-    fn beside(&self, axis: Axis, run: &TestRun) -> String {
-        let fitted: Vec<&TestRun> = self.fitted.iter().collect();
-        if axis != Axis::WheelLoad || axis.count(&fitted) == 1 {
-            return format!("{} was fitted at one {} alone", self.of, axis.words());
-        }
-        let loads = || fitted.iter().map(|own| axis.value(own));
-        let (least, most) = loads().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), load| {
-            (least.min(load), most.max(load))
-        });
-        let [least, most, own] = [least, most, axis.value(run)].map(|load| number::significant(load, 3));
-        format!(
-            "{} was fitted at loads of {least} to {most} N, and not at {own} N",
-            self.of
-        )
-    }
 }
 
-/// The means of the repeats of each condition; a run joins the first that it repeats.
-fn observations(runs: &[&TestRun], axes: &[Axis], channel: Channel) -> Vec<Observation> {
-    let mut conditions: Vec<Vec<&TestRun>> = Vec::new();
-    for &run in runs {
-        match conditions.iter_mut().find(|own| repeats(own[0], run)) {
-            Some(own) => own.push(run),
-            None => conditions.push(vec![run]),
+/// The means of the repeats of each condition.
+fn observations(runs: &[&TestRun], conditions: &Conditions, channel: Channel) -> Vec<Observation> {
+    let observation = |own: Vec<usize>| {
+        let own: Vec<&TestRun> = own.into_iter().map(|i| runs[i]).collect();
+        let values = own.iter().filter_map(|run| run.measured[channel.index()]);
+        Observation {
+            point: conditions.mean_point(&own),
+            value: values.sum::<f64>() / own.len() as f64,
+            repeats: own.len(),
         }
-    }
-    let mean = |own: &[&TestRun], of: &dyn Fn(&TestRun) -> f64| {
-        own.iter().map(|run| of(run)).sum::<f64>() / own.len() as f64
     };
-    let observation = |own: &Vec<&TestRun>| Observation {
-        point: axes
-            .iter()
-            .map(|axis| mean(own, &|run| axis.value(run)))
-            .collect(),
-        value: mean(own, &|run| run.measured[channel.index()].unwrap_or_default()),
-        repeats: own.len(),
-    };
-    conditions.iter().map(observation).collect()
+    repeated(runs).into_iter().map(observation).collect()
 }

@@ -4,11 +4,11 @@ use job::repeats;
 use shared::experiment::{TestRun, rim_speed_m_s};
 
 /// Loads within this factor are alike where a rig does not hold its load.
-pub(super) const ALIKE_LOADS: f64 = 1.5;
+pub(crate) const ALIKE_LOADS: f64 = 1.5;
 
 /// A condition that may vary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Axis {
+pub(crate) enum Axis {
     Slip,
     SlipAngle,
     WheelLoad,
@@ -18,7 +18,7 @@ pub(super) enum Axis {
 
 impl Axis {
     /// Name in sentences.
-    pub(super) fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         match self {
             Axis::Slip => "slip",
             Axis::SlipAngle => "slip angle",
@@ -28,7 +28,7 @@ impl Axis {
         }
     }
 
-    pub(super) fn value(self, run: &TestRun) -> f64 {
+    pub(crate) fn value(self, run: &TestRun) -> f64 {
         match self {
             Axis::Slip => run.slip,
             Axis::SlipAngle => run.slip_angle_deg,
@@ -39,7 +39,7 @@ impl Axis {
     }
 
     /// Whether two runs that differed in this condition alone would be repeats.
-    pub(super) fn is_same(self, a: &TestRun, b: &TestRun) -> bool {
+    pub(crate) fn is_same(self, a: &TestRun, b: &TestRun) -> bool {
         let with = |run: &TestRun| {
             let (value, mut only) = (self.value(run), a.clone());
             match self {
@@ -54,7 +54,7 @@ impl Axis {
     }
 
     /// Number of different values.
-    pub(super) fn count(self, runs: &[&TestRun]) -> usize {
+    pub(crate) fn count(self, runs: &[&TestRun]) -> usize {
         let mut different: Vec<&TestRun> = Vec::new();
         for run in runs {
             if !different.iter().any(|other| self.is_same(other, run)) {
@@ -75,7 +75,7 @@ impl Axis {
 
     /// Whether the condition was varied. Loads that were set lie apart or span more than [`ALIKE_LOADS`]; those of a rig that does
     /// not hold its load scatter within that without a gap.
-    pub(super) fn varies(self, runs: &[&TestRun]) -> bool {
+    pub(crate) fn varies(self, runs: &[&TestRun]) -> bool {
         if self != Axis::WheelLoad {
             return self.count(runs) > 1;
         }

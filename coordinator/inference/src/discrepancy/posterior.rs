@@ -1,0 +1,222 @@
+//! The parameters of the covariance, as probable as the misfits make them.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DVector;
+
+use super::covariance::Covariance;
+use super::misfit::Misfit;
+use crate::gaussian_process::representative;
+
+/// Standard deviations of the smooth part, over the root mean square of the misfits.
+const SDS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
+/// Standard deviations of what each condition misses by itself, over that of the noise of a mean.
+const LOCAL_SDS: [f64; 4] = [0.0, 1.0, 2.0, 4.0];
+/// Correlations of two groups.
+const BETWEEN: [f64; 4] = [0.0, 0.5, 0.8, 0.95];
+/// Length scales over the range of a coordinate.
+const LENGTHS: [f64; 6] = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
+/// Parameters less probable than the best by so much `[nats]` are not followed.
+const REACH: f64 = 6.0;
+/// Most parameters that are looked at.
+const MOST: usize = 2000;
+/// Of more misfits so many say what is probable: the cost grows with the cube of their number.
+const MOST_MISFITS: usize = 100;
+/// Share of the probability that is kept, and the most parameters that hold it.
+const KEPT: f64 = 0.99;
+const MOST_KEPT: usize = 64;
+
+/// Places on the grid: sd, local sd, correlation of groups, then the lengths.
+type Place = Vec<usize>;
+
+/// The covariances that hold nearly all of the probability, with their shares of it, the most probable first; the prior is the same at
+/// every place of the grid. Starting in the middle, the most probable place whose neighbours are not known is opened next.
+pub(super) fn posterior(misfits: &[Misfit]) -> Vec<(Covariance, f64)> {
+    let grid = Grid::of(misfits);
+    let mut known: BTreeMap<Place, f64> = BTreeMap::new();
+    let mut opened: BTreeMap<Place, f64> = BTreeMap::new();
+    let mut next = Some(grid.middle());
+    while let Some(place) = next.filter(|_| known.len() + opened.len() < MOST) {
+        let own = known
+            .remove(&place)
+            .unwrap_or_else(|| grid.log_probability(&place));
+        opened.insert(place.clone(), own);
+        for neighbour in grid.neighbours(&place) {
+            if !opened.contains_key(&neighbour) && !known.contains_key(&neighbour) {
+                let own = grid.log_probability(&neighbour);
+                known.insert(neighbour, own);
+            }
+        }
+        let best = opened
+            .values()
+            .chain(known.values())
+            .copied()
+            .fold(f64::NEG_INFINITY, f64::max);
+        let open = known.iter().max_by(|a, b| a.1.total_cmp(b.1));
+        next = open
+            .filter(|(_, own)| **own >= best - REACH)
+            .map(|(place, _)| place.clone());
+    }
+    opened.extend(known);
+    let mut all: Vec<(Place, f64)> = opened.into_iter().collect();
+    all.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let best = all.first().map_or(0.0, |(_, own)| *own);
+    let weights: Vec<f64> = all.iter().map(|(_, own)| libm::exp(own - best)).collect();
+    let total: f64 = weights.iter().sum();
+    let mut held = 0.0;
+    let kept = weights.iter().take(MOST_KEPT).take_while(|weight| {
+        let is_short = held < KEPT * total;
+        held += **weight;
+        is_short
+    });
+    let kept = kept.count();
+    let held: f64 = weights[..kept].iter().sum();
+    let shares = all.iter().zip(&weights).take(kept);
+    shares
+        .map(|((place, _), weight)| (grid.covariance(place), weight / held))
+        .collect()
+}
+
+/// The grid of covariances, and the misfits that say how probable each is.
+struct Grid {
+    misfits: Vec<Misfit>,
+    values: DVector<f64>,
+    rms: f64,
+    noise_sd: f64,
+    dimension: usize,
+    has_groups: bool,
+}
+
+impl Grid {
+    fn of(misfits: &[Misfit]) -> Self {
+        let points: Vec<&[f64]> = misfits.iter().map(|own| own.point.as_slice()).collect();
+        let chosen = representative(&points, MOST_MISFITS);
+        let misfits: Vec<Misfit> = chosen.into_iter().map(|i| misfits[i].clone()).collect();
+        let mean = |of: fn(&Misfit) -> f64| misfits.iter().map(of).sum::<f64>() / misfits.len() as f64;
+        Grid {
+            values: DVector::from_iterator(misfits.len(), misfits.iter().map(|own| own.value)),
+            rms: mean(|own| own.value * own.value).sqrt(),
+            noise_sd: mean(|own| own.noise_variance).sqrt(),
+            dimension: misfits.first().map_or(0, |own| own.point.len()),
+            has_groups: misfits.iter().any(|own| own.group != misfits[0].group),
+            misfits,
+        }
+    }
+
+    /// Number of values at each place.
+    fn sizes(&self) -> Place {
+        let between = if self.has_groups { BETWEEN.len() } else { 1 };
+        let mut sizes = vec![SDS.len(), LOCAL_SDS.len(), between];
+        sizes.extend(vec![LENGTHS.len(); self.dimension]);
+        sizes
+    }
+
+    fn middle(&self) -> Place {
+        self.sizes().into_iter().map(|size| size / 2).collect()
+    }
+
+    fn neighbours(&self, place: &Place) -> Vec<Place> {
+        let sizes = self.sizes();
+        let step = |k: usize, up: bool| {
+            let mut near = place.clone();
+            near[k] = if up { near[k] + 1 } else { near[k].checked_sub(1)? };
+            (near[k] < sizes[k]).then_some(near)
+        };
+        let steps = (0..place.len()).flat_map(|k| [step(k, false), step(k, true)]);
+        steps.flatten().collect()
+    }
+
+    fn covariance(&self, place: &Place) -> Covariance {
+        Covariance {
+            sd: SDS[place[0]] * self.rms,
+            local_sd: LOCAL_SDS[place[1]] * self.noise_sd,
+            between_groups: BETWEEN[place[2]],
+            lengths: place[3..].iter().map(|&own| LENGTHS[own]).collect(),
+        }
+    }
+
+    /// Logarithm of the density of the misfits, but for a constant.
+    fn log_probability(&self, place: &Place) -> f64 {
+        let Some(factor) = self.covariance(place).factor(&self.misfits) else {
+            return f64::NEG_INFINITY;
+        };
+        let lower = factor.l_dirty();
+        let log_root: f64 = (0..self.misfits.len()).map(|i| libm::log(lower[(i, i)])).sum();
+        -0.5 * self.values.dot(&factor.solve(&self.values)) - log_root
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Misfits of two groups along one coordinate.
+    fn along(value: impl Fn(usize, f64) -> f64) -> Vec<Misfit> {
+        let places = (0..2).flat_map(|group| (0..12).map(move |i| (group, f64::from(i) / 11.0)));
+        let misfit = |(group, x)| Misfit {
+            point: vec![x],
+            group,
+            value: value(group, x),
+            noise_variance: 0.01,
+        };
+        places.map(misfit).collect()
+    }
+
+    /// Mean of a property over the posterior.
+    fn mean(misfits: &[Misfit], of: fn(&Covariance) -> f64) -> f64 {
+        posterior(misfits)
+            .iter()
+            .map(|(own, share)| share * of(own))
+            .sum()
+    }
+
+    #[test]
+    fn the_probability_is_that_of_a_normal_density() {
+        let misfits = &along(|_, x| 1.0 + x)[..2];
+        let grid = Grid::of(misfits);
+        let place = grid.middle();
+        let own = grid.covariance(&place);
+        let between = own.of((&misfits[0].point, 0), (&misfits[1].point, 0));
+        let alone = own.sd * own.sd + own.local_sd * own.local_sd + 0.01;
+        let (a, b) = (misfits[0].value, misfits[1].value);
+        let determinant = alone * alone - between * between;
+        let square = (alone * (a * a + b * b) - 2.0 * between * a * b) / determinant;
+        let expected = -0.5 * (square + libm::log(determinant));
+        assert!((grid.log_probability(&place) - expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_search_finds_what_the_whole_grid_has() {
+        let misfits = along(|group, x| libm::sin(5.0 * x) + 0.3 * group as f64);
+        let grid = Grid::of(&misfits);
+        let mut best = (grid.middle(), f64::NEG_INFINITY);
+        for (a, b) in (0..SDS.len()).flat_map(|a| (0..LOCAL_SDS.len()).map(move |b| (a, b))) {
+            for (c, d) in (0..BETWEEN.len()).flat_map(|c| (0..LENGTHS.len()).map(move |d| (c, d))) {
+                let place = vec![a, b, c, d];
+                let own = grid.log_probability(&place);
+                if own > best.1 {
+                    best = (place, own);
+                }
+            }
+        }
+        let found = posterior(&misfits);
+        assert_eq!(found[0].0, grid.covariance(&best.0));
+        assert!((found.iter().map(|(_, share)| share).sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn groups_that_miss_alike_are_correlated_and_others_are_not() {
+        let alike = along(|_, x| libm::sin(7.0 * x));
+        let apart = along(|group, x| libm::sin(7.0 * x + 2.0 * group as f64));
+        let correlation = |misfits: &[Misfit]| mean(misfits, |own| own.between_groups);
+        assert!(correlation(&alike) > 0.85, "{}", correlation(&alike));
+        assert!(correlation(&apart) < 0.5, "{}", correlation(&apart));
+    }
+
+    #[test]
+    fn a_line_has_a_longer_scale_than_a_wave() {
+        let length = |misfits: &[Misfit]| mean(misfits, |own| own.lengths[0]);
+        let (line, wave) = (along(|_, x| x - 0.5), along(|_, x| libm::sin(12.0 * x)));
+        assert!(length(&line) > 2.0 * length(&wave));
+    }
+}

@@ -1,0 +1,314 @@
+//! Predictions corrected by what the model misses in the fitted conditions.
+
+use std::collections::BTreeMap;
+
+use inference::diagnostics::{mean, mean_and_sd};
+use inference::discrepancy::{Discrepancy, DiscrepancyComponent, DiscrepancyProcess, Misfit};
+use shared::channel::Channel;
+use shared::experiment::TestRun;
+use shared::outcome::Observables;
+
+use super::conditions::{Conditions, repeated};
+use super::fixed_sigma::FixedSigmas;
+use super::mixture::{Component, quantile};
+use super::predictive::{Predictive, RunPosition, accepted, soil_scatter};
+use crate::finished_calibration::FinishedCalibration;
+use crate::words::number;
+
+/// A prediction with the discrepancy that the fitted conditions show.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Corrected {
+    /// Mean of the model, and of the discrepancy [channel's unit].
+    pub(crate) mean: f64,
+    /// 5 % and 95 % quantile of a new measurement; `None` of a fit, which has no distribution.
+    pub(crate) interval: Option<[f64; 2]>,
+}
+
+/// The corrections of a calibration by channel: each, or why there is none.
+pub(crate) struct Corrections<'a> {
+    calibration: &'a FinishedCalibration,
+    channels: BTreeMap<Channel, Result<Correction, String>>,
+}
+
+impl<'a> Corrections<'a> {
+    pub(crate) fn of(calibration: &'a FinishedCalibration) -> Self {
+        let sigmas = FixedSigmas::of(calibration);
+        let correction = |channel: Channel| {
+            let sigma = sigmas
+                .get(channel)
+                .ok_or(format!("{} has no noise", channel.words()))?;
+            Correction::of(calibration, channel, sigma.sd)
+        };
+        Corrections {
+            calibration,
+            channels: Channel::ALL
+                .into_iter()
+                .map(|channel| (channel, correction(channel)))
+                .collect(),
+        }
+    }
+
+    /// The prediction of a run and channel, corrected, or why it is not: in a fitted condition by what the model misses in the others.
+    ///
+    /// # Arguments
+    /// - `run`: position in the experiment. `model`: what the model says of it.
+    pub(crate) fn at(&self, run: usize, channel: Channel, model: Predictive) -> Result<Corrected, String> {
+        let correction = self.channels[&channel].as_ref().map_err(Clone::clone)?;
+        correction.at(self.calibration, run, model)
+    }
+}
+
+/// The discrepancy of a channel over the conditions of the rig.
+struct Correction {
+    channel: Channel,
+    conditions: Conditions,
+    /// Wheel, soil and pass, as the process numbers them.
+    groups: Vec<Group>,
+    /// The fitted runs of each misfit, as positions in the experiment.
+    members: Vec<Vec<usize>>,
+    /// Of each final draw that the model accepts, its number and the model's mean in each of these conditions.
+    draws: Vec<(usize, Vec<f64>)>,
+    process: DiscrepancyProcess,
+    noise_sd: f64,
+}
+
+/// A wheel on a soil at a pass.
+type Group = (String, String, u32);
+
+fn group(run: &TestRun) -> Group {
+    (run.wheel.clone(), run.soil.clone(), run.pass)
+}
+
+impl Correction {
+    fn of(calibration: &FinishedCalibration, channel: Channel, noise_sd: f64) -> Result<Self, String> {
+        let spec = &calibration.spec;
+        let all = &spec.experiment.runs;
+        let measured = |run: usize| all[run].measured[channel.index()];
+        let fitted = spec.fit_runs.iter().filter(|&&run| measured(run).is_some());
+        let fitted: Vec<usize> = fitted.copied().collect();
+        let runs: Vec<&TestRun> = fitted.iter().map(|&run| &all[run]).collect();
+        let conditions = Conditions::of(&runs);
+        let least = DiscrepancyProcess::least_misfits(conditions.axes.len());
+        let members = repeated(&runs);
+        let name = channel.words();
+        if conditions.axes.is_empty() || members.len() < least {
+            return Err(match runs.len() {
+                0 => format!("{name} has no fitted measurement"),
+                _ if conditions.axes.is_empty() => format!("{name} was fitted in one condition"),
+                _ => format!(
+                    "{name} has {}, and a discrepancy over {} needs {least}",
+                    number::count(members.len(), "fitted condition"),
+                    conditions.names()
+                ),
+            });
+        }
+        let of_condition = |own: Vec<usize>| own.into_iter().map(|i| fitted[i]).collect();
+        let members: Vec<Vec<usize>> = members.into_iter().map(of_condition).collect();
+        let mut groups: Vec<Group> = runs.iter().map(|&run| group(run)).collect();
+        groups.sort();
+        groups.dedup();
+        let draws = means(calibration, channel, &members);
+        let misfit = |(condition, own): (usize, &Vec<usize>)| {
+            let repeats: Vec<&TestRun> = own.iter().map(|&run| &all[run]).collect();
+            let values: Vec<f64> = own.iter().filter_map(|&run| measured(run)).collect();
+            let of_draws: Vec<f64> = draws.iter().map(|(_, means)| means[condition]).collect();
+            let variances = own
+                .iter()
+                .map(|&run| noise_variance(calibration, run, channel, noise_sd));
+            Some(Misfit {
+                point: conditions.mean_point(&repeats),
+                group: groups.binary_search(&group(repeats[0])).ok()?,
+                value: mean(&values)? - mean(&of_draws)?,
+                noise_variance: variances.sum::<f64>() / (own.len() * own.len()) as f64,
+            })
+        };
+        let misfits: Option<Vec<Misfit>> = members.iter().enumerate().map(misfit).collect();
+        let process = misfits.and_then(|misfits| DiscrepancyProcess::through(&misfits));
+        Ok(Correction {
+            channel,
+            groups,
+            draws,
+            process: process.ok_or(format!("{name} has no discrepancy that can be computed"))?,
+            members,
+            conditions,
+            noise_sd,
+        })
+    }
+
+    fn at(
+        &self,
+        calibration: &FinishedCalibration,
+        run: usize,
+        model: Predictive,
+    ) -> Result<Corrected, String> {
+        let own = &calibration.spec.experiment.runs[run];
+        if let Some(reason) = self.conditions.beside(self.channel.words(), own) {
+            return Err(reason);
+        }
+        let discrepancy = match self.members.iter().position(|members| members.contains(&run)) {
+            Some(condition) => self.process.without(condition),
+            // A group that was not fitted comes after those that were.
+            None => self.process.at(
+                &self.conditions.point(own),
+                self.groups
+                    .binary_search(&group(own))
+                    .unwrap_or(self.groups.len()),
+            ),
+        };
+        let spread = self.spread(calibration, run, &discrepancy);
+        let noise = noise_variance(calibration, run, self.channel, self.noise_sd);
+        let component = |own: &DiscrepancyComponent| Component {
+            mean: model.mean + own.mean,
+            scale: Some((own.variance + spread * spread + noise).sqrt()),
+            weight: own.probability,
+        };
+        let components: Vec<Component> = discrepancy.components.iter().map(component).collect();
+        let law = calibration.spec.likelihood.law();
+        Ok(Corrected {
+            mean: model.mean + discrepancy.mean(),
+            interval: model
+                .interval
+                .map(|_| [0.05, 0.95].map(|p| quantile(&components, law, p))),
+        })
+    }
+
+    /// Standard deviation of the corrected value over the draws: where a draw moves the model in the run and in the fitted conditions
+    /// alike, the correction takes it back.
+    fn spread(&self, calibration: &FinishedCalibration, run: usize, discrepancy: &Discrepancy) -> f64 {
+        let own = values(calibration, run, self.channel);
+        let corrected = |(number, means): &(usize, Vec<f64>)| {
+            let taken: f64 = means
+                .iter()
+                .zip(&discrepancy.weights)
+                .map(|(mean, weight)| mean * weight)
+                .sum();
+            Some(own.get(number)? - taken)
+        };
+        let corrected: Vec<f64> = self.draws.iter().filter_map(corrected).collect();
+        mean_and_sd(&corrected).map_or(0.0, |(_, sd)| sd)
+    }
+}
+
+/// Of each final draw that the model accepts, its number and the mean of a channel over the runs of each condition.
+fn means(
+    calibration: &FinishedCalibration,
+    channel: Channel,
+    members: &[Vec<usize>],
+) -> Vec<(usize, Vec<f64>)> {
+    let of_runs: Vec<Vec<BTreeMap<usize, f64>>> = members
+        .iter()
+        .map(|own| own.iter().map(|&run| values(calibration, run, channel)).collect())
+        .collect();
+    let numbers = of_runs[0][0].keys();
+    let of_draw = |number: &usize| {
+        let of_condition = |own: &Vec<BTreeMap<usize, f64>>| {
+            let values: Option<Vec<f64>> = own.iter().map(|values| values.get(number).copied()).collect();
+            mean(&values?)
+        };
+        let means: Option<Vec<f64>> = of_runs.iter().map(of_condition).collect();
+        Some((*number, means?))
+    };
+    numbers.filter_map(of_draw).collect()
+}
+
+/// The model's values of a run and channel by number of the final draw.
+fn values(calibration: &FinishedCalibration, run: usize, channel: Channel) -> BTreeMap<usize, f64> {
+    let Some(place) = RunPosition::of(&calibration.spec, run) else {
+        return BTreeMap::new();
+    };
+    let of_draw = |(number, _, observables, position): (usize, _, &Observables, usize)| {
+        Some((number, *observables.channel(channel).get(position)?))
+    };
+    accepted(calibration, place).filter_map(of_draw).collect()
+}
+
+/// Variance of one measurement of a run: noise, and the scatter of the soil.
+fn noise_variance(calibration: &FinishedCalibration, run: usize, channel: Channel, noise_sd: f64) -> f64 {
+    let sd = calibration.spec.experiment.runs[run].sd[channel.index()].unwrap_or(noise_sd);
+    let place = RunPosition::of(&calibration.spec, run);
+    let draws = place.into_iter().flat_map(|place| accepted(calibration, place));
+    let squares: Vec<f64> = draws
+        .map(|(_, theta, observables, position)| {
+            let soil = soil_scatter(calibration, run, channel, (theta, observables, position));
+            soil * soil
+        })
+        .collect();
+    sd * sd + mean(&squares).unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+    use crate::table::row::ComparisonRow;
+
+    fn row<'a>(calibration: &'a FinishedCalibration, run: &str) -> &'a ComparisonRow {
+        let mut rows = calibration.comparison().rows.iter();
+        rows.find(|row| row.run == run && row.channel == Channel::DrawbarPull)
+            .unwrap()
+    }
+
+    #[test]
+    fn a_misfit_that_follows_slip_is_corrected_between_the_fitted_runs() {
+        let calibration = fixture::with_smooth_misfit();
+        let h1 = row(&calibration, "h1");
+        let (before, after) = (
+            h1.measured - h1.predicted.unwrap(),
+            h1.measured - h1.corrected.unwrap(),
+        );
+        assert!(
+            before.abs() > 2.0 && after.abs() < 0.2 * before.abs(),
+            "{before} {after}"
+        );
+        assert_eq!(h1.covered_corrected(), Some(true));
+        let comparison = calibration.comparison();
+        let [fit, corrected] = [&comparison.fit, &comparison.corrected_fit]
+            .map(|table| table.as_ref().unwrap().drawbar_pull.unwrap().rmse);
+        // Of a fitted run by the other runs, those at the ends of the range included.
+        assert!(corrected < 0.5 * fit, "{corrected} {fit}");
+    }
+
+    #[test]
+    fn what_a_draw_moves_everywhere_alike_is_taken_back() {
+        let calibration = fixture::with_smooth_misfit();
+        let run = calibration
+            .spec
+            .experiment
+            .runs
+            .iter()
+            .position(|run| run.name == "h1")
+            .unwrap();
+        let correction = Correction::of(&calibration, Channel::DrawbarPull, 1.0).unwrap();
+        let discrepancy = correction.process.at(
+            &correction
+                .conditions
+                .point(&calibration.spec.experiment.runs[run]),
+            0,
+        );
+        let spread = correction.spread(&calibration, run, &discrepancy);
+        let alone = values(&calibration, run, Channel::DrawbarPull).into_values();
+        let (_, sd) = mean_and_sd(&alone.collect::<Vec<f64>>()).unwrap();
+        assert!(sd > 0.9 && spread < 0.5 * sd, "{spread} {sd}");
+    }
+
+    #[test]
+    fn a_run_beside_the_one_speed_of_the_fitted_runs_is_not_corrected_and_says_why() {
+        let calibration = fixture::with_smooth_misfit();
+        assert_eq!(row(&calibration, "fast").corrected, None);
+        assert_eq!(
+            calibration.comparison().not_corrected,
+            [
+                "drawbar pull was fitted at one sled speed alone",
+                "sinkage was fitted at one sled speed alone"
+            ]
+        );
+        let few = fixture::calibration();
+        assert!(few.comparison().corrected_holdout.is_none());
+        assert!(
+            few.comparison().not_corrected[0]
+                .contains("has 3 fitted conditions, and a discrepancy over slip needs 4"),
+            "{:?}",
+            few.comparison().not_corrected
+        );
+    }
+}
