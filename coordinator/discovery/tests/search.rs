@@ -288,6 +288,21 @@ fn a_step_outside_the_library_is_found_with_its_form() {
 }
 
 #[test]
+fn a_law_that_every_good_explanation_has_is_claimed() {
+    // What neither an effect nor a law follows leaves room for effects beside the step.
+    let zigzag = |x: f64, w: f64| if libm::cos(20.0 * x * w) > 0.0 { 1.0 } else { -1.0 };
+    // The step alone is the most probable explanation; then the step beside two effects is.
+    for (step, cube, rough) in [(2.5, 0.0, 0.1), (2.5, 0.3, 0.15)] {
+        let at = |x: f64| if x > 0.3 { step } else { 0.0 };
+        let found = found(|x, w| 0.3 + 0.5 * x + cube * x * x * x + at(x) + rough * zigzag(x, w));
+        let beside = found.sets.iter().find(|set| set.effects.is_some()).unwrap();
+        assert!(beside.effects.as_ref().unwrap().contains(&STEP) && beside.probability > 0.1);
+        assert_eq!(found.verdict, SearchVerdict::NotInLibrary, "{:?}", found.sets);
+        assert_eq!(found.outside.unwrap().candidate, STEP);
+    }
+}
+
+#[test]
 fn a_law_that_fails_the_cross_validation_is_not_claimed() {
     // One level is off by itself: a curve follows it, and predicts nothing.
     let found = found(|x, _| 0.3 + 0.5 * x + if (x - 1.0 / 7.0).abs() < 0.01 { 1.2 } else { 0.0 });

@@ -111,10 +111,13 @@ impl Conclusion {
         } = state;
         let weighing = Weighing::new(task, hypotheses);
         let chi_square = |fit: &LaplaceFit| FitChiSquare::of(fit, &task.likelihood);
-        let of_library = hypotheses.chi_square(&task.likelihood);
+        let of_library = hypotheses.best_of_library(task.library.len());
+        let of_library = of_library.filter(|best| best.log_bayes_factor > DETECTED);
+        let of_library = of_library.map(|best| &best.fit).or(hypotheses.base_fit());
         let law = hypotheses.confirmed_law();
-        let law = law.filter(|law| explains(task, of_library, law));
+        let law = law.filter(|law| explains(task, of_library.and_then(chi_square), law));
         let verdict = SearchVerdict::new(
+            task,
             &weighing,
             hypotheses,
             law,
@@ -165,7 +168,10 @@ impl Conclusion {
             combination: detected.map_or(Vec::new(), |best| best.effects.clone()),
             gains: hypotheses.gains.clone(),
             chi_square: base.and_then(chi_square),
-            chi_square_best: law.map_or(of_library, |law| chi_square(&law.fit)),
+            chi_square_best: law.map_or_else(
+                || hypotheses.chi_square(&task.likelihood),
+                |law| chi_square(&law.fit),
+            ),
             base: model(Vec::new(), base, OF_BASE),
             best: model(effects, fit, OF_BEST),
             next_runs: choice.runs,

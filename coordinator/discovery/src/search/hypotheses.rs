@@ -127,10 +127,23 @@ impl Hypotheses {
 
     /// The best combination, each effect after the first at its cost.
     pub(super) fn best(&self) -> Option<&EffectCombination> {
+        self.best_of(|_| true)
+    }
+
+    /// The same of the library's effects alone: a combination that a law joined is no rival of that law.
+    ///
+    /// # Arguments
+    /// - `library`: number of the library's effects, which come first among the candidates.
+    pub(super) fn best_of_library(&self, library: usize) -> Option<&EffectCombination> {
+        self.best_of(|combination| combination.effects.iter().all(|k| *k < library))
+    }
+
+    fn best_of(&self, is_meant: impl Fn(&EffectCombination) -> bool) -> Option<&EffectCombination> {
         let score =
             |c: &EffectCombination| c.log_bayes_factor - COST_OF_CHOICE * (c.effects.len() as f64 - 1.0);
         self.combinations
             .iter()
+            .filter(|combination| is_meant(combination))
             .reduce(|best, c| if score(c) > score(best) { c } else { best })
     }
 

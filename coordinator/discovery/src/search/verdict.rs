@@ -3,6 +3,7 @@
 use crate::probability::DETECTED;
 use crate::search::hypotheses::{FittedLaw, Hypotheses};
 use crate::search::weighing::Weighing;
+use crate::task::SearchTask;
 
 /// A class or an effect with more probability is named.
 const NAMED: f64 = 0.9;
@@ -29,22 +30,22 @@ impl SearchVerdict {
     /// - `law`: one that passed the cross-validation and explains the misfit. `is_incomplete`: the best explanation contradicts the
     ///   data, or with a model discrepancy the declared noise.
     pub(super) fn new(
+        task: &SearchTask,
         weighing: &Weighing,
         hypotheses: &Hypotheses,
         law: Option<&FittedLaw>,
         is_incomplete: bool,
     ) -> Self {
         let effects = &weighing.ranking.effects;
-        let library = hypotheses.best().map_or(0.0, |best| best.log_bayes_factor);
+        let library = hypotheses.best_of_library(task.library.len());
+        let library = library.map_or(0.0, |best| best.log_bayes_factor);
         let detected = library / weighing.misfit > DETECTED;
         let probability = weighing
             .not_in_library
             .map_or(0.0, |(_, probability)| probability);
-        if let Some(law) = law
-            && (law.log_bayes_factor - library.max(0.0)) / weighing.misfit > DETECTED
-            // Without a detection in the library one of many laws may fit by chance; the probability accounts for their number.
-            && probability > if detected { 0.5 } else { NAMED }
-        {
+        let law = law.filter(|law| (law.log_bayes_factor - library.max(0.0)) / weighing.misfit > DETECTED);
+        // Without a detection in the library one of many laws may fit by chance; the probability accounts for their number.
+        if law.is_some() && probability > if detected { 0.5 } else { NAMED } {
             return Self::NotInLibrary;
         }
         let nothing = if is_incomplete {
@@ -68,7 +69,14 @@ impl SearchVerdict {
             Some(_) => {
                 let classes = effects.iter().map(|e| e.class).max().unwrap_or(0);
                 let class = (1..=classes).find(|&class| weighing.ranking.of_class(class) > NAMED);
-                class.map_or(Self::Undecided, Self::Class)
+                // What remains open may be the effects beside a law, not the law.
+                let is_shared =
+                    |law: &FittedLaw| probability + weighing.beside_effects(task, law.law) > NAMED;
+                match class {
+                    Some(class) => Self::Class(class),
+                    None if law.is_some_and(is_shared) => Self::NotInLibrary,
+                    None => Self::Undecided,
+                }
             }
             None => Self::NothingDetectable,
         }

@@ -229,6 +229,13 @@ impl Weighing {
         leader.filter(|_| predicted.all(is_beaten) && others_are_improbable)
     }
 
+    /// Probability of the sets in which a law outside the library stands beside effects.
+    pub(super) fn beside_effects(&self, task: &SearchTask, law: usize) -> f64 {
+        let is_law = |k: &usize| *k == task.curve(law) || task.forms(law).contains(k);
+        let has_law = |set: &&WeighedSet| set.effects.as_ref().is_some_and(|own| own.iter().any(is_law));
+        self.sets.iter().filter(has_law).map(|set| set.probability).sum()
+    }
+
     /// Whether a set without an effect predicts left-out levels better, by a detectable amount, than every set with it.
     pub(super) fn is_disputed(&self, effect: usize) -> bool {
         disputes(&self.sets, effect, self.misfit)
