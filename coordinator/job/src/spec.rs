@@ -114,6 +114,20 @@ impl Spec {
         files: &FileSet,
     ) -> Result<Spec, FileError> {
         let experiment = Experiment::parse(experiment_name, files)?;
+        Spec::measured(job_name, job, texts, experiment_name, experiment)
+    }
+
+    /// The same where the experiment is parsed, too.
+    ///
+    /// # Errors
+    /// As those of [`Spec::new`].
+    pub fn measured(
+        job_name: &str,
+        job: JobFile,
+        texts: &BTreeMap<String, String>,
+        experiment_name: &str,
+        experiment: Experiment,
+    ) -> Result<Spec, FileError> {
         let in_job = |message: String| FileError::whole(job_name, message);
         let in_data = |error: DataError| FileError::whole(experiment_name, error.to_string());
         let bevameter = BevameterReadings::new(&experiment).map_err(in_data)?;

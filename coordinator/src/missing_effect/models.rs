@@ -1,6 +1,6 @@
 //! The models of a search, made when they are queried.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use discovery::{
     LawCandidate, ProposedRuns, QueriedModel, Query, Reduction, Roughness, SearchSettings, SearchTask, Starts,
@@ -8,12 +8,16 @@ use discovery::{
 use formula::catalogue::{catalogue, find};
 use formula::slip::variables;
 use formula::{Effect, Variable};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use shared::channel::Channel;
+use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet};
 use shared::model::{EffectSet, ExternalModel, ModelKind, ModelVariant, RunCondition};
 use shared::outcome::Observables;
 
-use super::candidate::{CandidateEffect, ExclusionReason, JOB, candidate_of, extended, library, spec};
+use super::candidate::{
+    CandidateEffect, EXPERIMENT, ExclusionReason, JOB, candidate_of, extended, library, spec,
+};
 use super::design;
 use super::entry::{CandidateEntry, LawEntry};
 use super::family::set_families;
@@ -21,7 +25,8 @@ use super::law::dependence::{Dependence, dependences};
 use super::law::form::LawForm;
 use super::untried::untried;
 use job::{
-    EffectOnNodes, FreeParameter, MODEL_SWITCHES, PLAIN_PARAMETERS, Spec, free_parameters, without_effects,
+    EffectOnNodes, FreeParameter, JobFile, MODEL_SWITCHES, PLAIN_PARAMETERS, Spec, free_parameters,
+    without_effects,
 };
 use record::{Extension, NotTried};
 
@@ -30,13 +35,19 @@ const LAST_IN_SERIES: f64 = 0.5;
 /// Starts of the base's fit.
 const STARTS: usize = 32;
 
+/// A model, and whether on the proposed runs.
+type VariantKey = (QueriedModel, bool);
+
+fn key(query: &Query) -> VariantKey {
+    (sorted(&query.model), query.is_proposed)
+}
+
 /// The models of a search.
 #[derive(Debug)]
 pub struct SearchModels {
     pub(super) job: FileSet,
-    experiment: FileSet,
-    /// The same with typical values for what it leaves unsaid.
-    assumed: FileSet,
+    /// The experiment with typical values for what it leaves unsaid.
+    assumed: Experiment,
     pub(super) base: Spec,
     pub(super) library: Vec<CandidateEntry>,
     /// The other kind of model, where the job asks for it and cannot have it, and effects inside the contact of a model that does not
@@ -49,8 +60,8 @@ pub struct SearchModels {
     pub(super) design: Vec<RunCondition>,
     /// The measured channels with their noise sds.
     channels: Vec<(Channel, f64)>,
-    /// By model and whether on the proposed runs: hash and variant.
-    variants: BTreeMap<(QueriedModel, bool), (String, ModelVariant)>,
+    /// Hash and variant of what was asked.
+    variants: BTreeMap<VariantKey, (String, ModelVariant)>,
     max_effects: usize,
 }
 
@@ -144,8 +155,7 @@ impl SearchModels {
             design: design::proposed(&base),
             channels: design::channels(&base, &prior_means),
             job: job.clone(),
-            experiment: experiment.clone(),
-            assumed,
+            assumed: Experiment::parse(EXPERIMENT, &assumed)?,
             library: entries,
             not_tried,
             laws,
@@ -219,31 +229,33 @@ impl SearchModels {
         entry.map_or(String::new(), |entry| entry.effect.name.clone())
     }
 
-    /// The variant of a query, with its hash.
+    /// Makes the variants of queries that were not asked before; hundreds in a round of a search, so on all cores.
     ///
     /// # Errors
     /// [`FileError`] where the effects are incompatible.
-    pub fn variant(&mut self, query: &Query) -> Result<&(String, ModelVariant), FileError> {
-        let key = (sorted(&query.model), query.is_proposed);
-        if !self.variants.contains_key(&key) {
-            let mut variant = self.make(&key.0)?;
-            if query.is_proposed {
-                // The soil's density is there only if an effect of this variant needs it, and so is the place in the series:
-                // proposed runs follow its end.
-                let density_kg_m3 = variant.conditions.first().and_then(|c| c.density_kg_m3);
-                let drifts = variant.conditions.iter().any(|c| c.order.is_some());
-                variant.conditions.clone_from(&self.design);
-                for condition in &mut variant.conditions {
-                    condition.density_kg_m3 = density_kg_m3;
-                    condition.order = drifts.then_some(LAST_IN_SERIES);
-                }
-                variant.stiffness_sensitivity = false;
-                variant.plates.clear();
-                variant.rings.clear();
-            }
-            self.variants.insert(key.clone(), (variant.hash(), variant));
-        }
-        Ok(&self.variants[&key])
+    pub fn make<'q>(&mut self, queries: impl Iterator<Item = &'q Query>) -> Result<(), FileError> {
+        let keys: BTreeSet<VariantKey> = queries.map(key).collect();
+        let unknown = keys.into_iter().filter(|key| !self.variants.contains_key(key));
+        let unknown: Vec<VariantKey> = unknown.collect();
+        let made: Result<Vec<(String, ModelVariant)>, FileError> = unknown
+            .par_iter()
+            .map(|(model, is_proposed)| {
+                let fitted = self.of_fitted_runs(model)?;
+                let variant = if *is_proposed {
+                    self.of_proposed_runs(fitted)
+                } else {
+                    fitted
+                };
+                Ok((variant.hash(), variant))
+            })
+            .collect();
+        self.variants.extend(unknown.into_iter().zip(made?));
+        Ok(())
+    }
+
+    /// The variant of a query that was made, with its hash.
+    pub fn variant(&self, query: &Query) -> Option<&(String, ModelVariant)> {
+        self.variants.get(&key(query))
     }
 
     /// The variant of a hash that was made before.
@@ -252,7 +264,24 @@ impl SearchModels {
         made.find(|(own, _)| own == hash).map(|(_, variant)| variant)
     }
 
-    fn make(&self, model: &QueriedModel) -> Result<ModelVariant, FileError> {
+    /// The same model on the proposed runs.
+    fn of_proposed_runs(&self, mut variant: ModelVariant) -> ModelVariant {
+        // The soil's density is there only if an effect of this variant needs it, and so is the place in the series: proposed runs
+        // follow its end.
+        let density_kg_m3 = variant.conditions.first().and_then(|c| c.density_kg_m3);
+        let drifts = variant.conditions.iter().any(|c| c.order.is_some());
+        variant.conditions.clone_from(&self.design);
+        for condition in &mut variant.conditions {
+            condition.density_kg_m3 = density_kg_m3;
+            condition.order = drifts.then_some(LAST_IN_SERIES);
+        }
+        variant.stiffness_sensitivity = false;
+        variant.plates.clear();
+        variant.rings.clear();
+        variant
+    }
+
+    fn of_fitted_runs(&self, model: &QueriedModel) -> Result<ModelVariant, FileError> {
         let (job, experiment) = match model {
             QueriedModel::With(effects) => {
                 let entries: Vec<&CandidateEntry> = effects.iter().filter_map(|&k| self.entry(k)).collect();
@@ -261,16 +290,18 @@ impl SearchModels {
                 let experiment = if is_assumed {
                     &self.assumed
                 } else {
-                    &self.experiment
+                    &self.base.experiment
                 };
                 (extended(JOB, &self.job, &extensions)?, experiment)
             }
             QueriedModel::Without(k) => {
                 let job = without_effects(JOB, &self.job, std::slice::from_ref(&self.reductions[*k].0))?;
-                (job, &self.experiment)
+                (job, &self.base.experiment)
             }
         };
-        Ok(spec(&job, experiment)?.fit_variant)
+        let parsed = JobFile::parse(JOB, &job.toml)?;
+        let spec = Spec::measured(JOB, parsed, &job.files, EXPERIMENT, experiment.clone())?;
+        Ok(spec.fit_variant)
     }
 
     /// The parameters of a query in the order of its variant.

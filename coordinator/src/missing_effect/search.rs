@@ -49,15 +49,13 @@ impl RunningDiscovery {
     }
 
     fn prepare(&mut self) -> Result<(), FileError> {
-        self.leases.clear();
-        for index in 0..self.search.pending().len() {
-            let Some(query) = self.search.query(index) else {
-                continue;
-            };
-            let (hash, variant) = self.models.variant(query)?.clone();
-            let theta = self.models.model_theta(query, &variant);
-            self.leases.push((hash, theta));
-        }
+        let queries = || (0..self.search.pending().len()).filter_map(|index| self.search.query(index));
+        self.models.make(queries())?;
+        let lease = |query| {
+            let (hash, variant) = self.models.variant(query)?;
+            Some((hash.clone(), self.models.model_theta(query, variant)))
+        };
+        self.leases = queries().filter_map(lease).collect();
         Ok(())
     }
 
