@@ -310,22 +310,27 @@ fn a_law_that_fails_the_cross_validation_is_not_claimed() {
     assert!(found.outside.is_none() && found.not_in_library.is_some());
 }
 
-#[test]
-fn open_effects_are_distinguished_by_the_run_where_their_predictions_differ() {
-    // Square and cube are hard to tell apart on x >= 0 alone.
-    let mut task = task(&measured(|x, _| 0.3 + 0.5 * x + 2.0 * x * x));
+/// Searches the data on x >= 0 alone.
+fn found_on_half(truth: impl Fn(f64, f64) -> f64) -> Conclusion {
+    let mut task = task(&measured(truth));
     let half: Vec<usize> = (DATA / 2..DATA).collect();
     let (part, _) = task.likelihood.subset(&half).unwrap();
     task.likelihood = part;
     task.levels.clear();
-    let found = search(task, false, |query| {
+    search(task, false, |query| {
         let all = answer(query);
         if query.is_proposed {
             all
         } else {
             all[DATA / 2..].to_vec()
         }
-    });
+    })
+}
+
+#[test]
+fn open_effects_are_distinguished_by_the_run_where_their_predictions_differ() {
+    // Square and cube are hard to tell apart on x >= 0 alone.
+    let found = found_on_half(|x, _| 0.3 + 0.5 * x + 2.0 * x * x);
     assert!(!matches!(
         found.verdict,
         SearchVerdict::NothingDetectable | SearchVerdict::NotInLibrary
@@ -341,6 +346,23 @@ fn open_effects_are_distinguished_by_the_run_where_their_predictions_differ() {
         .fold(f64::INFINITY, f64::min);
     assert!(least < first.information_nats, "{:?}", found.information);
     assert!(first.information_nats > 0.1 && first.separates.len() > 1);
+}
+
+#[test]
+fn an_open_effect_is_compared_by_the_set_that_it_leads() {
+    // The width acts beside either; without it neither explains the data.
+    let found = found_on_half(|x, w| 0.3 + 0.5 * x + 2.0 * x * x + x * x * x + 0.3 * w * x);
+    let first = found.next_runs.first().expect("something is open");
+    let sets: Vec<Vec<usize>> = first
+        .separates
+        .iter()
+        .map(|set| {
+            let mut set = set.clone();
+            set.sort_unstable();
+            set
+        })
+        .collect();
+    assert_eq!(sets, [[SQUARE, WIDTH], [CUBE, WIDTH]]);
 }
 
 #[test]

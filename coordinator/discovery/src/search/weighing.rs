@@ -229,6 +229,12 @@ impl Weighing {
         leader.filter(|_| predicted.all(is_beaten) && others_are_improbable)
     }
 
+    /// The sets that count for an effect, by falling probability.
+    fn led_by(&self, effect: usize) -> impl Iterator<Item = &[usize]> {
+        let sets = self.sets.iter().filter_map(|set| set.effects.as_deref());
+        sets.filter(move |own| leader(&self.ranking, &self.inclusion, own) == Some(effect))
+    }
+
     /// Probability of the sets in which a law outside the library stands beside effects.
     pub(super) fn beside_effects(&self, task: &SearchTask, law: usize) -> f64 {
         let is_law = |k: &usize| *k == task.curve(law) || task.forms(law).contains(k);
@@ -247,15 +253,21 @@ impl Weighing {
             return Vec::new();
         };
         let effects = self.ranking.effects.iter().filter(|e| e.probability > OPEN);
-        let open = effects.filter_map(|effect| {
-            Some(OpenHypothesis {
-                effects: effect.candidate.into_iter().collect(),
+        let open = effects.filter_map(|effect| match effect.candidate {
+            None => Some(OpenHypothesis {
+                effects: Vec::new(),
                 probability: effect.probability,
-                fit: match effect.candidate {
-                    None => base,
-                    Some(k) => &hypotheses.single(k)?.fit,
-                },
-            })
+                fit: base,
+            }),
+            // An effect's probability is that of the sets that it leads; the most probable of them stands for it.
+            Some(k) => {
+                let set = self.led_by(k).find_map(|own| hypotheses.of(own))?;
+                Some(OpenHypothesis {
+                    effects: set.effects.clone(),
+                    probability: effect.probability,
+                    fit: &set.fit,
+                })
+            }
         });
         let mut open: Vec<OpenHypothesis> = open.collect();
         let outside = self.not_in_library.filter(|(_, p)| *p > OPEN);
