@@ -1,6 +1,6 @@
 //! The result of a search in one sentence.
 
-use discovery::{Conclusion, DETECTED, SearchVerdict};
+use discovery::{Conclusion, DETECTED, SearchVerdict, WeighedSet};
 use job::{EffectOnNodes, ModelSwitch, PlainParameter};
 use record::{JudgedEffect, NONE, NOT_IN_LIBRARY, Outside};
 
@@ -110,9 +110,10 @@ fn verdict(
                 }
             };
             format!(
-                "{claim} ({}, {:.1} nats over {kind})",
+                "{claim} ({}, {:.1} nats over {kind}{})",
                 probability(own.map_or(0.0, |e| e.probability)),
                 own.map_or(0.0, |e| e.log_bayes_factor),
+                beside(&conclusion.sets, k, |own| models.name(own)),
             )
         }
         (SearchVerdict::Class(class), _) => {
@@ -151,6 +152,25 @@ fn verdict(
     }
 }
 
+/// What the most probable set with an effect has beside it: its probability rests on that set.
+///
+/// # Arguments
+/// - `sets`: by falling probability.
+fn beside(sets: &[WeighedSet], effect: usize, name: impl Fn(usize) -> String) -> String {
+    let mut with = sets.iter().filter_map(|set| {
+        let effects = set.effects.as_ref().filter(|own| own.contains(&effect))?;
+        Some((effects, set.log_bayes_factor))
+    });
+    match with.next() {
+        Some((effects, nats)) if effects.len() > 1 => {
+            let others = effects.iter().filter(|own| **own != effect);
+            let others: Vec<String> = others.map(|&own| name(own)).collect();
+            format!("; {nats:.1} with {}", list(others.iter().map(String::as_str)))
+        }
+        _ => String::new(),
+    }
+}
+
 /// A probability in words; never a certainty.
 fn probability(value: f64) -> String {
     match value {
@@ -165,5 +185,26 @@ fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
     match names.len().checked_sub(NAMES) {
         Some(more) if more > 0 => format!("{shown} and {more} more"),
         _ => shown,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_says_with_what_its_most_probable_set_has_it() {
+        let set = |effects: &[usize], log_bayes_factor: f64| WeighedSet {
+            effects: Some(effects.to_vec()),
+            log_bayes_factor,
+            prior: 0.0,
+            probability: 0.0,
+            predictive: None,
+        };
+        let sets = [set(&[2, 0, 3], 44.6), set(&[0], 22.7), set(&[1, 0], 60.0)];
+        let name = |k: usize| ["slip", "skid", "pan", "drag"][k].to_owned();
+        assert_eq!(beside(&sets, 0, name), "; 44.6 with pan, drag");
+        assert_eq!(beside(&sets[1..], 0, name), "");
+        assert_eq!(beside(&sets[..2], 1, name), "");
     }
 }
