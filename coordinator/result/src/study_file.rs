@@ -4,6 +4,7 @@ use crate::finished_calibration::FinishedCalibration;
 use crate::report;
 use crate::story::Story;
 use crate::study::Study;
+use crate::table::combination::predictions_csv;
 use crate::terminal;
 
 /// A file of a study.
@@ -13,6 +14,8 @@ pub enum StudyFile {
     Summary,
     /// Draws of the current model's posterior.
     Posterior,
+    /// Every run as the models predict it, as CSV.
+    Predictions,
     /// Report.
     Report,
     /// Its tables and flags, as text for a terminal.
@@ -35,9 +38,10 @@ pub enum StudyFile {
 
 impl StudyFile {
     /// The files that every study has.
-    const OF_ALL: [StudyFile; 7] = [
+    const OF_ALL: [StudyFile; 8] = [
         StudyFile::Summary,
         StudyFile::Posterior,
+        StudyFile::Predictions,
         StudyFile::Report,
         StudyFile::Details,
         StudyFile::Brief,
@@ -50,6 +54,7 @@ impl StudyFile {
         match self {
             StudyFile::Summary => "summary.json".into(),
             StudyFile::Posterior => "posterior.csv".into(),
+            StudyFile::Predictions => "predictions.csv".into(),
             StudyFile::Report => "report.html".into(),
             StudyFile::Details => "details.txt".into(),
             StudyFile::Brief => "brief.txt".into(),
@@ -79,6 +84,9 @@ impl Study {
         Some(match file {
             StudyFile::Summary => json(&self.summary()) + "\n",
             StudyFile::Posterior => self.current().unwrap_or(&self.lead).posterior_table().to_csv(),
+            StudyFile::Predictions => {
+                predictions_csv(&self.combined()).expect("numbers and names have a CSV form")
+            }
             StudyFile::Report => report::document(self),
             StudyFile::Details => terminal::study(self),
             StudyFile::Brief => terminal::brief(self),

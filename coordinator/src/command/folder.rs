@@ -204,7 +204,7 @@ impl Folder {
             Details::Shown { .. } => "\nfiles",
         };
         text += &format!(
-            "{more} in {}: report.html, summary.json, posterior.csv, grouser.db\n\n",
+            "{more} in {}: report.html, summary.json, predictions.csv, posterior.csv, grouser.db\n\n",
             self.out.display()
         );
         let story = serde_json::from_str(&file(StudyFile::Story).await?)?;
@@ -260,7 +260,12 @@ impl Folder {
     /// Writes every result beside its final name first, so that a half-written file never takes that name.
     async fn write_results(&self, calibration: i64, rounds: &[DiscoveryRound]) -> anyhow::Result<()> {
         let mut files = Vec::new();
-        for file in [StudyFile::Summary, StudyFile::Posterior, StudyFile::Report] {
+        for file in [
+            StudyFile::Summary,
+            StudyFile::Posterior,
+            StudyFile::Predictions,
+            StudyFile::Report,
+        ] {
             files.push((file.name(), self.service.study_file(calibration, file).await?));
         }
         files.extend(rounds.iter().filter_map(|round| effect_file(&round.record)));

@@ -1,6 +1,9 @@
 //! Errors of a model, of its corrected predictions and of interpolation without physics.
 
+use shared::experiment::RunUse;
+
 use super::coverage::CoverageSummary;
+use crate::table::combination::CombinedRow;
 use crate::table::comparison::Comparison;
 use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;
@@ -57,6 +60,41 @@ impl CorrectedSummary {
             holdout: table(self.holdout),
             ..self
         }
+    }
+}
+
+/// The corrected predictions of the ledger's models, averaged.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct CombinedSummary {
+    /// Most models that a prediction averages.
+    pub models: usize,
+    /// Errors of the fitted runs, each corrected by the other conditions.
+    pub fit: Option<ErrorTable>,
+    /// Errors of the runs that were not fitted.
+    pub holdout: Option<ErrorTable>,
+    /// Share of measurements inside their 90 % interval.
+    pub coverage90: CoverageSummary,
+}
+
+impl CombinedSummary {
+    /// `None` where nothing is corrected.
+    pub(super) fn of(rows: &[CombinedRow], sigmas: &FixedSigmas) -> Option<Self> {
+        let of = |usage| rows.iter().filter(move |own| own.row.usage == usage);
+        let errors = |usage| {
+            let table = ErrorTable::of(of(usage).map(|own| (&own.row, own.mean)))?;
+            Some(table.in_fixed_sigmas(sigmas))
+        };
+        let models = rows
+            .iter()
+            .map(|own| own.models)
+            .max()
+            .filter(|models| *models > 0)?;
+        Some(CombinedSummary {
+            models,
+            fit: errors(RunUse::Fit),
+            holdout: errors(RunUse::Holdout),
+            coverage90: CoverageSummary::of(|usage| Coverage::of(of(usage).filter_map(CombinedRow::covered))),
+        })
     }
 }
 

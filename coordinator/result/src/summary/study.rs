@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use shared::experiment::Campaign;
 
 use super::calibration::CalibrationSummary;
+use super::error::CombinedSummary;
 use super::point_estimate::PointEstimate;
 use crate::discovery::DiscoverySummary;
 use crate::finished_calibration::FinishedCalibration;
@@ -30,6 +31,8 @@ pub struct StudySummary {
     pub status: String,
     /// The error ledger: base first, then each extension. Empty for a search by generations, and for a fit without draws.
     pub calibrations: Vec<CalibrationSummary>,
+    /// What the ledger's models predict together; null where nothing is corrected.
+    pub combined: Option<CombinedSummary>,
     /// The noise sd of each channel that `rmse_fixed_sigma` is in, by name.
     pub fixed_sigma: BTreeMap<String, FixedSigma>,
     /// Deterministic fits.
@@ -87,6 +90,7 @@ impl Study {
             status: self.state.name().to_owned(),
             calibrations: self.ledger_summaries(&sigmas),
             point_estimates: self.point_estimate_summaries(&sigmas),
+            combined: CombinedSummary::of(&self.combined(), &sigmas),
             fixed_sigma: sigmas.by_name(),
             models: self.model_comparison(),
             flags: self.flags(),

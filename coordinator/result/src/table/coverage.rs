@@ -19,15 +19,17 @@ pub(crate) struct Coverage {
 impl Coverage {
     /// Counts rows; `None` where no row has an interval.
     pub(crate) fn count<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
-        Self::of(rows.filter_map(ComparisonRow::covered).collect())
+        Self::of(rows.filter_map(ComparisonRow::covered))
     }
 
     /// The same by the intervals of the corrected predictions.
     pub(crate) fn count_corrected<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
-        Self::of(rows.filter_map(ComparisonRow::covered_corrected).collect())
+        Self::of(rows.filter_map(ComparisonRow::covered_corrected))
     }
 
-    fn of(covered: Vec<bool>) -> Option<Self> {
+    /// Counts which of them are inside; `None` of none.
+    pub(crate) fn of(covered: impl Iterator<Item = bool>) -> Option<Self> {
+        let covered: Vec<bool> = covered.collect();
         let inside = covered.iter().filter(|c| **c).count();
         (!covered.is_empty()).then_some(Coverage {
             inside,

@@ -49,17 +49,63 @@ pub struct AllError {
 impl ErrorTable {
     /// Errors of the posterior-mean prediction; `None` without rows.
     pub(crate) fn of_model<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
-        table(rows.map(|r| (r, r.predicted)))
+        Self::of(rows.map(|r| (r, r.predicted)))
     }
 
     /// Errors of interpolation without physics where the model has a prediction too; `None` where there is no such row.
     pub(crate) fn of_baseline<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
-        table(rows.map(|r| (r, r.interpolated.filter(|_| r.predicted.is_some()))))
+        Self::of(rows.map(|r| (r, r.interpolated.filter(|_| r.predicted.is_some()))))
     }
 
     /// Errors of the corrected prediction; `None` where there is none.
     pub(crate) fn of_corrected<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
-        table(rows.map(|r| (r, r.corrected)))
+        Self::of(rows.map(|r| (r, r.corrected)))
+    }
+
+    /// Errors of any predictions; `None` where there is none.
+    pub(crate) fn of<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, Option<f64>)>) -> Option<ErrorTable> {
+        let mut squares: BTreeMap<Channel, Squares> = BTreeMap::new();
+        let mut all = Squares::default();
+        let mut unpredicted = 0;
+        for (row, predicted) in rows {
+            let Some(predicted) = predicted else {
+                unpredicted += 1;
+                continue;
+            };
+            let error = row.measured - predicted;
+            let sd = row.noise_sd;
+            for s in [squares.entry(row.channel).or_default(), &mut all] {
+                s.sum += error * error;
+                s.rows += 1;
+                if let Some(sd) = sd {
+                    s.sum_sigma += (error / sd) * (error / sd);
+                    s.rows_sigma += 1;
+                }
+            }
+        }
+        if all.rows == 0 {
+            return None;
+        }
+        let sigma = |s: &Squares| (s.rows_sigma > 0).then(|| (s.sum_sigma / s.rows_sigma as f64).sqrt());
+        let channel = |c: Channel| {
+            squares.get(&c).map(|s| ChannelError {
+                rmse: (s.sum / s.rows as f64).sqrt(),
+                rmse_sigma: sigma(s),
+                rmse_fixed_sigma: None,
+                runs: s.rows,
+            })
+        };
+        Some(ErrorTable {
+            drawbar_pull: channel(Channel::DrawbarPull),
+            torque: channel(Channel::Torque),
+            sinkage: channel(Channel::Sinkage),
+            lateral_force: channel(Channel::LateralForce),
+            all: AllError {
+                rmse_sigma: sigma(&all),
+                rmse_fixed_sigma: None,
+                unpredicted,
+            },
+        })
     }
 
     /// The error of a channel.
@@ -92,49 +138,4 @@ struct Squares {
     sum_sigma: f64,
     rows: usize,
     rows_sigma: usize,
-}
-
-fn table<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, Option<f64>)>) -> Option<ErrorTable> {
-    let mut squares: BTreeMap<Channel, Squares> = BTreeMap::new();
-    let mut all = Squares::default();
-    let mut unpredicted = 0;
-    for (row, predicted) in rows {
-        let Some(predicted) = predicted else {
-            unpredicted += 1;
-            continue;
-        };
-        let error = row.measured - predicted;
-        let sd = row.noise_sd;
-        for s in [squares.entry(row.channel).or_default(), &mut all] {
-            s.sum += error * error;
-            s.rows += 1;
-            if let Some(sd) = sd {
-                s.sum_sigma += (error / sd) * (error / sd);
-                s.rows_sigma += 1;
-            }
-        }
-    }
-    if all.rows == 0 {
-        return None;
-    }
-    let sigma = |s: &Squares| (s.rows_sigma > 0).then(|| (s.sum_sigma / s.rows_sigma as f64).sqrt());
-    let channel = |c: Channel| {
-        squares.get(&c).map(|s| ChannelError {
-            rmse: (s.sum / s.rows as f64).sqrt(),
-            rmse_sigma: sigma(s),
-            rmse_fixed_sigma: None,
-            runs: s.rows,
-        })
-    };
-    Some(ErrorTable {
-        drawbar_pull: channel(Channel::DrawbarPull),
-        torque: channel(Channel::Torque),
-        sinkage: channel(Channel::Sinkage),
-        lateral_force: channel(Channel::LateralForce),
-        all: AllError {
-            rmse_sigma: sigma(&all),
-            rmse_fixed_sigma: None,
-            unpredicted,
-        },
-    })
 }

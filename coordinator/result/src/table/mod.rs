@@ -6,10 +6,12 @@
 //! - `ledger`: errors of the calibrations of a study; `fixed_sigma`: the noise that they are measured by.
 //! - `errors`: root mean square errors by channel. `group`: by level of a condition; `level`: those levels.
 //! - `interpolation`: interpolation without physics. `predictive`: the posterior predictive distribution; `mixture`: its
-//!   quantiles. `correction`: predictions corrected by what the model misses. `conditions`: those of the rig as coordinates.
+//!   quantiles. `correction`: predictions corrected by what the model misses; `combination`: those of all models together.
+//!   `conditions`: those of the rig as coordinates.
 //! - `coverage`: measurements inside their intervals. `readings`: errors of plates and rings.
 //! - `refusal`: draws at which the model refuses a run. `error_model`: the error model in words. `posterior`: the draws.
 
+pub(crate) mod combination;
 mod compared;
 pub(crate) mod comparison;
 mod conditions;

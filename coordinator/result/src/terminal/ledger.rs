@@ -15,6 +15,8 @@ use crate::words::data_channel::{ShownUnit, short_name};
 const MODEL: usize = 20;
 /// The line of the last model with what it misses in the fitted conditions.
 const CORRECTED: &str = "the last, corrected";
+/// The line of what all models predict together.
+const COMBINED: &str = "all, combined";
 /// The line of what no model predicts.
 const INTERPOLATION: &str = "interpolation";
 
@@ -48,7 +50,16 @@ pub(super) fn ledger(study: &Study) -> String {
     let last = lines.last().map(|line| line.calibration.comparison());
     let corrected = last.and_then(|own| own.corrected_holdout.as_ref());
     let interpolated = last.and_then(|own| own.baseline_holdout.as_ref());
-    for (name, errors) in [(CORRECTED, corrected), (INTERPOLATION, interpolated)] {
+    let combined = study.combined();
+    let held_out = combined
+        .iter()
+        .filter(|own| own.models > 1 && own.row.usage == RunUse::Holdout);
+    let combined = ErrorTable::of(held_out.map(|own| (&own.row, own.mean)));
+    for (name, errors) in [
+        (CORRECTED, corrected),
+        (COMBINED, combined.as_ref()),
+        (INTERPOLATION, interpolated),
+    ] {
         if let Some(errors) = errors {
             let cells = cells(errors, &channels, &[]);
             let _ = writeln!(text, "{name:<width$} {:<8}{cells}", usage(RunUse::Holdout));
