@@ -1,27 +1,32 @@
 //! What all models of a study predict together.
 
+use std::collections::BTreeMap;
+
+use shared::channel::Channel;
 use statistics::ErrorLaw;
 
+use super::comparison::Comparison;
 use super::mixture::{Component, quantile};
 use super::row::ComparisonRow;
+use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 
 /// Standard deviations from the mean of a normal law to its 95 % quantile.
 const TO_Q95: f64 = 1.644_853_626_951_472_7;
 
-/// The corrected predictions of the models of a ledger, averaged.
+/// The corrected predictions of the models of a ledger, on average.
 ///
-/// `p(y) = (1/K) sum_k N(y; m_k, s_k)`: `m_k` the corrected prediction of model k, `s_k` from its 90 % interval. All models count alike:
-/// weights from so few conditions as a rig has are noise, and cost more than they gain.
+/// `p(y) = sum_k w_k N(y; m_k, s_k)`: `m_k` the corrected prediction of model k, `s_k` from its 90 % interval, `w_k` as 1 over the
+/// mean square error of the channel's fitted runs, each corrected by the other conditions. Sharper weights, which the best model would
+/// take, rest on differences that so few conditions as a rig has do not bear out.
 ///
 /// # Source
-/// Clemen 1989, doi:10.1016/0169-2070(89)90012-5; Bates & Granger 1969, doi:10.1057/jors.1969.103. Checked by
-/// `models_that_err_to_both_sides_are_better_together` and others below.
+/// Bates & Granger 1969, doi:10.1057/jors.1969.103. Checked by `models_that_err_to_both_sides_are_better_together` and others below.
 #[derive(Debug, Clone)]
 pub(crate) struct CombinedRow {
     /// The run and channel, with the prediction of the current model.
     pub(crate) row: ComparisonRow,
-    /// Mean of the corrected predictions [channel's unit]; `None` where no model has one.
+    /// Weighted mean of the corrected predictions [channel's unit]; `None` where no model has one.
     pub(crate) mean: Option<f64>,
     /// 5 % and 95 % quantile of a new measurement; `None` without intervals of all.
     pub(crate) interval: Option<[f64; 2]>,
@@ -44,37 +49,64 @@ impl Study {
         let Some(current) = self.current() else {
             return Vec::new();
         };
-        // The rows of two comparisons of one experiment are those of its runs and channels, in the same order.
         let models = self
             .ledger()
             .filter(|own| own.row.experiment == current.row.experiment);
-        let models: Vec<&[ComparisonRow]> = models.map(|own| own.comparison().rows.as_slice()).collect();
+        let models: Vec<&Comparison> = models.map(FinishedCalibration::comparison).collect();
+        let weights: BTreeMap<Channel, Vec<f64>> = Channel::ALL
+            .into_iter()
+            .map(|channel| (channel, weights(&models, channel)))
+            .collect();
+        // The rows of two comparisons of one experiment are those of its runs and channels, in the same order.
         let rows = current.comparison().rows.iter().enumerate();
-        rows.map(|(i, row)| combine(row, models.iter().filter_map(|own| own.get(i))))
-            .collect()
+        rows.map(|(i, row)| {
+            let of_models = models.iter().filter_map(|own| own.rows.get(i));
+            combine(row, of_models.zip(weights[&row.channel].iter().copied()))
+        })
+        .collect()
     }
 }
 
-fn combine<'a>(row: &ComparisonRow, of_models: impl Iterator<Item = &'a ComparisonRow>) -> CombinedRow {
-    let corrected =
-        of_models.filter_map(|own| Some((own.corrected?, own.corrected_q05.zip(own.corrected_q95))));
-    let corrected: Vec<(f64, Option<(f64, f64)>)> = corrected.collect();
-    let models = corrected.len();
-    let component = |&(mean, interval): &(f64, Option<(f64, f64)>)| {
-        let (q05, q95) = interval?;
+/// How much each model counts for a channel, over the one that counts most; 0 without an error.
+fn weights(models: &[&Comparison], channel: Channel) -> Vec<f64> {
+    let rmse = |own: &&Comparison| Some(own.corrected_fit.as_ref()?.channel(channel)?.rmse);
+    let errors: Vec<Option<f64>> = models.iter().map(rmse).collect();
+    let least = errors.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+    let weight = |error: &Option<f64>| match *error {
+        None => 0.0,
+        Some(error) if error > 0.0 => (least / error) * (least / error),
+        Some(_) => 1.0,
+    };
+    errors.iter().map(weight).collect()
+}
+
+fn combine<'a>(
+    row: &ComparisonRow,
+    of_models: impl Iterator<Item = (&'a ComparisonRow, f64)>,
+) -> CombinedRow {
+    let corrected: Vec<(f64, &ComparisonRow, f64)> = of_models
+        .filter(|(_, weight)| *weight > 0.0)
+        .filter_map(|(own, weight)| Some((own.corrected?, own, weight)))
+        .collect();
+    let total: f64 = corrected.iter().map(|(_, _, weight)| weight).sum();
+    let mean = corrected
+        .iter()
+        .map(|(mean, _, weight)| mean * weight / total)
+        .sum::<f64>();
+    let component = |&(mean, own, weight): &(f64, &ComparisonRow, f64)| {
         Some(Component {
             mean,
-            scale: Some((q95 - q05) / (2.0 * TO_Q95)),
-            weight: 1.0,
+            scale: Some((own.corrected_q95? - own.corrected_q05?) / (2.0 * TO_Q95)),
+            weight,
         })
     };
     let components: Option<Vec<Component>> = corrected.iter().map(component).collect();
     let components = components.filter(|all| !all.is_empty());
     CombinedRow {
         row: row.clone(),
-        mean: (models > 0).then(|| corrected.iter().map(|(mean, _)| mean).sum::<f64>() / models as f64),
+        mean: (!corrected.is_empty()).then_some(mean),
         interval: components.map(|all| [0.05, 0.95].map(|p| quantile(&all, ErrorLaw::Gaussian, p))),
-        models,
+        models: corrected.len(),
     }
 }
 
@@ -142,21 +174,63 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// A row of the pull, measured as 0 N, that models correct to these values with a sd of 1 N.
-    fn combined(corrected: &[Option<f64>]) -> CombinedRow {
+    /// A row of the pull, measured as 0 N, that models of these weights correct to these values with a sd of 1 N.
+    fn weighted(corrected: &[(Option<f64>, f64)]) -> CombinedRow {
         let rows = fixture::calibration().comparison().rows.clone();
         let row = ComparisonRow {
             measured: 0.0,
             ..rows[0].clone()
         };
-        let of_models = corrected.iter().map(|&corrected| ComparisonRow {
-            corrected,
-            corrected_q05: corrected.map(|mean| mean - TO_Q95),
-            corrected_q95: corrected.map(|mean| mean + TO_Q95),
-            ..row.clone()
-        });
-        let of_models: Vec<ComparisonRow> = of_models.collect();
-        combine(&row, of_models.iter())
+        let of_model = |&(corrected, weight): &(Option<f64>, f64)| {
+            let own = ComparisonRow {
+                corrected,
+                corrected_q05: corrected.map(|mean| mean - TO_Q95),
+                corrected_q95: corrected.map(|mean| mean + TO_Q95),
+                ..row.clone()
+            };
+            (own, weight)
+        };
+        let of_models: Vec<(ComparisonRow, f64)> = corrected.iter().map(of_model).collect();
+        combine(&row, of_models.iter().map(|(own, weight)| (own, *weight)))
+    }
+
+    /// The same of models that count alike.
+    fn combined(corrected: &[Option<f64>]) -> CombinedRow {
+        weighted(&corrected.iter().map(|own| (*own, 1.0)).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn a_model_counts_by_its_mean_square_error_in_the_other_conditions() {
+        let good = fixture::with_smooth_misfit();
+        let mut bad = fixture::with_smooth_misfit();
+        // Alternately too high and too low: nothing that the other conditions would tell.
+        for prediction in &mut bad.predictions {
+            let pulls = &mut prediction.fit.as_mut().unwrap().drawbar_pull_n;
+            let signs = [4.0, -4.0].into_iter().cycle();
+            pulls.iter_mut().zip(signs).for_each(|(pull, by)| *pull += by);
+        }
+        let error = |own: &Comparison| {
+            let table = own.corrected_fit.as_ref().unwrap();
+            table.drawbar_pull.unwrap().rmse
+        };
+        let models = [good.comparison(), bad.comparison()];
+        let own = weights(&models, Channel::DrawbarPull);
+        let ratio = error(models[0]) / error(models[1]);
+        assert!(ratio < 0.5, "{ratio}");
+        assert!(
+            (own[0] - 1.0).abs() < 1e-12 && (own[1] - ratio * ratio).abs() < 1e-12,
+            "{own:?}"
+        );
+        assert_eq!(weights(&models, Channel::Torque), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn the_mean_is_weighted() {
+        let own = weighted(&[(Some(1.0), 1.0), (Some(5.0), 0.25), (Some(1e6), 0.0)]);
+        assert!(
+            (own.mean.unwrap() - 1.8).abs() < 1e-12 && own.models == 2,
+            "{own:?}"
+        );
     }
 
     #[test]
