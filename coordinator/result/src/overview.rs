@@ -12,7 +12,7 @@ use crate::story::Story;
 use crate::study::Study;
 use crate::study_member::StudyMember;
 use crate::summary::calibration::CalibrationSummary;
-use crate::summary::error::ErrorSummary;
+use crate::summary::error::{CombinedSummary, ErrorSummary};
 use crate::summary::point_estimate::PointEstimate;
 use crate::table::fixed_sigma::FixedSigma;
 use crate::words::campaign::CampaignWords;
@@ -43,6 +43,8 @@ pub struct StudyOverview {
     pub members: Vec<MemberOverview>,
     /// The error ledger: base first, then each extension.
     pub ledger: Vec<CalibrationSummary>,
+    /// What the ledger's models predict together; null where nothing is corrected.
+    pub combined: Option<CombinedSummary>,
     /// The noise sd of each channel that `rmse_fixed_sigma` is in, by name.
     pub fixed_sigma: BTreeMap<String, FixedSigma>,
     /// Deterministic fits.
@@ -142,6 +144,7 @@ impl StudyOverview {
                 .map(|member| MemberOverview { member, story: None })
                 .collect(),
             ledger: Vec::new(),
+            combined: None,
             fixed_sigma: BTreeMap::new(),
             point_estimates: Vec::new(),
             models: None,
@@ -200,6 +203,7 @@ impl Study {
             current,
             ledger: self.ledger_summaries(&sigmas),
             point_estimates: self.point_estimate_summaries(&sigmas),
+            combined: self.combined_summary(&sigmas),
             fixed_sigma: sigmas.by_name(),
             models: self.model_comparison(),
             flags: self

@@ -237,24 +237,33 @@ impl SearchModels {
         let keys: BTreeSet<VariantKey> = queries.map(key).collect();
         let unknown = keys.into_iter().filter(|key| !self.variants.contains_key(key));
         let unknown: Vec<VariantKey> = unknown.collect();
-        let made: Result<Vec<(String, ModelVariant)>, FileError> = unknown
-            .par_iter()
-            .map(|(model, is_proposed)| {
-                let fitted = self.of_fitted_runs(model)?;
-                let variant = if *is_proposed {
-                    self.of_proposed_runs(fitted)
-                } else {
-                    fitted
-                };
-                Ok((variant.hash(), variant))
-            })
-            .collect();
-        self.variants.extend(unknown.into_iter().zip(made?));
+        let one = |(model, is_proposed): &VariantKey| {
+            let fitted = self.of_fitted_runs(model)?;
+            let variant = if *is_proposed {
+                self.of_proposed_runs(fitted)
+            } else {
+                fitted
+            };
+            Ok((variant.hash(), variant))
+        };
+        let made: Vec<Result<(String, ModelVariant), FileError>> = unknown.par_iter().map(one).collect();
+        // The first error in the order of the models, whichever came first in time.
+        let made: Vec<(String, ModelVariant)> = made.into_iter().collect::<Result<_, _>>()?;
+        self.variants.extend(unknown.into_iter().zip(made));
         Ok(())
     }
 
-    /// The variant of a query that was made, with its hash.
-    pub fn variant(&self, query: &Query) -> Option<&(String, ModelVariant)> {
+    /// The variant of a query, with its hash.
+    ///
+    /// # Errors
+    /// [`FileError`] where the effects are incompatible.
+    pub fn variant(&mut self, query: &Query) -> Result<&(String, ModelVariant), FileError> {
+        self.make(std::iter::once(query))?;
+        Ok(&self.variants[&key(query)])
+    }
+
+    /// The variant of a query that was made before, with its hash.
+    pub fn made(&self, query: &Query) -> Option<&(String, ModelVariant)> {
         self.variants.get(&key(query))
     }
 

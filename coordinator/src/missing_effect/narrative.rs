@@ -152,20 +152,17 @@ fn verdict(
     }
 }
 
-/// What the most probable set with an effect has beside it: its probability rests on that set.
+/// What the most probable set with an effect has beside it.
 ///
 /// # Arguments
 /// - `sets`: by falling probability.
 fn beside(sets: &[WeighedSet], effect: usize, name: impl Fn(usize) -> String) -> String {
-    let mut with = sets.iter().filter_map(|set| {
-        let effects = set.effects.as_ref().filter(|own| own.contains(&effect))?;
-        Some((effects, set.log_bayes_factor))
-    });
-    match with.next() {
-        Some((effects, nats)) if effects.len() > 1 => {
+    let mut with = sets.iter().filter_map(|set| set.effects.as_ref());
+    match with.find(|own| own.contains(&effect)) {
+        Some(effects) if effects.len() > 1 => {
             let others = effects.iter().filter(|own| **own != effect);
             let others: Vec<String> = others.map(|&own| name(own)).collect();
-            format!("; {nats:.1} with {}", list(others.iter().map(String::as_str)))
+            format!("; most probably with {}", list(others.iter().map(String::as_str)))
         }
         _ => String::new(),
     }
@@ -203,7 +200,7 @@ mod tests {
         };
         let sets = [set(&[2, 0, 3], 44.6), set(&[0], 22.7), set(&[1, 0], 60.0)];
         let name = |k: usize| ["slip", "skid", "pan", "drag"][k].to_owned();
-        assert_eq!(beside(&sets, 0, name), "; 44.6 with pan, drag");
+        assert_eq!(beside(&sets, 0, name), "; most probably with pan, drag");
         assert_eq!(beside(&sets[1..], 0, name), "");
         assert_eq!(beside(&sets[..2], 1, name), "");
     }

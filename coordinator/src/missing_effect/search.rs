@@ -52,7 +52,7 @@ impl RunningDiscovery {
         let queries = || (0..self.search.pending().len()).filter_map(|index| self.search.query(index));
         self.models.make(queries())?;
         let lease = |query| {
-            let (hash, variant) = self.models.variant(query)?;
+            let (hash, variant) = self.models.made(query)?;
             Some((hash.clone(), self.models.model_theta(query, variant)))
         };
         self.leases = queries().filter_map(lease).collect();

@@ -39,13 +39,13 @@ impl SearchVerdict {
         let effects = &weighing.ranking.effects;
         let library = hypotheses.best_of_library(task.library.len());
         let library = library.map_or(0.0, |best| best.log_bayes_factor);
-        let detected = library / weighing.misfit > DETECTED;
+        let is_detected = |log_bayes_factor: f64| log_bayes_factor / weighing.misfit > DETECTED;
         let probability = weighing
             .not_in_library
             .map_or(0.0, |(_, probability)| probability);
-        let law = law.filter(|law| (law.log_bayes_factor - library.max(0.0)) / weighing.misfit > DETECTED);
+        let law = law.filter(|law| is_detected(law.log_bayes_factor - library.max(0.0)));
         // Without a detection in the library one of many laws may fit by chance; the probability accounts for their number.
-        if law.is_some() && probability > if detected { 0.5 } else { NAMED } {
+        if law.is_some() && probability > if is_detected(library) { 0.5 } else { NAMED } {
             return Self::NotInLibrary;
         }
         let nothing = if is_incomplete {
@@ -53,7 +53,10 @@ impl SearchVerdict {
         } else {
             Self::NothingDetectable
         };
-        if !detected {
+        if !hypotheses
+            .best()
+            .is_some_and(|best| is_detected(best.log_bayes_factor))
+        {
             return nothing;
         }
         let best = effects

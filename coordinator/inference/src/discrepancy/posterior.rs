@@ -22,7 +22,8 @@ const REACH: f64 = 6.0;
 const MOST: usize = 2000;
 /// Of more misfits so many say what is probable: the cost grows with the cube of their number.
 const MOST_MISFITS: usize = 100;
-/// Share of the probability that is kept, and the most parameters that hold it.
+/// Share of the probability that is kept, and the most parameters that hold it: of so many misfits as say what is probable, and fewer of
+/// more, because each takes the square of their number in memory.
 const KEPT: f64 = 0.99;
 const MOST_KEPT: usize = 64;
 
@@ -64,11 +65,15 @@ pub(super) fn posterior(misfits: &[Misfit]) -> Vec<(Covariance, f64)> {
     let weights: Vec<f64> = all.iter().map(|(_, own)| libm::exp(own - best)).collect();
     let total: f64 = weights.iter().sum();
     let mut held = 0.0;
-    let kept = weights.iter().take(MOST_KEPT).take_while(|weight| {
-        let is_short = held < KEPT * total;
-        held += **weight;
-        is_short
-    });
+    let most_kept = MOST_KEPT * MOST_MISFITS * MOST_MISFITS / (misfits.len() * misfits.len()).max(1);
+    let kept = weights
+        .iter()
+        .take(most_kept.clamp(1, MOST_KEPT))
+        .take_while(|weight| {
+            let is_short = held < KEPT * total;
+            held += **weight;
+            is_short
+        });
     let kept = kept.count();
     let held: f64 = weights[..kept].iter().sum();
     let shares = all.iter().zip(&weights).take(kept);
@@ -89,7 +94,13 @@ struct Grid {
 
 impl Grid {
     fn of(misfits: &[Misfit]) -> Self {
-        let points: Vec<&[f64]> = misfits.iter().map(|own| own.point.as_slice()).collect();
+        let has_groups = misfits.iter().any(|own| own.group != misfits[0].group);
+        // A group of few misfits is represented, too.
+        let places = misfits
+            .iter()
+            .map(|own| own.point.iter().copied().chain([own.group as f64]));
+        let places: Vec<Vec<f64>> = places.map(Iterator::collect).collect();
+        let points: Vec<&[f64]> = places.iter().map(Vec::as_slice).collect();
         let chosen = representative(&points, MOST_MISFITS);
         let misfits: Vec<Misfit> = chosen.into_iter().map(|i| misfits[i].clone()).collect();
         let mean = |of: fn(&Misfit) -> f64| misfits.iter().map(of).sum::<f64>() / misfits.len() as f64;
@@ -98,7 +109,7 @@ impl Grid {
             rms: mean(|own| own.value * own.value).sqrt(),
             noise_sd: mean(|own| own.noise_variance).sqrt(),
             dimension: misfits.first().map_or(0, |own| own.point.len()),
-            has_groups: misfits.iter().any(|own| own.group != misfits[0].group),
+            has_groups,
             misfits,
         }
     }
@@ -211,6 +222,27 @@ mod tests {
         let correlation = |misfits: &[Misfit]| mean(misfits, |own| own.between_groups);
         assert!(correlation(&alike) > 0.85, "{}", correlation(&alike));
         assert!(correlation(&apart) < 0.5, "{}", correlation(&apart));
+    }
+
+    #[test]
+    fn of_many_misfits_a_group_of_few_says_how_alike_the_groups_miss() {
+        let wave = |x: f64| libm::sin(7.0 * x);
+        let misfit = |(group, i): (usize, u32)| Misfit {
+            point: vec![f64::from(i % 60) / 59.0],
+            group,
+            value: wave(f64::from(i % 60) / 59.0),
+            noise_variance: 0.01,
+        };
+        let many = (0..240).map(|i| (0, i)).chain((0..6).map(|k| (1, 10 * k)));
+        let many: Vec<Misfit> = many.map(misfit).collect();
+        let found = posterior(&many);
+        assert!(
+            found.len() <= MOST_KEPT * 100 * 100 / (246 * 246),
+            "{}",
+            found.len()
+        );
+        let correlation: f64 = found.iter().map(|(own, share)| share * own.between_groups).sum();
+        assert!(correlation > 0.5, "{correlation}");
     }
 
     #[test]

@@ -71,13 +71,17 @@ impl DiscrepancyProcess {
         coordinates + 3
     }
 
+    /// Most misfits: a matrix of the square of their number is inverted.
+    pub const MOST_MISFITS: usize = 500;
+
     /// The process through misfits whose points have the same coordinates, each of which must vary, and whose noise is above 0; `None`
-    /// with fewer than [`DiscrepancyProcess::least_misfits`], where all are 0, or where no covariance is regular to rounding.
+    /// with fewer than [`DiscrepancyProcess::least_misfits`] or more than [`DiscrepancyProcess::MOST_MISFITS`], where all are 0, or where no covariance is regular to rounding.
     #[must_use]
     pub fn through(misfits: &[Misfit]) -> Option<Self> {
         let dimension = misfits.first()?.point.len();
         let is_usable = misfits.iter().any(|own| own.value.abs() > 0.0);
-        if dimension == 0 || misfits.len() < Self::least_misfits(dimension) || !is_usable {
+        let numbers = Self::least_misfits(dimension)..=Self::MOST_MISFITS;
+        if dimension == 0 || !numbers.contains(&misfits.len()) || !is_usable {
             return None;
         }
         let extreme = |k: usize, pick: fn(f64, f64) -> f64| {
@@ -274,10 +278,12 @@ mod tests {
     }
 
     #[test]
-    fn too_few_misfits_and_none_make_no_process() {
+    fn too_few_misfits_too_many_and_none_make_no_process() {
         let all = misfits(surface);
         assert_eq!(DiscrepancyProcess::least_misfits(2), 5);
         assert!(DiscrepancyProcess::through(&all[..4]).is_none());
         assert!(DiscrepancyProcess::through(&misfits(|_, _, _| 0.0)).is_none());
+        let many: Vec<Misfit> = all.iter().cycle().take(501).cloned().collect();
+        assert!(DiscrepancyProcess::through(&many).is_none());
     }
 }

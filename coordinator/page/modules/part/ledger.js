@@ -4,20 +4,32 @@ import { html } from "../html.js";
 import { CHANNELS, digits, minus, short, shown, unitOf } from "../words/quantity.js";
 import { Table } from "./table.js";
 
+const USES = { fit: "fitted", holdout: "held out" };
+
 /** @param {{ study: any, lines: any[] }} properties */
-export function Ledger({ lines }) {
+export function Ledger({ study, lines }) {
   const channels = CHANNELS.filter((channel) => lines.some(({ line }) => line.error.fit[channel]));
   const head = ["model", "runs", ...channels.map((c) => `${short(c)} ${shown(unitOf(c)).unit}`), "noise sds", "in 90 % interval", "ln evidence"];
-  const rows = lines.flatMap(({ name, line }) => ["fit", "holdout"].filter((use) => line.error[use]).map((use) => {
-    const error = line.error[use];
-    const inside = line.coverage90?.[use];
-    return [
-      use === "fit" ? name : "", use === "fit" ? "fitted" : "held out",
-      ...channels.map((c) => (error[c] ? digits(error[c].rmse * shown(unitOf(c)).scale) : "–")),
-      digits(error.all.rmse_fixed_sigma ?? error.all.rmse_sigma),
-      inside === null || inside === undefined ? "–" : `${Math.round(100 * inside)} %`,
-      use === "fit" && line.log_evidence !== null ? minus(line.log_evidence.toFixed(1)) : "",
-    ];
+  const row = (/** @type {string} */ name, /** @type {"fit" | "holdout"} */ use, /** @type {any} */ error, /** @type {number | null | undefined} */ inside, evidence = "") => [
+    name, USES[use],
+    ...channels.map((c) => (error[c] ? digits(error[c].rmse * shown(unitOf(c)).scale) : "–")),
+    digits(error.all.rmse_fixed_sigma ?? error.all.rmse_sigma),
+    inside === null || inside === undefined ? "–" : `${Math.round(100 * inside)} %`,
+    evidence,
+  ];
+  const rows = lines.flatMap(({ name, line }) => /** @type {const} */ (["fit", "holdout"]).filter((use) => line.error[use]).map((use) => {
+    const evidence = use === "fit" && line.log_evidence !== null ? minus(line.log_evidence.toFixed(1)) : "";
+    return row(use === "fit" ? name : "", use, line.error[use], line.coverage90?.[use], evidence);
   }));
+  for (const [name, of] of beside(study, lines)) {
+    if (of?.holdout) rows.push(row(name, "holdout", of.holdout, of.coverage90?.holdout));
+  }
   return html`<${Table} label="Error ledger" head=${head} rows=${rows} numbers=${head.map((_, k) => k).filter((k) => k > 1)} />`;
+}
+
+/** What predicts held-out runs beside the models as they are. */
+function beside(/** @type {any} */ study, /** @type {any[]} */ lines) {
+  const current = lines.find((own) => own.id === study.current)?.line;
+  const combined = study.combined?.models > 1 ? study.combined : null;
+  return /** @type {[string, any][]} */ ([["current, corrected", current?.corrected], ["all, combined", combined], ["interpolation", current?.baseline]]);
 }

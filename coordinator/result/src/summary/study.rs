@@ -77,6 +77,11 @@ impl Study {
             .collect()
     }
 
+    /// What the models of the ledger predict together; `None` where nothing is corrected.
+    pub(crate) fn combined_summary(&self, sigmas: &FixedSigmas) -> Option<CombinedSummary> {
+        CombinedSummary::of(&self.combined(), sigmas)
+    }
+
     /// `summary.json`.
     pub fn summary(&self) -> StudySummary {
         let lead = &self.lead;
@@ -90,7 +95,7 @@ impl Study {
             status: self.state.name().to_owned(),
             calibrations: self.ledger_summaries(&sigmas),
             point_estimates: self.point_estimate_summaries(&sigmas),
-            combined: CombinedSummary::of(&self.combined(), &sigmas),
+            combined: self.combined_summary(&sigmas),
             fixed_sigma: sigmas.by_name(),
             models: self.model_comparison(),
             flags: self.flags(),

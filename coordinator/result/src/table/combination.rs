@@ -44,15 +44,15 @@ impl CombinedRow {
 
 impl Study {
     /// The measurements that the current model is compared with, as the ledger's models of the same measurements predict them
-    /// together; none without a ledger.
+    /// together; of a fit without draws, which stands in no ledger, by that fit alone.
     pub(crate) fn combined(&self) -> Vec<CombinedRow> {
-        let Some(current) = self.current() else {
-            return Vec::new();
-        };
-        let models = self
-            .ledger()
-            .filter(|own| own.row.experiment == current.row.experiment);
-        let models: Vec<&Comparison> = models.map(FinishedCalibration::comparison).collect();
+        let current = self.current().unwrap_or(&self.lead);
+        let mut models: Vec<&FinishedCalibration> = self.ledger().collect();
+        models.retain(|own| own.row.experiment == current.row.experiment);
+        if models.is_empty() {
+            models.push(current);
+        }
+        let models: Vec<&Comparison> = models.into_iter().map(FinishedCalibration::comparison).collect();
         let weights: BTreeMap<Channel, Vec<f64>> = Channel::ALL
             .into_iter()
             .map(|channel| (channel, weights(&models, channel)))
@@ -110,58 +110,62 @@ fn combine<'a>(
     }
 }
 
-/// A line of `predictions.csv`.
-#[derive(serde::Serialize)]
-struct Line<'a> {
-    run: &'a str,
-    r#use: &'static str,
-    wheel: &'a str,
-    slip: f64,
-    slip_angle_deg: f64,
-    wheel_load_n: f64,
-    sled_speed_m_s: f64,
-    channel: &'static str,
-    unit: &'a str,
-    measured: f64,
-    model: Option<f64>,
-    model_q05: Option<f64>,
-    model_q95: Option<f64>,
-    corrected: Option<f64>,
-    corrected_q05: Option<f64>,
-    corrected_q95: Option<f64>,
-    combined: Option<f64>,
-    combined_q05: Option<f64>,
-    combined_q95: Option<f64>,
-    models: usize,
-}
+/// The columns of `predictions.csv`.
+const COLUMNS: [&str; 21] = [
+    "run",
+    "use",
+    "wheel",
+    "slip",
+    "slip_angle_deg",
+    "wheel_load_n",
+    "sled_speed_m_s",
+    "channel",
+    "unit",
+    "measured",
+    "model",
+    "model_q05",
+    "model_q95",
+    "corrected",
+    "corrected_q05",
+    "corrected_q95",
+    "combined",
+    "combined_q05",
+    "combined_q95",
+    "models",
+    "interpolated",
+];
 
-/// Every run and channel as CSV: measured, by the current model, by that model corrected, and combined.
+/// Every run and channel as CSV: measured, by the current model, by that model corrected, combined, and interpolated.
 pub(crate) fn predictions_csv(rows: &[CombinedRow]) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(COLUMNS)?;
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
     for own in rows {
         let row = &own.row;
-        writer.serialize(Line {
-            run: &row.run,
-            r#use: row.usage.name(),
-            wheel: &row.wheel,
-            slip: row.slip,
-            slip_angle_deg: row.slip_angle_deg,
-            wheel_load_n: row.wheel_load_n,
-            sled_speed_m_s: row.sled_speed_m_s,
-            channel: row.channel.name(),
-            unit: &row.unit,
-            measured: row.measured,
-            model: row.predicted,
-            model_q05: row.q05,
-            model_q95: row.q95,
-            corrected: row.corrected,
-            corrected_q05: row.corrected_q05,
-            corrected_q95: row.corrected_q95,
-            combined: own.mean,
-            combined_q05: own.interval.map(|[q05, _]| q05),
-            combined_q95: own.interval.map(|[_, q95]| q95),
-            models: own.models,
-        })?;
+        let cells: [String; COLUMNS.len()] = [
+            row.run.clone(),
+            row.usage.name().to_owned(),
+            row.wheel.clone(),
+            row.slip.to_string(),
+            row.slip_angle_deg.to_string(),
+            row.wheel_load_n.to_string(),
+            row.sled_speed_m_s.to_string(),
+            row.channel.name().to_owned(),
+            row.unit.clone(),
+            row.measured.to_string(),
+            number(row.predicted),
+            number(row.q05),
+            number(row.q95),
+            number(row.corrected),
+            number(row.corrected_q05),
+            number(row.corrected_q95),
+            number(own.mean),
+            number(own.interval.map(|[q05, _]| q05)),
+            number(own.interval.map(|[_, q95]| q95)),
+            own.models.to_string(),
+            number(row.interpolated),
+        ];
+        writer.write_record(&cells)?;
     }
     let bytes = writer
         .into_inner()
@@ -258,6 +262,87 @@ mod tests {
     fn without_a_correction_there_is_nothing_to_combine() {
         let own = combined(&[None]);
         assert_eq!((own.mean, own.interval, own.models), (None, None, 0));
+    }
+
+    /// The base misses by a wave; a second model by that and another number in each channel and run.
+    fn grown() -> Study {
+        let mut extension = fixture::with_smooth_misfit();
+        extension.row.id = 3;
+        for prediction in &mut extension.predictions {
+            let held_out = prediction
+                .holdout
+                .as_mut()
+                .map(|own| own.together.as_mut().unwrap());
+            for observables in held_out.into_iter().chain(prediction.fit.as_mut().ok()) {
+                let pulls = observables.drawbar_pull_n.iter_mut().enumerate();
+                pulls.for_each(|(i, pull)| *pull += 0.1 * (i % 3) as f64);
+                observables.sinkage_m.iter_mut().for_each(|z| *z += 0.001);
+            }
+        }
+        Study {
+            extensions: vec![extension],
+            ..Study::from(fixture::with_smooth_misfit())
+        }
+    }
+
+    #[test]
+    fn each_run_and_channel_averages_its_own_rows_of_all_models() {
+        let study = grown();
+        let models = [study.lead.comparison(), study.extensions[0].comparison()];
+        let rows = study.combined();
+        assert_eq!(rows.len(), models[0].rows.len());
+        let mut averaged = 0;
+        for own in &rows {
+            let of = |model: &&Comparison| {
+                let mut rows = model.rows.iter();
+                let row = rows.find(|row| row.run == own.row.run && row.channel == own.row.channel);
+                row.and_then(|row| row.corrected)
+            };
+            let [Some(a), Some(b)] = [of(&models[0]), of(&models[1])] else {
+                continue;
+            };
+            let [v, w] = weights(&models, own.row.channel)[..] else {
+                panic!("two models");
+            };
+            let expected = (v * a + w * b) / (v + w);
+            assert!(
+                (own.mean.unwrap() - expected).abs() < 1e-12,
+                "{} {expected}",
+                own.row.run
+            );
+            averaged += 1;
+        }
+        assert!(averaged > 10, "{averaged}");
+    }
+
+    #[test]
+    fn no_prediction_reads_what_was_measured_in_a_held_out_run() {
+        let predicted = |by: f64| -> Vec<Option<f64>> {
+            let mut study = grown();
+            for own in [&mut study.lead, &mut study.extensions[0]] {
+                let held_out = own.spec.holdout_runs.clone();
+                for run in held_out {
+                    for measured in own.spec.experiment.runs[run].measured.iter_mut().flatten() {
+                        *measured += by;
+                    }
+                }
+            }
+            let rows = study.combined();
+            rows.iter()
+                .flat_map(|own| [own.row.corrected, own.mean])
+                .collect()
+        };
+        assert_eq!(predicted(0.0), predicted(7.0));
+    }
+
+    #[test]
+    fn a_fit_without_draws_has_its_own_predictions() {
+        let study = Study::from(fixture::search());
+        let rows = study.combined();
+        assert!(rows.iter().any(|own| own.row.predicted.is_some()));
+        let csv = predictions_csv(&rows).unwrap();
+        assert_eq!(csv.lines().count(), 1 + rows.len());
+        assert_eq!(predictions_csv(&[]).unwrap().trim_end(), COLUMNS.join(","));
     }
 
     #[test]

@@ -91,6 +91,13 @@ impl Correction {
         let least = DiscrepancyProcess::least_misfits(conditions.axes.len());
         let members = repeated(&runs);
         let name = channel.words();
+        let most = DiscrepancyProcess::MOST_MISFITS;
+        if members.len() > most {
+            let count = members.len();
+            return Err(format!(
+                "{name} has {count} fitted conditions, and a discrepancy is computed for at most {most}"
+            ));
+        }
         if conditions.axes.is_empty() || members.len() < least {
             return Err(match runs.len() {
                 0 => format!("{name} has no fitted measurement"),
@@ -155,37 +162,41 @@ impl Correction {
                     .unwrap_or(self.groups.len()),
             ),
         };
-        let spread = self.spread(calibration, run, &discrepancy);
+        let (shift, spread) = self.paired(calibration, run, &discrepancy);
         let noise = noise_variance(calibration, run, self.channel, self.noise_sd);
         let component = |own: &DiscrepancyComponent| Component {
-            mean: model.mean + own.mean,
+            mean: model.mean + own.mean + shift,
             scale: Some((own.variance + spread * spread + noise).sqrt()),
             weight: own.probability,
         };
         let components: Vec<Component> = discrepancy.components.iter().map(component).collect();
         let law = calibration.spec.likelihood.law();
         Ok(Corrected {
-            mean: model.mean + discrepancy.mean(),
+            mean: model.mean + discrepancy.mean() + shift,
             interval: model
                 .interval
                 .map(|_| [0.05, 0.95].map(|p| quantile(&components, law, p))),
         })
     }
 
-    /// Standard deviation of the corrected value over the draws: where a draw moves the model in the run and in the fitted conditions
+    /// What each draw of the run says beside the fitted conditions of the same draw: a mean shift, where some draws are refused in the run
+    /// alone, and the standard deviation of the corrected value. Where a draw moves the model in the run and in the fitted conditions
     /// alike, the correction takes it back.
-    fn spread(&self, calibration: &FinishedCalibration, run: usize, discrepancy: &Discrepancy) -> f64 {
+    fn paired(&self, calibration: &FinishedCalibration, run: usize, discrepancy: &Discrepancy) -> (f64, f64) {
         let own = values(calibration, run, self.channel);
-        let corrected = |(number, means): &(usize, Vec<f64>)| {
-            let taken: f64 = means
-                .iter()
-                .zip(&discrepancy.weights)
-                .map(|(mean, weight)| mean * weight)
-                .sum();
-            Some(own.get(number)? - taken)
+        let taken = |means: &[f64]| -> f64 {
+            let weighted = means.iter().zip(&discrepancy.weights);
+            weighted.map(|(mean, weight)| mean * weight).sum()
         };
-        let corrected: Vec<f64> = self.draws.iter().filter_map(corrected).collect();
-        mean_and_sd(&corrected).map_or(0.0, |(_, sd)| sd)
+        let all: Vec<f64> = self.draws.iter().map(|(_, means)| taken(means)).collect();
+        let pairs = self.draws.iter().zip(&all);
+        let pairs = pairs.filter_map(|((number, _), taken)| Some((own.get(number)?, *taken)));
+        let (corrected, paired): (Vec<f64>, Vec<f64>) =
+            pairs.map(|(own, taken)| (own - taken, taken)).unzip();
+        let shift = mean(&all)
+            .zip(mean(&paired))
+            .map_or(0.0, |(all, paired)| all - paired);
+        (shift, mean_and_sd(&corrected).map_or(0.0, |(_, sd)| sd))
     }
 }
 
@@ -285,10 +296,34 @@ mod tests {
                 .point(&calibration.spec.experiment.runs[run]),
             0,
         );
-        let spread = correction.spread(&calibration, run, &discrepancy);
+        let (shift, spread) = correction.paired(&calibration, run, &discrepancy);
         let alone = values(&calibration, run, Channel::DrawbarPull).into_values();
         let (_, sd) = mean_and_sd(&alone.collect::<Vec<f64>>()).unwrap();
         assert!(sd > 0.9 && spread < 0.5 * sd, "{spread} {sd}");
+        assert!(shift.abs() < 1e-12, "{shift}");
+    }
+
+    #[test]
+    fn draws_that_refuse_a_run_do_not_move_what_is_predicted_of_it() {
+        let whole = fixture::with_smooth_misfit();
+        let mut fewer = fixture::with_smooth_misfit();
+        // Half of the draws that lie 1 N too low everywhere are refused in the held-out runs: the others are 1/3 N too high on average.
+        for prediction in fewer.predictions.iter_mut().skip(1).step_by(4) {
+            if let Some(held_out) = &mut prediction.holdout {
+                held_out.together = Err(record::RejectionReason("no balance".to_owned()));
+            }
+        }
+        let of = |own: &FinishedCalibration| {
+            let row = row(own, "h1");
+            (row.predicted.unwrap(), row.corrected.unwrap())
+        };
+        let (predicted, corrected) = of(&whole);
+        let (moved, paired) = of(&fewer);
+        assert!(
+            (moved - predicted - 1.0 / 3.0).abs() < 0.05,
+            "{moved} {predicted}"
+        );
+        assert!((paired - corrected).abs() < 0.15, "{paired} {corrected}");
     }
 
     #[test]

@@ -6,15 +6,17 @@ use shared::channel::Channel;
 use shared::experiment::RunUse;
 
 use super::column::{cell, labelled};
+use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 use crate::table::errors::ErrorTable;
 use crate::table::ledger::LedgerRow;
 use crate::words::data_channel::{ShownUnit, short_name};
+use crate::words::number;
 
 /// Least width of the column of models.
 const MODEL: usize = 20;
-/// The line of the last model with what it misses in the fitted conditions.
-const CORRECTED: &str = "the last, corrected";
+/// The line of the current model with what it misses in the fitted conditions.
+const CORRECTED: &str = "current, corrected";
 /// The line of what all models predict together.
 const COMBINED: &str = "all, combined";
 /// The line of what no model predicts.
@@ -47,14 +49,13 @@ pub(super) fn ledger(study: &Study) -> String {
             let _ = writeln!(text, "{model:<width$} {}", ledger_row(row, &channels));
         }
     }
-    let last = lines.last().map(|line| line.calibration.comparison());
-    let corrected = last.and_then(|own| own.corrected_holdout.as_ref());
-    let interpolated = last.and_then(|own| own.baseline_holdout.as_ref());
+    let current = study.current().map(FinishedCalibration::comparison);
+    let corrected = current.and_then(|own| own.corrected_holdout.as_ref());
+    let interpolated = current.and_then(|own| own.baseline_holdout.as_ref());
     let combined = study.combined();
-    let held_out = combined
-        .iter()
-        .filter(|own| own.models > 1 && own.row.usage == RunUse::Holdout);
+    let held_out = combined.iter().filter(|own| own.row.usage == RunUse::Holdout);
     let combined = ErrorTable::of(held_out.map(|own| (&own.row, own.mean)));
+    let combined = combined.filter(|_| lines.len() > 1);
     for (name, errors) in [
         (CORRECTED, corrected),
         (COMBINED, combined.as_ref()),
@@ -62,7 +63,11 @@ pub(super) fn ledger(study: &Study) -> String {
     ] {
         if let Some(errors) = errors {
             let cells = cells(errors, &channels, &[]);
-            let _ = writeln!(text, "{name:<width$} {:<8}{cells}", usage(RunUse::Holdout));
+            let _ = write!(text, "{name:<width$} {:<8}{cells}", usage(RunUse::Holdout));
+            let _ = match errors.all.unpredicted {
+                0 => writeln!(text),
+                others => writeln!(text, "  without {}", number::count(others, "measurement")),
+            };
         }
     }
     text += &labelled("noise:", &study.fixed_sigmas().words());
