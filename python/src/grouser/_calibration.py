@@ -9,7 +9,8 @@ from ._table import CONDITIONS, Table
 
 COMPARISON = (
     "run", "use", "wheel", "slip", "wheel_load_n", "sled_speed_m_s", "slip_angle_deg", "channel", "unit",
-    "measured", "predicted", "q05", "q95", "noise_sd", "residual_sigma", "interpolated",
+    "measured", "predicted", "q05", "q95", "noise_sd", "residual_sigma",
+    "corrected", "corrected_q05", "corrected_q95", "interpolated",
 )  # fmt: skip
 
 
