@@ -21,9 +21,10 @@ function LedgerChart(/** @type {{ study: any, lines: any[], channel: string }} *
   const floor = sigma ? (sigma.sd ?? sigma) * quantity.scale : null;
   const baseline = lines.map(({ line }) => line.baseline?.holdout?.[channel]?.rmse).find((v) => v !== undefined && v !== null);
   const names = lines.map((l) => l.name);
+  const isLong = names.length > MOST_WRAPPED;
   const draw = (/** @type {number} */ width) => Plot.plot({
-    width, height: 260, marginLeft: 56, marginBottom: 60, marginRight: 40, marginTop: 28, insetTop: 8, style: STYLE,
-    x: { type: "point", domain: names, label: null, tickFormat: (/** @type {string} */ n) => wrap(n), tickSize: 3, padding: 0.7 },
+    width, height: isLong ? 330 : 260, marginLeft: isLong ? 90 : 56, marginBottom: isLong ? 130 : 60, marginRight: 40, marginTop: 28, insetTop: 8, insetBottom: isLong ? 18 : 0, style: STYLE,
+    x: { type: "point", domain: names, label: null, tickFormat: (/** @type {string} */ n) => (isLong ? step(names, n) : wrap(n)), tickRotate: isLong ? -40 : 0, tickSize: 3, padding: 0.7 },
     y: { label: titled(`error of ${words(channel)}`, quantity.unit), labelArrow: "none", zero: true, nice: true, grid: true },
     marks: [
       ...(floor === null ? [] : [Plot.ruleY([floor], { stroke: "var(--soft)", strokeDasharray: "2 3" })]),
@@ -35,7 +36,7 @@ function LedgerChart(/** @type {{ study: any, lines: any[], channel: string }} *
         return [
           Plot.lineY(own, { x: "name", y: "rmse", ...look, strokeWidth: 1.8 }),
           Plot.dot(own, { x: "name", y: "rmse", r: 4.5, ...look, fill: k === 0 ? "var(--series-0)" : "var(--paper)", strokeWidth: 1.8 }),
-          Plot.text(own, { x: "name", y: "rmse", text: (/** @type {any} */ p) => digits(p.rmse), textAnchor: k === 0 ? "end" : "start", dx: k === 0 ? -9 : 9, fill: "currentColor", stroke: "var(--paper)", strokeWidth: 4 }),
+          Plot.text(own, { x: "name", y: "rmse", text: (/** @type {any} */ p) => digits(p.rmse, isLong ? 2 : undefined), ...(isLong ? { dy: k === 0 ? 14 : -13 } : { textAnchor: k === 0 ? "end" : "start", dx: k === 0 ? -9 : 9 }), fill: "currentColor", stroke: "var(--paper)", strokeWidth: 4 }),
         ];
       }),
     ],
@@ -47,6 +48,17 @@ function LedgerChart(/** @type {{ study: any, lines: any[], channel: string }} *
       ${points.some((p) => p.use === "held out") && html`<${Entry} glyph=${html`<circle cx="8" cy="8" r="4" fill="none" stroke="var(--series-1)" stroke-width="2" />`}>held out<//>`}
       ${floor !== null && html`<${Entry} glyph=${html`<path d="M0 8h16" stroke="var(--soft)" stroke-dasharray="2 3" />`}>noise ${digits(floor, 2)} ${quantity.unit}<//>`}
       ${baseline !== undefined && html`<${Entry} glyph=${html`<path d="M0 8h16" stroke="var(--prior)" stroke-dasharray="7 4" stroke-width="2" />`}>interpolation, held out: ${digits(baseline * quantity.scale)} ${quantity.unit}<//>`}`} />`;
+}
+
+/** More models than this have no room for their whole names. */
+const MOST_WRAPPED = 4;
+
+/** What a model has that the one before it has not. */
+function step(/** @type {string[]} */ names, /** @type {string} */ name) {
+  const parts = (/** @type {string | undefined} */ own) => (own ?? "").replace(/^with /, "").split(", ");
+  const before = parts(names[names.indexOf(name) - 1]);
+  const added = parts(name).filter((part) => !before.includes(part));
+  return names[0] === name || added.length === 0 ? name : added.map((part) => `+ ${part}`).join(", ");
 }
 
 /** A name on lines of some twelve characters. */
