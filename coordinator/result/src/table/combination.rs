@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 
 use shared::channel::Channel;
+use shared::experiment::RunUse;
 use statistics::ErrorLaw;
 
 use super::comparison::Comparison;
+use super::correction::Corrected;
 use super::mixture::{Component, quantile};
 use super::row::ComparisonRow;
 use crate::finished_calibration::FinishedCalibration;
@@ -13,12 +15,15 @@ use crate::study::Study;
 
 /// Standard deviations from the mean of a normal law to its 95 % quantile.
 const TO_Q95: f64 = 1.644_853_626_951_472_7;
+/// Share of new measurements that an interval is to hold.
+const HELD: f64 = 0.9;
 
 /// The corrected predictions of the models of a ledger, on average.
 ///
 /// `p(y) = sum_k w_k N(y; m_k, s_k)`: `m_k` the corrected prediction of model k, `s_k` from its 90 % interval, `w_k` as 1 over the
 /// mean square error of the channel's fitted runs, each corrected by the other conditions. Sharper weights, which the best model would
-/// take, rest on differences that so few conditions as a rig has do not bear out.
+/// take, rest on differences that so few conditions as a rig has do not bear out. The quantiles are then moved by one factor of their
+/// distance from the mean for each channel, [`calibrated_width`].
 ///
 /// # Source
 /// Bates & Granger 1969, doi:10.1057/jors.1969.103. Checked by `models_that_err_to_both_sides_are_better_together` and others below.
@@ -35,10 +40,53 @@ pub(crate) struct CombinedRow {
 }
 
 impl CombinedRow {
+    /// Of what each model predicts, with its weight.
+    fn of(row: &ComparisonRow, of_models: impl Iterator<Item = (Option<Corrected>, f64)>) -> Self {
+        let counted = of_models.filter(|(_, weight)| *weight > 0.0);
+        let counted: Vec<(Corrected, f64)> =
+            counted.filter_map(|(own, weight)| Some((own?, weight))).collect();
+        let total: f64 = counted.iter().map(|(_, weight)| weight).sum();
+        let shares = counted.iter().map(|(own, weight)| own.mean * weight / total);
+        let component = |&(own, weight): &(Corrected, f64)| {
+            let [q05, q95] = own.interval?;
+            Some(Component {
+                mean: own.mean,
+                scale: Some((q95 - q05) / (2.0 * TO_Q95)),
+                weight,
+            })
+        };
+        let components: Option<Vec<Component>> = counted.iter().map(component).collect();
+        let components = components.filter(|all| !all.is_empty());
+        CombinedRow {
+            row: row.clone(),
+            mean: (!counted.is_empty()).then_some(shares.sum()),
+            interval: components.map(|all| [0.05, 0.95].map(|p| quantile(&all, ErrorLaw::Gaussian, p))),
+            models: counted.len(),
+        }
+    }
+
     /// Whether the measurement lies in its 90 % interval.
     pub(crate) fn covered(&self) -> Option<bool> {
         let [q05, q95] = self.interval?;
         Some((q05..=q95).contains(&self.row.measured))
+    }
+
+    /// How far the measurement lies off the mean, over the half of the interval to that side.
+    fn off(&self) -> Option<f64> {
+        let (mean, [q05, q95]) = (self.mean?, self.interval?);
+        let off = self.row.measured - mean;
+        Some(if off > 0.0 {
+            off / (q95 - mean)
+        } else {
+            off / (q05 - mean)
+        })
+    }
+
+    /// Moves both ends of the interval by a factor of their distance from the mean.
+    fn scale_interval(&mut self, factor: f64) {
+        if let Some((mean, ends)) = self.mean.zip(self.interval) {
+            self.interval = Some(ends.map(|end| mean + factor * (end - mean)));
+        }
     }
 }
 
@@ -59,12 +107,39 @@ impl Study {
             .collect();
         // The rows of two comparisons of one experiment are those of its runs and channels, in the same order.
         let rows = current.comparison().rows.iter().enumerate();
-        rows.map(|(i, row)| {
-            let of_models = models.iter().filter_map(|own| own.rows.get(i));
-            combine(row, of_models.zip(weights[&row.channel].iter().copied()))
-        })
-        .collect()
+        let combined = |(i, row): (usize, &ComparisonRow)| {
+            let of_models = models
+                .iter()
+                .map(|own| own.rows.get(i).and_then(ComparisonRow::corrected_prediction));
+            CombinedRow::of(row, of_models.zip(weights[&row.channel].iter().copied()))
+        };
+        let mut rows: Vec<CombinedRow> = rows.map(combined).collect();
+        for channel in Channel::ALL {
+            let of_channel = |own: &&CombinedRow| own.row.channel == channel;
+            let factor = calibrated_width(rows.iter().filter(of_channel));
+            for own in rows.iter_mut().filter(|own| own.row.channel == channel) {
+                own.scale_interval(factor);
+            }
+        }
+        rows
     }
+}
+
+/// The factor on the intervals of a channel with which they hold nine tenths of the fitted measurements, each predicted by the other
+/// conditions; 1 where there are too few to tell.
+///
+/// # Source
+/// Lei et al. 2018, doi:10.1080/01621459.2017.1307116, section 5.2 (residuals over a local spread); Barber et al. 2021,
+/// doi:10.1214/20-AOS1965 (with each left out in place of a split). Checked by `intervals_hold_nine_tenths_of_the_fitted_measurements`.
+fn calibrated_width<'a>(rows: impl Iterator<Item = &'a CombinedRow>) -> f64 {
+    let fitted = rows.filter(|own| own.row.usage == RunUse::Fit);
+    let mut ratios: Vec<f64> = fitted.filter_map(CombinedRow::off).collect();
+    ratios.sort_by(f64::total_cmp);
+    let place = (HELD * (ratios.len() + 1) as f64).ceil() as usize;
+    place
+        .checked_sub(1)
+        .and_then(|place| ratios.get(place).copied())
+        .unwrap_or(1.0)
 }
 
 /// How much each model counts for a channel, over the one that counts most; 0 without an error.
@@ -78,36 +153,6 @@ fn weights(models: &[&Comparison], channel: Channel) -> Vec<f64> {
         Some(_) => 1.0,
     };
     errors.iter().map(weight).collect()
-}
-
-fn combine<'a>(
-    row: &ComparisonRow,
-    of_models: impl Iterator<Item = (&'a ComparisonRow, f64)>,
-) -> CombinedRow {
-    let corrected: Vec<(f64, &ComparisonRow, f64)> = of_models
-        .filter(|(_, weight)| *weight > 0.0)
-        .filter_map(|(own, weight)| Some((own.corrected?, own, weight)))
-        .collect();
-    let total: f64 = corrected.iter().map(|(_, _, weight)| weight).sum();
-    let mean = corrected
-        .iter()
-        .map(|(mean, _, weight)| mean * weight / total)
-        .sum::<f64>();
-    let component = |&(mean, own, weight): &(f64, &ComparisonRow, f64)| {
-        Some(Component {
-            mean,
-            scale: Some((own.corrected_q95? - own.corrected_q05?) / (2.0 * TO_Q95)),
-            weight,
-        })
-    };
-    let components: Option<Vec<Component>> = corrected.iter().map(component).collect();
-    let components = components.filter(|all| !all.is_empty());
-    CombinedRow {
-        row: row.clone(),
-        mean: (!corrected.is_empty()).then_some(mean),
-        interval: components.map(|all| [0.05, 0.95].map(|p| quantile(&all, ErrorLaw::Gaussian, p))),
-        models: corrected.len(),
-    }
 }
 
 /// The columns of `predictions.csv`.
@@ -186,16 +231,13 @@ mod tests {
             ..rows[0].clone()
         };
         let of_model = |&(corrected, weight): &(Option<f64>, f64)| {
-            let own = ComparisonRow {
-                corrected,
-                corrected_q05: corrected.map(|mean| mean - TO_Q95),
-                corrected_q95: corrected.map(|mean| mean + TO_Q95),
-                ..row.clone()
-            };
+            let own = corrected.map(|mean| Corrected {
+                mean,
+                interval: Some([mean - TO_Q95, mean + TO_Q95]),
+            });
             (own, weight)
         };
-        let of_models: Vec<(ComparisonRow, f64)> = corrected.iter().map(of_model).collect();
-        combine(&row, of_models.iter().map(|(own, weight)| (own, *weight)))
+        CombinedRow::of(&row, corrected.iter().map(of_model))
     }
 
     /// The same of models that count alike.
@@ -256,6 +298,54 @@ mod tests {
             (q05 + outer).abs() < 1e-6 && (q95 - outer).abs() < 1e-6,
             "{q05} {q95}"
         );
+    }
+
+    #[test]
+    fn intervals_hold_nine_tenths_of_the_fitted_measurements() {
+        let fitted = |count: usize, usage| -> Vec<CombinedRow> {
+            let row = |i: usize| {
+                let mut own = combined(&[Some(0.0)]);
+                // Up to a tenth of the half-width, and beyond it for each tenth measurement.
+                own.row.measured = TO_Q95
+                    * if i % 10 == 9 {
+                        -3.0
+                    } else {
+                        0.1 * (i % 10) as f64 / 8.0
+                    };
+                own.row.usage = usage;
+                own
+            };
+            (0..count).map(row).collect()
+        };
+        let width = |count, usage| calibrated_width(fitted(count, usage).iter());
+        // The 37th of 40 is the first beyond.
+        assert!((width(40, RunUse::Fit) - 3.0).abs() < 1e-12);
+        assert!((width(39, RunUse::Fit) - 0.1).abs() < 1e-12);
+        for (count, usage) in [(40, RunUse::Holdout), (8, RunUse::Fit), (0, RunUse::Fit)] {
+            assert!((width(count, usage) - 1.0).abs() < 1e-15, "{count} {usage:?}");
+        }
+        let mut own = combined(&[Some(2.0)]);
+        own.scale_interval(0.5);
+        let [q05, q95] = own.interval.unwrap();
+        assert!((q05 - 2.0 + 0.5 * TO_Q95).abs() < 1e-9 && (q95 - 2.0 - 0.5 * TO_Q95).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_study_holds_nine_tenths_of_its_fitted_measurements() {
+        let study = grown();
+        let fitted = |channel| {
+            let rows = study.combined().into_iter();
+            rows.filter(move |own| own.row.usage == RunUse::Fit && own.row.channel == channel)
+        };
+        for channel in [Channel::DrawbarPull, Channel::Sinkage] {
+            let covered: Vec<bool> = fitted(channel).filter_map(|own| own.covered()).collect();
+            let inside = covered.iter().filter(|own| **own).count();
+            let least = HELD * covered.len() as f64;
+            assert!(
+                covered.len() >= 9 && (inside as f64) >= least && (inside as f64) < least + 2.0,
+                "{channel:?} {covered:?}"
+            );
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use shared::channel::Channel;
 use shared::experiment::RunUse;
 
+use super::correction::Corrected;
 use super::interpolation::InterpolatedOver;
 use super::refusal::Refusal;
 
@@ -63,6 +64,17 @@ impl ComparisonRow {
     /// Whether the measurement lies in its 90 % interval.
     pub fn covered(&self) -> Option<bool> {
         Some((self.q05?..=self.q95?).contains(&self.measured))
+    }
+
+    /// The corrected prediction.
+    pub(crate) fn corrected_prediction(&self) -> Option<Corrected> {
+        Some(Corrected {
+            mean: self.corrected?,
+            interval: self
+                .corrected_q05
+                .zip(self.corrected_q95)
+                .map(|(q05, q95)| [q05, q95]),
+        })
     }
 
     /// Whether the measurement lies in the 90 % interval of the corrected prediction.
