@@ -42,6 +42,12 @@ def test_tables_are_the_files_of_the_folder_to_the_bit(study: grouser.Study, fol
     assert list(posterior) == list(rows[0]) and posterior.rows == len(rows)
     for name, column in posterior.items():
         np.testing.assert_array_equal(column, [float(row[name]) for row in rows])
+    with (folder / "predictions.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    predictions = study.predictions()
+    assert list(predictions) == list(rows[0]) and predictions.rows == len(rows)
+    for name in ("measured", "model", "combined", "combined_q95", "interpolated"):
+        np.testing.assert_array_equal(predictions[name], [float(row[name] or "nan") for row in rows])
     assert study.summary() == json.loads((folder / "summary.json").read_text(encoding="utf-8"))
 
 

@@ -64,6 +64,7 @@ pub use table::group::{ErrorGroup, GroupBy, GroupError};
 pub use table::interpolation::{InterpolatedOver, Interpolations};
 pub use table::mixture::Component;
 pub use table::posterior::PosteriorTable;
+pub use table::prediction::PredictionRow;
 pub use table::predictive::{NewMeasurement, NewMeasurements, Predictive};
 pub use table::refusal::Refusal;
 pub use table::row::ComparisonRow;

@@ -1,10 +1,13 @@
 //! The finished part of a study, from which summary, report and figures are made.
 
+use std::sync::OnceLock;
+
 use shared::api::CalibrationState;
 
 use crate::discovery::DiscoveryRound;
 use crate::finished_calibration::FinishedCalibration;
 use crate::study_member::StudyMember;
+use crate::table::combination::CombinedRow;
 
 /// The finished calibrations of a study, oldest first. There is at least one.
 #[derive(Debug)]
@@ -25,6 +28,8 @@ pub struct Study {
     pub rounds: Vec<DiscoveryRound>,
     /// Every member, finished or not, oldest first.
     pub members: Vec<StudyMember>,
+    /// What the models of the ledger predict together, once somebody asks.
+    pub combined: OnceLock<Vec<CombinedRow>>,
 }
 
 impl Study {
@@ -85,6 +90,7 @@ impl From<FinishedCalibration> for Study {
             extensions: Vec::new(),
             rounds: Vec::new(),
             members: Vec::new(),
+            combined: OnceLock::new(),
         }
     }
 }

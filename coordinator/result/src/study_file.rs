@@ -4,7 +4,7 @@ use crate::finished_calibration::FinishedCalibration;
 use crate::report;
 use crate::story::Story;
 use crate::study::Study;
-use crate::table::combination::predictions_csv;
+use crate::table::prediction::to_csv;
 use crate::terminal;
 
 /// A file of a study.
@@ -16,6 +16,8 @@ pub enum StudyFile {
     Posterior,
     /// Every run as the models predict it, as CSV.
     Predictions,
+    /// The same as JSON.
+    PredictionRows,
     /// Report.
     Report,
     /// Its tables and flags, as text for a terminal.
@@ -55,6 +57,7 @@ impl StudyFile {
             StudyFile::Summary => "summary.json".into(),
             StudyFile::Posterior => "posterior.csv".into(),
             StudyFile::Predictions => "predictions.csv".into(),
+            StudyFile::PredictionRows => "predictions.json".into(),
             StudyFile::Report => "report.html".into(),
             StudyFile::Details => "details.txt".into(),
             StudyFile::Brief => "brief.txt".into(),
@@ -84,9 +87,8 @@ impl Study {
         Some(match file {
             StudyFile::Summary => json(&self.summary()) + "\n",
             StudyFile::Posterior => self.current().unwrap_or(&self.lead).posterior_table().to_csv(),
-            StudyFile::Predictions => {
-                predictions_csv(&self.combined()).expect("numbers and names have a CSV form")
-            }
+            StudyFile::Predictions => to_csv(&self.predictions()),
+            StudyFile::PredictionRows => compact(&self.predictions()),
             StudyFile::Report => report::document(self),
             StudyFile::Details => terminal::study(self),
             StudyFile::Brief => terminal::brief(self),

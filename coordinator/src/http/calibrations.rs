@@ -19,7 +19,7 @@ use page::report::showing;
 use record::{Sample, StageRow};
 use result::{
     CalibrationFigures, ChannelHistory, Comparison, Diagnostics, FinishedCalibration, Flag, PosteriorTable,
-    Provenance, StudyFile, StudySummary,
+    PredictionRow, Provenance, StudyFile, StudySummary,
 };
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -34,6 +34,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(posterior))
         .routes(routes!(inference_data))
         .routes(routes!(comparison))
+        .routes(routes!(predictions))
         .routes(routes!(diagnostics))
         .routes(routes!(histories))
         .routes(routes!(provenance))
@@ -270,6 +271,19 @@ async fn inference_data(
     (status = 409, body = ErrorBody)))]
 async fn comparison(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
     Ok(json(service.calibration_file(id, StudyFile::Comparison).await?))
+}
+
+/// Every run as the models of the study predict it.
+///
+/// The content of `predictions.csv`: measured, by the current model of the study, by that model corrected, by all models together, and
+/// interpolated.
+#[utoipa::path(get, path = "/calibrations/{id}/predictions", operation_id = "get_predictions", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "a row for each run and channel", body = Vec<PredictionRow>),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
+async fn predictions(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
+    Ok(json(service.study_file(id, StudyFile::PredictionRows).await?))
 }
 
 /// A text that is JSON already.

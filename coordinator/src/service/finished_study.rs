@@ -1,5 +1,7 @@
 //! A finished calibration, and its study, loaded from the store.
 
+use std::sync::OnceLock;
+
 use shared::api::CalibrationState;
 
 use super::compared_models::models;
@@ -156,6 +158,7 @@ pub(super) async fn finished_study_of(
         extensions,
         rounds: search_rounds(reader, rows).await?,
         members: study_members(reader, rows).await?,
+        combined: OnceLock::new(),
     })
 }
 

@@ -14,7 +14,7 @@ from ._error import CalibrationStopped, GrouserError
 from ._place import FolderPlace, Place, ServicePlace
 from ._progress import OnProgress, Progress, of_status, shown
 from ._story import EffectFile, MissingEffect, NextRun, Step, Story, next_run, story
-from ._table import Table
+from ._table import CONDITIONS, Table
 
 CHANNEL_UNITS = {"drawbar_pull": "N", "torque": "N m", "sinkage": "m", "lateral_force": "N"}
 STOPPED = ("paused", "failed")
@@ -99,6 +99,14 @@ class Study:
         if current is None:
             raise GrouserError(f"study {self.id} ({self.state}): no calibration has a posterior yet")
         return self.calibration(current)
+
+    def predictions(self) -> Table:
+        """Every run and channel as the models predict it, the content of ``predictions.csv``.
+
+        ``unit`` is the SI unit of ``measured``, ``model`` (the current one), ``corrected`` (that with what it misses in the fitted
+        conditions), ``combined`` (all models of the ledger) and ``interpolated`` (none); with 5 % and 95 % quantiles of a new measurement.
+        """
+        return Table.from_rows(self._place.get(f"calibrations/{self.current.id}/predictions"), units=CONDITIONS)
 
     def calibration(self, id: int) -> Calibration:
         """One of the calibrations.

@@ -169,6 +169,10 @@ class Study:
         """As :meth:`grouser.Study.next_runs`."""
         return await asyncio.to_thread(self.sync.next_runs)
 
+    async def predictions(self) -> Table:
+        """As :meth:`grouser.Study.predictions`."""
+        return await asyncio.to_thread(self.sync.predictions)
+
     async def summary(self) -> dict[str, Any]:
         """As :meth:`grouser.Study.summary`."""
         return await asyncio.to_thread(self.sync.summary)

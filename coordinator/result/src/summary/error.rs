@@ -54,12 +54,9 @@ impl CorrectedSummary {
     }
 
     pub(super) fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
-        let table = |table: Option<ErrorTable>| table.map(|table| table.in_fixed_sigmas(sigmas));
-        CorrectedSummary {
-            fit: table(self.fit),
-            holdout: table(self.holdout),
-            ..self
-        }
+        let CorrectedSummary { fit, holdout, .. } = self;
+        let ErrorSummary { fit, holdout } = ErrorSummary { fit, holdout }.in_fixed_sigmas(sigmas);
+        CorrectedSummary { fit, holdout, ..self }
     }
 }
 

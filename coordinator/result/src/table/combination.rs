@@ -28,7 +28,7 @@ const HELD: f64 = 0.9;
 /// # Source
 /// Bates & Granger 1969, doi:10.1057/jors.1969.103. Checked by `models_that_err_to_both_sides_are_better_together` and others below.
 #[derive(Debug, Clone)]
-pub(crate) struct CombinedRow {
+pub struct CombinedRow {
     /// The run and channel, with the prediction of the current model.
     pub(crate) row: ComparisonRow,
     /// Weighted mean of the corrected predictions [channel's unit]; `None` where no model has one.
@@ -93,7 +93,11 @@ impl CombinedRow {
 impl Study {
     /// The measurements that the current model is compared with, as the ledger's models of the same measurements predict them
     /// together; of a fit without draws, which stands in no ledger, by that fit alone.
-    pub(crate) fn combined(&self) -> Vec<CombinedRow> {
+    pub(crate) fn combined(&self) -> &[CombinedRow] {
+        self.combined.get_or_init(|| self.combine())
+    }
+
+    fn combine(&self) -> Vec<CombinedRow> {
         let current = self.current().unwrap_or(&self.lead);
         let mut models: Vec<&FinishedCalibration> = self.ledger().collect();
         models.retain(|own| own.row.experiment == current.row.experiment);
@@ -153,69 +157,6 @@ fn weights(models: &[&Comparison], channel: Channel) -> Vec<f64> {
         Some(_) => 1.0,
     };
     errors.iter().map(weight).collect()
-}
-
-/// The columns of `predictions.csv`.
-const COLUMNS: [&str; 21] = [
-    "run",
-    "use",
-    "wheel",
-    "slip",
-    "slip_angle_deg",
-    "wheel_load_n",
-    "sled_speed_m_s",
-    "channel",
-    "unit",
-    "measured",
-    "model",
-    "model_q05",
-    "model_q95",
-    "corrected",
-    "corrected_q05",
-    "corrected_q95",
-    "combined",
-    "combined_q05",
-    "combined_q95",
-    "models",
-    "interpolated",
-];
-
-/// Every run and channel as CSV: measured, by the current model, by that model corrected, combined, and interpolated.
-pub(crate) fn predictions_csv(rows: &[CombinedRow]) -> Result<String, csv::Error> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(COLUMNS)?;
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-    for own in rows {
-        let row = &own.row;
-        let cells: [String; COLUMNS.len()] = [
-            row.run.clone(),
-            row.usage.name().to_owned(),
-            row.wheel.clone(),
-            row.slip.to_string(),
-            row.slip_angle_deg.to_string(),
-            row.wheel_load_n.to_string(),
-            row.sled_speed_m_s.to_string(),
-            row.channel.name().to_owned(),
-            row.unit.clone(),
-            row.measured.to_string(),
-            number(row.predicted),
-            number(row.q05),
-            number(row.q95),
-            number(row.corrected),
-            number(row.corrected_q05),
-            number(row.corrected_q95),
-            number(own.mean),
-            number(own.interval.map(|[q05, _]| q05)),
-            number(own.interval.map(|[_, q95]| q95)),
-            own.models.to_string(),
-            number(row.interpolated),
-        ];
-        writer.write_record(&cells)?;
-    }
-    let bytes = writer
-        .into_inner()
-        .map_err(|e| csv::Error::from(e.into_error()))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 #[cfg(test)]
@@ -334,7 +275,7 @@ mod tests {
     fn a_study_holds_nine_tenths_of_its_fitted_measurements() {
         let study = grown();
         let fitted = |channel| {
-            let rows = study.combined().into_iter();
+            let rows = study.combined().iter();
             rows.filter(move |own| own.row.usage == RunUse::Fit && own.row.channel == channel)
         };
         for channel in [Channel::DrawbarPull, Channel::Sinkage] {
@@ -382,7 +323,7 @@ mod tests {
         let rows = study.combined();
         assert_eq!(rows.len(), models[0].rows.len());
         let mut averaged = 0;
-        for own in &rows {
+        for own in rows {
             let of = |model: &&Comparison| {
                 let mut rows = model.rows.iter();
                 let row = rows.find(|row| row.run == own.row.run && row.channel == own.row.channel);
@@ -423,34 +364,5 @@ mod tests {
                 .collect()
         };
         assert_eq!(predicted(0.0), predicted(7.0));
-    }
-
-    #[test]
-    fn a_fit_without_draws_has_its_own_predictions() {
-        let study = Study::from(fixture::search());
-        let rows = study.combined();
-        assert!(rows.iter().any(|own| own.row.predicted.is_some()));
-        let csv = predictions_csv(&rows).unwrap();
-        assert_eq!(csv.lines().count(), 1 + rows.len());
-        assert_eq!(predictions_csv(&[]).unwrap().trim_end(), COLUMNS.join(","));
-    }
-
-    #[test]
-    fn a_file_has_a_line_for_each_run_and_channel_of_the_current_model() {
-        let study = Study::from(fixture::with_smooth_misfit());
-        let rows = study.combined();
-        let csv = predictions_csv(&rows).unwrap();
-        let lines: Vec<&str> = csv.lines().collect();
-        assert_eq!(lines.len(), 1 + study.lead.comparison().rows.len());
-        let column = |name: &str| lines[0].split(',').position(|own| own == name).unwrap();
-        let h1 = lines
-            .iter()
-            .find(|line| line.starts_with("h1,holdout") && line.contains("pull"));
-        let cells: Vec<&str> = h1.unwrap().split(',').collect();
-        // Of one model the combined prediction is the corrected one.
-        assert_eq!(cells[column("combined")], cells[column("corrected")]);
-        assert_eq!(cells[column("models")], "1");
-        let fast = lines.iter().find(|line| line.starts_with("fast,")).unwrap();
-        assert_eq!(fast.split(',').nth(column("combined")), Some(""));
     }
 }

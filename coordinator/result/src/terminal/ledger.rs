@@ -52,10 +52,8 @@ pub(super) fn ledger(study: &Study) -> String {
     let current = study.current().map(FinishedCalibration::comparison);
     let corrected = current.and_then(|own| own.corrected_holdout.as_ref());
     let interpolated = current.and_then(|own| own.baseline_holdout.as_ref());
-    let combined = study.combined();
-    let held_out = combined.iter().filter(|own| own.row.usage == RunUse::Holdout);
-    let combined = ErrorTable::of(held_out.map(|own| (&own.row, own.mean)));
-    let combined = combined.filter(|_| lines.len() > 1);
+    let combined = study.combined_summary(&study.fixed_sigmas());
+    let combined = combined.filter(|own| own.models > 1).and_then(|own| own.holdout);
     for (name, errors) in [
         (CORRECTED, corrected),
         (COMBINED, combined.as_ref()),

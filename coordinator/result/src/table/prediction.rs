@@ -1,0 +1,176 @@
+//! Every run as the models of a study predict it.
+
+use shared::channel::Channel;
+use shared::experiment::RunUse;
+
+use super::combination::CombinedRow;
+use crate::study::Study;
+
+/// A run and channel: measured, by the current model, by that model corrected, by all models together, and interpolated. Values are in
+/// the channel's SI unit; `None` where there is no prediction.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct PredictionRow {
+    /// Name of the run.
+    pub run: String,
+    /// `fit` or `holdout`.
+    #[serde(rename = "use")]
+    #[schema(value_type = String)]
+    pub usage: RunUse,
+    /// Wheel.
+    pub wheel: String,
+    /// Slip.
+    pub slip: f64,
+    /// Slip angle `[deg]`.
+    pub slip_angle_deg: f64,
+    /// Wheel load `[N]`.
+    pub wheel_load_n: f64,
+    /// Sled speed `[m/s]`.
+    pub sled_speed_m_s: f64,
+    /// Channel without unit.
+    #[schema(value_type = String)]
+    pub channel: Channel,
+    /// Unit of the next figures.
+    pub unit: String,
+    /// Measured.
+    pub measured: f64,
+    /// Posterior mean of the current model.
+    pub model: Option<f64>,
+    /// 5 % quantile of a new measurement.
+    pub model_q05: Option<f64>,
+    /// 95 % quantile.
+    pub model_q95: Option<f64>,
+    /// The same with what the model misses, as the fitted conditions say it; of a fitted run, the others.
+    pub corrected: Option<f64>,
+    /// 5 % quantile of a new measurement.
+    pub corrected_q05: Option<f64>,
+    /// 95 % quantile.
+    pub corrected_q95: Option<f64>,
+    /// Weighted mean of the corrected predictions of the ledger's models.
+    pub combined: Option<f64>,
+    /// 5 % quantile of a new measurement.
+    pub combined_q05: Option<f64>,
+    /// 95 % quantile.
+    pub combined_q95: Option<f64>,
+    /// How many models it averages.
+    pub models: usize,
+    /// Interpolation of the fitted measurements, without a model.
+    pub interpolated: Option<f64>,
+}
+
+impl PredictionRow {
+    fn of(own: &CombinedRow) -> Self {
+        let row = own.row.clone();
+        PredictionRow {
+            run: row.run,
+            usage: row.usage,
+            wheel: row.wheel,
+            slip: row.slip,
+            slip_angle_deg: row.slip_angle_deg,
+            wheel_load_n: row.wheel_load_n,
+            sled_speed_m_s: row.sled_speed_m_s,
+            channel: row.channel,
+            unit: row.unit,
+            measured: row.measured,
+            model: row.predicted,
+            model_q05: row.q05,
+            model_q95: row.q95,
+            corrected: row.corrected,
+            corrected_q05: row.corrected_q05,
+            corrected_q95: row.corrected_q95,
+            combined: own.mean,
+            combined_q05: own.interval.map(|[q05, _]| q05),
+            combined_q95: own.interval.map(|[_, q95]| q95),
+            models: own.models,
+            interpolated: row.interpolated,
+        }
+    }
+}
+
+impl Study {
+    /// Every measurement that the current model is compared with.
+    pub(crate) fn predictions(&self) -> Vec<PredictionRow> {
+        self.combined().iter().map(PredictionRow::of).collect()
+    }
+}
+
+/// The columns of `predictions.csv`, the fields of a row.
+const COLUMNS: [&str; 21] = [
+    "run",
+    "use",
+    "wheel",
+    "slip",
+    "slip_angle_deg",
+    "wheel_load_n",
+    "sled_speed_m_s",
+    "channel",
+    "unit",
+    "measured",
+    "model",
+    "model_q05",
+    "model_q95",
+    "corrected",
+    "corrected_q05",
+    "corrected_q95",
+    "combined",
+    "combined_q05",
+    "combined_q95",
+    "models",
+    "interpolated",
+];
+
+/// The content of `predictions.csv`; without rows, its title line.
+pub(crate) fn to_csv(rows: &[PredictionRow]) -> String {
+    let mut writer = csv::WriterBuilder::new()
+        .has_headers(false)
+        .from_writer(Vec::new());
+    writer.write_record(COLUMNS).expect("names have a CSV form");
+    for row in rows {
+        writer.serialize(row).expect("a row has a CSV form");
+    }
+    let bytes = writer.into_inner().expect("memory can be written");
+    String::from_utf8(bytes).expect("names are text")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn a_fit_without_draws_has_its_own_predictions() {
+        let study = Study::from(fixture::search());
+        let rows = study.combined();
+        assert!(rows.iter().any(|own| own.row.predicted.is_some()));
+        let csv = to_csv(&study.predictions());
+        assert_eq!(csv.lines().count(), 1 + rows.len());
+    }
+
+    #[test]
+    fn a_file_has_a_line_for_each_run_and_channel_of_the_current_model() {
+        let study = Study::from(fixture::with_smooth_misfit());
+        let rows = study.combined();
+        let csv = to_csv(&study.predictions());
+        let lines: Vec<&str> = csv.lines().collect();
+        assert_eq!(lines.len(), 1 + study.lead.comparison().rows.len());
+        let column = |name: &str| lines[0].split(',').position(|own| own == name).unwrap();
+        let h1 = lines
+            .iter()
+            .find(|line| line.starts_with("h1,holdout") && line.contains("pull"));
+        let cells: Vec<&str> = h1.unwrap().split(',').collect();
+        // Of one model the combined prediction is the corrected one.
+        assert_eq!(cells[column("combined")], cells[column("corrected")]);
+        assert_eq!(cells[column("models")], "1");
+        let fast = lines.iter().find(|line| line.starts_with("fast,")).unwrap();
+        assert_eq!(fast.split(',').nth(column("combined")), Some(""));
+    }
+
+    #[test]
+    fn the_title_line_names_the_fields_of_a_row() {
+        let study = Study::from(fixture::with_smooth_misfit());
+        // Which a writer that knows the fields alone begins with.
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.serialize(&study.predictions()[0]).unwrap();
+        let titled = String::from_utf8(writer.into_inner().unwrap()).unwrap();
+        assert_eq!(titled.lines().next(), to_csv(&[]).lines().next());
+    }
+}
